@@ -1,0 +1,1 @@
+"""Frame sources: where pictures come from."""

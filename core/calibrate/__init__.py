@@ -1,0 +1,1 @@
+"""Features to model: the camera, the fan."""

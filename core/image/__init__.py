@@ -1,0 +1,1 @@
+"""Picture to features: stripe centrelines, crossings, target corners."""

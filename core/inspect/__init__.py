@@ -1,0 +1,1 @@
+"""Surface to verdict: faces, gauge thickness, uncertainty, conformity."""

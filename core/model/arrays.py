@@ -1,0 +1,33 @@
+"""Arrays that frozen dataclasses hold: float64, contiguous, read-only."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Array = NDArray[np.float64]
+
+
+def frozen_array(values: ArrayLike, shape: tuple[int | None, ...], name: str) -> Array:
+    """A read-only float64 copy of `values`, its shape checked (None: any length).
+
+    Raises
+    ------
+    ValueError
+        If the shape does not match; the message names `name`.
+    """
+    array = np.array(values, dtype=np.float64)
+    if array.ndim != len(shape) or any(
+        want is not None and have != want for have, want in zip(array.shape, shape, strict=True)
+    ):
+        wanted = " × ".join("n" if n is None else str(n) for n in shape)
+        raise ValueError(f"{name} has shape {array.shape}, not {wanted}")
+    array.flags.writeable = False
+    return array
+
+
+def set_field(instance: object, name: str, value: Any) -> None:
+    """Set a field of a frozen dataclass from its own ``__post_init__``."""
+    object.__setattr__(instance, name, value)

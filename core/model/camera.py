@@ -1,0 +1,165 @@
+"""The camera: full intrinsics with skew, Brown–Conrady distortion, and rays.
+
+Pinhole with skew (paper, eq. 1)::
+
+    u = α x_d + γ y_d + u0
+    v =         β y_d + v0
+
+and Brown–Conrady distortion (paper, eq. 2, whose print is wrong; this is the model it means, and OpenCV's)::
+
+    x_d = x (1 + k1 r² + k2 r⁴ + k3 r⁶) + 2 p1 x y + p2 (r² + 2 x²)
+    y_d = y (1 + k1 r² + k2 r⁴ + k3 r⁶) + p1 (r² + 2 y²) + 2 p2 x y,     r² = x² + y²
+
+The centre of the first pixel is (0, 0). A ray is r = (x, y, 1) with x, y undistorted; a point at depth z on it
+is X = z r.
+
+References
+----------
+Sun et al., Sensors 2023, 23, 13, §3.1, doi:10.3390/s23010013.
+Brown, D. C., Decentering distortion of lenses, Photogrammetric Engineering 32 (1966).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from core.model.arrays import Array, frozen_array, set_field
+from core.model.pose import Pose
+
+DISTORTION_NAMES = ("k1", "k2", "p1", "p2", "k3")
+"""Names and order of the distortion coefficients."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Camera:
+    """Intrinsics and distortion of one camera at one picture size.
+
+    Parameters
+    ----------
+    image_size
+        (width, height) in pixels.
+    matrix
+        (3, 3), [[α, γ, u0], [0, β, v0], [0, 0, 1]] in pixels.
+    distortion
+        (5,), k1, k2, p1, p2, k3; four values mean k3 = 0.
+
+    Raises
+    ------
+    ValueError
+        If a shape is wrong, a value is not finite, or a focal length is not positive.
+    """
+
+    image_size: tuple[int, int]
+    matrix: Array
+    distortion: Array = field(default_factory=lambda: np.zeros(5))
+
+    def __post_init__(self) -> None:
+        width, height = self.image_size
+        set_field(self, "image_size", (int(width), int(height)))
+        set_field(self, "matrix", frozen_array(self.matrix, (3, 3), "matrix"))
+        coefficients = np.zeros(5)
+        given = np.asarray(self.distortion, dtype=np.float64).ravel()
+        if given.size not in (4, 5):
+            raise ValueError(f"distortion has {given.size} values, not 4 or 5")
+        coefficients[: given.size] = given
+        set_field(self, "distortion", frozen_array(coefficients, (5,), "distortion"))
+        if width <= 0 or height <= 0:
+            raise ValueError(f"image_size {self.image_size} is not positive")
+        if not (np.isfinite(self.matrix).all() and np.isfinite(self.distortion).all()):
+            raise ValueError("matrix and distortion must be finite")
+        if self.matrix[0, 0] <= 0 or self.matrix[1, 1] <= 0:
+            raise ValueError("the focal lengths on the diagonal of matrix must be positive")
+
+    @property
+    def focal(self) -> float:
+        """Geometric mean of the two focal lengths, in pixels."""
+        return float(np.sqrt(self.matrix[0, 0] * self.matrix[1, 1]))
+
+    def scaled(self, factor: float) -> Camera:
+        """The same camera with its pictures resized by `factor`, pixel edges kept in place."""
+        width, height = self.image_size
+        matrix = self.matrix.copy()
+        matrix[:2] *= factor
+        matrix[:2, 2] += (factor - 1) / 2
+        return Camera((round(width * factor), round(height * factor)), matrix, self.distortion)
+
+    def project(self, points: ArrayLike) -> Array:
+        """Image points (N, 2) in pixels of `points` (N, 3) in mm in the camera frame."""
+        xyz = np.asarray(points, dtype=np.float64)
+        return self.pixels(xyz[:, :2] / xyz[:, 2:])
+
+    def project_pose(self, pose_cam_target: Pose, points: ArrayLike) -> Array:
+        """Image points (N, 2) in pixels of `points` (N, 3) in mm in the frame of a target."""
+        return self.project(pose_cam_target.apply(points))
+
+    def pixels(self, xy: ArrayLike) -> Array:
+        """Image points (N, 2) in pixels of undistorted ray coordinates `xy` (N, 2)."""
+        distorted = self.distort(np.asarray(xy, dtype=np.float64))
+        return distorted @ self.matrix[:2, :2].T + self.matrix[:2, 2]
+
+    def distort(self, xy: Array) -> Array:
+        """Distorted ray coordinates (N, 2) of undistorted ones (N, 2)."""
+        k1, k2, p1, p2, k3 = self.distortion
+        x, y = xy[:, 0], xy[:, 1]
+        r2 = x * x + y * y
+        radial = 1 + r2 * (k1 + r2 * (k2 + r2 * k3))
+        return np.column_stack(
+            [
+                x * radial + 2 * p1 * x * y + p2 * (r2 + 2 * x * x),
+                y * radial + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y,
+            ]
+        )
+
+    def distort_jacobian(self, xy: Array) -> Array:
+        """∂(distorted)/∂(undistorted) at `xy` (N, 2): (N, 2, 2)."""
+        k1, k2, p1, p2, k3 = self.distortion
+        x, y = xy[:, 0], xy[:, 1]
+        r2 = x * x + y * y
+        radial = 1 + r2 * (k1 + r2 * (k2 + r2 * k3))
+        slope = 2 * (k1 + r2 * (2 * k2 + r2 * 3 * k3))  # ∂radial/∂x = slope · x
+        jacobian = np.empty((len(x), 2, 2))
+        jacobian[:, 0, 0] = radial + slope * x * x + 2 * p1 * y + 6 * p2 * x
+        jacobian[:, 0, 1] = slope * x * y + 2 * p1 * x + 2 * p2 * y
+        jacobian[:, 1, 0] = jacobian[:, 0, 1]
+        jacobian[:, 1, 1] = radial + slope * y * y + 6 * p1 * y + 2 * p2 * x
+        return jacobian
+
+    def undistort(self, uv: ArrayLike) -> Array:
+        """Undistorted ray coordinates (N, 2) of image points `uv` (N, 2), by Newton's method to 1e-12.
+
+        A point outside the region where the distortion is one-to-one does not converge; it comes back as NaN.
+        """
+        points = np.asarray(uv, dtype=np.float64).reshape(-1, 2)
+        distorted = (points - self.matrix[:2, 2]) @ np.linalg.inv(self.matrix[:2, :2]).T
+        xy = distorted.copy()
+        for _ in range(20):
+            error = self.distort(xy) - distorted
+            step = _solve_2x2(self.distort_jacobian(xy), error)
+            xy -= step
+            if not np.any(np.abs(step) > 1e-12):
+                break
+        else:
+            xy[np.abs(self.distort(xy) - distorted).max(axis=1) > 1e-9] = np.nan
+        return xy
+
+    def rays(self, uv: ArrayLike) -> Array:
+        """Rays (N, 3), r = (x, y, 1), of image points `uv` (N, 2) in pixels."""
+        xy = self.undistort(uv)
+        return np.column_stack([xy, np.ones(len(xy))])
+
+    def ray_jacobian(self, rays: Array) -> Array:
+        """∂(x, y)/∂(u, v) at `rays` (N, 3): (N, 2, 2) in 1/pixel."""
+        forward: Array = self.matrix[:2, :2] @ self.distort_jacobian(rays[:, :2])
+        return np.linalg.inv(forward)
+
+
+def _solve_2x2(matrices: Array, vectors: Array) -> Array:
+    """Solve N systems of two equations, (N, 2, 2) and (N, 2), in closed form."""
+    a, b = matrices[:, 0, 0], matrices[:, 0, 1]
+    c, d = matrices[:, 1, 0], matrices[:, 1, 1]
+    p, q = vectors[:, 0], vectors[:, 1]
+    determinant = a * d - b * c
+    return np.column_stack([(d * p - b * q) / determinant, (a * q - c * p) / determinant])

@@ -1,0 +1,1 @@
+"""Verdict to paper: tables, plots, the PDF."""

@@ -1,0 +1,1 @@
+"""Features and model to surface: sweeps, the network, fusion, mesh."""

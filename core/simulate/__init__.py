@@ -1,0 +1,1 @@
+"""The digital twin: scenes, lasers and a camera with hidden truth."""

@@ -1,0 +1,1 @@
+"""Files that ship with Trisect, found through importlib.resources."""
