@@ -153,7 +153,7 @@ class Camera:
     def ray_jacobian(self, rays: Array) -> Array:
         """∂(x, y)/∂(u, v) at `rays` (N, 3): (N, 2, 2) in 1/pixel."""
         forward: Array = self.matrix[:2, :2] @ self.distort_jacobian(rays[:, :2])
-        return np.linalg.inv(forward)
+        return np.asarray(np.linalg.inv(forward), dtype=np.float64)
 
 
 def _solve_2x2(matrices: Array, vectors: Array) -> Array:

@@ -79,7 +79,8 @@ def test_pose_and_its_inverse_cancel():
 
 def test_triangulated_points_lie_on_the_light_plane_and_on_their_rays():
     plane = LightPlane.from_normal([0, 0.98, 0.2], 60.0)
-    rays = PAPER.rays(pixels_everywhere() + [0, 3000])
+    rays = PAPER.rays(pixels_everywhere())
+    rays = rays[rays @ plane.pi > 1e-4]
     points = plane.points(rays)
     assert np.abs(points @ plane.pi - 1).max() < 1e-12
     assert np.allclose(points / points[:, 2:], rays)

@@ -1,0 +1,98 @@
+"""What the calibrations give: frozen results with their own quality."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from core.image.target_view import TargetView
+from core.model import Camera, Fan, Pose
+from core.model.arrays import Array
+
+CAMERA_PARAMETERS = ("alpha", "beta", "gamma", "u0", "v0", "k1", "k2", "p1", "p2", "k3")
+"""Names and order of the camera's parameters in covariances."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class ViewQuality:
+    """How one view of the target fits the calibrated camera.
+
+    Residuals are observed − predicted, (N, 2) in pixels. A view that was left out says why in `reason`.
+    """
+
+    view: TargetView
+    pose: Pose
+    residuals: Array
+    rms_px: float
+    mean_px: float
+    tilt: float
+    used: bool
+    reason: str = ""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class CameraCalibration:
+    """A calibrated camera and how far it can be trusted.
+
+    `covariance` is (10, 10) in the order of CAMERA_PARAMETERS, zero rows for fixed parameters.
+    `rms_px` is the root mean square of the residual vectors' lengths over used views, `mean_px` their mean length
+    (the paper judges by this one). `coverage` is the share (0…1) of the picture's cells that hold a corner;
+    `tilt_range` the largest angle in rad between two views' target normals. `cross_validation_mm` is the RMS
+    distance between the points that cameras solved from odd and from even views give over the work volume.
+    `notes` are sentences for the technician.
+    """
+
+    camera: Camera
+    covariance: Array
+    views: tuple[ViewQuality, ...]
+    rms_px: float
+    mean_px: float
+    coverage: float
+    tilt_range: float
+    cross_validation_mm: float
+    notes: tuple[str, ...] = ()
+
+    @property
+    def sd(self) -> Mapping[str, float]:
+        """Standard deviation of each parameter by name."""
+        return {name: float(max(self.covariance[i, i], 0.0) ** 0.5) for i, name in enumerate(CAMERA_PARAMETERS)}
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class PlanePose:
+    """One pose of the plane target in the fan's calibration.
+
+    `points[k]` are the (n_k, 3) points in mm in the camera frame on fan line k, `distances[k]` their signed
+    distances in mm from the constrained plane; both empty for a line this pose does not show.
+    """
+
+    name: str
+    pose: Pose
+    target_rms_px: float
+    points: tuple[Array, ...]
+    distances: tuple[Array, ...]
+    rms_mm: float
+    used: bool
+    reason: str = ""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class FanCalibration:
+    """A calibrated fan and how far it can be trusted.
+
+    `fan` is the result to use (constrained when the constraint suits the laser), `free` the planes fitted each on
+    its own. `rms_mm` per line. `angles` (rad) between neighbouring planes of the constrained and the free fit.
+    `pencil_gap_mm` is the largest distance of the free planes from one common axis within the work volume;
+    `constraint_suits` None where there is no constraint (one line).
+    """
+
+    fan: Fan
+    free: Fan
+    rms_mm: tuple[float, ...]
+    angles: tuple[float, ...]
+    free_angles: tuple[float, ...]
+    pencil_gap_mm: float
+    constraint_suits: bool | None
+    verdict: str
+    poses: tuple[PlanePose, ...]
+    notes: tuple[str, ...] = ()

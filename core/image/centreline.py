@@ -1,0 +1,73 @@
+"""The sub-pixel curve of one stripe of light in one picture."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.model.arrays import Array, frozen_array, set_field
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Centreline:
+    """One unbroken run of stripe points, in order along the stripe, about one pixel apart.
+
+    A stripe cut by a depth edge or a dark gap gives several centrelines.
+
+    Parameters
+    ----------
+    uv
+        (N, 2) points in pixels, distorted image coordinates.
+    normal
+        (N, 2) unit vectors across the stripe; the tangent is (−normal_v, normal_u), and points run along it.
+    width
+        (N,) Gaussian σ of the light's cross-section in pixels, freed of the filter's own width.
+    strength
+        (N,) height of the cross-section over its background, in grey levels of the picture.
+    sigma
+        (N,) standard uncertainty of the position along the normal, in pixels.
+    saturated
+        (N,) True where pixels of the cross-section are saturated: weight these zero.
+    """
+
+    uv: Array
+    normal: Array
+    width: Array
+    strength: Array
+    sigma: Array
+    saturated: NDArray[np.bool_]
+
+    def __post_init__(self) -> None:
+        count = len(self.uv)
+        for name, shape in (
+            ("uv", (count, 2)),
+            ("normal", (count, 2)),
+            ("width", (count,)),
+            ("strength", (count,)),
+            ("sigma", (count,)),
+        ):
+            set_field(self, name, frozen_array(getattr(self, name), shape, name))
+        saturated = np.array(self.saturated, dtype=np.bool_).reshape(count)
+        saturated.flags.writeable = False
+        set_field(self, "saturated", saturated)
+
+    def __len__(self) -> int:
+        return len(self.uv)
+
+    @property
+    def tangent(self) -> Array:
+        """Unit vectors (N, 2) along the stripe."""
+        return np.column_stack([-self.normal[:, 1], self.normal[:, 0]])
+
+    def select(self, keep: NDArray[np.bool_] | NDArray[np.intp] | slice) -> Centreline:
+        """The points that `keep` selects."""
+        return Centreline(
+            self.uv[keep],
+            self.normal[keep],
+            self.width[keep],
+            self.strength[keep],
+            self.sigma[keep],
+            self.saturated[keep],
+        )

@@ -1,0 +1,74 @@
+"""The measured points of a scan."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.model.arrays import Array, frozen_array, set_field
+
+FAN = -1
+"""Value of `Cloud.sweep` for points that the fan measured itself; fan line k (from 0) is `FAN - k`."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Cloud:
+    """Points in the camera frame, each with its standard uncertainty.
+
+    Parameters
+    ----------
+    points
+        (N, 3) in mm.
+    uv
+        (N, 2) the pixel each was seen at (distorted image coordinates).
+    sigma
+        (N,) standard uncertainty of the depth in mm, without what is common to the whole scan.
+    intensity
+        (N,) strength of the stripe in grey levels.
+    frame
+        (N,) index of the frame in the order of the recording; −1 for the reference (the fan's own points).
+    sweep
+        (N,) index of the sweep in the network's covariance, or `FAN - k` for fan line k.
+    normals
+        (N, 3) unit normals towards the camera; zero where unknown.
+    """
+
+    points: Array
+    uv: Array
+    sigma: Array
+    intensity: Array
+    frame: NDArray[np.int64]
+    sweep: NDArray[np.int64]
+    normals: Array
+
+    def __post_init__(self) -> None:
+        count = len(self.points)
+        for name, shape in (
+            ("points", (count, 3)),
+            ("uv", (count, 2)),
+            ("sigma", (count,)),
+            ("intensity", (count,)),
+            ("normals", (count, 3)),
+        ):
+            set_field(self, name, frozen_array(getattr(self, name), shape, name))
+        for name in ("frame", "sweep"):
+            index = np.array(getattr(self, name), dtype=np.int64).reshape(count)
+            index.flags.writeable = False
+            set_field(self, name, index)
+
+    def __len__(self) -> int:
+        return len(self.points)
+
+    def select(self, keep: NDArray[np.bool_] | NDArray[np.intp]) -> Cloud:
+        """The points that `keep` selects."""
+        return Cloud(
+            self.points[keep],
+            self.uv[keep],
+            self.sigma[keep],
+            self.intensity[keep],
+            self.frame[keep],
+            self.sweep[keep],
+            self.normals[keep],
+        )
