@@ -1,1 +1,1 @@
-"""The only code that reads or writes disk: recording sets, results, PLY."""
+"""The only disk code: pictures, recording sets, calibrations, clouds, results."""
