@@ -1,0 +1,226 @@
+"""Light planes as unknowns: each on its own, or tied into one pencil, and their fit to points.
+
+The planes of a pencil share an axis. With R = (e1 | e2 | d), d along the axis, and a point a on it, the plane at
+angle φ about the axis has the normal n = e1 cos φ + e2 sin φ and is π = n / (n·a). The local unknowns are two small
+rotations that tilt the axis, two shifts of the axis along e1 and e2, and the angles: one common turn when the angles
+between neighbours are fixed (five unknowns, the paper's constraint), or one per plane.
+
+References
+----------
+Sun et al., Sensors 2023, 23, 13, §3.2, doi:10.3390/s23010013; its eq. (4) minimises algebraic residuals, which
+depend on the scale of the coefficients: here orthogonal distances are minimised.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol, TypeVar
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from core.calibrate.levenberg import Solution, minimise
+from core.model.arrays import Array, frozen_array, set_field
+
+HUBER = 2.0
+"""Distances beyond this many standard deviations lose weight."""
+
+
+class PlaneSet(Protocol):
+    """N light planes described by local unknowns."""
+
+    @property
+    def pis(self) -> Array:
+        """All π, (N, 3) in 1/mm."""
+
+    @property
+    def jacobian(self) -> Array:
+        """∂(stacked π)/∂(local step), (3N, P)."""
+
+    def moved(self, step: Array) -> PlaneSet:
+        """The planes after a local step (P,)."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class FreePlanes:
+    """Planes that know nothing of each other: 3N unknowns, `pis` (N, 3) in 1/mm."""
+
+    pis: Array
+
+    def __post_init__(self) -> None:
+        set_field(self, "pis", frozen_array(self.pis, (None, 3), "pis"))
+
+    @property
+    def jacobian(self) -> Array:
+        return np.eye(self.pis.size)
+
+    def moved(self, step: Array) -> FreePlanes:
+        return FreePlanes(self.pis + step.reshape(-1, 3))
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Pencil:
+    """Planes through one axis.
+
+    Parameters
+    ----------
+    frame
+        (3, 3) rotation with columns e1, e2 and the axis d.
+    point
+        (3,) in mm, on the axis.
+    angles
+        (N,) in rad, each plane's angle about the axis, counted from e1.
+    fixed_angles
+        True: the angles between neighbours stay as they are (5 unknowns); False: all are unknown (4 + N).
+    """
+
+    frame: Array
+    point: Array
+    angles: Array
+    fixed_angles: bool
+
+    def __post_init__(self) -> None:
+        set_field(self, "frame", frozen_array(self.frame, (3, 3), "frame"))
+        set_field(self, "point", frozen_array(self.point, (3,), "point"))
+        set_field(self, "angles", frozen_array(self.angles, (None,), "angles"))
+
+    @property
+    def _normals(self) -> Array:
+        return np.column_stack([np.cos(self.angles), np.sin(self.angles)]) @ self.frame[:, :2].T
+
+    @property
+    def pis(self) -> Array:
+        normals = self._normals
+        pis: Array = normals / (normals @ self.point)[:, None]
+        return pis
+
+    @property
+    def jacobian(self) -> Array:
+        normals = self._normals
+        cosine, sine = np.cos(self.angles)[:, None], np.sin(self.angles)[:, None]
+        e1, e2, axis = self.frame.T
+        count = len(self.angles)
+        turned = cosine * e2 - sine * e1  # ∂n/∂φ
+        by_angle = np.zeros((count, 3, count))
+        by_angle[np.arange(count), :, np.arange(count)] = turned
+        if self.fixed_angles:
+            by_angle = by_angle.sum(axis=2, keepdims=True)
+        tilts = np.stack([sine * axis, -cosine * axis], axis=2)
+        normal_steps = np.concatenate([tilts, np.zeros((count, 3, 2)), by_angle], axis=2)
+        distances = normals @ self.point
+        distance_steps = np.einsum("kip,i->kp", normal_steps, self.point)
+        distance_steps[:, 2:4] += np.hstack([cosine, sine])
+        steps = normal_steps / distances[:, None, None]
+        steps -= normals[:, :, None] * (distance_steps / distances[:, None] ** 2)[:, None, :]
+        return np.asarray(steps.reshape(3 * count, -1), dtype=np.float64)
+
+    def moved(self, step: Array) -> Pencil:
+        frame = self.frame @ Rotation.from_rotvec([step[0], step[1], 0.0]).as_matrix()
+        point = self.point + self.frame[:, :2] @ step[2:4]
+        return Pencil(frame, point, self.angles + step[4:], self.fixed_angles)
+
+
+def pencil_near(pis: Array, angle: float | None) -> Pencil:
+    """The pencil near N ≥ 2 planes: where a fit can start.
+
+    Parameters
+    ----------
+    pis
+        (N, 3) in 1/mm, in order across the fan.
+    angle
+        In rad between neighbours, which it then fixes; None leaves every angle free.
+    """
+    inverse_distance = np.linalg.norm(pis, axis=1)
+    normals, distances = pis / inverse_distance[:, None], 1 / inverse_distance
+    sides = np.where(normals @ normals[0] < 0, -1.0, 1.0)
+    normals, distances = normals * sides[:, None], distances * sides
+    axis = np.linalg.svd(normals)[2][2]
+    if np.cross(normals[0], normals[-1]) @ axis < 0:
+        axis = -axis
+    mean = normals.sum(axis=0) - normals.sum(axis=0) @ axis * axis
+    e1 = mean / np.linalg.norm(mean)
+    e2 = np.cross(axis, e1)
+    angles = np.arctan2(normals @ e2, normals @ e1)
+    point = np.linalg.lstsq(np.vstack([normals, axis]), np.append(distances, 0.0), rcond=None)[0]
+    if angle is not None:
+        count = len(pis)
+        angles = angles.mean() + angle * (np.arange(count) - (count - 1) / 2)
+    return Pencil(np.column_stack([e1, e2, axis]), point, angles, fixed_angles=angle is not None)
+
+
+def plane_through(points: Array, weights: Array | None = None) -> Array:
+    """π (3,) of the plane nearest to `points` (N, 3) in mm in the sense of orthogonal distances.
+
+    `weights` (N,) are inverse variances. A plane through the camera's centre has no π and gives infinite values.
+    """
+    weight = np.ones(len(points)) if weights is None else weights
+    centre = weight @ points / weight.sum()
+    spread = (points - centre) * np.sqrt(weight)[:, None]
+    normal = np.linalg.eigh(spread.T @ spread)[1][:, 0]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        pi: Array = normal / (normal @ centre)
+    return pi
+
+
+def plane_distances(pis: Array, points: Array) -> tuple[Array, Array]:
+    """Signed distances (N,) in mm of `points` (N, 3) from planes `pis` (N, 3), and their derivatives by π (N, 3)."""
+    length = np.linalg.norm(pis, axis=1)
+    distances = (np.einsum("ni,ni->n", pis, points) - 1) / length
+    by_pi = (points - distances[:, None] * pis / length[:, None]) / length[:, None]
+    return distances, by_pi
+
+
+def huber_weights(scaled: Array) -> Array:
+    """Factors (N,) ≤ 1 for residuals given in standard deviations (N,)."""
+    return np.minimum(1.0, HUBER / np.maximum(np.abs(scaled), 1e-12))
+
+
+def robust_sd(residuals: Array) -> float:
+    """Standard deviation of the good part of `residuals` (N,), by the median of their absolute values."""
+    return float(1.4826 * np.median(np.abs(residuals)))
+
+
+Planes = TypeVar("Planes", bound=PlaneSet)
+
+
+def fit_to_points(start: Planes, points: Sequence[Array], sigmas: Sequence[Array]) -> Solution[Planes]:
+    """Fit planes to points by orthogonal distances, robustly (Huber, its scale taken from the data).
+
+    Parameters
+    ----------
+    start
+        Planes near the answer; what they know of each other (a pencil, fixed angles) is kept.
+    points
+        For each plane (n_k, 3) in mm.
+    sigmas
+        For each plane (n_k,) standard deviations of the points' distances, up to one common factor.
+
+    Returns
+    -------
+    The planes with residuals in units of `sigmas` times the scale found, so that its covariance is that of the data.
+    """
+    which = np.repeat(np.arange(len(points)), [len(p) for p in points])
+    stacked, sigma = np.vstack(points), np.concatenate(sigmas)
+    rows = 3 * which[:, None] + np.arange(3)
+    factor = np.ones(len(stacked))
+    scale = 1.0
+
+    def linearise(planes: Planes) -> tuple[Array, Array]:
+        distances, by_pi = plane_distances(planes.pis[which], stacked)
+        weight = np.sqrt(factor) / (sigma * scale)
+        return distances * weight, np.einsum("ni,nip->np", by_pi * weight[:, None], planes.jacobian[rows])
+
+    def move(planes: Planes, step: Array) -> Planes:
+        return planes.moved(step)  # type: ignore[return-value]
+
+    solution = minimise(start, linearise, move)
+    for _ in range(20):
+        distances, _ = plane_distances(solution.state.pis[which], stacked)
+        before = scale
+        scale = max(robust_sd(distances / sigma), 1e-9)
+        factor = huber_weights(distances / (sigma * scale))
+        solution = minimise(solution.state, linearise, move)
+        if abs(scale - before) < 1e-3 * scale:
+            break
+    return solution
