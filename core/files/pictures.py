@@ -22,6 +22,7 @@ SUFFIXES = frozenset({".png", ".tif", ".tiff", ".bmp", ".jpg", ".jpeg", ".pgm"})
 
 _BGR: dict[str, int] = {"blue": 0, "green": 1, "red": 2}
 _PNG = b"\x89PNG\r\n\x1a\n"
+_QUICKLY = [cv2.IMWRITE_PNG_COMPRESSION, 1, cv2.IMWRITE_PNG_STRATEGY, cv2.IMWRITE_PNG_STRATEGY_RLE]
 
 
 def is_picture(path: Path) -> bool:
@@ -90,7 +91,7 @@ def write_picture(path: Path, picture: Picture) -> None:
         raise ValueError(f"{path.name} does not end in .png")
     if picture.ndim != 2 or picture.dtype not in (np.uint8, np.uint16):
         raise ValueError(f"a picture is 2-D uint8 or uint16, not {picture.ndim}-D {picture.dtype}")
-    done, data = cv2.imencode(".png", picture, [cv2.IMWRITE_PNG_COMPRESSION, 1])
+    done, data = cv2.imencode(".png", picture, _QUICKLY)
     if not done:
         raise ValueError(f"{path.name} could not be encoded")
     write_bytes(path, data.tobytes(), sync=False)

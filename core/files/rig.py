@@ -1,0 +1,181 @@
+"""rig.toml: the targets, the laser and the gauge of a recording set, checked key by key."""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Literal, TypeAlias
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+
+from core.errors import InputError
+from core.files.complaints import Clash, complaint
+from core.files.pictures import Channel
+from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid, Target
+from core.model.arrays import Array
+
+# The description of a field ends the sentence "… is <value>, not <description>".
+_Count = Annotated[int, Field(ge=2, le=500)]
+_Length = Annotated[float, Field(gt=0, le=5000, allow_inf_nan=False)]
+_A_LENGTH = "a length in mm above 0 and at most 5000"
+_TWO_COUNTS = "two whole numbers from 2 to 500, [columns, rows]"
+_Vertex = Annotated[list[Annotated[float, Field(allow_inf_nan=False)]], Field(min_length=2, max_length=2)]
+_Polygon = Annotated[list[_Vertex], Field(min_length=3)]
+_A_POLYGON = "a list of three or more [u, v] in pixels"
+
+
+class _Table(BaseModel):
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
+
+
+class _Checkerboard(_Table):
+    kind: Literal["checkerboard"]
+    inner_corners: list[_Count] = Field(min_length=2, max_length=2, description=_TWO_COUNTS)
+    square_mm: _Length = Field(description=_A_LENGTH)
+
+    def target(self) -> Target:
+        return Checkerboard(*self.inner_corners, self.square_mm)
+
+
+class _Charuco(_Table):
+    kind: Literal["charuco"]
+    squares: list[_Count] = Field(min_length=2, max_length=2, description=_TWO_COUNTS)
+    square_mm: _Length = Field(description=_A_LENGTH)
+    marker_mm: _Length = Field(description=_A_LENGTH + ", smaller than square_mm")
+    dictionary: str = Field(
+        "DICT_4X4_50", pattern=r"^DICT_(4X4|5X5|6X6|7X7)_(50|100|250|1000)$", description='one like "DICT_4X4_50"'
+    )
+
+    @model_validator(mode="after")
+    def _marker_inside_square(self) -> _Charuco:
+        if self.marker_mm >= self.square_mm:
+            raise Clash("marker_mm", f"is {self.marker_mm:g}, not smaller than square_mm = {self.square_mm:g}")
+        return self
+
+    def target(self) -> Target:
+        return Charuco(*self.squares, self.square_mm, self.marker_mm, self.dictionary)
+
+
+class _CircleGrid(_Table):
+    kind: Literal["circle_grid"]
+    circles: list[_Count] = Field(min_length=2, max_length=2, description=_TWO_COUNTS)
+    pitch_mm: _Length = Field(description=_A_LENGTH)
+    asymmetric: bool = Field(False, description="true or false")
+
+    def target(self) -> Target:
+        return CircleGrid(*self.circles, self.pitch_mm, self.asymmetric)
+
+
+class _BlackSquare(_Table):
+    kind: Literal["black_square"]
+    side_mm: _Length = Field(description=_A_LENGTH)
+
+    def target(self) -> Target:
+        return BlackSquare(self.side_mm)
+
+
+_CameraTarget: TypeAlias = Annotated[_Checkerboard | _Charuco | _CircleGrid, Field(discriminator="kind")]
+_PlaneTarget: TypeAlias = Annotated[_Checkerboard | _Charuco | _CircleGrid | _BlackSquare, Field(discriminator="kind")]
+
+
+class _LaserFan(_Table):
+    lines: int = Field(ge=1, le=20, description="a whole number from 1 to 20")
+    angle_deg: float | None = Field(
+        None, gt=0, le=45, allow_inf_nan=False, description="an angle between neighbouring lines above 0 and at most 45"
+    )
+
+    @model_validator(mode="after")
+    def _angle_of_a_pencil(self) -> _LaserFan:
+        if self.lines > 1 and self.angle_deg is None:
+            raise Clash("angle_deg", "is missing; a fan of several lines needs the angle between neighbouring lines")
+        return self
+
+
+class _Gauge(_Table):
+    nominal_mm: _Length | None = Field(None, description=_A_LENGTH)
+    tolerance_mm: _Length | None = Field(None, description=_A_LENGTH)
+    upper_polygon_px: _Polygon | None = Field(None, description=_A_POLYGON)
+    lower_polygon_px: _Polygon | None = Field(None, description=_A_POLYGON)
+
+    @model_validator(mode="after")
+    def _pairs(self) -> _Gauge:
+        for one, other in (("nominal_mm", "tolerance_mm"), ("upper_polygon_px", "lower_polygon_px")):
+            missing = [name for name in (one, other) if getattr(self, name) is None]
+            if len(missing) == 1:
+                raise Clash(missing[0], f"is missing; {one} and {other} go together, give both or neither")
+        return self
+
+
+class _RigFile(_Table):
+    camera_target: _CameraTarget = Field(description="a table [camera_target] with kind and sizes")
+    plane_target: _PlaneTarget = Field(description="a table [plane_target] with kind and sizes")
+    laser_fan: _LaserFan = Field(description="a table [laser_fan] with lines and angle_deg")
+    gauge: _Gauge | None = Field(None, description="a table [gauge]")
+    channel: Literal["red", "green", "blue"] | None = Field(None, description='"red", "green" or "blue"')
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class GaugeSpec:
+    """What is to be measured: nominal value and tolerance in mm, faces as (N, 2) polygons in pixels."""
+
+    nominal_mm: float | None = None
+    tolerance_mm: float | None = None
+    upper_polygon_px: Array | None = None
+    lower_polygon_px: Array | None = None
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Rig:
+    """What rig.toml says. `angle` between neighbouring lines is in rad (0 with one line)."""
+
+    camera_target: Target
+    plane_target: Target
+    lines: int
+    angle: float
+    gauge: GaugeSpec | None = None
+    channel: Channel | None = None
+
+
+def read_rig(path: Path) -> Rig:
+    """Read and check rig.toml.
+
+    Raises
+    ------
+    InputError
+        If it is missing, is no TOML, has an unknown key, lacks one, or a value has the wrong type or is absurd.
+        The sentence names the file, the field and what is allowed.
+    """
+    try:
+        tables = tomllib.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError as error:
+        raise InputError(
+            "the file is missing; it says what the targets and the laser are",
+            where=path,
+            todo="write one as the README shows",
+        ) from error
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"cannot be read as UTF-8 text ({error})", where=path) from error
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(f"this is no valid TOML: {error}", where=path) from error
+    try:
+        rig = _RigFile.model_validate(tables)
+    except ValidationError as error:
+        raise complaint(path, error, _RigFile) from error
+    gauge = rig.gauge
+    return Rig(
+        rig.camera_target.target(),
+        rig.plane_target.target(),
+        rig.laser_fan.lines,
+        math.radians(rig.laser_fan.angle_deg or 0.0),
+        GaugeSpec(gauge.nominal_mm, gauge.tolerance_mm, _array(gauge.upper_polygon_px), _array(gauge.lower_polygon_px))
+        if gauge
+        else None,
+        rig.channel,
+    )
+
+
+def _array(polygon: list[list[float]] | None) -> Array | None:
+    return None if polygon is None else np.array(polygon, dtype=np.float64)

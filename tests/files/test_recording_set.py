@@ -1,0 +1,144 @@
+import hashlib
+
+import cv2
+import numpy as np
+import pytest
+
+from core.errors import InputError
+from core.files.pictures import write_picture
+from core.files.recording_set import open_set, require_camera, require_planes, require_scan
+
+RIG = """
+[camera_target]
+kind = "checkerboard"
+inner_corners = [9, 6]
+square_mm = 10.0
+[plane_target]
+kind = "black_square"
+side_mm = 60.0
+[laser_fan]
+lines = 3
+angle_deg = 5.0
+"""
+
+
+def picture(value=7, size=(40, 30), dtype=np.uint8):
+    return np.full(size[::-1], value, dtype)
+
+
+@pytest.fixture
+def folder(tmp_path):
+    root = tmp_path / "set"
+    for name in ("camera", "planes", "scan"):
+        (root / name).mkdir(parents=True)
+    (root / "rig.toml").write_text(RIG)
+    for name in ("camera/b", "camera/a", "planes/p1", "planes/p1_off", "planes/p2", "scan/reference"):
+        write_picture(root / f"{name}.png", picture())
+    for frame in range(6):
+        write_picture(root / "scan" / f"frame_{frame:03d}.png", picture(frame))
+    return root
+
+
+def test_lists_everything_in_the_order_of_names(folder):
+    (folder / "scan" / "notes.txt").write_text("not a picture")
+    (folder / "scan" / "._frame_000.png").write_bytes(b"left by another system")
+    found = open_set(folder)
+    assert [p.name for p in found.camera] == ["a.png", "b.png"]
+    assert [(p.name, p.off and p.off.name) for p in found.planes] == [("p1", "p1_off.png"), ("p2", None)]
+    assert found.reference.name == "reference.png"
+    assert [p.name for p in found.frames] == [f"frame_{i:03d}.png" for i in range(6)]
+
+
+def test_frames_stream_in_order_with_hashes(folder):
+    found = open_set(folder)
+    stream = list(found.stream(found.frames))
+    assert [name for name, _ in stream] == [f"scan/frame_{i:03d}.png" for i in range(6)]
+    assert [int(p[0, 0]) for _, p in stream] == list(range(6))
+    data = (folder / "scan" / "frame_003.png").read_bytes()
+    assert found.hashes["scan/frame_003.png"] == hashlib.sha256(data).hexdigest()
+
+
+def test_truncated_frame_among_good_ones_is_left_out_and_told(folder):
+    path = folder / "scan" / "frame_002.png"
+    path.write_bytes(path.read_bytes()[:-20])
+    found = open_set(folder)
+    assert len(list(found.stream(found.frames))) == 5
+    assert len(list(found.stream(found.frames))) == 5
+    assert [(one.name, one.reason) for one in found.left_out] == [("scan/frame_002.png", "the picture ends early")]
+
+
+def test_streaming_reads_only_a_few_frames_ahead(folder, monkeypatch):
+    found = open_set(folder)
+    for frame in range(6, 40):
+        write_picture(folder / "scan" / f"frame_{frame:03d}.png", picture(frame))
+    found = open_set(folder)
+    stream = found.stream(found.frames)
+    next(stream)
+    stream.close()
+    assert len(found.hashes) <= 8
+
+
+def test_missing_folder_file_and_empty_set(tmp_path):
+    with pytest.raises(InputError, match="nowhere: there is no such folder"):
+        open_set(tmp_path / "nowhere")
+    (tmp_path / "file").write_text("")
+    with pytest.raises(InputError, match="is a file, not a folder"):
+        open_set(tmp_path / "file")
+    (tmp_path / "empty").mkdir()
+    with pytest.raises(InputError, match=r"empty: the recording set is empty; it needs rig\.toml"):
+        open_set(tmp_path / "empty")
+
+
+@pytest.mark.parametrize(
+    ("part", "require", "said"),
+    [
+        ("camera", require_camera, "camera: there are no pictures of the camera target"),
+        ("planes", require_planes, "planes: there are no pictures of the plane target"),
+        ("scan", require_scan, "scan: there are no frames"),
+    ],
+)
+def test_a_part_without_pictures_is_named(folder, part, require, said):
+    for path in (folder / part).iterdir():
+        path.unlink()
+    found = open_set(folder)
+    with pytest.raises(InputError, match=said):
+        require(found)
+
+
+def test_a_reference_alone_is_no_scan(folder):
+    for path in (folder / "scan").glob("frame*"):
+        path.unlink()
+    with pytest.raises(InputError, match="no frames"):
+        require_scan(open_set(folder))
+
+
+def test_mixed_sizes_name_the_odd_picture(folder):
+    write_picture(folder / "scan" / "frame_004.png", picture(size=(41, 30)))
+    with pytest.raises(InputError, match=r"frame_004\.png: the picture has 41 × 30 pixels, but .* 40 × 30"):
+        open_set(folder)
+
+
+@pytest.mark.parametrize("suffix", [".jpg", ".tif", ".bmp", ".pgm"])
+def test_sizes_are_known_for_every_kind_of_file(folder, suffix):
+    (folder / "camera" / f"odd{suffix}").write_bytes(cv2.imencode(suffix, picture(size=(20, 30)))[1].tobytes())
+    with pytest.raises(InputError, match=rf"odd\{suffix}: the picture has 20 × 30 pixels"):
+        open_set(folder)
+
+
+def test_mixed_depths_name_the_odd_picture(folder):
+    write_picture(folder / "scan" / "frame_003.png", picture(dtype=np.uint16))
+    found = open_set(folder)
+    with pytest.raises(InputError, match=r"frame_003\.png: the picture has 16 bit"):
+        list(found.stream(found.frames))
+
+
+def test_off_picture_without_partner(folder):
+    write_picture(folder / "planes" / "p9_off.png", picture())
+    with pytest.raises(InputError, match=r"p9_off\.png: there is no picture p9\.png with the fan on beside it"):
+        open_set(folder)
+
+
+def test_two_references(folder):
+    (folder / "scan" / "reference.bmp").write_bytes(cv2.imencode(".bmp", picture())[1].tobytes())
+    with pytest.raises(InputError, match="there are 2 references"):
+        open_set(folder)

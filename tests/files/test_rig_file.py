@@ -1,0 +1,161 @@
+import math
+
+import numpy as np
+import pytest
+
+from core.errors import InputError
+from core.files.rig import read_rig
+from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid
+
+GOOD = """
+[camera_target]
+kind = "checkerboard"
+inner_corners = [17, 12]
+square_mm = 10.0
+[plane_target]
+kind = "black_square"
+side_mm = 60.0
+[laser_fan]
+lines = 3
+angle_deg = 5.0
+[gauge]
+nominal_mm = 50.0
+tolerance_mm = 0.2
+"""
+
+
+def read(tmp_path, text):
+    (tmp_path / "rig.toml").write_text(text, encoding="utf-8")
+    return read_rig(tmp_path / "rig.toml")
+
+
+def complaint(tmp_path, text):
+    with pytest.raises(InputError) as error:
+        read(tmp_path, text)
+    sentence = str(error.value)
+    assert "rig.toml" in sentence
+    assert "\n" not in sentence
+    assert sentence.endswith(".")
+    return sentence
+
+
+def test_the_rig_of_the_design_is_read(tmp_path):
+    rig = read(tmp_path, GOOD)
+    target = rig.camera_target
+    assert isinstance(target, Checkerboard)
+    assert (target.columns, target.rows, target.square_mm) == (17, 12, 10.0)
+    assert isinstance(rig.plane_target, BlackSquare)
+    assert rig.plane_target.side_mm == 60
+    assert (rig.lines, rig.angle) == (3, math.radians(5))
+    assert (rig.gauge.nominal_mm, rig.gauge.tolerance_mm) == (50.0, 0.2)
+    assert rig.gauge.upper_polygon_px is None
+    assert rig.channel is None
+
+
+def test_every_kind_of_target_channel_and_polygons(tmp_path):
+    rig = read(
+        tmp_path,
+        """
+        channel = "green"
+        [camera_target]
+        kind = "charuco"
+        squares = [9, 7]
+        square_mm = 20
+        marker_mm = 15
+        dictionary = "DICT_5X5_100"
+        [plane_target]
+        kind = "circle_grid"
+        circles = [7, 7]
+        pitch_mm = 37.5
+        [laser_fan]
+        lines = 1
+        [gauge]
+        upper_polygon_px = [[0, 0], [10, 0], [10, 10]]
+        lower_polygon_px = [[20, 0], [30, 0], [30, 10], [20.5, 10]]
+        """,
+    )
+    assert isinstance(rig.camera_target, Charuco)
+    assert rig.camera_target.dictionary == "DICT_5X5_100"
+    assert isinstance(rig.plane_target, CircleGrid)
+    assert not rig.plane_target.asymmetric
+    assert (rig.lines, rig.angle, rig.channel) == (1, 0.0, "green")
+    assert rig.gauge.nominal_mm is None
+    assert np.array_equal(rig.gauge.lower_polygon_px[-1], [20.5, 10])
+
+
+def test_without_gauge(tmp_path):
+    assert read(tmp_path, GOOD.partition("[gauge]")[0]).gauge is None
+
+
+def test_missing_file_is_named(tmp_path):
+    with pytest.raises(InputError, match=r"rig\.toml: the file is missing"):
+        read_rig(tmp_path / "rig.toml")
+
+
+def test_text_that_is_no_toml_names_the_line(tmp_path):
+    assert "line 3" in complaint(tmp_path, 'a = 1\n[b]\nc = open\nd = 2')
+
+
+def test_text_in_another_encoding_is_refused(tmp_path):
+    (tmp_path / "rig.toml").write_bytes('channel = "grün"'.encode("latin-1"))
+    with pytest.raises(InputError, match="UTF-8"):
+        read_rig(tmp_path / "rig.toml")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("square_mm = 10.0", "squaremm = 10.0", ["camera_target.squaremm is an unknown key", "did you mean square_mm"]),
+        ("[gauge]", "[gage]", ["gage is an unknown key", "did you mean gauge"]),
+        ("[gauge]", "[zebra]\n[gauge]", ["zebra is an unknown key", "camera_target, plane_target, laser_fan"]),
+        ("square_mm = 10.0", "", ["camera_target.square_mm is missing", "a length in mm above 0"]),
+        ("square_mm = 10.0", 'square_mm = "10"', ['camera_target.square_mm is "10"', "a length in mm"]),
+        ("square_mm = 10.0", "square_mm = -3", ["camera_target.square_mm is -3", "above 0 and at most 5000"]),
+        ("square_mm = 10.0", "square_mm = nan", ["camera_target.square_mm is NaN", "above 0"]),
+        ("square_mm = 10.0", "square_mm = 1e9", ["camera_target.square_mm is 1000000000.0", "at most 5000"]),
+        ("square_mm = 10.0", "square_mm = true", ["camera_target.square_mm is true"]),
+        ("[17, 12]", "[17]", ["camera_target.inner_corners is [17]", "[columns, rows]"]),
+        ("[17, 12]", "[17, 12.5]", ["camera_target.inner_corners[1] is 12.5", "whole numbers from 2 to 500"]),
+        ("[17, 12]", "[17, 0]", ["camera_target.inner_corners[1] is 0", "whole numbers from 2 to 500"]),
+        ("[17, 12]", '"17x12"', ['camera_target.inner_corners is "17x12"']),
+        ('"checkerboard"', '"chessboard"', ['kind is "chessboard"', '"checkerboard" or "charuco" or "circle_grid"']),
+        ('kind = "black_square"', "", ["plane_target.kind is missing", '"black_square"']),
+        ('"checkerboard"', '"black_square"', ['camera_target.kind is "black_square", not "checkerboard"']),
+        ("lines = 3", "lines = 0", ["laser_fan.lines is 0", "from 1 to 20"]),
+        ("lines = 3", "lines = 3.0", ["laser_fan.lines is 3.0", "whole number"]),
+        ("angle_deg = 5.0", "angle_deg = 170", ["laser_fan.angle_deg is 170", "at most 45"]),
+        ("angle_deg = 5.0", "", ["laser_fan.angle_deg is missing"]),
+        ("tolerance_mm = 0.2", "", ["gauge.tolerance_mm is missing", "give both or neither"]),
+        ("tolerance_mm = 0.2", "tolerance_mm = 0", ["gauge.tolerance_mm is 0"]),
+        (
+            "tolerance_mm = 0.2",
+            "tolerance_mm = 0.2\nupper_polygon_px = [[1, 2], [3, 4]]",
+            ["gauge.upper_polygon_px is"],
+        ),
+        (
+            "tolerance_mm = 0.2",
+            "tolerance_mm = 0.2\nupper_polygon_px = [[1, 2], [3, 4], [5, 6]]",
+            ["gauge.lower_polygon_px is missing"],
+        ),
+        ("[camera_target]", 'channel = "infrared"\n[camera_target]', ['channel is "infrared"', '"red", "green"']),
+        ("[laser_fan]\nlines = 3\nangle_deg = 5.0", "", ["laser_fan is missing", "a table [laser_fan]"]),
+        ("[laser_fan]\nlines = 3\nangle_deg = 5.0", "", ["laser_fan"]),
+    ],
+)
+def test_complaints_name_the_field_and_what_is_allowed(tmp_path, old, new, said):
+    assert old in GOOD
+    sentence = complaint(tmp_path, GOOD.replace(old, new, 1))
+    for part in said:
+        assert part in sentence
+
+
+def test_marker_must_fit_its_square(tmp_path):
+    board = 'kind = "charuco"\nsquares = [9, 7]\nsquare_mm = 20\nmarker_mm = 20\n'
+    text = GOOD.replace('kind = "checkerboard"\ninner_corners = [17, 12]\nsquare_mm = 10.0\n', board)
+    assert "camera_target.marker_mm is 20, not smaller than square_mm = 20" in complaint(tmp_path, text)
+
+
+def test_a_table_given_as_a_number(tmp_path):
+    assert "laser_fan is 3, not a table [laser_fan]" in complaint(
+        tmp_path, "laser_fan = 3\n" + GOOD.replace("[laser_fan]\nlines = 3\nangle_deg = 5.0", "")
+    )
