@@ -1,0 +1,146 @@
+"""All crossings of a scan, as arrays: where a sweep's centreline meets the fan's or another sweep's."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.image.centreline import Centreline
+from core.image.crossing import Crossing, cross_centrelines
+from core.model.arrays import Array
+from core.progress import Progress, silent, steps
+
+Index = NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class CrossingTable:
+    """M crossings, one a row; a is the sweep, b the fan or the later sweep.
+
+    Parameters
+    ----------
+    uv
+        (M, 2) in pixels.
+    tangent_a, tangent_b
+        (M, 2) unit tangents of the two centrelines.
+    sigma_a, sigma_b
+        (M,) standard uncertainty of each centreline across itself, in pixels, after the local fit.
+    a, b
+        (M,) index of the frame of each; b is −1 for the fan.
+    piece_a, piece_b
+        (M,) which centreline of that frame (of the reference, for the fan).
+    along_a, along_b
+        (M,) where on that centreline, as length along it from its first point, in pixels.
+    half_length_px
+        Half the length of the local fit.
+    """
+
+    uv: Array
+    tangent_a: Array
+    tangent_b: Array
+    sigma_a: Array
+    sigma_b: Array
+    a: Index
+    b: Index
+    piece_a: Index
+    piece_b: Index
+    along_a: Array
+    along_b: Array
+    half_length_px: float
+
+    def __len__(self) -> int:
+        return len(self.a)
+
+    @property
+    def with_fan(self) -> NDArray[np.bool_]:
+        """True where b is the fan."""
+        return self.b < 0
+
+    def select(self, keep: NDArray[np.bool_] | Index) -> CrossingTable:
+        """The rows that `keep` selects."""
+        arrays = {f.name: getattr(self, f.name)[keep] for f in fields(self) if f.name != "half_length_px"}
+        return CrossingTable(**arrays, half_length_px=self.half_length_px)
+
+
+@dataclass(frozen=True, slots=True)
+class CrossingWindow:
+    """How crossings are fitted: half the length of the local fit in pixels, smallest angle (rad) accepted."""
+
+    half_length_px: float = 40.0
+    min_angle: float = float(np.deg2rad(15.0))
+
+    def renumber(self, number: Index) -> CrossingTable:
+        """The same crossings with frame i called `number[i]`; the fan stays −1."""
+        b = np.where(self.with_fan, -1, number[np.maximum(self.b, 0)])
+        return replace(self, a=number[self.a], b=b)
+
+
+def all_crossings(
+    fan: Sequence[Centreline],
+    sweeps: Sequence[Sequence[Centreline]],
+    window: CrossingWindow,
+    progress: Progress = silent,
+) -> CrossingTable:
+    """Every crossing of each sweep with the fan and with each later sweep."""
+    rows: list[_Row] = []
+    for a, pieces in steps(enumerate(sweeps), progress, "crossings", len(sweeps)):
+        rows.extend(_meetings(pieces, fan, a, -1, window))
+        for b in range(a + 1, len(sweeps)):
+            rows.extend(_meetings(pieces, sweeps[b], a, b, window))
+    return _table(rows, window)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class _Row:
+    a: int
+    b: int
+    piece_a: int
+    piece_b: int
+    along_a: float
+    along_b: float
+    crossing: Crossing
+
+
+def _meetings(
+    pieces_a: Sequence[Centreline], pieces_b: Sequence[Centreline], a: int, b: int, window: CrossingWindow
+) -> list[_Row]:
+    found = cross_centrelines(pieces_a, pieces_b, half_length_px=window.half_length_px, min_angle=window.min_angle)
+    return [
+        _Row(a, b, i, j, _along(pieces_a[i], crossing.uv), _along(pieces_b[j], crossing.uv), crossing)
+        for i, j, crossing in found
+    ]
+
+
+def _along(piece: Centreline, uv: Array) -> float:
+    """Length along `piece` from its first point to the one nearest to `uv`."""
+    nearest = int(np.argmin(np.sum((piece.uv - uv) ** 2, axis=1)))
+    return float(np.sum(np.linalg.norm(np.diff(piece.uv[: nearest + 1], axis=0), axis=1)))
+
+
+def _table(rows: list[_Row], window: CrossingWindow) -> CrossingTable:
+    def vectors(name: str) -> Array:
+        return np.array([getattr(row.crossing, name) for row in rows], dtype=np.float64).reshape(-1, 2)
+
+    def scalars(name: str) -> Array:
+        return np.array([getattr(row.crossing, name) for row in rows], dtype=np.float64)
+
+    def indices(name: str) -> Index:
+        return np.array([getattr(row, name) for row in rows], dtype=np.int64)
+
+    return CrossingTable(
+        uv=vectors("uv"),
+        tangent_a=vectors("tangent_a"),
+        tangent_b=vectors("tangent_b"),
+        sigma_a=scalars("sigma_a"),
+        sigma_b=scalars("sigma_b"),
+        a=indices("a"),
+        b=indices("b"),
+        piece_a=indices("piece_a"),
+        piece_b=indices("piece_b"),
+        along_a=np.array([row.along_a for row in rows]),
+        along_b=np.array([row.along_b for row in rows]),
+        half_length_px=window.half_length_px,
+    )

@@ -1,0 +1,153 @@
+"""Which stretch of light belongs to which fan line, on an object whose shape is not yet known.
+
+A fan line seen on unknown relief could, by depth alone, be any of the lines: half a block's height moves it as far as
+the next line is away. But across the fan the lines keep their order, as long as the camera sees them all by one side of
+the laser. So each centreline can only carry the numbers that leave room for those before and behind it; where that
+leaves a choice, the number that gives the depth nearest to its neighbours' is taken.
+
+Across the fan is measured about the pencil's axis: with a the axis direction, lines at one depth differ in the angle of
+their rays about a, and keep r·a/|r⊥| along it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.image.centreline import Centreline
+from core.model import Camera, Fan
+from core.model.arrays import Array
+
+UNASSIGNED = -1
+
+Order = NDArray[np.bool_]
+Counts = NDArray[np.int64]
+
+
+@dataclass(frozen=True, slots=True)
+class FanLines:
+    """The fan line (from 0) of each centreline, UNASSIGNED where none fits, with the reason."""
+
+    line: tuple[int, ...]
+    reason: tuple[str, ...]
+
+
+def assign_fan_lines(pieces: Sequence[Centreline], camera: Camera, fan: Fan) -> FanLines:
+    """Number the fan's centrelines, 0 … N − 1."""
+    if fan.lines == 1:
+        return FanLines((0,) * len(pieces), ("",) * len(pieces))
+    frame = _fan_frame(fan)
+    rays = [camera.rays(piece.uv) for piece in pieces]
+    profiles = [_profile(r, frame) for r in rays]
+    lengths = np.array([len(piece) for piece in pieces])
+    before = _order(profiles)
+    kept = _drop_surplus(before, lengths, fan.lines)
+    lowest = _chain(before, kept)
+    highest = fan.lines - 1 - _chain(before.T, kept)
+    return _choose(rays, fan, before, kept, lowest, highest)
+
+
+def _fan_frame(fan: Fan) -> Array:
+    """Rows: along the pencil's axis, across it from line 1 towards line N, and forward from the camera."""
+    _, _, rows = np.linalg.svd(np.array([plane.normal for plane in fan.planes]))
+    axis, ahead = rows[2], np.array([0.0, 0.0, 1.0])
+    across = np.cross(axis, ahead)
+    across /= np.linalg.norm(across)
+    # Far away (1/z = 0) line k sits at s_k across, where π_k·(ahead + s across) = 0.
+    far = [-(plane.pi @ ahead) / (plane.pi @ across) for plane in fan.planes]
+    if far[-1] < far[0]:
+        across = -across
+    forward = np.cross(axis, across)
+    return np.array([axis, across, forward if forward @ ahead > 0 else -forward])
+
+
+def _profile(rays: Array, frame: Array) -> Array:
+    """(N, 2): where along the fan, and where across it (an angle), each ray points; sorted along."""
+    along, across, forward = (rays @ frame.T).T
+    profile = np.column_stack([along / np.hypot(across, forward), np.arctan2(across, forward)])
+    ordered: Array = profile[np.argsort(profile[:, 0], kind="stable")]
+    return ordered
+
+
+def _order(profiles: Sequence[Array]) -> Order:
+    """before[i, j]: where both are seen side by side, i lies on the side of lower line numbers."""
+    count = len(profiles)
+    before = np.zeros((count, count), dtype=np.bool_)
+    for i in range(count):
+        for j in range(i + 1, count):
+            a, b = profiles[i], profiles[j]
+            low, high = max(a[0, 0], b[0, 0]), min(a[-1, 0], b[-1, 0])
+            if high <= low:
+                continue
+            at = np.linspace(low, high, 9)
+            gap = np.median(np.interp(at, b[:, 0], b[:, 1]) - np.interp(at, a[:, 0], a[:, 1]))
+            before[i, j] = gap > 0
+            before[j, i] = gap < 0
+    return before
+
+
+def _chain(before: Order, kept: Array) -> Counts:
+    """How many kept pieces at most stand in one row before each piece."""
+    depth = np.zeros(len(before), dtype=np.int64)
+    for _ in range(len(before)):
+        candidates = np.where(before & (kept > 0)[:, None], depth[:, None] + 1, 0)
+        deeper = candidates.max(axis=0, initial=0)
+        if np.array_equal(deeper, depth):
+            break
+        depth = deeper
+    return depth
+
+
+def _drop_surplus(before: Order, lengths: Array, lines: int) -> Array:
+    """1 for kept pieces; the shortest of any row of more than `lines` pieces is dropped until none is left."""
+    kept = np.ones(len(before))
+    while True:
+        row = _chain(before, kept) + _chain(before.T, kept) + 1
+        crowded = np.flatnonzero((row > lines) & (kept > 0))
+        if not len(crowded):
+            return kept
+        kept[crowded[np.argmin(lengths[crowded])]] = 0
+
+
+def _choose(
+    rays: Sequence[Array],
+    fan: Fan,
+    before: Order,
+    kept: Array,
+    lowest: Counts,
+    highest: Counts,
+) -> FanLines:
+    """Fix the pieces that have one choice; then, longest first, the others by the depth nearest to those fixed."""
+    count = len(rays)
+    line = np.full(count, UNASSIGNED)
+    reason = [""] * count
+    depth = np.array([[np.median(r @ plane.pi) for plane in fan.planes] for r in rays])  # inverse depth, 1/mm
+    centre = np.array([np.median(r, axis=0) for r in rays])
+    for i in range(count):
+        if not kept[i]:
+            reason[i] = f"more than {fan.lines} stripes side by side: taken for a reflection"
+        elif lowest[i] == highest[i]:
+            line[i] = lowest[i]
+    waiting = [i for i in range(count) if kept[i] and line[i] == UNASSIGNED]
+    for i in sorted(waiting, key=lambda i: -len(rays[i])):
+        options = [
+            k
+            for k in range(lowest[i], highest[i] + 1)
+            if depth[i, k] > 0
+            and not any(line[j] != UNASSIGNED and before[j, i] and line[j] >= k for j in range(count))
+            and not any(line[j] != UNASSIGNED and before[i, j] and line[j] <= k for j in range(count))
+        ]
+        if not options:
+            reason[i] = "no fan line fits between its neighbours"
+            continue
+        fixed = np.flatnonzero(line != UNASSIGNED)
+        if len(fixed):
+            nearest = fixed[np.argsort(np.linalg.norm(centre[fixed] - centre[i], axis=1), kind="stable")[:3]]
+            target = np.median(depth[nearest, line[nearest]])
+        else:
+            target = np.median(depth[depth > 0])
+        line[i] = min(options, key=lambda k: abs(depth[i, k] - target))
+    return FanLines(tuple(int(k) for k in line), tuple(reason))

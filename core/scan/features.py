@@ -1,0 +1,209 @@
+"""Pictures to features: the fan's centrelines once, each frame's sweep centrelines, and where they cross.
+
+Frames stream: one is decoded, subtracted, reduced to its centrelines and forgotten.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field, replace
+from itertools import chain, islice
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.errors import InputError
+from core.image.centreline import Centreline
+from core.image.noise import NoiseModel, estimate_noise
+from core.image.stripes import StripeSettings, choose_settings, extract_centrelines
+from core.progress import Progress, silent
+from core.scan.crossings import CrossingTable, CrossingWindow, all_crossings
+from core.scan.reference import Picture, check_reference
+from core.threads import ordered_map
+
+LOOK_AHEAD = 8
+"""How many frames are looked at for the stripe's width and contrast when they are not given."""
+
+
+@dataclass(frozen=True, slots=True)
+class FeatureOptions:
+    """How pictures become features; None means chosen from the pictures.
+
+    A frame in which a stretch of the fan has moved by more than `move_limit_px` since the reference is left out.
+    """
+
+    sweep_stripe: StripeSettings | None = None
+    fan_stripe: StripeSettings | None = None
+    window: CrossingWindow = field(default_factory=CrossingWindow)
+    move_limit_px: float = 0.3
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class FrameFeatures:
+    """The sweep's centrelines in one frame, or the `reason` there are none; `shift_px` against the reference."""
+
+    index: int
+    name: str
+    centrelines: tuple[Centreline, ...]
+    reason: str = ""
+    shift_px: float = 0.0
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class ScanFeatures:
+    """All that a scan's pictures show; frames in the order of the recording, `frames[i].index == i`."""
+
+    image_size: tuple[int, int]
+    fan: tuple[Centreline, ...]
+    frames: tuple[FrameFeatures, ...]
+    crossings: CrossingTable
+    sweep_stripe: StripeSettings | None
+    fan_stripe: StripeSettings
+    notes: tuple[str, ...] = ()
+
+
+Frame = tuple[str, Picture | str]
+"""A frame's name and its picture, or the sentence that says why it could not be read."""
+
+
+def extract_features(
+    reference: Picture,
+    frames: Iterable[Frame],
+    total: int,
+    options: FeatureOptions | None = None,
+    progress: Progress = silent,
+) -> ScanFeatures:
+    """Reduce a scan to features.
+
+    Parameters
+    ----------
+    reference
+        The picture with the fan alone.
+    frames
+        In the order of the recording; read once.
+    total
+        How many there are, for progress.
+
+    Raises
+    ------
+    InputError
+        If the reference shows no fan line, or no frame shows a sweep.
+    """
+    options = options or FeatureOptions()
+    full_scale = _full_scale(reference)
+    base = reference.astype(np.float32)
+    noise = estimate_noise(reference)
+    fan_stripe, fan = _fan_centrelines(base, full_scale, noise, options)
+    stream = iter(frames)
+    ahead = list(islice(stream, LOOK_AHEAD))
+    sweep_stripe = options.sweep_stripe or _sweep_settings(ahead, base, full_scale)
+    job = _FrameJob(base, full_scale, noise, fan, sweep_stripe, options.move_limit_px)
+    found: list[FrameFeatures] = []
+    for features in ordered_map(job, enumerate(chain(ahead, stream))):
+        progress("frames", len(found), total)
+        found.append(features)
+    progress("frames", len(found), total)
+    _require_sweeps(found)
+    crossings = all_crossings(fan, [frame.centrelines for frame in found], options.window, progress)
+    height, width = reference.shape
+    return ScanFeatures((width, height), fan, tuple(found), crossings, sweep_stripe, fan_stripe, _moved_notes(found))
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class _FrameJob:
+    """Everything one frame needs; called from several threads."""
+
+    base: NDArray[np.float32]
+    full_scale: float
+    noise: NoiseModel
+    fan: tuple[Centreline, ...]
+    stripe: StripeSettings | None
+    move_limit_px: float
+
+    def __call__(self, item: tuple[int, Frame]) -> FrameFeatures:
+        index, (name, picture) = item
+        if isinstance(picture, str):
+            return FrameFeatures(index, name, (), picture)
+        if picture.shape != self.base.shape:
+            return FrameFeatures(index, name, (), _sizes_differ(picture, self.base))
+        difference = picture.astype(np.float32)
+        difference -= self.base
+        check = check_reference(difference, self.fan)
+        if check.shift_px > self.move_limit_px or check.lost:
+            u, v = check.at
+            what = "the fan's light is gone" if check.lost else f"the fan's light moved by {check.shift_px:.1f} px"
+            return FrameFeatures(
+                index,
+                name,
+                (),
+                f"object or camera moved since the reference ({what} near {u:.0f}, {v:.0f})",
+                check.shift_px,
+            )
+        if self.stripe is None:
+            return FrameFeatures(index, name, (), "no stripe of the hand-held laser", check.shift_px)
+        saturated = picture >= self.full_scale
+        pieces = extract_centrelines(difference, self.stripe, noise=self.noise, saturated=saturated)
+        reason = "" if pieces else "no stripe of the hand-held laser"
+        return FrameFeatures(index, name, pieces, reason, check.shift_px)
+
+
+def _full_scale(picture: Picture) -> float:
+    return float(np.iinfo(picture.dtype).max)
+
+
+def _fan_centrelines(
+    base: NDArray[np.float32], full_scale: float, noise: NoiseModel, options: FeatureOptions
+) -> tuple[StripeSettings, tuple[Centreline, ...]]:
+    settings = options.fan_stripe or choose_settings(base, full_scale)
+    fan = () if settings is None else extract_centrelines(base, settings, noise=noise, saturated=base >= full_scale)
+    if settings is None or not fan:
+        raise InputError(
+            "shows no line of the fan, so nothing can be measured",
+            where="scan reference",
+            todo="switch the three-line laser on, expose longer, or darken the room",
+        )
+    return settings, fan
+
+
+def _sweep_settings(frames: list[Frame], base: NDArray[np.float32], full_scale: float) -> StripeSettings | None:
+    """The median width and contrast over the frames looked at; None when none of them shows a stripe."""
+    seen = []
+    for _, picture in frames:
+        if not isinstance(picture, str) and picture.shape == base.shape:
+            settings = choose_settings(picture.astype(np.float32) - base, full_scale)
+            if settings is not None:
+                seen.append(settings)
+    if not seen:
+        return None
+    return replace(
+        seen[0],
+        width_px=float(np.median([s.width_px for s in seen])),
+        contrast=float(np.median([s.contrast for s in seen])),
+    )
+
+
+def _sizes_differ(picture: Picture, base: NDArray[np.float32]) -> str:
+    (height, width), (base_height, base_width) = picture.shape, base.shape
+    return f"its size {width} × {height} differs from the reference's {base_width} × {base_height}"
+
+
+def _require_sweeps(frames: list[FrameFeatures]) -> None:
+    if any(frame.centrelines for frame in frames):
+        return
+    reasons = [frame.reason for frame in frames]
+    common = max(sorted(set(reasons)), key=reasons.count) if reasons else "there are no frames"
+    raise InputError(
+        f"none of the {len(frames)} frames shows a usable sweep; the most common reason: {common}",
+        where="scan",
+        todo="record the scan again with the hand-held laser on and object and camera at rest",
+    )
+
+
+def _moved_notes(frames: list[FrameFeatures]) -> tuple[str, ...]:
+    moved = [frame for frame in frames if frame.reason.startswith("object or camera moved")]
+    if not moved:
+        return ()
+    return (
+        f"Object or camera moved during the scan: {len(moved)} of {len(frames)} frames, the first {moved[0].name}, "
+        "were left out. Hold both still and scan again to use them all.",
+    )

@@ -1,0 +1,62 @@
+"""What a crossing says about two light planes: inverse depths that must agree, and how well.
+
+At a crossing with ray r the two planes meet the surface at one depth, π_a·r = π_b·r. A centreline that is off by
+ε across itself moves the crossing along the other's tangent; with D = ∂(π_a − π_b)·r/∂(u, v), unit tangents t_a, t_b
+meeting at θ, and centreline noises σ_a, σ_b (pixels)::
+
+    σ² = [(t_b·D)² σ_a² + (t_a·D)² σ_b²] / sin² θ
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.model import Camera
+from core.model.arrays import Array
+from core.scan.crossings import CrossingTable
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class CrossingRays:
+    """Rays (M, 3) of the crossings and ∂(x, y)/∂(u, v) there, (M, 2, 2)."""
+
+    rays: Array
+    jacobians: Array
+
+    @classmethod
+    def of(cls, crossings: CrossingTable, camera: Camera) -> CrossingRays:
+        """The rays of all `crossings` as `camera` sees them."""
+        rays = camera.rays(crossings.uv)
+        return cls(rays, camera.ray_jacobian(rays))
+
+
+def inverse_depth_gradient(pi_difference: Array, jacobians: Array) -> Array:
+    """D = ∂(π_a − π_b)·r/∂(u, v), (M, 2) in 1/(mm px), of plane differences (M, 3)."""
+    gradient: Array = np.einsum("mi,mij->mj", pi_difference[:, :2], jacobians)
+    return gradient
+
+
+def noise_gains(crossings: CrossingTable, gradient: Array) -> tuple[Array, Array]:
+    """How an offset of a's and of b's centreline across itself moves (π_a − π_b)·r, (M,) each in 1/(mm px).
+
+    The sign follows the normals n = (t_v, −t_u).
+    """
+    t_a, t_b = crossings.tangent_a, crossings.tangent_b
+    sine = t_a[:, 0] * t_b[:, 1] - t_a[:, 1] * t_b[:, 0]
+    gain_a = np.einsum("mi,mi->m", t_b, gradient) / -sine
+    gain_b = np.einsum("mi,mi->m", t_a, gradient) / sine
+    return gain_a, gain_b
+
+
+def floored(gradient: Array, floor: float) -> Array:
+    """`gradient` with vectors shorter than `floor` lengthened to it.
+
+    Near a solution in which all planes fall together the gradient vanishes and weights run away; the rig's own
+    geometry, not the current solution, sets how small it can be.
+    """
+    length = np.linalg.norm(gradient, axis=1)
+    safe = np.where(length > 0, length, 1.0)
+    longer: Array = gradient * (np.maximum(length, floor) / safe)[:, None]
+    return longer

@@ -1,0 +1,92 @@
+"""The reference: what the camera sees without the hand-held laser, and whether that still holds.
+
+The fan and the object stand still during a scan, so the sweep's stripe is the frame minus the reference. When there is
+no reference picture, the per-pixel low quantile over a sample of the scan is one: a sweep covers a pixel in few frames.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from core.image.centreline import Centreline
+from core.model.arrays import Array
+
+SAMPLE = 15
+"""At most this many frames, spread over the scan, make a quantile reference: memory does not grow with the scan."""
+
+Picture = NDArray[np.uint8] | NDArray[np.uint16]
+
+
+def sample_indices(count: int, at_most: int = SAMPLE) -> list[int]:
+    """Indices of at most `at_most` frames spread evenly over `count`."""
+    return sorted({round(i) for i in np.linspace(0, count - 1, min(count, at_most))}) if count else []
+
+
+def quantile_reference(pictures: Sequence[Picture], quantile: float = 0.35) -> Picture:
+    """The per-pixel low quantile of `pictures` (each height × width), by order statistics.
+
+    Raises
+    ------
+    ValueError
+        With fewer than three pictures: a sweep would stay in the background.
+    """
+    if len(pictures) < 3:
+        raise ValueError(f"{len(pictures)} pictures cannot tell the background from the sweep")
+    rank = int(quantile * (len(pictures) - 1))
+    rows = [
+        np.partition(np.stack([picture[row] for picture in pictures]), rank, axis=0)[rank]
+        for row in range(len(pictures[0]))
+    ]
+    return np.stack(rows)
+
+
+@dataclass(frozen=True, slots=True)
+class ReferenceCheck:
+    """How far a frame has departed from the reference.
+
+    `shift_px` is the largest median shift of any of the fan's centrelines across itself; `at` the pixel in its middle;
+    `lost` says that a whole stretch of the fan's light is gone; `light` the change of the background in grey levels.
+    """
+
+    shift_px: float
+    at: tuple[float, float]
+    lost: bool
+    light: float
+
+
+def check_reference(difference: NDArray[np.float32], fan: Sequence[Centreline]) -> ReferenceCheck:
+    """Compare a frame with the reference along the fan's centrelines, given `difference` = frame − reference.
+
+    A stripe A exp(−x²/2s²) shifted by δ leaves ±δ A exp(−½)/s at x = ±s, so δ follows from the two flanks; a sweep
+    crosses few of a stripe's points, and the median over them does not see it.
+    """
+    light = float(np.median(difference[::16, ::16]))
+    worst, at, lost = 0.0, (0.0, 0.0), False
+    for piece in fan:
+        thin = piece.select(slice(None, None, 3))
+        if len(thin) < 20:
+            continue
+        offset = thin.normal * thin.width[:, None]
+        flank_plus = _sample(difference, thin.uv + offset)
+        flank_minus = _sample(difference, thin.uv - offset)
+        centre = _sample(difference, thin.uv)
+        slope = 2 * np.exp(-0.5) * thin.strength / thin.width
+        shift = abs(float(np.median((flank_plus - flank_minus) / slope)))
+        lost = lost or float(np.median((centre - light) / thin.strength)) < -0.5
+        if shift > worst:
+            middle = piece.uv[len(piece) // 2]
+            worst, at = shift, (float(middle[0]), float(middle[1]))
+    return ReferenceCheck(worst, at, lost, light)
+
+
+def _sample(picture: NDArray[np.float32], uv: Array) -> Array:
+    """Bilinear values of `picture` at `uv` (N, 2)."""
+    at = np.ascontiguousarray(uv, dtype=np.float32).reshape(-1, 1, 2)
+    # remap takes at most 32767 rows at a time; a centreline is far shorter.
+    sampled = cv2.remap(picture, at, None, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
+    return np.asarray(sampled, dtype=np.float64).ravel()
