@@ -30,6 +30,9 @@ class Centreline:
         (N,) standard uncertainty of the position along the normal, in pixels.
     saturated
         (N,) True where pixels of the cross-section are saturated: weight these zero.
+    correlation_px
+        Length along the stripe over which the noise of neighbouring points counts as one: a mean over L px has
+        sigma·√(correlation_px / L).
     """
 
     uv: Array
@@ -38,6 +41,7 @@ class Centreline:
     strength: Array
     sigma: Array
     saturated: NDArray[np.bool_]
+    correlation_px: float = 1.0
 
     def __post_init__(self) -> None:
         count = len(self.uv)
@@ -70,4 +74,5 @@ class Centreline:
             self.strength[keep],
             self.sigma[keep],
             self.saturated[keep],
+            self.correlation_px,
         )
