@@ -1,0 +1,267 @@
+"""Surface normals from the neighbours in the picture.
+
+On a plane 1/z = π·r is linear in the ray, so a plane through the neighbours of a point is a small linear fit of the
+inverse depth over the ray, and the normal towards the camera is −π/|π|. Neighbours beyond a depth edge are left out by
+the steepest slope a surface can show, the rest by Tukey's biweight.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TypeVar
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from core.model.arrays import Array
+from core.progress import Progress, silent
+from core.scan.cloud import Cloud
+from core.scan.surface import Surface
+
+Points = TypeVar("Points", Cloud, Surface)
+
+STEEPEST = np.tan(np.radians(78.0))
+"""Steepest slope dz/dx of one surface; light along a steeper one is not extracted."""
+NEIGHBOURS = 80
+"""Most neighbours one fit takes; more cost time and add nothing to a normal."""
+WORST_TILT = 0.15
+"""Largest standard uncertainty of a normal's direction (rad) that still counts as determined."""
+CORRELATED = 8.0
+"""Neighbours that share one error: points along one stripe are not independent."""
+
+
+def pixel_angle(points: Array, uv: Array) -> float:
+    """Ray coordinate per pixel, about 1/focal length in pixels, of `points` (N, 3) seen at `uv` (N, 2).
+
+    Raises
+    ------
+    ValueError
+        If all points were seen at one pixel.
+    """
+    rays = points[:, :2] / points[:, 2:]
+    spread = float(np.var(uv, axis=0).sum())
+    if not spread > 0:
+        raise ValueError("points seen at one pixel give no angle per pixel")
+    return float(np.sqrt(np.var(rays, axis=0).sum() / spread))
+
+
+def with_normals(points: Points, radius_px: float | None = None, progress: Progress = silent) -> Points:
+    """The same cloud or surface with a unit normal towards the camera for each point.
+
+    Parameters
+    ----------
+    points
+        A cloud or a fused surface.
+    radius_px
+        Neighbours are taken within this distance in the picture; None: the smallest that reaches across several
+        stripes for most points.
+    progress
+        Told how far it is.
+
+    Returns
+    -------
+    Cloud or Surface
+        Normals are zero where the neighbours do not determine them: fewer than 6, all along one stripe, or the
+        direction's standard uncertainty above 0.15 rad.
+    """
+    normals = np.zeros((len(points), 3))
+    if len(points) >= 6 and np.var(points.uv, axis=0).sum() > 0:
+        progress("normals", 0, 2)
+        radius = reach(points.uv) if radius_px is None else float(radius_px)
+        progress("normals", 1, 2)
+        normals = _estimate(points.points, points.uv, points.sigma, radius)
+        progress("normals", 2, 2)
+    return replace(points, normals=normals)
+
+
+def reach(uv: Array) -> float:
+    """Radius in pixels at which most points of `uv` (N, 2) have neighbours on both sides of their own stripe."""
+    sample = np.linspace(0, len(uv) - 1, min(len(uv), 300)).astype(np.int64)
+    tree = cKDTree(uv)
+    radius = 4.0
+    while radius < 40.0:
+        around = tree.query_ball_point(uv[sample], radius)
+        across = np.array([_narrow_spread(uv[np.asarray(near)]) for near in around])
+        if np.mean(across > 0.3 * radius) > 0.8:
+            break
+        radius *= 1.35
+    return radius
+
+
+def _narrow_spread(uv: Array) -> float:
+    """Standard deviation of `uv` (n, 2) across the direction it spreads least in."""
+    (a, b), (_, c) = np.cov(uv.T, bias=True) if len(uv) > 2 else np.zeros((2, 2))
+    return float(np.sqrt(max((a + c) / 2 - np.hypot((a - c) / 2, b), 0.0)))
+
+
+def _estimate(xyz: Array, uv: Array, sigma: Array, radius: float) -> Array:
+    """Normals (N, 3) of points sorted into square buckets of side `radius`."""
+    column, row = np.floor((uv - uv.min(axis=0)) / radius).astype(np.int64).T
+    columns, rows = int(column.max()) + 1, int(row.max()) + 1
+    bucket = row * columns + column
+    order = np.argsort(bucket, kind="stable")
+    starts = np.searchsorted(bucket[order], np.arange(rows * columns + 1))
+    normals = np.empty((len(xyz), 3))
+    floor = 0.2 * float(np.median(sigma)) + 1e-9
+    sorted_normals = _fit_all(
+        np.ascontiguousarray(xyz[order]),
+        np.ascontiguousarray(uv[order]),
+        np.maximum(sigma[order], floor),
+        bucket[order],
+        starts,
+        columns,
+        rows,
+        radius,
+        pixel_angle(xyz, uv),
+    )
+    normals[order] = sorted_normals
+    return normals
+
+
+@njit(cache=True, nogil=True)
+def _fit_all(
+    xyz: Array,
+    uv: Array,
+    sigma: Array,
+    bucket: NDArray[np.int64],
+    starts: NDArray[np.int64],
+    columns: int,
+    rows: int,
+    radius: float,
+    angle: float,
+) -> Array:
+    """A robust plane in inverse depth around each point; see the module's docstring."""
+    normals = np.zeros((len(xyz), 3))
+    near = np.empty(4 * NEIGHBOURS, dtype=np.int64)
+    weights = np.empty(4 * NEIGHBOURS)
+    for i in range(len(xyz)):
+        count = _gather(i, xyz, uv, sigma, bucket, starts, columns, rows, radius, angle, near)
+        if count < 6:
+            continue
+        for k in range(count):
+            weights[k] = 1.0
+        scale = 1.0
+        a = b = c = 0.0
+        narrow = 0.0
+        for _ in range(3):
+            a, b, c, narrow = _inverse_depth_plane(i, xyz, uv, sigma, near, weights, count)
+            if narrow < (0.2 * radius) ** 2:
+                break
+            scale = _reweight(i, xyz, uv, sigma, near, weights, count, a, b, c)
+        if narrow < (0.2 * radius) ** 2:
+            continue
+        # 1/z = a + b du + c dv  →  π over the ray coordinates, of which one pixel is `angle`.
+        x, y, z = xyz[i, 0], xyz[i, 1], xyz[i, 2]
+        px, py = b / angle, c / angle
+        pz = a - px * x / z - py * y / z
+        size = np.sqrt(px * px + py * py + pz * pz)
+        effective = max(count / CORRELATED, 1.0)
+        tilt = scale * sigma[i] / (z * z) / np.sqrt(effective * narrow) / angle / size
+        if tilt < WORST_TILT:
+            normals[i, 0], normals[i, 1], normals[i, 2] = -px / size, -py / size, -pz / size
+    return normals
+
+
+@njit(cache=True, nogil=True)
+def _gather(
+    i: int,
+    xyz: Array,
+    uv: Array,
+    sigma: Array,
+    bucket: NDArray[np.int64],
+    starts: NDArray[np.int64],
+    columns: int,
+    rows: int,
+    radius: float,
+    angle: float,
+    near: NDArray[np.int64],
+) -> int:
+    """Neighbours of point i on its own surface into `near`, evenly thinned to about NEIGHBOURS; how many."""
+    row, column = bucket[i] // columns, bucket[i] % columns
+    left, right = max(column - 1, 0), min(column + 1, columns - 1)
+    candidates = 0
+    for r in range(max(row - 1, 0), min(row + 1, rows - 1) + 1):
+        candidates += starts[r * columns + right + 1] - starts[r * columns + left]
+    stride = max(1, candidates // (3 * NEIGHBOURS))  # the disc covers a third of the nine buckets
+    count = 0
+    for r in range(max(row - 1, 0), min(row + 1, rows - 1) + 1):
+        for j in range(starts[r * columns + left], starts[r * columns + right + 1], stride):
+            du, dv = uv[j, 0] - uv[i, 0], uv[j, 1] - uv[i, 1]
+            apart = np.sqrt(du * du + dv * dv)
+            if apart > radius:
+                continue
+            noise = np.sqrt(sigma[i] ** 2 + sigma[j] ** 2)
+            if abs(xyz[j, 2] - xyz[i, 2]) > 4 * noise + STEEPEST * apart * angle * xyz[i, 2]:
+                continue
+            if count < len(near):
+                near[count] = j
+                count += 1
+    return count
+
+
+@njit(cache=True, nogil=True)
+def _inverse_depth_plane(
+    i: int, xyz: Array, uv: Array, sigma: Array, near: NDArray[np.int64], weights: Array, count: int
+) -> tuple[float, float, float, float]:
+    """Weighted fit 1/z = a + b du + c dv about point i, and the variance (px²) of the neighbours across."""
+    sw = su = sv = sq = 0.0
+    for k in range(count):
+        j = near[k]
+        w = weights[k] * (xyz[j, 2] ** 2 / sigma[j]) ** 2
+        sw += w
+        su += w * (uv[j, 0] - uv[i, 0])
+        sv += w * (uv[j, 1] - uv[i, 1])
+        sq += w / xyz[j, 2]
+    if sw <= 0:
+        return 0.0, 0.0, 0.0, 0.0
+    mu, mv, mq = su / sw, sv / sw, sq / sw
+    uu = vv = cross = uq = vq = 0.0
+    for k in range(count):
+        j = near[k]
+        w = weights[k] * (xyz[j, 2] ** 2 / sigma[j]) ** 2 / sw
+        du, dv, dq = uv[j, 0] - uv[i, 0] - mu, uv[j, 1] - uv[i, 1] - mv, 1 / xyz[j, 2] - mq
+        uu += w * du * du
+        vv += w * dv * dv
+        cross += w * du * dv
+        uq += w * du * dq
+        vq += w * dv * dq
+    half = np.sqrt(((uu - vv) / 2) ** 2 + cross * cross)
+    narrow = (uu + vv) / 2 - half
+    determinant = uu * vv - cross * cross
+    if narrow <= 0 or determinant <= 0:
+        return mq, 0.0, 0.0, 0.0
+    b = (vv * uq - cross * vq) / determinant
+    c = (uu * vq - cross * uq) / determinant
+    return mq - b * mu - c * mv, b, c, narrow
+
+
+@njit(cache=True, nogil=True)
+def _reweight(
+    i: int,
+    xyz: Array,
+    uv: Array,
+    sigma: Array,
+    near: NDArray[np.int64],
+    weights: Array,
+    count: int,
+    a: float,
+    b: float,
+    c: float,
+) -> float:
+    """Tukey's weights from the residuals in units of σ; returns the residuals' scale, at least 1."""
+    total = squares = 0.0
+    for k in range(count):
+        j = near[k]
+        predicted = a + b * (uv[j, 0] - uv[i, 0]) + c * (uv[j, 1] - uv[i, 1])
+        e = (1 / xyz[j, 2] - predicted) * xyz[j, 2] ** 2 / sigma[j]
+        total += weights[k]
+        squares += weights[k] * e * e
+    scale = max(np.sqrt(squares / total), 1.0) if total > 0 else 1.0
+    for k in range(count):
+        j = near[k]
+        predicted = a + b * (uv[j, 0] - uv[i, 0]) + c * (uv[j, 1] - uv[i, 1])
+        e = (1 / xyz[j, 2] - predicted) * xyz[j, 2] ** 2 / (4.685 * scale * sigma[j])
+        weights[k] = (1 - e * e) ** 2 if abs(e) < 1 else 0.0
+    return scale
