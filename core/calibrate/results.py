@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
 
 from core.image.target_view import TargetView
 from core.model import Camera, Fan, Pose
@@ -17,7 +20,10 @@ CAMERA_PARAMETERS = ("alpha", "beta", "gamma", "u0", "v0", "k1", "k2", "p1", "p2
 class ViewQuality:
     """How one view of the target fits the calibrated camera.
 
-    Residuals are observed − predicted, (N, 2) in pixels. A view that was left out says why in `reason`.
+    Residuals are observed − predicted, (N, 2) in pixels. `counted` (N,) is False for single corners left out as
+    misfound; `rms_px` and `mean_px` are of the residual vectors' lengths of those that count. `tilt` is the angle in
+    rad between the target's normal and the optical axis. A view that was left out says why in `reason`; if not even
+    a pose could be found for it, its residuals are NaN.
     """
 
     view: TargetView
@@ -28,6 +34,7 @@ class ViewQuality:
     tilt: float
     used: bool
     reason: str = ""
+    counted: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, dtype=np.bool_))
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -38,8 +45,8 @@ class CameraCalibration:
     `rms_px` is the root mean square of the residual vectors' lengths over used views, `mean_px` their mean length
     (the paper judges by this one). `coverage` is the share (0…1) of the picture's cells that hold a corner;
     `tilt_range` the largest angle in rad between two views' target normals. `cross_validation_mm` is the RMS
-    distance between the points that cameras solved from odd and from even views give over the work volume.
-    `notes` are sentences for the technician.
+    distance between the points that cameras solved from odd and from even views give over the work volume, NaN when
+    there are too few views for two cameras. `notes` are sentences for the technician.
     """
 
     camera: Camera
@@ -56,6 +63,11 @@ class CameraCalibration:
     def sd(self) -> Mapping[str, float]:
         """Standard deviation of each parameter by name."""
         return {name: float(max(self.covariance[i, i], 0.0) ** 0.5) for i, name in enumerate(CAMERA_PARAMETERS)}
+
+    @property
+    def ranked(self) -> tuple[ViewQuality, ...]:
+        """The views from the best-fitting to the worst, those left out last."""
+        return tuple(sorted(self.views, key=lambda quality: (not quality.used, np.nan_to_num(quality.rms_px, nan=1e9))))
 
 
 @dataclass(frozen=True, eq=False, slots=True)

@@ -1,0 +1,186 @@
+"""Camera and poses together: Levenberg–Marquardt on the reprojection residuals of all views.
+
+Every residual depends on the camera and on one pose only, so each view's six pose unknowns are eliminated
+(Schur complement) and the system solved has as many unknowns as the camera has free parameters.
+
+References
+----------
+Triggs, B. et al., Bundle adjustment: a modern synthesis (2000), §6, doi:10.1007/3-540-44480-7_21.
+Zhang, Z., IEEE Trans. PAMI 22 (2000) 1330–1334, §3.2, doi:10.1109/34.888718.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.calibrate.reprojection import camera_of, linearise, moved, parameters_of
+from core.model import Camera, Pose
+from core.model.arrays import Array
+
+RAYLEIGH_MEDIAN = 1.1774100225154747
+"""Median length of a residual vector whose two components have standard deviation 1: √(2 ln 2)."""
+
+_MAX_ITERATIONS = 60
+_HUBER_LIMIT = 2.5
+_HUBER_ROUNDS = 6
+_NEAREST_MM = 1e-6
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Observed:
+    """Corners of one view: target points (N, 3) in mm, image points (N, 2) in pixels, weights (N,) ∝ 1/σ²."""
+
+    points: Array
+    uv: Array
+    weights: Array
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Bundle:
+    """A camera, and one pose for each view."""
+
+    camera: Camera
+    poses: tuple[Pose, ...]
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Normal:
+    """Reduced normal equations of a bundle: what each view knows of the camera's F free parameters.
+
+    `information` (V, F, F) and `gradients` (V, F) of the views with their poses eliminated, in units of the weights;
+    `cost` the weighted sum of squared residuals.
+    """
+
+    information: Array
+    gradients: Array
+    cost: float
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class _Block:
+    """One view's share of the normal equations: camera, camera–pose and pose."""
+
+    camera: Array
+    mixed: Array
+    pose: Array
+    camera_gradient: Array
+    pose_gradient: Array
+
+    def damped(self, damping: float) -> _Block:
+        """With Marquardt's multiple of its diagonal added."""
+        return replace(
+            self,
+            camera=self.camera + damping * np.diag(np.diag(self.camera)),
+            pose=self.pose + damping * np.diag(np.diag(self.pose)),
+        )
+
+    def reduced(self) -> tuple[Array, Array]:
+        """Information and gradient of the camera alone."""
+        eliminated = np.linalg.solve(self.pose, np.column_stack([self.mixed.T, self.pose_gradient]))
+        information = self.camera - self.mixed @ eliminated[:, :-1]
+        return information, self.camera_gradient - self.mixed @ eliminated[:, -1]
+
+
+def refine(start: Bundle, views: Sequence[Observed], free: NDArray[np.intp], tolerance: float = 1e-12) -> Bundle:
+    """The bundle that minimises the weighted sum of squared residuals, near `start`.
+
+    `free` are the indices (F,) of the camera's free parameters in CAMERA_PARAMETERS; none means that only the poses
+    are found. Stops when a step gains less than `tolerance` of the cost.
+    """
+    current, cost = start, _cost(start, views)
+    damping = 1e-3
+    blocks = _blocks(current, views, free)
+    for _ in range(_MAX_ITERATIONS):
+        proposal = _step(current, [block.damped(damping) for block in blocks], free)
+        proposed = np.inf if proposal is None else _cost(proposal, views)
+        if proposal is None or not proposed <= cost:
+            damping *= 10
+            if damping > 1e10:
+                break
+            continue
+        gain, cost, current = cost - proposed, proposed, proposal
+        damping = max(damping / 10, 1e-12)
+        if gain <= tolerance * cost:
+            break
+        blocks = _blocks(current, views, free)
+    return current
+
+
+def refine_robustly(start: Bundle, views: Sequence[Observed], free: NDArray[np.intp]) -> Bundle:
+    """As `refine`, but with Huber's weights about a scale from the median residual: for a start among outliers."""
+    current = start
+    for _ in range(_HUBER_ROUNDS):
+        lengths = [
+            np.linalg.norm(residuals(current.camera, pose, view), axis=1) * np.sqrt(view.weights)
+            for pose, view in zip(current.poses, views, strict=True)
+        ]
+        limit = _HUBER_LIMIT * max(float(np.median(np.concatenate(lengths))) / RAYLEIGH_MEDIAN, 1e-9)
+        weighted = [
+            replace(view, weights=view.weights * np.minimum(1, limit / np.maximum(length, 1e-12)))
+            for view, length in zip(views, lengths, strict=True)
+        ]
+        current = refine(current, weighted, free, tolerance=1e-6)
+    return current
+
+
+def residuals(camera: Camera, pose: Pose, view: Observed) -> Array:
+    """Observed − predicted (N, 2) in pixels; infinite for points that are not in front of the camera."""
+    position = pose.apply(view.points)
+    if np.any(position[:, 2] < _NEAREST_MM):
+        return np.full(view.uv.shape, np.inf)
+    return np.asarray(view.uv - camera.project(position), dtype=np.float64)
+
+
+def normal_equations(bundle: Bundle, views: Sequence[Observed], free: NDArray[np.intp]) -> Normal:
+    """The reduced normal equations at `bundle`."""
+    reduced = [block.reduced() for block in _blocks(bundle, views, free)]
+    return Normal(
+        np.array([information for information, _ in reduced]),
+        np.array([gradient for _, gradient in reduced]),
+        _cost(bundle, views),
+    )
+
+
+def _cost(bundle: Bundle, views: Sequence[Observed]) -> float:
+    total = 0.0
+    for pose, view in zip(bundle.poses, views, strict=True):
+        with np.errstate(over="ignore", invalid="ignore"):
+            total += float(view.weights @ np.sum(residuals(bundle.camera, pose, view) ** 2, axis=1))
+    return total
+
+
+def _blocks(bundle: Bundle, views: Sequence[Observed], free: NDArray[np.intp]) -> list[_Block]:
+    blocks = []
+    for pose, view in zip(bundle.poses, views, strict=True):
+        uv, by_camera, by_pose = linearise(bundle.camera, pose, view.points)
+        root = np.sqrt(np.repeat(view.weights, 2))[:, None]
+        camera = by_camera.reshape(-1, 10)[:, free] * root
+        posing = by_pose.reshape(-1, 6) * root
+        missing = (view.uv - uv).ravel() * root[:, 0]
+        blocks.append(
+            _Block(camera.T @ camera, camera.T @ posing, posing.T @ posing, camera.T @ missing, posing.T @ missing)
+        )
+    return blocks
+
+
+def _step(current: Bundle, blocks: Sequence[_Block], free: NDArray[np.intp]) -> Bundle | None:
+    """The bundle one Gauss–Newton step further, or None where there is no such step."""
+    parameters = parameters_of(current.camera)
+    change = np.zeros(len(free))
+    try:
+        if len(free):
+            reduced = [block.reduced() for block in blocks]
+            information = np.sum([part for part, _ in reduced], axis=0)
+            scale = 1 / np.sqrt(np.maximum(np.diag(information), 1e-300))
+            gradient = np.sum([part for _, part in reduced], axis=0)
+            change = scale * np.linalg.solve(information * np.outer(scale, scale), scale * gradient)
+        parameters[free] += change
+        steps = [np.linalg.solve(block.pose, block.pose_gradient - block.mixed.T @ change) for block in blocks]
+        poses = tuple(moved(pose, np.asarray(step)) for pose, step in zip(current.poses, steps, strict=True))
+        return Bundle(camera_of(parameters, current.camera.image_size), poses)
+    except (np.linalg.LinAlgError, ValueError):
+        return None  # singular, or a focal length below zero: the caller damps more

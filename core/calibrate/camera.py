@@ -1,0 +1,318 @@
+"""Camera calibration from views of a flat target: Zhang's start, then all parameters and poses together.
+
+Every view is screened (is it this target at all?), the closed form starts a robust bundle adjustment, views and
+corners out of line with the rest are left out, and the plain least-squares solution of what remains is the result,
+with its covariance, its residuals and what it covers.
+
+References
+----------
+Sun et al., Sensors 2023, 23, 13, §3.1, doi:10.3390/s23010013.
+Zhang, Z., IEEE Trans. PAMI 22 (2000) 1330–1334, doi:10.1109/34.888718.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.calibrate.bundle import Bundle, Observed, normal_equations, refine, refine_robustly, residuals
+from core.calibrate.camera_covariance import free_covariance, principal_deviations
+from core.calibrate.camera_notes import notes_on
+from core.calibrate.coverage import coverage, disagreement_mm, tilt, tilt_range
+from core.calibrate.results import CAMERA_PARAMETERS, CameraCalibration, ViewQuality
+from core.calibrate.screening import Outliers, Verdict, judge, screen
+from core.calibrate.zhang import centred_matrix, intrinsic_matrix, pose_from_homography, radial_start
+from core.errors import InputError
+from core.image.target_view import TargetView
+from core.model import Camera, Pose
+from core.model.arrays import Array
+from core.progress import Progress, silent
+
+__all__ = ["CameraOptions", "calibrate_camera", "principal_deviations"]
+
+MIN_VIEWS = 3
+_MIN_TILT = np.deg2rad(3.0)
+_LOOSE_FOCAL = 0.05
+_LOOSE_CENTRE = 0.1
+_MAX_JUDGEMENTS = 8
+_STEP = "Calibrating the camera"
+_STAGES = 5
+_NO_PARAMETERS = np.zeros(0, dtype=np.intp)
+_MORE_VIEWS = "take 10 to 15 pictures of the whole target, tilted by up to 30° in different directions"
+
+
+@dataclass(frozen=True)
+class CameraOptions:
+    """What a camera calibration leaves free, and which outliers it leaves out.
+
+    Parameters
+    ----------
+    skew
+        Whether γ is free; else it is 0.
+    fixed
+        Those of k1, k2, p1, p2 that are fixed to 0.
+    k3
+        Whether k3 is free; else it is 0.
+    outliers
+        "keep": every corner of every view counts. "gross": views out of line with the others are left out, and
+        corners that stand out against the plain standard deviation of their view, which they raise themselves. "all":
+        also corners that stand out against the median of their view only.
+    """
+
+    skew: bool = True
+    fixed: frozenset[str] = frozenset()
+    k3: bool = False
+    outliers: Outliers = "gross"
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "fixed", frozenset(self.fixed))
+        unknown = self.fixed - {"k1", "k2", "p1", "p2"}
+        if unknown:
+            raise ValueError(f"only k1, k2, p1 and p2 can be fixed, not {', '.join(sorted(unknown))}")
+
+    @property
+    def free(self) -> NDArray[np.intp]:
+        """Indices of the free parameters in CAMERA_PARAMETERS."""
+        zero = self.fixed | (set() if self.skew else {"gamma"}) | (set() if self.k3 else {"k3"})
+        return np.array([i for i, name in enumerate(CAMERA_PARAMETERS) if name not in zero], dtype=np.intp)
+
+
+def calibrate_camera(
+    views: Sequence[TargetView],
+    image_size: tuple[int, int],
+    options: CameraOptions | None = None,
+    progress: Progress = silent,
+) -> CameraCalibration:
+    """Calibrate the camera that took `views` of a flat target, in pictures of `image_size` (width, height).
+
+    Corners are weighted by their `sigma` relative to each other; how large it really is, the residuals tell.
+
+    Raises
+    ------
+    InputError
+        When fewer than three views can be used, or when the views do not determine the camera (all in parallel).
+    ValueError
+        When a `sigma` is not positive.
+    """
+    options = options or CameraOptions()
+    progress(_STEP, 0, _STAGES)
+    screened = [screen(view) for view in views]
+    usable = [index for index, (_, reason) in enumerate(screened) if not reason]
+    reasons = {index: reason for index, (_, reason) in enumerate(screened) if reason}
+    _require_views(views, usable, reasons)
+    observed = _observed([views[index] for index in usable])
+    homographies = [matrix for matrix, _ in screened if matrix is not None]
+
+    bundle = _start(homographies, observed, image_size, options)
+    progress(_STEP, 1, _STAGES)
+    if options.outliers != "keep":
+        bundle = refine_robustly(bundle, observed, options.free)
+    progress(_STEP, 2, _STAGES)
+    bundle, verdicts = _solve(bundle, observed, options)
+    reasons |= {index: v.reason for index, v in zip(usable, verdicts, strict=True) if not v.used}
+    _require_views(views, [index for index in usable if index not in reasons], reasons)
+
+    progress(_STEP, 3, _STAGES)
+    used = [i for i, verdict in enumerate(verdicts) if verdict.used]
+    solved = Bundle(bundle.camera, tuple(bundle.poses[i] for i in used))
+    counted = [_select(observed[i], verdicts[i].counted) for i in used]
+    covariance, widening = _covariance(solved, counted, options.free)
+    progress(_STEP, 4, _STAGES)
+    qualities = _qualities(views, usable, observed, bundle, verdicts, reasons)
+    calibration = _summary(qualities, solved, counted, covariance, options.free)
+    progress(_STEP, _STAGES, _STAGES)
+    return replace(calibration, notes=notes_on(calibration, len(options.free), widening))
+
+
+def _observed(views: Sequence[TargetView]) -> list[Observed]:
+    """Views with weights relative to a typical corner, so that weighted residuals stay in pixels."""
+    sigmas = np.concatenate([view.sigma for view in views])
+    if not (np.isfinite(sigmas).all() and (sigmas > 0).all()):
+        raise ValueError("every sigma of a view must be positive")
+    typical = float(np.median(sigmas))
+    return [Observed(view.points, view.uv, (typical / view.sigma) ** 2) for view in views]
+
+
+def _select(view: Observed, keep: NDArray[np.bool_]) -> Observed:
+    return Observed(view.points[keep], view.uv[keep], view.weights[keep])
+
+
+def _start(
+    homographies: Sequence[Array], observed: Sequence[Observed], image_size: tuple[int, int], options: CameraOptions
+) -> Bundle:
+    """The closed-form start with the smallest median residual among Zhang's and the one with a centred camera."""
+    matrices = [
+        centred_matrix(homographies, image_size),
+        intrinsic_matrix(homographies, image_size, options.skew),
+    ]
+    free = ("k1" not in options.fixed, "k2" not in options.fixed)
+    starts = []
+    for matrix, radial in product(matrices, (free, (False, False))):
+        if matrix is None:
+            continue
+        poses = tuple(pose_from_homography(matrix, h) for h in homographies)
+        undistorted = Camera(image_size, matrix)
+        positions = np.concatenate([p.apply(view.points) for p, view in zip(poses, observed, strict=True)])
+        uv = np.concatenate([view.uv for view in observed])
+        k1, k2 = radial_start(matrix, positions[:, :2] / positions[:, 2:], uv, radial)
+        camera = replace(undistorted, distortion=np.array([k1, k2, 0, 0]))
+        starts.append(Bundle(camera, poses))
+    return min(starts, key=lambda start: float(np.median(np.concatenate(_lengths(start, observed)))))
+
+
+def _lengths(bundle: Bundle, observed: Sequence[Observed]) -> list[Array]:
+    """Lengths (N,) of the weighted residual vectors of every view, in pixels."""
+    return [
+        np.linalg.norm(residuals(bundle.camera, pose, view), axis=1) * np.sqrt(view.weights)
+        for pose, view in zip(bundle.poses, observed, strict=True)
+    ]
+
+
+def _solve(start: Bundle, observed: Sequence[Observed], options: CameraOptions) -> tuple[Bundle, list[Verdict]]:
+    """Least squares on the views and corners that count, judged again until the judgement stands."""
+    bundle = start
+    verdicts = judge(_lengths(bundle, observed), [True] * len(observed), options.outliers)
+    for _ in range(_MAX_JUDGEMENTS):
+        used = [verdict.used for verdict in verdicts]
+        if sum(used) < MIN_VIEWS:
+            break
+        bundle = _fit(bundle, observed, verdicts, options.free)
+        before, verdicts = verdicts, judge(_lengths(bundle, observed), used, options.outliers)
+        if all(
+            a.used == b.used and np.array_equal(a.counted, b.counted) for a, b in zip(before, verdicts, strict=True)
+        ):
+            break
+    return bundle, verdicts
+
+
+def _fit(start: Bundle, observed: Sequence[Observed], verdicts: Sequence[Verdict], free: NDArray[np.intp]) -> Bundle:
+    """The camera from the views that are used, and every view's pose before that camera."""
+    used = [i for i, verdict in enumerate(verdicts) if verdict.used]
+    solved = refine(
+        Bundle(start.camera, tuple(start.poses[i] for i in used)),
+        [_select(observed[i], verdicts[i].counted) for i in used],
+        free,
+    )
+    poses = dict(zip(used, solved.poses, strict=True))
+    for i, view in enumerate(observed):
+        if i not in poses:
+            alone = Bundle(solved.camera, (start.poses[i],))
+            poses[i] = refine_robustly(alone, [view], _NO_PARAMETERS).poses[0]
+    return Bundle(solved.camera, tuple(poses[i] for i in range(len(observed))))
+
+
+def _covariance(bundle: Bundle, counted: Sequence[Observed], free: NDArray[np.intp]) -> tuple[Array, float]:
+    """Covariance (10, 10), and the factor for errors common to a view; InputError where it is out of all reason."""
+    range_of_tilt = tilt_range(bundle.poses)
+    if range_of_tilt < _MIN_TILT:
+        raise InputError(
+            "all views show the target in parallel planes, from which a focal length cannot be told from a distance "
+            f"(tilted by at most {np.rad2deg(range_of_tilt):.1f}° against each other)",
+            todo=_MORE_VIEWS,
+        )
+    corners = sum(len(view.points) for view in counted)
+    covariance = np.zeros((10, 10))
+    try:
+        covariance[np.ix_(free, free)], widening = free_covariance(
+            normal_equations(bundle, counted, free), 2 * corners - len(free) - 6 * len(counted)
+        )
+    except np.linalg.LinAlgError:
+        raise InputError("the views do not determine the camera: too much alike", todo=_MORE_VIEWS) from None
+    deviation = np.sqrt(np.maximum(np.diag(covariance), 0))
+    camera = bundle.camera
+    loose_focal = max(deviation[0] / camera.matrix[0, 0], deviation[1] / camera.matrix[1, 1])
+    loose_centre = max(deviation[3], deviation[4]) / max(camera.image_size)
+    if loose_focal > _LOOSE_FOCAL or loose_centre > _LOOSE_CENTRE:
+        raise InputError(
+            f"the views do not determine the camera: its focal length is uncertain by {100 * loose_focal:.0f} %, the "
+            f"centre of its picture by {100 * loose_centre:.0f} % of the picture",
+            todo=_MORE_VIEWS,
+        )
+    return covariance, widening
+
+
+def _qualities(
+    views: Sequence[TargetView],
+    usable: Sequence[int],
+    observed: Sequence[Observed],
+    bundle: Bundle,
+    verdicts: Sequence[Verdict],
+    reasons: dict[int, str],
+) -> tuple[ViewQuality, ...]:
+    place = {index: i for i, index in enumerate(usable)}
+    qualities = []
+    for index, view in enumerate(views):
+        if index not in place:
+            nowhere = np.full(view.uv.shape, np.nan)
+            none = np.zeros(len(view.uv), dtype=np.bool_)
+            quality = ViewQuality(
+                view, Pose.identity(), nowhere, np.nan, np.nan, np.nan, False, reasons[index], counted=none
+            )
+        else:
+            i = place[index]
+            pose, counted = bundle.poses[i], verdicts[i].counted
+            errors = residuals(bundle.camera, pose, observed[i])
+            quality = ViewQuality(
+                view,
+                pose,
+                errors,
+                *_rms_and_mean(errors[counted]),
+                tilt(pose),
+                verdicts[i].used,
+                verdicts[i].reason,
+                counted,
+            )
+        qualities.append(quality)
+    return tuple(qualities)
+
+
+def _rms_and_mean(errors: Array) -> tuple[float, float]:
+    lengths = np.linalg.norm(errors, axis=1)
+    return float(np.sqrt(np.mean(lengths**2))), float(lengths.mean())
+
+
+def _summary(
+    qualities: tuple[ViewQuality, ...],
+    solved: Bundle,
+    counted: Sequence[Observed],
+    covariance: Array,
+    free: NDArray[np.intp],
+) -> CameraCalibration:
+    errors = np.concatenate([quality.residuals[quality.counted] for quality in qualities if quality.used])
+    rms, mean = _rms_and_mean(errors)
+    uv = np.concatenate([view.uv for view in counted])
+    return CameraCalibration(
+        camera=solved.camera,
+        covariance=covariance,
+        views=qualities,
+        rms_px=rms,
+        mean_px=mean,
+        coverage=coverage(uv, solved.camera.image_size),
+        tilt_range=tilt_range(solved.poses),
+        cross_validation_mm=_cross_validation(solved, counted, free),
+    )
+
+
+def _cross_validation(solved: Bundle, counted: Sequence[Observed], free: NDArray[np.intp]) -> float:
+    """RMS distance in mm between what cameras from every other view see in the work volume; NaN with < 6 views."""
+    if len(counted) < 2 * MIN_VIEWS:
+        return float("nan")
+    cameras = [refine(Bundle(solved.camera, solved.poses[half::2]), counted[half::2], free).camera for half in (0, 1)]
+    uv = np.concatenate([view.uv for view in counted])
+    depths = np.concatenate([p.apply(view.points)[:, 2] for p, view in zip(solved.poses, counted, strict=True)])
+    return disagreement_mm(cameras[0], cameras[1], uv, (float(depths.min()), float(depths.max())))
+
+
+def _require_views(views: Sequence[TargetView], usable: Sequence[int], reasons: dict[int, str]) -> None:
+    if len(usable) >= MIN_VIEWS:
+        return
+    why = "; ".join(f"{views[index].name or f'view {index + 1}'}: {reason}" for index, reason in reasons.items())
+    raise InputError(
+        f"only {len(usable)} of {len(views)} views of the target can be used and a camera needs at least {MIN_VIEWS}"
+        + (f" ({why})" if why else ""),
+        todo=_MORE_VIEWS,
+    )

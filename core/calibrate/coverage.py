@@ -1,0 +1,78 @@
+"""What a set of target views covers: of the picture, of tilts, and what two halves of it agree on."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import Delaunay
+
+from core.calibrate.bundle import Bundle, Observed, refine, residuals
+from core.model import Camera, Pose
+from core.model.arrays import Array
+
+_COLUMNS = 8
+_GRID = (16, 12)
+_DEPTHS = 3
+_NO_PARAMETERS = np.zeros(0, dtype=np.intp)
+
+
+def picture_cells(uv: Array, image_size: tuple[int, int], columns: int, rows: int) -> NDArray[np.bool_]:
+    """Which of (rows, columns) equal cells of the picture hold a point of `uv` (N, 2)."""
+    width, height = image_size
+    column = np.clip((uv[:, 0] + 0.5) * columns // width, 0, columns - 1).astype(np.intp)
+    row = np.clip((uv[:, 1] + 0.5) * rows // height, 0, rows - 1).astype(np.intp)
+    cells = np.zeros((rows, columns), dtype=np.bool_)
+    cells[row, column] = True
+    return cells
+
+
+def coverage(uv: Array, image_size: tuple[int, int]) -> float:
+    """Share (0 … 1) of the picture's cells, eight across and about square, that hold a point of `uv` (N, 2)."""
+    rows = max(1, round(_COLUMNS * image_size[1] / image_size[0]))
+    return float(picture_cells(uv, image_size, _COLUMNS, rows).mean())
+
+
+def empty_regions(uv: Array, image_size: tuple[int, int]) -> list[str]:
+    """Names of those ninths of the picture that hold no point of `uv` (N, 2): "upper left", "middle", ..."""
+    cells = picture_cells(uv, image_size, 3, 3)
+    names = np.array(
+        [["upper left", "top", "upper right"], ["left", "middle", "right"], ["lower left", "bottom", "lower right"]]
+    )
+    return [str(name) for name in names[~cells]]
+
+
+def tilt(pose: Pose) -> float:
+    """Angle in rad between the target's normal and the optical axis, 0 to π/2."""
+    normal = pose.rotation[:, 2]
+    return float(np.arctan2(np.hypot(normal[0], normal[1]), abs(normal[2])))
+
+
+def tilt_range(poses: Sequence[Pose]) -> float:
+    """The largest angle in rad between the target's planes in two of the views."""
+    normals = [pose.rotation[:, 2] for pose in poses]
+    angles = [np.arctan2(np.linalg.norm(np.cross(a, b)), abs(a @ b)) for a, b in combinations(normals, 2)]
+    return float(max(angles, default=0.0))
+
+
+def disagreement_mm(first: Camera, second: Camera, uv: Array, depths: tuple[float, float]) -> float:
+    """RMS distance in mm between where two cameras see the same pixels, over a work volume.
+
+    The volume is what the pixels inside the hull of `uv` (N, 2) see between the two `depths` in mm. A camera's frame is
+    its own affair, so the second is first moved to where the rays of both fit best; what is left is the distance
+    across the ray. NaN where the cameras have no such rays.
+    """
+    low, high = uv.min(axis=0), uv.max(axis=0)
+    grid = np.stack(np.meshgrid(*(np.linspace(low[i], high[i], _GRID[i]) for i in range(2))), axis=-1).reshape(-1, 2)
+    grid = grid[Delaunay(uv).find_simplex(grid) >= 0]
+    seen = np.isfinite(first.undistort(grid)).all(axis=1) & np.isfinite(second.undistort(grid)).all(axis=1)
+    pixels = np.tile(grid[seen], (_DEPTHS, 1))
+    depth = np.repeat(np.linspace(*depths, _DEPTHS), seen.sum())
+    if len(pixels) < _DEPTHS * 4:
+        return float("nan")
+    view = Observed(first.rays(pixels) * depth[:, None], pixels, depth**2)
+    pose = refine(Bundle(second, (Pose.identity(),)), [view], _NO_PARAMETERS).poses[0]
+    across = second.ray_jacobian(second.rays(pixels)) @ residuals(second, pose, view)[:, :, None]
+    return float(np.sqrt(np.mean(np.sum((across[:, :, 0] * depth[:, None]) ** 2, axis=1))))

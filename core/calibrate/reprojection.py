@@ -1,0 +1,78 @@
+"""Where a camera sees a target's points, and how that changes with every parameter of camera and pose.
+
+The camera is a vector of ten numbers in the order of CAMERA_PARAMETERS. A pose changes by a small rotation vector ω
+in rad, applied in front of the rotation, and a shift of the translation in mm: six numbers.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from core.model import Camera, Pose
+from core.model.arrays import Array
+
+
+def parameters_of(camera: Camera) -> Array:
+    """The ten parameters of `camera` in the order of CAMERA_PARAMETERS."""
+    (alpha, gamma, u0), (_, beta, v0), _ = camera.matrix
+    return np.array([alpha, beta, gamma, u0, v0, *camera.distortion])
+
+
+def camera_of(parameters: Array, image_size: tuple[int, int]) -> Camera:
+    """The camera with these ten `parameters`; ValueError when they are no camera's."""
+    alpha, beta, gamma, u0, v0 = parameters[:5]
+    return Camera(image_size, np.array([[alpha, gamma, u0], [0, beta, v0], [0, 0, 1]]), parameters[5:])
+
+
+def moved(pose: Pose, step: Array) -> Pose:
+    """`pose` after a small change (6,): rotation vector in rad, then shift in mm."""
+    turn = Rotation.from_rotvec(step[:3]).as_matrix()
+    return Pose(turn @ pose.rotation, pose.translation + step[3:])
+
+
+def linearise(camera: Camera, pose: Pose, points: Array) -> tuple[Array, Array, Array]:
+    """Image points of `points` (N, 3) and their derivatives.
+
+    Returns
+    -------
+    uv (N, 2) in pixels, ∂uv/∂camera (N, 2, 10) in the order of CAMERA_PARAMETERS, ∂uv/∂pose (N, 2, 6) per rad and
+    per mm.
+    """
+    turned = points @ pose.rotation.T
+    position = turned + pose.translation
+    inverse_z = 1 / position[:, 2]
+    xy = position[:, :2] * inverse_z[:, None]
+    distorted = camera.distort(xy)
+    affine = camera.matrix[:2, :2]
+    uv = distorted @ affine.T + camera.matrix[:2, 2]
+
+    by_camera = np.zeros((len(points), 2, 10))
+    by_camera[:, 0, 0] = distorted[:, 0]
+    by_camera[:, 1, 1] = distorted[:, 1]
+    by_camera[:, 0, 2] = distorted[:, 1]
+    by_camera[:, 0, 3] = by_camera[:, 1, 4] = 1
+    by_camera[:, :, 5:] = affine @ _by_distortion(xy)
+
+    by_position = np.zeros((len(points), 2, 3))
+    by_position[:, 0, 0] = by_position[:, 1, 1] = inverse_z
+    by_position[:, :, 2] = -xy * inverse_z[:, None]
+    by_position = affine @ camera.distort_jacobian(xy) @ by_position
+    by_pose = np.empty((len(points), 2, 6))
+    by_pose[:, :, :3] = np.cross(turned[:, None, :], by_position)  # a · (ω × X) = ω · (X × a)
+    by_pose[:, :, 3:] = by_position
+    return uv, by_camera, by_pose
+
+
+def _by_distortion(xy: Array) -> Array:
+    """∂(distorted)/∂(k1, k2, p1, p2, k3) at `xy` (N, 2): (N, 2, 5)."""
+    x, y = xy[:, 0], xy[:, 1]
+    r2 = x * x + y * y
+    derivative = np.empty((len(xy), 2, 5))
+    derivative[:, :, 0] = xy * r2[:, None]
+    derivative[:, :, 1] = xy * (r2 * r2)[:, None]
+    derivative[:, 0, 2] = derivative[:, 1, 3] = 2 * x * y
+    derivative[:, 1, 2] = r2 + 2 * y * y
+    derivative[:, 0, 3] = r2 + 2 * x * x
+    derivative[:, :, 4] = xy * (r2**3)[:, None]
+    return derivative
