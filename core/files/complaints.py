@@ -13,6 +13,18 @@ from pydantic.fields import FieldInfo
 
 from core.errors import InputError
 
+_TYPES = {
+    "finite_number": "a finite number",
+    "float_type": "a finite number",
+    "int_type": "a whole number",
+    "string_type": "a text",
+    "bool_type": "true or false",
+    "list_type": "a list",
+    "model_type": "a table",
+    "dict_type": "a table",
+}
+"""What a field without a description must be, by pydantic's names of errors."""
+
 
 class Clash(ValueError):
     """Two keys of one table that contradict each other; told as a complaint about `key`.
@@ -46,10 +58,12 @@ def complaint(path: Path, error: ValidationError, model: type[BaseModel]) -> Inp
         given = first.get("ctx", {}).get("tag")
         found = "is missing" if given is None else f'is "{given}"'
         return InputError(f"{name}.kind {found}, not {kinds}", where=path)
-    wanted = field.description if field is not None and field.description else first["msg"]
+    wanted = field.description if field is not None and field.description else _TYPES.get(first["type"], first["msg"])
     if first["type"] == "missing":
         return InputError(f"{name} is missing; it must be {wanted}", where=path)
-    return InputError(f"{name} is {_shown(first['input'])}, not {wanted}", where=path)
+    whole = name.partition("[")[0]
+    allowed = f"not {wanted}" if whole == name else f"but {whole} must be {wanted}"
+    return InputError(f"{name} is {_shown(first['input'])}, {allowed}", where=path)
 
 
 def _locate(model: type[BaseModel], loc: tuple[int | str, ...]) -> tuple[list[str], FieldInfo | None, list[Any]]:

@@ -38,19 +38,10 @@ class PlanePair:
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class LeftOut:
-    """A picture that could not be used, and why."""
-
-    name: str
-    reason: str
-
-
-@dataclass(frozen=True, eq=False, slots=True)
 class RecordingSet:
     """The files of one recording set, in the order of their names, and the readers for them.
 
-    `hashes` fills up with the SHA-256 of every file as it is read, by its name within the set; `left_out` with the
-    frames that could not be read.
+    `hashes` fills up with the SHA-256 of every file as it is read, by its name within the set.
     """
 
     folder: Path
@@ -60,7 +51,6 @@ class RecordingSet:
     reference: Path | None
     frames: tuple[Path, ...]
     hashes: dict[str, str] = field(default_factory=dict)
-    left_out: list[LeftOut] = field(default_factory=list)
 
     def name_of(self, path: Path) -> str:
         """The name of a file within the set, with forward slashes on every system."""
@@ -78,8 +68,8 @@ class RecordingSet:
         self.hashes[self.name_of(path)] = hashlib.sha256(data).hexdigest()
         return decode_picture(data, path, self.rig.channel)
 
-    def stream(self, paths: Sequence[Path]) -> Iterator[tuple[str, Picture]]:
-        """Yield name and picture of each of `paths`, a few read ahead; damaged ones go to `left_out` instead.
+    def stream(self, paths: Sequence[Path]) -> Iterator[tuple[str, Picture | str]]:
+        """Yield name and picture of each of `paths`, a few read ahead; for a damaged one, why it cannot be read.
 
         Raises
         ------
@@ -87,28 +77,27 @@ class RecordingSet:
             If a picture's depth (8 or 16 bit) is not that of the first one.
         """
 
-        def attempt(path: Path) -> Picture | InputError:
+        def attempt(path: Path) -> Picture | str:
             try:
                 return self.read(path)
             except InputError as error:
-                return error
+                return error.what
 
-        first: tuple[Path, Picture] | None = None
+        first: tuple[str, Picture] | None = None
         for path, result in read_ahead(paths, attempt):
-            if isinstance(result, InputError):
-                note = LeftOut(self.name_of(path), result.what)
-                if note.name not in {one.name for one in self.left_out}:
-                    self.left_out.append(note)
-                continue
-            first = first or (path, result)
-            if result.dtype != first[1].dtype:
-                bits = result.dtype.itemsize * 8
-                raise InputError(
-                    f"the picture has {bits} bit, but {self.name_of(first[0])} has {first[1].dtype.itemsize * 8}",
-                    where=path,
-                    todo="record all pictures with one depth",
-                )
-            yield self.name_of(path), result
+            name = self.name_of(path)
+            if not isinstance(result, str):
+                first = first or (name, result)
+                self._check_depth(path, result, *first)
+            yield name, result
+
+    def _check_depth(self, path: Path, picture: Picture, first_name: str, first: Picture) -> None:
+        if picture.dtype != first.dtype:
+            raise InputError(
+                f"the picture has {picture.dtype.itemsize * 8} bit, but {first_name} has {first.dtype.itemsize * 8}",
+                where=path,
+                todo="record all pictures with one depth",
+            )
 
 
 def open_set(folder: Path) -> RecordingSet:
@@ -128,7 +117,8 @@ def open_set(folder: Path) -> RecordingSet:
             where=folder,
             todo="it needs rig.toml and pictures in camera, planes and scan",
         )
-    rig = read_rig(folder / "rig.toml")
+    rig_file = folder / "rig.toml"
+    rig = read_rig(rig_file)
     scan = _pictures(folder / "scan")
     references = [path for path in scan if path.stem.lower() == _REFERENCE]
     if len(references) > 1:
@@ -144,6 +134,7 @@ def open_set(folder: Path) -> RecordingSet:
         _pairs(folder / "planes"),
         references[0] if references else None,
         tuple(path for path in scan if path not in references),
+        {rig_file.name: hashlib.sha256(read_bytes(rig_file)).hexdigest()},
     )
     _check_sizes(found)
     return found

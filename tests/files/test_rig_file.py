@@ -93,7 +93,7 @@ def test_missing_file_is_named(tmp_path):
 
 
 def test_text_that_is_no_toml_names_the_line(tmp_path):
-    assert "line 3" in complaint(tmp_path, 'a = 1\n[b]\nc = open\nd = 2')
+    assert "line 3" in complaint(tmp_path, "a = 1\n[b]\nc = open\nd = 2")
 
 
 def test_text_in_another_encoding_is_refused(tmp_path):

@@ -1,0 +1,192 @@
+"""camera.json: the camera's calibration, readable by people and by other programs."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+
+from core import __version__
+from core.calibrate.results import CAMERA_PARAMETERS, CameraCalibration, ViewQuality
+from core.files.atomic import write_text
+from core.files.complaints import Clash, complaint
+from core.files.json_text import read_json, rounded, to_json
+from core.image.target_view import TargetView
+from core.model import Camera, Pose
+from core.model.camera import DISTORTION_NAMES
+
+Finite = Annotated[float, Field(allow_inf_nan=False)]
+Maybe = Finite | None
+Row3 = Annotated[list[Finite], Field(min_length=3, max_length=3)]
+Row2 = Annotated[list[Finite], Field(min_length=2, max_length=2)]
+
+
+class ResultFile(BaseModel):
+    """A file of results: keys may be added by others, and are then ignored."""
+
+    model_config = ConfigDict(extra="ignore", strict=True, frozen=True)
+
+
+class _Distortion(ResultFile):
+    k1: Finite = Field(description="a finite number")
+    k2: Finite = Field(description="a finite number")
+    p1: Finite = Field(description="a finite number")
+    p2: Finite = Field(description="a finite number")
+    k3: Finite = Field(0.0, description="a finite number")
+
+
+class _View(ResultFile):
+    name: str
+    used: bool
+    reason: str = ""
+    rms_px: Maybe = None
+    mean_px: Maybe = None
+    tilt_deg: Maybe = None
+    rotation_vector: Row3
+    translation_mm: Row3
+    points_mm: list[Row3]
+    uv_px: list[Row2]
+    sigma_px: list[Finite]
+    residuals_px: list[list[Maybe]]
+    counted: list[bool] = Field(default_factory=list)
+
+
+class _CameraFile(ResultFile):
+    image_size: list[Annotated[int, Field(ge=1, le=100_000)]] = Field(
+        min_length=2, max_length=2, description="[width, height] in pixels"
+    )
+    matrix: list[Row3] = Field(min_length=3, max_length=3, description="3 × 3 finite numbers")
+    distortion: _Distortion = Field(description="a table of k1, k2, p1, p2")
+    covariance: list[list[Finite]] | None = Field(None, description="10 × 10 finite numbers")
+    rms_px: Maybe = None
+    mean_px: Maybe = None
+    coverage: Maybe = None
+    tilt_range_deg: Maybe = None
+    cross_validation_mm: Maybe = None
+    views: list[_View] = Field(default_factory=list)
+    notes: list[str] = Field(default_factory=list)
+
+    @model_validator(mode="after")
+    def _is_a_camera(self) -> _CameraFile:
+        for i in range(2):
+            if self.matrix[i][i] <= 0:
+                raise Clash(f"matrix[{i}][{i}]", f"is {self.matrix[i][i]:g}, but a focal length in pixels is above 0")
+        if self.matrix[1][0] != 0 or self.matrix[2] != [0, 0, 1]:
+            raise Clash("matrix", "is not of the form [[α, γ, u0], [0, β, v0], [0, 0, 1]]")
+        size = len(CAMERA_PARAMETERS)
+        if self.covariance is not None and [len(row) for row in self.covariance] != [size] * size:
+            raise Clash("covariance", f"is not {size} × {size} numbers")
+        return self
+
+
+def camera_id(camera: Camera) -> str:
+    """Twelve hex digits that name these very parameters; files made with them carry it."""
+    numbers = np.concatenate([camera.image_size, camera.matrix.ravel(), camera.distortion])
+    return hashlib.sha256(numbers.astype("<f8").tobytes()).hexdigest()[:12]
+
+
+def write_camera(path: Path, calibration: CameraCalibration) -> None:
+    """Write camera.json; InputError if it cannot be written."""
+    camera = calibration.camera
+    write_text(
+        path,
+        to_json(
+            {
+                "image_size": camera.image_size,
+                "matrix": camera.matrix,
+                "distortion": dict(zip(DISTORTION_NAMES, camera.distortion.tolist(), strict=True)),
+                "rms_px": calibration.rms_px,
+                "mean_px": calibration.mean_px,
+                "sd": dict(calibration.sd),
+                "coverage": calibration.coverage,
+                "tilt_range_deg": math.degrees(calibration.tilt_range),
+                "cross_validation_mm": calibration.cross_validation_mm,
+                "notes": calibration.notes,
+                "id": camera_id(camera),
+                "version": __version__,
+                "parameters": CAMERA_PARAMETERS,
+                "covariance": calibration.covariance,
+                "views": [_view(quality) for quality in calibration.views],
+            }
+        ),
+    )
+
+
+def read_camera(path: Path) -> CameraCalibration:
+    """Read camera.json, also one of another program that holds no more than image_size, matrix and distortion.
+
+    Raises
+    ------
+    InputError
+        If it is missing, or a value is not finite, absurd or of a wrong shape; names file and field.
+    """
+    tables = read_json(path, todo="calibrate the camera first: trisect camera SET --out DIR")
+    try:
+        file = _CameraFile.model_validate(tables)
+    except ValidationError as error:
+        raise complaint(path, error, _CameraFile) from error
+    distortion = file.distortion
+    camera = Camera(
+        (file.image_size[0], file.image_size[1]),
+        np.array(file.matrix),
+        np.array([distortion.k1, distortion.k2, distortion.p1, distortion.p2, distortion.k3]),
+    )
+    size = len(CAMERA_PARAMETERS)
+    return CameraCalibration(
+        camera=camera,
+        covariance=np.zeros((size, size)) if file.covariance is None else np.array(file.covariance),
+        views=tuple(_quality(view) for view in file.views),
+        rms_px=number(file.rms_px),
+        mean_px=number(file.mean_px),
+        coverage=number(file.coverage),
+        tilt_range=math.radians(number(file.tilt_range_deg)),
+        cross_validation_mm=number(file.cross_validation_mm),
+        notes=tuple(file.notes),
+    )
+
+
+def number(value: float | None) -> float:
+    """A number of a file, NaN where the file has none."""
+    return math.nan if value is None else value
+
+
+def _view(quality: ViewQuality) -> dict[str, Any]:
+    vector = quality.pose.vector
+    return {
+        "name": quality.view.name,
+        "used": quality.used,
+        "reason": quality.reason,
+        "rms_px": quality.rms_px,
+        "mean_px": quality.mean_px,
+        "tilt_deg": math.degrees(quality.tilt),
+        "rotation_vector": vector[:3],
+        "translation_mm": vector[3:],
+        "points_mm": rounded(quality.view.points, 6),
+        "uv_px": rounded(quality.view.uv, 6),
+        "sigma_px": rounded(quality.view.sigma, 6),
+        "residuals_px": rounded(quality.residuals, 6),
+        "counted": quality.counted,
+    }
+
+
+def _quality(view: _View) -> ViewQuality:
+    return ViewQuality(
+        view=TargetView(
+            np.array(view.points_mm).reshape(-1, 3),
+            np.array(view.uv_px).reshape(-1, 2),
+            np.array(view.sigma_px),
+            view.name,
+        ),
+        pose=Pose.from_vector([*view.rotation_vector, *view.translation_mm]),
+        residuals=np.array(view.residuals_px, dtype=np.float64).reshape(-1, 2),
+        rms_px=number(view.rms_px),
+        mean_px=number(view.mean_px),
+        tilt=math.radians(number(view.tilt_deg)),
+        used=view.used,
+        reason=view.reason,
+        counted=np.array(view.counted, dtype=np.bool_),
+    )

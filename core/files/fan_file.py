@@ -1,0 +1,176 @@
+"""planes.json: the fan's calibration."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from pydantic import Field, ValidationError, model_validator
+
+from core import __version__
+from core.calibrate.results import FanCalibration, PlanePose
+from core.errors import InputError
+from core.files.atomic import write_text
+from core.files.camera_file import Finite, Maybe, ResultFile, Row3, camera_id, number
+from core.files.complaints import Clash, complaint
+from core.files.json_text import read_json, to_json
+from core.model import Camera, Fan, LightPlane, Pose
+
+_VECTOR = "three finite numbers, not all zero"
+
+
+class _Plane(ResultFile):
+    pi: Row3 = Field(description=_VECTOR)
+    rms_mm: Maybe = None
+
+    @model_validator(mode="after")
+    def _is_a_plane(self) -> _Plane:
+        if not any(self.pi):
+            raise Clash("pi", f"is [0, 0, 0], not {_VECTOR}")
+        return self
+
+
+class _Angles(ResultFile):
+    constrained: list[Finite] = Field(default_factory=list)
+    free: list[Finite] = Field(default_factory=list)
+
+
+class _Pose(ResultFile):
+    name: str
+    used: bool
+    reason: str = ""
+    rms_mm: Maybe = None
+    target_rms_px: Maybe = None
+    rotation_vector: Row3
+    translation_mm: Row3
+
+
+class _PlanesFile(ResultFile):
+    planes: list[_Plane] = Field(min_length=1, description="a list of one or more light planes")
+    free_planes: list[_Plane] = Field(default_factory=list)
+    angles_deg: _Angles = Field(default_factory=_Angles)
+    covariance: list[list[Finite]] | None = Field(None, description="3N × 3N finite numbers for N planes")
+    pencil_gap_mm: Maybe = None
+    constraint_suits: bool | None = None
+    verdict: str = ""
+    camera_id: str = ""
+    poses: list[_Pose] = Field(default_factory=list)
+    notes: list[str] = Field(default_factory=list)
+
+    @model_validator(mode="after")
+    def _shapes(self) -> _PlanesFile:
+        size = 3 * len(self.planes)
+        if self.covariance is not None and [len(row) for row in self.covariance] != [size] * size:
+            raise Clash("covariance", f"is not {size} × {size} numbers, as {len(self.planes)} planes need")
+        if self.free_planes and len(self.free_planes) != len(self.planes):
+            raise Clash("free_planes", f"has {len(self.free_planes)} planes, not {len(self.planes)} as planes has")
+        return self
+
+
+def fan_id(fan: Fan) -> str:
+    """Twelve hex digits that name these very planes."""
+    return hashlib.sha256(fan.pis.astype("<f8").tobytes()).hexdigest()[:12]
+
+
+def write_fan(path: Path, calibration: FanCalibration, camera: Camera) -> None:
+    """Write planes.json, which remembers the `camera` it was measured with; InputError if it cannot be written."""
+    degrees = {
+        "constrained": [math.degrees(angle) for angle in calibration.angles],
+        "free": [math.degrees(angle) for angle in calibration.free_angles],
+    }
+    write_text(
+        path,
+        to_json(
+            {
+                "planes": [
+                    _plane(plane) | {"rms_mm": rms}
+                    for plane, rms in zip(calibration.fan.planes, calibration.rms_mm, strict=True)
+                ],
+                "angles_deg": degrees,
+                "pencil_gap_mm": calibration.pencil_gap_mm,
+                "constraint_suits": calibration.constraint_suits,
+                "verdict": calibration.verdict,
+                "notes": calibration.notes,
+                "free_planes": [_plane(plane) for plane in calibration.free.planes],
+                "id": fan_id(calibration.fan),
+                "camera_id": camera_id(camera),
+                "version": __version__,
+                "covariance": calibration.fan.covariance,
+                "poses": [_pose(pose) for pose in calibration.poses],
+            }
+        ),
+    )
+
+
+def read_fan(path: Path, camera: Camera) -> FanCalibration:
+    """Read planes.json, also one of another program that holds no more than the planes' `pi`.
+
+    The poses come back without their points, which the file does not keep.
+
+    Raises
+    ------
+    InputError
+        If it is missing, a value is not finite, zero or of a wrong shape, or it belongs to another camera calibration.
+    """
+    tables = read_json(path, todo="calibrate the fan first: trisect planes SET --out DIR")
+    try:
+        file = _PlanesFile.model_validate(tables)
+    except ValidationError as error:
+        raise complaint(path, error, _PlanesFile) from error
+    if file.camera_id and file.camera_id != camera_id(camera):
+        raise InputError(
+            f"camera_id is {file.camera_id}, but camera.json is {camera_id(camera)}: the camera was calibrated again",
+            where=path,
+            todo="calibrate the fan again: trisect planes SET --out DIR",
+        )
+    fan = Fan(
+        tuple(LightPlane(np.array(plane.pi)) for plane in file.planes),
+        None if file.covariance is None else np.array(file.covariance),
+    )
+    free = Fan(tuple(LightPlane(np.array(plane.pi)) for plane in file.free_planes)) if file.free_planes else fan
+    return FanCalibration(
+        fan=fan,
+        free=free,
+        rms_mm=tuple(number(plane.rms_mm) for plane in file.planes),
+        angles=tuple(math.radians(angle) for angle in file.angles_deg.constrained) or fan.angles,
+        free_angles=tuple(math.radians(angle) for angle in file.angles_deg.free) or free.angles,
+        pencil_gap_mm=number(file.pencil_gap_mm),
+        constraint_suits=file.constraint_suits,
+        verdict=file.verdict,
+        poses=tuple(_plane_pose(pose) for pose in file.poses),
+        notes=tuple(file.notes),
+    )
+
+
+def _plane(plane: LightPlane) -> dict[str, Any]:
+    return {"normal": plane.normal, "d_mm": plane.d_mm, "pi": plane.pi}
+
+
+def _pose(pose: PlanePose) -> dict[str, Any]:
+    vector = pose.pose.vector
+    return {
+        "name": pose.name,
+        "used": pose.used,
+        "reason": pose.reason,
+        "rms_mm": pose.rms_mm,
+        "target_rms_px": pose.target_rms_px,
+        "rotation_vector": vector[:3],
+        "translation_mm": vector[3:],
+        "points": [len(points) for points in pose.points],
+    }
+
+
+def _plane_pose(pose: _Pose) -> PlanePose:
+    return PlanePose(
+        name=pose.name,
+        pose=Pose.from_vector([*pose.rotation_vector, *pose.translation_mm]),
+        target_rms_px=number(pose.target_rms_px),
+        points=(),
+        distances=(),
+        rms_mm=number(pose.rms_mm),
+        used=pose.used,
+        reason=pose.reason,
+    )

@@ -1,0 +1,74 @@
+"""JSON that a person can read: tables indented, rows of numbers on one line, no NaN, the same bytes every time."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from core.errors import InputError
+
+WIDTH = 110
+"""Lists of lists or tables longer than this many characters are broken into lines, one item each."""
+
+
+def to_json(value: object) -> str:
+    """`value` as JSON text. Arrays become lists; NaN and infinity, which JSON does not have, become null."""
+    return _text(_plain(value), 0) + "\n"
+
+
+def rounded(values: ArrayLike, digits: int) -> Any:
+    """Nested lists of `values`, rounded: for bulky arrays that only serve plots and residual tables."""
+    return (np.round(np.asarray(values, dtype=np.float64), digits) + 0.0).tolist()
+
+
+def read_json(path: Path, *, todo: str = "") -> Any:
+    """The content of a JSON file.
+
+    Raises
+    ------
+    InputError
+        If it is missing (`todo` says how to come by it), unreadable or no JSON.
+    """
+    try:
+        return json.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError as error:
+        raise InputError("the file is missing", where=path, todo=todo) from error
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"cannot be read as UTF-8 text ({error})", where=path) from error
+    except json.JSONDecodeError as error:
+        raise InputError(f"this is no valid JSON: {error}", where=path, todo=todo) from error
+
+
+def _plain(value: object) -> Any:
+    """Python's own types only."""
+    if isinstance(value, Mapping):
+        return {str(key): _plain(item) for key, item in value.items()}
+    if isinstance(value, np.ndarray | np.generic):
+        return _plain(value.tolist())
+    if isinstance(value, list | tuple):
+        return [_plain(item) for item in value]
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    return value
+
+
+def _text(value: Any, depth: int) -> str:
+    inside, outside = " " * (2 * depth + 2), " " * (2 * depth)
+    if isinstance(value, dict) and value:
+        rows = [f"{inside}{_flat(key)}: {_text(item, depth + 1)}" for key, item in value.items()]
+        return "{\n" + ",\n".join(rows) + "\n" + outside + "}"
+    flat = _flat(value)
+    if isinstance(value, list) and len(flat) > WIDTH and any(isinstance(item, dict | list | str) for item in value):
+        rows = [inside + _text(item, depth + 1) for item in value]
+        return "[\n" + ",\n".join(rows) + "\n" + outside + "]"
+    return flat
+
+
+def _flat(value: Any) -> str:
+    return json.dumps(value, ensure_ascii=False, allow_nan=False)

@@ -1,0 +1,169 @@
+"""cloud.ply and mesh.ply: binary PLY as CloudCompare and MeshLab read it, σ and the rest as scalar fields."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from plyfile import PlyData, PlyElement, PlyParseError
+
+from core import __version__
+from core.errors import InputError
+from core.files.atomic import write_bytes
+from core.files.pictures import read_bytes
+from core.model.arrays import Array
+from core.scan.cloud import Cloud
+from core.scan.surface import Mesh
+
+_NORMALS = [("nx", "f4"), ("ny", "f4"), ("nz", "f4")]
+_CLOUD = [
+    # Coordinates in double: 700 mm in single precision step by 0.06 µm, but rays and planes are fitted to them again.
+    *[("x", "f8"), ("y", "f8"), ("z", "f8")],
+    *_NORMALS,
+    *[("sigma", "f4"), ("intensity", "f4"), ("frame", "i4")],
+    *[("sweep", "i4"), ("image_u", "f4"), ("image_v", "f4")],
+]
+_MESH = [("x", "f4"), ("y", "f4"), ("z", "f4"), *_NORMALS, ("sigma", "f4")]
+_CALIBRATION = "calibration "
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class CloudFile:
+    """What cloud.ply holds: the points, and the id of the calibration they were measured with ("" if not told)."""
+
+    cloud: Cloud
+    calibration_id: str
+
+
+def write_cloud(path: Path, cloud: Cloud, calibration_id: str) -> None:
+    """Write cloud.ply: x y z nx ny nz sigma intensity frame, and sweep image_u image_v behind them.
+
+    Raises
+    ------
+    InputError
+        If it cannot be written.
+    """
+    vertices = np.empty(len(cloud), dtype=_CLOUD)
+    _put(vertices, ("x", "y", "z"), cloud.points)
+    _put(vertices, ("nx", "ny", "nz"), cloud.normals)
+    _put(vertices, ("image_u", "image_v"), cloud.uv)
+    for name in ("sigma", "intensity", "frame", "sweep"):
+        vertices[name] = getattr(cloud, name)
+    comments = [
+        "unit mm",
+        "frame of reference: the camera, z forward, y down",
+        "sigma: standard uncertainty of the depth in mm; frame -1: measured by the fan itself",
+    ]
+    _write(path, [PlyElement.describe(vertices, "vertex")], comments, calibration_id)
+
+
+def read_cloud(path: Path) -> CloudFile:
+    """Read cloud.ply.
+
+    Raises
+    ------
+    InputError
+        If it is missing, damaged, lacks a property or holds values that are not finite; names it.
+    """
+    data = _read(path, "measure the scan first: trisect scan SET --out DIR")
+    vertices = _element(data, "vertex", [name for name, _ in _CLOUD], path)
+
+    def columns(*names: str) -> Array:
+        return np.column_stack([vertices[name] for name in names]).astype(np.float64)
+
+    for name in ("x", "y", "z", "sigma", "image_u", "image_v"):
+        wrong = int(np.count_nonzero(~np.isfinite(vertices[name])))
+        if wrong:
+            raise InputError(f"property {name} is not finite in {wrong} of {len(vertices)} points", where=path)
+    if np.any(vertices["sigma"] <= 0):
+        raise InputError("property sigma is not above 0 in every point", where=path)
+    cloud = Cloud(
+        points=columns("x", "y", "z"),
+        uv=columns("image_u", "image_v"),
+        sigma=columns("sigma")[:, 0],
+        intensity=columns("intensity")[:, 0],
+        frame=np.asarray(vertices["frame"], dtype=np.int64),
+        sweep=np.asarray(vertices["sweep"], dtype=np.int64),
+        normals=columns("nx", "ny", "nz"),
+    )
+    ids = [line.removeprefix(_CALIBRATION) for line in data.comments if line.startswith(_CALIBRATION)]
+    return CloudFile(cloud, ids[0] if ids else "")
+
+
+def write_mesh(path: Path, mesh: Mesh, calibration_id: str) -> None:
+    """Write mesh.ply: vertices with normals and sigma, triangles.
+
+    Raises
+    ------
+    InputError
+        If it cannot be written.
+    """
+    vertices = np.empty(len(mesh.vertices), dtype=_MESH)
+    _put(vertices, ("x", "y", "z"), mesh.vertices)
+    _put(vertices, ("nx", "ny", "nz"), mesh.normals)
+    vertices["sigma"] = mesh.sigma
+    faces = np.empty(len(mesh.triangles), dtype=[("vertex_indices", "i4", (3,))])
+    faces["vertex_indices"] = mesh.triangles
+    elements = [PlyElement.describe(vertices, "vertex"), PlyElement.describe(faces, "face")]
+    comments = ["unit mm", "frame of reference: the camera, z forward, y down", "sigma: standard uncertainty in mm"]
+    _write(path, elements, comments, calibration_id)
+
+
+def read_mesh(path: Path) -> Mesh:
+    """Read mesh.ply.
+
+    Raises
+    ------
+    InputError
+        If it is missing, damaged or lacks a property; names it.
+    """
+    data = _read(path, "measure the scan first: trisect scan SET --out DIR")
+    vertices = _element(data, "vertex", [name for name, _ in _MESH], path)
+    faces = _element(data, "face", ["vertex_indices"], path)
+    triangles = faces["vertex_indices"]
+    corners = np.array(list(triangles) if triangles.dtype == object else triangles, dtype=np.int64).reshape(-1, 3)
+    if len(corners) and (corners.min() < 0 or corners.max() >= len(vertices)):
+        raise InputError("a triangle names a vertex that is not there", where=path)
+    return Mesh(
+        vertices=np.column_stack([vertices[name] for name in ("x", "y", "z")]).astype(np.float64),
+        normals=np.column_stack([vertices[name] for name in ("nx", "ny", "nz")]).astype(np.float64),
+        sigma=np.asarray(vertices["sigma"], dtype=np.float64),
+        triangles=corners,
+    )
+
+
+def _put(vertices: NDArray[Any], names: Sequence[str], values: Array) -> None:
+    for column, name in enumerate(names):
+        vertices[name] = values[:, column]
+
+
+def _write(path: Path, elements: list[PlyElement], comments: list[str], calibration_id: str) -> None:
+    stamp = [f"Trisect {__version__}", *comments, f"{_CALIBRATION}{calibration_id}"]
+    text = io.BytesIO()
+    PlyData(elements, byte_order="<", comments=stamp).write(text)
+    write_bytes(path, text.getvalue())
+
+
+def _read(path: Path, todo: str) -> PlyData:
+    if not path.exists():
+        raise InputError("the file is missing", where=path, todo=todo)
+    try:
+        return PlyData.read(io.BytesIO(read_bytes(path)))
+    except (PlyParseError, UnicodeDecodeError, ValueError, EOFError) as error:
+        raise InputError(f"this is no whole PLY file ({error})", where=path, todo="make it again") from error
+
+
+def _element(data: PlyData, name: str, properties: Sequence[str], path: Path) -> NDArray[Any]:
+    """The rows of one element, all `properties` there."""
+    if name not in data:
+        raise InputError(f"there is no element {name}", where=path)
+    rows: NDArray[Any] = data[name].data
+    missing = [one for one in properties if one not in (rows.dtype.names or ())]
+    if missing:
+        raise InputError(f"element {name} lacks the property {missing[0]}", where=path)
+    return rows

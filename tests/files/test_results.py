@@ -1,0 +1,303 @@
+import json
+
+import numpy as np
+import pytest
+from plyfile import PlyData
+
+from core.calibrate.results import CameraCalibration, FanCalibration, PlanePose, ViewQuality
+from core.errors import InputError
+from core.files.camera_file import camera_id, read_camera, write_camera
+from core.files.fan_file import read_fan, write_fan
+from core.files.json_text import to_json
+from core.files.ply import read_cloud, read_mesh, write_cloud, write_mesh
+from core.files.scan_file import ScanFile, ShownFrame, read_scan, write_scan
+from core.image.centreline import Centreline
+from core.image.target_view import TargetView
+from core.model import Camera, Fan, LightPlane, Pose
+from core.scan.cloud import FAN, Cloud
+from core.scan.surface import Mesh
+
+
+def square(rng, size, scale):
+    root = rng.normal(size=(size, size)) * scale
+    return root @ root.T
+
+
+@pytest.fixture
+def camera():
+    matrix = np.array([[2495.1, 0.4 / 3, 960.2], [0, 2494.7, 687.1], [0, 0, 1]])
+    rng = np.random.default_rng(0)
+    view = TargetView(rng.normal(size=(6, 3)) * [50, 50, 0], rng.uniform(0, 900, (6, 2)), np.full(6, 0.03), "a.png")
+    good = ViewQuality(
+        view, Pose.from_vector([0.1, 0.2, 0.3, 1, 2, 600]), rng.normal(size=(6, 2)), 0.1, 0.09, 0.3, True,
+        counted=np.array([True] * 5 + [False]),
+    )  # fmt: skip
+    lost = ViewQuality(
+        TargetView(np.zeros((2, 3)), np.ones((2, 2)), np.ones(2), "b.png"),
+        Pose.identity(), np.full((2, 2), np.nan), np.nan, np.nan, np.nan, False, "too few corners",
+    )  # fmt: skip
+    return CameraCalibration(
+        Camera((1920, 1374), matrix, np.array([-0.1, 0.09, 1e-4, -2e-4])),
+        square(rng, 10, 0.1), (good, lost), 0.11, 0.09, 0.8, 0.7, np.nan, ("Tilt more.",),
+    )  # fmt: skip
+
+
+@pytest.fixture
+def fan():
+    rng = np.random.default_rng(1)
+    planes = tuple(LightPlane(np.array([0.001 + 0.0002 * k, 0.0003, 0.0015])) for k in range(3))
+    poses = (PlanePose("p1", Pose.identity(), 0.05, (np.zeros((4, 3)),), (np.zeros(4),), 0.02, True),)
+    return FanCalibration(
+        Fan(planes, square(rng, 9, 1e-8)), Fan(planes), (0.01, 0.02, 0.03), (0.087, 0.087), (0.086, 0.088), 0.02, True,
+        "The constraint suits this laser.", poses, ("note",),
+    )  # fmt: skip
+
+
+@pytest.fixture
+def cloud():
+    rng = np.random.default_rng(2)
+    count = 50
+    normals = rng.normal(size=(count, 3))
+    return Cloud(
+        points=rng.normal(size=(count, 3)) + [0, 0, 700],
+        uv=rng.uniform(0, 900, (count, 2)),
+        sigma=rng.uniform(0.01, 0.05, count),
+        intensity=rng.uniform(0, 255, count),
+        frame=np.arange(count) - 1,
+        sweep=np.where(np.arange(count) % 2, np.arange(count), FAN - 2),
+        normals=normals / np.linalg.norm(normals, axis=1)[:, None],
+    )
+
+
+def edited(path, change):
+    tables = json.loads(path.read_text())
+    change(tables)
+    path.write_text(json.dumps(tables))
+
+
+def test_camera_round_trip_is_exact_and_has_the_keys_of_the_design(tmp_path, camera):
+    path = tmp_path / "camera.json"
+    write_camera(path, camera)
+    tables = json.loads(path.read_text())
+    assert {"image_size", "matrix", "distortion", "rms_px", "sd", "views"} <= set(tables)
+    assert {"k1", "k2", "p1", "p2"} <= set(tables["distortion"])
+    assert tables["sd"]["alpha"] == camera.sd["alpha"]
+    back = read_camera(path)
+    assert back.camera.image_size == camera.camera.image_size
+    assert np.array_equal(back.camera.matrix, camera.camera.matrix)
+    assert np.array_equal(back.camera.distortion, camera.camera.distortion)
+    assert np.array_equal(back.covariance, camera.covariance)
+    assert np.isnan(back.cross_validation_mm)
+    assert np.allclose(back.views[0].residuals, camera.views[0].residuals, atol=1e-6)
+    assert np.allclose(back.views[0].pose.translation, [1, 2, 600])
+    assert back.views[0].counted.tolist() == [True] * 5 + [False]
+    assert np.isnan(back.views[1].residuals).all()
+    assert (back.views[1].used, back.views[1].reason) == (False, "too few corners")
+
+
+def test_a_camera_of_another_program_needs_only_its_parameters(tmp_path):
+    path = tmp_path / "camera.json"
+    path.write_text(
+        '{"image_size": [640, 480], "matrix": [[800, 0, 320], [0, 800, 240], [0, 0, 1]], "software": "other",'
+        ' "distortion": {"k1": 0, "k2": 0, "p1": 0, "p2": 0}}'
+    )
+    back = read_camera(path)
+    assert back.camera.focal == pytest.approx(800)
+    assert not back.covariance.any()
+    assert back.views == ()
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (lambda t: t["matrix"][0].__setitem__(2, float("nan")), "matrix[0][2] is NaN, but matrix must be 3 × 3 finite"),
+        (lambda t: t["matrix"][1].__setitem__(1, 0), "matrix[1][1] is 0, but a focal length in pixels is above 0"),
+        (lambda t: t["matrix"].pop(), "matrix is "),
+        (lambda t: t["matrix"][2].__setitem__(2, 2), "matrix is not of the form"),
+        (lambda t: t["distortion"].__setitem__("k1", float("inf")), "distortion.k1 is Infinity, not a finite number"),
+        (lambda t: t["distortion"].pop("p2"), "distortion.p2 is missing"),
+        (lambda t: t.pop("distortion"), "distortion is missing; it must be a table of k1, k2, p1, p2"),
+        (lambda t: t["image_size"].__setitem__(0, 0), "image_size[0] is 0, but image_size must be [width, height]"),
+        (lambda t: t.__setitem__("image_size", "1920x1374"), 'image_size is "1920x1374", not [width, height]'),
+        (lambda t: t["covariance"].pop(), "covariance is not 10 × 10 numbers"),
+        (lambda t: t["covariance"][3].__setitem__(3, float("nan")), "covariance[3][3] is NaN"),
+        (lambda t: t.__setitem__("rms_px", "small"), 'rms_px is "small", not a finite number'),
+    ],
+)
+def test_a_spoilt_camera_file_is_refused_by_field(tmp_path, camera, change, said):
+    path = tmp_path / "camera.json"
+    write_camera(path, camera)
+    edited(path, change)
+    with pytest.raises(InputError) as error:
+        read_camera(path)
+    assert str(error.value).startswith(f"{path}: ")
+    assert said in str(error.value)
+
+
+def test_missing_and_broken_files_say_what_to_do(tmp_path):
+    with pytest.raises(InputError, match=r"camera\.json: the file is missing; calibrate the camera first"):
+        read_camera(tmp_path / "camera.json")
+    (tmp_path / "camera.json").write_text('{"image_size": [1, 2')
+    with pytest.raises(InputError, match=r"camera\.json: this is no valid JSON"):
+        read_camera(tmp_path / "camera.json")
+    (tmp_path / "camera.json").write_text("[1, 2, 3]")
+    with pytest.raises(InputError, match=r"camera\.json"):
+        read_camera(tmp_path / "camera.json")
+
+
+def test_fan_round_trip_is_exact_and_has_the_keys_of_the_design(tmp_path, camera, fan):
+    path = tmp_path / "planes.json"
+    write_fan(path, fan, camera.camera)
+    tables = json.loads(path.read_text())
+    assert set(tables["planes"][0]) >= {"normal", "d_mm", "pi", "rms_mm"}
+    assert set(tables["angles_deg"]) == {"constrained", "free"}
+    assert tables["camera_id"] == camera_id(camera.camera)
+    back = read_fan(path, camera.camera)
+    assert np.array_equal(back.fan.pis, fan.fan.pis)
+    assert np.array_equal(back.fan.covariance, fan.fan.covariance)
+    assert np.allclose(back.angles, fan.angles, rtol=1e-14)
+    assert (back.verdict, back.constraint_suits, back.notes) == (fan.verdict, True, ("note",))
+    assert back.poses[0].name == "p1"
+
+
+def test_planes_of_another_camera_are_refused(tmp_path, camera, fan):
+    write_fan(tmp_path / "planes.json", fan, camera.camera)
+    other = Camera((1920, 1374), camera.camera.matrix * [[1.001, 1, 1], [1, 1, 1], [1, 1, 1]])
+    with pytest.raises(InputError, match="the camera was calibrated again; calibrate the fan again"):
+        read_fan(tmp_path / "planes.json", other)
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (lambda t: t["planes"][1].__setitem__("pi", [0, 0, 0]), "planes[1].pi is [0, 0, 0], not three finite numbers"),
+        (lambda t: t["planes"][2]["pi"].__setitem__(0, float("nan")), "planes[2].pi[0] is NaN"),
+        (lambda t: t["planes"][0].pop("pi"), "planes[0].pi is missing"),
+        (lambda t: t.__setitem__("planes", []), "planes is [], not a list of one or more"),
+        (lambda t: t["covariance"].pop(), "covariance is not 9 × 9 numbers"),
+        (lambda t: t["free_planes"].pop(), "free_planes has 2 planes, not 3"),
+    ],
+)
+def test_a_spoilt_planes_file_is_refused_by_field(tmp_path, camera, fan, change, said):
+    path = tmp_path / "planes.json"
+    write_fan(path, fan, camera.camera)
+    edited(path, change)
+    with pytest.raises(InputError) as error:
+        read_fan(path, camera.camera)
+    assert str(error.value).startswith(f"{path}: ")
+    assert said in str(error.value)
+
+
+def test_cloud_round_trip(tmp_path, cloud):
+    path = tmp_path / "cloud.ply"
+    write_cloud(path, cloud, "abc")
+    back = read_cloud(path)
+    assert back.calibration_id == "abc"
+    assert np.array_equal(back.cloud.points, cloud.points)
+    assert np.allclose(back.cloud.sigma, cloud.sigma, rtol=1e-6)
+    assert np.allclose(back.cloud.uv, cloud.uv, atol=1e-4)
+    assert np.array_equal(back.cloud.frame, cloud.frame)
+    assert np.array_equal(back.cloud.sweep, cloud.sweep)
+    write_cloud(tmp_path / "again.ply", back.cloud, "abc")
+    assert (tmp_path / "again.ply").read_bytes() == path.read_bytes()
+
+
+def test_cloud_is_the_ply_of_the_design(tmp_path, cloud):
+    write_cloud(tmp_path / "cloud.ply", cloud, "abc")
+    data = PlyData.read(str(tmp_path / "cloud.ply"))
+    assert (data.text, data.byte_order) == (False, "<")
+    names = [p.name for p in data["vertex"].properties]
+    assert names[:9] == ["x", "y", "z", "nx", "ny", "nz", "sigma", "intensity", "frame"]
+    assert "unit mm" in data.comments
+    assert "calibration abc" in data.comments
+    assert any(line.startswith("Trisect ") for line in data.comments)
+
+
+def test_truncated_and_spoilt_clouds_are_refused(tmp_path, cloud):
+    path = tmp_path / "cloud.ply"
+    write_cloud(path, cloud, "abc")
+    whole = path.read_bytes()
+    path.write_bytes(whole[:-10])
+    with pytest.raises(InputError, match=r"cloud\.ply: this is no whole PLY"):
+        read_cloud(path)
+    path.write_bytes(b"hello")
+    with pytest.raises(InputError, match=r"cloud\.ply: this is no whole PLY"):
+        read_cloud(path)
+    path.write_bytes(whole.replace(b"property float sigma", b"property float noise"))
+    with pytest.raises(InputError, match="lacks the property sigma"):
+        read_cloud(path)
+    with pytest.raises(InputError, match="the file is missing; measure the scan first"):
+        read_cloud(tmp_path / "none.ply")
+    points = cloud.points.copy()
+    points[3, 2] = np.nan
+    write_cloud(
+        path, Cloud(points, cloud.uv, cloud.sigma, cloud.intensity, cloud.frame, cloud.sweep, cloud.normals), ""
+    )
+    with pytest.raises(InputError, match="property z is not finite in 1 of 50 points"):
+        read_cloud(path)
+
+
+def test_mesh_round_trip(tmp_path):
+    rng = np.random.default_rng(3)
+    mesh = Mesh(rng.normal(size=(5, 3)), rng.normal(size=(5, 3)), rng.uniform(size=5), np.array([[0, 1, 2], [2, 3, 4]]))
+    write_mesh(tmp_path / "mesh.ply", mesh, "abc")
+    back = read_mesh(tmp_path / "mesh.ply")
+    assert np.allclose(back.vertices, mesh.vertices, atol=1e-6)
+    assert np.array_equal(back.triangles, mesh.triangles)
+    empty = Mesh(np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0), np.zeros((0, 3), dtype=np.int64))
+    write_mesh(tmp_path / "empty.ply", empty, "abc")
+    assert read_mesh(tmp_path / "empty.ply").triangles.shape == (0, 3)
+
+
+@pytest.fixture
+def scan():
+    rng = np.random.default_rng(4)
+
+    def line(count):
+        angle = rng.uniform(0, 6, count)
+        normal = np.column_stack([np.cos(angle), np.sin(angle)])
+        return Centreline(rng.uniform(0, 99, (count, 2)), normal, *rng.uniform(1, 2, (3, count)), angle > 3, 7.5)
+
+    return ScanFile(
+        rng.normal(size=(2, 3)), square(rng, 6, 1e-6), np.array([0, 5]), (line(4), line(7)), (0, -1),
+        ShownFrame("scan/f5.png", 5, (line(3),), rng.normal(size=(4, 2))), "abc",
+    )  # fmt: skip
+
+
+def test_scan_round_trip_gives_the_same_bytes(tmp_path, scan):
+    path = tmp_path / "scan.npz"
+    write_scan(path, scan)
+    back = read_scan(path)
+    assert np.array_equal(back.covariance, scan.covariance)
+    assert np.array_equal(back.fan[1].uv, scan.fan[1].uv)
+    assert back.fan[1].correlation_px == 7.5
+    assert back.fan[0].saturated.tolist() == scan.fan[0].saturated.tolist()
+    assert back.fan_line == (0, -1)
+    assert (back.shown.name, back.shown.index, len(back.shown.sweep)) == ("scan/f5.png", 5, 1)
+    write_scan(tmp_path / "again.npz", back)
+    assert (tmp_path / "again.npz").read_bytes() == path.read_bytes()
+
+
+def test_spoilt_scan_files_are_refused(tmp_path, scan):
+    path = tmp_path / "scan.npz"
+    write_scan(path, scan)
+    path.write_bytes(path.read_bytes()[:-50])
+    with pytest.raises(InputError, match=r"scan\.npz: this is no whole scan file"):
+        read_scan(path)
+    np.savez(path, pis=np.zeros((2, 3)))
+    with pytest.raises(InputError, match="the array 'covariance' is missing"):
+        read_scan(path)
+    with pytest.raises(InputError, match="the file is missing"):
+        read_scan(tmp_path / "none.npz")
+
+
+def test_json_is_strict_and_readable():
+    text = to_json({"a": np.arange(3.0), "b": float("nan"), "c": [{"d": (1, 2)}, "e"], "f": np.bool_(True), "g": "µ"})
+    assert json.loads(text, parse_constant=lambda name: pytest.fail(name)) == {
+        "a": [0, 1, 2],
+        "b": None,
+        "c": [{"d": [1, 2]}, "e"],
+        "f": True,
+        "g": "µ",
+    }
+    assert text.splitlines()[1] == '  "a": [0.0, 1.0, 2.0],'
