@@ -31,8 +31,11 @@ from core.scan.crossings import CrossingTable, Index
 from core.scan.geometry import CrossingRays, floored, inverse_depth_gradient, noise_gains
 from core.scan.sweep_plane import PRIOR_SD
 
-GRADIENT_FLOOR = 0.3
-"""Smallest ‖D‖ believed, as a share of the median over all crossings."""
+GRADIENT_FLOOR = 0.1
+"""Smallest ‖D‖ believed, as a share of the fan's own, which no solution can change."""
+
+SIGMA_FLOOR_PX = 0.005
+"""No centreline is known better than this: what a filter's phase error leaves."""
 
 REJECT_AT = 5.0
 """Residual in standard deviations at which a crossing has no weight left (Tukey's biweight)."""
@@ -131,21 +134,19 @@ class _Problem:
         """
         table = self.crossings
         with_fan = table.with_fan
+        typical = float(np.median(np.linalg.norm(self.fan.pis[:, :2], axis=1)))
+        typical *= float(np.sqrt(np.abs(np.linalg.det(self.geometry.jacobians)).mean()))
         if pis is None:
-            typical = float(np.median(np.linalg.norm(self.fan.pis[:, :2], axis=1)))
-            scale = typical * float(np.sqrt(np.abs(np.linalg.det(self.geometry.jacobians)).mean()))
-            gain_a = np.full(len(table), scale)
-            gain_b = np.full(len(table), scale)
+            gain_a = gain_b = np.full(len(table), typical)
         else:
             other = np.where(with_fan[:, None], self._fan_pis(), pis[table.b])
             gradient = inverse_depth_gradient(pis[table.a] - other, self.geometry.jacobians)
-            floor = GRADIENT_FLOOR * float(np.median(np.linalg.norm(gradient, axis=1)))
-            gain_a, gain_b = noise_gains(table, floored(gradient, floor))
-        variance_a = (gain_a * table.sigma_a) ** 2 * self.overlap[:, 0]
-        variance_b = (gain_b * table.sigma_b) ** 2 * self.overlap[:, 1]
+            gain_a, gain_b = noise_gains(table, floored(gradient, GRADIENT_FLOOR * typical))
+        sigma_a, sigma_b = np.maximum(table.sigma_a, SIGMA_FLOOR_PX), np.maximum(table.sigma_b, SIGMA_FLOOR_PX)
+        variance_a = (gain_a * sigma_a) ** 2 * self.overlap[:, 0]
+        variance_b = (gain_b * sigma_b) ** 2 * self.overlap[:, 1]
         independent = np.sqrt(variance_a + np.where(with_fan, 0.0, variance_b))
-        floor_sigma = 0.1 * float(np.median(independent))
-        return np.maximum(independent, floor_sigma), np.where(with_fan, gain_b * table.sigma_b, 0.0)
+        return np.maximum(independent, 0.1 * typical * SIGMA_FLOOR_PX), np.where(with_fan, gain_b * sigma_b, 0.0)
 
     def solve(self, weights: Array, pis: Array | None) -> _Solution:
         """One weighted linear solution."""

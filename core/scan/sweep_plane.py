@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from core.model.arrays import Array
 
-PRIOR_SD = 0.1
-"""Standard deviation in 1/mm of a weak prior on π about 0: planes within 10 mm of the camera's centre. It keeps the
+PRIOR_SD = 0.05
+"""Standard deviation in 1/mm of a weak prior on π about 0: planes within 20 mm of the camera's centre. It keeps the
 equations solvable; a direction that only the prior holds comes out with a useless, and so harmless, σ."""
 
 

@@ -1,0 +1,129 @@
+"""Crossings computed on paper: planes, a table with a block on it, no pictures."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.model import Camera, Fan, LightPlane
+from core.scan.crossings import CrossingTable
+from core.scan.geometry import CrossingRays
+from core.scan.network import FanStretches
+
+CAMERA = Camera(
+    (3840, 2748),
+    [[4990.2635, 0.77900164, 1929.2399], [0, 4993.9024, 1279.1607], [0, 0, 1]],
+    [0.0815, -0.3809, 0.0042, -0.0004],
+).scaled(0.5)
+FAN = Fan(
+    tuple(
+        LightPlane(-np.array(row) / 1000)
+        for row in ([0.922, -7.397, -1.429], [1.321, -9.319, -0.992], [1.986, -12.52, -0.263])
+    )
+)
+TABLE = LightPlane.from_normal([0.02, 0.05, 0.99856], 560.0)
+BLOCK = {"x": (-35.0, 35.0), "y": (25.0, 85.0), "height": 50.0}
+
+
+def sweeps(count: int, seed: int) -> np.ndarray:
+    """(count, 3) light planes through an emitter beside the camera, stripes mostly across the fan."""
+    rng = np.random.default_rng(seed)
+    planes = []
+    for index in range(count):
+        side = 1 if index % 2 else -1
+        emitter = np.array([side * rng.uniform(180, 300), rng.uniform(-80, 80), rng.uniform(0, 120)])
+        aim = np.array([rng.uniform(-60, 60), rng.uniform(20, 90), 530.0])
+        tilt = rng.uniform(-0.6, 0.6)
+        along = np.array([np.sin(tilt), np.cos(tilt), 0.0])
+        normal = np.cross(aim - emitter, along)
+        planes.append(normal / (normal @ emitter))
+    return np.array(planes)
+
+
+@dataclass
+class Network:
+    table: CrossingTable
+    geometry: CrossingRays
+    stretches: FanStretches
+
+
+def network(
+    planes: np.ndarray, noise_px: float, seed: int, *, fan_noise_px: float = 0.0, relief: bool = True
+) -> Network:
+    """All crossings of `planes` with the fan and each other on the table and on the block's upper face."""
+    rng = np.random.default_rng(seed)
+    faces = [TABLE, LightPlane.from_normal(TABLE.normal, TABLE.d_mm - BLOCK["height"])] if relief else [TABLE]
+    window = 40.0
+    offsets: dict[tuple[int, int, int], float] = {}
+    rows = []
+    pairs = [(a, -1, k) for a in range(len(planes)) for k in range(FAN.lines)]
+    pairs += [(a, b, -1) for a in range(len(planes)) for b in range(a + 1, len(planes))]
+    for a, b, line in pairs:
+        other = FAN.planes[line].pi if b < 0 else planes[b]
+        for face_index, face in enumerate(faces):
+            ray = np.cross(planes[a] - face.pi, other - face.pi)
+            ray = ray / ray[2]
+            point = ray / (face.pi @ ray)
+            on_block = all(BLOCK[axis][0] < value < BLOCK[axis][1] for axis, value in zip("xy", point, strict=False))
+            uv = CAMERA.project(point[None])[0]
+            inside = 0 < uv[0] < 1919 and 0 < uv[1] < 1373
+            if not inside or on_block != (face_index == 1 and relief):
+                continue
+            t_a, t_b = tangent(planes[a], face, ray), tangent(other, face, ray)
+            sine = t_a[0] * t_b[1] - t_a[1] * t_b[0]
+            if abs(sine) < np.sin(np.deg2rad(15)):
+                continue
+            error_a = rng.normal(0, noise_px)
+            key = None
+            if b < 0:
+                key = (line, face_index, int(uv[0] // (2 * window)))
+                error_b = offsets.setdefault(key, rng.normal(0, fan_noise_px))
+            else:
+                error_b = rng.normal(0, noise_px)
+            uv = uv + t_b * error_a / -sine + t_a * error_b / sine
+            rows.append((uv, t_a, t_b, a, b, line, face_index, key))
+    keys = list(offsets)
+    stretch = [keys.index(row[-1]) if row[-1] else -1 for row in rows]
+    count = len(rows)
+    uv, t_a, t_b, a, b, line, face = (np.array([row[i] for row in rows]) for i in range(7))
+    fan_sigma = max(fan_noise_px, 1e-3)
+    table = CrossingTable(
+        uv=uv,
+        tangent_a=t_a,
+        tangent_b=t_b,
+        sigma_a=np.full(count, max(noise_px, 1e-3)),
+        sigma_b=np.where(b < 0, fan_sigma, max(noise_px, 1e-3)),
+        a=a,
+        b=b,
+        piece_a=face,
+        piece_b=np.where(b < 0, line * 2 + face, face),
+        along_a=np.arange(count) * 1000.0,  # windows never overlap: every error is drawn on its own
+        along_b=np.arange(count) * 1000.0,
+        half_length_px=window,
+    )
+    return Network(table, CrossingRays.of(table, CAMERA), FanStretches(np.array(stretch), line))
+
+
+def stripe_rays(pi: np.ndarray) -> np.ndarray:
+    """Rays (N, 3) at which the stripe of plane `pi` is seen on the table and on the block."""
+    rays = []
+    for on_top, face in ((False, TABLE), (True, LightPlane.from_normal(TABLE.normal, TABLE.d_mm - BLOCK["height"]))):
+        v = np.arange(100.0, 1300.0, 25.0)
+        y = CAMERA.rays(np.column_stack([np.full(len(v), 960.0), v]))[:, 1]
+        difference = pi - face.pi
+        x = -(difference[1] * y + difference[2]) / difference[0]
+        ray = np.column_stack([x, y, np.ones(len(y))])
+        points = face.points(ray)
+        seen = np.all((CAMERA.project(points) > 0) & (CAMERA.project(points) < [1919, 1373]), axis=1)
+        on_block = np.all(
+            [(BLOCK[a][0] < points[:, i]) & (points[:, i] < BLOCK[a][1]) for i, a in enumerate("xy")], axis=0
+        )
+        rays.append(ray[seen & (on_block == on_top)])
+    return np.concatenate(rays)
+
+
+def tangent(pi: np.ndarray, face: LightPlane, ray: np.ndarray) -> np.ndarray:
+    """Unit tangent in the picture of plane `pi` on `face` at `ray`."""
+    direction = np.cross(pi, face.pi)
+    point = ray / (face.pi @ ray)
+    step = np.subtract(*CAMERA.project(point + np.outer([1, -1], direction / np.linalg.norm(direction))))
+    return step / np.linalg.norm(step)
