@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
-from stripes_on_planes import SIZE, cloud_of, on_plane, stripes
 
 from core.errors import Cancelled, InputError
 from core.scan.cloud import FAN
 from core.scan.fusion import fuse, with_normals
+from tests.scan.stripes_on_planes import SIZE, cloud_of, on_plane, stripes
 
 
 def test_weighted_mean_of_independent_sweeps():

@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
-from stripes_on_planes import FOCAL, SIZE, cloud_of, on_plane, stripes
 
 from core.errors import InputError
 from core.scan.fusion import fuse, with_normals
 from core.scan.mesh import build_mesh
+from tests.scan.stripes_on_planes import FOCAL, SIZE, cloud_of, on_plane, stripes
 
 
 def block_surface(height=40.0, spacing=8.0):
