@@ -23,6 +23,10 @@ from core.model.arrays import Array
 
 UNASSIGNED = -1
 
+LEAST_OVERLAP = 0.1
+"""Two centrelines lie side by side if they do so over this share of the shorter one: at a depth edge the light before
+and behind it overlaps a little."""
+
 Order = NDArray[np.bool_]
 Counts = NDArray[np.int64]
 
@@ -80,7 +84,7 @@ def _order(profiles: Sequence[Array]) -> Order:
         for j in range(i + 1, count):
             a, b = profiles[i], profiles[j]
             low, high = max(a[0, 0], b[0, 0]), min(a[-1, 0], b[-1, 0])
-            if high <= low:
+            if high - low <= LEAST_OVERLAP * min(a[-1, 0] - a[0, 0], b[-1, 0] - b[0, 0]):
                 continue
             at = np.linspace(low, high, 9)
             gap = np.median(np.interp(at, b[:, 0], b[:, 1]) - np.interp(at, a[:, 0], a[:, 1]))
