@@ -22,13 +22,14 @@ from numpy.typing import NDArray
 from core.calibrate.bundle import Bundle, Observed, normal_equations, refine, refine_robustly, residuals
 from core.calibrate.camera_covariance import free_covariance, principal_deviations
 from core.calibrate.camera_notes import notes_on
-from core.calibrate.coverage import coverage, disagreement_mm, tilt, tilt_range
+from core.calibrate.camera_quality import cross_validation_mm, rms_and_mean, view_qualities
+from core.calibrate.coverage import coverage, tilt_range
 from core.calibrate.results import CAMERA_PARAMETERS, CameraCalibration, ViewQuality
 from core.calibrate.screening import Outliers, Verdict, judge, screen
 from core.calibrate.zhang import centred_matrix, intrinsic_matrix, pose_from_homography, radial_start
 from core.errors import InputError
 from core.image.target_view import TargetView
-from core.model import Camera, Pose
+from core.model import Camera
 from core.model.arrays import Array
 from core.progress import Progress, silent
 
@@ -122,7 +123,8 @@ def calibrate_camera(
     counted = [_select(observed[i], verdicts[i].counted) for i in used]
     covariance, widening = _covariance(solved, counted, options.free)
     progress(_STEP, 4, _STAGES)
-    qualities = _qualities(views, usable, observed, bundle, verdicts, reasons)
+    fits = {index: (pose, verdict) for index, pose, verdict in zip(usable, bundle.poses, verdicts, strict=True)}
+    qualities = view_qualities(views, [reason for _, reason in screened], bundle.camera, fits)
     calibration = _summary(qualities, solved, counted, covariance, options.free)
     progress(_STEP, _STAGES, _STAGES)
     return replace(calibration, notes=notes_on(calibration, len(options.free), widening))
@@ -235,46 +237,6 @@ def _covariance(bundle: Bundle, counted: Sequence[Observed], free: NDArray[np.in
     return covariance, widening
 
 
-def _qualities(
-    views: Sequence[TargetView],
-    usable: Sequence[int],
-    observed: Sequence[Observed],
-    bundle: Bundle,
-    verdicts: Sequence[Verdict],
-    reasons: dict[int, str],
-) -> tuple[ViewQuality, ...]:
-    place = {index: i for i, index in enumerate(usable)}
-    qualities = []
-    for index, view in enumerate(views):
-        if index not in place:
-            nowhere = np.full(view.uv.shape, np.nan)
-            none = np.zeros(len(view.uv), dtype=np.bool_)
-            quality = ViewQuality(
-                view, Pose.identity(), nowhere, np.nan, np.nan, np.nan, False, reasons[index], counted=none
-            )
-        else:
-            i = place[index]
-            pose, counted = bundle.poses[i], verdicts[i].counted
-            errors = residuals(bundle.camera, pose, observed[i])
-            quality = ViewQuality(
-                view,
-                pose,
-                errors,
-                *_rms_and_mean(errors[counted]),
-                tilt(pose),
-                verdicts[i].used,
-                verdicts[i].reason,
-                counted,
-            )
-        qualities.append(quality)
-    return tuple(qualities)
-
-
-def _rms_and_mean(errors: Array) -> tuple[float, float]:
-    lengths = np.linalg.norm(errors, axis=1)
-    return float(np.sqrt(np.mean(lengths**2))), float(lengths.mean())
-
-
 def _summary(
     qualities: tuple[ViewQuality, ...],
     solved: Bundle,
@@ -283,7 +245,7 @@ def _summary(
     free: NDArray[np.intp],
 ) -> CameraCalibration:
     errors = np.concatenate([quality.residuals[quality.counted] for quality in qualities if quality.used])
-    rms, mean = _rms_and_mean(errors)
+    rms, mean = rms_and_mean(errors)
     uv = np.concatenate([view.uv for view in counted])
     return CameraCalibration(
         camera=solved.camera,
@@ -293,18 +255,8 @@ def _summary(
         mean_px=mean,
         coverage=coverage(uv, solved.camera.image_size),
         tilt_range=tilt_range(solved.poses),
-        cross_validation_mm=_cross_validation(solved, counted, free),
+        cross_validation_mm=cross_validation_mm(solved, counted, free),
     )
-
-
-def _cross_validation(solved: Bundle, counted: Sequence[Observed], free: NDArray[np.intp]) -> float:
-    """RMS distance in mm between what cameras from every other view see in the work volume; NaN with < 6 views."""
-    if len(counted) < 2 * MIN_VIEWS:
-        return float("nan")
-    cameras = [refine(Bundle(solved.camera, solved.poses[half::2]), counted[half::2], free).camera for half in (0, 1)]
-    uv = np.concatenate([view.uv for view in counted])
-    depths = np.concatenate([p.apply(view.points)[:, 2] for p, view in zip(solved.poses, counted, strict=True)])
-    return disagreement_mm(cameras[0], cameras[1], uv, (float(depths.min()), float(depths.max())))
 
 
 def _require_views(views: Sequence[TargetView], usable: Sequence[int], reasons: dict[int, str]) -> None:

@@ -11,6 +11,7 @@ from core.calibrate.results import CameraCalibration, ViewQuality
 _ENOUGH_VIEWS = 8
 _ENOUGH_TILT = np.deg2rad(25.0)
 _WORSE_VIEW = 3.0
+_MUCH_WIDER = 1.5
 
 
 def notes_on(calibration: CameraCalibration, free_parameters: int, widening: float) -> tuple[str, ...]:
@@ -38,7 +39,7 @@ def notes_on(calibration: CameraCalibration, free_parameters: int, widening: flo
         )
     if np.isnan(calibration.cross_validation_mm):
         notes.append("With fewer than six views two halves of them cannot be checked against each other.")
-    if widening > 1 + 3 * widening_spread(free_parameters, len(used)):
+    if widening > max(_MUCH_WIDER, 1 + 3 * widening_spread(free_parameters, len(used))):
         notes.append(
             "Corners of one view err together (a target that is not flat, blur, or a detector's bias): the standard "
             f"deviations are {widening:.1f} times those of independent corners."

@@ -59,7 +59,7 @@ def screen(view: TargetView) -> tuple[Array | None, str]:
     misfit = float(np.median(homography_misfit(matrix, view.points[:, :2], view.uv)))
     extent = float(np.linalg.norm(np.ptp(view.uv, axis=0)))
     if not misfit < _GRID_MISFIT * extent:
-        return None, f"its corners miss the target's pattern by {misfit:.0f} px: wrong order, or another target"
+        return None, "its corners do not form the target's pattern: found in a wrong order, or another target"
     return matrix, ""
 
 
