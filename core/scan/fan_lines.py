@@ -2,8 +2,9 @@
 
 A fan line seen on unknown relief could, by depth alone, be any of the lines: half a block's height moves it as far as
 the next line is away. But across the fan the lines keep their order, as long as the camera sees them all by one side of
-the laser. So each centreline can only carry the numbers that leave room for those before and behind it; where that
-leaves a choice, the number that gives the depth nearest to its neighbours' is taken.
+the laser. So each centreline can only carry the numbers that leave room for those before and behind it. Where that
+leaves a choice, the number that gives the depth nearest to its neighbours' is taken for the time being, and the sweeps
+that cross it decide once their planes are known.
 
 Across the fan is measured about the pencil's axis: with a the axis direction, lines at one depth differ in the angle of
 their rays about a, and keep r·a/|r⊥| along it.
@@ -12,7 +13,7 @@ their rays about a, and keep r·a/|r⊥| along it.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,16 +34,26 @@ Counts = NDArray[np.int64]
 
 @dataclass(frozen=True, slots=True)
 class FanLines:
-    """The fan line (from 0) of each centreline, UNASSIGNED where none fits, with the reason."""
+    """The fan line (from 0) of each centreline, UNASSIGNED where none fits, with the reason.
+
+    `choices` holds the lines that the order alone would allow; a number is sure where there is but one.
+    """
 
     line: tuple[int, ...]
     reason: tuple[str, ...]
+    choices: tuple[tuple[int, ...], ...]
+
+    @property
+    def sure(self) -> FanLines:
+        """Only the numbers that the order alone has settled."""
+        kept = (k if len(c) == 1 else UNASSIGNED for k, c in zip(self.line, self.choices, strict=True))
+        return replace(self, line=tuple(kept))
 
 
 def assign_fan_lines(pieces: Sequence[Centreline], camera: Camera, fan: Fan) -> FanLines:
     """Number the fan's centrelines, 0 … N − 1."""
     if fan.lines == 1:
-        return FanLines((0,) * len(pieces), ("",) * len(pieces))
+        return FanLines((0,) * len(pieces), ("",) * len(pieces), ((0,),) * len(pieces))
     frame = _fan_frame(fan)
     rays = [camera.rays(piece.uv) for piece in pieces]
     profiles = [_profile(r, frame) for r in rays]
@@ -154,4 +165,27 @@ def _choose(
         else:
             target = np.median(depth[depth > 0])
         line[i] = min(options, key=lambda k: abs(depth[i, k] - target))
-    return FanLines(tuple(int(k) for k in line), tuple(reason))
+    choices = tuple(
+        tuple(range(lowest[i], highest[i] + 1)) if line[i] != UNASSIGNED else (UNASSIGNED,) for i in range(count)
+    )
+    return FanLines(tuple(int(k) for k in line), tuple(reason), choices)
+
+
+def settle_by_sweeps(lines: FanLines, piece: Counts, rays: Array, inverse_depths: Array, fan: Fan) -> FanLines:
+    """Let the sweeps decide where the order across the fan left a choice.
+
+    `piece` (M,), `rays` (M, 3): crossings with the fan; `inverse_depths` (M,) what the sweeps' planes, solved without the
+    unsure centrelines, say there. The line that comes nearest is taken if it is twice as near as any other.
+    """
+    line, reason = list(lines.line), list(lines.reason)
+    for i, choices in enumerate(lines.choices):
+        rows = piece == i
+        if len(choices) < 2 or not rows.any():
+            continue
+        misfit = np.array([np.median(np.abs(rays[rows] @ fan.planes[k].pi - inverse_depths[rows])) for k in choices])
+        best, second = np.argsort(misfit, kind="stable")[:2]
+        if misfit[best] < 0.5 * misfit[second]:
+            line[i] = choices[best]
+        else:
+            line[i], reason[i] = UNASSIGNED, "it could be more than one of the fan's lines"
+    return replace(lines, line=tuple(line), reason=tuple(reason))

@@ -19,7 +19,7 @@ from core.model.arrays import Array
 from core.progress import Progress, silent
 from core.scan.cloud import FAN, Cloud
 from core.scan.crossings import CrossingTable
-from core.scan.fan_lines import UNASSIGNED, FanLines, assign_fan_lines
+from core.scan.fan_lines import UNASSIGNED, FanLines, assign_fan_lines, settle_by_sweeps
 from core.scan.features import ScanFeatures
 from core.scan.geometry import CrossingRays, inverse_depth_gradient, noise_gains
 from core.scan.network import FanStretches, solve_network
@@ -54,6 +54,9 @@ class _Sweeps:
     notes: tuple[str, ...]
 
 
+_Solve = Callable[[CrossingTable, NDArray[np.int64], Camera, Fan], _Sweeps]
+
+
 def reconstruct(
     features: ScanFeatures,
     camera: Camera,
@@ -70,7 +73,8 @@ def reconstruct(
     """
     options = options or ReconstructOptions()
     progress("network", 0, 3)
-    lines = assign_fan_lines(features.fan, camera, fan)
+    solve = _solve_network if options.method == "network" else _solve_each
+    lines = _settled(assign_fan_lines(features.fan, camera, fan), features, camera, fan, solve)
     crossings, line = _numbered(features.crossings, lines)
     if not np.any(crossings.with_fan):
         raise InputError(
@@ -78,7 +82,6 @@ def reconstruct(
             where="scan",
             todo="sweep the single line across the fan's lines, and check that the fan was on",
         )
-    solve = _solve_network if options.method == "network" else _solve_each
     sweeps = solve(crossings, line, camera, fan)
     progress("network", 1, 3)
     clouds = _fan_clouds(features, lines, camera, fan) + _sweep_clouds(features, sweeps, camera)
@@ -104,6 +107,24 @@ def reconstruct(
         scale=sweeps.scale,
         notes=features.notes + sweeps.notes + _fan_notes(lines),
     )
+
+
+def _settled(lines: FanLines, features: ScanFeatures, camera: Camera, fan: Fan, solve: _Solve) -> FanLines:
+    """Decide unsure fan lines by sweeps that are solved without them."""
+    unsure = [i for i, choices in enumerate(lines.choices) if len(choices) > 1]
+    if not unsure:
+        return lines
+    crossings, line = _numbered(features.crossings, lines.sure)
+    if np.unique(line[crossings.with_fan]).size < 2:
+        return lines
+    sweeps = solve(crossings, line, camera, fan)
+    crossings, _ = _numbered(features.crossings, lines)
+    rows = crossings.select(
+        crossings.with_fan & np.isin(crossings.a, sweeps.frames) & np.isin(crossings.piece_b, unsure)
+    )
+    rays = camera.rays(rows.uv)
+    pis = sweeps.pis[np.searchsorted(sweeps.frames, rows.a)]
+    return settle_by_sweeps(lines, rows.piece_b, rays, np.einsum("mi,mi->m", rays, pis), fan)
 
 
 def _numbered(crossings: CrossingTable, lines: FanLines) -> tuple[CrossingTable, NDArray[np.int64]]:

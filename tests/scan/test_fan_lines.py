@@ -2,7 +2,7 @@ import numpy as np
 
 from core.image.centreline import Centreline
 from core.model import LightPlane
-from core.scan.fan_lines import UNASSIGNED, assign_fan_lines
+from core.scan.fan_lines import UNASSIGNED, assign_fan_lines, settle_by_sweeps
 from tests.scan.synthetic import CAMERA, FAN, TABLE
 
 
@@ -38,10 +38,24 @@ def test_every_stretch_on_table_and_block_gets_its_line():
         assert list(lines.line) == [truth[i] for i in order]
 
 
-def test_a_stretch_missing_on_the_block_does_not_confuse_the_others():
-    pieces = [stripe(line, TABLE, x) for line in range(3) for x in ((-150, -38), (38, 150))]
-    pieces += [stripe(line, raised(50.0), (-35, 35)) for line in (0, 1)]
-    assert assign_fan_lines(pieces, CAMERA, FAN).line == (0, 0, 1, 1, 2, 2, 0, 1)
+def with_two_lines_on_the_block() -> list[Centreline]:
+    pieces = [stripe(line, TABLE, x) for line in range(3) for x in ((-150, -40), (40, 150))]
+    return pieces + [stripe(line, raised(50.0), (-35, 35)) for line in (0, 1)]
+
+
+def test_a_stretch_missing_on_the_block_leaves_only_the_block_unsure():
+    lines = assign_fan_lines(with_two_lines_on_the_block(), CAMERA, FAN)
+    assert lines.line[:6] == (0, 0, 1, 1, 2, 2)
+    assert lines.sure.line[6:] == (UNASSIGNED, UNASSIGNED)
+
+
+def test_the_sweeps_decide_where_the_order_leaves_a_choice():
+    pieces = with_two_lines_on_the_block()
+    lines = assign_fan_lines(pieces, CAMERA, FAN)
+    rays = np.concatenate([CAMERA.rays(piece.uv[::40]) for piece in pieces[6:]])
+    piece = np.repeat([6, 7], [len(p.uv[::40]) for p in pieces[6:]])
+    settled = settle_by_sweeps(lines, piece, rays, rays @ raised(50.0).pi, FAN)
+    assert settled.line == (0, 0, 1, 1, 2, 2, 0, 1)
 
 
 def test_a_reflection_beside_three_lines_is_left_out():
