@@ -64,6 +64,11 @@ class CrossingTable:
         arrays = {f.name: getattr(self, f.name)[keep] for f in fields(self) if f.name != "half_length_px"}
         return CrossingTable(**arrays, half_length_px=self.half_length_px)
 
+    def renumber(self, number: Index) -> CrossingTable:
+        """The same crossings with frame i called `number[i]`; the fan stays −1."""
+        b = np.where(self.with_fan, -1, number[np.maximum(self.b, 0)])
+        return replace(self, a=number[self.a], b=b)
+
 
 @dataclass(frozen=True, slots=True)
 class CrossingWindow:
@@ -71,11 +76,6 @@ class CrossingWindow:
 
     half_length_px: float = 40.0
     min_angle: float = float(np.deg2rad(15.0))
-
-    def renumber(self, number: Index) -> CrossingTable:
-        """The same crossings with frame i called `number[i]`; the fan stays −1."""
-        b = np.where(self.with_fan, -1, number[np.maximum(self.b, 0)])
-        return replace(self, a=number[self.a], b=b)
 
 
 def all_crossings(

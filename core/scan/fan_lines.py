@@ -174,8 +174,8 @@ def _choose(
 def settle_by_sweeps(lines: FanLines, piece: Counts, rays: Array, inverse_depths: Array, fan: Fan) -> FanLines:
     """Let the sweeps decide where the order across the fan left a choice.
 
-    `piece` (M,), `rays` (M, 3): crossings with the fan; `inverse_depths` (M,) what the sweeps' planes, solved without the
-    unsure centrelines, say there. The line that comes nearest is taken if it is twice as near as any other.
+    `piece` (M,), `rays` (M, 3): crossings with the fan; `inverse_depths` (M,) what the sweeps' planes, solved without
+    the unsure centrelines, say there. The line that comes nearest is taken if it is twice as near as any other.
     """
     line, reason = list(lines.line), list(lines.reason)
     for i, choices in enumerate(lines.choices):

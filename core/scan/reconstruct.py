@@ -141,7 +141,7 @@ def _solve_network(crossings: CrossingTable, line: NDArray[np.int64], camera: Ca
     network = solve_network(
         renumbered, CrossingRays.of(crossings, camera), _stretches(crossings, line), fan, len(frames)
     )
-    notes = ()
+    notes: tuple[str, ...] = ()
     if network.fan_silenced:
         notes = (
             "Many crossings with the fan disagree with the sweeps; none was left out: check the fan's calibration, "
@@ -199,7 +199,7 @@ def _fan_clouds(features: ScanFeatures, lines: FanLines, camera: Camera, fan: Fa
 
 
 def _sweep_clouds(features: ScanFeatures, sweeps: _Sweeps, camera: Camera) -> list[Cloud]:
-    clouds = []
+    clouds: list[Cloud] = []
     for sweep, frame in enumerate(sweeps.frames):
         block = slice(3 * sweep, 3 * sweep + 3)
         clouds.extend(

@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import map_coordinates
 
 from core.image.centreline import Centreline
 from core.model.arrays import Array
@@ -86,7 +86,5 @@ def check_reference(difference: NDArray[np.float32], fan: Sequence[Centreline]) 
 
 def _sample(picture: NDArray[np.float32], uv: Array) -> Array:
     """Bilinear values of `picture` at `uv` (N, 2)."""
-    at = np.ascontiguousarray(uv, dtype=np.float32).reshape(-1, 1, 2)
-    # remap takes at most 32767 rows at a time; a centreline is far shorter.
-    sampled = cv2.remap(picture, at, None, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
-    return np.asarray(sampled, dtype=np.float64).ravel()
+    sampled = map_coordinates(picture, uv.T[::-1], order=1, mode="nearest")
+    return np.asarray(sampled, dtype=np.float64)

@@ -38,8 +38,8 @@ def triangulate(centreline: Centreline, pi: Array, covariance: Array, camera: Ca
 def join(clouds: list[Cloud]) -> Cloud:
     """All points of `clouds`, in order."""
     if not clouds:
-        empty = np.zeros(0)
-        return Cloud(np.zeros((0, 3)), np.zeros((0, 2)), empty, empty, empty, empty, np.zeros((0, 3)))
+        empty, index = np.zeros(0), np.zeros(0, dtype=np.int64)
+        return Cloud(np.zeros((0, 3)), np.zeros((0, 2)), empty, empty, index, index, np.zeros((0, 3)))
     return Cloud(
         *(
             np.concatenate([getattr(cloud, name) for cloud in clouds])
