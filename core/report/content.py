@@ -1,0 +1,157 @@
+"""All that a report prints, gathered in one frozen value: the report itself computes no measurement."""
+
+from __future__ import annotations
+
+import hashlib
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from datetime import datetime
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.calibrate.results import CameraCalibration, FanCalibration
+from core.image.centreline import Centreline
+from core.inspect.results import GaugeResult
+from core.model.arrays import Array, frozen_array, set_field
+from core.scan.cloud import Cloud
+from core.scan.surface import Mesh
+
+
+@dataclass(frozen=True, slots=True)
+class FrameRecord:
+    """What became of one frame: used, or left out for a reason (a few words, without a full stop)."""
+
+    name: str
+    used: bool
+    reason: str = ""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Overlay:
+    """One frame and what was found in it.
+
+    Parameters
+    ----------
+    name
+        The frame, for the caption.
+    picture
+        (height, width) grey levels, uint8.
+    fan
+        For each line of the fan its centrelines; a line may have none.
+    sweep
+        Centrelines of the hand-moved laser in this frame.
+    sweep_sigma
+        For each centreline of `sweep` its (N,) standard uncertainty of depth in mm; NaN where there is none.
+    crossings
+        (M, 2) pixels of the crossings that were used.
+
+    Raises
+    ------
+    ValueError
+        If the picture is not a two-dimensional uint8 array or a shape does not match.
+    """
+
+    name: str
+    picture: NDArray[np.uint8]
+    fan: tuple[tuple[Centreline, ...], ...]
+    sweep: tuple[Centreline, ...]
+    sweep_sigma: tuple[Array, ...]
+    crossings: Array
+
+    def __post_init__(self) -> None:
+        if self.picture.ndim != 2 or self.picture.dtype != np.uint8:
+            raise ValueError(f"picture is {self.picture.dtype} {self.picture.shape}, not a grey uint8 picture")
+        if [len(line) for line in self.sweep] != [len(sigma) for sigma in self.sweep_sigma]:
+            raise ValueError("sweep_sigma does not match the points of sweep")
+        set_field(self, "crossings", frozen_array(np.reshape(self.crossings, (-1, 2)), (None, 2), "crossings"))
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class ReportContent:
+    """Everything that is printed. The same content gives the same bytes.
+
+    Parameters
+    ----------
+    part, serial, laboratory, operator
+        Names for the title block; an empty one is left out (an empty `part` is printed as "not named").
+    rig
+        Description of the rig in printing order: {"Camera target": "checkerboard, 17 × 12 inner corners, 10 mm"}.
+    camera, fan
+        The calibrations used.
+    cloud, mesh
+        The measured surface in the camera frame; the mesh may be without triangles.
+    gauge
+        The thickness, or None for a scan without two faces: then the report is of the cloud alone.
+    overlay
+        One frame of the scan, or None.
+    frames
+        Every frame of the recording, in order.
+    hashes
+        {path relative to the recording set: SHA-256 in hex} of every input.
+    settings
+        Settings that led to the result, in printing order.
+    notes
+        Warnings and remarks: whole sentences for the reader of the report.
+    limits
+        More sentences on what this result does not cover, printed below the ones that hold for every result.
+    method
+        How the sweeps were located, in words.
+    version
+        Version of the software.
+    timestamp
+        When the measurement was evaluated: the only date printed.
+    """
+
+    rig: Mapping[str, str]
+    camera: CameraCalibration
+    fan: FanCalibration
+    cloud: Cloud
+    mesh: Mesh
+    hashes: Mapping[str, str]
+    version: str
+    timestamp: datetime
+    gauge: GaugeResult | None = None
+    overlay: Overlay | None = None
+    frames: tuple[FrameRecord, ...] = ()
+    settings: Mapping[str, str] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
+    limits: tuple[str, ...] = ()
+    method: str = ""
+    part: str = ""
+    serial: str = ""
+    laboratory: str = ""
+    operator: str = ""
+
+    @property
+    def inputs_digest(self) -> str:
+        """SHA-256 in hex over all input hashes: one line `hash  path` each, in the order of their paths."""
+        lines = "".join(f"{self.hashes[path]}  {path}\n" for path in sorted(self.hashes))
+        return hashlib.sha256(lines.encode()).hexdigest()
+
+    @property
+    def report_id(self) -> str:
+        """Name of this report: from the inputs' hashes, the settings and the software version, never random.
+
+        The same pictures evaluated with other settings give another report and so another name.
+        """
+        lines = [self.inputs_digest, self.version, self.method, self.part, self.serial]
+        lines += [f"{name}={value}" for name, value in sorted(self.settings.items())]
+        digest = hashlib.sha256("\n".join(lines).encode()).hexdigest().upper()
+        return "TR-" + "-".join(digest[start : start + 4] for start in (0, 4, 8))
+
+    @property
+    def all_notes(self) -> tuple[str, ...]:
+        """The report's own notes and those of both calibrations, each once."""
+        return tuple(dict.fromkeys((*self.notes, *self.camera.notes, *self.fan.notes)))
+
+    @property
+    def frames_left_out(self) -> list[tuple[str, list[str]]]:
+        """(reason, names of the frames) of the frames left out, the commonest reason first."""
+        left_out = [frame for frame in self.frames if not frame.used]
+        reasons = Counter(frame.reason or "no reason recorded" for frame in left_out)
+        return [
+            (reason, [frame.name for frame in left_out if (frame.reason or "no reason recorded") == reason])
+            for reason, _ in reasons.most_common()
+        ]

@@ -1,0 +1,124 @@
+"""What the report's plots share: the figure, its looks, colour bars, and maps of scattered values.
+
+No pyplot: every figure has a canvas of its own, so nothing is shared between reports or threads but the settings
+that `plot_style` sets for the moment.
+"""
+
+from __future__ import annotations
+
+from contextlib import AbstractContextManager
+from typing import Any
+
+import matplotlib.style
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Colormap, Normalize
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from core.model.arrays import Array
+from core.report.style import INK, MUTED
+
+DPI = 200
+"""Pixels per inch of every picture on paper."""
+
+MM_PER_INCH = 25.4
+
+NO_DATA = "#E9EDEF"
+"""Ground of maps: shows where there is no value."""
+
+RC: dict[Any, Any] = {
+    "font.family": "DejaVu Sans",
+    "font.size": 7,
+    "axes.edgecolor": MUTED,
+    "axes.labelcolor": INK,
+    "axes.linewidth": 0.5,
+    "axes.titlesize": 7.5,
+    "axes.titlelocation": "left",
+    "xtick.color": MUTED,
+    "ytick.color": MUTED,
+    "xtick.labelcolor": INK,
+    "ytick.labelcolor": INK,
+    "xtick.major.width": 0.5,
+    "ytick.major.width": 0.5,
+    "xtick.major.size": 2.5,
+    "ytick.major.size": 2.5,
+    "path.simplify": True,
+}
+"""On top of matplotlib's own defaults, so that the user's settings do not change a report."""
+
+
+def plot_style() -> AbstractContextManager[None]:
+    """The looks of the report's plots, for the time of a `with`."""
+    return matplotlib.style.context(["default", RC])
+
+
+def new_figure(width_mm: float, height_mm: float) -> Figure:
+    """An empty figure of this size on paper."""
+    figure = Figure(figsize=(width_mm / MM_PER_INCH, height_mm / MM_PER_INCH), dpi=DPI, facecolor="white")
+    FigureCanvasAgg(figure)
+    return figure
+
+
+def pixels(figure: Figure) -> NDArray[np.uint8]:
+    """The figure drawn, (H, W, 3) uint8.
+
+    Raises
+    ------
+    ValueError
+        If the figure is not one of `new_figure`.
+    """
+    canvas = figure.canvas
+    if not isinstance(canvas, FigureCanvasAgg):
+        raise ValueError("the figure was not made for drawing into memory")
+    with plot_style():
+        canvas.draw()  # type: ignore[no-untyped-call]
+    rgba = np.asarray(canvas.buffer_rgba())  # type: ignore[no-untyped-call]
+    return np.ascontiguousarray(rgba[:, :, :3], dtype=np.uint8)
+
+
+def color_scale(colormap: str | Colormap, low: float, high: float) -> ScalarMappable:
+    """Colours for values from `low` to `high`."""
+    return ScalarMappable(Normalize(low, high), colormap)
+
+
+def add_color_bar(
+    figure: Figure, box: tuple[float, float, float, float], colors: ScalarMappable, label: str, extend: str = "neither"
+) -> None:
+    """A colour bar in `box` (left, bottom, width, height as shares of the figure), its label above it.
+
+    `extend` ("neither", "max", "both") says at which ends values beyond the scale were cut to it.
+    """
+    axes = figure.add_axes(box)
+    bar = figure.colorbar(colors, cax=axes, extend=extend)
+    bar.outline.set_linewidth(0.4)
+    axes.set_title(label, fontsize=7, pad=6, loc="left")
+    axes.tick_params(labelsize=6.5)
+
+
+def paint_map(axes: Axes, positions: Array, values: Array, colors: ScalarMappable, cells: int = 110) -> None:
+    """Mean of `values` (N,) per square cell at `positions` (N, 2) growing right and up; empty cells stay blank."""
+    low, size = positions.min(axis=0), np.maximum(np.ptp(positions, axis=0), 1e-9)
+    # few points: larger cells, about three points in each
+    cell = float(size.max()) / min(cells, max(8, int(np.sqrt(len(values) / 3))))
+    shape = np.floor(size / cell).astype(int) + 1
+    index = np.minimum(((positions - low) / cell).astype(int), shape - 1)
+    flat = index[:, 1] * shape[0] + index[:, 0]
+    known = np.isfinite(values)
+    total = np.bincount(flat[known], weights=values[known], minlength=int(shape.prod()))
+    number = np.bincount(flat[known], minlength=int(shape.prod()))
+    mean = np.where(number > 0, total / np.maximum(number, 1), np.nan).reshape(shape[1], shape[0])
+    extent = (low[0], low[0] + shape[0] * cell, low[1], low[1] + shape[1] * cell)
+    norm = Normalize(*colors.get_clim())
+    axes.imshow(mean, origin="lower", extent=extent, cmap=colors.cmap, norm=norm, interpolation="nearest")
+
+
+def round_up(value: float) -> float:
+    """The next of 1, 1.5, 2, 2.5, 3, 4, 5, 6, 8 × a power of ten; 1 for what is not a positive number."""
+    if not np.isfinite(value) or value <= 0:
+        return 1.0
+    power = 10.0 ** np.floor(np.log10(value))
+    steps = np.array([1, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10]) * power
+    return float(steps[np.argmax(steps >= value * (1 - 1e-9))])

@@ -1,0 +1,161 @@
+"""The report put together: one to three pages A4, the same bytes for the same content."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import cv2
+from matplotlib.figure import Figure
+from reportlab.lib.pagesizes import A4
+from reportlab.lib.units import mm
+from reportlab.lib.utils import ImageReader
+from reportlab.platypus import BaseDocTemplate, Frame, PageTemplate
+
+from core.progress import Progress, silent
+from core.report import figures, plots
+from core.report.content import ReportContent
+from core.report.overlay_plot import overlay_figure
+from core.report.sections import TITLE, Limits, story
+from core.report.style import HAIRLINE, INK, MARGIN, MUTED, SANS, TEXT_WIDTH, color, register_fonts
+
+MOST_PAGES = 3
+FOOT = 16 * mm
+HEAD = 15 * mm
+
+LIMITS = (
+    Limits(inputs=150, reasons=10, notes=12, settings=30, picture_scale=1.0),
+    Limits(inputs=96, reasons=8, notes=10, settings=20, picture_scale=1.0),
+    Limits(inputs=72, reasons=6, notes=8, settings=16, picture_scale=1.0),
+    Limits(inputs=60, reasons=6, notes=8, settings=14, picture_scale=1.0),
+    Limits(inputs=48, reasons=5, notes=6, settings=14, picture_scale=0.92),
+    Limits(inputs=30, reasons=3, notes=5, settings=10, picture_scale=0.84),
+    Limits(inputs=9, reasons=2, notes=4, settings=6, picture_scale=0.72),
+)
+"""Tried in this order until the report has no more than MOST_PAGES pages."""
+
+SURFACE_MM, OVERLAY_MM, MAPS_MM = 104.0, 116.0, 50.0
+"""Heights of the pictures at scale 1."""
+
+
+def build_report(content: ReportContent, progress: Progress = silent) -> bytes:
+    """The report as the bytes of a PDF; nothing is written to disk.
+
+    The same content gives the same bytes: no clock and no random number is in it. Text is selectable and the fonts
+    are embedded (except East Asian ones, which the viewer brings).
+
+    Raises
+    ------
+    core.errors.Cancelled
+        If `progress` asks to stop.
+    """
+    register_fonts()
+    step, drawings = "report", _drawings(content)
+    total = len(drawings) + 2
+    pictures = {}
+    for done, (name, draw) in enumerate(drawings.items()):
+        progress(step, done, total)
+        pictures[name] = _image(draw(), photo=name == "overlay")
+    progress(step, total - 2, total)
+    for limits in LIMITS:
+        pages, _ = _typeset(content, pictures, limits, 0)
+        if pages <= MOST_PAGES:
+            break
+    progress(step, total - 1, total)
+    _, data = _typeset(content, pictures, limits, pages)
+    progress(step, total, total)
+    return data
+
+
+def _drawings(content: ReportContent) -> dict[str, Callable[[], Figure]]:
+    """What is to be drawn, by name."""
+    width = TEXT_WIDTH / mm
+    gauge, overlay = content.gauge, content.overlay
+    drawings: dict[str, Callable[[], Figure]] = {}
+    if len(content.cloud) or len(content.mesh.triangles):
+        plane = gauge.lower.plane if gauge else None
+        drawings["surface"] = lambda: plots.surface_figure(content.mesh, content.cloud, plane, width, SURFACE_MM)
+    if overlay is not None:
+        drawings["overlay"] = lambda: overlay_figure(overlay, width, OVERLAY_MM)
+    if gauge is not None:
+        drawings["maps"] = lambda: plots.residual_figure(gauge, content.cloud, width, MAPS_MM)
+    elif len(content.cloud):
+        size = content.camera.camera.image_size
+        drawings["maps"] = lambda: plots.cloud_figure(content.cloud, size, width, MAPS_MM)
+    return drawings
+
+
+def _image(figure: Figure, *, photo: bool) -> ImageReader:
+    """A drawn figure, compressed without loss, or as JPEG with full colour resolution where it holds a photograph."""
+    bgr = figures.pixels(figure)[:, :, ::-1]
+    if photo:
+        how = [cv2.IMWRITE_JPEG_QUALITY, 93, cv2.IMWRITE_JPEG_SAMPLING_FACTOR, cv2.IMWRITE_JPEG_SAMPLING_FACTOR_444]
+        _, data = cv2.imencode(".jpg", bgr, how)
+    else:
+        _, data = cv2.imencode(".png", bgr)
+    return ImageReader(io.BytesIO(data.tobytes()))
+
+
+def _typeset(
+    content: ReportContent, pictures: Mapping[str, ImageReader], limits: Limits, pages: int
+) -> tuple[int, bytes]:
+    """Lay everything out; gives the number of pages and the file. `pages` is what the foot of each page says."""
+    stream = io.BytesIO()
+    document = BaseDocTemplate(
+        stream,
+        pagesize=A4,
+        title=f"{TITLE} {content.report_id}",
+        author=", ".join(name for name in (content.laboratory, content.operator) if name) or "not named",
+        subject=_subject(content),
+        creator=f"Trisect {content.version}",
+        keywords="",
+        invariant=1,
+        initialFontName=SANS,
+        lang="en",
+    )
+    frame = Frame(
+        MARGIN,
+        FOOT,
+        TEXT_WIDTH,
+        A4[1] - HEAD - FOOT,
+        leftPadding=0,
+        rightPadding=0,
+        topPadding=0,
+        bottomPadding=0,
+    )
+
+    def on_page(canvas: Any, _: BaseDocTemplate) -> None:
+        # the file's own date is the measurement's, not that of a clock
+        canvas.setDateFormatter(lambda *_: f"{content.timestamp:D:%Y%m%d%H%M%S}{_pdf_zone(content)}")
+        _foot(canvas, content, pages)
+
+    document.addPageTemplates(PageTemplate("page", [frame], onPage=on_page))
+    document.build(story(content, pictures, limits))
+    return document.page, stream.getvalue()
+
+
+def _subject(content: ReportContent) -> str:
+    what = "Thickness" if content.gauge else "Point cloud"
+    return f"{what} of {content.part}" if content.part else what
+
+
+def _pdf_zone(content: ReportContent) -> str:
+    """'+01'00'' as PDF dates have it; nothing for a time without a zone."""
+    zone = f"{content.timestamp:%z}"
+    return f"{zone[:3]}'{zone[3:5]}'" if zone else ""
+
+
+def _foot(canvas: Any, content: ReportContent, pages: int) -> None:
+    """Rule, report id, software, page n of m."""
+    canvas.saveState()
+    canvas.setStrokeColor(color(HAIRLINE))
+    canvas.setLineWidth(0.5)
+    canvas.line(MARGIN, 12.5 * mm, MARGIN + TEXT_WIDTH, 12.5 * mm)
+    canvas.setFillColor(color(MUTED))
+    canvas.setFont(SANS, 7)
+    canvas.drawString(MARGIN, 8.8 * mm, f"{TITLE} {content.report_id}")
+    canvas.drawCentredString(MARGIN + TEXT_WIDTH / 2, 8.8 * mm, f"Trisect {content.version}")
+    canvas.setFillColor(color(INK))
+    canvas.drawRightString(MARGIN + TEXT_WIDTH, 8.8 * mm, f"page {canvas.getPageNumber()} of {pages}")
+    canvas.restoreState()

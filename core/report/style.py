@@ -1,0 +1,145 @@
+"""How the report looks: one accent colour, four embedded fonts, few type sizes; text made safe for any script."""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+from xml.sax.saxutils import escape
+
+import matplotlib
+from reportlab.lib.colors import HexColor
+from reportlab.lib.enums import TA_CENTER, TA_RIGHT
+from reportlab.lib.styles import ParagraphStyle
+from reportlab.lib.units import mm
+from reportlab.pdfbase import pdfmetrics
+from reportlab.pdfbase.cidfonts import UnicodeCIDFont
+from reportlab.pdfbase.ttfonts import TTFont
+from reportlab.platypus import Paragraph
+
+ACCENT, INK, MUTED, HAIRLINE, TINT = "#14586E", "#1D2327", "#5C6870", "#CBD3D7", "#EFF4F6"
+"""The accent, text, secondary text, thin rules, and the ground of the result box; hex, for plots as well."""
+
+MARGIN = 20 * mm
+TEXT_WIDTH = 170 * mm
+
+SANS, BOLD, OBLIQUE, MONO = "Trisect-Sans", "Trisect-Bold", "Trisect-Oblique", "Trisect-Mono"
+_FILES = {
+    SANS: "DejaVuSans.ttf",
+    BOLD: "DejaVuSans-Bold.ttf",
+    OBLIQUE: "DejaVuSans-Oblique.ttf",
+    MONO: "DejaVuSansMono.ttf",
+}
+_HANGUL, _JAPANESE, _CHINESE = "HYSMyeongJo-Medium", "HeiseiKakuGo-W5", "STSong-Light"
+
+
+def color(value: str) -> HexColor:
+    """The colour of a hex string."""
+    return HexColor(value)
+
+
+@cache
+def _covered() -> frozenset[int]:
+    """Code points that every embedded face has. Registers the fonts, once."""
+    folder = Path(matplotlib.get_data_path()) / "fonts" / "ttf"
+    covered: frozenset[int] | None = None
+    for name, file in _FILES.items():
+        font = TTFont(name, str(folder / file))
+        pdfmetrics.registerFont(font)
+        if name in (SANS, BOLD):
+            points = frozenset(font.face.charToGlyph)
+            covered = points if covered is None else covered & points
+    pdfmetrics.registerFontFamily(SANS, normal=SANS, bold=BOLD, italic=OBLIQUE, boldItalic=BOLD)
+    return covered or frozenset()
+
+
+def register_fonts() -> None:
+    """Make the embedded fonts known to reportlab; further calls cost nothing."""
+    _covered()
+
+
+@cache
+def _east_asian(name: str) -> str:
+    """Register one of Adobe's East Asian fonts: not embedded, the viewer brings it."""
+    pdfmetrics.registerFont(UnicodeCIDFont(name))
+    return name
+
+
+def _east_asian_font(text: str) -> str:
+    """The font for the East Asian characters of `text`, or "" where it has none beyond it."""
+    if any(0xAC00 <= ord(c) <= 0xD7A3 or 0x1100 <= ord(c) <= 0x11FF for c in text):
+        return _HANGUL
+    if any(0x3040 <= ord(c) <= 0x30FF for c in text):
+        return _JAPANESE
+    return _CHINESE
+
+
+def _is_east_asian(character: str) -> bool:
+    point = ord(character)
+    return (
+        0x1100 <= point <= 0x11FF
+        or 0x2E80 <= point <= 0x9FFF
+        or 0xAC00 <= point <= 0xD7A3
+        or (0xF900 <= point <= 0xFAFF or 0xFF00 <= point <= 0xFFEF)
+    )
+
+
+def markup(text: str) -> str:
+    """`text` as markup of a Paragraph, nothing lost whatever its script.
+
+    Characters the embedded fonts lack are set in an East Asian font of the viewer where it has them, and else
+    printed by their code point, [U+1F600].
+    """
+    covered, parts, asian = _covered(), [], ""
+    for character in " ".join(text.split()):
+        if ord(character) in covered:
+            parts.append(escape(character))
+        elif _is_east_asian(character):
+            asian = asian or _east_asian(_east_asian_font(text))
+            parts.append(f'<font name="{asian}">{escape(character)}</font>')
+        else:
+            parts.append(f"[U+{ord(character):04X}]")
+    return "".join(parts).replace(f'</font><font name="{asian}">', "")
+
+
+def _style(name: str, size: float, leading: float, **options: object) -> ParagraphStyle:
+    defaults: dict[str, object] = {
+        "fontName": SANS,
+        "bulletFontName": SANS,
+        "bulletFontSize": size,
+        "textColor": color(INK),
+    }
+    return ParagraphStyle(name, fontSize=size, leading=leading, **(defaults | options))
+
+
+STYLES = {
+    "title": _style("title", 20, 24, fontName=BOLD, textColor=color(ACCENT)),
+    "laboratory": _style("laboratory", 8.5, 11, alignment=TA_RIGHT, textColor=color(MUTED)),
+    "section": _style("section", 10.5, 13, fontName=BOLD, textColor=color(ACCENT), spaceBefore=9, spaceAfter=3),
+    "body": _style("body", 8, 11),
+    "strong": _style("strong", 8, 11, fontName=BOLD),
+    "small": _style("small", 7, 9.4),
+    "label": _style("label", 7, 9.4, textColor=color(MUTED)),
+    "number": _style("number", 7, 9.4, alignment=TA_RIGHT),
+    "number_strong": _style("number_strong", 7, 9.4, alignment=TA_RIGHT, fontName=BOLD),
+    "small_strong": _style("small_strong", 7, 9.4, fontName=BOLD),
+    "head": _style("head", 7, 9.4, textColor=color(MUTED)),
+    "head_number": _style("head_number", 7, 9.4, textColor=color(MUTED), alignment=TA_RIGHT),
+    "caption": _style("caption", 7, 9.4, textColor=color(MUTED), spaceBefore=2),
+    "bullet": _style("bullet", 7.5, 10.2, leftIndent=8, bulletIndent=0, spaceAfter=1.2),
+    "result": _style("result", 20, 25, fontName=BOLD),
+    "fact": _style("fact", 9, 12, fontName=BOLD),
+    "mono": _style("mono", 5.6, 7.6, fontName=MONO),
+    "hash": _style("hash", 6, 7.8),
+    "end": _style("end", 7, 9.4, alignment=TA_CENTER, textColor=color(MUTED), spaceBefore=6),
+}
+"""Every type style of the report, by name."""
+
+
+def text(words: str, style: str = "body") -> Paragraph:
+    """A paragraph of plain `words`: whatever they hold is printed, never taken for markup."""
+    return Paragraph(markup(words), STYLES[style])
+
+
+def bullets(sentences: tuple[str, ...]) -> list[Paragraph]:
+    """Each sentence behind a small bullet."""
+    return [Paragraph(markup(sentence), STYLES["bullet"], bulletText="•") for sentence in sentences]

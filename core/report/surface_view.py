@@ -1,0 +1,188 @@
+"""A shaded axonometric picture of the surface, without OpenGL: every triangle into a depth buffer.
+
+Parallel projection, so lengths along one direction are to scale everywhere. Light: a diffuse lamp above the left
+shoulder of the viewer over an even ambient, and edges darkened where the depth buffer jumps, which tells a step
+from a change of colour.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from core.model import LightPlane
+from core.model.arrays import Array
+from core.scan.cloud import Cloud
+from core.scan.surface import Mesh
+
+AZIMUTH, ELEVATION = np.radians(-32.0), np.radians(42.0)
+"""From where the viewer looks, about the up direction and above the ground."""
+
+LAMP = np.array([-0.45, 0.75, 0.65]) / np.linalg.norm([-0.45, 0.75, 0.65])
+"""Direction to the lamp in the viewer's frame (right, up, towards the viewer)."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Ground:
+    """The frame the surface stands in: rows of `axes` are along (picture's right), across, and up; `origin` on it."""
+
+    axes: Array
+    origin: Array
+
+    @classmethod
+    def of(cls, plane: LightPlane | None, points: Array) -> Ground:
+        """Up is out of `plane`, towards the camera; without one, up is towards the camera from the farthest points."""
+        away = np.array([0.0, 0.0, 1.0]) if plane is None else plane.normal
+        along = np.array([1.0, 0.0, 0.0]) - away[0] * away
+        along /= np.linalg.norm(along)
+        up = -away
+        farthest = float(np.quantile(points @ away, 0.999)) if len(points) else 0.0
+        distance = farthest if plane is None else plane.d_mm
+        return cls(np.array([along, np.cross(up, along), up]), away * distance)
+
+    def local(self, points: Array) -> Array:
+        """`points` (N, 3) of the camera frame in this one: along, across, height; mm."""
+        local: Array = (points - self.origin) @ self.axes.T
+        return local
+
+
+def viewer_axes() -> Array:
+    """Rows: the viewer's right, up and towards-the-viewer, in the ground's frame."""
+    sin_a, cos_a, sin_e, cos_e = np.sin(AZIMUTH), np.cos(AZIMUTH), np.sin(ELEVATION), np.cos(ELEVATION)
+    towards = np.array([sin_a * cos_e, -cos_a * cos_e, sin_e])
+    right = np.array([cos_a, sin_a, 0.0])
+    return np.array([right, np.cross(towards, right), towards])
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class SurfacePicture:
+    """What the viewer sees.
+
+    `height` (H, W) in mm above the ground and `shade` (H, W) 0…1 are NaN where nothing is seen; `extent` is left,
+    right, bottom, top in mm of the viewer's plane.
+    """
+
+    height: Array
+    shade: Array
+    extent: tuple[float, float, float, float]
+
+
+def surface_picture(mesh: Mesh, cloud: Cloud, ground: Ground, width_px: int, aspect: float) -> SurfacePicture:
+    """Draw the mesh, or the cloud's points where the mesh has no triangles.
+
+    Parameters
+    ----------
+    width_px
+        Width of the picture; its height is `width_px` / `aspect`.
+
+    Raises
+    ------
+    ValueError
+        If there is neither a triangle nor a point.
+    """
+    solid = len(mesh.triangles) > 0
+    vertices, normals = (mesh.vertices, mesh.normals) if solid else (cloud.points, cloud.normals)
+    if not len(vertices):
+        raise ValueError("neither a triangle nor a point to draw")
+    local = ground.local(np.asarray(vertices))
+    seen = local @ viewer_axes().T
+    extent = _extent(seen[np.unique(mesh.triangles)] if solid else seen, aspect)
+    scale = width_px / (extent[1] - extent[0])
+    rows = round(width_px / aspect)
+    column, row = (seen[:, 0] - extent[0]) * scale - 0.5, (extent[3] - seen[:, 1]) * scale - 0.5
+    corners = np.column_stack([column, row, seen[:, 2], local[:, 2], _lambert(np.asarray(normals), ground)])
+    layers = np.full((3, rows, width_px), np.nan)
+    layers[0] = -np.inf
+    if solid:
+        _fill_triangles(corners, mesh.triangles, layers)
+    else:
+        # squares that just close the gaps of points spread evenly over half the picture
+        reach = int(np.clip(0.35 * np.sqrt(rows * width_px / len(corners)), 1, 6))
+        _splat_points(corners, reach, layers)
+    return SurfacePicture(layers[1], layers[2] * _edges(layers[0], scale), extent)
+
+
+def _extent(seen: Array, aspect: float) -> tuple[float, float, float, float]:
+    """Limits around all that is seen, widened to the aspect, with a margin for the dimension lines."""
+    low, high = np.quantile(seen[:, :2], 0.0005, axis=0), np.quantile(seen[:, :2], 0.9995, axis=0)
+    centre, half = (low + high) / 2, np.maximum((high - low) / 2, 1e-3) * 1.05
+    half_width = max(half[0] * 1.1, half[1] * 1.14 * aspect)
+    half_height = half_width / aspect
+    middle = centre[1] - 0.06 * half[1]
+    return (
+        float(centre[0] - half_width),
+        float(centre[0] + half_width),
+        float(middle - half_height),
+        float(middle + half_height),
+    )
+
+
+def _lambert(normals: Array, ground: Ground) -> Array:
+    """Brightness 0…1 of vertices with these normals (camera frame); even where the normal is unknown."""
+    facing = normals @ ground.axes.T @ viewer_axes().T
+    bright: Array = 0.42 + 0.58 * np.clip(facing @ LAMP, 0.0, 1.0)
+    return np.where(np.any(normals != 0, axis=1), bright, 0.85)
+
+
+def _edges(depth: Array, scale: float) -> Array:
+    """Darkening (1: none) just behind jumps of the depth buffer (mm; −inf where empty), the wider the nearer."""
+    seen = np.isfinite(depth)
+    if not seen.any():
+        return np.ones_like(depth)
+    filled = np.where(seen, depth, depth[seen].min()).astype(np.float32)
+    shade = np.zeros_like(filled)
+    for reach_mm in (0.6, 2.0):
+        size = 2 * max(1, round(reach_mm * scale)) + 1
+        around = cv2.blur(filled, (size, size))
+        shade += np.clip((around - filled) / (6.0 * reach_mm), 0.0, 1.0) / 2
+    darkening: Array = 1.0 - 0.5 * shade.astype(np.float64)
+    return darkening
+
+
+@njit(cache=True)
+def _fill_triangles(corners: Array, triangles: NDArray[np.int64], layers: Array) -> None:
+    """Each pixel keeps the nearest triangle's depth, height and shade, linear between its corners."""
+    _, rows, columns = layers.shape
+    for t in range(triangles.shape[0]):
+        a, b, c = corners[triangles[t, 0]], corners[triangles[t, 1]], corners[triangles[t, 2]]
+        area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+        if area == 0.0 or not np.isfinite(area):
+            continue
+        left = max(int(np.ceil(min(a[0], b[0], c[0]))), 0)
+        right = min(int(np.floor(max(a[0], b[0], c[0]))), columns - 1)
+        top = max(int(np.ceil(min(a[1], b[1], c[1]))), 0)
+        bottom = min(int(np.floor(max(a[1], b[1], c[1]))), rows - 1)
+        for y in range(top, bottom + 1):
+            for x in range(left, right + 1):
+                wb = ((x - a[0]) * (c[1] - a[1]) - (y - a[1]) * (c[0] - a[0])) / area
+                wc = ((b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0])) / area
+                wa = 1.0 - wb - wc
+                # a hair of slack: no pixel on a shared edge stays empty
+                if wa < -1e-9 or wb < -1e-9 or wc < -1e-9:
+                    continue
+                depth = wa * a[2] + wb * b[2] + wc * c[2]
+                if depth > layers[0, y, x]:
+                    layers[0, y, x] = depth
+                    layers[1, y, x] = wa * a[3] + wb * b[3] + wc * c[3]
+                    layers[2, y, x] = wa * a[4] + wb * b[4] + wc * c[4]
+
+
+@njit(cache=True)
+def _splat_points(corners: Array, reach: int, layers: Array) -> None:
+    """Each point as a small square; the nearest wins."""
+    _, rows, columns = layers.shape
+    for p in range(corners.shape[0]):
+        corner = corners[p]
+        if not np.isfinite(corner[0] + corner[1] + corner[2]):
+            continue
+        column, row = int(np.round(corner[0])), int(np.round(corner[1]))
+        for y in range(max(row - reach, 0), min(row + reach, rows - 1) + 1):
+            for x in range(max(column - reach, 0), min(column + reach, columns - 1) + 1):
+                if corner[2] > layers[0, y, x]:
+                    layers[0, y, x] = corner[2]
+                    layers[1, y, x] = corner[3]
+                    layers[2, y, x] = corner[4]
