@@ -92,12 +92,13 @@ def extract_features(
     options = options or FeatureOptions()
     full_scale = _full_scale(reference)
     base = reference.astype(np.float32)
-    noise = estimate_noise(reference)
+    noise = estimate_noise(base)
     fan_stripe, fan = _fan_centrelines(base, full_scale, noise, options)
     stream = iter(frames)
     ahead = list(islice(stream, LOOK_AHEAD))
     sweep_stripe = options.sweep_stripe or _sweep_settings(ahead, base, full_scale)
-    job = _FrameJob(base, full_scale, noise, fan, sweep_stripe, options.move_limit_px)
+    difference_noise = noise.of_difference(float(np.median(base)))
+    job = _FrameJob(base, full_scale, difference_noise, fan, sweep_stripe, options.move_limit_px)
     found: list[FrameFeatures] = []
     for features in ordered_map(job, enumerate(chain(ahead, stream))):
         progress("frames", len(found), total)
