@@ -49,14 +49,14 @@ class Bundle:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Normal:
-    """Reduced normal equations of a bundle: what each view knows of the camera's F free parameters.
+    """Reduced normal equations of a bundle: what views and corners know of the camera's F free parameters.
 
-    `information` (V, F, F) and `gradients` (V, F) of the views with their poses eliminated, in units of the weights;
-    `cost` the weighted sum of squared residuals.
+    `information` (V, F, F) of the views with their poses eliminated, in units of the weights; `gradients` the (N, F)
+    shares of each view's corners in the gradient; `cost` the weighted sum of squared residuals.
     """
 
     information: Array
-    gradients: Array
+    gradients: tuple[Array, ...]
     cost: float
 
 
@@ -137,12 +137,13 @@ def residuals(camera: Camera, pose: Pose, view: Observed) -> Array:
 
 def normal_equations(bundle: Bundle, views: Sequence[Observed], free: NDArray[np.intp]) -> Normal:
     """The reduced normal equations at `bundle`."""
-    reduced = [block.reduced() for block in _blocks(bundle, views, free)]
-    return Normal(
-        np.array([information for information, _ in reduced]),
-        np.array([gradient for _, gradient in reduced]),
-        _cost(bundle, views),
-    )
+    information, gradients = [], []
+    for pose, view in zip(bundle.poses, views, strict=True):
+        by_camera, by_pose, missing = _weighted(bundle.camera, pose, view, free)
+        alone = by_camera - by_pose @ np.linalg.lstsq(by_pose, by_camera, rcond=None)[0]
+        information.append(alone.T @ alone)
+        gradients.append((alone * missing[:, None]).reshape(-1, 2, len(free)).sum(axis=1))
+    return Normal(np.array(information), tuple(gradients), _cost(bundle, views))
 
 
 def _cost(bundle: Bundle, views: Sequence[Observed]) -> float:
@@ -153,14 +154,22 @@ def _cost(bundle: Bundle, views: Sequence[Observed]) -> float:
     return total
 
 
+def _weighted(camera: Camera, pose: Pose, view: Observed, free: NDArray[np.intp]) -> tuple[Array, Array, Array]:
+    """Derivatives (2N, F) and (2N, 6) and residuals (2N,), each row times the root of its weight."""
+    uv, by_camera, by_pose = linearise(camera, pose, view.points)
+    root = np.sqrt(np.repeat(view.weights, 2))
+    columns = root[:, None]
+    return (
+        by_camera.reshape(-1, 10)[:, free] * columns,
+        by_pose.reshape(-1, 6) * columns,
+        (view.uv - uv).ravel() * root,
+    )
+
+
 def _blocks(bundle: Bundle, views: Sequence[Observed], free: NDArray[np.intp]) -> list[_Block]:
     blocks = []
     for pose, view in zip(bundle.poses, views, strict=True):
-        uv, by_camera, by_pose = linearise(bundle.camera, pose, view.points)
-        root = np.sqrt(np.repeat(view.weights, 2))[:, None]
-        camera = by_camera.reshape(-1, 10)[:, free] * root
-        posing = by_pose.reshape(-1, 6) * root
-        missing = (view.uv - uv).ravel() * root[:, 0]
+        camera, posing, missing = _weighted(bundle.camera, pose, view, free)
         blocks.append(
             _Block(camera.T @ camera, camera.T @ posing, posing.T @ posing, camera.T @ missing, posing.T @ missing)
         )

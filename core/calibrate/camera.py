@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.calibrate.bundle import Bundle, Observed, normal_equations, refine, refine_robustly, residuals
-from core.calibrate.camera_covariance import free_covariance, principal_deviations
+from core.calibrate.camera_covariance import Widening, free_covariance, principal_deviations
 from core.calibrate.camera_notes import notes_on
 from core.calibrate.camera_quality import cross_validation_mm, rms_and_mean, view_qualities
 from core.calibrate.coverage import coverage, tilt_range
@@ -127,7 +127,7 @@ def calibrate_camera(
     qualities = view_qualities(views, [reason for _, reason in screened], bundle.camera, fits)
     calibration = _summary(qualities, solved, counted, covariance, options.free)
     progress(_STEP, _STAGES, _STAGES)
-    return replace(calibration, notes=notes_on(calibration, len(options.free), widening))
+    return replace(calibration, notes=notes_on(calibration, widening))
 
 
 def _observed(views: Sequence[TargetView]) -> list[Observed]:
@@ -207,8 +207,8 @@ def _fit(start: Bundle, observed: Sequence[Observed], verdicts: Sequence[Verdict
     return Bundle(solved.camera, tuple(poses[i] for i in range(len(observed))))
 
 
-def _covariance(bundle: Bundle, counted: Sequence[Observed], free: NDArray[np.intp]) -> tuple[Array, float]:
-    """Covariance (10, 10), and the factor for errors common to a view; InputError where it is out of all reason."""
+def _covariance(bundle: Bundle, counted: Sequence[Observed], free: NDArray[np.intp]) -> tuple[Array, Widening]:
+    """Covariance (10, 10) and how it was widened; InputError where the views do not determine the camera."""
     range_of_tilt = tilt_range(bundle.poses)
     if range_of_tilt < _MIN_TILT:
         raise InputError(
@@ -220,7 +220,9 @@ def _covariance(bundle: Bundle, counted: Sequence[Observed], free: NDArray[np.in
     covariance = np.zeros((10, 10))
     try:
         covariance[np.ix_(free, free)], widening = free_covariance(
-            normal_equations(bundle, counted, free), 2 * corners - len(free) - 6 * len(counted)
+            normal_equations(bundle, counted, free),
+            [view.points for view in counted],
+            2 * corners - len(free) - 6 * len(counted),
         )
     except np.linalg.LinAlgError:
         raise InputError("the views do not determine the camera: too much alike", todo=_MORE_VIEWS) from None

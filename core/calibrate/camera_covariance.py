@@ -3,9 +3,14 @@
 References
 ----------
 Liang, K.-Y. & Zeger, S., Biometrika 73 (1986) 13–22, doi:10.1093/biomet/73.1.13 (errors correlated in clusters).
+Cameron, A. C., Gelbach, J. & Miller, D., J. Business & Economic Statistics 29 (2011) 238–249,
+doi:10.1198/jbes.2010.07136 (clusters in two ways).
 """
 
 from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -18,12 +23,37 @@ from core.model.arrays import Array
 _SINGULAR = 1e-13
 
 
-def free_covariance(normal: Normal, degrees_of_freedom: int) -> tuple[Array, float]:
-    """Covariance (F, F) of the free parameters, and the factor that its deviations were widened by.
+@dataclass(frozen=True)
+class Widening:
+    """Factors on the standard deviations for errors that corners share.
 
-    The scale of the residuals is measured, not assumed. Where corners of a view err together (a bent target, a blurred
-    view, a detector with a bias) the views' gradients scatter more than independent corners would make them:
-    for these E[Σ gᵀ S⁻¹ g] = σ² (F − Σ tr(S⁻¹ S_v S⁻¹ S_v)). The ratio of both, if above 1, widens the covariance.
+    Parameters
+    ----------
+    within_views
+        For errors common to the corners of one view: blur, a detector's bias, a target that is not flat.
+    across_views
+        For errors that a corner of the target repeats in every view: a print that is not true.
+    chance
+        How far above 1 either comes by chance, as a standard deviation.
+    """
+
+    within_views: float
+    across_views: float
+    chance: float
+
+    @property
+    def total(self) -> float:
+        """The factor applied: both are variances on top of the independent one."""
+        return float(np.sqrt(self.within_views**2 + self.across_views**2 - 1))
+
+
+def free_covariance(normal: Normal, points: Sequence[Array], degrees_of_freedom: int) -> tuple[Array, Widening]:
+    """Covariance (F, F) of the free parameters, widened for errors that corners share.
+
+    The scale of the residuals is measured, not assumed. Where corners of a view err together, the views' gradients g
+    scatter more than independent corners would make them: for these E[Σ gᵀ S⁻¹ g] = σ² (F − Σ tr(S⁻¹ S_v S⁻¹ S_v)).
+    The ratio of both, where above 1, widens the covariance. The same is done over the target's corners, known by
+    their `points` (N, 3) in each view (clusters in two ways).
 
     Raises
     ------
@@ -37,16 +67,28 @@ def free_covariance(normal: Normal, degrees_of_freedom: int) -> tuple[Array, flo
         raise np.linalg.LinAlgError("the views do not determine the camera")
     inverse = (vectors / eigenvalues) @ vectors.T * np.outer(scale, scale)
     variance = normal.cost / max(degrees_of_freedom, 1)
+
+    free, views = len(inverse), len(normal.information)
+    of_views = np.array([gradients.sum(axis=0) for gradients in normal.gradients])
     shares = inverse @ normal.information
-    expected = variance * (len(inverse) - np.einsum("vij,vji->", shares, shares))
-    scatter = float(np.einsum("vi,ij,vj->", normal.gradients, inverse, normal.gradients))
-    widening = max(1.0, scatter / expected) if expected > 0 else 1.0
-    return variance * widening * inverse, float(np.sqrt(widening))
+    independent = free - float(np.einsum("vij,vji->", shares, shares))
+    within = _scatter(of_views, inverse) / max(variance * independent, 1e-300)
+
+    corner = np.unique(np.round(np.concatenate(points), 6), axis=0, return_inverse=True)[1].ravel()
+    of_corners = np.zeros((corner.max() + 1, free))
+    np.add.at(of_corners, corner, np.concatenate(normal.gradients))
+    across = _scatter(of_corners, inverse) / max(variance * free * (1 - 1 / len(of_corners)), 1e-300)
+    widening = Widening(
+        float(np.sqrt(max(1.0, within))),
+        float(np.sqrt(max(1.0, across))),
+        float(np.sqrt(1 / (2 * free * max(views - 1, 1)))),
+    )
+    return variance * widening.total**2 * inverse, widening
 
 
-def widening_spread(free: int, views: int) -> float:
-    """Standard deviation of the widening of deviations when there is nothing to widen."""
-    return float(np.sqrt(1 / (2 * free * max(views - 1, 1))))
+def _scatter(gradients: Array, inverse: Array) -> float:
+    """Σ gᵀ S⁻¹ g over clusters' gradients (C, F)."""
+    return float(np.einsum("ci,ij,cj->", gradients, inverse, gradients))
 
 
 def principal_deviations(calibration: CameraCalibration) -> tuple[Camera, ...]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from core.calibrate.camera_covariance import widening_spread
+from core.calibrate.camera_covariance import Widening
 from core.calibrate.coverage import empty_regions
 from core.calibrate.results import CameraCalibration, ViewQuality
 
@@ -14,7 +14,7 @@ _WORSE_VIEW = 3.0
 _MUCH_WIDER = 1.5
 
 
-def notes_on(calibration: CameraCalibration, free_parameters: int, widening: float) -> tuple[str, ...]:
+def notes_on(calibration: CameraCalibration, widening: Widening) -> tuple[str, ...]:
     """Notes on views and corners left out, missing coverage, small tilt, few views and correlated residuals."""
     used = [quality for quality in calibration.views if quality.used]
     notes = [f"{_name(quality)} is left out: {quality.reason}." for quality in calibration.views if not quality.used]
@@ -39,10 +39,16 @@ def notes_on(calibration: CameraCalibration, free_parameters: int, widening: flo
         )
     if np.isnan(calibration.cross_validation_mm):
         notes.append("With fewer than six views two halves of them cannot be checked against each other.")
-    if widening > max(_MUCH_WIDER, 1 + 3 * widening_spread(free_parameters, len(used))):
+    limit = max(_MUCH_WIDER, 1 + 3 * widening.chance)
+    if widening.within_views > limit:
         notes.append(
             "Corners of one view err together (a target that is not flat, blur, or a detector's bias): the standard "
-            f"deviations are {widening:.1f} times those of independent corners."
+            f"deviations are {widening.within_views:.1f} times those of independent corners."
+        )
+    if widening.across_views > limit:
+        notes.append(
+            "Corners of the target err alike in every view (a print that is not true): the standard "
+            f"deviations are {widening.across_views:.1f} times those of independent corners."
         )
     return tuple(notes)
 
