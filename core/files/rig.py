@@ -18,10 +18,10 @@ from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid, T
 from core.model.arrays import Array
 
 # The description of a field ends the sentence "… is <value>, not <description>".
-_Count = Annotated[int, Field(ge=2, le=500)]
+_Count = Annotated[int, Field(ge=3, le=500)]
 _Length = Annotated[float, Field(gt=0, le=5000, allow_inf_nan=False)]
 _A_LENGTH = "a length in mm above 0 and at most 5000"
-_TWO_COUNTS = "two whole numbers from 2 to 500, [columns, rows]"
+_TWO_COUNTS = "two whole numbers from 3 to 500, [columns, rows]"
 _Vertex = Annotated[list[Annotated[float, Field(allow_inf_nan=False)]], Field(min_length=2, max_length=2)]
 _Polygon = Annotated[list[_Vertex], Field(min_length=3)]
 _A_POLYGON = "a list of three or more [u, v] in pixels"
@@ -37,7 +37,8 @@ class _Checkerboard(_Table):
     square_mm: _Length = Field(description=_A_LENGTH)
 
     def target(self) -> Target:
-        return Checkerboard(*self.inner_corners, self.square_mm)
+        columns, rows = self.inner_corners
+        return Checkerboard(columns, rows, self.square_mm)
 
 
 class _Charuco(_Table):
@@ -56,7 +57,8 @@ class _Charuco(_Table):
         return self
 
     def target(self) -> Target:
-        return Charuco(*self.squares, self.square_mm, self.marker_mm, self.dictionary)
+        columns, rows = self.squares
+        return Charuco(columns, rows, self.square_mm, self.marker_mm, self.dictionary)
 
 
 class _CircleGrid(_Table):
@@ -66,7 +68,8 @@ class _CircleGrid(_Table):
     asymmetric: bool = Field(False, description="true or false")
 
     def target(self) -> Target:
-        return CircleGrid(*self.circles, self.pitch_mm, self.asymmetric)
+        columns, rows = self.circles
+        return CircleGrid(columns, rows, self.pitch_mm, self.asymmetric)
 
 
 class _BlackSquare(_Table):
@@ -166,8 +169,8 @@ def read_rig(path: Path) -> Rig:
         raise complaint(path, error, _RigFile) from error
     gauge = rig.gauge
     return Rig(
-        rig.camera_target.target(),
-        rig.plane_target.target(),
+        _target(path, "camera_target", rig.camera_target),
+        _target(path, "plane_target", rig.plane_target),
         rig.laser_fan.lines,
         math.radians(rig.laser_fan.angle_deg or 0.0),
         GaugeSpec(gauge.nominal_mm, gauge.tolerance_mm, _array(gauge.upper_polygon_px), _array(gauge.lower_polygon_px))
@@ -175,6 +178,13 @@ def read_rig(path: Path) -> Rig:
         else None,
         rig.channel,
     )
+
+
+def _target(path: Path, name: str, table: _PlaneTarget) -> Target:
+    try:
+        return table.target()
+    except ValueError as error:  # what only the target itself can judge, as a dictionary of markers
+        raise InputError(f"{name}: {error}", where=path) from error
 
 
 def _array(polygon: list[list[float]] | None) -> Array | None:

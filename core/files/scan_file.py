@@ -1,15 +1,12 @@
-"""scan.npz: what the gauge and the report need of a scan besides its cloud, as plain arrays.
+"""scan.npz: what a scan's pictures showed and how it was solved, as plain arrays.
 
-The light planes of the sweeps with their covariance, the crossings, the fan's centrelines, and those of one frame to
-show. Written by numpy; every name below is an array in it.
+With it a scan can be solved again with another calibration, to see what the calibration's uncertainty does to a
+thickness, without its pictures.
 """
 
 from __future__ import annotations
 
-import io
-import zipfile
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
@@ -17,23 +14,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.errors import InputError
-from core.files.atomic import write_bytes
-from core.files.pictures import read_bytes
-from core.image.centreline import Centreline
+from core.files.arrays_file import (
+    Arrays,
+    pack_centrelines,
+    pack_texts,
+    read_arrays,
+    unpack_centrelines,
+    write_arrays,
+)
+from core.image.stripes import StripeSettings
 from core.model.arrays import Array
+from core.scan.crossings import CrossingTable
+from core.scan.features import FrameFeatures, ScanFeatures
 
-_POINTS = ("uv", "normal", "width", "strength", "sigma", "saturated")
 _TODO = "measure the scan first: trisect scan SET --out DIR"
-
-
-@dataclass(frozen=True, eq=False, slots=True)
-class ShownFrame:
-    """One frame to show in the report: its name, the sweep's centrelines and the (M, 2) crossings used, in pixels."""
-
-    name: str
-    index: int
-    sweep: tuple[Centreline, ...]
-    crossings: Array
+_NO_FRAME = -1
+_CROSSINGS = tuple(one.name for one in fields(CrossingTable))
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -42,49 +38,57 @@ class ScanFile:
 
     Parameters
     ----------
+    features
+        What the pictures showed.
     pis
         (S, 3) light planes of the sweeps in 1/mm.
     covariance
         (3S, 3S) of them, without what camera and fan have in common.
     sweep_frames
         (S,) the frame of each.
-    fan, fan_line
-        The fan's centrelines and the line (from 0; −1 unknown) of each.
+    fan_line
+        The line (from 0; −1 unknown) of each of the fan's centrelines.
+    crossings_used
+        (M, 2) pixels of the crossings of the shown frame that were used.
     shown
-        One frame to show, or None.
+        Index of the frame to show in the report, or None.
     calibration_id
         Names the calibration the scan was measured with.
     """
 
+    features: ScanFeatures
     pis: Array
     covariance: Array
     sweep_frames: NDArray[np.int64]
-    fan: tuple[Centreline, ...]
     fan_line: tuple[int, ...]
-    shown: ShownFrame | None
+    crossings_used: Array
+    shown: int | None
     calibration_id: str
 
 
 def write_scan(path: Path, scan: ScanFile) -> None:
     """Write scan.npz; the same scan gives the same bytes. InputError if it cannot be written."""
-    arrays: dict[str, Any] = {
+    features = scan.features
+    crossings = features.crossings
+    arrays: dict[str, NDArray[Any]] = {
+        "calibration_id": np.array(scan.calibration_id),
+        "image_size": np.array(features.image_size),
         "pis": scan.pis,
         "covariance": scan.covariance,
         "sweep_frames": scan.sweep_frames,
         "fan_line": np.array(scan.fan_line, dtype=np.int64),
-        "calibration_id": np.array(scan.calibration_id),
-        **_packed("fan", scan.fan),
+        "shown": np.array(_NO_FRAME if scan.shown is None else scan.shown),
+        "crossings_used": scan.crossings_used,
+        "frame_names": pack_texts([frame.name for frame in features.frames]),
+        "frame_reasons": pack_texts([frame.reason for frame in features.frames]),
+        "frame_shift_px": np.array([frame.shift_px for frame in features.frames], dtype=np.float64),
+        "notes": pack_texts(features.notes),
+        "stripes": _stripes(features.fan_stripe, features.sweep_stripe),
+        **{f"crossing_{name}": np.asarray(getattr(crossings, name)) for name in _CROSSINGS},
+        **pack_centrelines("fan", [features.fan]),
+        **pack_centrelines("sweep", [frame.centrelines for frame in features.frames]),
     }
-    if scan.shown is not None:
-        arrays |= {
-            "shown_name": np.array(scan.shown.name),
-            "shown_index": np.array(scan.shown.index),
-            "shown_crossings": scan.shown.crossings,
-            **_packed("shown", scan.shown.sweep),
-        }
-    data = io.BytesIO()
-    np.savez(data, **arrays)
-    write_bytes(path, data.getvalue())
+    write_arrays(path, arrays)
 
 
 def read_scan(path: Path) -> ScanFile:
@@ -95,63 +99,59 @@ def read_scan(path: Path) -> ScanFile:
     InputError
         If it is missing, damaged, lacks an array, or holds values that are not finite or of a wrong shape.
     """
-    if not path.exists():
-        raise InputError("the file is missing", where=path, todo=_TODO)
-    try:
-        with np.load(io.BytesIO(read_bytes(path)), allow_pickle=False) as file:
-            arrays = dict(file)
-        return _unpacked(path, arrays)
-    except (zipfile.BadZipFile, ValueError, EOFError, OSError) as error:
-        raise InputError(f"this is no whole scan file ({error})", where=path, todo=_TODO) from error
-    except KeyError as error:
-        raise InputError(f"the array {error} is missing", where=path, todo=_TODO) from error
-
-
-def _unpacked(path: Path, arrays: Mapping[str, NDArray[Any]]) -> ScanFile:
-    pis, covariance = arrays["pis"], arrays["covariance"]
+    arrays = read_arrays(path, ("calibration_id", "pis", "covariance", "sweep_frames", "image_size"), todo=_TODO)
     sweeps = len(arrays["sweep_frames"])
     for name, shape in (("pis", (sweeps, 3)), ("covariance", (3 * sweeps, 3 * sweeps))):
         if arrays[name].shape != shape:
             wanted = " × ".join(map(str, shape))
             raise InputError(f"the array {name} has shape {arrays[name].shape}, not {wanted}", where=path, todo=_TODO)
-        if not np.isfinite(arrays[name]).all():
-            raise InputError(f"the array {name} holds values that are not finite", where=path, todo=_TODO)
-    shown = None
-    if "shown_name" in arrays:
-        shown = ShownFrame(
-            str(arrays["shown_name"]),
-            int(arrays["shown_index"]),
-            _centrelines("shown", arrays),
-            arrays["shown_crossings"],
-        )
+    try:
+        return _unpacked(arrays)
+    except KeyError as error:
+        raise InputError(f"the array {error} is missing", where=path, todo=_TODO) from error
+    except (ValueError, TypeError) as error:
+        raise InputError(f"its arrays do not fit together ({error})", where=path, todo=_TODO) from error
+
+
+def _unpacked(arrays: Arrays) -> ScanFile:
+    frames = zip(
+        arrays["frame_names"].tolist(),
+        unpack_centrelines("sweep", arrays),
+        arrays["frame_reasons"].tolist(),
+        arrays["frame_shift_px"].tolist(),
+        strict=True,
+    )
+    width, height = arrays["image_size"].tolist()
+    fan_stripe, sweep_stripe = _settings(arrays["stripes"])
+    table: dict[str, Any] = {name: arrays[f"crossing_{name}"] for name in _CROSSINGS}
+    table["half_length_px"] = float(table["half_length_px"])
+    shown = int(arrays["shown"])
+    features = ScanFeatures(
+        image_size=(width, height),
+        fan=unpack_centrelines("fan", arrays)[0],
+        frames=tuple(FrameFeatures(index, *frame) for index, frame in enumerate(frames)),
+        crossings=CrossingTable(**table),
+        sweep_stripe=sweep_stripe,
+        fan_stripe=fan_stripe,
+        notes=tuple(arrays["notes"].tolist()),
+    )
     return ScanFile(
-        pis=pis,
-        covariance=covariance,
+        features=features,
+        pis=arrays["pis"],
+        covariance=arrays["covariance"],
         sweep_frames=arrays["sweep_frames"],
-        fan=_centrelines("fan", arrays),
-        fan_line=tuple(int(line) for line in arrays["fan_line"]),
-        shown=shown,
+        fan_line=tuple(arrays["fan_line"].tolist()),
+        crossings_used=arrays["crossings_used"],
+        shown=None if shown == _NO_FRAME else shown,
         calibration_id=str(arrays["calibration_id"]),
     )
 
 
-def _packed(prefix: str, pieces: Sequence[Centreline]) -> dict[str, NDArray[Any]]:
-    """Centrelines end to end, with the length of each."""
-    packed: dict[str, NDArray[Any]] = {
-        f"{prefix}_lengths": np.array([len(piece) for piece in pieces], dtype=np.int64),
-        f"{prefix}_correlation_px": np.array([piece.correlation_px for piece in pieces], dtype=np.float64),
-    }
-    for name in _POINTS:
-        empty = np.zeros((0, 2) if name in ("uv", "normal") else 0)
-        packed[f"{prefix}_{name}"] = np.concatenate([getattr(piece, name) for piece in pieces]) if pieces else empty
-    return packed
+def _stripes(fan: StripeSettings, sweep: StripeSettings | None) -> Array:
+    """Width and contrast of the fan's stripes and of the sweep's; 0 where there is none."""
+    return np.array([[fan.width_px, fan.contrast], [sweep.width_px, sweep.contrast] if sweep else [0.0, 0.0]])
 
 
-def _centrelines(prefix: str, arrays: Mapping[str, NDArray[Any]]) -> tuple[Centreline, ...]:
-    ends = np.cumsum(arrays[f"{prefix}_lengths"])[:-1]
-    if not len(arrays[f"{prefix}_lengths"]):
-        return ()
-    columns = [np.split(arrays[f"{prefix}_{name}"], ends) for name in _POINTS]
-    correlations = arrays[f"{prefix}_correlation_px"].tolist()
-    pieces = zip(*columns, strict=True)
-    return tuple(Centreline(*piece, correlation_px=each) for piece, each in zip(pieces, correlations, strict=True))
+def _settings(stripes: NDArray[Any]) -> tuple[StripeSettings, StripeSettings | None]:
+    fan, sweep = stripes.tolist()
+    return StripeSettings(*fan), StripeSettings(*sweep) if sweep[0] > 0 else None

@@ -1,20 +1,31 @@
 import json
+from dataclasses import replace
+from datetime import UTC, datetime
 
 import numpy as np
 import pytest
 from plyfile import PlyData
 
+from core.calibrate.plane_pose import PoseFeatures
 from core.calibrate.results import CameraCalibration, FanCalibration, PlanePose, ViewQuality
 from core.errors import InputError
 from core.files.camera_file import camera_id, read_camera, write_camera
 from core.files.fan_file import read_fan, write_fan
+from core.files.gauge_file import read_gauge, write_gauge
 from core.files.json_text import to_json
 from core.files.ply import read_cloud, read_mesh, write_cloud, write_mesh
-from core.files.scan_file import ScanFile, ShownFrame, read_scan, write_scan
+from core.files.poses_file import read_poses, write_poses
+from core.files.run_file import RunRecord, read_run, write_run
+from core.files.scan_file import ScanFile, read_scan, write_scan
 from core.image.centreline import Centreline
+from core.image.stripes import StripeSettings
 from core.image.target_view import TargetView
+from core.inspect.results import Contribution, Face, GaugeResult
 from core.model import Camera, Fan, LightPlane, Pose
 from core.scan.cloud import FAN, Cloud
+from core.scan.crossings import CrossingTable
+from core.scan.features import FrameFeatures, ScanFeatures
+from core.scan.results import FrameRecord
 from core.scan.surface import Mesh
 
 
@@ -249,18 +260,30 @@ def test_mesh_round_trip(tmp_path):
     assert read_mesh(tmp_path / "empty.ply").triangles.shape == (0, 3)
 
 
+def centreline(rng, count):
+    angle = rng.uniform(0, 6, count)
+    normal = np.column_stack([np.cos(angle), np.sin(angle)])
+    return Centreline(rng.uniform(0, 99, (count, 2)), normal, *rng.uniform(1, 2, (3, count)), angle > 3, 7.5)
+
+
 @pytest.fixture
 def scan():
     rng = np.random.default_rng(4)
-
-    def line(count):
-        angle = rng.uniform(0, 6, count)
-        normal = np.column_stack([np.cos(angle), np.sin(angle)])
-        return Centreline(rng.uniform(0, 99, (count, 2)), normal, *rng.uniform(1, 2, (3, count)), angle > 3, 7.5)
-
+    two, one = rng.normal(size=(2, 5, 2)), rng.uniform(size=(4, 5))
+    index = np.arange(5)
+    crossings = CrossingTable(
+        two[0], two[1], two[1], one[0], one[1], index, index - 2, index, index, one[2], one[3], 40.0
+    )  # fmt: skip
+    frames = (
+        FrameFeatures(0, "scan/a.png", (centreline(rng, 4), centreline(rng, 5)), "", 0.1),
+        FrameFeatures(1, "scan/b.png", (), "the picture ends early", 0.0),
+        FrameFeatures(2, "scan/ß.png", (centreline(rng, 3),), "", 0.2),
+    )
+    fan = (centreline(rng, 4), centreline(rng, 7))
+    features = ScanFeatures((99, 88), fan, frames, crossings, None, StripeSettings(10.0, 80.0), ("A note.",))
     return ScanFile(
-        rng.normal(size=(2, 3)), square(rng, 6, 1e-6), np.array([0, 5]), (line(4), line(7)), (0, -1),
-        ShownFrame("scan/f5.png", 5, (line(3),), rng.normal(size=(4, 2))), "abc",
+        features, rng.normal(size=(2, 3)), square(rng, 6, 1e-6), np.array([0, 2]), (0, -1), rng.normal(size=(4, 2)), 2,
+        "abc",
     )  # fmt: skip
 
 
@@ -269,26 +292,128 @@ def test_scan_round_trip_gives_the_same_bytes(tmp_path, scan):
     write_scan(path, scan)
     back = read_scan(path)
     assert np.array_equal(back.covariance, scan.covariance)
-    assert np.array_equal(back.fan[1].uv, scan.fan[1].uv)
-    assert back.fan[1].correlation_px == 7.5
-    assert back.fan[0].saturated.tolist() == scan.fan[0].saturated.tolist()
-    assert back.fan_line == (0, -1)
-    assert (back.shown.name, back.shown.index, len(back.shown.sweep)) == ("scan/f5.png", 5, 1)
+    features = back.features
+    assert np.array_equal(features.fan[1].uv, scan.features.fan[1].uv)
+    assert features.fan[1].correlation_px == 7.5
+    assert features.fan[0].saturated.tolist() == scan.features.fan[0].saturated.tolist()
+    assert [len(frame.centrelines) for frame in features.frames] == [2, 0, 1]
+    assert [frame.name for frame in features.frames] == ["scan/a.png", "scan/b.png", "scan/ß.png"]
+    assert features.frames[1].reason == "the picture ends early"
+    assert np.array_equal(features.crossings.along_b, scan.features.crossings.along_b)
+    assert (features.sweep_stripe, features.fan_stripe) == (None, StripeSettings(10.0, 80.0))
+    assert (back.fan_line, back.shown, back.calibration_id) == ((0, -1), 2, "abc")
     write_scan(tmp_path / "again.npz", back)
     assert (tmp_path / "again.npz").read_bytes() == path.read_bytes()
 
 
 def test_spoilt_scan_files_are_refused(tmp_path, scan):
     path = tmp_path / "scan.npz"
+    write_scan(path, replace(scan, pis=np.full((2, 3), np.nan)))
+    with pytest.raises(InputError, match=r"scan\.npz: the array pis holds values that are not finite"):
+        read_scan(path)
+    write_scan(path, replace(scan, covariance=np.zeros((5, 5))))
+    with pytest.raises(InputError, match=r"covariance has shape \(5, 5\), not 6 × 6"):
+        read_scan(path)
     write_scan(path, scan)
     path.write_bytes(path.read_bytes()[:-50])
-    with pytest.raises(InputError, match=r"scan\.npz: this is no whole scan file"):
+    with pytest.raises(InputError, match=r"scan\.npz: this is no whole file of arrays"):
         read_scan(path)
     np.savez(path, pis=np.zeros((2, 3)))
-    with pytest.raises(InputError, match="the array 'covariance' is missing"):
+    with pytest.raises(InputError, match="the array calibration_id is missing"):
         read_scan(path)
-    with pytest.raises(InputError, match="the file is missing"):
+    with pytest.raises(InputError, match="the file is missing; measure the scan first"):
         read_scan(tmp_path / "none.npz")
+
+
+def test_poses_round_trip_and_belong_to_their_fan(tmp_path):
+    rng = np.random.default_rng(5)
+    view = TargetView(rng.normal(size=(4, 3)), rng.normal(size=(4, 2)), np.ones(4), "p1")
+    poses = (
+        PoseFeatures("p1", view, (centreline(rng, 6),)),
+        PoseFeatures("p2", None, (), "no target"),
+        PoseFeatures("p3", replace(view, name="p3"), (centreline(rng, 2), centreline(rng, 3))),
+    )
+    write_poses(tmp_path / "planes.npz", "fan1", poses)
+    back = read_poses(tmp_path / "planes.npz", "fan1")
+    assert [(pose.name, pose.reason, len(pose.centrelines)) for pose in back] == [
+        ("p1", "", 1),
+        ("p2", "no target", 0),
+        ("p3", "", 2),
+    ]
+    assert back[1].view is None
+    assert np.array_equal(back[2].view.uv, view.uv)
+    assert np.array_equal(back[2].centrelines[1].uv, poses[2].centrelines[1].uv)
+    assert read_poses(tmp_path / "planes.npz", "another fan") == ()
+    assert read_poses(tmp_path / "none.npz", "fan1") == ()
+
+
+@pytest.fixture
+def gauge(cloud):
+    def face(indices, depth):
+        plane = LightPlane.from_normal([0, 0, 1.0], depth)
+        return Face(plane, indices, -plane.distances(cloud.points[indices]), 0.03, 0.01)
+
+    return GaugeResult(
+        49.987, 0.012, 2.0, face(np.arange(20), 650.0), face(np.arange(25, 50), 700.0), 1e-4,
+        (Contribution("camera", 0.01),), 50.0, 0.2, "conforming", np.array([0, 0, 1.0]), "the rule", ("a note",),
+    )  # fmt: skip
+
+
+def test_gauge_round_trip_and_the_keys_of_the_design(tmp_path, cloud, gauge):
+    path = tmp_path / "gauge.json"
+    write_gauge(path, gauge, "abc")
+    tables = json.loads(path.read_text())
+    assert {"thickness_mm", "u_mm", "U_mm", "k", "flatness_mm", "parallelism_deg", "points", "verdict"} <= set(tables)
+    assert tables["U_mm"] == 0.024
+    assert tables["deviation_mm"] == pytest.approx(-0.013)
+    assert tables["points"] == {"upper": 20, "lower": 25}
+    back = read_gauge(path, cloud)
+    assert (back.thickness_mm, back.u_mm, back.k, back.verdict) == (49.987, 0.012, 2.0, "conforming")
+    assert np.array_equal(back.lower.indices, gauge.lower.indices)
+    assert np.allclose(back.upper.residuals, gauge.upper.residuals)
+    assert back.parallelism == pytest.approx(1e-4)
+    assert (back.budget[0].source, back.rule, back.notes) == ("camera", "the rule", ("a note",))
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (lambda t: t.__setitem__("thickness_mm", float("nan")), "thickness_mm is NaN, not a length in mm above 0"),
+        (lambda t: t.__setitem__("u_mm", -1), "u_mm is -1, not a length in mm, not negative"),
+        (lambda t: t["flatness_mm"].pop("lower"), "flatness_mm.lower is missing"),
+    ],
+)
+def test_a_spoilt_gauge_file_is_refused_by_field(tmp_path, cloud, gauge, change, said):
+    path = tmp_path / "gauge.json"
+    write_gauge(path, gauge, "abc")
+    edited(path, change)
+    with pytest.raises(InputError) as error:
+        read_gauge(path, cloud)
+    assert said in str(error.value)
+
+
+def test_gauge_of_another_cloud_is_refused(tmp_path, cloud, gauge):
+    write_gauge(tmp_path / "gauge.json", gauge, "abc")
+    with pytest.raises(InputError, match="lower names points that the cloud does not have"):
+        read_gauge(tmp_path / "gauge.json", cloud.select(np.arange(40)))
+
+
+def test_run_round_trip(tmp_path):
+    frame = FrameRecord(3, "scan/f.png", False, "no stripe", condition=np.inf, sigma_mm=np.nan)
+    record = RunRecord("set", datetime(2025, 1, 31, 12, 0, 5, tzinfo=UTC), frames=(frame,))
+    record = record.with_step("camera", 1.23456, {"b": "2", "a": "1"}, {"skew": True}, ["Tilt more."])
+    record = record.with_step("scan", 2.0, {"c": "3"}, {"method": "network"}, [])
+    record = record.with_step("camera", 4.0, {}, {"skew": False}, ["Fine."])
+    write_run(tmp_path / "run.json", record)
+    back = read_run(tmp_path / "run.json")
+    assert back.measured_at == record.measured_at
+    assert back.settings == {"camera": {"skew": False}, "scan": {"method": "network"}}
+    assert back.timings == {"camera": 4.0, "scan": 2.0}
+    assert list(back.inputs) == ["a", "b", "c"]
+    assert back.all_notes == ("Fine.",)
+    assert back.frames[0].condition == np.inf
+    assert np.isnan(back.frames[0].sigma_mm)
+    assert json.loads((tmp_path / "run.json").read_text())["versions"]["numpy"] == np.__version__
 
 
 def test_json_is_strict_and_readable():

@@ -1,0 +1,141 @@
+"""gauge.json: the thickness with its uncertainty; gauge.npz beside it: which points of the cloud each face rests on."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field, ValidationError
+
+from core import __version__
+from core.errors import InputError
+from core.files.arrays_file import read_arrays, write_arrays
+from core.files.atomic import write_text
+from core.files.camera_file import Finite, ResultFile, Row3
+from core.files.complaints import complaint
+from core.files.json_text import read_json, to_json
+from core.inspect.results import Contribution, Face, GaugeResult
+from core.model import LightPlane
+from core.scan.cloud import Cloud
+
+_TODO = "measure the thickness first: trisect gauge SET --out DIR"
+
+
+class _Pair(ResultFile):
+    upper: Finite = Field(description="a finite number")
+    lower: Finite = Field(description="a finite number")
+
+
+class _Face(ResultFile):
+    pi: Row3 = Field(description="three finite numbers")
+    rms_mm: Finite = Field(description="a finite number")
+
+
+class _Faces(ResultFile):
+    upper: _Face
+    lower: _Face
+
+
+class _Contribution(ResultFile):
+    source: str
+    u_mm: Finite
+
+
+class _GaugeFile(ResultFile):
+    thickness_mm: Finite = Field(gt=0, description="a length in mm above 0")
+    u_mm: Finite = Field(ge=0, description="a length in mm, not negative")
+    k: Finite = Field(gt=0, description="a number above 0")
+    flatness_mm: _Pair = Field(description="a table of upper and lower")
+    parallelism_deg: Finite = Field(description="an angle in degrees")
+    faces: _Faces = Field(description="a table of upper and lower")
+    nominal_mm: Finite | None = None
+    tolerance_mm: Finite | None = None
+    verdict: str = ""
+    rule: str = ""
+    normal: Row3 | None = None
+    notes: list[str] = Field(default_factory=list)
+    budget: list[_Contribution] = Field(default_factory=list)
+    calibration_id: str = ""
+
+
+def write_gauge(path: Path, gauge: GaugeResult, calibration_id: str) -> None:
+    """Write gauge.json at `path`, and gauge.npz beside it; InputError if they cannot be written."""
+    write_arrays(path.with_suffix(".npz"), {"upper": gauge.upper.indices, "lower": gauge.lower.indices})
+    write_text(
+        path,
+        to_json(
+            {
+                "thickness_mm": gauge.thickness_mm,
+                "u_mm": gauge.u_mm,
+                "U_mm": gauge.U_mm,
+                "k": gauge.k,
+                "nominal_mm": gauge.nominal_mm,
+                "tolerance_mm": gauge.tolerance_mm,
+                "deviation_mm": gauge.deviation_mm,
+                "verdict": gauge.verdict,
+                "rule": gauge.rule,
+                "notes": gauge.notes,
+                "flatness_mm": {"upper": gauge.upper.flatness_mm, "lower": gauge.lower.flatness_mm},
+                "parallelism_deg": math.degrees(gauge.parallelism),
+                "points": dict(zip(("upper", "lower"), gauge.points_used, strict=True)),
+                "normal": gauge.normal,
+                "budget": [{"source": row.source, "u_mm": row.u_mm} for row in gauge.budget],
+                "faces": {"upper": _plane(gauge.upper), "lower": _plane(gauge.lower)},
+                "calibration_id": calibration_id,
+                "version": __version__,
+            }
+        ),
+    )
+
+
+def read_gauge(path: Path, cloud: Cloud) -> GaugeResult:
+    """Read gauge.json with the faces' points among those of `cloud`.
+
+    Raises
+    ------
+    InputError
+        If a file is missing, a value is not finite or absurd, or the faces' points are not in the cloud.
+    """
+    tables = read_json(path, todo=_TODO)
+    try:
+        file = _GaugeFile.model_validate(tables)
+    except ValidationError as error:
+        raise complaint(path, error, _GaugeFile) from error
+    members = _members(path.with_suffix(".npz"), len(cloud))
+    return GaugeResult(
+        thickness_mm=file.thickness_mm,
+        u_mm=file.u_mm,
+        k=file.k,
+        upper=_face(file.faces.upper, members["upper"], file.flatness_mm.upper, cloud),
+        lower=_face(file.faces.lower, members["lower"], file.flatness_mm.lower, cloud),
+        parallelism=math.radians(file.parallelism_deg),
+        budget=tuple(Contribution(row.source, row.u_mm) for row in file.budget),
+        nominal_mm=file.nominal_mm,
+        tolerance_mm=file.tolerance_mm,
+        verdict=file.verdict,
+        normal=None if file.normal is None else np.array(file.normal),
+        rule=file.rule,
+        notes=tuple(file.notes),
+    )
+
+
+def _plane(face: Face) -> dict[str, Any]:
+    return {"normal": face.plane.normal, "d_mm": face.plane.d_mm, "pi": face.plane.pi, "rms_mm": face.rms_mm}
+
+
+def _face(face: _Face, indices: NDArray[np.int64], flatness_mm: float, cloud: Cloud) -> Face:
+    plane = LightPlane(np.array(face.pi))
+    return Face(plane, indices, -plane.distances(cloud.points[indices]), flatness_mm, face.rms_mm)
+
+
+def _members(path: Path, count: int) -> dict[str, NDArray[np.int64]]:
+    """Indices of the points of each face, checked against a cloud of `count` points."""
+    arrays = read_arrays(path, ("upper", "lower"), todo=_TODO)
+    members = {name: np.asarray(arrays[name], dtype=np.int64) for name in ("upper", "lower")}
+    for name, indices in members.items():
+        if indices.ndim != 1 or (len(indices) and (indices.min() < 0 or indices.max() >= count)):
+            raise InputError(f"{name} names points that the cloud does not have", where=path, todo=_TODO)
+    return members

@@ -1,0 +1,127 @@
+"""Gauge step: cloud.ply and the calibrations → gauge.json."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from core.calibrate.fan import FanOptions, fit_fan
+from core.files.fan_file import fan_id
+from core.files.gauge_file import read_gauge, write_gauge
+from core.files.ply import read_cloud
+from core.files.poses_file import read_poses
+from core.files.rig import GaugeSpec
+from core.files.scan_file import ScanFile, read_scan
+from core.image.centreline import Centreline
+from core.inspect.gauge import GaugeFit, fit_gauge, measure_gauge
+from core.inspect.remeasure import calibration_changes
+from core.inspect.results import GaugeResult
+from core.model import Camera, Fan
+from core.model.arrays import Array
+from core.pipeline.options import Options
+from core.pipeline.workspace import Calibration, Workspace, check_calibration
+from core.progress import Progress, silent
+from core.scan.cloud import FAN, Cloud
+from core.scan.reconstruct import ReconstructOptions, reconstruct
+
+_NO_CUT_MM = 1e6
+
+
+def gauge_step(work: Workspace, options: Options | None = None, progress: Progress = silent) -> GaugeResult:
+    """Measure the thickness of the cloud in the folder and write gauge.json.
+
+    Raises
+    ------
+    InputError
+        If a result is missing, damaged or of another calibration, or there are no two parallel faces.
+    """
+    options = options or Options()
+    with work.step("gauge") as log:
+        calibration = work.calibration()
+        file = read_cloud(work.path("cloud"))
+        check_calibration(work.path("cloud"), file.calibration_id, calibration)
+        scan = read_scan(work.path("scan"))
+        check_calibration(work.path("scan"), scan.calibration_id, calibration)
+        cloud, spec = file.cloud, work.found.rig.gauge or GaugeSpec()
+        fit = fit_gauge(cloud, regions=_regions(spec), progress=progress)
+        of_camera, of_fan = _calibration_changes(work, calibration, scan, cloud, fit, options, progress)
+        gauge = measure_gauge(
+            cloud,
+            fit=fit,
+            nominal_mm=spec.nominal_mm,
+            tolerance_mm=spec.tolerance_mm,
+            sweep_covariance=scan.covariance,
+            camera_changes=of_camera,
+            fan_changes=of_fan,
+            correlation_px=_correlation([piece for frame in scan.features.frames for piece in frame.centrelines]),
+            speckle_px=_correlation(scan.features.fan),
+            progress=progress,
+        )
+        log.settings.update({"nominal_mm": spec.nominal_mm, "tolerance_mm": spec.tolerance_mm, "rule": gauge.rule})
+        log.notes.extend(gauge.notes)
+        write_gauge(work.path("gauge"), gauge, calibration.id)
+    return read_gauge(work.path("gauge"), cloud)
+
+
+def _regions(spec: GaugeSpec) -> tuple[Array, Array] | None:
+    if spec.upper_polygon_px is None or spec.lower_polygon_px is None:
+        return None
+    return spec.upper_polygon_px, spec.lower_polygon_px
+
+
+def _correlation(pieces: Sequence[Centreline]) -> float:
+    """Length in pixels over which the noise of a typical point counts as one: the median over all points."""
+    lengths = np.array([len(piece) for piece in pieces])
+    correlations = np.array([piece.correlation_px for piece in pieces])
+    return float(np.median(np.repeat(correlations, lengths))) if len(pieces) else 1.0
+
+
+def _calibration_changes(
+    work: Workspace,
+    calibration: Calibration,
+    scan: ScanFile,
+    cloud: Cloud,
+    fit: GaugeFit,
+    options: Options,
+    progress: Progress,
+) -> tuple[Array | None, Array | None]:
+    """Changes of the thickness for one-σ displaced cameras and fans; None where their covariance is not known.
+
+    A displaced camera calibrates the fan anew, because the fan was calibrated through it and makes up for part of its
+    error; that needs the poses' features in planes.npz.
+    """
+    camera, fan = calibration.camera.camera, calibration.fan.fan
+    refit = _refit_fan(work, calibration)
+
+    def measure(displaced: Camera, given: Fan) -> float:
+        used = refit(displaced) if displaced is not camera and refit is not None else given
+        return fit.thickness_of(_measured_again(scan, cloud, displaced, used, options))
+
+    of_camera, of_fan = calibration_changes(measure, camera, calibration.camera.covariance, fan, progress=progress)
+    return of_camera if len(of_camera) else None, of_fan if len(of_fan) else None
+
+
+def _refit_fan(work: Workspace, calibration: Calibration) -> Callable[[Camera], Fan] | None:
+    """How to calibrate the fan with another camera, if the poses' features are at hand."""
+    poses = read_poses(work.path("poses"), fan_id(calibration.fan.fan))
+    if not poses:
+        return None
+    rig = work.found.rig
+    used = {pose.name for pose in calibration.fan.poses if pose.used}
+    options = FanOptions(rig.lines, rig.angle or None)
+    return lambda camera: fit_fan([pose for pose in poses if pose.name in used], camera, options).fan
+
+
+def _measured_again(scan: ScanFile, cloud: Cloud, camera: Camera, fan: Fan, options: Options) -> Array:
+    """The cloud's points (N, 3) with another camera and fan: its sweeps solved again, the same pixels triangulated."""
+    solving = ReconstructOptions(method=options.method, sigma_cut_mm=_NO_CUT_MM)
+    again = reconstruct(scan.features, camera, fan, solving)
+    place = np.searchsorted(again.sweep_frames, scan.sweep_frames)
+    swept = cloud.sweep >= 0
+    pis = np.empty((len(cloud), 3))
+    pis[swept] = again.pis[place[cloud.sweep[swept]]]
+    pis[~swept] = fan.pis[FAN - cloud.sweep[~swept]]
+    rays = camera.rays(cloud.uv)
+    points: Array = rays / np.einsum("ni,ni->n", rays, pis)[:, None]
+    return points

@@ -1,0 +1,55 @@
+"""What a run can be told; everything has a default that suits most sets."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from core.calibrate.camera import CameraOptions
+from core.errors import InputError
+from core.scan.reconstruct import Method
+
+METHODS: tuple[Method, ...] = ("network", "three-crossings")
+
+
+@dataclass(frozen=True, slots=True)
+class Options:
+    """What a run can be told.
+
+    Parameters
+    ----------
+    method
+        "network": all sweeps adjusted together; "three-crossings": each frame from its own crossings with the fan, as
+        the paper does.
+    sigma_cut_mm
+        Points with a larger standard uncertainty of depth are left out.
+    camera
+        Which camera parameters are free.
+
+    Raises
+    ------
+    InputError
+        If the method is unknown or the cut is absurd.
+    """
+
+    method: Method = "network"
+    sigma_cut_mm: float = 0.05
+    camera: CameraOptions = field(default_factory=CameraOptions)
+
+    def __post_init__(self) -> None:
+        if self.method not in METHODS:
+            raise InputError(f"{self.method!r} is not {' or '.join(METHODS)}", where="method")
+        if not 0 < self.sigma_cut_mm <= 10:
+            raise InputError(f"{self.sigma_cut_mm:g} is not above 0 and at most 10 mm", where="sigma-cut")
+
+    @property
+    def camera_settings(self) -> Mapping[str, Any]:
+        """What the camera's calibration is told, for run.json."""
+        camera = self.camera
+        return {"skew": camera.skew, "k3": camera.k3, "fixed": sorted(camera.fixed), "outliers": camera.outliers}
+
+    @property
+    def scan_settings(self) -> Mapping[str, Any]:
+        """What the scan is told, for run.json."""
+        return {"method": self.method, "sigma_cut_mm": self.sigma_cut_mm}

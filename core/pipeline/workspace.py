@@ -1,0 +1,146 @@
+"""The folder of results: the names in it, and the record of how they came about."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+from core.calibrate.results import CameraCalibration, FanCalibration
+from core.errors import InputError
+from core.files.atomic import cannot_write, make_folder
+from core.files.camera_file import camera_id, read_camera
+from core.files.fan_file import fan_id, read_fan
+from core.files.pictures import Picture
+from core.files.recording_set import RecordingSet
+from core.files.run_file import RunRecord, read_run, write_run
+from core.model import Camera
+from core.scan.results import FrameRecord
+
+FILES = {
+    "camera": "camera.json",
+    "planes": "planes.json",
+    "poses": "planes.npz",
+    "cloud": "cloud.ply",
+    "mesh": "mesh.ply",
+    "scan": "scan.npz",
+    "gauge": "gauge.json",
+    "faces": "gauge.npz",
+    "report": "report.pdf",
+    "run": "run.json",
+}
+"""Fixed names of the results."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Calibration:
+    """The camera and the fan a scan is measured with, and the id that names the two."""
+
+    camera: CameraCalibration
+    fan: FanCalibration
+
+    @property
+    def id(self) -> str:
+        """Written into everything measured with this calibration."""
+        return f"{camera_id(self.camera.camera)}-{fan_id(self.fan.fan)}"
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class StepLog:
+    """What a step leaves for run.json besides its results."""
+
+    settings: dict[str, Any] = field(default_factory=dict)
+    notes: list[str] = field(default_factory=list)
+    frames: list[FrameRecord] = field(default_factory=list)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Workspace:
+    """A recording set and the folder its results go to."""
+
+    found: RecordingSet
+    out: Path
+
+    @classmethod
+    def open(cls, found: RecordingSet, out: Path) -> Workspace:
+        """Make the folder if need be; InputError if nothing can be written there."""
+        if out.resolve() == found.folder.resolve():
+            raise InputError(
+                "the results cannot go into the recording set itself", where=out, todo="choose another --out"
+            )
+        return cls(found, make_folder(out))
+
+    def path(self, name: str) -> Path:
+        """Where the result `name`, a key of FILES, lies."""
+        return self.out / FILES[name]
+
+    def clear(self, names: Sequence[str] = tuple(FILES)) -> None:
+        """Remove results of an earlier run, so that old and new never stand side by side."""
+        for name in names:
+            try:
+                self.path(name).unlink(missing_ok=True)
+            except OSError as error:
+                raise cannot_write(self.path(name), error) from error
+
+    def calibration(self) -> Calibration:
+        """Read camera.json and planes.json; InputError if they are missing, wrong, or not of each other."""
+        camera = read_camera(self.path("camera"))
+        return Calibration(camera, read_fan(self.path("planes"), camera.camera))
+
+    def record(self) -> RunRecord:
+        """What run.json says so far; a fresh record where there is none."""
+        if self.path("run").exists():
+            return read_run(self.path("run"))
+        return RunRecord(self.found.folder.resolve().name, _now())
+
+    @contextmanager
+    def step(self, name: str, *, measures: bool = True) -> Iterator[StepLog]:
+        """Time a step and, if it succeeds, add it to run.json.
+
+        Parameters
+        ----------
+        name
+            camera, planes, scan, gauge or report.
+        measures
+            Whether the step measures anything: then its beginning is the time the report prints.
+        """
+        begun, started = _now(), time.perf_counter()
+        log = StepLog()
+        yield log
+        seconds = time.perf_counter() - started
+        record = self.record().with_step(name, seconds, self.found.hashes, log.settings, log.notes)
+        if measures:
+            record = replace(record, measured_at=begun)
+        if log.frames:
+            record = replace(record, frames=tuple(log.frames))
+        write_run(self.path("run"), record)
+
+
+def check_calibration(path: Path, found_id: str, calibration: Calibration) -> None:
+    """InputError if a result was measured with another calibration than the one beside it."""
+    if found_id and found_id != calibration.id:
+        raise InputError(
+            f"was measured with calibration {found_id}, but camera.json and planes.json are {calibration.id}",
+            where=path,
+            todo="measure the scan again: trisect scan SET --out DIR",
+        )
+
+
+def check_size(path: Path, picture: Picture, camera: Camera) -> None:
+    """InputError if a picture is not of the size the camera was calibrated at."""
+    height, width = picture.shape
+    if (width, height) != camera.image_size:
+        wanted = " × ".join(map(str, camera.image_size))
+        raise InputError(
+            f"the picture has {width} × {height} pixels, but camera.json was calibrated at {wanted}",
+            where=path,
+            todo="calibrate the camera with pictures of this size",
+        )
+
+
+def _now() -> datetime:
+    return datetime.now(UTC).astimezone()
