@@ -28,7 +28,7 @@ from core.scan.reconstruct import ReconstructOptions, reconstruct
 _NO_CUT_MM = 1e6
 
 
-def gauge_step(work: Workspace, options: Options | None = None, progress: Progress = silent) -> GaugeResult:
+def gauge_step(work: Workspace, progress: Progress = silent) -> GaugeResult:
     """Measure the thickness of the cloud in the folder and write gauge.json.
 
     Raises
@@ -36,7 +36,6 @@ def gauge_step(work: Workspace, options: Options | None = None, progress: Progre
     InputError
         If a result is missing, damaged or of another calibration, or there are no two parallel faces.
     """
-    options = options or Options()
     with work.step("gauge") as log:
         calibration = work.calibration()
         file = read_cloud(work.path("cloud"))
@@ -45,7 +44,7 @@ def gauge_step(work: Workspace, options: Options | None = None, progress: Progre
         check_calibration(work.path("scan"), scan.calibration_id, calibration)
         cloud, spec = file.cloud, work.found.rig.gauge or GaugeSpec()
         fit = fit_gauge(cloud, regions=_regions(spec), progress=progress)
-        of_camera, of_fan = _calibration_changes(work, calibration, scan, cloud, fit, options, progress)
+        of_camera, of_fan = _calibration_changes(work, calibration, scan, cloud, fit, progress)
         gauge = measure_gauge(
             cloud,
             fit=fit,
@@ -83,7 +82,6 @@ def _calibration_changes(
     scan: ScanFile,
     cloud: Cloud,
     fit: GaugeFit,
-    options: Options,
     progress: Progress,
 ) -> tuple[Array | None, Array | None]:
     """Changes of the thickness for one-σ displaced cameras and fans; None where their covariance is not known.
@@ -93,6 +91,8 @@ def _calibration_changes(
     """
     camera, fan = calibration.camera.camera, calibration.fan.fan
     refit = _refit_fan(work, calibration)
+    method = work.record().settings.get("scan", {}).get("method", Options().method)
+    options = Options(method)
 
     def measure(displaced: Camera, given: Fan) -> float:
         used = refit(displaced) if displaced is not camera and refit is not None else given

@@ -86,6 +86,10 @@ class Workspace:
             except OSError as error:
                 raise cannot_write(self.path(name), error) from error
 
+    def written(self) -> dict[str, Path]:
+        """The results that are there, by their keys in FILES."""
+        return {name: self.path(name) for name in FILES if self.path(name).exists()}
+
     def calibration(self) -> Calibration:
         """Read camera.json and planes.json; InputError if they are missing, wrong, or not of each other."""
         camera = read_camera(self.path("camera"))

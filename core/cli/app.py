@@ -1,0 +1,251 @@
+"""`trisect`: what each command takes, and what its exit code says.
+
+0: done, and conforming if a verdict was asked for. 1: measured, but out of tolerance or not proven. 2: bad input, told
+in one sentence on standard error. 130: interrupted. Numbers come from the rooms below; here is only talk. Those rooms
+are imported by the command that needs them: so `trisect --help` answers at once.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Sequence
+from enum import Enum
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from typer.core import TyperGroup
+
+from core import __version__
+from core.cli.bars import bars
+from core.errors import Cancelled, InputError
+from core.simulate.scenario import OBJECTS, Scenario
+
+BAD_INPUT, INTERRUPTED = 2, 130
+
+SCENARIO = Scenario()
+"""The defaults of a simulated recording."""
+
+EPILOG = "Exit code: 0 done, 1 measured but out of tolerance or not proven, 2 bad input, 130 interrupted."
+
+
+class Method(str, Enum):  # noqa: UP042  (Typer shows the values of a str Enum)
+    """How a scan is solved."""
+
+    network = "network"
+    three_crossings = "three-crossings"
+
+
+Set = Annotated[Path, typer.Argument(metavar="SET", help="The recording set: a folder with rig.toml and pictures.")]
+Out = Annotated[Path, typer.Option("--out", "-o", metavar="DIR", help="Folder of the results; made if need be.")]
+Json = Annotated[bool, typer.Option("--json", help="Print one JSON object for machines instead of a table.")]
+MethodOption = Annotated[
+    Method,
+    typer.Option(
+        help="network: all sweeps adjusted together. three-crossings: each frame from its own crossings with the fan, "
+        "the paper's method, for comparison."
+    ),
+]
+SigmaCut = Annotated[
+    float, typer.Option("--sigma-cut", metavar="MM", help="Leave out points with a larger standard uncertainty.")
+]
+NoSkew = Annotated[bool, typer.Option("--no-skew", help="Fix the camera's skew γ to 0.")]
+K3 = Annotated[bool, typer.Option("--k3", help="Free the third radial coefficient, for wide lenses.")]
+
+
+class _Commands(TyperGroup):
+    """The commands; Ctrl-C passes through as `Cancelled`, or Typer would leave with the code of "not proven"."""
+
+    def invoke(self, ctx: typer.Context) -> Any:  # type: ignore[override]
+        try:
+            return super().invoke(ctx)
+        except KeyboardInterrupt as interrupt:
+            raise Cancelled from interrupt
+
+
+app = typer.Typer(
+    name="trisect",
+    cls=_Commands,
+    help="Measure a part with one camera, a fixed three-line laser and a hand-moved single-line laser.",
+    epilog=EPILOG,
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+
+def _say_version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(f"trisect {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _trisect(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_say_version, is_eager=True, help="Print the version and leave.")
+    ] = False,
+) -> None:
+    """Only holds --version; the commands do the rest."""
+
+
+@app.command(epilog=EPILOG)
+def run(
+    folder: Set,
+    out: Out,
+    method: MethodOption = Method.network,
+    sigma_cut: SigmaCut = 0.05,
+    no_skew: NoSkew = False,
+    k3: K3 = False,
+    json: Json = False,
+) -> None:
+    """Measure a recording set: calibrations, cloud, mesh, thickness, report."""
+    from core.cli import measuring
+
+    options = measuring.options(method.value, sigma_cut, skew=not no_skew, k3=k3)
+    with bars() as progress:
+        result = measuring.run_all(folder, out, options, progress)
+    measuring.show_run(result, as_json=json)
+    raise typer.Exit(measuring.exit_code(result.gauge))
+
+
+@app.command()
+def camera(folder: Set, out: Out, no_skew: NoSkew = False, k3: K3 = False, json: Json = False) -> None:
+    """Calibrate the camera from SET/camera; writes camera.json."""
+    from core.cli import measuring
+
+    options = measuring.options("network", 0.05, skew=not no_skew, k3=k3)
+    with bars() as progress:
+        shown = measuring.run_camera(folder, out, options, progress)
+    shown.show(as_json=json)
+
+
+@app.command()
+def planes(folder: Set, out: Out, json: Json = False) -> None:
+    """Calibrate the fan's light planes from SET/planes, with camera.json in DIR; writes planes.json."""
+    from core.cli import measuring
+
+    with bars() as progress:
+        shown = measuring.run_planes(folder, out, progress)
+    shown.show(as_json=json)
+
+
+@app.command()
+def scan(
+    folder: Set, out: Out, method: MethodOption = Method.network, sigma_cut: SigmaCut = 0.05, json: Json = False
+) -> None:
+    """Measure the surface from SET/scan, with the calibrations in DIR; writes cloud.ply and mesh.ply."""
+    from core.cli import measuring
+
+    options = measuring.options(method.value, sigma_cut)
+    with bars() as progress:
+        shown = measuring.run_scan(folder, out, options, progress)
+    shown.show(as_json=json)
+
+
+@app.command(epilog=EPILOG)
+def gauge(folder: Set, out: Out, json: Json = False) -> None:
+    """Measure the thickness of the cloud in DIR as SET/rig.toml asks; writes gauge.json."""
+    from core.cli import measuring
+
+    with bars() as progress:
+        result, shown = measuring.run_gauge(folder, out, progress)
+    shown.show(as_json=json)
+    raise typer.Exit(measuring.exit_code(result))
+
+
+@app.command()
+def report(folder: Set, out: Out, json: Json = False) -> None:
+    """Put the results in DIR into report.pdf."""
+    from core.cli import measuring
+
+    with bars() as progress:
+        shown = measuring.run_report(folder, out, progress)
+    shown.show(as_json=json)
+
+
+@app.command()
+def simulate(
+    thing: Annotated[str, typer.Argument(metavar="OBJECT", help=f"What stands on the table: {', '.join(OBJECTS)}.")],
+    out: Annotated[Path, typer.Option("--out", "-o", metavar="SET", help="Folder of the new recording set.")],
+    height: Annotated[
+        float, typer.Option("--height", metavar="MM", help="Height of a block or mask, diameter of a sphere.")
+    ] = SCENARIO.height_mm,
+    stl: Annotated[str, typer.Option("--stl", metavar="FILE", help="The file of an stl.")] = SCENARIO.stl_path,
+    frames: Annotated[int, typer.Option(help="Frames of the scan.")] = SCENARIO.frames,
+    views: Annotated[int, typer.Option(help="Views of the camera target.")] = SCENARIO.camera_views,
+    poses: Annotated[int, typer.Option(help="Poses of the plane target.")] = SCENARIO.plane_poses,
+    seed: Annotated[int, typer.Option(help="The same seed gives the same pictures.")] = SCENARIO.seed,
+    scale: Annotated[float, typer.Option(help="Picture size over 3840 × 2748.")] = SCENARIO.scale,
+    noise: Annotated[float, typer.Option(help="Factor on shot and read noise; 0 for none.")] = SCENARIO.noise,
+    speckle: Annotated[float, typer.Option(help="Contrast of the lasers' speckle; 0 for none.")] = SCENARIO.speckle,
+    bits: Annotated[int, typer.Option(help="Depth of the pictures, 8 or 16.")] = SCENARIO.bits,
+    json: Json = False,
+) -> None:
+    """Render a recording set as the paper's rig would record it; its truth is written beside it, never inside."""
+    from core.cli import simulating
+
+    scenario = Scenario(
+        object=thing,
+        stl_path=stl,
+        height_mm=height,
+        frames=frames,
+        camera_views=views,
+        plane_poses=poses,
+        seed=seed,
+        scale=scale,
+        noise=noise,
+        speckle=speckle,
+        bits=bits,
+    )
+    with bars() as progress:
+        simulating.render(scenario, out, progress)
+    simulating.show(out, as_json=json)
+
+
+@app.command(epilog=EPILOG)
+def demo(
+    out: Annotated[Path, typer.Option("--out", "-o", metavar="DIR", help="Folder of the results.")] = Path("out"),
+    quick: Annotated[bool, typer.Option("--quick", help="A smaller sample: sooner done, less exact.")] = False,
+    json: Json = False,
+) -> None:
+    """Measure the embedded sample, a 50 mm gauge block; it is rendered on first use and kept in your cache."""
+    from core.cli import measuring, simulating
+
+    with bars() as progress:
+        folder = simulating.sample(progress, quick=quick)
+        result = measuring.run_all(folder, out, measuring.options("network", 0.05), progress)
+    measuring.show_run(result, as_json=json)
+    if not json:
+        simulating.show_demo(result)
+    raise typer.Exit(measuring.exit_code(result.gauge))
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Run the command line and leave with its exit code."""
+    import cv2
+
+    # OpenCV mumbles about damaged pictures on standard error; what matters is said in our own sentence.
+    cv2.utils.logging.setLogLevel(cv2.utils.logging.LOG_LEVEL_SILENT)
+    words = list(sys.argv[1:] if arguments is None else arguments)
+    try:
+        app(words, prog_name="trisect")  # leaves by SystemExit with the command's own code
+    except InputError as error:
+        _refuse(str(error), as_json="--json" in words)
+        sys.exit(BAD_INPUT)
+    except Cancelled:
+        sys.stderr.write("trisect: interrupted; what was finished before is whole, nothing is half written.\n")
+        sys.exit(INTERRUPTED)
+    except BrokenPipeError:
+        # Whoever read our output has left; Python would complain once more when it closes standard output.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _refuse(sentence: str, *, as_json: bool) -> None:
+    if as_json:
+        from core.files.json_text import to_json
+
+        sys.stdout.write(to_json({"error": sentence}))
+    sys.stderr.write(f"trisect: {sentence}\n")

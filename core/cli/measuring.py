@@ -1,0 +1,124 @@
+"""What the measuring commands do: call the pipeline, then say what came of it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, cast
+
+from core.calibrate.camera import CameraOptions
+from core.cli import output
+from core.files.recording_set import open_set
+from core.inspect.results import GaugeResult
+from core.pipeline import (
+    Options,
+    RunResult,
+    Workspace,
+    camera_step,
+    gauge_step,
+    planes_step,
+    report_step,
+    run,
+    scan_step,
+)
+from core.progress import Progress
+from core.scan.reconstruct import Method
+
+PROVEN = ("", "conforming")
+"""Verdicts that leave with exit code 0."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Shown:
+    """What a command says when it is done."""
+
+    rows: output.Rows
+    values: Mapping[str, Any]
+    notes: tuple[str, ...] = ()
+    files: Mapping[str, Path] = field(default_factory=dict)
+
+    def show(self, *, as_json: bool) -> None:
+        """Print it, for people or for machines."""
+        if as_json:
+            output.print_json({**self.values, "notes": self.notes, "files": output.files_json(self.files)})
+        else:
+            output.print_rows(self.rows, self.notes, self.files)
+
+
+def options(method: str, sigma_cut: float, *, skew: bool = True, k3: bool = False) -> Options:
+    """The pipeline's options from the command line's; InputError if one is absurd."""
+    return Options(cast(Method, method), sigma_cut, CameraOptions(skew=skew, k3=k3))
+
+
+def exit_code(gauge: GaugeResult | None) -> int:
+    """0, or 1 where a verdict was asked for and is not "conforming"."""
+    return 0 if gauge is None or gauge.verdict in PROVEN else 1
+
+
+def run_all(folder: Path, out: Path, chosen: Options, progress: Progress) -> RunResult:
+    """The whole way."""
+    return run(folder, out, chosen, progress)
+
+
+def show_run(result: RunResult, *, as_json: bool) -> None:
+    """Say what a whole run measured."""
+    rows: output.Rows = output.gauge_rows(result.gauge) if result.gauge else [("thickness", "not measured")]
+    rows += [("camera", output.camera_summary(result.camera)), ("fan", output.fan_summary(result.fan))]
+    rows += output.frame_rows(result.frames, result.points)
+    values = {
+        **output.gauge_json(result.gauge),
+        **output.frames_json(result.frames, result.points),
+        "triangles": result.triangles,
+        "camera": output.camera_json(result.camera),
+        "fan": output.fan_json(result.fan),
+    }
+    Shown(rows, values, result.notes, result.files).show(as_json=as_json)
+
+
+def run_camera(folder: Path, out: Path, chosen: Options, progress: Progress) -> Shown:
+    """Camera step."""
+    work = _open(folder, out)
+    calibration = camera_step(work, chosen, progress)
+    rows, values = output.camera_rows(calibration), output.camera_json(calibration)
+    return _shown(work, "camera", rows, values, "camera")
+
+
+def run_planes(folder: Path, out: Path, progress: Progress) -> Shown:
+    """Planes step."""
+    work = _open(folder, out)
+    calibration = planes_step(work, progress)
+    return _shown(work, "planes", output.fan_rows(calibration), output.fan_json(calibration), "planes")
+
+
+def run_scan(folder: Path, out: Path, chosen: Options, progress: Progress) -> Shown:
+    """Scan step."""
+    work = _open(folder, out)
+    measured = scan_step(work, chosen, progress)
+    frames, points = measured.scan.frames, len(measured.scan.cloud)
+    rows, values = output.frame_rows(frames, points), output.frames_json(frames, points)
+    return _shown(work, "scan", rows, values, "cloud", "mesh")
+
+
+def run_gauge(folder: Path, out: Path, progress: Progress) -> tuple[GaugeResult, Shown]:
+    """Gauge step."""
+    work = _open(folder, out)
+    gauge = gauge_step(work, progress)
+    return gauge, _shown(work, "gauge", output.gauge_rows(gauge), output.gauge_json(gauge), "gauge")
+
+
+def run_report(folder: Path, out: Path, progress: Progress) -> Shown:
+    """Report step."""
+    work = _open(folder, out)
+    report_step(work, progress)
+    return _shown(work, "report", [], {}, "report")
+
+
+def _open(folder: Path, out: Path) -> Workspace:
+    return Workspace.open(open_set(folder), out)
+
+
+def _shown(work: Workspace, step: str, rows: output.Rows, values: Mapping[str, Any], *names: str) -> Shown:
+    files = work.written()
+    notes = tuple(work.record().notes.get(step, ()))
+    return Shown(rows, values, notes, {name: files[name] for name in names})

@@ -1,0 +1,174 @@
+"""What the commands print: small calm tables for people, one JSON object for machines."""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+from rich.table import Table
+
+from core.calibrate.results import CAMERA_PARAMETERS, CameraCalibration, FanCalibration
+from core.files.json_text import to_json
+from core.inspect.results import GaugeResult
+from core.report.wording import count, decimals_of, fixed, grouped, thickness_line, with_uncertainty
+from core.scan.results import FrameRecord
+
+Rows = list[tuple[str, str]]
+_NAMES_SHOWN = 3
+
+
+def print_json(values: Mapping[str, Any]) -> None:
+    """One JSON object on standard output."""
+    sys.stdout.write(to_json(values))
+
+
+def print_rows(rows: Rows, notes: Sequence[str] = (), files: Mapping[str, Path] | None = None) -> None:
+    """A table of labels and values, the notes below it, then where the files are."""
+    console = Console(highlight=False)
+    table = Table(box=None, show_header=False, padding=(0, 2, 0, 0))
+    table.add_column(style="dim", no_wrap=True)
+    table.add_column(overflow="fold")
+    for label, value in rows:
+        table.add_row(label, value)
+    for label, path in (files or {}).items():
+        table.add_row(f"{label} file", str(path))
+    console.print(table)
+    for note in notes:
+        console.print(f"note: {note}", markup=False)
+
+
+def camera_rows(calibration: CameraCalibration) -> Rows:
+    """Parameters with standard deviations, and how well the views fit."""
+    camera = calibration.camera
+    values = [*camera.matrix[[0, 1, 0, 0, 1], [0, 1, 1, 2, 2]], *camera.distortion]
+    rows = [
+        (name, " ± ".join(with_uncertainty(float(value), calibration.sd[name])))
+        for name, value in zip(CAMERA_PARAMETERS, values, strict=True)
+        if calibration.sd[name] > 0
+    ]
+    return [*rows, ("reprojection", camera_summary(calibration)), ("picture covered", f"{calibration.coverage:.0%}")]
+
+
+def camera_summary(calibration: CameraCalibration) -> str:
+    """The camera in one line."""
+    used = sum(view.used for view in calibration.views)
+    return (
+        f"{calibration.rms_px:.3f} px RMS, {calibration.mean_px:.3f} px mean, "
+        f"{used} of {count(len(calibration.views), 'view')}"
+    )
+
+
+def fan_rows(calibration: FanCalibration) -> Rows:
+    """Every plane, the angles between them, and whether the pencil suits the laser."""
+    rows = []
+    for number, (plane, rms) in enumerate(zip(calibration.fan.planes, calibration.rms_mm, strict=True), start=1):
+        normal = ", ".join(fixed(float(part), 5) for part in plane.normal)
+        rows.append((f"plane {number}", f"normal ({normal}), d {plane.d_mm:.3f} mm, RMS {rms:.3f} mm"))
+    if calibration.angles:
+        rows.append(("angles", ", ".join(f"{math.degrees(angle):.3f}°" for angle in calibration.angles)))
+        free = ", ".join(f"{math.degrees(angle):.3f}°" for angle in calibration.free_angles)
+        rows.append(("angles, free fit", free))
+    used = sum(pose.used for pose in calibration.poses)
+    rows.append(("poses", f"{used} of {count(len(calibration.poses), 'pose')} used"))
+    return [*rows, ("verdict", calibration.verdict)] if calibration.verdict else rows
+
+
+def fan_summary(calibration: FanCalibration) -> str:
+    """The fan in one line."""
+    used = sum(pose.used for pose in calibration.poses)
+    rms = ", ".join(f"{value:.3f}" for value in calibration.rms_mm)
+    return f"{rms} mm RMS, {used} of {count(len(calibration.poses), 'pose')}"
+
+
+def gauge_rows(gauge: GaugeResult) -> Rows:
+    """Thickness, deviation, verdict and the faces."""
+    rows = [("thickness", thickness_line(gauge))]
+    if gauge.nominal_mm is not None and gauge.tolerance_mm is not None and gauge.deviation_mm is not None:
+        rows.append(("nominal", f"{gauge.nominal_mm:g} mm ± {gauge.tolerance_mm:g} mm"))
+        rows.append(("deviation", f"{fixed(gauge.deviation_mm, decimals_of(gauge.U_mm), signed=True)} mm"))
+    rows.append(("verdict", gauge.verdict or "none: rig.toml states no nominal value"))
+    upper, lower = gauge.points_used
+    flatness = f"{gauge.upper.flatness_mm:.3f} mm above, {gauge.lower.flatness_mm:.3f} mm below (95 % of points)"
+    return [
+        *rows,
+        ("flatness", flatness),
+        ("parallelism", f"{math.degrees(gauge.parallelism):.3f}°"),
+        ("points on faces", f"{grouped(upper)} above, {grouped(lower)} below"),
+    ]
+
+
+def frame_rows(frames: Sequence[FrameRecord], points: int) -> Rows:
+    """How many frames gave points, why others did not, and how many points."""
+    reasons: dict[str, list[str]] = {}
+    for frame in frames:
+        if not frame.used:
+            reasons.setdefault(frame.reason, []).append(frame.name)
+    used = sum(frame.used for frame in frames)
+    rows = [("frames", f"{used} of {count(len(frames), 'frame')} used")]
+    for reason, names in reasons.items():
+        others = ", …" if len(names) > _NAMES_SHOWN else ""
+        rows.append(("", f"{len(names)} left out: {reason} ({', '.join(names[:_NAMES_SHOWN])}{others})"))
+    return [*rows, ("points", grouped(points))]
+
+
+def gauge_json(gauge: GaugeResult | None) -> dict[str, Any]:
+    """The result for machines; nulls where no thickness was measured."""
+    if gauge is None:
+        return {"thickness_mm": None, "verdict": ""}
+    return {
+        "thickness_mm": gauge.thickness_mm,
+        "u_mm": gauge.u_mm,
+        "U_mm": gauge.U_mm,
+        "k": gauge.k,
+        "nominal_mm": gauge.nominal_mm,
+        "tolerance_mm": gauge.tolerance_mm,
+        "deviation_mm": gauge.deviation_mm,
+        "verdict": gauge.verdict,
+        "flatness_mm": {"upper": gauge.upper.flatness_mm, "lower": gauge.lower.flatness_mm},
+        "parallelism_deg": math.degrees(gauge.parallelism),
+        "points_on_faces": dict(zip(("upper", "lower"), gauge.points_used, strict=True)),
+    }
+
+
+def frames_json(frames: Sequence[FrameRecord], points: int) -> dict[str, Any]:
+    """Frames used and left out, and points, for machines."""
+    return {
+        "points": points,
+        "frames_used": sum(frame.used for frame in frames),
+        "frames_left_out": [{"name": frame.name, "reason": frame.reason} for frame in frames if not frame.used],
+    }
+
+
+def camera_json(calibration: CameraCalibration) -> dict[str, Any]:
+    """The camera for machines."""
+    return {
+        "rms_px": calibration.rms_px,
+        "mean_px": calibration.mean_px,
+        "matrix": calibration.camera.matrix,
+        "distortion": calibration.camera.distortion,
+        "views_used": sum(view.used for view in calibration.views),
+        "views_left_out": [
+            {"name": view.view.name, "reason": view.reason} for view in calibration.views if not view.used
+        ],
+    }
+
+
+def fan_json(calibration: FanCalibration) -> dict[str, Any]:
+    """The fan for machines."""
+    return {
+        "pi": calibration.fan.pis,
+        "rms_mm": calibration.rms_mm,
+        "angles_deg": [math.degrees(angle) for angle in calibration.angles],
+        "constraint_suits": calibration.constraint_suits,
+        "poses_used": sum(pose.used for pose in calibration.poses),
+        "poses_left_out": [{"name": pose.name, "reason": pose.reason} for pose in calibration.poses if not pose.used],
+    }
+
+
+def files_json(files: Mapping[str, Path]) -> dict[str, str]:
+    """Paths as text."""
+    return {name: str(path) for name, path in files.items()}

@@ -1,0 +1,42 @@
+"""What `trisect simulate` and `trisect demo` do: recordings without a rig."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from core.cli import output
+from core.errors import InputError
+from core.pipeline import RunResult
+from core.progress import Progress
+from core.report.wording import thickness_line
+from core.simulate.recording import simulate_set
+from core.simulate.sample import sample_set
+from core.simulate.scenario import Scenario
+
+
+def render(scenario: Scenario, out: Path, progress: Progress) -> None:
+    """Write the recording set of a scenario into a new folder; InputError if something is there already."""
+    if out.exists() and (not out.is_dir() or any(out.iterdir())):
+        raise InputError("there is something here already", where=out, todo="choose a new folder for the set")
+    simulate_set(scenario, out, progress)
+
+
+def show(out: Path, *, as_json: bool) -> None:
+    """Say where the set is and what to do with it."""
+    if as_json:
+        output.print_json({"set": str(out)})
+    else:
+        sys.stdout.write(f"recording set in {out}; measure it with: trisect run {out} --out DIR\n")
+
+
+def sample(progress: Progress, *, quick: bool) -> Path:
+    """The embedded sample's folder, rendered on first use."""
+    return sample_set(quick=quick, progress=progress)
+
+
+def show_demo(result: RunResult) -> None:
+    """The last line of the demo: the one number, and what to open."""
+    if result.gauge is not None:
+        line = thickness_line(result.gauge)
+        sys.stdout.write(f"\nThe sample block measures {line}; the report is {result.files['report']}.\n")

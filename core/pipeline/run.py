@@ -1,0 +1,93 @@
+"""The whole way in one call: from a recording set to thickness, cloud, mesh and report."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from core.calibrate.results import CameraCalibration, FanCalibration
+from core.errors import InputError
+from core.files.recording_set import open_set, require_camera, require_planes, require_scan
+from core.inspect.results import GaugeResult
+from core.pipeline.camera_step import camera_step
+from core.pipeline.gauge_step import gauge_step
+from core.pipeline.options import Options
+from core.pipeline.planes_step import planes_step
+from core.pipeline.report_step import report_step
+from core.pipeline.scan_step import scan_step
+from core.pipeline.workspace import Workspace
+from core.progress import Progress, silent
+from core.scan.results import FrameRecord
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class RunResult:
+    """What a whole run measured, and where its files are.
+
+    `gauge` is None where no thickness was asked for and the part has no two parallel faces. `files` holds what was
+    written, by the names in `core.pipeline.workspace.FILES`.
+    """
+
+    camera: CameraCalibration
+    fan: FanCalibration
+    frames: tuple[FrameRecord, ...]
+    points: int
+    triangles: int
+    gauge: GaugeResult | None
+    notes: tuple[str, ...]
+    files: dict[str, Path]
+
+
+def run(set_folder: Path, out_folder: Path, options: Options | None = None, progress: Progress = silent) -> RunResult:
+    """Measure a recording set; every step's results are written as soon as they are there.
+
+    Parameters
+    ----------
+    set_folder
+        The recording set.
+    out_folder
+        Where the results go; made if it is not there. Results of an earlier run in it are replaced.
+    options
+        Method and cuts.
+    progress
+        Told what is being done; may cancel.
+
+    Raises
+    ------
+    InputError
+        If anything in the set keeps it from being measured; what was finished before stays, whole.
+    """
+    options = options or Options()
+    found = open_set(set_folder)
+    require_camera(found)
+    require_planes(found)
+    require_scan(found)
+    work = Workspace.open(found, out_folder)
+    work.clear()
+    camera = camera_step(work, options, progress)
+    fan = planes_step(work, progress)
+    measured = scan_step(work, options, progress)
+    gauge = _gauge(work, progress)
+    report_step(work, progress)
+    return RunResult(
+        camera=camera,
+        fan=fan,
+        frames=measured.scan.frames,
+        points=len(measured.scan.cloud),
+        triangles=len(measured.mesh.triangles),
+        gauge=gauge,
+        notes=work.record().all_notes,
+        files=work.written(),
+    )
+
+
+def _gauge(work: Workspace, progress: Progress) -> GaugeResult | None:
+    """The thickness; a part without two parallel faces is no error when rig.toml does not ask for a thickness."""
+    if work.found.rig.gauge is not None:
+        return gauge_step(work, progress)
+    try:
+        return gauge_step(work, progress)
+    except InputError as error:
+        with work.step("gauge") as log:
+            log.notes.append(f"No thickness was measured: {error}")
+        return None
