@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
@@ -75,7 +76,9 @@ class PlanePose:
     """One pose of the plane target in the fan's calibration.
 
     `points[k]` are the (n_k, 3) points in mm in the camera frame on fan line k, `distances[k]` their signed
-    distances in mm from the constrained plane; both empty for a line this pose does not show.
+    distances in mm from the plane in use; both empty for a line this pose does not show. `pose` is the target's pose
+    after it was adjusted together with the fan, `target_rms_px` how well the target alone fits its own pose. A pose
+    that was left out says why in `reason`; where none could be found it is the identity and the RMS are NaN.
     """
 
     name: str
@@ -94,8 +97,11 @@ class FanCalibration:
 
     `fan` is the result to use (constrained when the constraint suits the laser), `free` the planes fitted each on
     its own. `rms_mm` per line. `angles` (rad) between neighbouring planes of the constrained and the free fit.
-    `pencil_gap_mm` is the largest distance of the free planes from one common axis within the work volume;
-    `constraint_suits` None where there is no constraint (one line).
+    `pencil_gap_mm` is the largest distance of the free planes from those of one pencil, its angles free, within the
+    work volume; `constraint_suits` None where there is no constraint (one line). `constraint_p` is the probability of
+    a constrained fit this much worse than the free one if the constraint were true. `stripe_sd_mm` is the standard
+    deviation of a whole stripe from its plane beyond the stripe's own noise (flatness of the plate, lens),
+    `corner_scale` the factor by which the target's points scatter more than they stated.
     """
 
     fan: Fan
@@ -108,3 +114,6 @@ class FanCalibration:
     verdict: str
     poses: tuple[PlanePose, ...]
     notes: tuple[str, ...] = ()
+    constraint_p: float = math.nan
+    stripe_sd_mm: float = math.nan
+    corner_scale: float = math.nan

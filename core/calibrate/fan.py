@@ -1,0 +1,220 @@
+"""Calibration of the fan: from the target's poses and the stripes on them to light planes with a covariance.
+
+Each pose of a flat target is located by its own points, its straight stripes are put on it, the stripes are sorted
+into the lines of the fan by the consensus of all poses, and planes and poses are solved together: freely first, then
+as the pencil the laser is said to be, if the comparison speaks for it.
+
+References
+----------
+Sun et al., Sensors 2023, 23, 13, §3.2, doi:10.3390/s23010013.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from core.calibrate.fan_bundle import Bundle, BundlePose, solve
+from core.calibrate.fan_summary import summarise
+from core.calibrate.fan_verdict import Constrained, judge
+from core.calibrate.line_assignment import NOT_SEEN, assign_lines
+from core.calibrate.located_pose import LocatedPose, locate, on_target
+from core.calibrate.pencil import FreePlanes, PlaneSet
+from core.calibrate.plane_pose import PoseFeatures
+from core.calibrate.results import FanCalibration
+from core.errors import InputError
+from core.model import Camera, Fan, LightPlane
+from core.model.arrays import Array
+from core.progress import Progress, silent, steps
+
+WHERE = "planes"
+MORE_POSES = "record more poses of the target, at different distances and tilts"
+SMALLEST_SPREAD = 0.01
+"""A plane is not determined by stripes that lie nearer to one straight line than this share of their depth (RMS)."""
+ODD = 5.0
+"""A pose this many times worse than the median pose is left out."""
+
+
+@dataclass(frozen=True, slots=True)
+class FanOptions:
+    """What is known of the laser.
+
+    Parameters
+    ----------
+    lines
+        How many light planes it has.
+    angle
+        In rad between neighbouring planes, as stated by its maker; None if unknown. Of no meaning for one line.
+    constrained
+        "always" holds the planes to one pencil with that angle, "axis" to a pencil with any angles, "never" to
+        nothing; "auto" takes the first of these that suits the laser.
+
+    Raises
+    ------
+    ValueError
+        If there is no line, or the angle is not between 0 and π/2.
+    """
+
+    lines: int = 3
+    angle: float | None = None
+    constrained: Constrained = "auto"
+
+    def __post_init__(self) -> None:
+        if self.lines < 1:
+            raise ValueError(f"a fan has at least one line, not {self.lines}")
+        if self.angle is not None and self.lines > 1 and not 0 < self.angle < np.pi / 2:
+            raise ValueError(f"the angle between neighbouring lines must be between 0 and π/2 rad, not {self.angle}")
+
+
+def fit_fan(
+    features: Sequence[PoseFeatures], camera: Camera, options: FanOptions, progress: Progress = silent
+) -> FanCalibration:
+    """Calibrate the fan.
+
+    Parameters
+    ----------
+    features
+        What the pictures of each pose show, from :func:`core.calibrate.plane_pose.measure_plane_pose`.
+    camera
+        The calibrated camera. May differ a little from the one the features were measured with, so that a fit can be
+        repeated to see how the camera's uncertainty goes on into the fan's.
+    options
+        What is known of the laser.
+
+    Raises
+    ------
+    InputError
+        If no pose is usable, fewer lines are seen than promised, or the poses are too alike to determine a plane.
+    """
+    located = [locate(pose, camera) for pose in steps(features, progress, "fan poses", len(features))]
+    _check_poses(located)
+    located, rough = _assigned(located, camera, options)
+    _check_spread(located, options.lines)
+    located, free = _solve_without_odd_poses(FreePlanes(rough), located, camera)
+    volume = _points_by_line(located, free)
+    verdict = judge(free, volume, options.angle, options.constrained)
+    used = free if isinstance(verdict.start, FreePlanes) else _solve(verdict.start, located, camera)
+    return summarise(located, free, used, verdict)
+
+
+def same_model(options: FanOptions, calibration: FanCalibration) -> FanOptions:
+    """`options` that repeat what "auto" chose for `calibration`, so that repeated fits differ only by their input."""
+    if calibration.constraint_suits is None or options.constrained != "auto":
+        return options
+    if calibration.constraint_suits:
+        return replace(options, constrained="always")
+    free = np.array_equal(calibration.fan.pis, calibration.free.pis)
+    return replace(options, constrained="never" if free else "axis")
+
+
+def fan_deviations(calibration: FanCalibration) -> tuple[Fan, ...]:
+    """Fans displaced by one standard deviation along each principal axis of the calibration's covariance.
+
+    The squares of what they change in a result, summed, are its variance due to the fan.
+    """
+    fan = calibration.fan
+    values, vectors = np.linalg.eigh(np.asarray(fan.covariance))
+    fans = []
+    for value, vector in zip(values, vectors.T, strict=True):
+        if value > 1e-12 * values[-1]:
+            pis = fan.pis + np.sqrt(value) * vector.reshape(-1, 3)
+            fans.append(Fan(tuple(LightPlane(pi) for pi in pis), fan.covariance))
+    return tuple(fans)
+
+
+def _check_poses(located: Sequence[LocatedPose]) -> None:
+    """InputError unless two poses are usable."""
+    usable = sum(pose.used for pose in located)
+    if usable >= 2:
+        return
+    reasons = "; ".join([f"{pose.features.name}: {pose.reason}" for pose in located if not pose.used][:3])
+    if not located:
+        what = "there are no poses of the target"
+    elif usable == 0:
+        what = f"none of the {len(located)} poses can be used ({reasons})"
+    else:
+        what = "only one pose can be used, which does not determine a light plane" + (
+            f" ({reasons})" if reasons else ""
+        )
+    raise InputError(what, where=WHERE, todo=MORE_POSES + ", with the fan on and the whole target in the picture")
+
+
+def _assigned(located: Sequence[LocatedPose], camera: Camera, options: FanOptions) -> tuple[list[LocatedPose], Array]:
+    """The poses with their stripes sorted into fan lines, and the planes (N, 3) roughly."""
+    assignment = assign_lines([pose.as_lines(camera) for pose in located], options.lines, options.angle)
+    found = len(assignment.pis)
+    if found < options.lines:
+        usable = sum(pose.used for pose in located)
+        raise InputError(
+            f"only {found} of the {options.lines} promised fan lines were seen in enough of the {usable} usable poses",
+            where=WHERE,
+            todo="check laser_fan.lines in rig.toml, and that every line falls on the target in several poses",
+        )
+    sorted_poses = []
+    for pose, which in zip(located, assignment.which.T, strict=True):
+        stripes = {line: pose.lines[index] for line, index in enumerate(which) if index != NOT_SEEN}
+        if pose.used and not stripes:
+            sorted_poses.append(pose.left_out("no stripe on the target agrees with the other poses"))
+        else:
+            sorted_poses.append(replace(pose, stripes=stripes))
+    return sorted_poses, assignment.pis
+
+
+def _check_spread(located: Sequence[LocatedPose], lines: int) -> None:
+    """InputError if the stripes of a line lie along one straight line in space."""
+    for line in range(lines):
+        showing = [pose for pose in located if line in pose.stripes]
+        ends = np.vstack([on_target(pose.stripes[line].pivots, pose.pose) for pose in showing])
+        spread = np.linalg.svd(ends - ends.mean(axis=0), compute_uv=False)[1] / np.sqrt(len(ends))
+        if spread < SMALLEST_SPREAD * ends[:, 2].mean():
+            raise InputError(
+                f"the poses are too alike: the stripes of fan line {line + 1} on all of them lie within "
+                f"{spread:.1f} mm (RMS) of one straight line, which does not determine its plane",
+                where=WHERE,
+                todo=MORE_POSES,
+            )
+
+
+def _solve(planes: PlaneSet, located: Sequence[LocatedPose], camera: Camera) -> Bundle:
+    """Solve planes and poses together; the bundle has one pose for each that is used."""
+    poses = [
+        BundlePose(pose.features.view, pose.pose, pose.stripes)
+        for pose in located
+        if pose.used and pose.features.view is not None
+    ]
+    return solve(planes, poses, camera)
+
+
+def _solve_without_odd_poses(
+    planes: PlaneSet, located: list[LocatedPose], camera: Camera
+) -> tuple[list[LocatedPose], Bundle]:
+    """The fit; poses far worse than the others are left out one by one, at most a third of them."""
+    dispensable = sum(pose.used for pose in located) // 3
+    while True:
+        bundle = _solve(planes, located, camera)
+        used = [index for index, pose in enumerate(located) if pose.used]
+        worst = int(np.argmax(bundle.pose_errors))
+        times = float(bundle.pose_errors[worst] / np.median(bundle.pose_errors))
+        trial = list(located)
+        trial[used[worst]] = located[used[worst]].left_out(
+            f"its stripes or target points fit {times:.0f} times worse than in the other poses"
+        )
+        if dispensable == 0 or times < ODD or not _seen_twice(trial, len(planes.pis)):
+            return located, bundle
+        located, dispensable, planes = trial, dispensable - 1, bundle.planes
+
+
+def _seen_twice(located: Sequence[LocatedPose], lines: int) -> bool:
+    """Whether every line is seen in two poses or more."""
+    return all(sum(line in pose.stripes for pose in located) >= 2 for line in range(lines))
+
+
+def _points_by_line(located: Sequence[LocatedPose], bundle: Bundle) -> list[Array]:
+    """For each line all its points (n, 3) in mm on the adjusted poses."""
+    lines: list[list[Array]] = [[] for _ in bundle.planes.pis]
+    for pose, adjusted in zip((pose for pose in located if pose.used), bundle.poses, strict=True):
+        for line, stripe in pose.stripes.items():
+            lines[line].append(on_target(stripe.rays, adjusted))
+    return [np.vstack(points) for points in lines]

@@ -1,0 +1,78 @@
+"""The fan's calibration as it is handed on: quality of lines and poses, and notes for the technician."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from core.calibrate.fan_bundle import Bundle
+from core.calibrate.fan_verdict import Verdict, fan_of
+from core.calibrate.located_pose import LocatedPose, on_target
+from core.calibrate.results import FanCalibration, PlanePose
+from core.model import LightPlane, Pose
+from core.model.arrays import Array
+
+SATURATED_SHARE = 0.1
+"""A share of saturated stripe points worth a warning."""
+
+
+def summarise(located: Sequence[LocatedPose], free: Bundle, used: Bundle, verdict: Verdict) -> FanCalibration:
+    """Put together the result of a free fit, the fit in use and the verdict between them."""
+    pis = used.planes.pis
+    adjusted = iter(used.poses)
+    poses = tuple(_plane_pose(pose, next(adjusted) if pose.used else None, pis) for pose in located)
+    free_fan = fan_of(free.planes, free.covariance)
+    return FanCalibration(
+        fan=fan_of(used.planes, used.covariance),
+        free=free_fan,
+        rms_mm=tuple(_rms([pose.distances[line] for pose in poses]) for line in range(len(pis))),
+        angles=verdict.constrained_angles,
+        free_angles=free_fan.angles,
+        pencil_gap_mm=verdict.pencil_gap_mm,
+        constraint_suits=verdict.suits,
+        verdict=verdict.sentence,
+        poses=poses,
+        notes=_notes(located),
+        constraint_p=verdict.p,
+        stripe_sd_mm=used.extra_mm,
+        corner_scale=used.corner_scale,
+    )
+
+
+def _plane_pose(located: LocatedPose, adjusted: Pose | None, pis: Array) -> PlanePose:
+    points = [np.zeros((0, 3)) for _ in pis]
+    if adjusted is not None:
+        for line, stripe in located.stripes.items():
+            points[line] = on_target(stripe.rays, adjusted)
+    distances = [LightPlane(pi).distances(own) for pi, own in zip(pis, points, strict=True)]
+    return PlanePose(
+        name=located.features.name,
+        pose=located.pose if adjusted is None else adjusted,
+        target_rms_px=located.rms_px,
+        points=tuple(points),
+        distances=tuple(distances),
+        rms_mm=_rms(distances),
+        used=located.used,
+        reason=located.reason,
+    )
+
+
+def _rms(distances: Sequence[Array]) -> float:
+    joined = np.concatenate(distances)
+    return float(np.sqrt((joined**2).mean())) if len(joined) else float("nan")
+
+
+def _notes(located: Sequence[LocatedPose]) -> tuple[str, ...]:
+    notes = []
+    out = [f"{pose.features.name} ({pose.reason})" for pose in located if not pose.used]
+    if out:
+        notes.append(f"{len(out)} of {len(located)} poses left out: {'; '.join(out)}")
+    stripes = [stripe for pose in located for stripe in pose.stripes.values()]
+    share = float(np.average([s.saturated for s in stripes], weights=[len(s) for s in stripes]))
+    if share > SATURATED_SHARE:
+        notes.append(
+            f"the stripes are saturated at {share:.0%} of their points, which shifts them: expose shorter, dim the "
+            "laser, or set channel in rig.toml to a colour in which the laser is weaker"
+        )
+    return tuple(notes)

@@ -1,0 +1,159 @@
+"""Is this laser's fan the pencil it is said to be?
+
+The free fit of the planes with its covariance is all that the pictures say. A pencil is fitted to it; the sum of
+squares that is left, in units of that covariance, tells whether the pencil describes the planes as well as no pencil.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from scipy.stats import f as f_distribution
+
+from core.calibrate.fan_bundle import Bundle
+from core.calibrate.levenberg import minimise
+from core.calibrate.pencil import FreePlanes, Pencil, PlaneSet, pencil_near
+from core.model import Fan, LightPlane
+from core.model.arrays import Array
+
+SIGNIFICANT = 0.01
+"""A constraint is refused when chance alone would be this unkind more rarely than this."""
+
+Constrained = Literal["auto", "always", "axis", "never"]
+"""Hold the planes to the pencil where that suits the laser; always; to its axis only; not at all."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Verdict:
+    """What to use and why.
+
+    `start` are the planes to solve for in the end, `constrained_angles` those of the constrained planes. The other
+    fields are those of :class:`core.calibrate.results.FanCalibration`.
+    """
+
+    start: PlaneSet
+    constrained_angles: tuple[float, ...]
+    suits: bool | None
+    p: float
+    pencil_gap_mm: float
+    sentence: str
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class _Trial:
+    """A pencil fitted to the free planes, and the probability of so bad a fit by chance."""
+
+    pencil: Pencil
+    p: float
+
+
+def judge(free: Bundle, volume: Sequence[Array], angle: float | None, constrained: Constrained) -> Verdict:
+    """Compare the free planes with a pencil.
+
+    Parameters
+    ----------
+    free
+        The free fit.
+    volume
+        For each line, points (n_k, 3) in mm on it that span the work volume.
+    angle
+        In rad, fixed between neighbours; None: only the common axis is a constraint.
+    constrained
+        What to use, or "auto" for what suits the laser.
+    """
+    pis = free.planes.pis
+    count = len(pis)
+    free_angles = fan_of(free.planes).angles
+    if count == 1 or (count == 2 and angle is None):
+        sentence = "one light plane: there is no pencil to hold it to"
+        if count == 2:
+            sentence = "two planes at an unknown angle always are a pencil: nothing constrains them"
+        return Verdict(FreePlanes(pis), free_angles, None, np.nan, 0.0, sentence)
+    axis_only = _trial(free, None)
+    gap = max(
+        float(np.abs(LightPlane(pi).distances(_onto(own, points))).max())
+        for pi, own, points in zip(axis_only.pencil.pis, pis, volume, strict=True)
+    )
+    tied = axis_only if angle is None else _trial(free, angle)
+    suits = tied.p >= SIGNIFICANT
+    suited = "always" if suits else "axis" if axis_only.p >= SIGNIFICANT else "never"
+    choices: dict[str, PlaneSet] = {"always": tied.pencil, "axis": axis_only.pencil, "never": FreePlanes(pis)}
+    start = choices[suited if constrained == "auto" else constrained]
+    return Verdict(
+        start,
+        fan_of(tied.pencil).angles,
+        suits,
+        tied.p,
+        gap,
+        _sentence(start, tied, axis_only, free, angle, gap, constrained != "auto"),
+    )
+
+
+def fan_of(planes: PlaneSet, covariance: Array | None = None) -> Fan:
+    """The planes as a fan."""
+    return Fan(tuple(LightPlane(pi) for pi in planes.pis), covariance)
+
+
+def _trial(free: Bundle, angle: float | None) -> _Trial:
+    """Fit a pencil to the free planes with their covariance as the weight."""
+    pis = free.planes.pis
+    scale = np.sqrt(np.diag(free.covariance))
+    whiten = np.linalg.inv(np.linalg.cholesky(free.covariance / np.outer(scale, scale))) / scale
+
+    def linearise(pencil: Pencil) -> tuple[Array, Array]:
+        return whiten @ (pencil.pis - pis).ravel(), whiten @ pencil.jacobian
+
+    solution = minimise(pencil_near(pis, angle), linearise, Pencil.moved)
+    constraints = solution.jacobian.shape[0] - solution.jacobian.shape[1]
+    if constraints == 0:
+        return _Trial(solution.state, 1.0)
+    excess = float(solution.residuals @ solution.residuals) / constraints
+    return _Trial(solution.state, float(f_distribution.sf(excess, constraints, max(free.freedom, 1.0))))
+
+
+def _onto(pi: Array, points: Array) -> Array:
+    """`points` (N, 3) moved at right angles onto the plane π."""
+    return points - np.outer(LightPlane(pi).distances(points), pi / np.linalg.norm(pi))
+
+
+def _angle_sds(free: Bundle) -> tuple[float, ...]:
+    """Standard deviation in rad of each angle between neighbouring free planes."""
+    pis = free.planes.pis
+    sds = []
+    for k in range(len(pis) - 1):
+        lengths = np.linalg.norm(pis[k : k + 2], axis=1)
+        a, b = pis[k] / lengths[0], pis[k + 1] / lengths[1]
+        sine = np.linalg.norm(np.cross(a, b))
+        gradient = np.concatenate([-(b - a * (a @ b)) / lengths[0], -(a - b * (a @ b)) / lengths[1]]) / sine
+        block = free.covariance[3 * k : 3 * k + 6, 3 * k : 3 * k + 6]
+        sds.append(float(np.sqrt(gradient @ block @ gradient)))
+    return tuple(sds)
+
+
+def _sentence(
+    start: PlaneSet, tied: _Trial, axis_only: _Trial, free: Bundle, angle: float | None, gap: float, asked: bool
+) -> str:
+    sds = np.degrees(_angle_sds(free))
+    angles = ", ".join(
+        f"{found:.3f}° ± {sd:.3f}°" for found, sd in zip(np.degrees(fan_of(free.planes).angles), sds, strict=True)
+    )
+    wanted = "one common axis" if angle is None else f"one common axis and angles of {np.degrees(angle):g}°"
+    if tied.p >= SIGNIFICANT:
+        finding = f"{wanted}: this suits the laser"
+    elif angle is not None and axis_only.p >= SIGNIFICANT:
+        finding = f"{wanted}: this does not suit the laser; its planes do share an axis, but not at these angles"
+    else:
+        finding = f"{wanted}: this does not suit the laser"
+    facts = (
+        f"fitted freely, the angles are {angles}, and the planes miss one axis by up to {gap:.3f} mm; p = {tied.p:.2g}"
+    )
+    if isinstance(start, FreePlanes):
+        use = "the freely fitted planes are used"
+    elif start is axis_only.pencil and angle is not None:
+        use = "a pencil with free angles is used"
+    else:
+        use = "the constrained planes are used"
+    return f"{finding} ({facts}); {use}{', as asked' if asked else ''}"

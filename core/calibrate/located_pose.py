@@ -1,0 +1,78 @@
+"""A pose of the plane target in space, with the straight stripes on it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from core.calibrate.fan_bundle import target_plane, target_plane_covariance
+from core.calibrate.line_assignment import PoseLines
+from core.calibrate.plane_pose import PoseFeatures
+from core.calibrate.stripe_lines import StripeLine, straight_lines
+from core.image.targets import TargetNotFound, estimate_pose
+from core.model import Camera, Pose
+from core.model.arrays import Array
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class LocatedPose:
+    """A pose of the target.
+
+    Parameters
+    ----------
+    features
+        What its pictures show.
+    pose
+        From the target's own points; the identity if there is none.
+    rms_px
+        RMS residual of the target's points.
+    lines
+        The straight stripes, on the target or not.
+    stripes
+        Fan line (from 0) → the stripe it draws here, once that is known.
+    reason
+        Why the pose is not used; empty if it is.
+    """
+
+    features: PoseFeatures
+    pose: Pose
+    rms_px: float
+    lines: tuple[StripeLine, ...]
+    stripes: dict[int, StripeLine] = field(default_factory=dict)
+    reason: str = ""
+
+    @property
+    def used(self) -> bool:
+        """Whether the pose takes part in the fit."""
+        return not self.reason
+
+    def left_out(self, reason: str) -> LocatedPose:
+        """The same pose, not used."""
+        return replace(self, stripes={}, reason=reason)
+
+    def as_lines(self, camera: Camera) -> PoseLines:
+        """The stripes and the target's plane, for their assignment; no stripes if the pose is not used."""
+        if not self.used or self.features.view is None:
+            return PoseLines((), np.zeros(3), np.zeros((3, 3)))
+        covariance = target_plane_covariance(self.features.view, self.pose, camera)
+        return PoseLines(self.lines, target_plane(self.pose), covariance)
+
+
+def locate(features: PoseFeatures, camera: Camera) -> LocatedPose:
+    """Pose of the target and straight lines among its stripes, or the reason why there are none."""
+    nowhere = LocatedPose(features, Pose.identity(), np.nan, (), reason=features.reason)
+    if features.reason or features.view is None:
+        return nowhere
+    try:
+        estimate = estimate_pose(features.view, camera)
+    except TargetNotFound as error:
+        return nowhere.left_out(error.what)
+    lines = straight_lines(features.centrelines, camera)
+    located = LocatedPose(features, estimate.pose, estimate.rms_px, lines)
+    return located if lines else located.left_out("no straight stripe was found on the target")
+
+
+def on_target(rays: Array, pose: Pose) -> Array:
+    """Points (N, 3) in mm where `rays` (N, 3) meet the plane of a target at `pose`."""
+    return np.asarray(rays / (rays @ target_plane(pose))[:, None], dtype=np.float64)

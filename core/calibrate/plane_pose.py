@@ -1,0 +1,192 @@
+"""One pose of the plane target: from a pair of pictures to target points and stripes.
+
+With a picture of the same pose without laser, the stripes come from the difference and the target from the picture
+without; without one, both come from the only picture, and only the light plate around the marks counts. Where the
+plate's own brightness changes across a stripe, at the edge of a mark, the stripe's centre is pulled to the lighter
+side: those points are left out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import map_coordinates
+
+from core.image.centreline import Centreline
+from core.image.noise import estimate_noise
+from core.image.stripes import StripeSettings, choose_settings, extract_centrelines
+from core.image.target_view import TargetView
+from core.image.targets import Target, TargetNotFound, camera_shift, detect
+from core.model import Camera
+from core.model.arrays import Array
+
+Picture = NDArray[Any]
+"""(H, W) grey levels, uint8 or uint16."""
+
+MOVED_PX = 0.5
+"""A target that moved so far between the two pictures of a pair spoils its pose."""
+PULL_PX = 0.05
+"""A point that the plate's change of brightness may pull further than this is left out."""
+DARK = 0.4
+"""A point where the picture is darker than this share of the plate around the target's points is left out."""
+SHORTEST = 12
+"""Runs with fewer points left are dropped."""
+
+
+@dataclass(frozen=True, slots=True)
+class PlanePoseOptions:
+    """How a pair of pictures is read; `moved_px` is the movement of the target from which a pair is left out."""
+
+    moved_px: float = MOVED_PX
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class PoseFeatures:
+    """What the pictures of one pose show.
+
+    Parameters
+    ----------
+    name
+        The pose's name, for messages.
+    view
+        The target's points; None if it was not found.
+    centrelines
+        All stripes in the picture, on the target or not.
+    reason
+        Why the pose cannot be used; empty if it can.
+    notes
+        Sentences for the technician.
+    """
+
+    name: str
+    view: TargetView | None
+    centrelines: tuple[Centreline, ...]
+    reason: str = ""
+    notes: tuple[str, ...] = ()
+
+
+def measure_plane_pose(
+    name: str,
+    on: Picture,
+    off: Picture | None,
+    target: Target,
+    camera: Camera | None = None,
+    settings: StripeSettings | None = None,
+    options: PlanePoseOptions | None = None,
+) -> PoseFeatures:
+    """Find the target and the stripes of one pose. A pose that cannot be used says so in its `reason`.
+
+    Parameters
+    ----------
+    name
+        The pose's name, for messages.
+    on, off
+        (H, W) uint8 or uint16, fan on and off; `off` None if there is no such picture.
+    target
+        The plane target.
+    camera
+        Helps finding straight edges under distortion.
+    settings
+        Width and contrast of the stripes; chosen from the picture if not given.
+
+    Raises
+    ------
+    ValueError
+        If the two pictures differ in size or depth.
+    """
+    options = options or PlanePoseOptions()
+    if off is not None and (on.shape != off.shape or on.dtype != off.dtype):
+        raise ValueError(f"the pictures of {name} differ: {on.shape} {on.dtype} and {off.shape} {off.dtype}")
+    plate = on if off is None else off
+    try:
+        view = detect(target, plate, name, camera)
+    except TargetNotFound as error:
+        return PoseFeatures(name, None, (), error.what)
+    moved = None if off is None else _movement(on, view, target, camera)
+    if moved is not None and moved >= options.moved_px:
+        reason = f"the target moved by {moved:.2f} px between the pictures with the fan off and on"
+        return PoseFeatures(name, view, (), reason)
+    centrelines = _stripes(on, off, settings)
+    if not centrelines:
+        return PoseFeatures(name, view, (), "no stripe was found: is the fan on?")
+    level = DARK * _plate_level(plate, view)
+    centrelines = _on_even_plate(centrelines, plate, level, laser_off=off is not None)
+    notes: tuple[str, ...] = ()
+    if off is not None and moved is None:
+        notes = (f"{name}: with the fan on the target is not found, so it was not checked whether it moved",)
+    return PoseFeatures(name, view, centrelines, notes=notes)
+
+
+def _stripes(on: Picture, off: Picture | None, settings: StripeSettings | None) -> tuple[Centreline, ...]:
+    """Centrelines of the laser in the difference of two pictures, or in the only one."""
+    picture = on.astype(np.float32)
+    saturated = on >= np.iinfo(on.dtype).max
+    if off is None:
+        noise = estimate_noise(picture)
+    else:
+        without = off.astype(np.float32)
+        common = float(np.median(without[::8, ::8]))
+        noise = estimate_noise(without).of_difference(common)
+        picture = picture - without
+    chosen = settings or choose_settings(picture, float(np.iinfo(on.dtype).max))
+    return () if chosen is None else extract_centrelines(picture, chosen, noise=noise, saturated=saturated)
+
+
+def _movement(on: Picture, view: TargetView, target: Target, camera: Camera | None) -> float | None:
+    """How far in pixels the target is from `view` in the picture with the fan on; None if the fan hides it there."""
+    try:
+        return camera_shift(view, detect(target, on, view.name, camera))
+    except TargetNotFound:
+        return None
+
+
+def _plate_level(plate: Picture, view: TargetView) -> float:
+    """Grey level of the light plate at and around the target's points."""
+    low, high = view.uv.min(axis=0), view.uv.max(axis=0)
+    margin = 0.25 * (high - low)
+    left, top = np.maximum(low - margin, 0).astype(int)
+    right, bottom = (high + margin).astype(int) + 1
+    return float(np.quantile(plate[top:bottom:4, left:right:4], 0.8))
+
+
+def _on_even_plate(
+    centrelines: Sequence[Centreline], plate: Picture, level: float, *, laser_off: bool
+) -> tuple[Centreline, ...]:
+    """The points on light plate, brighter than `level`, of even brightness.
+
+    The centre of a stripe of σ = s on a plate whose brightness changes as exp(g n) across it moves by s² g. The plate
+    is looked at where the stripe is if the laser is off there, else just beside it.
+    """
+    uv = np.vstack([line.uv for line in centrelines])
+    across = np.vstack([line.normal for line in centrelines])
+    width = np.concatenate([line.width for line in centrelines])
+    width = np.clip(width, 0.5, 2 * np.median(width))
+    reach = (1.5 if laser_off else 5.0) * width
+    blur = float(np.median(width)) / 2 + 0.5
+    smooth: NDArray[np.float32] = np.asarray(cv2.GaussianBlur(plate.astype(np.float32), (0, 0), blur), np.float32)
+    sides = [_sample(smooth, uv + sign * (reach[:, None] * across)) for sign in (-1, 1)]
+    low, high = np.minimum(*sides), np.maximum(*sides)
+    pull = width**2 * np.log(np.maximum(high, 1.0) / np.maximum(low, 1.0)) / (2 * reach)
+    # brightness beside the stripe says less of what is under it: only steps count there
+    even = (low > level) & (pull < (PULL_PX if laser_off else 2 * PULL_PX))
+    kept, first = [], 0
+    for line in centrelines:
+        kept.extend(_runs(line, even[first : first + len(line)]))
+        first += len(line)
+    return tuple(kept)
+
+
+def _sample(picture: NDArray[np.float32], uv: Array) -> Array:
+    """Values (N,) of the picture at points (N, 2), linearly interpolated."""
+    return np.asarray(map_coordinates(picture, uv.T[::-1], order=1, mode="nearest"), dtype=np.float64)
+
+
+def _runs(line: Centreline, keep: NDArray[np.bool_]) -> list[Centreline]:
+    """The unbroken runs of kept points that are long enough."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], keep, [False]]).astype(np.int8)))
+    return [line.select(slice(a, b)) for a, b in edges.reshape(-1, 2) if b - a >= SHORTEST]

@@ -1,0 +1,199 @@
+"""The straight lines among a picture's centrelines: on a flat target a plane of light is one straight line of rays.
+
+A stripe that leaves the target for the table behind it goes on along another line, a reflection or the edge of a
+mark is a line of its own: all of them come out, longest first, and :mod:`core.calibrate.line_assignment` decides by
+all poses together which of them the fan drew.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.calibrate.pencil import huber_weights, robust_sd
+from core.image.centreline import Centreline
+from core.model import Camera
+from core.model.arrays import Array
+
+CHUNK = 24
+"""Neighbouring points judged as one piece: longer than any speckle grain, shorter than any stripe of use."""
+SHORTEST = 3 * CHUNK
+"""A line with fewer points is not used."""
+SEEDS = 48
+"""A line is searched for through any two of this many chunks."""
+STRAIGHT_PX = 1.5
+"""How far in pixels a chunk may be off its line when lines are searched for."""
+REJECT = 4.0
+"""Points further than this many standard deviations from their line are not on it."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class StripeLine:
+    """A straight line of rays and what is known of it.
+
+    A straight-line fit to many points weighs exactly as two points one standard deviation of the spread either side
+    of the centroid, each with half of all weight. `pivots` (2, 3) are these two rays and `sigma` is the standard
+    uncertainty of each across the line, in ray units (mm per mm of depth), from the scatter of the data, grain of
+    the speckle included. `across` (2,) is the unit normal of the line in (x, y). `rays` (N, 3) are all its points,
+    `uv` (N, 2) where they were seen in pixels. `saturated` is the share of points whose section is saturated.
+    """
+
+    pivots: Array
+    sigma: float
+    across: Array
+    rays: Array
+    uv: Array
+    saturated: float
+
+    def __len__(self) -> int:
+        return len(self.rays)
+
+
+def straight_lines(centrelines: Sequence[Centreline], camera: Camera, limit: int = 12) -> tuple[StripeLine, ...]:
+    """The straight lines among `centrelines`, the one with most points first, at most `limit`.
+
+    Saturated points are left out of a line as long as half of it remains without them.
+    """
+    chunks = _chunks(centrelines, camera)
+    lines: list[StripeLine] = []
+    while len(lines) < limit and chunks.total >= SHORTEST:
+        members = chunks.largest_line(STRAIGHT_PX / camera.focal)
+        if members is None or chunks.counts[members].sum() < SHORTEST:
+            break
+        line = _fit(chunks, members)
+        if line is not None:
+            lines.append(line)
+        chunks = chunks.without(members)
+    return tuple(sorted(lines, key=len, reverse=True))
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class _Chunks:
+    """Runs of neighbouring points: their points, and for each run its centroid and direction in (x, y)."""
+
+    xy: Array
+    uv: Array
+    sigma: Array
+    saturated: NDArray[np.bool_]
+    owner: NDArray[np.intp]
+    centres: Array
+    directions: Array
+    counts: NDArray[np.intp]
+
+    @property
+    def total(self) -> int:
+        return int(self.counts.sum())
+
+    def largest_line(self, tolerance: float) -> NDArray[np.intp] | None:
+        """Indices of the chunks on the line through two chunks that holds most points; None without two."""
+        live = np.flatnonzero(self.counts > 0)
+        if len(live) < 2:
+            return None
+        centres, directions = self.centres[live], self.directions[live]
+        seeds = np.unique(np.linspace(0, len(live) - 1, SEEDS).astype(np.intp))
+        first, second = (seeds[index] for index in np.triu_indices(len(seeds), 1))
+        along = centres[second] - centres[first]
+        along /= np.maximum(np.linalg.norm(along, axis=1), 1e-12)[:, None]
+        agree = (np.abs(_dot(along, directions[first])) > 0.99) & (np.abs(_dot(along, directions[second])) > 0.99)
+        first, along = first[agree], along[agree]
+        if len(first) == 0:
+            return None
+        across = np.column_stack([-along[:, 1], along[:, 0]])
+        off = np.abs(across @ centres.T - _dot(across, centres[first])[:, None])
+        near = (off < tolerance) & (np.abs(along @ directions.T) > 0.98)
+        best = int(np.argmax(near @ self.counts[live]))
+        members: NDArray[np.intp] = live[near[best]]
+        return members
+
+    def without(self, members: NDArray[np.intp]) -> _Chunks:
+        """The same with some chunks emptied."""
+        counts = self.counts.copy()
+        counts[members] = 0
+        return _Chunks(self.xy, self.uv, self.sigma, self.saturated, self.owner, self.centres, self.directions, counts)
+
+
+def _chunks(centrelines: Sequence[Centreline], camera: Camera) -> _Chunks:
+    """Cut centrelines into chunks; what is shorter than half a chunk is dropped."""
+    pieces = [line.select(slice(s, s + CHUNK)) for line in centrelines for s in range(0, len(line), CHUNK)]
+    pieces = [piece for piece in pieces if 2 * len(piece) >= CHUNK]
+    counts = np.array([len(piece) for piece in pieces], dtype=np.intp)
+    if not pieces:
+        empty = np.zeros((0, 2))
+        nothing = np.zeros(0, dtype=np.intp)
+        return _Chunks(empty, empty, empty[:, 0], nothing.astype(bool), nothing, empty, empty, counts)
+    uv = np.vstack([piece.uv for piece in pieces])
+    rays = camera.rays(uv)
+    to_rays = camera.ray_jacobian(rays)
+    normal = np.vstack([piece.normal for piece in pieces])
+    tangent = np.column_stack([-normal[:, 1], normal[:, 0]])
+    along = np.einsum("nij,nj->ni", to_rays, tangent)
+    # a step across the stripe, seen across the line of rays: the area of the parallelogram over its base
+    scale = np.abs(np.linalg.det(to_rays)) / np.linalg.norm(along, axis=1)
+    owner = np.repeat(np.arange(len(pieces)), counts)
+    xy = rays[:, :2]
+    centres = np.column_stack([np.bincount(owner, xy[:, axis]) for axis in range(2)]) / counts[:, None]
+    spread = xy - centres[owner]
+    xx, yy, cross = (np.bincount(owner, v) for v in (spread[:, 0] ** 2, spread[:, 1] ** 2, spread[:, 0] * spread[:, 1]))
+    angle = 0.5 * np.arctan2(2 * cross, xx - yy)
+    directions = np.column_stack([np.cos(angle), np.sin(angle)])
+    sigma = np.concatenate([piece.sigma for piece in pieces]) * scale
+    saturated = np.concatenate([piece.saturated for piece in pieces])
+    return _Chunks(xy, uv, sigma, saturated, owner, centres, directions, counts)
+
+
+def _fit(chunks: _Chunks, members: NDArray[np.intp]) -> StripeLine | None:
+    """Robust straight line through the points of some chunks; None if too few agree."""
+    chosen = np.flatnonzero(np.isin(chunks.owner, members))
+    saturated = float(chunks.saturated[chosen].mean())
+    if saturated <= 0.5:
+        chosen = chosen[~chunks.saturated[chosen]]
+    xy, uv = chunks.xy[chosen], chunks.uv[chosen]
+    # a floor keeps a few points that claim to be perfect from ruling the line
+    sigma = np.maximum(chunks.sigma[chosen], 0.3 * np.median(chunks.sigma[chosen]))
+    weight = 1 / sigma**2
+    for _ in range(10):
+        centre, along, spread = _moments(xy, weight)
+        across = np.array([-along[1], along[0]])
+        off = (xy - centre) @ across
+        scaled = off / (sigma * max(robust_sd(off / sigma), 1e-9))
+        weight = huber_weights(scaled) / sigma**2
+    good = np.abs(scaled) < REJECT
+    if good.sum() < SHORTEST:
+        return None
+    xy, uv, sigma, owner = xy[good], uv[good], sigma[good], chunks.owner[chosen][good]
+    weight = 1 / sigma**2
+    centre, along, spread = _moments(xy, weight)
+    across = np.array([-along[1], along[0]])
+    pivots = np.column_stack([centre + np.outer([-spread, spread], along), np.ones(2)])
+    variance = _mean_variance((xy - centre) @ across, weight, owner)
+    return StripeLine(
+        pivots, float(np.sqrt(2 * variance)), across, np.column_stack([xy, np.ones(len(xy))]), uv, saturated
+    )
+
+
+def _moments(xy: Array, weight: Array) -> tuple[Array, Array, float]:
+    """Weighted centroid (2,), direction (2,) and standard deviation along it of points (N, 2)."""
+    centre = weight @ xy / weight.sum()
+    spread = xy - centre
+    values, vectors = np.linalg.eigh((spread * weight[:, None]).T @ spread / weight.sum())
+    return centre, vectors[:, 1], float(np.sqrt(values[1]))
+
+
+def _mean_variance(off: Array, weight: Array, owner: NDArray[np.intp]) -> float:
+    """Variance of the weighted mean of `off` (N,), from the scatter of chunk sums, which neighbours' correlation is in.
+
+    Never below what independent points of that scatter would give.
+    """
+    total = float(weight.sum())
+    independent = float((weight**2) @ off**2) / total**2
+    sums = np.bincount(owner, weight * off)
+    chunks = int((np.bincount(owner) > 0).sum())
+    by_chunk = float(sums @ sums) / total**2 * chunks / max(chunks - 2, 1)
+    return max(by_chunk, independent)
+
+
+def _dot(a: Array, b: Array) -> Array:
+    return np.asarray(np.einsum("ij,ij->i", a, b), dtype=np.float64)

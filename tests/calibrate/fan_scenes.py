@@ -1,0 +1,103 @@
+"""Poses of a flat target under the paper's fan, as the picture features would show them, with the truth."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.ndimage import gaussian_filter1d
+from scipy.spatial.transform import Rotation
+
+from core.calibrate.pencil import pencil_near
+from core.calibrate.plane_pose import PoseFeatures
+from core.image.centreline import Centreline
+from core.image.target_view import TargetView
+from core.image.targets import BlackSquare, Checkerboard
+from core.model import Camera, Pose
+
+CAMERA = Camera(
+    (3840, 2748),
+    [[4990.2635, 0.77900164, 1929.2399], [0, 4993.9024, 1279.1607], [0, 0, 1]],
+    [0.0815, -0.3809, 0.0042, -0.0004],
+).scaled(0.5)
+PUBLISHED = -np.array([[0.922, -7.397, -1.429], [1.321, -9.319, -0.992], [1.986, -12.52, -0.263]]) / 1000
+ALPHA = np.deg2rad(5)
+PAPER = pencil_near(PUBLISHED, ALPHA).pis
+SQUARE = BlackSquare(60.0).points
+GRID = Checkerboard(9, 7, 10.0).points
+
+
+@dataclass(frozen=True)
+class Noise:
+    corner_px: float = 0.02
+    stripe_px: float = 0.06
+    grain_px: float = 2.0
+
+
+QUIET = Noise(1e-6, 1e-6, 0.0)
+
+
+def poses(count: int, seed: int) -> list[Pose]:
+    """Targets at 450 … 600 mm, tilted by up to 35°, where all three lines meet them."""
+    rng = np.random.default_rng(seed)
+    found = []
+    for z in np.linspace(450, 600, count):
+        tilt = Rotation.from_euler("yxz", rng.uniform([-35, -30, -20], [35, 30, 20]), degrees=True)
+        centre = np.array([rng.uniform(-20, 20), 0.075 * z + rng.uniform(-10, 10), z])
+        found.append(Pose(tilt.as_matrix(), centre - tilt.apply([30.0, 30.0, 0.0])))
+    return found
+
+
+def stripe(pi: np.ndarray, pose: Pose, noise: Noise, rng: np.random.Generator, reach: float = 70.0) -> Centreline:
+    """The centreline of a light plane on the target, points about one pixel apart, within `reach` mm of its middle."""
+    normal = pose.rotation[:, 2]
+    direction = np.cross(pi, normal)
+    direction /= np.linalg.norm(direction)
+    if direction[0] < 0:
+        direction = -direction
+    middle = pose.apply([[30.0, 30.0, 0.0]])[0]
+    system = np.array([pi, normal, direction])
+    foot = np.linalg.solve(system, [1.0, normal @ pose.translation, direction @ middle])
+    points = foot + np.linspace(-reach, reach, int(2 * reach * CAMERA.focal / foot[2]))[:, None] * direction
+    uv = CAMERA.project(points)
+    inside = ((uv > 4) & (uv < np.array(CAMERA.image_size) - 5)).all(axis=1)
+    uv = uv[inside]
+    tangent = np.gradient(uv, axis=0)
+    tangent /= np.linalg.norm(tangent, axis=1)[:, None]
+    across = np.column_stack([tangent[:, 1], -tangent[:, 0]])
+    error = rng.normal(0, 1, len(uv))
+    if noise.grain_px:
+        error = gaussian_filter1d(error, noise.grain_px) * np.sqrt(2 * np.sqrt(np.pi) * noise.grain_px)
+    count = len(uv)
+    return Centreline(
+        uv + noise.stripe_px * error[:, None] * across,
+        across,
+        np.full(count, 1.6),
+        np.full(count, 120.0),
+        np.full(count, noise.stripe_px),
+        np.zeros(count, dtype=bool),
+    )
+
+
+def features(
+    where: list[Pose],
+    noise: Noise,
+    seed: int,
+    *,
+    pis: np.ndarray = PAPER,
+    points: np.ndarray = SQUARE,
+    flatness_mm: float = 0.0,
+) -> list[PoseFeatures]:
+    """What pictures of the poses would show; the stripes in an order that tells nothing."""
+    rng = np.random.default_rng(seed)
+    found = []
+    for number, pose in enumerate(where):
+        uv = CAMERA.project_pose(pose, points) + rng.normal(0, noise.corner_px, (len(points), 2))
+        view = TargetView(points, uv, np.full(len(points), noise.corner_px), f"p{number}")
+        lines = []
+        for pi in pis:
+            bent = Pose(pose.rotation, pose.translation + pose.rotation[:, 2] * rng.normal(0, flatness_mm))
+            lines.append(stripe(pi, bent, noise, rng))
+        rng.shuffle(lines)
+        found.append(PoseFeatures(f"p{number}", view, tuple(lines)))
+    return found

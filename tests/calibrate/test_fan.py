@@ -1,0 +1,195 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from core.calibrate.fan import FanOptions, fan_deviations, fit_fan
+from core.calibrate.pencil import Pencil, pencil_near, plane_distances
+from core.calibrate.plane_pose import PoseFeatures
+from core.errors import InputError
+from core.image.target_view import TargetView
+from core.model import Pose
+from tests.calibrate.fan_scenes import ALPHA, CAMERA, GRID, PAPER, PUBLISHED, QUIET, Noise, features, poses, stripe
+
+THREE = FanOptions(3, ALPHA)
+WHERE = poses(7, 1)
+
+
+def worst_mm(pis: np.ndarray, truth: np.ndarray) -> float:
+    """Largest distance between planes at 450 … 600 mm."""
+    z, x = (a.ravel() for a in np.meshgrid(np.linspace(450, 600, 4), np.linspace(-60, 60, 5)))
+    worst = 0.0
+    for pi, true in zip(pis, truth, strict=True):
+        points = np.column_stack([x, (1 - true[0] * x - true[2] * z) / true[1], z])
+        worst = max(worst, float(np.abs(plane_distances(np.broadcast_to(pi, points.shape), points)[0]).max()))
+    return worst
+
+
+def without_lines(pose: PoseFeatures, *missing: int) -> PoseFeatures:
+    """The pose with lines taken out, counted from the top of the picture."""
+    ordered = sorted(pose.centrelines, key=lambda line: float(line.uv[:, 1].mean()))
+    return replace(pose, centrelines=tuple(line for index, line in enumerate(ordered) if index not in missing))
+
+
+def shifted_corner(pose: PoseFeatures, by: tuple[float, float]) -> PoseFeatures:
+    uv = pose.view.uv.copy()
+    uv[0] += by
+    return replace(pose, view=TargetView(pose.view.points, uv, pose.view.sigma, pose.view.name))
+
+
+def test_exact_features_give_the_exact_fan():
+    result = fit_fan(features(WHERE, QUIET, 1), CAMERA, THREE)
+    assert worst_mm(result.fan.pis, PAPER) < 1e-5
+    assert worst_mm(result.free.pis, PAPER) < 1e-5
+    assert max(result.rms_mm) < 1e-5
+
+
+def test_noisy_features_give_lines_in_order_and_a_fit_as_good_as_the_noise():
+    result = fit_fan(features(WHERE, Noise(), 2), CAMERA, THREE)
+    assert worst_mm(result.fan.pis, PAPER) < 0.02
+    assert all(0.008 < rms < 0.02 for rms in result.rms_mm)
+    assert result.angles == pytest.approx((ALPHA, ALPHA), abs=1e-9)
+    assert result.constraint_suits is True
+    assert all(pose.used and len(pose.points) == 3 and len(pose.points[1]) > 100 for pose in result.poses)
+
+
+@pytest.mark.parametrize(("flatness_mm", "corner_px", "seed"), [(0.0, 0.02, 100), (0.05, 0.05, 200)])
+def test_covariance_is_that_of_repeated_calibrations(flatness_mm, corner_px, seed):
+    tied, free = [], []
+    for number in range(10):
+        where = poses(8, seed + number)
+        noisy = features(where, Noise(corner_px), seed + number, flatness_mm=flatness_mm)
+        result = fit_fan(noisy, CAMERA, FanOptions(3, ALPHA, "always"))
+        error = (result.fan.pis - PAPER).ravel()
+        tied.append(error @ np.linalg.pinv(result.fan.covariance, rcond=1e-9, hermitian=True) @ error / 5)
+        error = (result.free.pis - PAPER).ravel()
+        free.append(error @ np.linalg.solve(result.free.covariance, error) / 9)
+    assert 0.5 < np.mean(tied) < 1.8
+    assert 0.5 < np.mean(free) < 1.8
+
+
+def test_a_target_of_many_points_works_as_well():
+    result = fit_fan(features(WHERE, Noise(), 3, points=GRID), CAMERA, THREE)
+    assert worst_mm(result.fan.pis, PAPER) < 0.01
+
+
+def test_doubtful_target_points_are_helped_by_the_stripes():
+    """Poses from four corners of 0.2 px are off by about a millimetre at the plate's edge; the fan is not."""
+    result = fit_fan(features(WHERE, Noise(0.2), 4), CAMERA, THREE)
+    assert worst_mm(result.fan.pis, PAPER) < 0.1
+
+
+def test_poses_may_show_only_some_of_the_lines():
+    every = features(WHERE, Noise(), 5)
+    some = [without_lines(pose, number % 3) if number < 6 else pose for number, pose in enumerate(every)]
+    result = fit_fan(some, CAMERA, THREE)
+    assert worst_mm(result.fan.pis, PAPER) < 0.02
+    assert [len(points) == 0 for points in result.poses[1].points] == [False, True, False]
+
+
+def test_stripes_on_the_table_behind_the_target_are_told_apart():
+    rng = np.random.default_rng(6)
+    table = Pose.from_vector([0.9, 0, 0, -30, 20, 700])
+    behind = tuple(stripe(pi, table, Noise(), rng, reach=120) for pi in PAPER)
+    result = fit_fan(
+        [replace(pose, centrelines=behind + pose.centrelines) for pose in features(WHERE, Noise(), 6)], CAMERA, THREE
+    )
+    assert worst_mm(result.fan.pis, PAPER) < 0.02
+
+
+def test_a_laser_with_other_angles_than_stated_is_found_out():
+    result = fit_fan(features(WHERE, Noise(), 7, pis=PUBLISHED), CAMERA, THREE)
+    assert result.constraint_suits is False
+    assert "does not suit" in result.verdict
+    assert np.degrees(result.free_angles) == pytest.approx([4.929, 4.919], abs=0.005)
+    assert worst_mm(result.fan.pis, PUBLISHED) < 0.02
+
+
+def test_planes_that_share_an_axis_keep_it_when_only_the_angles_are_wrong():
+    wider = pencil_near(PUBLISHED, np.deg2rad(4.8)).pis
+    result = fit_fan(features(WHERE, Noise(), 8, pis=wider), CAMERA, THREE)
+    assert result.constraint_suits is False
+    assert "do share an axis" in result.verdict
+    assert worst_mm(result.fan.pis, wider) < 0.02
+
+
+def test_planes_without_a_common_axis_are_fitted_freely():
+    skewed = PAPER.copy()
+    skewed[1] *= 1.004
+    result = fit_fan(features(WHERE, Noise(), 9, pis=skewed), CAMERA, THREE)
+    assert result.constraint_suits is False
+    assert result.fan is not result.free
+    assert (result.fan.pis == result.free.pis).all()
+    assert result.pencil_gap_mm > 0.05
+
+
+@pytest.mark.parametrize("lines", [1, 2, 5])
+def test_any_number_of_lines(lines):
+    pencil = pencil_near(PUBLISHED, ALPHA)
+    angle = np.deg2rad(2.5)
+    pis = Pencil(pencil.frame, pencil.point, angle * (np.arange(lines) - (lines - 1) / 2), fixed_angles=True).pis
+    result = fit_fan(features(WHERE, Noise(), 10, pis=pis), CAMERA, FanOptions(lines, angle if lines > 1 else None))
+    assert result.fan.lines == lines
+    assert worst_mm(result.fan.pis, pis) < 0.03
+    assert (result.constraint_suits is None) == (lines == 1)
+
+
+def test_a_pose_with_a_misfound_corner_is_left_out_and_named():
+    spoilt = features(WHERE, Noise(), 11, points=GRID)
+    spoilt[3] = replace(spoilt[3], view=replace(spoilt[3].view, points=spoilt[3].view.points * 1.05))
+    result = fit_fan(spoilt, CAMERA, THREE)
+    assert not result.poses[3].used
+    assert result.poses[3].reason
+    assert any("p3" in note for note in result.notes)
+    assert worst_mm(result.fan.pis, PAPER) < 0.02
+
+
+def test_deviations_rebuild_the_covariance():
+    result = fit_fan(features(WHERE, Noise(), 12), CAMERA, THREE)
+    fans = fan_deviations(result)
+    assert len(fans) == 5
+    steps = np.array([(fan.pis - result.fan.pis).ravel() for fan in fans])
+    assert steps.T @ steps == pytest.approx(result.fan.covariance, rel=1e-6, abs=1e-9 * result.fan.covariance.max())
+
+
+def test_saturated_stripes_are_warned_of():
+    pairs = features(WHERE, Noise(), 13)
+    burnt = [
+        replace(
+            pose,
+            centrelines=tuple(replace(line, saturated=np.arange(len(line)) % 4 < 3) for line in pose.centrelines),
+        )
+        for pose in pairs
+    ]
+    assert not any("saturated" in note for note in fit_fan(pairs, CAMERA, THREE).notes)
+    assert any("saturated at 75%" in note for note in fit_fan(burnt, CAMERA, THREE).notes)
+
+
+def test_fewer_lines_than_promised_is_said():
+    with pytest.raises(InputError, match=r"only 2 of the 3 promised fan lines.*laser_fan\.lines in rig\.toml"):
+        fit_fan(features(WHERE, Noise(), 14, pis=PAPER[:2]), CAMERA, THREE)
+
+
+def test_poses_in_one_plane_do_not_determine_the_fan():
+    one = WHERE[3]
+    alike = [Pose(one.rotation, one.translation + one.rotation @ [4.0 * n, 3.0 * n, 0]) for n in range(5)]
+    with pytest.raises(InputError, match="too alike"):
+        fit_fan(features(alike, Noise(), 15), CAMERA, THREE)
+
+
+def test_one_pose_is_not_enough():
+    with pytest.raises(InputError, match="only one pose can be used"):
+        fit_fan(features(WHERE[:1], Noise(), 16), CAMERA, THREE)
+
+
+def test_no_usable_pose_gives_the_reasons():
+    useless = [replace(pose, reason="the picture is all black") for pose in features(WHERE, Noise(), 17)]
+    with pytest.raises(InputError, match=r"none of the 7 poses can be used.*all black"):
+        fit_fan(useless, CAMERA, THREE)
+    with pytest.raises(InputError, match="there are no poses"):
+        fit_fan([], CAMERA, THREE)
+
+
+def test_parallel_poses_at_different_distances_do_determine_the_fan():
+    where = [Pose(np.eye(3), np.array([-30, 0.075 * z - 30, z])) for z in (450, 500, 550, 600)]
+    assert worst_mm(fit_fan(features(where, Noise(), 18), CAMERA, THREE).fan.pis, PAPER) < 0.1

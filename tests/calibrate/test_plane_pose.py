@@ -1,0 +1,147 @@
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+from scipy.special import expit
+
+from core.calibrate.fan import FanOptions, fit_fan
+from core.calibrate.plane_pose import PoseFeatures, measure_plane_pose
+from core.image.targets import BlackSquare
+from core.model import Pose
+from tests.calibrate import fan_scenes
+from tests.calibrate.fan_scenes import ALPHA, PAPER
+from tests.calibrate.test_fan import worst_mm
+
+CAMERA = fan_scenes.CAMERA.scaled(0.5)
+SIDE = 60.0
+TARGET = BlackSquare(SIDE)
+STRIPE_MM = 0.7
+HEIGHT = 120.0
+
+
+@dataclass(frozen=True)
+class Pair:
+    on: np.ndarray
+    off: np.ndarray
+
+
+U, V = np.meshgrid(np.arange(CAMERA.image_size[0]), np.arange(CAMERA.image_size[1]))
+RAYS = CAMERA.rays(np.column_stack([U.ravel(), V.ravel()]))
+
+
+def plate(pose: Pose) -> tuple[np.ndarray, np.ndarray]:
+    """Albedo (H, W) of a plate of 160 mm with the square in its middle, and the points (H·W, 3) of all pixels."""
+    normal = pose.rotation[:, 2]
+    points = RAYS * (normal @ pose.translation / (RAYS @ normal))[:, None]
+    x, y = ((points - pose.translation) @ pose.rotation[:, :2]).T
+    off_centre = np.maximum(np.abs(x - SIDE / 2), np.abs(y - SIDE / 2))
+    pixels = CAMERA.focal / points[:, 2]
+    in_square, in_plate = (expit(2.5 * pixels * (half - off_centre)) for half in (SIDE / 2, 80))
+    return (0.25 + 0.65 * in_plate - 0.82 * in_square).reshape(U.shape), points
+
+
+def render(pose: Pose, *, seed: int, moved: Pose | None = None, gain: float = 1.0) -> Pair:
+    """8-bit pictures of the target, fan on (at `moved`, if given) and off."""
+    rng = np.random.default_rng(seed)
+    without = plate(pose)
+    albedo, points = without if moved is None else plate(moved)
+    light = np.full(albedo.size, 110.0)
+    for pi in PAPER:
+        distance = (points @ pi - 1) / np.linalg.norm(pi)
+        near = np.abs(distance) < 5 * STRIPE_MM
+        light[near] += HEIGHT * gain * np.exp(-0.5 * (distance[near] / STRIPE_MM) ** 2)
+    pictures = [light.reshape(albedo.shape) * albedo, 110.0 * without[0]]
+    on, off = (np.clip(np.round(p + rng.normal(0, 1.0, p.shape)), 0, 255).astype(np.uint8) for p in pictures)
+    return Pair(on, off)
+
+
+POSE = fan_scenes.poses(7, 1)[3]
+
+
+def misses_px(features: PoseFeatures, pose: Pose = POSE) -> np.ndarray:
+    """How far each point found is off the nearest true stripe, in pixels."""
+    uv = np.vstack([line.uv for line in features.centrelines])
+    rays = CAMERA.rays(uv)
+    normal = pose.rotation[:, 2]
+    target = normal / (normal @ pose.translation)
+    misses = []
+    for pi in PAPER:
+        across = (pi - target)[:2]
+        misses.append((rays @ (pi - target)) / np.linalg.norm(across) * CAMERA.focal)
+    return np.abs(misses).min(axis=0)
+
+
+@pytest.fixture(scope="module")
+def pair() -> Pair:
+    return render(POSE, seed=1)
+
+
+@pytest.fixture(scope="module")
+def measured(pair) -> PoseFeatures:
+    return measure_plane_pose("p", pair.on, pair.off, TARGET, CAMERA)
+
+
+def test_target_and_stripes_are_found_where_they_are(measured):
+    assert measured.reason == ""
+    corners = CAMERA.project_pose(POSE, TARGET.points)
+    nearest = np.linalg.norm(measured.view.uv[:, None] - corners, axis=2).min(axis=1)
+    assert nearest.max() < 0.1
+    misses = misses_px(measured)
+    assert len(misses) > 600
+    assert np.sqrt(np.mean(misses**2)) < 0.1
+    assert np.quantile(misses, 0.99) < 0.25
+
+
+def test_without_an_off_picture_the_light_plate_still_serves(pair):
+    alone = measure_plane_pose("p", pair.on, None, TARGET, CAMERA)
+    assert alone.reason == ""
+    on_stripe = misses_px(alone) < 1.5
+    assert on_stripe.sum() > 300
+    assert np.sqrt(np.mean(misses_px(alone)[on_stripe] ** 2)) < 0.1
+
+
+def test_points_at_the_edges_of_the_square_are_left_out(measured):
+    uv = np.vstack([line.uv for line in measured.centrelines])
+    rays = CAMERA.rays(uv)
+    normal = POSE.rotation[:, 2]
+    points = rays * (normal @ POSE.translation / (rays @ normal))[:, None]
+    x, y = ((points - POSE.translation) @ POSE.rotation)[:, :2].T
+    inside = np.maximum(np.abs(x - SIDE / 2), np.abs(y - SIDE / 2)) < SIDE / 2 - 1
+    assert not inside.any()
+
+
+def test_a_target_that_moved_between_the_pictures_is_left_out():
+    moved = Pose(POSE.rotation, POSE.translation + [0.6, 0.3, 0.0])
+    spoilt = render(POSE, seed=2, moved=moved)
+    features = measure_plane_pose("p", spoilt.on, spoilt.off, TARGET, CAMERA)
+    assert "moved by" in features.reason
+
+
+def test_no_target_and_no_stripe_are_reasons_not_errors(pair):
+    black = np.zeros_like(pair.on)
+    assert "all black" in measure_plane_pose("p", black, None, TARGET, CAMERA).reason
+    dark_fan = measure_plane_pose("p", pair.off, pair.off, TARGET, CAMERA)
+    assert "no stripe" in dark_fan.reason
+
+
+def test_saturated_points_are_flagged():
+    bright = render(POSE, seed=3, gain=3.0)
+    features = measure_plane_pose("p", bright.on, bright.off, TARGET, CAMERA)
+    assert np.concatenate([line.saturated for line in features.centrelines]).mean() > 0.8
+
+
+def test_pictures_of_different_size_are_refused(pair):
+    with pytest.raises(ValueError, match="differ"):
+        measure_plane_pose("p", pair.on, pair.off[:-1], TARGET, CAMERA)
+
+
+@pytest.mark.parametrize("with_off", [True, False])
+def test_pictures_to_fan(with_off):
+    features = []
+    for number, pose in enumerate(fan_scenes.poses(4, 3)):
+        pair = render(pose, seed=10 + number)
+        features.append(measure_plane_pose(f"p{number}", pair.on, pair.off if with_off else None, TARGET, CAMERA))
+    result = fit_fan(features, CAMERA, FanOptions(3, ALPHA))
+    error = (result.fan.pis - PAPER).ravel()
+    assert worst_mm(result.fan.pis, PAPER) < 0.15
+    assert error @ np.linalg.pinv(result.fan.covariance, rcond=1e-9, hermitian=True) @ error < 30
