@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 import platform
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from datetime import datetime
-from importlib.metadata import version
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
 from pydantic import Field, ValidationError
 
 from core import __version__
+from core.errors import InputError
 from core.files.atomic import write_text
 from core.files.camera_file import Finite, Maybe, ResultFile
 from core.files.complaints import complaint
@@ -22,6 +24,8 @@ from core.scan.results import FrameRecord
 
 LIBRARIES = ("numpy", "scipy", "opencv-python-headless", "numba", "matplotlib", "reportlab")
 """The packages that numbers and pictures come from; their versions are recorded."""
+
+_A_TIME = "a date and time as in 2025-01-31T12:00:00+00:00"
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,7 +92,7 @@ class _Frame(ResultFile):
 
 class _RunFile(ResultFile):
     set: str
-    measured_at: str = Field(description="a date and time as in 2025-01-31T12:00:00+00:00")
+    measured_at: str = Field(description=_A_TIME)
     settings: dict[str, dict[str, Any]] = Field(default_factory=dict)
     notes: dict[str, list[str]] = Field(default_factory=dict)
     timings_s: dict[str, Finite] = Field(default_factory=dict)
@@ -108,7 +112,7 @@ def write_run(path: Path, record: RunRecord) -> None:
                 "timings_s": record.timings,
                 "settings": record.settings,
                 "notes": record.notes,
-                "versions": {"python": platform.python_version()} | {name: version(name) for name in LIBRARIES},
+                "versions": {"python": platform.python_version(), **_library_versions()},
                 "frames": [_frame(frame) for frame in record.frames],
                 "inputs": record.inputs,
             }
@@ -121,17 +125,29 @@ def read_run(path: Path) -> RunRecord:
     tables = read_json(path, todo="measure the set first: trisect run SET --out DIR")
     try:
         file = _RunFile.model_validate(tables)
+        measured_at = datetime.fromisoformat(file.measured_at)
     except ValidationError as error:
         raise complaint(path, error, _RunFile) from error
+    except ValueError as error:
+        raise InputError(f"measured_at is {file.measured_at!r}, not {_A_TIME}", where=path) from error
     return RunRecord(
         set_name=file.set,
-        measured_at=datetime.fromisoformat(file.measured_at),
+        measured_at=measured_at,
         settings=file.settings,
         notes=file.notes,
         timings=file.timings_s,
         inputs=file.inputs,
         frames=tuple(_record(frame) for frame in file.frames),
     )
+
+
+def _library_versions() -> dict[str, str]:
+    """Versions of LIBRARIES; one may be installed under another name, as OpenCV with windows is."""
+    versions = {}
+    for name in LIBRARIES:
+        with contextlib.suppress(PackageNotFoundError):
+            versions[name] = version(name)
+    return versions
 
 
 def _frame(frame: FrameRecord) -> dict[str, Any]:

@@ -113,10 +113,10 @@ class Workspace:
             Whether the step measures anything: then its beginning is the time the report prints.
         """
         begun, started = _now(), time.perf_counter()
-        log = StepLog()
+        before, log = self.record(), StepLog()  # a damaged run.json is told before the work, not after it
         yield log
         seconds = time.perf_counter() - started
-        record = self.record().with_step(name, seconds, self.found.hashes, log.settings, log.notes)
+        record = before.with_step(name, seconds, self.found.hashes, log.settings, log.notes)
         if measures:
             record = replace(record, measured_at=begun)
         if log.frames:

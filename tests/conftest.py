@@ -1,0 +1,22 @@
+from pathlib import Path
+
+import pytest
+
+
+@pytest.fixture(scope="session")
+def simulated(tmp_path_factory) -> Path:
+    """A small simulated recording set; copy it before changing it."""
+    from tests.simulated import small_set
+
+    return small_set(tmp_path_factory.mktemp("simulated") / "block")
+
+
+@pytest.fixture(scope="session")
+def measured(simulated, tmp_path_factory) -> Path:
+    """All results of the small set; copy them before changing them."""
+    from tests.simulated import trisect
+
+    out = tmp_path_factory.mktemp("measured") / "out"
+    said = trisect("run", simulated, "--out", out)
+    assert said.code in (0, 1), said.err
+    return out

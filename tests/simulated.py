@@ -1,0 +1,51 @@
+"""A small simulated set and its calibrations, shared by the tests of the command line."""
+
+import io
+import shutil
+from contextlib import redirect_stderr, redirect_stdout
+from dataclasses import dataclass
+from pathlib import Path
+
+from core.simulate.recording import simulate_set
+
+from core.cli import main
+from core.simulate.scenario import Scenario
+
+SMALL = Scenario(scale=0.25, frames=14, camera_views=8, plane_poses=6, seed=3)
+
+
+@dataclass(frozen=True)
+class Said:
+    code: int
+    out: str
+    err: str
+
+    @property
+    def sentence(self) -> str:
+        """The one sentence on standard error."""
+        lines = self.err.strip().splitlines()
+        assert len(lines) == 1, self.err
+        assert lines[0].startswith("trisect: ")
+        assert lines[0].endswith(".")
+        return lines[0]
+
+
+def trisect(*words: object) -> Said:
+    """Run the command line in this process."""
+    out, err, code = io.StringIO(), io.StringIO(), 0
+    with redirect_stdout(out), redirect_stderr(err):
+        try:
+            main([str(word) for word in words])
+        except SystemExit as leave:
+            code = leave.code or 0
+    return Said(code, out.getvalue(), err.getvalue())
+
+
+def small_set(folder: Path) -> Path:
+    simulate_set(SMALL, folder)
+    return folder
+
+
+def copy_of(folder: Path, to: Path) -> Path:
+    """A copy whose files can be replaced (hard links would be written through: our writers rename, cv2 does not)."""
+    return Path(shutil.copytree(folder, to))

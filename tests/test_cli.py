@@ -1,0 +1,187 @@
+"""The command line on a small simulated set: what it writes, says, and leaves with."""
+
+import hashlib
+import json
+import shutil
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from plyfile import PlyData
+from pypdf import PdfReader
+
+from core import __version__
+from tests.simulated import SMALL, copy_of, trisect
+
+pytestmark = pytest.mark.xdist_group("small simulated set")
+
+RESULTS = {"camera.json", "planes.json", "cloud.ply", "mesh.ply", "gauge.json", "report.pdf", "run.json"}
+COMPANIONS = {"planes.npz", "scan.npz", "gauge.npz"}
+
+
+def digests(folder):
+    return {path.name: hashlib.sha256(path.read_bytes()).hexdigest() for path in folder.iterdir()}
+
+
+def test_a_run_writes_exactly_the_files_of_the_contract(measured):
+    assert {path.name for path in measured.iterdir()} == RESULTS | COMPANIONS
+
+
+def test_the_thickness_is_right_within_its_own_uncertainty(measured):
+    gauge = json.loads((measured / "gauge.json").read_text())
+    assert gauge["U_mm"] == pytest.approx(gauge["k"] * gauge["u_mm"])
+    assert abs(gauge["thickness_mm"] - SMALL.height_mm) < 2 * gauge["U_mm"]
+    assert gauge["U_mm"] < 1.0
+
+
+def test_the_cloud_has_a_sigma_at_every_point_below_the_cut(measured):
+    vertices = PlyData.read(str(measured / "cloud.ply"))["vertex"].data
+    assert len(vertices) > 1000
+    assert vertices["sigma"].min() > 0
+    assert vertices["sigma"].max() <= 0.05
+    assert set(np.unique(vertices["frame"])) <= set(range(-1, SMALL.frames))
+    normals = np.column_stack([vertices[name] for name in ("nx", "ny", "nz")])
+    towards = -np.einsum("ni,ni->n", normals, np.column_stack([vertices[name] for name in "xyz"]))
+    assert np.mean(towards > 0) > 0.95
+
+
+def test_run_json_has_a_hash_of_every_input_and_a_record_of_every_frame(simulated, measured):
+    record = json.loads((measured / "run.json").read_text())
+    files = [path for path in simulated.rglob("*") if path.is_file()]
+    assert record["inputs"] == {
+        path.relative_to(simulated).as_posix(): hashlib.sha256(path.read_bytes()).hexdigest() for path in files
+    }
+    assert len(record["frames"]) == SMALL.frames
+    assert all(frame["points"] > 0 or frame["reason"] for frame in record["frames"])
+    assert set(record["timings_s"]) == {"camera", "planes", "scan", "gauge", "report"}
+    assert record["version"] == __version__
+
+
+def test_the_report_names_part_thickness_and_version(measured):
+    gauge = json.loads((measured / "gauge.json").read_text())
+    text = "\n".join(page.extract_text() for page in PdfReader(str(measured / "report.pdf")).pages)
+    assert 1 <= len(PdfReader(str(measured / "report.pdf")).pages) <= 3
+    assert __version__ in text
+    assert f"{gauge['thickness_mm']:.1f}" in text
+
+
+def test_each_step_alone_gives_the_same_files_as_the_whole_run(simulated, measured, tmp_path):
+    out = tmp_path / "out"
+    for step in ("camera", "planes", "scan", "gauge", "report"):
+        said = trisect(step, simulated, "--out", out)
+        assert said.code in (0, 1), said.err
+    whole, steps = digests(measured), digests(out)
+    for name in (RESULTS | COMPANIONS) - {"run.json", "report.pdf"}:
+        assert steps[name] == whole[name], name
+    assert report_without_times(out) == report_without_times(measured)
+
+
+def report_without_times(out):
+    """The report's text without the one line that holds its date."""
+    moment = json.loads((out / "run.json").read_text())["measured_at"]
+    text = "\n".join(page.extract_text() for page in PdfReader(str(out / "report.pdf")).pages)
+    return [line for line in text.splitlines() if moment[:10] not in line]
+
+
+def test_the_report_alone_gives_the_same_bytes(simulated, measured, tmp_path):
+    out = copy_of(measured, tmp_path / "out")
+    (out / "report.pdf").unlink()
+    assert trisect("report", simulated, "--out", out).code == 0
+    assert (out / "report.pdf").read_bytes() == (measured / "report.pdf").read_bytes()
+
+
+def test_json_is_one_object_with_the_thickness(simulated, measured, tmp_path):
+    out = copy_of(measured, tmp_path / "out")
+    said = trisect("gauge", simulated, "--out", out, "--json")
+    values = json.loads(said.out)
+    gauge = json.loads((measured / "gauge.json").read_text())
+    assert values["thickness_mm"] == gauge["thickness_mm"]
+    assert values["verdict"] == gauge["verdict"]
+    assert values["files"]["gauge"] == str(out / "gauge.json")
+    assert said.err == ""
+
+
+def test_exit_code_1_when_the_part_is_out_of_tolerance(simulated, measured, tmp_path):
+    folder = copy_of(simulated, tmp_path / "set")
+    rig = folder / "rig.toml"
+    text = rig.read_text().partition("[gauge]")[0]
+    rig.write_text(text + "[gauge]\nnominal_mm = 45.0\ntolerance_mm = 0.2\n")
+    said = trisect("gauge", folder, "--out", copy_of(measured, tmp_path / "out"))
+    assert said.code == 1
+    assert "not conforming" in said.out
+
+
+def test_exit_code_0_without_a_nominal_value(simulated, measured, tmp_path):
+    folder = copy_of(simulated, tmp_path / "set")
+    rig = folder / "rig.toml"
+    rig.write_text(rig.read_text().partition("[gauge]")[0])
+    said = trisect("gauge", folder, "--out", copy_of(measured, tmp_path / "out"), "--json")
+    assert said.code == 0
+    assert json.loads(said.out)["verdict"] == ""
+    assert json.loads(said.out)["nominal_mm"] is None
+
+
+def test_the_papers_method_by_name(simulated, measured, tmp_path):
+    out = copy_of(measured, tmp_path / "out")
+    said = trisect("scan", simulated, "--out", out, "--method", "three-crossings", "--json")
+    assert said.code == 0, said.err
+    assert json.loads((out / "run.json").read_text())["settings"]["scan"]["method"] == "three-crossings"
+    assert (out / "cloud.ply").read_bytes() != (measured / "cloud.ply").read_bytes()
+
+
+def test_a_scan_without_reference_makes_one_of_its_frames(simulated, measured, tmp_path):
+    folder = copy_of(simulated, tmp_path / "set")
+    (folder / "scan" / "reference.png").unlink()
+    said = trisect("scan", folder, "--out", copy_of(measured, tmp_path / "out"))
+    assert said.code == 0, said.err
+    assert "There is no scan/reference.png" in said.out
+
+
+def test_a_table_for_people_and_no_progress_in_a_pipe(simulated, measured, tmp_path):
+    said = trisect("camera", simulated, "--out", copy_of(measured, tmp_path / "out"))
+    assert said.code == 0
+    assert "reprojection" in said.out
+    assert "camera.json" in said.out
+    assert said.err == ""
+
+
+def test_version_and_help():
+    assert trisect("--version").out == f"trisect {__version__}\n"
+    for command in ("run", "camera", "planes", "scan", "gauge", "report", "simulate", "demo"):
+        said = trisect(command, "--help")
+        assert said.code == 0
+        assert "Usage: trisect" in said.out
+
+
+def test_a_wrong_command_line_leaves_with_2():
+    assert trisect("measure").code == 2
+    assert trisect("run").code == 2
+    assert trisect("run", "SET", "--out", "DIR", "--method", "magic").code == 2
+
+
+def test_simulate_writes_a_set_that_can_be_opened(tmp_path):
+    from core.files.recording_set import open_set
+
+    out = tmp_path / "set"
+    said = trisect(
+        "simulate", "sphere", "--out", out, "--scale", 0.1, "--frames", 2, "--views", 1, "--poses", 1, "--seed", 5
+    )
+    assert said.code == 0, said.err
+    found = open_set(out)
+    assert (len(found.camera), len(found.planes), len(found.frames)) == (1, 1, 2)
+    assert not list(out.rglob("*truth*"))
+    again = trisect("simulate", "sphere", "--out", out)
+    assert again.code == 2
+    assert "something here already" in again.sentence
+
+
+def test_the_reader_of_our_output_may_leave_early(simulated, measured, tmp_path):
+    shutil.copytree(measured, tmp_path / "out")
+    command = [sys.executable, "-m", "core.cli", "camera", str(simulated), "--out", str(tmp_path / "out")]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    process.stdout.close()
+    complaints = process.stderr.read()
+    process.stderr.close()
+    process.wait(timeout=120)
+    assert complaints == b""
