@@ -18,24 +18,25 @@ from core.report import figures, plots
 from core.report.content import ReportContent
 from core.report.overlay_plot import overlay_figure
 from core.report.sections import TITLE, Limits, story
-from core.report.style import HAIRLINE, INK, MARGIN, MUTED, SANS, TEXT_WIDTH, color, register_fonts
+from core.report.style import HAIRLINE, INK, MARGIN, MUTED, SANS, TEXT_WIDTH, color, prepare_reportlab
 
 MOST_PAGES = 3
 FOOT = 16 * mm
 HEAD = 15 * mm
 
 LIMITS = (
-    Limits(inputs=150, reasons=10, notes=12, settings=30, picture_scale=1.0),
-    Limits(inputs=96, reasons=8, notes=10, settings=20, picture_scale=1.0),
-    Limits(inputs=72, reasons=6, notes=8, settings=16, picture_scale=1.0),
-    Limits(inputs=60, reasons=6, notes=8, settings=14, picture_scale=1.0),
-    Limits(inputs=48, reasons=5, notes=6, settings=14, picture_scale=0.92),
-    Limits(inputs=30, reasons=3, notes=5, settings=10, picture_scale=0.84),
-    Limits(inputs=9, reasons=2, notes=4, settings=6, picture_scale=0.72),
+    Limits(inputs=150, reasons=10, names=6, notes=12, settings=30, picture_scale=1.0),
+    Limits(inputs=96, reasons=8, names=6, notes=10, settings=20, picture_scale=1.0),
+    Limits(inputs=72, reasons=6, names=6, notes=8, settings=16, picture_scale=1.0),
+    Limits(inputs=60, reasons=6, names=5, notes=8, settings=14, picture_scale=1.0),
+    Limits(inputs=48, reasons=5, names=4, notes=6, settings=14, picture_scale=0.92),
+    Limits(inputs=30, reasons=3, names=2, notes=5, settings=10, picture_scale=0.84),
+    Limits(inputs=9, reasons=2, names=1, notes=4, settings=6, picture_scale=0.72),
+    Limits(inputs=3, reasons=1, names=1, notes=2, settings=4, picture_scale=0.72),
 )
 """Tried in this order until the report has no more than MOST_PAGES pages."""
 
-SURFACE_MM, OVERLAY_MM, MAPS_MM = 104.0, 116.0, 50.0
+SURFACE_MM, OVERLAY_MM, FACES_MM, CLOUD_MM = 104.0, 116.0, 50.0, 58.0
 """Heights of the pictures at scale 1."""
 
 
@@ -50,7 +51,7 @@ def build_report(content: ReportContent, progress: Progress = silent) -> bytes:
     core.errors.Cancelled
         If `progress` asks to stop.
     """
-    register_fonts()
+    prepare_reportlab()
     step, drawings = "report", _drawings(content)
     total = len(drawings) + 2
     pictures = {}
@@ -79,10 +80,10 @@ def _drawings(content: ReportContent) -> dict[str, Callable[[], Figure]]:
     if overlay is not None:
         drawings["overlay"] = lambda: overlay_figure(overlay, width, OVERLAY_MM)
     if gauge is not None:
-        drawings["maps"] = lambda: plots.residual_figure(gauge, content.cloud, width, MAPS_MM)
+        drawings["maps"] = lambda: plots.residual_figure(gauge, content.cloud, width, FACES_MM)
     elif len(content.cloud):
         size = content.camera.camera.image_size
-        drawings["maps"] = lambda: plots.cloud_figure(content.cloud, size, width, MAPS_MM)
+        drawings["maps"] = lambda: plots.cloud_figure(content.cloud, size, width, CLOUD_MM)
     return drawings
 
 

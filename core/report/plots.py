@@ -12,6 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from core.inspect.results import Face, GaugeResult
 from core.model import LightPlane
@@ -28,7 +29,7 @@ from core.report.figures import (
     round_up,
 )
 from core.report.style import ACCENT, HAIRLINE, INK, MUTED
-from core.report.surface_view import Ground, surface_picture, viewer_axes
+from core.report.surface_view import Ground, SurfacePicture, surface_picture, viewer_axes
 from core.scan.cloud import Cloud
 from core.scan.surface import Mesh
 
@@ -50,22 +51,27 @@ def surface_figure(mesh: Mesh, cloud: Cloud, plane: LightPlane | None, width_mm:
         heights = ground.local(points)[:, 2]
         low, high = (float(value) for value in np.quantile(heights, [0.002, 0.998]))
         colors = color_scale(HEIGHT_MAP, low, high if high > low else low + 1e-6)
-        paint = colors.to_rgba(np.nan_to_num(seen.height))[:, :, :3] * np.nan_to_num(seen.shade)[:, :, None]
-        paint[~np.isfinite(seen.height)] = 1.0
+        paint = _painted(seen, colors)
         small = cv2.resize(paint, (width_px, round(width_px / aspect)), interpolation=cv2.INTER_AREA)
         axes = figure.add_axes((0, 0, 1 - bar_mm / width_mm, 1))
-        axes.imshow(
-            np.round(255 * np.clip(small, 0, 1)).astype(np.uint8),
-            extent=seen.extent,
-            interpolation="antialiased",
-            aspect="auto",
-        )
+        axes.imshow(small, extent=seen.extent, interpolation="antialiased", aspect="auto")
         axes.set_axis_off()
         _draw_footprint(axes, ground.local(points))
         axes.set_xlim(seen.extent[:2])
         axes.set_ylim(seen.extent[2:])
         add_color_bar(figure, (1 - (bar_mm - 4) / width_mm, 0.12, 3 / width_mm, 0.7), colors, "height, mm")
     return figure
+
+
+def _painted(seen: SurfacePicture, colors: ScalarMappable) -> NDArray[np.uint8]:
+    """The colour of each height, darkened by its shade, white where nothing is seen; (H, W, 3)."""
+    low, high = colors.get_clim()
+    table = colors.to_rgba(np.linspace(low, high, 256))[:, :3].astype(np.float32)
+    drawn = np.isfinite(seen.height)
+    level = np.clip((seen.height[drawn] - low) * (255 / (high - low)), 0, 255)
+    paint = np.full((*seen.height.shape, 3), 255, dtype=np.uint8)
+    paint[drawn] = np.round(table[level.astype(np.uint8)] * (255 * seen.shade[drawn, None].astype(np.float32)))
+    return paint
 
 
 def _draw_footprint(axes: Axes, local: Array) -> None:
@@ -149,7 +155,8 @@ def _spread_panel(axes: Axes, gauge: GaugeResult, limit: float) -> None:
     axes.set_xlabel("residual, mm", labelpad=1)
     axes.set_ylabel("points, %", labelpad=1)
     axes.spines[["top", "right"]].set_visible(False)
-    axes.legend(frameon=False, fontsize=6, loc="upper left", handlelength=1.6, borderaxespad=0.1)
+    if axes.patches:
+        axes.legend(frameon=False, fontsize=6, loc="upper left", handlelength=1.6, borderaxespad=0.1)
 
 
 def cloud_figure(cloud: Cloud, image_size: tuple[int, int], width_mm: float, height_mm: float) -> Figure:

@@ -22,12 +22,12 @@ from core.report.wording import (
 )
 
 PADDING = 5 * mm
+MARKS = {"conforming": ("✓", ACCENT, True), "not conforming": ("✗", INK, True), "not proven": ("?", INK, False)}
+"""Sign and colour of each verdict, and whether its mark is filled."""
 
 
 class VerdictMark(Flowable):  # type: ignore[misc]
     """The verdict as word and form: filled with ✓, dark with ✗, outlined with ?; never by colour alone."""
-
-    MARKS = {"conforming": ("✓", ACCENT, True), "not conforming": ("✗", INK, True), "not proven": ("?", INK, False)}  # noqa: RUF012
 
     def __init__(self, verdict: str, width: float) -> None:
         super().__init__()
@@ -35,7 +35,7 @@ class VerdictMark(Flowable):  # type: ignore[misc]
 
     def draw(self) -> None:
         """Paint it (called by reportlab)."""
-        sign, tone, filled = self.MARKS.get(self.verdict, ("–", MUTED, False))
+        sign, tone, filled = MARKS.get(self.verdict, ("–", MUTED, False))
         canvas, radius = self.canv, 1.2 * mm
         canvas.setStrokeColor(color(tone))
         canvas.setFillColor(color(tone if filled else "#FFFFFF"))
@@ -89,8 +89,9 @@ class ToleranceBar(Flowable):  # type: ignore[misc]
         canvas.setFillColor(color(MUTED))
         below, above = axis - 2.4 * mm - 7.5, axis + 2.4 * mm + 2.5
         limit = f"{self.tolerance:g} mm"
-        canvas.drawRightString(low + 8, below, f"−{limit}")
-        canvas.drawString(high - 8, below, f"+{limit}")
+        lean = min(8.0, (high - low) / 2 - 2)  # the two never meet, however narrow the zone is drawn
+        canvas.drawRightString(low + lean, below, f"−{limit}")
+        canvas.drawString(high - lean, below, f"+{limit}")
         if high - low > 45 * mm:
             canvas.setStrokeColor(color(MUTED))
             canvas.setLineWidth(0.5)
@@ -134,7 +135,8 @@ def _facts(facts: dict[str, str], width: float) -> Table:
 
 def _thickness(gauge: GaugeResult, width: float) -> list[Flowable]:
     value, _, factor = thickness_line(gauge).partition(" (")
-    words = f'{markup(value)} <font name="{SANS}" size="11">({markup(factor)}</font>'.replace("k = ", "k\u00a0=\u00a0")
+    factor = factor.replace(" ", "\u00a0")
+    words = f'{markup(value)} <font name="{SANS}" size="11">({markup(factor)}</font>'
     headline = [text("Thickness", "label"), Paragraph(words, STYLES["result"])]
     parts: list[Flowable] = []
     if gauge.verdict:
@@ -165,7 +167,7 @@ def _thickness(gauge: GaugeResult, width: float) -> list[Flowable]:
 
 def _cloud(content: ReportContent, width: float) -> list[Flowable]:
     cloud = content.cloud
-    parts: list[Flowable] = [text("Point cloud", "label"), text(f"{grouped(len(cloud))} points", "result")]
+    parts: list[Flowable] = [text("Point cloud", "label"), text(count(len(cloud), "point"), "result")]
     facts = {"Triangles of the mesh": grouped(len(content.mesh.triangles))}
     known = cloud.sigma[np.isfinite(cloud.sigma)]
     if len(known):
@@ -175,8 +177,10 @@ def _cloud(content: ReportContent, width: float) -> list[Flowable]:
         facts["σ of depth, 95 % below"] = f"{fixed(float(most), decimals)} mm"
     if len(cloud):
         size = np.ptp(cloud.points, axis=0)
-        facts["Extent x, y, z"] = " × ".join(fixed(float(value), 1) for value in size) + " mm"
+        facts["Extent x, y, z"] = (
+            " × ".join(fixed(float(value), 0 if size.max() >= 10 else 2) for value in size) + " mm"
+        )
     sentence = (
-        "No two parallel faces were measured, so there is no thickness and no verdict: this report is of the cloud."
+        "No pair of parallel faces was evaluated, so there is no thickness and no verdict: this report is of the cloud."
     )
     return [*parts, Spacer(0, 2.5 * mm), _facts(facts, width), Spacer(0, 2 * mm), text(sentence)]

@@ -26,6 +26,7 @@ class Limits:
 
     inputs: int
     reasons: int
+    names: int
     notes: int
     settings: int
     picture_scale: float
@@ -57,7 +58,7 @@ def story(content: ReportContent, pictures: Mapping[str, ImageReader], limits: L
         *_frame(content, pictures, limits),
         *_maps(content, pictures, limits),
         *_budget(content),
-        *_rig_and_calibrations(content),
+        *_rig_and_calibrations(content, limits),
         *_frames(content, limits),
         *_notes(content, limits),
         *_evaluation(content, limits),
@@ -163,14 +164,14 @@ def _budget(content: ReportContent) -> list[Flowable]:
     return [_section("Uncertainty budget of the thickness", [tables.budget_table(content.gauge, TEXT_WIDTH)])]
 
 
-def _rig_and_calibrations(content: ReportContent) -> list[Flowable]:
-    half = (TEXT_WIDTH - 8 * mm) * 0.46
+def _rig_and_calibrations(content: ReportContent, limits: Limits) -> list[Flowable]:
+    half = (TEXT_WIDTH - 8 * mm) * 0.42
     other = TEXT_WIDTH - 8 * mm - half
     camera: list[Flowable] = [
         text("Camera", "small_strong"),
         tables.camera_table(content.camera, half),
         Spacer(0, 1 * mm),
-        tables.pairs_table(tables.camera_facts(content.camera), half, 27 * mm),
+        tables.pairs_table(tables.camera_facts(content.camera), half, 26 * mm),
     ]
     fan: list[Flowable] = [
         text("Fixed laser (fan), planes in the camera's frame", "small_strong"),
@@ -179,26 +180,27 @@ def _rig_and_calibrations(content: ReportContent) -> list[Flowable]:
         tables.pairs_table(tables.fan_facts(content.fan), other, 27 * mm),
         Spacer(0, 2 * mm),
         text("Rig", "small_strong"),
-        tables.pairs_table(content.rig, other, 27 * mm),
+        tables.pairs_table(dict(list(content.rig.items())[: limits.settings]), other, 27 * mm),
+        *tables.more_line(len(content.rig) - limits.settings),
     ]
-    return [_section("Calibrations and rig", [tables.side_by_side(camera, fan, TEXT_WIDTH, 0.46)])]
+    return [_section("Calibrations and rig", [tables.side_by_side(camera, fan, TEXT_WIDTH, 0.42)])]
 
 
 def _frames(content: ReportContent, limits: Limits) -> list[Flowable]:
     used = [frame.name for frame in content.frames if frame.used]
-    words = f"{grouped(len(used))} of {count(len(content.frames), 'frame')} used"
+    if not content.frames:
+        words = "No frame was given"
+    else:
+        words = f"{grouped(len(used))} of {count(len(content.frames), 'frame')} used"
     if used:
         words += f", {used[0]} to {used[-1]}"
-    if len(used) == len(content.frames):
+    if used and len(used) == len(content.frames):
         words += "; none left out"
     parts: list[Flowable] = [text(f"{words}.", "small")]
-    for what, left_out in (
-        ("Frame", content.frames_left_out),
-        ("Calibration picture", tables.left_out_of_calibration(content)),
-    ):
-        if left_out:
-            parts += [Spacer(0, 1.5 * mm), *tables.left_out_table(what, left_out, TEXT_WIDTH, limits.reasons)]
-    return [_section("Frames", parts)]
+    left_out = content.frames_left_out + tables.left_out_of_calibration(content)
+    if left_out:
+        parts += [Spacer(0, 1.5 * mm), *tables.left_out_table(left_out, TEXT_WIDTH, limits.reasons, limits.names)]
+    return [_section("Frames and calibration pictures", parts)]
 
 
 def _notes(content: ReportContent, limits: Limits) -> list[Flowable]:
@@ -206,8 +208,10 @@ def _notes(content: ReportContent, limits: Limits) -> list[Flowable]:
     if not notes:
         return []
     return [
-        _section("Notes and warnings", list(bullets(notes[: limits.notes]))),
-        *tables.more_line(len(notes) - limits.notes, "note"),
+        _section(
+            "Notes and warnings",
+            [*bullets(notes[: limits.notes]), *tables.more_line(len(notes) - limits.notes)],
+        )
     ]
 
 
@@ -220,7 +224,7 @@ def _evaluation(content: ReportContent, limits: Limits) -> list[Flowable]:
     ]
     return [
         _section("Software and settings", [tables.side_by_side(columns[0], columns[1], TEXT_WIDTH)]),
-        *tables.more_line(len(pairs) - limits.settings, "setting"),
+        *tables.more_line(len(pairs) - limits.settings),
     ]
 
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from functools import cache
 from pathlib import Path
 from xml.sax.saxutils import escape
 
 import matplotlib
+from reportlab import rl_config
 from reportlab.lib.colors import HexColor
 from reportlab.lib.enums import TA_CENTER, TA_RIGHT
 from reportlab.lib.styles import ParagraphStyle
@@ -18,6 +20,9 @@ from reportlab.platypus import Paragraph
 
 ACCENT, INK, MUTED, HAIRLINE, TINT = "#14586E", "#1D2327", "#5C6870", "#CBD3D7", "#EFF4F6"
 """The accent, text, secondary text, thin rules, and the ground of the result box; hex, for plots as well."""
+
+MOST_CHARACTERS = 900
+"""Longest text of one cell or paragraph; a page could not hold a cell without any limit."""
 
 MARGIN = 20 * mm
 TEXT_WIDTH = 170 * mm
@@ -52,9 +57,10 @@ def _covered() -> frozenset[int]:
     return covered or frozenset()
 
 
-def register_fonts() -> None:
-    """Make the embedded fonts known to reportlab; further calls cost nothing."""
+def prepare_reportlab() -> None:
+    """Make the embedded fonts known to reportlab, and let it write binary streams; further calls change nothing."""
     _covered()
+    rl_config.useA85 = 0  # its base-85 text costs more time than all the layout, and a quarter of the size
 
 
 @cache
@@ -87,10 +93,12 @@ def markup(text: str) -> str:
     """`text` as markup of a Paragraph, nothing lost whatever its script.
 
     Characters the embedded fonts lack are set in an East Asian font of the viewer where it has them, and else
-    printed by their code point, [U+1F600].
+    printed by their code point, [U+1F600]. Only what is longer than MOST_CHARACTERS is shortened, and says so.
     """
     covered, parts, asian = _covered(), [], ""
-    for character in " ".join(text.split()):
+    if len(text) > MOST_CHARACTERS:
+        text = f"{text[:MOST_CHARACTERS]}… (shortened from {len(text)} characters; all of it is in run.json)"
+    for character in re.sub(r"[ \t\r\n\f\v]+", " ", text):
         if ord(character) in covered:
             parts.append(escape(character))
         elif _is_east_asian(character):
@@ -130,6 +138,7 @@ STYLES = {
     "fact": _style("fact", 9, 12, fontName=BOLD),
     "mono": _style("mono", 5.6, 7.6, fontName=MONO),
     "hash": _style("hash", 6, 7.8),
+    "hash_folder": _style("hash_folder", 6, 7.8, fontName=BOLD),
     "end": _style("end", 7, 9.4, alignment=TA_CENTER, textColor=color(MUTED), spaceBefore=6),
 }
 """Every type style of the report, by name."""

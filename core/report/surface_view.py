@@ -109,7 +109,7 @@ def surface_picture(mesh: Mesh, cloud: Cloud, ground: Ground, width_px: int, asp
 def _extent(seen: Array, aspect: float) -> tuple[float, float, float, float]:
     """Limits around all that is seen, widened to the aspect, with a margin for the dimension lines."""
     low, high = np.quantile(seen[:, :2], 0.0005, axis=0), np.quantile(seen[:, :2], 0.9995, axis=0)
-    centre, half = (low + high) / 2, np.maximum((high - low) / 2, 1e-3) * 1.05
+    centre, half = (low + high) / 2, np.maximum((high - low) / 2, 0.5) * 1.05
     half_width = max(half[0] * 1.1, half[1] * 1.14 * aspect)
     half_height = half_width / aspect
     middle = centre[1] - 0.06 * half[1]
@@ -129,16 +129,16 @@ def _lambert(normals: Array, ground: Ground) -> Array:
 
 
 def _edges(depth: Array, scale: float) -> Array:
-    """Darkening (1: none) just behind jumps of the depth buffer (mm; −inf where empty), the wider the nearer."""
+    """Darkening (1: none) just behind jumps of the depth buffer (mm; −inf where empty); `scale` in px/mm."""
     seen = np.isfinite(depth)
     if not seen.any():
         return np.ones_like(depth)
     filled = np.where(seen, depth, depth[seen].min()).astype(np.float32)
     shade = np.zeros_like(filled)
-    for reach_mm in (0.6, 2.0):
-        size = 2 * max(1, round(reach_mm * scale)) + 1
-        around = cv2.blur(filled, (size, size))
-        shade += np.clip((around - filled) / (6.0 * reach_mm), 0.0, 1.0) / 2
+    for share in (0.003, 0.009):  # of the picture's height: a sharp rim and a soft shadow
+        reach = max(1, round(share * len(depth)))
+        around = cv2.blur(filled, (2 * reach + 1, 2 * reach + 1))
+        shade += np.clip((around - filled) * scale / (6.0 * reach), 0.0, 1.0) / 2
     darkening: Array = 1.0 - 0.5 * shade.astype(np.float64)
     return darkening
 

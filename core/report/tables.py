@@ -18,7 +18,7 @@ from core.report.wording import count, decimals_of, fixed, grouped
 SYMBOLS = {"alpha": "α", "beta": "β", "gamma": "γ (skew)", "u0": "u₀", "v0": "v₀"}
 UNITS = {"alpha": "px", "beta": "px", "gamma": "px", "u0": "px", "v0": "px"}
 
-SHORT_HASH = 12
+SHORT_HASH = 10
 """Characters printed of an input's SHA-256; the whole of it is in run.json."""
 
 _PLAIN = [
@@ -32,7 +32,7 @@ _PLAIN = [
 ]
 
 
-def plain_table(rows: Sequence[Sequence[Flowable | list[Flowable]]], widths: Sequence[float]) -> Table:
+def plain_table(rows: Sequence[Sequence[Flowable | list[Flowable] | str]], widths: Sequence[float]) -> Table:
     """Cells without any rule."""
     return Table(rows, colWidths=widths, style=TableStyle(_PLAIN), hAlign="LEFT")
 
@@ -58,7 +58,9 @@ def side_by_side(left: list[Flowable], right: list[Flowable], width: float, shar
     gap = 8 * mm
     inner = (width - gap) * share
     style = TableStyle([*_PLAIN, ("RIGHTPADDING", (0, 0), (-1, -1), 0), ("TOPPADDING", (0, 0), (-1, -1), 0)])
-    return Table([[left, "", right]], colWidths=[inner, gap, width - gap - inner], style=style, hAlign="LEFT")
+    return Table(
+        [[left, "", right]], colWidths=[inner, gap, width - gap - inner], style=style, hAlign="LEFT", splitInRow=1
+    )
 
 
 class ShareBar(Flowable):  # type: ignore[misc]
@@ -136,9 +138,9 @@ def camera_facts(calibration: CameraCalibration) -> dict[str, str]:
     tilts = math.degrees(calibration.tilt_range)
     return {
         "Views": f"{used} of {count(len(calibration.views), 'view')} used",
-        "Error of the corners": f"mean {calibration.mean_px:.3f} px, rms {calibration.rms_px:.3f} px",
-        "Coverage": f"{100 * calibration.coverage:.0f} % of the picture, tilts over {tilts:.0f}°",
-        "Odd against even views": f"{fixed(calibration.cross_validation_mm, 3)} mm over the work volume",
+        "Corner error": f"mean {calibration.mean_px:.3f} px, rms {calibration.rms_px:.3f} px",
+        "Coverage": f"{100 * calibration.coverage:.0f} % of the picture, tilts {tilts:.0f}°",
+        "Odd/even views": f"{fixed(calibration.cross_validation_mm, 3)} mm apart over the work volume",
     }
 
 
@@ -170,7 +172,7 @@ def fan_table(calibration: FanCalibration, width: float) -> Table:
                 text(angle, "number"),
             ]
         )
-    return ruled_table(rows, [width * share for share in (0.1, 0.36, 0.14, 0.16, 0.24)])
+    return ruled_table(rows, [width * share for share in (0.085, 0.395, 0.13, 0.15, 0.24)])
 
 
 def fan_facts(calibration: FanCalibration) -> dict[str, str]:
@@ -184,21 +186,21 @@ def fan_facts(calibration: FanCalibration) -> dict[str, str]:
     return facts
 
 
-def left_out_table(what: str, left_out: list[tuple[str, list[str]]], width: float, most: int) -> list[Flowable]:
-    """Reasons, how often, and which (`what` names the kind): at most `most` reasons, and of each at most 6 names."""
+def left_out_table(left_out: list[tuple[str, list[str]]], width: float, most: int, most_names: int) -> list[Flowable]:
+    """Reasons, how often, and which: at most `most` reasons, and of each at most `most_names` names."""
     if not left_out:
         return []
     rows: list[list[Flowable]] = [
-        [text(f"{what} left out because", "head"), text("how many", "head_number"), text("which", "head")]
+        [text("Left out because", "head"), text("how many", "head_number"), text("which", "head")]
     ]
     for reason, names in left_out[:most]:
-        more = f" and {len(names) - 6} more" if len(names) > 6 else ""
-        rows.append(
-            [text(reason, "small"), text(grouped(len(names)), "number"), text(", ".join(names[:6]) + more, "small")]
-        )
+        which = ", ".join(names[:most_names])
+        if len(names) > most_names:
+            which += f" and {grouped(len(names) - most_names)} more"
+        rows.append([text(reason, "small"), text(grouped(len(names)), "number"), text(which, "small")])
     table = ruled_table(rows, [0.4 * width, 0.12 * width, 0.48 * width])
     table.setStyle(TableStyle([("LEFTPADDING", (2, 0), (2, -1), 6)]))
-    return [table, *more_line(len(left_out) - most, "reason")]
+    return [table, *more_line(len(left_out) - most)]
 
 
 def left_out_of_calibration(content: ReportContent) -> list[tuple[str, list[str]]]:
@@ -214,27 +216,45 @@ def left_out_of_calibration(content: ReportContent) -> list[tuple[str, list[str]
 
 
 def hash_table(hashes: Mapping[str, str], width: float, most: int) -> list[Flowable]:
-    """Every input with the beginning of its SHA-256, as many columns as the longest leaves room for; at most `most`."""
+    """Every input by folder, with the beginning of its SHA-256; at most `most` of them.
+
+    As many columns as the longest name leaves room for.
+    """
     shown = sorted(hashes, key=lambda path: ("/" in path, path))[:most]
-    cells = [
-        Paragraph(
-            f'{markup(path)} <font name="{MONO}" size="5.6" color="{MUTED}">{hashes[path][:SHORT_HASH]}</font>',
-            STYLES["hash"],
-        )
-        for path in shown
-    ]
-    longest = max((stringWidth(path, SANS, 6) for path in shown), default=0.0)
-    columns = int(min(max(width // (longest + stringWidth("0" * (SHORT_HASH + 3), MONO, 5.6) + 6), 1), 5))
-    depth = -(-len(cells) // columns)
-    rows = [[cells[c * depth + r] if c * depth + r < len(cells) else "" for c in range(columns)] for r in range(depth)]
+    folders: dict[str, list[str]] = {}
+    for path in shown:
+        folders.setdefault(path.rpartition("/")[0], []).append(path)
+    longest = max((stringWidth(path.rpartition("/")[2], SANS, 6) for path in shown), default=0.0)
+    room = longest + stringWidth("0" * (SHORT_HASH + 2), MONO, 5.6) + 6
+    columns = int(min(max(width // room, 1), 6))
+    rows: list[list[Flowable | str]] = []
+    heads = []
+    for folder, paths in folders.items():
+        if folder:
+            heads.append(len(rows))
+            rows.append([text(f"{folder}/", "hash_folder"), *[""] * (columns - 1)])
+        depth = -(-len(paths) // columns)
+        cells = [_hash_cell(path, hashes[path]) for path in paths]
+        rows += [[*cells[row::depth], *[""] * (columns - len(cells[row::depth]))] for row in range(depth)]
     parts: list[Flowable] = []
     if rows:
         table = plain_table(rows, [width / columns] * columns)
-        table.setStyle(TableStyle([("TOPPADDING", (0, 0), (-1, -1), 0.4), ("BOTTOMPADDING", (0, 0), (-1, -1), 0.4)]))
+        style: list[tuple[object, ...]] = [(side, (0, 0), (-1, -1), 0.3) for side in ("TOPPADDING", "BOTTOMPADDING")]
+        style += [("FONTSIZE", (0, 0), (-1, -1), 1), ("LEADING", (0, 0), (-1, -1), 1)]  # of the empty cells
+        style += [("SPAN", (0, row), (-1, row)) for row in heads] + [
+            ("TOPPADDING", (0, row), (-1, row), 2) for row in heads
+        ]
+        table.setStyle(TableStyle(style))
         parts.append(table)
-    return [*parts, *more_line(len(hashes) - most, "input")]
+    return [*parts, *more_line(len(hashes) - most)]
 
 
-def more_line(left: int, noun: str) -> list[Flowable]:
-    """'and 12 more inputs, listed in run.json', or nothing."""
-    return [text(f"and {count(left, f'more {noun}')}, listed in run.json", "label")] if left > 0 else []
+def _hash_cell(path: str, digest: str) -> Paragraph:
+    name = markup(path.rpartition("/")[2])
+    code = f'<font name="{MONO}" size="5.6" color="{MUTED}">{markup(digest[:SHORT_HASH])}</font>'
+    return Paragraph(f"{name} {code}", STYLES["hash"])
+
+
+def more_line(left: int) -> list[Flowable]:
+    """'and 12 more, listed in run.json', or nothing."""
+    return [text(f"and {grouped(left)} more, listed in run.json", "label")] if left > 0 else []

@@ -45,24 +45,28 @@ def with_uncertainty(value: float, uncertainty: float) -> tuple[str, str]:
 
 
 def count(number: int, noun: str) -> str:
-    """'1 frame', '1 204 frames' (thin spaces between thousands)."""
+    """'1 frame', '1 204 frames' (no-break spaces between thousands)."""
     plural = "" if number == 1 else "s"
     return f"{grouped(number)} {noun}{plural}"
 
 
 def grouped(number: int) -> str:
-    """An integer with thin spaces between thousands."""
-    return f"{number:,}".replace(",", "\u2009")
+    """An integer with no-break spaces between thousands."""
+    return f"{number:,}".replace(",", "\u00a0")
 
 
 def thickness_line(gauge: GaugeResult) -> str:
     """'50.012 mm ± 0.024 mm (k = 2)'."""
+    if not math.isfinite(gauge.U_mm):
+        return f"{fixed(gauge.thickness_mm, 3)} mm (uncertainty unknown)"
     value, uncertainty = with_uncertainty(gauge.thickness_mm, gauge.U_mm)
     return f"{value} mm ± {uncertainty} mm (k = {gauge.k:g})"
 
 
 def uncertainty_sentence(gauge: GaugeResult) -> str:
     """What the number behind ± means."""
+    if not math.isfinite(gauge.U_mm):
+        return "Without an uncertainty the value is no complete result of a measurement."
     coverage = COVERAGE.get(float(gauge.k))
     about = f", which covers about {coverage} of a normal distribution" if coverage else ""
     return f"± is the expanded uncertainty U = k·u with k = {gauge.k:g}{about}; u is the combined standard uncertainty."
@@ -72,6 +76,8 @@ def verdict_sentence(gauge: GaugeResult) -> str:
     """Why the verdict is what it is (ISO 14253-1), with the numbers that decide."""
     if not gauge.verdict or gauge.nominal_mm is None or gauge.tolerance_mm is None or gauge.deviation_mm is None:
         return "No nominal value with a tolerance was given, so the thickness is stated without a verdict."
+    if not math.isfinite(gauge.U_mm):
+        return "The uncertainty is unknown, so neither conformity nor non-conformity is proven."
     decimals = max(decimals_of(gauge.U_mm), 0)
     deviation = fixed(abs(gauge.deviation_mm), decimals)
     U = fixed(gauge.U_mm, decimals)

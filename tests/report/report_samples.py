@@ -55,8 +55,9 @@ def cloud_and_mesh(step=8, seed=1):
 
 def face(cloud, plane, indices):
     residuals = -plane.distances(cloud.points[indices])
-    spread = float(np.diff(np.quantile(residuals, [0.025, 0.975]))[0])
-    return Face(plane, indices, residuals, spread, float(np.sqrt(np.mean(residuals**2))))
+    spread = np.diff(np.quantile(residuals, [0.025, 0.975]))[0] if len(residuals) else np.nan
+    rms = np.sqrt(np.mean(residuals**2)) if len(residuals) else np.nan
+    return Face(plane, indices, residuals, float(spread), float(rms))
 
 
 def gauge(cloud, block, **changes):

@@ -1,0 +1,55 @@
+from dataclasses import replace
+from datetime import UTC, datetime
+
+import numpy as np
+import pytest
+
+from core.report.content import Overlay
+
+from .report_samples import block_content, overlay
+
+
+@pytest.fixture(scope="module")
+def content():
+    return block_content()
+
+
+def test_report_id_comes_from_the_inputs_and_not_from_the_clock(content):
+    again = replace(content, timestamp=datetime(2030, 1, 1, tzinfo=UTC))
+    assert again.report_id == content.report_id
+    hashes = dict(content.hashes)
+    hashes["rig.toml"] = "0" * 64
+    assert replace(content, hashes=hashes).report_id != content.report_id
+
+
+def test_report_id_differs_for_other_settings_and_versions(content):
+    names = {
+        content.report_id,
+        replace(content, settings={"method": "three-crossings"}).report_id,
+        replace(content, version="0.2.0").report_id,
+    }
+    assert len(names) == 3
+
+
+def test_order_of_the_hashes_does_not_matter(content):
+    backwards = dict(reversed(content.hashes.items()))
+    assert replace(content, hashes=backwards).report_id == content.report_id
+
+
+def test_frames_left_out_come_by_reason_commonest_first(content):
+    reasons = content.frames_left_out
+    assert reasons[0] == ("no sweep stripe found", ["frame_017.png", "frame_018.png"])
+    assert len(reasons) == 3
+
+
+def test_notes_of_the_calibrations_are_printed_once(content):
+    noted = replace(content, camera=replace(content.camera, notes=("Too few tilts.", content.notes[0])))
+    assert noted.all_notes == (*content.notes, "Too few tilts.")
+
+
+def test_overlay_refuses_what_does_not_fit_together():
+    good = overlay()
+    with pytest.raises(ValueError, match="uint8"):
+        replace(good, picture=good.picture.astype(np.float64))
+    with pytest.raises(ValueError, match="sweep_sigma"):
+        Overlay(good.name, good.picture, good.fan, good.sweep, good.sweep_sigma[:1], good.crossings)

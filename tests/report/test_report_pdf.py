@@ -1,0 +1,224 @@
+import io
+from dataclasses import replace
+from datetime import UTC, datetime
+from hashlib import sha256
+
+import matplotlib
+import numpy as np
+import pytest
+from pypdf import PdfReader
+
+from core.errors import Cancelled
+from core.report.content import FrameRecord
+from core.report.pdf import build_report
+from core.scan.surface import Mesh
+
+from .report_samples import block_content, gauge
+
+NO_MESH = Mesh(np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0), np.zeros((0, 3), np.int64))
+
+
+def reader(data):
+    return PdfReader(io.BytesIO(data))
+
+
+def words(data):
+    """All text of a PDF, every run of blanks and line ends made one space."""
+    return " ".join(" ".join(page.extract_text() for page in reader(data).pages).split())
+
+
+def bare(text):
+    return "".join(text.split())
+
+
+@pytest.fixture(scope="module")
+def content():
+    return block_content()
+
+
+@pytest.fixture(scope="module")
+def data(content):
+    return build_report(content)
+
+
+@pytest.fixture(scope="module")
+def quick(content):
+    """The same without a point, so there is nothing to draw."""
+    return replace(content, overlay=None, mesh=NO_MESH, cloud=content.cloud.select(np.arange(0)), gauge=None)
+
+
+def test_result_is_printed_with_its_expanded_uncertainty_and_unit(data):
+    assert "Thickness 50.012 mm ± 0.024 mm (k = 2)" in words(data)
+    assert "+0.012 mm" in words(data)
+    assert "±0.2 mm" in words(data)
+
+
+def test_part_rig_calibrations_software_and_budget_are_named(data, content):
+    text = words(data)
+    for expected in (
+        "Gauge block 50 mm",
+        "GB-50-0417",
+        "M. Jørgensen",
+        "Werkzeugbau Süd",
+        "checkerboard, 17 × 12 inner corners",
+        "2494.92",
+        "11 of 12 views used",
+        "mean 0.065 px, rms 0.075 px",
+        "7 of 8 poses",
+        "5.000 (4.929)",
+        "0.034",
+        "Trisect 0.1.0",
+        "Fan's centrelines (static speckle) 0.0082 48",
+        "Combined standard uncertainty u 0.0118",
+        "stripe contrast automatic (38 grey levels)",
+        "saturated on 0.8 %",
+    ):
+        assert expected in text, expected
+    assert content.gauge.budget[-1].u_mm < 0.0001
+    assert "< 0.0001" in text
+
+
+def test_every_page_says_which_of_how_many_it_is(data):
+    pages = reader(data).pages
+    assert 1 <= len(pages) <= 3
+    for number, page in enumerate(pages, start=1):
+        assert f"page {number} of {len(pages)}" in page.extract_text()
+    assert "End of report" in pages[-1].extract_text()
+    assert "End of report" not in pages[0].extract_text()
+
+
+def test_frames_left_out_are_counted_by_reason(data):
+    text = words(data)
+    assert "56 of 60 frames used" in text
+    assert "no sweep stripe found 2 frame_017.png, frame_018.png" in text
+    assert "the board lies half outside the picture 1 camera/view_07.png" in text
+
+
+def test_every_input_is_printed_with_its_hash(data, content):
+    text = words(data)
+    assert content.inputs_digest in text
+    for path, digest in content.hashes.items():
+        assert f"{path.rpartition('/')[2]} {digest[:10]}" in text
+    assert "in full are in run.json" in text
+
+
+def test_fonts_are_embedded(data):
+    fonts = {}
+    for page in reader(data).pages:
+        for font in page["/Resources"]["/Font"].values():
+            descriptor = font.get_object()["/FontDescriptor"]
+            fonts[font.get_object()["/BaseFont"]] = "/FontFile2" in descriptor
+    assert fonts
+    assert all(fonts.values()), fonts
+
+
+def test_metadata_name_title_author_and_subject(data, content):
+    metadata = reader(data).metadata
+    assert metadata.title == f"Measurement report {content.report_id}"
+    assert "Werkzeugbau Süd" in metadata.author
+    assert metadata.subject == "Thickness of Gauge block 50 mm"
+    assert metadata.creation_date == content.timestamp
+
+
+def test_the_date_stands_in_one_place_of_the_text_and_nothing_else_depends_on_it(data, content):
+    later = build_report(replace(content, timestamp=datetime(2031, 12, 1, 7, 8, 9, tzinfo=UTC)))
+    assert words(data).count("2026") == 1
+    assert words(later) == words(data).replace("2026-03-14 15:09:26", "2031-12-01 07:08:09")
+
+
+def test_same_content_gives_the_same_bytes_whatever_the_users_plot_settings(data):
+    with matplotlib.rc_context({"font.size": 20, "axes.grid": True, "lines.linewidth": 9}):
+        assert build_report(block_content()) == data
+        assert matplotlib.rcParams["font.size"] == 20
+
+
+@pytest.mark.parametrize(
+    ("changes", "expected"),
+    [
+        ({"thickness_mm": 50.19, "verdict": "not proven"}, ("? Not proven", "Neither conformity nor non-conformity")),
+        ({"thickness_mm": 50.3, "verdict": "not conforming"}, ("✗ Not conforming", "Non-conformity is proven")),
+        ({"verdict": "conforming"}, ("✓ Conforming", "Conformity is proven")),
+        ({"nominal_mm": None, "tolerance_mm": None, "verdict": ""}, ("without a verdict",)),
+        ({"u_mm": float("nan"), "verdict": "not proven"}, ("50.012 mm (uncertainty unknown)",)),
+    ],
+)
+def test_verdict_is_given_in_words_with_its_reason(quick, changes, expected):
+    measured = gauge(quick.cloud, np.zeros(0, dtype=bool), **changes)
+    text = words(build_report(replace(quick, gauge=measured)))
+    for words_expected in expected:
+        assert words_expected in text
+
+
+def test_without_a_gauge_the_report_is_of_the_cloud(content):
+    text = words(build_report(replace(content, gauge=None, part="Mask")))
+    assert "Point cloud 21 120 points" in text
+    assert "σ of depth, median" in text
+    assert "Uncertainty budget" not in text
+    assert "Thickness" not in text
+
+
+def test_without_any_point_there_is_still_a_report(quick):
+    empty = replace(quick, frames=(), hashes={}, settings={}, notes=(), rig={}, part="", laboratory="")
+    text = words(build_report(empty))
+    assert "No point was measured" in text
+    assert "Part not named" in text
+    assert "No frame was given" in text
+
+
+def test_one_point_is_drawn(quick, content):
+    one = replace(quick, cloud=content.cloud.select(np.array([7])))
+    assert "Point cloud 1 point " in words(build_report(one))
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "Endmaß Größe Ø50 „geprüft“",
+        "Κύβος μέτρησης",
+        "Концевая мера длины",
+        "校正ブロック",
+        "게이지 블록",
+        "<b>A & B</b> &amp; </para>",
+        "x" * 400,
+        "no_space_" * 40,
+    ],
+)
+def test_names_in_any_script_and_of_any_length_are_whole(quick, name):
+    data = build_report(replace(quick, part=name, operator=name[::-1], notes=(f"Note: {name}.",)))
+    text = bare(words(data))
+    assert text.count(bare(name)) >= 2
+    assert bare(name[::-1]) in text
+
+
+def test_a_character_no_font_has_is_printed_by_its_code_point(quick):
+    assert "part [U+0E01][U+10330] two" in words(build_report(replace(quick, part="part \u0e01\U00010330\ntwo")))
+
+
+def test_a_text_beyond_measure_is_shortened_and_says_so(quick):
+    text = words(build_report(replace(quick, part="W" * 20000, rig={"key": "v " * 9000}, notes=("n " * 9000,))))
+    assert "shortened from 20000 characters" in text
+
+
+def test_a_long_scan_stays_within_three_pages_and_counts_what_it_leaves_out(content):
+    hashes = {f"scan/frame_{n:05d}.png": sha256(str(n).encode()).hexdigest() for n in range(1500)}
+    frames = tuple(FrameRecord(f"frame_{n:05d}.png", n % 3 > 0, f"reason {n % 40}") for n in range(1500))
+    notes = tuple(f"Note {n} of a long series." for n in range(60))
+    data = build_report(replace(content, hashes=hashes, frames=frames, notes=notes))
+    text = words(data)
+    assert len(reader(data).pages) <= 3
+    assert "1 000 of 1 500 frames used" in text
+    assert text.count("more, listed in run.json") == 3
+
+
+def test_progress_is_told_and_can_cancel(quick):
+    told: list[tuple[int, int]] = []
+    build_report(quick, lambda step, done, total: told.append((done, total)))
+    assert told[0][0] == 0
+    assert told[-1][0] == told[-1][1]
+    assert [done for done, _ in told] == sorted(done for done, _ in told)
+
+    def stop(step, done, total):
+        raise Cancelled
+
+    with pytest.raises(Cancelled):
+        build_report(quick, stop)

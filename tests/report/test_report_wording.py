@@ -1,0 +1,66 @@
+import numpy as np
+import pytest
+
+from core.inspect.results import Face, GaugeResult
+from core.model import LightPlane
+from core.report.wording import decimals_of, fixed, grouped, thickness_line, uncertainty_sentence, verdict_sentence
+
+
+def gauge(thickness, u, k=2.0, **more):
+    face = Face(LightPlane([0, 0, 0.002]), np.zeros(0, np.int64), np.zeros(0), 0.0, 0.0)
+    return GaugeResult(thickness, u, k, face, face, 0.0, (), **more)
+
+
+@pytest.mark.parametrize(
+    ("thickness", "u", "expected"),
+    [
+        (50.01234, 0.0119, "50.012 mm ± 0.024 mm (k = 2)"),
+        (50.01234, 0.0498, "50.01 mm ± 0.10 mm (k = 2)"),  # 0.0996 has two digits as 0.10
+        (49.9996, 0.005, "50.000 mm ± 0.010 mm (k = 2)"),
+        (50.01234, 0.00061, "50.0123 mm ± 0.0012 mm (k = 2)"),
+        (50.4, 6.2, "50 mm ± 12 mm (k = 2)"),
+        (50.4, 620.0, "100 mm ± 1200 mm (k = 2)"),
+        (50.4, float("inf"), "50.400 mm (uncertainty unknown)"),
+    ],
+)
+def test_uncertainty_has_two_digits_and_the_value_as_many_decimals(thickness, u, expected):
+    assert thickness_line(gauge(thickness, u)) == expected
+
+
+def test_no_uncertainty_or_zero_falls_back_to_micrometres():
+    assert [decimals_of(value) for value in (0.0, float("nan"), -1.0)] == [3, 3, 3]
+
+
+def test_signs_are_true_minus_and_there_is_no_minus_zero():
+    assert fixed(-0.0123, 3, signed=True) == "−0.012"
+    assert fixed(0.0123, 3, signed=True) == "+0.012"
+    assert fixed(-0.0001, 3, signed=True) == "0.000"
+    assert fixed(float("nan"), 3) == "unknown"
+
+
+def test_thousands_do_not_break():
+    assert grouped(1234567) == "1\u00a0234\u00a0567"
+
+
+def test_coverage_is_only_claimed_for_known_factors():
+    assert "about 95 %" in uncertainty_sentence(gauge(50, 0.01))
+    assert "about" not in uncertainty_sentence(gauge(50, 0.01, k=2.37))
+    assert "k = 2.37" in uncertainty_sentence(gauge(50, 0.01, k=2.37))
+
+
+@pytest.mark.parametrize(
+    ("thickness", "verdict", "expected"),
+    [
+        (50.05, "conforming", "0.050 mm from the nominal value, enlarged by U = 0.020 mm, stays within"),
+        (49.7, "not conforming", "0.300 mm from the nominal value, even lessened by U = 0.020 mm, is outside"),
+        (50.19, "not proven", "inside the interval of 0.190 mm ± 0.020 mm"),
+    ],
+)
+def test_verdict_states_the_numbers_that_decide(thickness, verdict, expected):
+    measured = gauge(thickness, 0.01, nominal_mm=50.0, tolerance_mm=0.2, verdict=verdict)
+    assert expected in verdict_sentence(measured)
+    assert "±0.2 mm" in verdict_sentence(measured)
+
+
+def test_no_nominal_value_no_verdict():
+    assert "without a verdict" in verdict_sentence(gauge(50, 0.01))
