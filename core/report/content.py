@@ -143,8 +143,9 @@ class ReportContent:
 
     @property
     def all_notes(self) -> tuple[str, ...]:
-        """The report's own notes and those of both calibrations, each once."""
-        return tuple(dict.fromkeys((*self.notes, *self.camera.notes, *self.fan.notes)))
+        """The report's own notes, those of the gauge and of both calibrations, each once."""
+        of_gauge = self.gauge.notes if self.gauge else ()
+        return tuple(dict.fromkeys((*self.notes, *of_gauge, *self.camera.notes, *self.fan.notes)))
 
     @property
     def frames_left_out(self) -> list[tuple[str, list[str]]]:

@@ -92,7 +92,7 @@ def _title(content: ReportContent) -> list[Flowable]:
 
 
 def _not_covered(content: ReportContent) -> list[Flowable]:
-    sentences = (limits_of_thickness() if content.gauge else limits_of_cloud()) + content.limits
+    sentences = (limits_of_thickness(content.gauge) if content.gauge else limits_of_cloud()) + content.limits
     return [_section("What this result does not cover", list(bullets(sentences)))]
 
 

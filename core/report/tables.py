@@ -96,7 +96,14 @@ def budget_table(gauge: GaugeResult, width: float) -> Table:
         tiny = math.isfinite(row.u_mm) and 0 < row.u_mm < 0.5 * 10.0**-decimals
         shown = f"< {fixed(10.0**-decimals, decimals)}" if tiny else fixed(row.u_mm, decimals)
         bar: Flowable = ShareBar(share, 32 * mm) if math.isfinite(share) else text("", "small")
-        rows.append([text(row.source, "small"), text(shown, "number"), text(fixed(100 * share, 0), "number"), bar])
+        rows.append(
+            [
+                text(row.source[:1].upper() + row.source[1:], "small"),
+                text(shown, "number"),
+                text(fixed(100 * share, 0), "number"),
+                bar,
+            ]
+        )
     U_row = f"Expanded uncertainty U = k·u, k = {gauge.k:g}"
     blank = text("", "small")
     combined = text(fixed(gauge.u_mm, decimals), "number")
@@ -135,12 +142,15 @@ def camera_table(calibration: CameraCalibration, width: float) -> Table:
 def camera_facts(calibration: CameraCalibration) -> dict[str, str]:
     """How good the camera's calibration is."""
     used = sum(view.used for view in calibration.views)
+    apart = calibration.cross_validation_mm
     tilts = math.degrees(calibration.tilt_range)
     return {
         "Views": f"{used} of {count(len(calibration.views), 'view')} used",
         "Corner error": f"mean {calibration.mean_px:.3f} px, rms {calibration.rms_px:.3f} px",
         "Coverage": f"{100 * calibration.coverage:.0f} % of the picture, tilts {tilts:.0f}°",
-        "Odd/even views": f"{fixed(calibration.cross_validation_mm, 3)} mm apart over the work volume",
+        "Odd/even views": f"{fixed(apart, 3)} mm apart over the work volume"
+        if math.isfinite(apart)
+        else "too few views",
     }
 
 

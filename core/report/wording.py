@@ -96,11 +96,12 @@ def verdict_sentence(gauge: GaugeResult) -> str:
     )
 
 
-def limits_of_thickness() -> tuple[str, ...]:
+def limits_of_thickness(gauge: GaugeResult) -> tuple[str, ...]:
     """What no thickness of this instrument covers."""
+    rule = gauge.rule or "distance of two parallel planes fitted to the points of both faces"
     return (
-        "The thickness is the distance of two parallel planes fitted to the points of both faces. It is no local "
-        "length: form deviations of the faces are stated apart, as flatness.",
+        f"The thickness is the {rule}. It is no local length: form deviations of the faces are stated apart, as "
+        "flatness.",
         "The result rests on one scan. Repeatability over several scans is in it only where the uncertainty "
         "budget names it.",
         "Temperature was not measured; nothing is corrected to 20 °C.",

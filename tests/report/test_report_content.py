@@ -42,9 +42,13 @@ def test_frames_left_out_come_by_reason_commonest_first(content):
     assert len(reasons) == 3
 
 
-def test_notes_of_the_calibrations_are_printed_once(content):
-    noted = replace(content, camera=replace(content.camera, notes=("Too few tilts.", content.notes[0])))
-    assert noted.all_notes == (*content.notes, "Too few tilts.")
+def test_notes_of_gauge_and_calibrations_are_printed_once(content):
+    noted = replace(
+        content,
+        camera=replace(content.camera, notes=("Too few tilts.", content.notes[0])),
+        gauge=replace(content.gauge, notes=("The faces are small.",)),
+    )
+    assert noted.all_notes == (*content.notes, "The faces are small.", "Too few tilts.")
 
 
 def test_overlay_refuses_what_does_not_fit_together():

@@ -3,7 +3,15 @@ import pytest
 
 from core.inspect.results import Face, GaugeResult
 from core.model import LightPlane
-from core.report.wording import decimals_of, fixed, grouped, thickness_line, uncertainty_sentence, verdict_sentence
+from core.report.wording import (
+    decimals_of,
+    fixed,
+    grouped,
+    limits_of_thickness,
+    thickness_line,
+    uncertainty_sentence,
+    verdict_sentence,
+)
 
 
 def gauge(thickness, u, k=2.0, **more):
@@ -64,3 +72,9 @@ def test_verdict_states_the_numbers_that_decide(thickness, verdict, expected):
 
 def test_no_nominal_value_no_verdict():
     assert "without a verdict" in verdict_sentence(gauge(50, 0.01))
+
+
+def test_what_the_thickness_is_follows_the_rule_of_the_fit():
+    assert "distance of two parallel planes" in limits_of_thickness(gauge(50, 0.01))[0]
+    ruled = gauge(50, 0.01, rule="distance of two parallel lines in one light profile")
+    assert limits_of_thickness(ruled)[0].startswith("The thickness is the distance of two parallel lines in one light")
