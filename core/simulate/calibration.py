@@ -1,0 +1,92 @@
+"""The calibration pictures of a simulated set: which plates are shown, how they are held, and their pictures."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from core.model import Pose
+from core.simulate.boards import black_square, charuco, checkerboard, circle_grid
+from core.simulate.image import Picture, Sensor, generator
+from core.simulate.patterns import Pattern
+from core.simulate.poses import camera_poses, plane_poses
+from core.simulate.rays import Map
+from core.simulate.rig import Rig
+from core.simulate.scenario import Scenario
+from core.simulate.targets import camera_picture, fan_centres, plane_pictures
+
+CAMERA_GREY = 190.0
+PLANE_GREY = 75.0
+"""8-bit grey level of a white surface in the room's light, while the camera and while the fan is calibrated."""
+
+SQUARE_SIDE_MM = 60.0
+
+TABLES = {
+    "checkerboard": 'kind = "checkerboard"\ninner_corners = [17, 12]\nsquare_mm = 10.0',
+    "charuco": 'kind = "charuco"\nsquares = [12, 9]\nsquare_mm = 15.0\nmarker_mm = 11.25\ndictionary = "DICT_4X4_100"',
+    "circle_grid": 'kind = "circle_grid"\ncircles = [13, 10]\npitch_mm = 14.0',
+    "black_square": f'kind = "black_square"\nside_mm = {SQUARE_SIDE_MM}',
+}
+"""What rig.toml says of each plate."""
+
+
+def plate(kind: str) -> Pattern:
+    """The plate of a kind named in TABLES."""
+    if kind == "checkerboard":
+        return checkerboard(17, 12, 10.0)
+    if kind == "charuco":
+        return charuco(12, 9, 15.0, 11.25, "DICT_4X4_100")
+    if kind == "circle_grid":
+        return circle_grid(13, 10, 14.0)
+    return black_square(SQUARE_SIDE_MM)
+
+
+def rig_toml(scenario: Scenario) -> str:
+    """The text of rig.toml for a scenario."""
+    lines = [
+        "[camera_target]",
+        TABLES[scenario.camera_target],
+        "",
+        "[plane_target]",
+        TABLES[scenario.plane_target],
+        "",
+        "[laser_fan]",
+        "lines = 3",
+        "angle_deg = 5.0",
+    ]
+    if scenario.object in ("block", "narrow-block"):
+        lines += ["", "[gauge]", f"nominal_mm = {float(scenario.height_mm)}", "tolerance_mm = 0.2"]
+    return "\n".join(lines) + "\n"
+
+
+class CalibrationPictures:
+    """The camera views and plane poses of one scenario, rendered one at a time."""
+
+    def __init__(self, scenario: Scenario, rig: Rig, rays: Map) -> None:
+        self._rig, self._rays, self._seed = rig, rays, scenario.seed
+        self._sensor = Sensor(rig.optics, scenario.bits, scenario.noise)
+        self._camera_plate, self._plane_plate = plate(scenario.camera_target), plate(scenario.plane_target)
+        views = camera_poses(
+            rig.camera, self._camera_plate.outline, scenario.camera_views, generator(self._seed, "camera poses")
+        )
+        self.camera_poses = {f"view{i:02d}": pose for i, pose in enumerate(views)}
+        shown = plane_poses(
+            fan_centres(rig, scenario.plane_poses), self._plane_plate.outline, generator(self._seed, "plane poses")
+        )
+        self.plane_poses = {f"pose{i:02d}": pose for i, pose in enumerate(shown)}
+
+    def render(self, name: str) -> Iterator[tuple[str, Picture]]:
+        """The pictures of one view or pose, each with its path within the set."""
+        if name in self.camera_poses:
+            yield f"camera/{name}.png", self._view(name, self.camera_poses[name])
+            return
+        index = list(self.plane_poses).index(name)
+        pose = self.plane_poses[name]
+        on, off = plane_pictures(
+            self._rig, self._rays, self._plane_plate, pose, self._sensor, PLANE_GREY, self._seed, index
+        )
+        yield f"planes/{name}.png", on
+        yield f"planes/{name}_off.png", off
+
+    def _view(self, name: str, pose: Pose) -> Picture:
+        rng = generator(self._seed, "camera", list(self.camera_poses).index(name))
+        return camera_picture(self._rig, self._rays, self._camera_plate, pose, self._sensor, CAMERA_GREY, rng)

@@ -1,0 +1,96 @@
+"""Line lasers as sheets of light: Gaussian across, from a real emitter, shadowed by what stands in the way.
+
+Light on a surface point X at distance ρ from the emitter, d off the sheet's middle and φ off its axis:
+
+    I = peak · ρ₀σ₀/(ρ σ(ρ)) · exp(−d²/2σ(ρ)²) · exp(−2 φ²/φ₀²) · cos θ,    σ(ρ) = σ₀ √(1 + ((ρ − ρ₀)/ρ_R)²)
+
+with θ the angle of incidence; 0 where θ ≥ 90° or something is in the way. Only pixels within 4.5 σ of the sheet are
+looked at.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+
+from core.model import LightPlane
+from core.model.arrays import Array, frozen_array, set_field
+from core.simulate.rays import Map
+from core.simulate.rig import Beam, Rig
+from core.simulate.scene import Scene, SurfaceMaps
+from core.simulate.shadow import ShadowCaster
+
+REACH_SIGMAS = 4.5
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Sheet:
+    """One sheet of laser light: its plane, its emitter (3,) on that plane in mm, its axis (3,) and its beam."""
+
+    plane: LightPlane
+    emitter: Array
+    axis: Array
+    beam: Beam
+
+    def __post_init__(self) -> None:
+        emitter = np.asarray(self.emitter, dtype=np.float64)
+        emitter = emitter - self.plane.distances(emitter[None])[0] * self.plane.normal
+        axis = np.asarray(self.axis, dtype=np.float64)
+        axis = axis - (axis @ self.plane.normal) * self.plane.normal
+        set_field(self, "emitter", frozen_array(emitter, (3,), "emitter"))
+        set_field(self, "axis", frozen_array(axis / np.linalg.norm(axis), (3,), "axis"))
+
+
+def fan_sheets(rig: Rig, aim: Array) -> tuple[Sheet, ...]:
+    """The sheets of the rig's fan, line 1 … N, their middles turned towards the point `aim` (3,) in mm."""
+    return tuple(Sheet(plane, rig.fan_emitter, aim - rig.fan_emitter, rig.fan_beam) for plane in rig.fan.planes)
+
+
+def laser_light(sheet: Sheet, scene: Scene, maps: SurfaceMaps, out: Map | None = None) -> Map:
+    """Light of one sheet that each pixel's surface point sends back, (height, width) in 8-bit grey levels.
+
+    Added to `out` when it is given. Neither lens nor speckle are in it yet.
+    """
+    light = np.zeros(maps.albedo.shape, np.float32) if out is None else out
+    beam = sheet.beam
+    widest = beam.sigma_mm * np.hypot(1, max(1.0, 400.0 / beam.rayleigh_mm))
+    v, u = _near(maps.points, sheet.plane.normal, sheet.plane.d_mm, REACH_SIGMAS * widest)
+    points = maps.points[v, u].astype(np.float64)
+    towards = points - sheet.emitter
+    rho = np.linalg.norm(towards, axis=1)
+    cosine = -np.einsum("ni,ni->n", towards, maps.normals[v, u]) / rho
+    lit = cosine > 0
+    v, u, points, towards, rho, cosine = v[lit], u[lit], points[lit], towards[lit], rho[lit], cosine[lit]
+    caster = ShadowCaster.near_plane(scene, sheet.plane, sheet.emitter, sheet.axis, REACH_SIGMAS * widest)
+    open_sky = caster.sees(points)
+    sigma = beam.sigma_mm * np.hypot(1, (rho - beam.focus_mm) / beam.rayleigh_mm)
+    off = sheet.plane.distances(points)
+    angle = np.arccos(np.clip(towards @ sheet.axis / rho, -1, 1))
+    strength = beam.peak_grey * beam.focus_mm * beam.sigma_mm / (rho * sigma)
+    profile = np.exp(-0.5 * (off / sigma) ** 2 - 2 * (angle / beam.half_angle) ** 2)
+    light[v, u] += (strength * profile * cosine * maps.albedo[v, u] * open_sky).astype(np.float32)
+    return light
+
+
+@njit(cache=True, nogil=True)
+def _near(points, normal, distance, reach):  # type: ignore[no-untyped-def]
+    """Rows and columns of the pixels whose point is within `reach` of the plane normal·X = distance."""
+    height, width = points.shape[:2]
+    room = 4096
+    rows, columns = np.empty(room, np.int64), np.empty(room, np.int64)
+    count = 0
+    for v in range(height):
+        for u in range(width):
+            z = points[v, u, 2]
+            off = points[v, u, 0] * normal[0] + points[v, u, 1] * normal[1] + z * normal[2] - distance
+            if z > 0 and abs(off) < reach:
+                if count == room:
+                    rows = np.concatenate((rows, np.empty(room, np.int64)))
+                    columns = np.concatenate((columns, np.empty(room, np.int64)))
+                    room *= 2
+                rows[count] = v
+                columns[count] = u
+                count += 1
+    return rows[:count], columns[:count]

@@ -1,0 +1,164 @@
+"""Flat printed patterns as the camera sees them, with exact shares in every pixel an edge cuts.
+
+A pattern is a grid of cells between straight edges along x and along y, plus round dots. The share of a pixel on one
+side of an edge is that of a half-plane cutting a unit square: exact for one edge, so edges and corners are unbiased at
+any phase and angle.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+from numpy.typing import ArrayLike
+
+from core.model import Pose
+from core.model.arrays import Array, frozen_array, set_field
+from core.simulate.rays import Map
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Pattern:
+    """A printed plate in its own frame (mm, z = 0 on its face, z pointing into the plate, away from the camera).
+
+    Parameters
+    ----------
+    x_edges, y_edges
+        (Nx,), (Ny,) where cells meet, ascending, in mm. The outermost are the plate's own edges.
+    albedo
+        (Ny − 1, Nx − 1) of the cells.
+    background
+        Albedo of what is seen beside the plate.
+    dots
+        (N, 2) centres of round dots on top of the cells, in mm.
+    dot_radius, dot_albedo
+        Of all dots.
+    """
+
+    x_edges: Array
+    y_edges: Array
+    albedo: Array
+    background: float = 0.03
+    dots: Array | None = None
+    dot_radius: float = 0.0
+    dot_albedo: float = 0.0
+
+    def __post_init__(self) -> None:
+        set_field(self, "x_edges", frozen_array(self.x_edges, (None,), "x_edges"))
+        set_field(self, "y_edges", frozen_array(self.y_edges, (None,), "y_edges"))
+        shape = (len(self.y_edges) - 1, len(self.x_edges) - 1)
+        set_field(self, "albedo", frozen_array(self.albedo, shape, "albedo"))
+        dots: ArrayLike = np.empty((0, 2)) if self.dots is None else self.dots
+        set_field(self, "dots", frozen_array(dots, (None, 2), "dots"))
+
+    @property
+    def outline(self) -> Array:
+        """The plate's corners (4, 3) in mm, in order round it."""
+        (x0, x1), (y0, y1) = self.x_edges[[0, -1]], self.y_edges[[0, -1]]
+        return np.array([[x0, y0, 0], [x1, y0, 0], [x1, y1, 0], [x0, y1, 0]])
+
+
+def draw_pattern(pattern: Pattern, pose_cam_target: Pose, rays: Map) -> tuple[Map, Map]:
+    """What each pixel sees of a plate: points (h, w, 3) in mm in the camera frame, and albedo (h, w).
+
+    Where the plate is not seen, points are 0 and the albedo is the background's.
+    """
+    padded = np.pad(pattern.albedo, 1, constant_values=pattern.background)
+    dots = np.empty((0, 2)) if pattern.dots is None else pattern.dots
+    points, albedo = _draw_cells(
+        pattern.x_edges, pattern.y_edges, padded, pose_cam_target.rotation, pose_cam_target.translation, rays
+    )
+    if len(dots):
+        dot = (pattern.dot_radius, pattern.dot_albedo)
+        _draw_dots(dots, dot, pose_cam_target.rotation, pose_cam_target.translation, rays, points, albedo)
+    return points, albedo
+
+
+@njit(cache=True, nogil=True)
+def _on_plate(x, y, rotation, translation):  # type: ignore[no-untyped-def]
+    """Plate coordinates and depth of the point at which ray (x, y, 1) meets the plate; depth 0 if it does not."""
+    facing = rotation[0, 2] * x + rotation[1, 2] * y + rotation[2, 2]
+    along = rotation[0, 2] * translation[0] + rotation[1, 2] * translation[1] + rotation[2, 2] * translation[2]
+    if facing <= 1e-6 or along <= 0:
+        return 0.0, 0.0, 0.0
+    z = along / facing
+    dx, dy, dz = z * x - translation[0], z * y - translation[1], z - translation[2]
+    px = rotation[0, 0] * dx + rotation[1, 0] * dy + rotation[2, 0] * dz
+    py = rotation[0, 1] * dx + rotation[1, 1] * dy + rotation[2, 1] * dz
+    return px, py, z
+
+
+@njit(cache=True, nogil=True)
+def _share(distance, gradient_u, gradient_v):  # type: ignore[no-untyped-def]
+    """Share of a pixel beyond a straight edge.
+
+    `distance` from the edge to the pixel's centre in mm, its gradient in mm per pixel. The projection of a unit square
+    on the edge's normal is a trapezium; this is its running integral.
+    """
+    a, b = abs(gradient_u), abs(gradient_v)
+    long, short = max(a, b), min(a, b)
+    outer, inner = (long + short) / 2, (long - short) / 2
+    if distance <= -outer:
+        return 0.0
+    if distance >= outer:
+        return 1.0
+    if distance < -inner:
+        return (distance + outer) ** 2 / (2 * long * short)
+    if distance > inner:
+        return 1.0 - (outer - distance) ** 2 / (2 * long * short)
+    return 0.5 + distance / long
+
+
+@njit(cache=True, nogil=True)
+def _draw_cells(x_edges, y_edges, cells, rotation, translation, rays):  # type: ignore[no-untyped-def]
+    height, width = rays.shape[:2]
+    points = np.zeros((height, width, 3), np.float32)
+    albedo = np.full((height, width), cells[0, 0], np.float32)
+    x_middles, y_middles = (x_edges[1:] + x_edges[:-1]) / 2, (y_edges[1:] + y_edges[:-1]) / 2
+    for v in range(height):
+        below = v + 1 if v + 1 < height else v - 1
+        for u in range(width):
+            px, py, z = _on_plate(rays[v, u, 0], rays[v, u, 1], rotation, translation)
+            if z == 0.0 or px < x_edges[0] - 5 or px > x_edges[-1] + 5 or py < y_edges[0] - 5 or py > y_edges[-1] + 5:
+                continue
+            right = u + 1 if u + 1 < width else u - 1
+            xu, yu, _ = _on_plate(rays[v, right, 0], rays[v, right, 1], rotation, translation)
+            xv, yv, _ = _on_plate(rays[below, u, 0], rays[below, u, 1], rotation, translation)
+            i, j = np.searchsorted(x_middles, px), np.searchsorted(y_middles, py)  # nearest edges
+            right_share = _share(px - x_edges[i], xu - px, xv - px)
+            lower_share = _share(py - y_edges[j], yu - py, yv - py)
+            upper = cells[j, i] * (1 - right_share) + cells[j, i + 1] * right_share
+            lower = cells[j + 1, i] * (1 - right_share) + cells[j + 1, i + 1] * right_share
+            albedo[v, u] = upper * (1 - lower_share) + lower * lower_share
+            if x_edges[0] < px < x_edges[-1] and y_edges[0] < py < y_edges[-1]:
+                points[v, u, 0], points[v, u, 1], points[v, u, 2] = z * rays[v, u, 0], z * rays[v, u, 1], z
+    return points, albedo
+
+
+@njit(cache=True, nogil=True)
+def _draw_dots(dots, dot, rotation, translation, rays, points, albedo):  # type: ignore[no-untyped-def]
+    radius, dark = dot
+    height, width = rays.shape[:2]
+    for v in range(height):
+        below = v + 1 if v + 1 < height else v - 1
+        for u in range(width):
+            if points[v, u, 2] == 0:
+                continue
+            px, py, _ = _on_plate(rays[v, u, 0], rays[v, u, 1], rotation, translation)
+            right = u + 1 if u + 1 < width else u - 1
+            nearest = 0
+            for k in range(1, len(dots)):
+                if (px - dots[k, 0]) ** 2 + (py - dots[k, 1]) ** 2 < (px - dots[nearest, 0]) ** 2 + (
+                    py - dots[nearest, 1]
+                ) ** 2:
+                    nearest = k
+            here = np.hypot(px - dots[nearest, 0], py - dots[nearest, 1])
+            if here > 1.5 * radius:
+                continue
+            xu, yu, _ = _on_plate(rays[v, right, 0], rays[v, right, 1], rotation, translation)
+            xv, yv, _ = _on_plate(rays[below, u, 0], rays[below, u, 1], rotation, translation)
+            along_u = np.hypot(xu - dots[nearest, 0], yu - dots[nearest, 1]) - here
+            along_v = np.hypot(xv - dots[nearest, 0], yv - dots[nearest, 1]) - here
+            share = _share(radius - here, along_u, along_v)
+            albedo[v, u] += share * (dark - albedo[v, u])

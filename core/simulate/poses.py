@@ -1,0 +1,70 @@
+"""Believable poses of a hand-held plate before the camera."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from core.model import Camera, Pose
+from core.model.arrays import Array
+
+BORDER_PX = 12.0
+
+
+def camera_poses(camera: Camera, outline: Array, views: int, rng: np.random.Generator) -> list[Pose]:
+    """`views` poses of a plate whose corners are `outline` (4, 3) in mm: all over the picture, tilted to 35°.
+
+    Distances from 450 to 650 mm (farther where the plate would not fit in), tilt axes all round, a little turned. The
+    plate is wholly in each picture.
+    """
+    golden = (np.sqrt(5) - 1) / 2
+    poses = []
+    for view in range(views):
+        place = np.array([((view + 0.5) / views + 0.13) % 1, (0.5 + view * golden) % 1])  # spread evenly
+        tilt = np.radians(6.0 + 29.0 * ((view * golden * 2.7 + 0.9) % 1))
+        axis = 2 * np.pi * (view * golden * 1.7 % 1) + rng.normal(0, 0.1)
+        roll = np.radians(rng.normal(0, 6.0)) + (np.pi / 2 if view % 7 == 3 else 0.0)
+        distance = 450.0 + 200.0 * ((view * 0.381966 + 0.1) % 1) + rng.normal(0, 5.0)
+        poses.append(_fitted(camera, outline, 2.4 * (place - 0.5), _turn(tilt, axis, roll), distance))
+    return poses
+
+
+def plane_poses(centres: Sequence[Array], outline: Array, rng: np.random.Generator) -> list[Pose]:
+    """Poses of a plate on which the fan shines, the plate's middle near each of `centres` (3,) in mm.
+
+    Moved aside by up to a quarter of the plate, so that lines fall on all parts of it, and tilted to 32°.
+    """
+    size = np.ptp(outline, axis=0)[:2]
+    middle = outline.mean(axis=0)
+    poses = []
+    for pose, centre in enumerate(centres):
+        angle = 2 * np.pi * pose / max(len(centres), 1)
+        shift = 0.22 * size * [np.cos(2 * angle + 0.5), np.sin(angle + 0.7)] + rng.normal(0, 3.0, 2)
+        tilt = np.radians(8.0 + 24.0 * (pose * 0.618034 % 1))
+        rotation = _turn(tilt, 2.4 * pose + rng.normal(0, 0.15), np.radians(rng.normal(0, 9.0)))
+        poses.append(Pose(rotation, centre + [*shift, 0.0] - rotation @ middle))
+    return poses
+
+
+def _turn(tilt: float, axis: float, roll: float) -> Array:
+    """Facing the camera, rolled in the picture's plane, then tilted about an axis in it."""
+    about = np.array([np.cos(axis), np.sin(axis), 0.0])
+    turn = Rotation.from_rotvec(tilt * about) * Rotation.from_rotvec([0, 0, roll])
+    return np.asarray(turn.as_matrix(), dtype=np.float64)
+
+
+def _fitted(camera: Camera, outline: Array, place: Array, rotation: Array, distance: float) -> Pose:
+    """The plate drawn in from `place` (−1 … 1 over the picture), then back, until it is wholly in the picture."""
+    width, height = camera.image_size
+    half = np.array([width / camera.matrix[0, 0], height / camera.matrix[1, 1]]) / 2
+    middle = rotation @ outline.mean(axis=0)
+    for depth in distance * 1.06 ** np.arange(20):
+        for pull in np.linspace(1.0, 0.0, 26):
+            offset = np.append(place * pull * half * depth, depth)
+            pose = Pose(rotation, offset - middle)
+            uv = camera.project_pose(pose, outline)
+            if (uv > BORDER_PX).all() and (uv < [width - BORDER_PX, height - BORDER_PX]).all():
+                return pose
+    raise ValueError("the plate does not fit into the picture at any distance tried")

@@ -1,0 +1,160 @@
+"""Recording sets as a stranger would record them, with the truth beside them."""
+
+from __future__ import annotations
+
+import shutil
+import tempfile
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import asdict, replace
+from pathlib import Path
+
+from core.errors import InputError
+from core.files.atomic import cannot_write, make_folder, write_text
+from core.files.pictures import write_picture
+from core.model import LightPlane
+from core.progress import Progress, silent, steps
+from core.simulate.calibration import CalibrationPictures, rig_toml
+from core.simulate.image import Picture, Sensor, generator
+from core.simulate.laser import Sheet
+from core.simulate.rays import ray_map
+from core.simulate.rig import Optics, Rig, paper_rig
+from core.simulate.scan import ScanStage
+from core.simulate.scenario import Scenario
+from core.simulate.stage import WORK_POINT, aim_of, build_scene
+from core.simulate.sweep import hand_sweeps, sweep_range
+from core.simulate.truth import Truth, load_truth, save_truth, truth_folder
+from core.threads import ordered_map
+
+RENDER_THREADS = 2
+
+
+def simulate_set(
+    scenario: Scenario, folder: Path, progress: Progress = silent, *, calibration_from: Path | None = None
+) -> None:
+    """Render the recording set of `scenario` into `folder`, and its truth into FOLDER.truth beside it.
+
+    Parameters
+    ----------
+    scenario
+        What to simulate; the same scenario gives the same bytes.
+    folder
+        Must not hold anything yet.
+    progress
+        Told after each picture; what it raises (Cancelled) passes through and leaves nothing behind.
+    calibration_from
+        An earlier simulated set of the same rig and scale: its camera/ and planes/ are copied, not rendered.
+
+    Raises
+    ------
+    InputError
+        If the folder is not empty or cannot be written to, or the other set does not fit.
+    """
+    folder = folder.absolute()
+    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+        raise InputError("there is something already", where=folder, todo="name a new folder, or empty this one")
+    make_folder(folder.parent)
+    try:
+        with tempfile.TemporaryDirectory(prefix=f".{folder.name}.", dir=folder.parent) as beside:
+            made, hidden = Path(beside) / "set", Path(beside) / "truth"
+            _render(scenario, made, hidden, progress, calibration_from)
+            _put_in_place(made, hidden, folder)
+    except OSError as error:
+        raise cannot_write(folder, error) from error
+
+
+def _render(scenario: Scenario, made: Path, hidden: Path, progress: Progress, earlier: Path | None) -> None:
+    for part in (made / "camera", made / "planes", made / "scan", hidden):
+        part.mkdir(parents=True)
+    rig = scenario_rig(scenario)
+    rays = ray_map(rig.camera)
+    calibration = CalibrationPictures(scenario, rig, rays)
+    camera_poses, plane_poses = calibration.camera_poses, calibration.plane_poses
+    if earlier is not None:
+        camera_poses, plane_poses = _copy_calibration(earlier, made, rig)
+    else:
+        names = [*camera_poses, *plane_poses]
+        _write_all(made, lambda name: calibration.render(name), names, progress, "calibration pictures")
+    stage, sheets, figures = scan_of(scenario, rig)
+    shots = {f"frame{i:04d}": (i, sheet) for i, sheet in enumerate(sheets)}
+
+    def shoot(name: str) -> Iterator[tuple[str, Picture]]:
+        if name == "reference":
+            yield "scan/reference.png", stage.reference()
+        else:
+            yield f"scan/{name}.png", stage.frame(*shots[name])
+
+    first = ["reference"] if scenario.reference else []
+    _write_all(made, shoot, [*first, *shots], progress, "frames")
+    write_text(made / "rig.toml", rig_toml(scenario), sync=False)
+    sweeps: dict[str, LightPlane] = {name: sheet.plane for name, (_, sheet) in shots.items()}
+    maps = stage.maps
+    truth = Truth(rig.camera, rig.fan, sweeps, camera_poses, plane_poses, figures, maps.depth, maps.table)
+    save_truth(hidden, truth, asdict(scenario))
+
+
+def scenario_rig(scenario: Scenario) -> Rig:
+    """The rig of a scenario."""
+    optics = replace(Optics(), speckle_contrast=scenario.speckle)
+    return paper_rig(scenario.scale, published_planes=scenario.published_planes, optics=optics)
+
+
+def scan_of(scenario: Scenario, rig: Rig | None = None) -> tuple[ScanStage, list[Sheet], dict[str, object]]:
+    """Stage, sheets of light of each frame, and true figures of a scenario, to render without any disk.
+
+    >>> stage, sheets, _ = scan_of(Scenario(scale=0.1, frames=3))
+    >>> stage.frame(0, sheets[0]).shape
+    (275, 384)
+    """
+    rig = rig or scenario_rig(scenario)
+    scene, figures = build_scene(scenario)
+    sensor = Sensor(rig.optics, scenario.bits, scenario.noise)
+    stage = ScanStage(
+        rig,
+        scene,
+        sensor,
+        seed=scenario.seed,
+        ambient_grey=scenario.ambient_grey,
+        texture=scenario.texture,
+        aim=WORK_POINT,
+    )
+    reach = sweep_range(scene, aim_of(scene))
+    sheets = hand_sweeps(rig, reach, scenario.frames, generator(scenario.seed, "sweeps"))
+    return stage, sheets, figures
+
+
+def _write_all(
+    made: Path,
+    render: Callable[[str], Iterable[tuple[str, Picture]]],
+    names: list[str],
+    progress: Progress,
+    step: str,
+) -> None:
+    """Render and write the pictures of all `names`, two at once."""
+
+    def write(name: str) -> None:
+        for path, picture in render(name):
+            write_picture(made / path, picture)
+
+    for _ in steps(ordered_map(write, names, RENDER_THREADS), progress, step, len(names)):
+        pass
+
+
+def _copy_calibration(earlier: Path, made: Path, rig: Rig) -> tuple[dict, dict]:  # type: ignore[type-arg]
+    truth = load_truth(earlier)
+    same = truth.camera.image_size == rig.camera.image_size and abs(truth.fan.pis - rig.fan.pis).max() < 1e-12
+    if not same:
+        raise InputError("its rig or picture size is another one", where=earlier, todo="render the calibration anew")
+    for part in ("camera", "planes"):
+        shutil.copytree(earlier / part, made / part, dirs_exist_ok=True)
+    return dict(truth.camera_poses), dict(truth.plane_poses)
+
+
+def _put_in_place(made: Path, hidden: Path, folder: Path) -> None:
+    """Move set and truth to their places; the set last, so that whoever sees it has its truth."""
+    beside = truth_folder(folder)
+    if beside.exists():
+        shutil.rmtree(beside)
+    if folder.exists():
+        folder.rmdir()
+    hidden.rename(beside)
+    made.rename(folder)

@@ -1,0 +1,135 @@
+"""What to simulate: one frozen description from which every picture follows, byte for byte."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import tomllib
+from dataclasses import asdict, dataclass, fields
+from pathlib import Path
+
+from core.errors import InputError
+
+OBJECTS = ("block", "narrow-block", "steps", "sphere", "mask", "stl", "plane")
+"""What can stand on the table."""
+
+CAMERA_TARGETS = ("checkerboard", "charuco", "circle_grid")
+PLANE_TARGETS = ("black_square", "checkerboard")
+
+
+@dataclass(frozen=True, slots=True)
+class Scenario:
+    """A recording to be simulated.
+
+    Parameters
+    ----------
+    object
+        One of OBJECTS; `stl_path` names the file of an "stl".
+    height_mm
+        Height of a block, diameter of a sphere, height of the mask.
+    seed
+        All chance in the pictures comes from it.
+    scale
+        Picture size over 3840 × 2748.
+    frames, camera_views, plane_poses
+        How many pictures of each kind.
+    noise
+        Factor on shot and read noise: 1 as in a real camera, 0 for none.
+    speckle
+        Contrast of the lasers' speckle; 0 for none.
+    bits
+        8 or 16.
+    ambient_grey
+        8-bit grey level of a white surface in the room's light during the scan.
+    texture
+        Relative unevenness (standard deviation) of the albedo of table and object.
+    camera_target, plane_target
+        Kinds of plates, as in rig.toml.
+    published_planes
+        Take the paper's eq. (6) as printed, angles 4.929° and 4.919°, instead of an exact 5° pencil.
+    reference
+        Write scan/reference.png, the fan alone.
+    """
+
+    object: str = "block"
+    height_mm: float = 50.0
+    seed: int = 1
+    scale: float = 1.0
+    frames: int = 60
+    camera_views: int = 14
+    plane_poses: int = 9
+    noise: float = 1.0
+    speckle: float = 0.18
+    bits: int = 8
+    ambient_grey: float = 45.0
+    texture: float = 0.02
+    camera_target: str = "checkerboard"
+    plane_target: str = "black_square"
+    published_planes: bool = False
+    reference: bool = True
+    stl_path: str = ""
+
+    def __post_init__(self) -> None:
+        choices = (
+            ("object", OBJECTS),
+            ("camera_target", CAMERA_TARGETS),
+            ("plane_target", PLANE_TARGETS),
+            ("bits", (8, 16)),
+        )
+        for name, allowed in choices:
+            if getattr(self, name) not in allowed:
+                listed = ", ".join(str(one) for one in allowed)
+                raise InputError(f"{getattr(self, name)!r} is not one of {listed}", where=name)
+        ranges = (
+            ("height_mm", 1.0, 200.0),
+            ("seed", 0, 2**63 - 1),
+            ("scale", 0.1, 2.0),
+            ("frames", 0, 100_000),
+            ("camera_views", 0, 1000),
+            ("plane_poses", 0, 1000),
+            ("noise", 0.0, 100.0),
+            ("speckle", 0.0, 2.0),
+            ("ambient_grey", 0.0, 250.0),
+            ("texture", 0.0, 0.3),
+        )
+        for name, low, high in ranges:
+            if not low <= getattr(self, name) <= high:
+                raise InputError(f"{getattr(self, name)} is not between {low} and {high}", where=name)
+        if self.object == "stl" and not self.stl_path:
+            raise InputError("an STL object needs the path of its file", where="stl_path")
+
+    @property
+    def key(self) -> str:
+        """A short hash of everything in the scenario."""
+        return hashlib.sha256(json.dumps(asdict(self), sort_keys=True).encode()).hexdigest()[:16]
+
+    @classmethod
+    def from_toml(cls, text: str, where: Path | str = "scenario") -> Scenario:
+        """A scenario from TOML, keys as the fields.
+
+        Raises
+        ------
+        InputError
+            If it is no TOML, has an unknown key or a value of the wrong type.
+        """
+        try:
+            values = tomllib.loads(text)
+        except tomllib.TOMLDecodeError as problem:
+            raise InputError(f"it is not valid TOML ({problem})", where=where) from problem
+        known = {field.name: type(field.default) for field in fields(cls)}
+        for name, value in values.items():
+            if name not in known:
+                raise InputError(f"{name!r} is not a field of a scenario", where=where)
+            fits = isinstance(value, known[name]) or (known[name] is float and isinstance(value, int))
+            if not fits or (isinstance(value, bool) and known[name] is not bool):
+                raise InputError(f"{name} = {value!r} is not of type {known[name].__name__}", where=where)
+        return cls(**values)
+
+    @classmethod
+    def read(cls, path: Path) -> Scenario:
+        """A scenario from a TOML file; raises InputError as `from_toml` does, or when it cannot be read."""
+        try:
+            text = path.read_text(encoding="utf-8")
+        except (OSError, UnicodeDecodeError) as problem:
+            raise InputError(f"it cannot be read ({problem})", where=path) from problem
+        return cls.from_toml(text, path)

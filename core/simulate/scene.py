@@ -1,0 +1,173 @@
+"""What lies in front of the camera: a table, triangle meshes and spheres, and the maps of what each pixel sees."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.model import Camera, Pose
+from core.model.arrays import Array, frozen_array, set_field
+from core.simulate.raster import draw_triangles
+from core.simulate.rays import Map, ray_map
+
+TABLE_ALBEDO = 0.55
+OBJECT_ALBEDO = 0.7
+FARTHEST_MM = 5000.0
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Mesh:
+    """Triangles (T, 3, 3) in mm, corners counter-clockwise seen from outside.
+
+    With `normals` (T, 3, 3), one unit vector a corner, shading is smooth over the faces; without, each is flat.
+    """
+
+    triangles: Array
+    albedo: float = OBJECT_ALBEDO
+    normals: Array | None = None
+
+    def __post_init__(self) -> None:
+        set_field(self, "triangles", frozen_array(self.triangles, (None, 3, 3), "triangles"))
+        if self.normals is not None:
+            set_field(self, "normals", frozen_array(self.normals, (len(self.triangles), 3, 3), "normals"))
+
+    def moved(self, pose: Pose) -> Mesh:
+        """The mesh in the frame that `pose` leads to."""
+        triangles = pose.apply(self.triangles.reshape(-1, 3)).reshape(-1, 3, 3)
+        normals = None if self.normals is None else self.normals @ pose.rotation.T
+        return Mesh(triangles, self.albedo, normals)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Sphere:
+    """A ball: centre (3,) and radius in mm."""
+
+    centre: Array
+    radius: float
+    albedo: float = OBJECT_ALBEDO
+
+    def __post_init__(self) -> None:
+        set_field(self, "centre", frozen_array(self.centre, (3,), "centre"))
+
+    def moved(self, pose: Pose) -> Sphere:
+        """The ball in the frame that `pose` leads to."""
+        return Sphere(pose.apply(self.centre[None])[0], self.radius, self.albedo)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Scene:
+    """Things on a table, all in the camera frame.
+
+    `pose_cam_table` maps table coordinates (origin on the table, z up out of it, towards the camera) into the camera
+    frame; None means there is no table.
+    """
+
+    pose_cam_table: Pose | None
+    meshes: tuple[Mesh, ...] = ()
+    spheres: tuple[Sphere, ...] = ()
+    table_albedo: float = TABLE_ALBEDO
+
+    @classmethod
+    def on_table(cls, pose_cam_table: Pose, *things: Mesh | Sphere, table_albedo: float = TABLE_ALBEDO) -> Scene:
+        """A scene of things given in table coordinates."""
+        moved = [thing.moved(pose_cam_table) for thing in things]
+        meshes = tuple(thing for thing in moved if isinstance(thing, Mesh))
+        spheres = tuple(thing for thing in moved if isinstance(thing, Sphere))
+        return cls(pose_cam_table, meshes, spheres, table_albedo)
+
+    @property
+    def occluders(self) -> Array:
+        """All triangles (T, 3, 3) that can cast a shadow; the table is below everything and casts none."""
+        if not self.meshes:
+            return np.empty((0, 3, 3))
+        return np.concatenate([mesh.triangles for mesh in self.meshes])
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class SurfaceMaps:
+    """What each pixel sees, float32: point (h, w, 3) in mm, unit normal (h, w, 3) to the outside, albedo (h, w).
+
+    A pixel that sees nothing has depth 0 and albedo 0. `table` is True where the table is seen.
+    """
+
+    points: Map
+    normals: Map
+    albedo: Map
+    table: NDArray[np.bool_] = field(default_factory=lambda: np.zeros((0, 0), np.bool_))
+
+    @property
+    def depth(self) -> Map:
+        """Depth z (h, w) in mm of each pixel's surface point, 0 where nothing is seen."""
+        return self.points[..., 2]
+
+
+def surface_maps(scene: Scene, camera: Camera, rays: Map | None = None) -> SurfaceMaps:
+    """Point, normal and albedo seen by each pixel centre of `camera`, along its exact distorted ray.
+
+    `rays` is :func:`core.simulate.rays.ray_map` of the camera, computed here when it is not given.
+    """
+    rays = ray_map(camera) if rays is None else rays
+    shape = rays.shape[:2]
+    depth = np.full(shape, FARTHEST_MM, np.float32)
+    normals = np.zeros((*shape, 3), np.float32)
+    albedo = np.zeros(shape, np.float32)
+    table = np.zeros(shape, np.bool_)
+    if scene.pose_cam_table is not None:
+        _see_table(scene.pose_cam_table, rays, depth, normals)
+        albedo[depth < FARTHEST_MM] = scene.table_albedo
+        table = depth < FARTHEST_MM
+    for mesh in scene.meshes:
+        face = np.full(shape, -1, np.int32)
+        draw_triangles(mesh.triangles, camera, rays, depth, face)
+        seen = face >= 0
+        normals[seen] = _mesh_normals(mesh, face[seen], rays[seen], depth[seen])
+        albedo[seen] = mesh.albedo
+        table &= ~seen
+    for sphere in scene.spheres:
+        table &= ~_see_sphere(sphere, rays, depth, normals, albedo)
+    depth[depth == FARTHEST_MM] = 0
+    points = np.empty((*shape, 3), np.float32)
+    np.multiply(rays, depth[..., None], out=points[..., :2])
+    points[..., 2] = depth
+    return SurfaceMaps(points, normals, albedo, table)
+
+
+def _see_table(pose: Pose, rays: Map, depth: Map, normals: Map) -> None:
+    up = pose.rotation[:, 2]
+    slope = rays[..., 0] * up[0] + rays[..., 1] * up[1] + up[2]
+    z = (up @ pose.translation) / slope
+    seen = (slope < 0) & (z > 0) & (z < FARTHEST_MM)
+    depth[seen] = z[seen]
+    normals[seen] = up
+
+
+def _see_sphere(sphere: Sphere, rays: Map, depth: Map, normals: Map, albedo: Map) -> NDArray[np.bool_]:
+    """Draw one sphere into the maps; returns where it is seen."""
+    x, y = rays[..., 0].astype(np.float64), rays[..., 1].astype(np.float64)
+    a = x * x + y * y + 1
+    b = x * sphere.centre[0] + y * sphere.centre[1] + sphere.centre[2]
+    root = b * b - a * (sphere.centre @ sphere.centre - sphere.radius**2)
+    z = (b - np.sqrt(np.maximum(root, 0))) / a
+    seen = (root > 0) & (z > 0) & (z < depth)
+    depth[seen] = z[seen]
+    hit = np.column_stack([x[seen], y[seen], np.ones(seen.sum())]) * z[seen, None]
+    normals[seen] = (hit - sphere.centre) / sphere.radius
+    albedo[seen] = sphere.albedo
+    return np.asarray(seen, dtype=np.bool_)
+
+
+def _mesh_normals(mesh: Mesh, face: NDArray[np.int32], rays: Map, depth: Map) -> Array:
+    """Unit normals (N, 3) at the points seen: of the flat faces, or blended from the corners."""
+    corners = mesh.triangles[face]
+    normals: Array = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    if mesh.normals is not None:
+        points = np.column_stack([rays, np.ones(len(rays))]) * depth[:, None]
+        shares = [
+            np.einsum("ni,ni->n", np.cross(corners[:, j] - points, corners[:, k] - points), normals)[:, None]
+            for j, k in ((1, 2), (2, 0), (0, 1))
+        ]
+        normals = np.sum([share * mesh.normals[face, i] for i, share in enumerate(shares)], axis=0)
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    return normals

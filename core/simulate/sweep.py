@@ -1,0 +1,79 @@
+"""The hand that moves the single-line laser: where it is and how it is held in each frame of a scan.
+
+A scan is several passes over the object, there and back, alternately from both sides of the camera, the stripe tilted
+now one way, now the other: it meets the fan's lines at 35° to 90°, and stripes of different passes meet everywhere on
+the object. On top of that the hand wanders smoothly and trembles a little.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.model import LightPlane
+from core.model.arrays import Array
+from core.simulate.laser import Sheet
+from core.simulate.rig import Rig
+from core.simulate.scene import Scene
+
+FRAMES_PER_PASS = 12
+TILTS_DEG = (18.0, -24.0, 42.0, -40.0, 4.0, 33.0, -10.0, -33.0)
+"""Middle tilt of the stripe against the picture's vertical, pass by pass."""
+
+
+@dataclass(frozen=True, slots=True)
+class SweepRange:
+    """How far a scan reaches: the stripe's aim runs over ± `half_width_mm` about `centre` (3,), given as a tuple."""
+
+    centre: tuple[float, float, float]
+    half_width_mm: float = 75.0
+
+
+def hand_sweeps(rig: Rig, reach: SweepRange, frames: int, rng: np.random.Generator) -> list[Sheet]:
+    """The sheets of light of a scan of `frames` frames, in the camera frame, in the order of time."""
+    passes = max(min(4, frames), round(frames / FRAMES_PER_PASS))
+    number = np.arange(frames) * passes // frames
+    begins = np.searchsorted(number, np.arange(passes))
+    counts = np.diff(np.append(begins, frames))
+    along = (np.arange(frames) - begins[number] + 0.5) / counts[number]  # 0 … 1 within the pass
+    along = np.where(number % 2 == 0, along, 1 - along)
+    wander = _wander(frames, 5, rng)
+    side = np.where((number // 2 + number) % 2 == 0, 1.0, -1.0)
+    middle = np.radians(np.array(TILTS_DEG)[number % len(TILTS_DEG)])
+    tilt = np.clip(middle + np.radians(4.0) * wander[:, 0] + rng.normal(0, np.radians(0.5), frames), -0.8, 0.8)
+    baseline = 240.0 + 55.0 * np.tanh(wander[:, 1])
+    emitters = np.column_stack(
+        [
+            side * baseline * np.cos(tilt) + 5 * wander[:, 2],
+            side * baseline * np.sin(tilt) * 0.8 + 25 * wander[:, 2],
+            40.0 + 35.0 * np.tanh(wander[:, 3]),
+        ]
+    )
+    across = (2 * along - 1) * reach.half_width_mm + rng.normal(0, 0.8, frames)
+    aims = np.array(reach.centre) + np.column_stack([across, 6 * wander[:, 4], np.zeros(frames)])
+    stripes = np.column_stack([-np.sin(tilt), np.cos(tilt), np.zeros(frames)])
+    return [_sheet(rig, *row) for row in zip(emitters, aims, stripes, strict=True)]
+
+
+def sweep_range(scene: Scene, centre: Array) -> SweepRange:
+    """Aim over everything that stands on the table and a rim of it on both sides."""
+    extents = [mesh.triangles.reshape(-1, 3)[:, 0] for mesh in scene.meshes]
+    extents += [sphere.centre[0] + np.array([-sphere.radius, sphere.radius]) for sphere in scene.spheres]
+    widest = max((float(np.abs(x - centre[0]).max()) for x in extents), default=40.0)
+    return SweepRange((float(centre[0]), float(centre[1]), float(centre[2])), widest + 35.0)
+
+
+def _sheet(rig: Rig, emitter: Array, aim: Array, stripe: Array) -> Sheet:
+    normal = np.cross(aim - emitter, stripe)
+    normal /= np.linalg.norm(normal)
+    return Sheet(LightPlane(normal / (normal @ emitter)), emitter, aim - emitter, rig.sweep_beam)
+
+
+def _wander(frames: int, channels: int, rng: np.random.Generator) -> Array:
+    """Smooth random curves (frames, channels) of unit variance: a few slow sines each."""
+    time = np.arange(frames)[:, None, None] / 60.0
+    rates = rng.uniform(0.5, 3.0, (1, 6, channels))
+    phases = rng.uniform(0, 2 * np.pi, (1, 6, channels))
+    curves: Array = np.sin(2 * np.pi * rates * time + phases).sum(axis=1) / np.sqrt(3)
+    return curves

@@ -1,0 +1,64 @@
+"""Pictures of calibration plates: lit by the room, and with the fan on them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from core.model import Pose
+from core.model.arrays import Array
+from core.simulate.image import Picture, Sensor, blurred, generator
+from core.simulate.laser import fan_sheets, laser_light
+from core.simulate.patterns import Pattern, draw_pattern
+from core.simulate.rays import Map
+from core.simulate.rig import Rig
+from core.simulate.scene import Scene, SurfaceMaps
+from core.simulate.speckle import Speckle
+
+
+def room_light(pattern: Pattern, pose: Pose, rays: Map, grey: float) -> tuple[Map, Map]:
+    """Points (h, w, 3) seen on a plate, and the room's light it sends back (h, w); white head-on gives `grey`."""
+    points, albedo = draw_pattern(pattern, pose, rays)
+    return points, albedo * np.float32(grey * (0.35 + 0.65 * abs(pose.rotation[2, 2])))
+
+
+def camera_picture(
+    rig: Rig, rays: Map, pattern: Pattern, pose: Pose, sensor: Sensor, grey: float, rng: np.random.Generator
+) -> Picture:
+    """One view of a target with the lasers off."""
+    return sensor.expose(blurred(room_light(pattern, pose, rays, grey)[1], rig.blur_px), rng)
+
+
+def plane_pictures(
+    rig: Rig, rays: Map, pattern: Pattern, pose: Pose, sensor: Sensor, grey: float, seed: int, index: int
+) -> tuple[Picture, Picture]:
+    """The two pictures of one pose of the plane target: with the fan on, and off."""
+    points, light = room_light(pattern, pose, rays, grey)
+    light = blurred(light, rig.blur_px)
+    albedo = draw_pattern(replace(pattern, background=0.0), pose, rays)[1]
+    normals = np.broadcast_to((-pose.rotation[:, 2]).astype(np.float32), points.shape)
+    maps = SurfaceMaps(points, normals, albedo)
+    fan = np.zeros(albedo.shape, np.float32)
+    for sheet in fan_sheets(rig, pose.translation):
+        laser_light(sheet, Scene(None), maps, fan)
+    fan = speckled(blurred(fan, rig.blur_px), rig, generator(seed, "plane speckle", index))
+    on = sensor.expose(light + fan, generator(seed, "plane on", index))
+    return on, sensor.expose(light, generator(seed, "plane off", index))
+
+
+def speckled(light: Map, rig: Rig, rng: np.random.Generator) -> Map:
+    """Laser light with a speckle pattern of its own; `rng` chooses which."""
+    if rig.optics.speckle_contrast <= 0:
+        return light
+    speckle = Speckle(rig.optics.speckle_contrast, rig.grain_px, rng)
+    rows, columns = np.nonzero(light > 0.02)
+    light[rows, columns] *= speckle.at(rows, columns, rng)
+    return light
+
+
+def fan_centres(rig: Rig, poses: int, nearest_mm: float = 430.0, farthest_mm: float = 620.0) -> list[Array]:
+    """Points (3,) on the fan's middle line, depths from near to far in mixed order."""
+    depths = nearest_mm + (farthest_mm - nearest_mm) * ((np.arange(poses) * 0.618034 + 0.3) % 1)
+    middle = rig.fan.planes[rig.fan.lines // 2].pi
+    return [np.array([0.0, (1 - middle[2] * z) / middle[1], z]) for z in depths]
