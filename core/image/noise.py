@@ -1,0 +1,123 @@
+"""How much the grey value of one pixel scatters: read noise and shot noise.
+
+variance(level) = read² + k·level, with k in grey levels per electron: the photon transfer line.
+
+References
+----------
+Immerkær, J., Fast noise variance estimation, CVIU 64 (1996), doi:10.1006/cviu.1996.0060: the mask that sees neither
+constant, slope nor straight edges along the axes.
+EMVA 1288, release 4.0: photon transfer from pairs of pictures.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from core.model.arrays import Array
+
+_MASK = np.array([[1, -2, 1], [-2, 4, -2], [1, -2, 1]], dtype=np.float32) / 6
+_TILE = 16
+_MAD_TO_SIGMA = 1.4826
+_ROUNDING = 1 / 12
+"""Variance of rounding to whole grey levels: no digital picture is better."""
+
+
+@dataclass(frozen=True, slots=True)
+class NoiseModel:
+    """Scatter of one pixel, in grey levels of the picture it is used for.
+
+    Parameters
+    ----------
+    read_grey
+        Standard deviation where the picture is dark (grey value 0): read noise, rounding, and in a difference of two
+        pictures also the shot noise of whatever light both have in common.
+    grey_per_electron
+        Shot noise: variance per grey level of signal. 0 when it is not known.
+    """
+
+    read_grey: float
+    grey_per_electron: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not (np.isfinite(self.read_grey) and self.read_grey > 0):
+            raise ValueError(f"read_grey is {self.read_grey}, not positive")
+        if not (np.isfinite(self.grey_per_electron) and self.grey_per_electron >= 0):
+            raise ValueError(f"grey_per_electron is {self.grey_per_electron}, not zero or positive")
+
+    def variance(self, level: Array) -> Array:
+        """Variance in grey levels² at grey values `level` (any shape)."""
+        variance: Array = self.read_grey**2 + self.grey_per_electron * np.maximum(level, 0)
+        return variance
+
+    def of_difference(self, common_grey: float = 0.0) -> NoiseModel:
+        """The noise of picture − reference, both of this noise, where both show `common_grey` of the same light."""
+        return NoiseModel(
+            float(np.sqrt(2 * self.read_grey**2 + 2 * self.grey_per_electron * max(common_grey, 0.0))),
+            self.grey_per_electron,
+        )
+
+
+def estimate_noise(picture: NDArray[np.float32], ignore: NDArray[np.bool_] | None = None) -> NoiseModel:
+    """The noise of one picture (H, W), from its quiet tiles.
+
+    Texture can only add to what is measured, so the quieter half of the tiles of each grey level is believed.
+    Where the picture has too few levels for a slope (a difference picture), the shot noise comes out as zero and
+    `read_grey` is the scatter of the background.
+    """
+    residual = np.asarray(cv2.filter2D(picture, cv2.CV_32F, _MASK), dtype=np.float32)
+    level, variance = _tile_statistics(picture, residual, ignore)
+    return _photon_transfer(level, variance)
+
+
+def estimate_noise_of_pair(
+    first: NDArray[np.float32], second: NDArray[np.float32], ignore: NDArray[np.bool_] | None = None
+) -> NoiseModel:
+    """The noise of one of two pictures (H, W) of the same still scene, from their difference."""
+    if first.shape != second.shape:
+        raise ValueError(f"the pictures of a pair differ in size: {first.shape} and {second.shape}")
+    difference = (first - second) / np.float32(np.sqrt(2))
+    residual = np.asarray(difference - cv2.blur(difference, (15, 15)), dtype=np.float32)
+    level, variance = _tile_statistics((first + second) / np.float32(2), residual, ignore)
+    return _photon_transfer(level, variance)
+
+
+def _tile_statistics(
+    picture: NDArray[np.float32], residual: NDArray[np.float32], ignore: NDArray[np.bool_] | None
+) -> tuple[Array, Array]:
+    """Mean level and robust variance of the residual, one value a tile."""
+    rows, columns = (size // _TILE for size in picture.shape)
+    if rows == 0 or columns == 0:
+        return np.zeros(1), np.array([float(np.var(residual))])
+
+    def tiles(values: NDArray[np.generic]) -> NDArray[np.generic]:
+        whole = values[: rows * _TILE, : columns * _TILE].reshape(rows, _TILE, columns, _TILE)
+        return whole.transpose(0, 2, 1, 3).reshape(rows * columns, _TILE * _TILE)
+
+    stride = max(1, rows * columns // 4000)
+    keep = np.ones(rows * columns, dtype=bool) if ignore is None else ~np.any(tiles(ignore), axis=1)
+    keep &= np.arange(keep.size) % stride == 0
+    level = np.asarray(tiles(picture)[keep], dtype=np.float64).mean(axis=1)
+    deviation = np.asarray(tiles(residual)[keep], dtype=np.float64)
+    return level, (deviation**2).mean(axis=1)
+
+
+def _photon_transfer(level: Array, variance: Array) -> NoiseModel:
+    """The line variance = read² + k·level through the quieter half of the tiles at each level."""
+    if level.size == 0:
+        return NoiseModel(float(np.sqrt(_ROUNDING)))
+    order = np.argsort(level)
+    groups = [g for g in np.array_split(order, min(16, max(1, level.size // 20))) if g.size]
+    levels = np.array([np.median(level[g]) for g in groups])
+    variances = np.array([np.quantile(variance[g], 0.4) for g in groups])
+    slope = 0.0
+    if levels[-1] - levels[0] > 20 * np.sqrt(max(variances[0], _ROUNDING)):
+        # Theil–Sen: texture spoils some of the levels upwards
+        i, j = np.triu_indices(len(levels), 1)
+        apart = levels[j] - levels[i] > 0.05 * (levels[-1] - levels[0])
+        slope = max(0.0, float(np.median((variances[j] - variances[i])[apart] / (levels[j] - levels[i])[apart])))
+    floor = np.median(variances - slope * np.maximum(levels, 0))
+    return NoiseModel(float(np.sqrt(max(float(floor), _ROUNDING))), slope)

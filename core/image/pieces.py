@@ -1,0 +1,195 @@
+"""From runs of line points to pieces on one smooth surface: ends cut, kinks and jumps split, curvature.
+
+Everything here works on the order of the points along the stripe; the picture is not looked at again.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from core.model.arrays import Array
+
+END_TRIM_PX = 4.0
+"""Left out at the ends of a stripe, at least: the filter sees only half of it there."""
+_END_TRIM = 1.2  # the same in filter σ
+_BREAK_GAP = 2.0  # filter σ on either side of a kink that its rounding reaches
+_BREAK_ARM = 8.0  # filter σ looked at on either side
+_SIGNIFICANT = 6.0  # standard uncertainties
+_SMALLEST_JUMP = 0.3  # px
+_SMALLEST_KINK = 0.06  # rad
+_NEIGHBOUR = 3.5
+"""Lines nearer than this many filtered widths √(s² + g²) pull each other by more than 0.003 px."""
+
+
+def arc_length(run: Array) -> Array:
+    """Length along a run (N, ≥ 2) up to each point, in pixels."""
+    steps = np.diff(run[:, :2], axis=0)
+    length = np.zeros(len(run))
+    np.cumsum(np.hypot(steps[:, 0], steps[:, 1]), out=length[1:])
+    return length
+
+
+def correlation_length(filter_px: float) -> float:
+    """Length along the stripe over which the noise of its points is one and the same, 2√π·g, in pixels."""
+    return 2 * math.sqrt(math.pi) * filter_px
+
+
+def cut_ends(run: Array, filter_px: float) -> Array:
+    """Cut a run (N, 5) where its response falls to half at an end, and END_TRIM_PX more."""
+    arc = arc_length(run)
+    trim = max(END_TRIM_PX, _END_TRIM * filter_px)
+    start = _real_end(arc, run[:, 4], filter_px) + trim
+    end = arc[-1] - _real_end(arc[-1] - arc[::-1], run[::-1, 4], filter_px) - trim
+    return run[(arc >= start) & (arc <= end)]
+
+
+def _real_end(arc: Array, response: Array, filter_px: float) -> float:
+    """Where the response first reaches half of what it is further in."""
+    inner = response[(arc >= 3 * filter_px) & (arc <= 9 * filter_px)]
+    if len(inner) == 0:
+        return 0.0
+    return float(arc[np.argmax(response >= 0.5 * np.median(inner))])
+
+
+def split_at_breaks(run: Array, filter_px: float, sigma_px: Array) -> list[Array]:
+    """Split a run (N, ≥ 4) at jumps sideways and at kinks, leaving out what the filter rounds there.
+
+    At every point a curve y = a + b·x + c·x² with a jump and a kink at that point is fitted to both sides, up to 8
+    filter σ away and leaving out the nearest 2. The run is broken where jump or kink is large and significant, given
+    the points' standard uncertainties `sigma_px` (N,).
+    """
+    arc = arc_length(run)
+    gap, arm = _BREAK_GAP * filter_px, _BREAK_ARM * filter_px
+    score, misfit = _break_scores(run[:, :4], arc, sigma_px, gap, arm, correlation_length(filter_px))
+    pieces, start = [], -math.inf
+    for first, last in _stretches(score > 1):
+        # a fit beside the break is spoilt by it too: the break is where the broken curve fits best
+        at = float(arc[first + int(np.argmin(misfit[first:last]))])
+        pieces.append(run[(arc > start) & (arc < at - gap)])
+        start = at + gap
+    pieces.append(run[arc > start])
+    return [piece for piece in pieces if len(piece) > 1]
+
+
+def _stretches(flags: NDArray[np.bool_]) -> NDArray[np.int64]:
+    """First and past-the-last index (K, 2) of each unbroken stretch of True."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], flags, [False]]).astype(np.int8)))
+    return edges.reshape(-1, 2)
+
+
+@njit(cache=True, nogil=True)
+def _break_scores(
+    run: Array, arc: Array, sigma: Array, gap: float, arm: float, correlation: float
+) -> tuple[Array, Array]:
+    """How far jump or kink exceed what is allowed (1 = the limit), and the misfit of the broken curve, (N,) each."""
+    count = len(run)
+    score = np.zeros(count)
+    misfit = np.full(count, np.inf)
+    row = np.empty(5)
+    left, right = 0, 0
+    for i in range(count):
+        while arc[i] - arc[left] > arm:
+            left += 1
+        while right + 1 < count and arc[right + 1] - arc[i] <= arm:
+            right += 1
+        if arc[i] - arc[left] < 0.75 * arm or arc[right] - arc[i] < 0.75 * arm:
+            continue
+        tu, tv = run[right, 0] - run[left, 0], run[right, 1] - run[left, 1]
+        length = math.hypot(tu, tv)
+        tu, tv = tu / length, tv / length
+        normal = np.zeros((5, 5))
+        rhs = np.zeros(5)
+        square, used = 0.0, 0
+        for k in range(left, right + 1):
+            du, dv = run[k, 0] - run[i, 0], run[k, 1] - run[i, 1]
+            x, y = du * tu + dv * tv, dv * tu - du * tv
+            if abs(arc[k] - arc[i]) < gap:
+                continue
+            side = 0.5 if k > i else -0.5
+            row[0], row[1], row[2], row[3], row[4] = 1.0, x, x * x / arm, side, side * x
+            for a in range(5):
+                rhs[a] += row[a] * y
+                for b in range(5):
+                    normal[a, b] += row[a] * row[b]
+            square += y * y
+            used += 1
+        if used < 8:
+            continue
+        inverse = np.linalg.inv(normal + 1e-9 * np.eye(5))
+        solution = inverse @ rhs
+        misfit[i] = (square - np.sum(solution * rhs)) / used
+        scatter = sigma[i] * math.sqrt(correlation)
+        jump = max(_SIGNIFICANT * scatter * math.sqrt(inverse[3, 3]), _SMALLEST_JUMP)
+        kink = max(_SIGNIFICANT * scatter * math.sqrt(inverse[4, 4]), _SMALLEST_KINK)
+        score[i] = max(abs(solution[3]) / jump, abs(solution[4]) / kink)
+    return score, misfit
+
+
+@njit(cache=True, nogil=True)
+def curvature(run: Array, arc: Array, arm: float) -> Array:
+    """Signed curvature (N,) in 1/px of a run (N, ≥ 4), positive towards its normals, from a parabola over ±`arm`."""
+    count = len(run)
+    result = np.zeros(count)
+    left, right = 0, 0
+    for i in range(count):
+        middle = min(max(arc[i], arc[0] + arm), arc[-1] - arm)  # a whole window also at the ends
+        while arc[left] < middle - arm:
+            left += 1
+        while right + 1 < count and arc[right + 1] <= middle + arm:
+            right += 1
+        if right - left < 4:
+            continue
+        tu, tv = run[right, 0] - run[left, 0], run[right, 1] - run[left, 1]
+        length = math.hypot(tu, tv)
+        if length == 0.0:
+            continue
+        tu, tv = tu / length, tv / length
+        used = right - left + 1
+        moments = np.zeros(5)
+        values = np.zeros(3)
+        for k in range(left, right + 1):
+            du, dv = run[k, 0] - run[left, 0], run[k, 1] - run[left, 1]
+            x, y = (du * tu + dv * tv) / length - 0.5, dv * tu - du * tv
+            power = 1.0
+            for a in range(5):
+                moments[a] += power
+                if a < 3:
+                    values[a] += power * y
+                power *= x
+        normal = np.empty((3, 3))
+        for a in range(3):
+            for b in range(3):
+                normal[a, b] = moments[a + b]
+        if used < 5 or abs(np.linalg.det(normal)) < 1e-12:
+            continue
+        bend = 2 * np.linalg.solve(normal, values)[2] / (length * length)
+        result[i] = bend if run[i, 2] * -tv + run[i, 3] * tu > 0 else -bend
+    return result
+
+
+def beside_another(runs: list[Array], filtered_width: float) -> list[NDArray[np.bool_]]:
+    """For each run, which points lie so close beside or across another run that it pulls them.
+
+    Another run that goes on where this one ends (ahead of it, not beside it) does not count.
+    """
+    flags = [np.zeros(len(run), dtype=bool) for run in runs]
+    reach = _NEIGHBOUR * filtered_width
+    boxes = [(run[:, :2].min(axis=0) - reach, run[:, :2].max(axis=0) + reach) for run in runs]
+    trees: dict[int, cKDTree] = {}
+    for i, run in enumerate(runs):
+        for j, other in enumerate(runs):
+            if i == j or np.any(boxes[i][1] < boxes[j][0] + reach) or np.any(boxes[j][1] < boxes[i][0] + reach):
+                continue
+            tree = trees.setdefault(j, cKDTree(other[:, :2]))
+            distance, nearest = tree.query(run[:, :2], distance_upper_bound=reach)
+            near = np.flatnonzero(np.isfinite(distance))
+            apart = other[np.asarray(nearest)[near], :2] - run[near, :2]
+            across = np.abs(np.sum(apart * run[near, 2:4], axis=1))
+            along = np.abs(apart[:, 1] * run[near, 2] - apart[:, 0] * run[near, 3])
+            flags[i][near[across > along]] = True
+    return flags

@@ -1,0 +1,102 @@
+"""How well a line point is known: by the law of its noise, and by the roughness of the line itself.
+
+The point's offset is t = −f'/f'' of the filtered picture. With pixels of variance σ² + k·I (read and shot noise),
+filter σ g, stripe σ s and height A over background B:
+
+    var f' = [σ² + k·B + k·A·(1 + g²/2s²)^(−3/2)] / (8π g⁴)        f'' = −A s / (s² + g²)^(3/2)
+
+Speckle is not in it. It shows as roughness of the line beyond that law, is the same at any height of the stripe, and
+so is added in squares, one figure a piece.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from core.image.linking import SATURATED
+from core.image.noise import NoiseModel
+from core.image.profile import Profiles
+from core.image.ridge import ridge_response
+from core.model.arrays import Array
+
+_FLOOR_PX = 0.002
+"""What is left of all biases on a clean stripe."""
+_THIRD_DIFFERENCE = np.array([1.0, -3.0, 3.0, -1.0])
+_SATURATED_SHARE = 0.01
+
+
+def response_noise(pixel_noise: float, stripe_px: float, filter_px: float) -> float:
+    """Noise of the second derivative across a line, as a height of stripe in grey levels; white noise."""
+    second: float = pixel_noise * math.sqrt(3 / (16 * math.pi)) / filter_px**3
+    return second / ridge_response(1.0, stripe_px, filter_px)
+
+
+def noise_sigma(profiles: Profiles, noise: NoiseModel, filter_px: float) -> Array:
+    """Standard uncertainty (N,) in px of line points along their normals, from read and shot noise."""
+    height = np.maximum(profiles.height, 1e-6)
+    width = profiles.width
+    shot = noise.grey_per_electron * height * (1 + filter_px**2 / (2 * width**2)) ** -1.5
+    slope_variance = (noise.variance(profiles.background) + shot) / (8 * math.pi * filter_px**4)
+    bend = height * width / (width**2 + filter_px**2) ** 1.5
+    sigma: Array = np.minimum(np.sqrt(slope_variance) / bend, 1.0)
+    return np.hypot(sigma, _FLOOR_PX)
+
+
+def roughness(lines: list[tuple[Array, Array]], correlation: float) -> list[Array]:
+    """Scatter in px beyond the law, one array (N,) for each line (points (N, ≥ 4), sigma (N,)).
+
+    Measured by third differences between points one correlation length apart, which see neither the line's place
+    and direction nor its curvature. Short lines lean on what all lines show.
+    """
+    lag = max(1, round(correlation))
+    sums = [_excess(points, sigma, lag, correlation) for points, sigma in lines]
+    number = sum(n for _, n in sums)
+    overall = sum(total for total, _ in sums) / number if number else 0.0
+    lean = 5.0  # independent differences
+    excess = [math.sqrt(max(0.0, (total + lean * overall) / (n + lean))) for total, n in sums]
+    return [np.full(len(points), extra) for (points, _), extra in zip(lines, excess, strict=True)]
+
+
+def _excess(points: Array, sigma: Array, lag: int, correlation: float) -> tuple[float, float]:
+    """Sum of the excess variance over independent third differences, and their number."""
+    count = len(points) - 3 * lag
+    if count <= 0:
+        return 0.0, 0.0
+    uv = points[:, :2]
+    ends = [slice(k * lag, k * lag + count) for k in range(4)]
+    difference = sum(c * uv[part] for c, part in zip(_THIRD_DIFFERENCE, ends, strict=True))
+    middle = slice(3 * lag // 2, 3 * lag // 2 + count)
+    across = np.sum(difference * points[middle, 2:4], axis=1)
+    whole = np.hypot(*(uv[ends[3]] - uv[ends[0]]).T) < 3.3 * lag  # no hole within
+    if not whole.any():
+        return 0.0, 0.0
+    law = math.exp(-((lag / correlation) ** 2) * math.pi)  # correlation of points one lag apart
+    gain = float(np.sum(_THIRD_DIFFERENCE**2)) - 30 * law
+    observed = across[whole] ** 2 / gain
+    observed = np.minimum(observed, 25 * np.median(observed))
+    number = np.count_nonzero(whole) / lag
+    return float(np.mean(observed - sigma[middle][whole] ** 2)) * number, number
+
+
+@njit(cache=True, nogil=True, fastmath=True)
+def saturated_points(state: NDArray[np.uint8], points: Array, filter_px: float) -> NDArray[np.bool_]:
+    """Which points (N, ≥ 2) have saturated pixels under more than 1 % of the filter's weight."""
+    height, width = state.shape
+    reach = math.ceil(2.5 * filter_px)
+    share = np.zeros(len(points), dtype=np.bool_)
+    inverse = 0.5 / (filter_px * filter_px)
+    limit = _SATURATED_SHARE * 2 * math.pi * filter_px * filter_px
+    for k in range(len(points)):
+        u, v = points[k, 0], points[k, 1]
+        column, row = int(u + 0.5), int(v + 0.5)
+        total = 0.0
+        for j in range(max(row - reach, 0), min(row + reach + 1, height)):
+            for i in range(max(column - reach, 0), min(column + reach + 1, width)):
+                if state[j, i] & SATURATED:
+                    total += math.exp(-((i - u) ** 2 + (j - v) ** 2) * inverse)
+        share[k] = total > limit
+    return share

@@ -1,0 +1,146 @@
+"""What a technician tells of a stripe (width and contrast), and how to choose it from a picture."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.image.linking import IGNORED, SATURATED, Hysteresis, coarse_crests, link
+from core.image.noise import estimate_noise
+from core.image.pieces import arc_length, cut_ends
+from core.image.precision import response_noise
+from core.image.profile import measure_profiles
+from core.model.arrays import Array
+
+WIDTH_IN_SIGMA = 4.0
+"""The visible width of a laser stripe, where it has fallen to 1/e² of its height, in σ."""
+FILTER_IN_SIGMA = 1.4
+"""Filter over stripe σ: within 3 % of the Cramér–Rao bound under shot noise, and blunt to too small a width."""
+_SMALLEST_FILTER_PX = 1.2  # sampled Gaussian derivatives alias below
+
+_BLOCKS = (1, 2, 3, 4, 6, 9, 13)
+"""Stripe σ looked for at first, in pixels."""
+_ROUNDS = 4
+_LONG = 12.0  # filter σ: shorter runs are no stripe
+_FAINTEST = 0.008  # of full scale
+_ABOVE_NOISE = 8.0
+_SHARE_OF_STRONGEST = 0.12
+_FAINT = 0.2  # quantile of the heights along all stripes that is taken as their contrast
+
+
+@dataclass(frozen=True, slots=True)
+class StripeSettings:
+    """What a technician can say of a stripe by looking at it.
+
+    Parameters
+    ----------
+    width_px
+        Its visible width in pixels: from where the light rises out of the background to where it is gone. For a
+        Gaussian section of σ = s this is the laser trade's 1/e² width, 4 s.
+    contrast
+        Height of a stripe above its background, in grey levels of the picture, where it is rather faint. Stripes are
+        found from about a third of it.
+    """
+
+    width_px: float
+    contrast: float
+
+    def __post_init__(self) -> None:
+        for name in ("width_px", "contrast"):
+            value = getattr(self, name)
+            if not (np.isfinite(value) and value > 0):
+                raise ValueError(f"{name} is {value}, not a positive number")
+
+    @property
+    def stripe_px(self) -> float:
+        """σ of the stripe's cross-section in pixels."""
+        return self.width_px / WIDTH_IN_SIGMA
+
+    @property
+    def filter_px(self) -> float:
+        """σ of the Gaussian filter in pixels."""
+        return max(FILTER_IN_SIGMA * self.stripe_px, _SMALLEST_FILTER_PX)
+
+
+def choose_settings(
+    picture: NDArray[np.float32], full_scale: float, mask: NDArray[np.bool_] | None = None
+) -> StripeSettings | None:
+    """Width and contrast of the stripes in a picture, or None when it shows no stripe.
+
+    Parameters
+    ----------
+    picture
+        (H, W) float32, a picture or a difference of two pictures.
+    full_scale
+        Largest grey value the pictures can hold (255, 65535); values from there on count as saturated.
+    mask
+        (H, W) True where nothing must be looked at.
+
+    Notes
+    -----
+    The first guess of the width is the block size at which the strongest crests answer best: with the response
+    divided by the square root of the block size (Lindeberg's normalisation of ridges, γ = 3/4), that is where block
+    and stripe σ agree. Then stripes are traced, their cross-sections fitted, and the width corrected until it stays.
+
+    References
+    ----------
+    Lindeberg, T., Edge detection and ridge detection with automatic scale selection, IJCV 30 (1998),
+    doi:10.1023/A:1008097225773.
+    """
+    state = np.where(picture >= full_scale, np.uint8(SATURATED), np.uint8(0))
+    if mask is not None:
+        state[mask] |= IGNORED
+        picture = np.where(mask, np.float32(np.median(picture[~mask])) if not mask.all() else 0, picture)
+    noise = estimate_noise(picture, mask).read_grey
+    stripe_px, height = _first_guess(picture)
+    for _ in range(_ROUNDS):
+        filter_px = max(FILTER_IN_SIGMA * stripe_px, _SMALLEST_FILTER_PX)
+        faintest = max(_ABOVE_NOISE * response_noise(noise, stripe_px, filter_px), _FAINTEST * full_scale, noise)
+        if height < faintest:
+            return None
+        sections = _sections(picture, state, stripe_px, filter_px, max(faintest, _SHARE_OF_STRONGEST * height))
+        if sections.shape[1] < 2 * _LONG * filter_px:
+            return None
+        width = float(np.median(sections[1]))
+        settled = abs(width / stripe_px - 1) < 0.05
+        stripe_px, height = width, float(np.quantile(sections[0], 0.9))
+        if settled:
+            break
+    return StripeSettings(WIDTH_IN_SIGMA * stripe_px, float(np.quantile(sections[0], _FAINT)))
+
+
+def _first_guess(picture: NDArray[np.float32]) -> tuple[float, float]:
+    """σ in pixels and height of the strongest stripes, from the crests at several block sizes."""
+    best, guess = 0.0, (1.0, 0.0)
+    for block in _BLOCKS:
+        if min(picture.shape) < 8 * block:
+            break
+        found = coarse_crests(picture, block, 0.0)[:, 2]
+        strongest = np.sort(found)[::-1][: max(4, sum(picture.shape) // (4 * block))]
+        if not strongest.size:
+            continue
+        response = float(np.median(strongest))
+        if response / math.sqrt(block) > best:
+            best = response / math.sqrt(block)
+            guess = (float(block), response * 2.83)  # a stripe of σ 1 under a filter of σ 1: A/2^1.5
+    return guess
+
+
+def _sections(
+    picture: NDArray[np.float32], state: NDArray[np.uint8], stripe_px: float, filter_px: float, height: float
+) -> Array:
+    """Heights and widths (2, N) along all long stripes that are higher than `height`."""
+    limits = Hysteresis(height, 0.4 * height, 3 * filter_px, 0.0)
+    sections = [np.empty((2, 0))]
+    for traced in link(picture, state.copy(), stripe_px, filter_px, limits):
+        if len(traced) < _LONG * filter_px:
+            continue
+        run = cut_ends(traced, filter_px)
+        if len(run) > 1:
+            profiles = measure_profiles(picture, state, run, arc_length(run), stripe_px, filter_px)
+            seen = profiles.height > 0
+            sections.append(np.array([profiles.height[seen], profiles.width[seen]]))
+    return np.hstack(sections)
