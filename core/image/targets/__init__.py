@@ -1,0 +1,20 @@
+"""Calibration targets: found in a picture to sub-pixel, and their pose."""
+
+from core.image.targets.detect import detect
+from core.image.targets.kinds import BlackSquare, Charuco, Checkerboard, CircleGrid, Target
+from core.image.targets.not_found import TargetNotFound
+from core.image.targets.pose import PoseEstimate, estimate_pose
+from core.image.targets.shift import camera_shift
+
+__all__ = [
+    "BlackSquare",
+    "Charuco",
+    "Checkerboard",
+    "CircleGrid",
+    "PoseEstimate",
+    "Target",
+    "TargetNotFound",
+    "camera_shift",
+    "detect",
+    "estimate_pose",
+]

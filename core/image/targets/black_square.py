@@ -1,0 +1,185 @@
+"""The paper's plane target: the corners of a black square, where the lines through its sub-pixel edges meet."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import median_filter
+
+from core.image.target_view import TargetView
+from core.image.targets.dark_squares import DarkSquares, dark_squares, first_corner
+from core.image.targets.edges import PictureSpline, Profiles, profiles
+from core.image.targets.kinds import BlackSquare
+from core.image.targets.lines import Line, fit_line, meet
+from core.image.targets.not_found import TargetNotFound
+from core.image.targets.picture import Picture, as_8bit, enlarged, reduced
+from core.model import Camera
+from core.model.arrays import Array
+
+SYSTEMATIC_PX = 0.005
+"""What is left on perfect pictures, RMS per coordinate."""
+
+_END = 0.06
+"""Share of an edge left out at either end, where the other edge's blur reaches it."""
+
+
+ASTRAY_PX = 0.4
+HOPELESS_PX = 3.0
+"""Scatter of an edge's points about its line in pixels, up to which it is not, and from which it is always suspected."""
+
+CLIPPED_SHARE = 0.25
+"""Shift of a clipped edge (over-exposed plate, or black cut off at zero), as a share of the edge's blur σ."""
+
+
+def detect_black_square(
+    square: BlackSquare, picture: Picture, name: str = "", camera: Camera | None = None
+) -> TargetView:
+    """The four corners of `square` in the order that :class:`BlackSquare` states, with σ from the line fits.
+
+    Edge points are the steepest places of profiles across each edge, one per pixel of edge. Those that a laser stripe
+    disturbs are left out: by the level of the dark or the bright side, and by Tukey's weights in the line fit. Lines
+    are fitted in undistorted rays if there is a `camera`, in pixels if not.
+
+    Raises
+    ------
+    TargetNotFound
+        If there is no dark square on a light ground, several of like size, one cut off by the picture's border, or
+        one whose edges cannot be followed.
+    """
+    small, factor = reduced(as_8bit(picture), 900)
+    seen = dark_squares(small)
+    _check_single(seen, name)
+    flat = _Flat(camera)
+    quad = enlarged(seen.whole[0], factor)
+    near = min(4.0 * factor + 4, 0.1 * float(np.linalg.norm(quad[0] - quad[2])))
+    spline = PictureSpline(picture, quad, 2 * near + 16)
+    for half_width in (near, min(6.0, near), min(6.0, near)):
+        across = [_across(spline, flat, quad[k], quad[(k + 1) % 4], half_width) for k in range(4)]
+        undisturbed = _undisturbed([profile for _, _, profile in across])
+        edges = [_edge(flat, *each, use) for each, use in zip(across, undisturbed, strict=True)]
+        for k, edge in enumerate(edges):
+            if edge is None or _astray(edges, k):
+                raise TargetNotFound(
+                    f"the black square is there, but its {_side_name(quad, k)} edge cannot be followed",
+                    where=name,
+                    todo="check focus and exposure, and that neither a thing nor a laser line covers the edge",
+                )
+        lines = [edge for edge in edges if edge is not None]
+        corners = [meet(lines[k - 1], lines[k]) for k in range(4)]
+        quad = flat.to_pixels(np.array([point for point, _ in corners]))
+    clipped = max(_clipped_shift(picture, profile) for _, _, profile in across)
+    variance = np.array([np.trace(covariance) / 2 for _, covariance in corners]) + SYSTEMATIC_PX**2 + clipped**2
+    first = first_corner(quad)
+    return TargetView(square.points, np.roll(quad, -first, axis=0), np.roll(np.sqrt(variance), -first), name)
+
+
+class _Flat:
+    """Coordinates in which straight edges are straight: ray coordinates times the focal length, or pixels."""
+
+    def __init__(self, camera: Camera | None) -> None:
+        self._camera = camera
+
+    def of(self, uv: Array) -> Array:
+        """Flat coordinates (N, 2), in pixels at the middle of the picture, of image points (N, 2)."""
+        return uv if self._camera is None else self._camera.undistort(uv) * self._camera.focal
+
+    def to_pixels(self, flat: Array) -> Array:
+        """Image points (N, 2) of flat coordinates (N, 2)."""
+        return flat if self._camera is None else self._camera.pixels(flat / self._camera.focal)
+
+
+def _across(
+    spline: PictureSpline, flat: _Flat, start: Array, end: Array, half_width: float
+) -> tuple[Array, Array, Profiles]:
+    """Points (K, 2) along the edge from `start` to `end`, the outward normals there, and the profiles along them."""
+    a, b = flat.of(np.array([start, end]))
+    length = float(np.linalg.norm(end - start))
+    left_out = float(np.clip(5 / length, _END, 0.25))
+    uv = flat.to_pixels(a + np.linspace(left_out, 1 - left_out, int(np.clip(length, 40, 4000)))[:, None] * (b - a))
+    tangent = np.gradient(uv, axis=0)
+    outward = np.column_stack([tangent[:, 1], -tangent[:, 0]]) / np.linalg.norm(tangent, axis=1, keepdims=True)
+    return uv, outward, profiles(spline, uv, outward, half_width)
+
+
+def _edge(flat: _Flat, uv: Array, outward: Array, across: Profiles, use: NDArray[np.bool_]) -> Line | None:
+    """The line, in flat coordinates, through the edge points that `use` selects."""
+    points = flat.of(uv + across.offset[:, None] * outward)
+    return fit_line(points, use & np.isfinite(points).all(axis=1), floor=0.01)
+
+
+def _astray(edges: list[Line | None], k: int) -> bool:
+    """Whether edge `k`'s points scatter far more than the others': it follows something else, such as a stripe."""
+    scatter = [np.inf if edge is None else edge.sigma for edge in edges]
+    return scatter[k] > min(HOPELESS_PX, max(ASTRAY_PX, 6 * float(np.median(scatter))))
+
+
+def _undisturbed(edges: list[Profiles]) -> list[NDArray[np.bool_]]:
+    """For each edge, which of its profiles (K,) no stripe of light crosses.
+
+    Levels must stay near their own running median, and must not exceed the four edges' common level by more than 15 %
+    of the contrast: a stripe that runs along an edge is usual there. Where that leaves too little (uneven light), the
+    first rule alone decides.
+    """
+    dark = float(np.nanmedian([np.nanmedian(edge.dark) for edge in edges]))
+    bright = float(np.nanmedian([np.nanmedian(edge.bright) for edge in edges]))
+    slack = 0.15 * (bright - dark)
+    chosen = []
+    for edge in edges:
+        steady = edge.valid & _usual(edge.dark) & _usual(edge.bright)
+        with np.errstate(invalid="ignore"):
+            common = edge.valid & (edge.dark < dark + slack) & (edge.bright < bright + slack)
+        both = steady & common
+        if both.sum() < 0.3 * len(both):
+            both = common if common.sum() >= 0.3 * len(both) else steady
+        chosen.append(both)
+    return chosen
+
+
+def _usual(level: Array) -> NDArray[np.bool_]:
+    """Where `level` (N,) stays near its own running median."""
+    known = np.where(np.isfinite(level), level, np.nanmedian(level) if np.isfinite(level).any() else 0.0)
+    away = known - median_filter(known, size=max(15, len(known) // 2), mode="nearest")
+    scale = max(1.4826 * float(np.median(np.abs(away - np.median(away)))), 0.5)
+    usual: NDArray[np.bool_] = np.isfinite(level) & (np.abs(away) < 5 * scale)
+    return usual
+
+
+def _clipped_shift(picture: Picture, across: Profiles) -> float:
+    """How far, in pixels, an edge may have moved because its bright or its dark side is clipped; 0 if neither is."""
+    white = float(np.iinfo(picture.dtype).max)
+    dark, bright = float(np.nanmedian(across.dark)), float(np.nanmedian(across.bright))
+    if bright < 0.995 * white and dark > 0:
+        return 0.0
+    blur = (bright - dark) / (np.sqrt(2 * np.pi) * max(float(np.median(across.steepness[across.valid])), 1e-9))
+    return float(CLIPPED_SHARE * blur)
+
+
+def _check_single(seen: DarkSquares, name: str) -> None:
+    """Refuse a picture with no whole square or with several that might be meant."""
+    if not seen.whole:
+        if seen.cut_off:
+            raise TargetNotFound(
+                "only a part of the black square is in the picture",
+                where=name,
+                todo="move the target so that the whole square is seen, with light plate all round it",
+            )
+        raise TargetNotFound(
+            "no black square on a light plate is seen in the picture",
+            where=name,
+            todo="leave the picture out, or check plane_target.kind in rig.toml",
+        )
+    sizes = [float(np.linalg.norm(quad[0] - quad[2]) * np.linalg.norm(quad[1] - quad[3])) for quad in seen.whole]
+    alike = sum(size > 0.5 * sizes[0] for size in sizes)
+    if alike > 1:
+        raise TargetNotFound(
+            f"{alike} dark squares of like size are seen in the picture, not one",
+            where=name,
+            todo="check plane_target.kind in rig.toml, or cover the others",
+        )
+
+
+def _side_name(quad: Array, k: int) -> str:
+    du, dv = (quad[k] + quad[(k + 1) % 4]) / 2 - quad.mean(axis=0)
+    if abs(du) > abs(dv):
+        return "right" if du > 0 else "left"
+    return "lower" if dv > 0 else "upper"

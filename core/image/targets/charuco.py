@@ -1,0 +1,105 @@
+"""ChArUco corners: OpenCV's marker search on a reduced picture, corners refined at full resolution."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from core.image.target_view import TargetView
+from core.image.targets.corner_noise import corner_sigma
+from core.image.targets.grid import refined
+from core.image.targets.homography import homography_of, map_by
+from core.image.targets.kinds import Charuco
+from core.image.targets.not_found import TargetNotFound
+from core.image.targets.picture import Picture, as_8bit, as_refinable, enlarged, noise_of, reduced, without_stripes
+from core.model.arrays import Array
+
+LEAST_CORNERS = 6
+"""Fewer corners fix neither a pose nor a camera with anything to spare."""
+
+LARGEST_HALF_WINDOW = 11
+
+
+def detect_charuco(board: Charuco, picture: Picture, name: str = "") -> TargetView:
+    """The inner corners of `board` in `picture`; a part of the board will do.
+
+    Boards printed in OpenCV's pattern before version 4.6 (even number of rows) are recognised too.
+
+    Raises
+    ------
+    TargetNotFound
+        If fewer than six corners are seen, or all of them in one line.
+    """
+    full = as_8bit(picture)
+    dictionary = cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, board.dictionary_id))
+    markers = 0
+    for longest in (1300, 2600):
+        small, factor = reduced(full, longest)
+        for candidate in (small, without_stripes(small, 5)):
+            corners, ids, count = _best_reading(board, dictionary, candidate)
+            markers = max(markers, count)
+            if len(ids) >= LEAST_CORNERS and _spread_out(board, ids):
+                return _view(board, picture, enlarged(corners, factor), ids, factor, name)
+        if factor == 1:
+            break
+    raise _failure(board, markers, name)
+
+
+def _best_reading(
+    board: Charuco, dictionary: cv2.aruco.Dictionary, picture: NDArray[np.uint8]
+) -> tuple[Array, NDArray[np.intp], int]:
+    """Corners (N, 2), their indices into `board.points`, and how many markers were read."""
+    best: tuple[Array, NDArray[np.intp], int] = (np.empty((0, 2)), np.empty(0, dtype=np.intp), 0)
+    for old_pattern in (False, True) if board.rows % 2 == 0 else (False,):
+        layout = cv2.aruco.CharucoBoard((board.columns, board.rows), board.square_mm, board.marker_mm, dictionary)
+        layout.setLegacyPattern(old_pattern)
+        corners, ids, _, marker_ids = cv2.aruco.CharucoDetector(layout).detectBoard(picture)
+        markers = 0 if marker_ids is None else len(marker_ids)
+        count = 0 if ids is None else len(ids)
+        if count > len(best[1]) or (count == len(best[1]) and markers > best[2]):
+            points = np.empty((0, 2)) if count == 0 else np.asarray(corners, dtype=np.float64).reshape(-1, 2)
+            best = (points, np.empty(0, np.intp) if count == 0 else np.asarray(ids, np.intp).ravel(), markers)
+    return best
+
+
+def _spread_out(board: Charuco, ids: NDArray[np.intp]) -> bool:
+    return bool(np.linalg.matrix_rank(board.points[ids, :2] - board.points[ids, :2].mean(axis=0)) == 2)
+
+
+def _view(
+    board: Charuco, picture: Picture, corners: Array, ids: NDArray[np.intp], factor: int, name: str
+) -> TargetView:
+    """Refine at full size, in a window that keeps clear of the markers."""
+    pixels = as_refinable(picture)
+    points = board.points[ids]
+    reach = _clear_of_markers(board, points[:, :2], corners)
+    if factor > 1:
+        corners = refined(pixels, corners, int(np.clip(reach, 3, 2 * factor + 1)))
+    half = int(np.clip(round(reach), 2, LARGEST_HALF_WINDOW))
+    corners = refined(pixels, corners, half)
+    return TargetView(points, corners, corner_sigma(picture, corners, half, noise_of(picture)), name)
+
+
+def _clear_of_markers(board: Charuco, xy: Array, corners: Array) -> float:
+    """Pixels around every corner that no marker reaches into."""
+    homography = homography_of(xy, corners, robust=True)
+    if homography is None:
+        return 2.0
+    step = 0.7 * (board.square_mm - board.marker_mm) / 2
+    moved = [map_by(homography, xy + offset) - map_by(homography, xy) for offset in ([step, 0.0], [0.0, step])]
+    return float(np.linalg.norm(moved, axis=2).min())
+
+
+def _failure(board: Charuco, markers: int, name: str) -> TargetNotFound:
+    if markers == 0:
+        return TargetNotFound(
+            f"no marker of {board.dictionary_id} is seen in the picture",
+            where=name,
+            todo="check the dictionary in rig.toml, or leave the picture out",
+        )
+    return TargetNotFound(
+        f"{markers} markers of the ChArUco board are seen, but fewer than {LEAST_CORNERS} of its corners",
+        where=name,
+        todo="show more of the board, or check its columns, rows and dictionary in rig.toml",
+    )

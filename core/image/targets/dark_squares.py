@@ -1,0 +1,143 @@
+"""Rough search for dark quadrilaterals on a light ground, in a reduced picture."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from core.image.targets.picture import without_stripes
+from core.model.arrays import Array
+
+STRIPE_WIDTHS = (1, 7, 13, 21)
+"""Widths in pixels of the bright lines taken out before looking, in turn (1: none is)."""
+
+LEAST_SIDE = 14
+"""Side in pixels below which a quadrilateral's shape cannot be judged."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class DarkSquares:
+    """What was seen: whole quadrilaterals (4, 2) clockwise in the picture, largest first, and how many are cut off."""
+
+    whole: tuple[Array, ...]
+    cut_off: int
+
+
+def dark_squares(picture: NDArray[np.uint8]) -> DarkSquares:
+    """Dark, convex, filled quadrilaterals with light all round them; stripes of light may cross them."""
+    cut_off = 0
+    found: list[Array] = []
+    for width in STRIPE_WIDTHS:
+        opened = picture if width == 1 else without_stripes(picture, width)
+        for mask in _thresholded(opened):
+            whole, cut = _quadrilaterals(opened, mask)
+            cut_off = max(cut_off, cut)
+            found.extend(quad for quad in whole if width == 1 or _mostly_dark(picture, opened, quad))
+    found.sort(key=lambda quad: -cv2.contourArea(quad.astype(np.float32)))
+    largest: list[Array] = []
+    for quad in found:  # what lies within another is the same square, or what stripes leave of it
+        if not any(_holds(other, quad.mean(axis=0)) for other in largest):
+            largest.append(quad)
+    return DarkSquares(tuple(largest), cut_off)
+
+
+def _thresholded(picture: NDArray[np.uint8]) -> Iterator[NDArray[np.uint8]]:
+    """Masks (255 where dark) by one level for the whole picture, by levels around it, and by the surroundings' mean."""
+    smooth = cv2.GaussianBlur(picture, (0, 0), 1)
+    level, mask = cv2.threshold(smooth, 0, 255, cv2.THRESH_BINARY_INV | cv2.THRESH_OTSU)
+    yield np.asarray(mask, dtype=np.uint8)
+    for factor in (0.6, 1.4):
+        yield np.asarray(cv2.threshold(smooth, level * factor, 255, cv2.THRESH_BINARY_INV)[1], dtype=np.uint8)
+    block = max(picture.shape) // 2 | 1
+    mean = cv2.boxFilter(smooth, -1, (block, block))
+    yield np.where(smooth < 0.8 * mean, 255, 0).astype(np.uint8)
+
+
+def _quadrilaterals(picture: NDArray[np.uint8], mask: NDArray[np.uint8]) -> tuple[list[Array], int]:
+    """Whole dark quadrilaterals of `mask`, and how many convex dark regions the picture's border cuts."""
+    found, _ = cv2.findContours(mask, cv2.RETR_LIST, cv2.CHAIN_APPROX_SIMPLE)
+    contours = [np.asarray(contour, dtype=np.int32) for contour in found]
+    whole: list[Array] = []
+    cut = 0
+    for contour in contours:
+        area = cv2.contourArea(contour)
+        if area < LEAST_SIDE**2 or area > 0.9 * mask.size:
+            continue
+        hull = np.asarray(cv2.convexHull(contour), dtype=np.int32)
+        if area < 0.93 * cv2.contourArea(hull):
+            continue
+        if _touches_border(contour, mask.shape):
+            cut += bool(0.01 * mask.size < area < 0.5 * mask.size and len(_polygon(hull)) in (3, 4, 5))
+            continue
+        corners = _polygon(hull)
+        if len(corners) != 4 or not 0.9 < area / cv2.contourArea(corners) < 1.1:
+            continue
+        quad = clockwise(corners.reshape(4, 2).astype(np.float64))
+        if np.linalg.norm(np.roll(quad, -1, axis=0) - quad, axis=1).min() >= LEAST_SIDE and _dark_on_light(
+            picture, quad
+        ):
+            whole.append(quad)
+    return whole, cut
+
+
+def _polygon(hull: NDArray[np.int32]) -> NDArray[np.int32]:
+    return np.asarray(cv2.approxPolyDP(hull, 0.03 * cv2.arcLength(hull, True), True), dtype=np.int32)
+
+
+def _touches_border(contour: NDArray[np.int32], shape: tuple[int, ...]) -> bool:
+    left, top, width, height = cv2.boundingRect(contour)
+    return left <= 1 or top <= 1 or left + width >= shape[1] - 1 or top + height >= shape[0] - 1
+
+
+def _dark_on_light(picture: NDArray[np.uint8], quad: Array) -> bool:
+    """Whether the inside is dark throughout and lighter ground lies beyond every side."""
+    low, high = np.quantile(picture[::4, ::4], [0.01, 0.99])
+    centre = quad.mean(axis=0)
+    shares = np.linspace(0.15, 0.85, 25)[:, None]
+    inside: list[float] = []
+    outside: list[float] = []
+    for start, end in zip(quad, np.roll(quad, -1, axis=0), strict=True):
+        side = start + shares * (end - start)
+        out = np.array([end[1] - start[1], start[0] - end[0]]) / np.linalg.norm(end - start)
+        reach = max(3.0, 0.04 * float(np.linalg.norm(end - start)))
+        outside.append(float(np.median(_levels(picture, side + reach * out))))
+        inside.extend(_levels(picture, side - reach * out))
+        inside.extend(_levels(picture, centre + 0.4 * (side - centre)))
+    step = min(outside) - float(np.median(inside))
+    return step > 0.15 * (high - low) and float(np.mean(np.array(inside) < min(outside) - 0.4 * step)) > 0.8
+
+
+def _mostly_dark(picture: NDArray[np.uint8], opened: NDArray[np.uint8], quad: Array) -> bool:
+    """Whether at least half of the inside was dark before stripes were taken out: many gaps are no stripes."""
+    inside = np.zeros(picture.shape, dtype=np.uint8)
+    cv2.fillConvexPoly(inside, np.rint(quad).astype(np.int32), 1)
+    before, after = picture[inside > 0], opened[inside > 0]
+    lightest = float(np.quantile(before, 0.98))
+    middle = (float(np.median(after)) + lightest) / 2
+    return float(np.mean(before < middle)) > 0.5
+
+
+def _levels(picture: NDArray[np.uint8], uv: Array) -> Array:
+    u, v = np.rint(uv).astype(int).T
+    levels: Array = picture[v.clip(0, picture.shape[0] - 1), u.clip(0, picture.shape[1] - 1)].astype(np.float64)
+    return levels
+
+
+def clockwise(quad: Array) -> Array:
+    """`quad` (4, 2) clockwise in the picture, from its corner nearest to the top left."""
+    order = np.argsort(np.arctan2(*(quad - quad.mean(axis=0)).T[::-1]))  # v runs down: growing angle is clockwise
+    turned = quad[order]
+    return np.roll(turned, -first_corner(turned), axis=0)
+
+
+def first_corner(quad: Array) -> int:
+    """Index of the corner nearest to the top left of the picture (smallest u + v)."""
+    return int(np.argmin(quad.sum(axis=1)))
+
+
+def _holds(quad: Array, point: Array) -> bool:
+    return cv2.pointPolygonTest(quad.astype(np.float32), (float(point[0]), float(point[1])), False) >= 0

@@ -1,0 +1,165 @@
+"""A grid of checkerboard corners: which way round it is, and how far the board goes on beyond it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from core.image.targets.picture import Picture
+from core.model.arrays import Array
+
+LEAST_STEP = 0.3
+"""Share of the board's contrast by which black and white squares at a corner must differ."""
+
+
+def spacing(grid: Array) -> Array:
+    """Distance (R, C) in pixels from each corner of `grid` (R, C, 2) to its nearest neighbour."""
+    nearest = np.full(grid.shape[:2], np.inf)
+    along = np.linalg.norm(np.diff(grid, axis=1), axis=2)
+    down = np.linalg.norm(np.diff(grid, axis=0), axis=2)
+    nearest[:, :-1] = np.minimum(nearest[:, :-1], along)
+    nearest[:, 1:] = np.minimum(nearest[:, 1:], along)
+    nearest[:-1] = np.minimum(nearest[:-1], down)
+    nearest[1:] = np.minimum(nearest[1:], down)
+    return nearest
+
+
+def squares_around(picture: Picture, corner: Array, along: Array, down: Array, share: float = 0.4) -> Array:
+    """Grey levels (N, 4) in the four squares that meet at `corner` (N, 2), NaN outside the picture.
+
+    `along` and `down` (N, 2) lead to the next corners, `share` tells how far into the squares to look (0.5: their
+    middles); order: before-above, after-above, after-below, before-below.
+    """
+    height, width = picture.shape
+    levels = np.full((len(corner), 4), np.nan)
+    for k, (a, b) in enumerate([(-1, -1), (1, -1), (1, 1), (-1, 1)]):
+        u, v = np.rint(corner + share * (a * along + b * down)).astype(int).T
+        inside = (u >= 1) & (v >= 1) & (u < width - 1) & (v < height - 1)
+        u, v = u[inside], v[inside]
+        levels[inside, k] = np.mean([picture[v + j, u + i] for i in (-1, 0, 1) for j in (-1, 0, 1)], axis=0)
+    return levels
+
+
+def blackness(picture: Picture, corner: Array, along: Array, down: Array, contrast: float) -> NDArray[np.int_]:
+    """For each corner (N,): +1 if its first and third squares are black, −1 if the others are, 0 if it is no corner.
+
+    Looked at in the squares and close to the corner, where round spots leave a gap.
+    """
+    sign = np.zeros(len(corner), dtype=np.int_)
+    for share, step in ((0.4, LEAST_STEP), (0.15, LEAST_STEP / 3)):
+        levels = squares_around(picture, corner, along, down, share)
+        diagonal, other = levels[:, 0::2], levels[:, 1::2]
+        with np.errstate(invalid="ignore"):
+            first = other.min(axis=1) - diagonal.max(axis=1) > step * contrast
+            second = diagonal.min(axis=1) - other.max(axis=1) > step * contrast
+        here = first.astype(np.int_) - second.astype(np.int_)
+        sign = here if share == 0.4 else np.where(here == sign, sign, 0)
+    return sign
+
+
+def is_checkered(picture: Picture, grid: Array) -> bool:
+    """Whether black and white alternate at the corners of `grid` (R, C, 2), nine in ten of them at least."""
+    along, down = (step.reshape(-1, 2) for step in steps_of(grid))
+    seen = blackness(picture, grid.reshape(-1, 2), along, down, contrast_of(picture, grid))
+    return bool(abs((seen.reshape(grid.shape[:2]) * _parity(grid)).sum()) >= 0.9 * len(seen))
+
+
+def steps_of(grid: Array) -> tuple[Array, Array]:
+    """Local steps to the next corner along the rows and down the columns of `grid` (R, C, 2)."""
+    return np.gradient(grid, axis=1), np.gradient(grid, axis=0)
+
+
+def contrast_of(picture: Picture, grid: Array) -> float:
+    """Median difference of white and black squares around the corners of `grid`."""
+    along, down = steps_of(grid)
+    levels = squares_around(picture, grid.reshape(-1, 2), along.reshape(-1, 2), down.reshape(-1, 2))
+    return float(np.nanmedian(np.abs(levels[:, 0] + levels[:, 2] - levels[:, 1] - levels[:, 3])) / 2)
+
+
+def grow(picture: NDArray[np.uint8], grid: Array, most: int = 60) -> tuple[Array, bool]:
+    """Extend `grid` (R, C, 2) by whole rows and columns for as long as the board goes on.
+
+    Returns
+    -------
+    The larger grid, and whether the board goes on where the picture ends.
+    """
+    contrast = contrast_of(picture, grid)
+    cut_off = False
+    for turn in range(4):
+        grid = np.rot90(grid, turn)
+        while len(grid) < most:
+            row, outside = _next_row(picture, grid, contrast)
+            if row is None:
+                cut_off |= outside
+                break
+            grid = np.concatenate([row[None], grid])
+        grid = np.rot90(grid, -turn)
+    return grid, cut_off
+
+
+def _next_row(picture: NDArray[np.uint8], grid: Array, contrast: float) -> tuple[Array | None, bool]:
+    """The row of corners above the first row of `grid`, if the picture shows it; and whether it ends at the border."""
+    guess = 3 * grid[0] - 3 * grid[1] + grid[2]
+    down = grid[0] - guess
+    along = np.gradient(guess, axis=0)
+    reach = 0.5 * np.minimum(np.linalg.norm(down, axis=1), np.linalg.norm(along, axis=1))
+    u, v = guess.T
+    inside = (u > reach) & (v > reach) & (u < picture.shape[1] - reach) & (v < picture.shape[0] - reach)
+    if not inside.all():
+        return None, _board_reaches_out(picture, grid, contrast)
+    half = int(max(2, 0.6 * reach.min()))
+    row = refined(picture, guess, half)
+    expected = -blackness(picture, grid[0], along, down, contrast)
+    seen = blackness(picture, row, along, down, contrast)
+    stayed = np.linalg.norm(row - guess, axis=1) < 0.6 * reach
+    return (row if np.mean((seen == expected) & (seen != 0) & stayed) > 0.75 else None), False
+
+
+def _board_reaches_out(picture: NDArray[np.uint8], grid: Array, contrast: float) -> bool:
+    """Whether black and white still alternate half a square beyond the squares of the first row of `grid`."""
+    along = np.gradient(grid[0], axis=0)
+    down = grid[1] - grid[0]
+    levels = squares_around(picture, grid[0] - 0.7 * down, along, 0.5 * down)[:, :2]
+    steps = np.abs(levels[:, 0] - levels[:, 1])
+    return bool(np.isnan(steps).mean() > 0.5 or np.nanmean(steps > LEAST_STEP * contrast) > 0.5)
+
+
+def refined(picture: Picture, corners: Array, half: int) -> Array:
+    """`corners` (N, 2) refined to sub-pixel by cornerSubPix in windows of 2 `half` + 1 pixels."""
+    stop = (cv2.TERM_CRITERIA_EPS + cv2.TERM_CRITERIA_MAX_ITER, 40, 0.001)
+    start = np.ascontiguousarray(corners, dtype=np.float32).reshape(-1, 1, 2)
+    return np.asarray(cv2.cornerSubPix(picture, start, (half, half), (-1, -1), stop), dtype=np.float64).reshape(-1, 2)
+
+
+def oriented(picture: Picture, grid: Array, columns: int, rows: int) -> Array:
+    """`grid` (R, C, 2) turned to (rows, columns) in the order that :class:`Checkerboard` promises."""
+    ways = [way for way in _turns(grid) if way.shape[:2] == (rows, columns) and _right_handed(way)]
+    black = [way for way in ways if _first_is_black(picture, way)]
+    return min(black or ways, key=lambda way: float(way[0, 0].sum()))
+
+
+def _turns(grid: Array) -> Iterator[Array]:
+    for mirrored in (grid, grid[:, ::-1]):
+        for turn in range(4):
+            yield np.rot90(mirrored, turn)
+
+
+def _right_handed(grid: Array) -> bool:
+    along, down = grid[0, -1] - grid[0, 0], grid[-1, 0] - grid[0, 0]
+    return bool(along[0] * down[1] - along[1] * down[0] > 0)
+
+
+def _first_is_black(picture: Picture, grid: Array) -> bool:
+    """Whether the square outside the first corner is black, by the vote of all corners."""
+    along, down = steps_of(grid)
+    levels = squares_around(picture, grid.reshape(-1, 2), along.reshape(-1, 2), down.reshape(-1, 2))
+    signed = (levels[:, 1] + levels[:, 3] - levels[:, 0] - levels[:, 2]).reshape(grid.shape[:2])
+    return bool(np.nansum(signed * _parity(grid)) > 0)
+
+
+def _parity(grid: Array) -> NDArray[np.int_]:
+    """+1 and −1 alternating (R, C)."""
+    return 1 - 2 * (np.add.outer(np.arange(grid.shape[0]), np.arange(grid.shape[1])) % 2)

@@ -1,0 +1,139 @@
+"""The calibration targets: what is printed on them, in mm, z = 0.
+
+Every target's x axis runs to the right and its y axis down when it is looked at from its printed side, so z points
+away from the camera.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+
+from core.model.arrays import Array
+
+
+@dataclass(frozen=True, slots=True)
+class Checkerboard:
+    """A checkerboard with `columns` × `rows` inner corners and squares of `square_mm`.
+
+    The first corner is the one whose square diagonally outside is black; where the board allows several (columns + rows
+    even), or none, that of them nearest to the top left of the picture.
+    """
+
+    columns: int
+    rows: int
+    square_mm: float
+
+    def __post_init__(self) -> None:
+        _check_grid(self.columns, self.rows, 3, "inner corners")
+        _check_length(self.square_mm, "square_mm")
+
+    @property
+    def points(self) -> Array:
+        """Inner corners (N, 3) in mm, row by row; the first one is the origin."""
+        return _grid(self.columns, self.rows, self.square_mm)
+
+
+@dataclass(frozen=True, slots=True)
+class Charuco:
+    """A checkerboard of `columns` × `rows` squares of `square_mm`, with markers of `marker_mm` in its white ones.
+
+    `dictionary` is OpenCV's name of the markers, with or without "DICT_" in front. Any part of the board will do.
+    """
+
+    columns: int
+    rows: int
+    square_mm: float
+    marker_mm: float
+    dictionary: str = "DICT_4X4_50"
+
+    def __post_init__(self) -> None:
+        _check_grid(self.columns, self.rows, 3, "squares")
+        _check_length(self.square_mm, "square_mm")
+        _check_length(self.marker_mm, "marker_mm")
+        if self.marker_mm >= self.square_mm:
+            raise ValueError(f"marker_mm ({self.marker_mm:g}) must be smaller than square_mm ({self.square_mm:g})")
+        if not hasattr(cv2.aruco, self.dictionary_id):
+            raise ValueError(f"dictionary {self.dictionary!r} is not one of OpenCV's, such as DICT_4X4_50")
+
+    @property
+    def dictionary_id(self) -> str:
+        """OpenCV's full name of the dictionary."""
+        name = self.dictionary.upper()
+        return name if name.startswith("DICT_") else f"DICT_{name}"
+
+    @property
+    def points(self) -> Array:
+        """Inner corners (N, 3) in mm, row by row; the origin is the board's outer corner."""
+        return _grid(self.columns - 1, self.rows - 1, self.square_mm) + [self.square_mm, self.square_mm, 0.0]
+
+
+@dataclass(frozen=True, slots=True)
+class CircleGrid:
+    """Dark circles on a light ground, `columns` × `rows`.
+
+    Symmetric: neighbours `pitch_mm` apart. Asymmetric: rows `pitch_mm` apart, circles of a row 2 `pitch_mm` apart,
+    every second row moved by `pitch_mm` (OpenCV's asymmetric grid). A symmetric grid looks the same turned by 180° (by
+    90° if square): the first circle is then the one nearest to the top left of the picture.
+    """
+
+    columns: int
+    rows: int
+    pitch_mm: float
+    asymmetric: bool = False
+
+    def __post_init__(self) -> None:
+        _check_grid(self.columns, self.rows, 3, "circles")
+        _check_length(self.pitch_mm, "pitch_mm")
+
+    @property
+    def points(self) -> Array:
+        """Centres (N, 3) in mm, row by row; the first one is the origin."""
+        points = _grid(self.columns, self.rows, self.pitch_mm)
+        if self.asymmetric:
+            odd = np.arange(len(points)) // self.columns % 2
+            points[:, 0] = 2 * points[:, 0] + odd * self.pitch_mm
+        return points
+
+
+@dataclass(frozen=True, slots=True)
+class BlackSquare:
+    """The paper's plane target: one black square of `side_mm` on a light plate.
+
+    A plain square looks the same turned by 90°. The convention: corner 1 is the corner nearest to the top left of the
+    picture (smallest u + v), and corners 1 … 4 run clockwise in the picture; in the target's frame they are (0, 0),
+    (s, 0), (s, s), (0, s). A square that is turned about its normal between two pictures may so change its numbering:
+    nothing that rests on the plane alone (the fan's calibration) depends on it.
+    """
+
+    side_mm: float
+
+    def __post_init__(self) -> None:
+        _check_length(self.side_mm, "side_mm")
+
+    @property
+    def points(self) -> Array:
+        """The four corners (4, 3) in mm."""
+        s = self.side_mm
+        return np.array([[0.0, 0.0, 0.0], [s, 0.0, 0.0], [s, s, 0.0], [0.0, s, 0.0]])
+
+
+Target = Checkerboard | Charuco | CircleGrid | BlackSquare
+
+
+def _grid(columns: int, rows: int, step: float) -> Array:
+    """Points (columns · rows, 3) of a grid, row by row."""
+    y, x = np.divmod(np.arange(columns * rows), columns)
+    return np.column_stack([x * step, y * step, np.zeros(columns * rows)])
+
+
+def _check_grid(columns: int, rows: int, least: int, what: str) -> None:
+    if min(columns, rows) < least:
+        raise ValueError(f"{columns} × {rows} {what} are too few: at least {least} × {least}")
+
+
+def _check_length(value: float, name: str) -> None:
+    if not (np.isfinite(value) and value > 0):
+        raise ValueError(f"{name} must be positive, not {value!r}")

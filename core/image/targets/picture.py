@@ -1,0 +1,98 @@
+"""Pictures made ready for finding targets: exposure, 8 bit, reduction, noise."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from core.image.targets.not_found import TargetNotFound
+from core.model.arrays import Array
+
+Picture = NDArray[Any]
+"""(H, W) grey levels, uint8 or uint16."""
+
+_FAINTEST = {np.dtype(np.uint8): 8, np.dtype(np.uint16): 128}
+"""Grey levels below which a difference is no picture."""
+
+
+def check_exposure(picture: Picture, name: str) -> None:
+    """Refuse a picture that shows nothing.
+
+    Raises
+    ------
+    ValueError
+        If the picture is not 2-D uint8 or uint16.
+    TargetNotFound
+        If it is all black, all white, or of one grey.
+    """
+    if picture.ndim != 2 or picture.dtype not in _FAINTEST or picture.size == 0:
+        raise ValueError(f"a picture must be (H, W) of uint8 or uint16, not {picture.shape} of {picture.dtype}")
+    low, high = grey_range(picture)
+    faint = _FAINTEST[picture.dtype]
+    white = np.iinfo(picture.dtype).max
+    if high <= faint:
+        raise TargetNotFound("the picture is all black", where=name, todo="expose longer, or check the lens cap")
+    if low >= white - faint:
+        raise TargetNotFound("the picture is all white", where=name, todo="expose shorter")
+    if high - low <= faint:
+        raise TargetNotFound(
+            f"the picture is of one grey (levels {low:.0f} to {high:.0f})", where=name, todo="check light and focus"
+        )
+
+
+def grey_range(picture: Picture) -> tuple[float, float]:
+    """Grey levels that leave 0.2 % of the pixels below and above."""
+    step = max(1, min(picture.shape) // 400)
+    low, high = np.quantile(picture[::step, ::step], [0.002, 0.998])
+    return float(low), float(high)
+
+
+def as_8bit(picture: Picture) -> NDArray[np.uint8]:
+    """The picture in 8 bit, stretched to the full range if it is 16 bit or dark; a good 8-bit picture as it is."""
+    low, high = grey_range(picture)
+    if picture.dtype == np.uint8 and high >= 128:
+        return picture
+    scale = 255 / max(high - low, 1.0)
+    return np.asarray(cv2.convertScaleAbs(np.maximum(picture, low), alpha=scale, beta=-low * scale), dtype=np.uint8)
+
+
+def as_refinable(picture: Picture) -> Picture:
+    """The picture in a type that OpenCV's corner refinement takes, grey levels unchanged."""
+    return picture if picture.dtype == np.uint8 else picture.astype(np.float32)
+
+
+def reduced(picture: NDArray[np.uint8], longest: int) -> tuple[NDArray[np.uint8], int]:
+    """The picture reduced by a whole factor, so that its longer side is at most about `longest`, and the factor."""
+    factor = max(1, round(max(picture.shape) / longest))
+    if factor == 1:
+        return picture, 1
+    rows, columns = (side // factor * factor for side in picture.shape)
+    small = cv2.resize(picture[:rows, :columns], (columns // factor, rows // factor), interpolation=cv2.INTER_AREA)
+    return np.asarray(small, dtype=np.uint8), factor
+
+
+def enlarged(uv: Array, factor: int) -> Array:
+    """Points `uv` (…, 2) of a reduced picture in pixels of the full one (pixel centres are whole numbers in both)."""
+    return (np.asarray(uv, dtype=np.float64) + 0.5) * factor - 0.5
+
+
+def without_stripes(picture: NDArray[np.uint8], width: int) -> NDArray[np.uint8]:
+    """The picture without bright lines narrower than `width` pixels (grey opening); dark shapes keep their outline."""
+    disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (width, width))
+    return np.asarray(cv2.morphologyEx(picture, cv2.MORPH_OPEN, disc), dtype=np.uint8)
+
+
+def noise_of(picture: Picture) -> float:
+    """Standard deviation of the pixel noise in grey levels, from the median absolute response of a mask blind to edges.
+
+    The mask is the difference of two Laplacians (Immerkær, Fast noise variance estimation, CVIU 64 (1996),
+    doi:10.1006/cviu.1996.0060). Never less than the noise of rounding to whole grey levels.
+    """
+    top, left = (max(0, (side - 1024) // 2) for side in picture.shape)
+    middle = picture[top : top + 1024, left : left + 1024].astype(np.float32)
+    mask = np.array([[1, -2, 1], [-2, 4, -2], [1, -2, 1]], dtype=np.float32)
+    response = np.abs(cv2.filter2D(middle, -1, mask))
+    return max(float(np.median(response)) / (0.6745 * 6), 0.29)

@@ -1,0 +1,102 @@
+"""Targets drawn through the full camera model, each pixel integrated over its area: the analytic truth of the tests."""
+
+from collections.abc import Callable
+
+import cv2
+import numpy as np
+
+from core.model import Camera, Pose
+
+Pattern = Callable[[np.ndarray, np.ndarray], np.ndarray]
+
+
+def rig(factor: float = 0.25) -> Camera:
+    """A camera like the paper's at a fraction of its picture size, with skew and distortion."""
+    full = Camera((3840, 2748), [[4990, 0.78, 1915], [0, 4990, 1380], [0, 0, 1]], [-0.08, 0.1, 0.0004, -0.0003])
+    return full.scaled(factor)
+
+
+def pose(tilt_x: float, tilt_y: float, roll: float, centre, distance: float, shift=(0.0, 0.0)) -> Pose:
+    """A target turned by degrees about its `centre` (x, y in mm), which lies at `distance` mm before the camera."""
+    turn, _ = cv2.Rodrigues(np.radians([tilt_x, 0, 0]))
+    turn = turn @ cv2.Rodrigues(np.radians([0, tilt_y, 0]))[0] @ cv2.Rodrigues(np.radians([0, 0, roll]))[0]
+    return Pose(turn, np.array([*shift, distance]) - turn @ np.array([*centre, 0.0]))
+
+
+def render(
+    camera: Camera,
+    where: Pose,
+    pattern: Pattern,
+    *,
+    blur: float = 0.7,
+    dark: float = 30,
+    light: float = 200,
+    noise: float = 0,
+    stripes=(),
+    dtype=np.uint8,
+    seed: int = 0,
+    samples: int = 6,
+) -> np.ndarray:
+    """The picture of `pattern` (1 light, 0 dark, of target x, y in mm) at pose `where`.
+
+    `stripes` are (a, b, c, width, height): Gaussian lines a·u + b·v = c of light added in the picture.
+    """
+    width, height = camera.image_size
+    v, u = np.mgrid[0:height, 0:width].astype(float)
+    xy = camera.undistort(np.column_stack([u.ravel(), v.ravel()]))
+    jacobian = camera.ray_jacobian(np.column_stack([xy, np.ones(len(xy))]))
+    plane = np.column_stack([where.rotation[:, :2], where.translation])
+    back = np.linalg.inv(plane)
+    total = np.zeros(len(xy))
+    offsets = (np.arange(samples) + 0.5) / samples - 0.5
+    for dv in offsets:
+        for du in offsets:
+            sub = xy + jacobian[:, :, 0] * du + jacobian[:, :, 1] * dv
+            on = np.column_stack([sub, np.ones(len(sub))]) @ back.T
+            total += pattern(on[:, 0] / on[:, 2], on[:, 1] / on[:, 2])
+    share = total.reshape(height, width) / samples**2
+    scale = 1 if dtype is np.uint8 else 256
+    picture = cv2.GaussianBlur(dark + (light - dark) * share, (0, 0), blur)
+    for a, b, c, sigma, peak in stripes:
+        picture = picture + peak * np.exp(-0.5 * ((a * u + b * v - c) / sigma) ** 2)
+    picture = picture * scale + np.random.default_rng(seed).normal(0, noise * scale, picture.shape)
+    return np.rint(np.clip(picture, 0, np.iinfo(dtype).max)).astype(dtype)
+
+
+def checkers(columns: int, rows: int, square: float) -> Pattern:
+    """columns × rows inner corners, the first at (0, 0); the square diagonally outside it is black."""
+
+    def pattern(x, y):
+        i, j = np.floor(x / square).astype(int), np.floor(y / square).astype(int)
+        inside = (i >= -1) & (i < columns) & (j >= -1) & (j < rows)
+        return np.where(inside & ((i + j) % 2 == 0), 0.0, 1.0)
+
+    return pattern
+
+
+def square(side: float) -> Pattern:
+    def pattern(x, y):
+        return np.where((x >= 0) & (x < side) & (y >= 0) & (y < side), 0.0, 1.0)
+
+    return pattern
+
+
+def circles(points: np.ndarray, radius: float) -> Pattern:
+    def pattern(x, y):
+        light = np.ones(len(x))
+        for px, py, _ in points:
+            light[(x - px) ** 2 + (y - py) ** 2 < radius**2] = 0.0
+        return light
+
+    return pattern
+
+
+def board_picture(picture: np.ndarray, pixel_mm: float) -> Pattern:
+    """A printed picture (0 … 255) whose first pixel's outer corner is (0, 0)."""
+
+    def pattern(x, y):
+        i, j = np.floor(x / pixel_mm).astype(int), np.floor(y / pixel_mm).astype(int)
+        inside = (i >= 0) & (i < picture.shape[1]) & (j >= 0) & (j < picture.shape[0])
+        return np.where(inside, picture[j.clip(0, picture.shape[0] - 1), i.clip(0, picture.shape[1] - 1)] / 255, 1.0)
+
+    return pattern
