@@ -15,8 +15,9 @@ from core.model.arrays import Array
 class Face:
     """One face of a part: a robustly fitted plane and the points of the cloud it rests on.
 
-    `indices` into the cloud; `residuals` (mm) of these points from the plane, along its normal, towards the camera
-    positive. `flatness_mm` is the spread of the residuals that holds 95 % of the points.
+    `plane` is the face's own plane, fitted freely. `indices` into the cloud, without the points the fit left out;
+    `residuals` (mm) of these points from the plane, along its normal, towards the camera positive. `flatness_mm` is
+    the spread of the residuals that holds 95 % of the points, the noise of the points included.
     """
 
     plane: Plane
@@ -38,7 +39,10 @@ class Contribution:
 class GaugeResult:
     """The thickness of a gauge block: distance of two parallel faces.
 
-    `verdict` is "conforming", "not conforming" or "not proven" (ISO 14253-1), or "" without a nominal value.
+    `normal` (3,) is the unit normal common to both faces, away from the camera; `parallelism` (rad) the angle between
+    the faces when each is fitted freely. `rule` says in words what the thickness is. `points_used` on the upper and
+    the lower face. `verdict` is "conforming", "not conforming" or "not proven" (ISO 14253-1), or "" without a nominal
+    value and a tolerance.
     """
 
     thickness_mm: float
@@ -51,6 +55,14 @@ class GaugeResult:
     nominal_mm: float | None = None
     tolerance_mm: float | None = None
     verdict: str = ""
+    normal: Array | None = None
+    rule: str = ""
+    notes: tuple[str, ...] = ()
+
+    @property
+    def points_used(self) -> tuple[int, int]:
+        """Points on the upper and on the lower face."""
+        return len(self.upper.indices), len(self.lower.indices)
 
     @property
     def U_mm(self) -> float:

@@ -1,0 +1,90 @@
+"""The region a face covers: its area, and the points far enough from its edge."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from core.model.arrays import Array
+
+CELL_MM = 0.5
+SMALLEST_GAP_MM, LARGEST_GAP_MM = 4.0, 10.0
+"""Half the widest gap between two stripes that counts as covered lies between these, by how dense the stripes are."""
+GAP_SHARE = 6.0
+"""Half that gap over the median distance to the nearest point, which is a quarter of an even spacing of stripes."""
+SMALL_PART = 0.05
+"""Parts of a face smaller than this share of its largest one are clutter that happens to lie in its plane."""
+MOST_CELLS = 4000
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Region:
+    """Indices of the points inside the margin of a face, and the area in mm² inside that margin."""
+
+    indices: NDArray[np.int64]
+    area_mm2: float
+
+    @classmethod
+    def of(
+        cls,
+        points: Array,
+        near: NDArray[np.int64],
+        normal: Array,
+        margin_mm: float,
+        smallest_part: float = SMALL_PART,
+    ) -> Region:
+        """The region covered by `points[near]`, all close to the plane with unit `normal`, less a margin.
+
+        The points are laid out on the plane in cells of 0.5 mm and the gaps between stripes closed, the wider the
+        further apart the stripes are; parts smaller than `smallest_part` of the largest are left out.
+        """
+        if len(near) < 3:
+            return cls(near[:0], 0.0)
+        axes = np.linalg.svd(normal[None, :])[2][1:]
+        flat = points[near] @ axes.T
+        low = flat.min(axis=0)
+        cell = max(CELL_MM, float((flat.max(axis=0) - low).max()) / MOST_CELLS)
+        pad = int(np.ceil((LARGEST_GAP_MM + margin_mm) / cell)) + 2
+        column, row = (np.floor((flat - low) / cell).astype(np.int64) + pad).T
+        occupied = np.zeros((int(row.max()) + pad + 1, int(column.max()) + pad + 1), dtype=np.uint8)
+        occupied[row, column] = 1
+        covered = _without_small_parts(_closed(occupied, cell), smallest_part)
+        depth_in = cv2.distanceTransform(covered, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
+        # Distances run to the centre of the first empty cell; the edge lies half a cell nearer.
+        inner = (depth_in - 0.5) * cell >= margin_mm
+        return cls(near[inner[row, column]], float(inner.sum()) * cell**2)
+
+
+def _closed(occupied: NDArray[np.uint8], cell: float) -> NDArray[np.uint8]:
+    """Morphological closing with a disc as large as the gaps between stripes, by distances: fast for any radius."""
+    to_occupied = cv2.distanceTransform(1 - occupied, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
+    row, column = np.nonzero(occupied)
+    hull = cv2.convexHull(np.column_stack([column, row]).astype(np.int32))
+    within = cv2.fillConvexPoly(np.zeros_like(occupied), hull, 1) > 0
+    gap = GAP_SHARE * float(np.median(to_occupied[within]))
+    radius = float(np.clip(gap, SMALLEST_GAP_MM / cell, LARGEST_GAP_MM / cell))
+    grown = (to_occupied <= radius).astype(np.uint8)
+    to_empty = cv2.distanceTransform(grown, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
+    return np.asarray((to_empty > radius) | (occupied > 0), dtype=np.uint8)
+
+
+def _without_small_parts(covered: NDArray[np.uint8], smallest_part: float) -> NDArray[np.uint8]:
+    """Only the connected parts of at least `smallest_part` times the largest one's area."""
+    _, labels, statistics, _ = cv2.connectedComponentsWithStats(covered, connectivity=4)
+    area = statistics[:, cv2.CC_STAT_AREA].astype(np.float64)
+    area[0] = 0.0  # the background
+    kept = np.asarray((area >= smallest_part * area.max()) & (area > 0), dtype=np.uint8)
+    return np.asarray(kept[labels], dtype=np.uint8)
+
+
+def inside_polygon(uv: Array, corners: Array) -> NDArray[np.bool_]:
+    """Which of `uv` (N, 2) lie inside the polygon `corners` (n, 2), by the even–odd rule."""
+    inside = np.zeros(len(uv), dtype=np.bool_)
+    for (u0, v0), (u1, v1) in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+        spans = (v0 > uv[:, 1]) != (v1 > uv[:, 1])
+        if v0 != v1:
+            inside ^= spans & (uv[:, 0] < u0 + (u1 - u0) * (uv[:, 1] - v0) / (v1 - v0))
+    return inside

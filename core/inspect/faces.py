@@ -1,0 +1,273 @@
+"""The two parallel faces of a part, found in the cloud or given as polygons in the picture.
+
+Planes are found one after the other by RANSAC: three points near each other and of like normals make a hypothesis,
+the area it explains is its vote, and the best few are refined before the winner is chosen (locally optimised RANSAC).
+Of all pairs of parallel planes the pair whose smaller face is largest wins.
+
+References
+----------
+Fischler, Bolles, Random sample consensus, Comm. ACM 24 (1981), doi:10.1145/358669.358692.
+Chum, Matas, Kittler, Locally optimized RANSAC, DAGM 2003, doi:10.1007/978-3-540-45243-0_31.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.spatial import cKDTree
+
+from core.errors import InputError
+from core.inspect.face_region import Region, inside_polygon
+from core.model.arrays import Array
+from core.progress import Progress, silent
+from core.scan.cloud import Cloud
+from core.scan.normals import pixel_angle, with_normals
+
+SEARCH_POINTS = 8000
+"""About as many points, spread evenly over the picture, are enough to find the planes."""
+HYPOTHESES = 300
+MOST_PLANES = 8
+FEWEST_POINTS = 12
+LIKE_NORMALS = np.cos(np.radians(30.0))
+"""Points of a plane have local normals within 30° of its own: slices of a sphere or a mask do not."""
+PARALLEL = np.radians(2.0)
+"""Faces are parallel within this angle; larger angles are another feature, not a worse gauge block."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class FacePair:
+    """Indices into the cloud of the points on the face nearer to the camera and on the other."""
+
+    upper: NDArray[np.int64]
+    lower: NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class FoundPlane:
+    """The plane normal·X = distance (normal away from the camera) and its contiguous region."""
+
+    normal: Array
+    distance: float
+    region: Region
+
+
+def find_faces(
+    cloud: Cloud,
+    *,
+    tolerance_mm: float | None = None,
+    margin_mm: float = 1.5,
+    min_area_mm2: float = 60.0,
+    seed: int = 0,
+    progress: Progress = silent,
+) -> FacePair:
+    """The points of the two largest parallel faces.
+
+    Parameters
+    ----------
+    cloud
+        Normals are estimated when it has none.
+    tolerance_mm
+        Points within this distance of a plane belong to it; None: five times the median σ, at least 0.25 mm.
+    margin_mm
+        Points nearer than this to the edge of their face are left out: stripes are biased there.
+    min_area_mm2
+        A face is at least this large inside its margin.
+    seed
+        Of the random search; the same seed gives the same faces.
+    progress
+        Told how far it is.
+
+    Raises
+    ------
+    InputError
+        If there are no two parallel faces.
+    """
+    planes = find_planes(cloud, tolerance_mm=tolerance_mm, margin_mm=margin_mm, seed=seed, progress=progress)
+    large = [plane for plane in planes if plane.region.area_mm2 >= min_area_mm2]
+    tolerance = search_tolerance(cloud, tolerance_mm)
+    pairs = [
+        (a, b)
+        for a, b in combinations(large, 2)
+        if abs(a.normal @ b.normal) > np.cos(PARALLEL) and abs(a.distance - b.distance) > 2 * tolerance
+    ]
+    if not pairs:
+        raise InputError(
+            f"among {len(large)} plane faces no two are parallel, so there is no thickness to measure",
+            where="point cloud",
+            todo="scan both faces, or outline them as [gauge] upper_polygon_px and lower_polygon_px in rig.toml",
+        )
+    best = max(pairs, key=lambda pair: sorted(plane.region.area_mm2 for plane in pair))
+    upper, lower = sorted(best, key=lambda plane: plane.distance)
+    return FacePair(upper.region.indices, lower.region.indices)
+
+
+def faces_in_polygons(
+    cloud: Cloud,
+    upper_polygon_px: ArrayLike,
+    lower_polygon_px: ArrayLike,
+    *,
+    tolerance_mm: float | None = None,
+    margin_mm: float = 1.5,
+    seed: int = 0,
+) -> FacePair:
+    """The points of the largest plane inside each of two polygons (n ≥ 3, 2) in pixels of the picture.
+
+    A polygon may reach over the edge of its face: the margin is taken from the face's own edge, not from the polygon's.
+
+    Raises
+    ------
+    InputError
+        If a polygon has fewer than 3 corners or holds no plane face, naming it.
+    """
+    chosen = []
+    for name, polygon in (("upper_polygon_px", upper_polygon_px), ("lower_polygon_px", lower_polygon_px)):
+        corners = np.asarray(polygon, dtype=np.float64)
+        if corners.ndim != 2 or corners.shape[1:] != (2,) or len(corners) < 3 or not np.isfinite(corners).all():
+            raise InputError("a polygon needs at least three corners [u, v]", where=f"[gauge] {name}")
+        inside = inside_polygon(cloud.uv, corners)
+        indices = _face_inside(cloud, inside, tolerance_mm, margin_mm, seed)
+        if len(indices) < FEWEST_POINTS:
+            raise InputError(
+                f"the polygon holds {inside.sum()} measured points but no plane face",
+                where=f"[gauge] {name}",
+                todo="draw it over a face that the scan covers",
+            )
+        chosen.append(indices)
+    return FacePair(chosen[0], chosen[1])
+
+
+def _face_inside(
+    cloud: Cloud, inside: NDArray[np.bool_], tolerance_mm: float | None, margin_mm: float, seed: int
+) -> NDArray[np.int64]:
+    """Indices of the points of the largest plane among the points `inside`, less the margin of the whole face."""
+    part = cloud.select(inside)
+    tolerance = search_tolerance(part, tolerance_mm)
+    plane = _largest_plane(part, tolerance, 0.0, seed)
+    if plane is None:
+        return np.empty(0, dtype=np.int64)
+    near = np.flatnonzero(_on_plane(cloud, plane.normal, plane.distance, tolerance))
+    face = Region.of(cloud.points, near, plane.normal, margin_mm, smallest_part=0.0)
+    return face.indices[inside[face.indices]]
+
+
+def find_planes(
+    cloud: Cloud,
+    *,
+    tolerance_mm: float | None = None,
+    margin_mm: float = 1.5,
+    most: int = MOST_PLANES,
+    seed: int = 0,
+    progress: Progress = silent,
+) -> list[FoundPlane]:
+    """At most `most` plane faces, those that explain most area first; other parameters as for `find_faces`."""
+    tolerance = search_tolerance(cloud, tolerance_mm)
+    if len(cloud) >= 3 and not cloud.normals.any():
+        cloud = with_normals(cloud, progress=progress)
+    left = np.arange(len(cloud))
+    planes: list[FoundPlane] = []
+    for round_ in range(most):
+        progress("faces", round_, most)
+        part = cloud.select(left)
+        plane = _largest_plane(part, tolerance, margin_mm, seed + round_)
+        if plane is None:
+            break
+        near = _on_plane(part, plane.normal, plane.distance, 2 * tolerance)
+        region = Region(left[plane.region.indices], plane.region.area_mm2)
+        planes.append(FoundPlane(plane.normal, plane.distance, region))
+        left = left[~near]
+    progress("faces", most, most)
+    return planes
+
+
+def search_tolerance(cloud: Cloud, tolerance_mm: float | None) -> float:
+    """Distance in mm within which a point belongs to a plane while faces are looked for."""
+    if tolerance_mm is not None:
+        return tolerance_mm
+    return max(0.25, 5 * float(np.median(cloud.sigma))) if len(cloud) else 0.25
+
+
+def _largest_plane(cloud: Cloud, tolerance: float, margin_mm: float, seed: int) -> FoundPlane | None:
+    """The plane that explains most area, with its region; None when nothing is plane."""
+    rng = np.random.default_rng(seed)
+    sample, area = _even_sample(cloud, rng)
+    if len(sample) < FEWEST_POINTS:
+        return None
+    points, normals = cloud.points[sample], cloud.normals[sample]
+    candidates = _hypotheses(points, normals, rng)
+    votes = np.array([area[_near(points, normals, n, d, tolerance)].sum() for n, d in candidates])
+    best: tuple[float, Array, float] | None = None
+    for index in np.argsort(-votes, kind="stable")[:5]:
+        normal, distance = candidates[index]
+        for _ in range(4):
+            near = _near(points, normals, normal, distance, tolerance)
+            if near.sum() < 6:
+                break
+            normal, distance = _mean_plane(points[near], area[near])
+        vote = float(area[_near(points, normals, normal, distance, tolerance)].sum())
+        if best is None or vote > best[0]:
+            best = vote, normal, distance
+    if best is None or best[0] <= 0:
+        return None
+    _, normal, distance = best
+    near = _on_plane(cloud, normal, distance, tolerance)
+    region = Region.of(cloud.points, np.flatnonzero(near), normal, margin_mm)
+    return FoundPlane(normal, distance, region) if len(region.indices) else None
+
+
+def _even_sample(cloud: Cloud, rng: np.random.Generator) -> tuple[NDArray[np.int64], Array]:
+    """Indices of one random point per cell of the picture, about SEARCH_POINTS in all, and each one's area (mm²)."""
+    if len(cloud) < FEWEST_POINTS or not np.ptp(cloud.uv, axis=0).all():
+        return np.arange(len(cloud)), np.ones(len(cloud))
+    low, high = cloud.uv.min(axis=0), cloud.uv.max(axis=0)
+    cell = max(float(np.sqrt(np.prod(high - low) / SEARCH_POINTS)), 1.0)
+    column, row = np.floor((cloud.uv - low) / cell).astype(np.int64).T
+    shuffled = rng.permutation(len(cloud))
+    _, first = np.unique((row * (column.max() + 1) + column)[shuffled], return_index=True)
+    sample = np.sort(shuffled[first])
+    side = cell * pixel_angle(cloud.points, cloud.uv) * cloud.points[sample, 2]
+    return sample, side**2
+
+
+def _hypotheses(points: Array, normals: Array, rng: np.random.Generator) -> list[tuple[Array, float]]:
+    """Planes through three random points near each other whose normals, where known, agree."""
+    first = rng.integers(len(points), size=HYPOTHESES)
+    near = np.asarray(cKDTree(points).query(points[first], k=min(200, len(points)))[1], dtype=np.int64)
+    picks = rng.integers(near.shape[1] // 4, near.shape[1], size=(HYPOTHESES, 2))
+    rows = np.arange(HYPOTHESES)
+    triples = np.stack([first, near[rows, picks[:, 0]], near[rows, picks[:, 1]]], axis=1)
+    a, b, c = (points[triples[:, corner]] for corner in range(3))
+    cross = np.cross(b - a, c - a)
+    size = np.linalg.norm(cross, axis=1)
+    sides = np.linalg.norm(b - a, axis=1) * np.linalg.norm(c - a, axis=1)
+    sound = size > 0.2 * sides  # not nearly on one line
+    hypotheses = []
+    for triple, normal in zip(triples[sound], cross[sound] / size[sound, None], strict=True):
+        known = normals[triple][normals[triple].any(axis=1)]
+        distance = float(normal @ points[triple].mean(axis=0))
+        if (np.abs(known @ normal) > LIKE_NORMALS).all():
+            hypotheses.append((normal, distance) if distance > 0 else (-normal, -distance))
+    return hypotheses
+
+
+def _near(points: Array, normals: Array, normal: Array, distance: float, tolerance: float) -> NDArray[np.bool_]:
+    """Which points lie within `tolerance` of the plane and do not face elsewhere."""
+    close = np.abs(points @ normal - distance) < tolerance
+    elsewhere = np.abs(normals @ normal) < LIKE_NORMALS * np.linalg.norm(normals, axis=1)
+    near: NDArray[np.bool_] = close & ~elsewhere
+    return near
+
+
+def _on_plane(cloud: Cloud, normal: Array, distance: float, tolerance: float) -> NDArray[np.bool_]:
+    return _near(cloud.points, cloud.normals, normal, distance, tolerance)
+
+
+def _mean_plane(points: Array, weights: Array) -> tuple[Array, float]:
+    """Weighted orthogonal least-squares plane, its normal away from the camera."""
+    centroid = weights @ points / weights.sum()
+    centred = points - centroid
+    normal = np.linalg.eigh((centred * weights[:, None]).T @ centred)[1][:, 0]
+    distance = float(normal @ centroid)
+    return (normal, distance) if distance > 0 else (-normal, -distance)

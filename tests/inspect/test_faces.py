@@ -1,0 +1,134 @@
+"""The two parallel faces: found among clutter, or given as polygons."""
+
+import numpy as np
+import pytest
+
+from core.errors import InputError
+from core.inspect.faces import faces_in_polygons, find_faces
+from core.scan.cloud import Cloud
+from tests.inspect.block_scan import FOCAL, HALF, NORMAL, TABLE_MM, BlockScan, axes, pixels, square
+
+
+@pytest.fixture(scope="module")
+def scan():
+    return BlockScan(height=40.0, sweeps=40)
+
+
+def joined(*clouds):
+    return Cloud(
+        *(
+            np.concatenate([getattr(cloud, name) for cloud in clouds])
+            for name in ("points", "uv", "sigma", "intensity", "frame", "sweep", "normals")
+        )
+    )
+
+
+def cloud_at(points, sigma=0.02):
+    count = len(points)
+    zero = np.zeros(count, dtype=int)
+    return Cloud(points, pixels(points), np.full(count, sigma), np.ones(count), zero, zero, np.zeros((count, 3)))
+
+
+def sphere(centre, radius, count, rng):
+    """Points of the half of a sphere that faces the camera, thinned evenly over the picture."""
+    flat = rng.uniform(-radius, radius, (count, 2))
+    flat = flat[(flat**2).sum(axis=1) < (0.95 * radius) ** 2]
+    z = -np.sqrt(radius**2 - (flat**2).sum(axis=1))
+    return centre + np.column_stack([flat, z])
+
+
+def heights(cloud, indices):
+    return TABLE_MM - cloud.points[indices] @ NORMAL
+
+
+def test_block_and_table_are_found(scan):
+    cloud = scan.measure(np.random.default_rng(0))
+    pair = find_faces(cloud)
+    assert scan.upper[pair.upper].all()
+    assert not scan.upper[pair.lower].any()
+    assert len(pair.upper) > 0.7 * scan.upper.sum()
+
+
+def test_points_near_the_edges_are_left_out(scan):
+    cloud = scan.measure(np.random.default_rng(1), noise=1e-4, plane_errors=False)
+    for margin in (1.5, 5.0):
+        pair = find_faces(cloud, margin_mm=margin)
+        outermost = np.abs(cloud.points[pair.upper] @ axes().T).max()
+        assert HALF - margin - 1.5 < outermost < HALF - margin + 0.5
+
+
+def test_wrong_points_do_not_matter(scan):
+    cloud = scan.measure(np.random.default_rng(2), outliers=0.15)
+    pair = find_faces(cloud)
+    assert np.median(heights(cloud, pair.upper)) == pytest.approx(40.0, abs=0.03)
+    assert np.median(heights(cloud, pair.lower)) == pytest.approx(0.0, abs=0.03)
+    assert np.abs(heights(cloud, pair.upper) - 40).max() < 1.0
+
+
+def test_a_sphere_beside_the_block_is_no_face(scan):
+    rng = np.random.default_rng(3)
+    ball = sphere(np.array([55.0, -60.0, 515.0]), 25.0, 6000, rng)
+    cloud = joined(scan.measure(rng), cloud_at(ball))
+    pair = find_faces(cloud)
+    assert scan.upper[pair.upper].all()
+    assert len(pair.upper) > 0.6 * scan.upper.sum()
+
+
+def test_the_same_seed_gives_the_same_faces(scan):
+    cloud = scan.measure(np.random.default_rng(4))
+    first, second = find_faces(cloud, seed=5), find_faces(cloud, seed=5)
+    assert first.upper.tobytes() == second.upper.tobytes()
+    assert first.lower.tobytes() == second.lower.tobytes()
+
+
+def test_another_seed_gives_nearly_the_same_faces(scan):
+    cloud = scan.measure(np.random.default_rng(4))
+    first, second = find_faces(cloud, seed=5), find_faces(cloud, seed=6)
+    assert len(np.setxor1d(first.upper, second.upper)) < 0.03 * len(first.upper)
+
+
+def test_a_bare_table_has_no_two_parallel_faces(scan):
+    cloud = scan.measure(np.random.default_rng(5))
+    with pytest.raises(InputError, match=r"no two are parallel.*upper_polygon_px"):
+        find_faces(cloud.select(~scan.upper))
+
+
+def test_a_sphere_on_a_table_has_no_two_parallel_faces(scan):
+    rng = np.random.default_rng(6)
+    ball = sphere(np.array([0.0, -110.0, 520.0]), 25.0, 6000, rng)
+    table = scan.measure(rng).select(~scan.upper)
+    with pytest.raises(InputError, match="no two are parallel"):
+        find_faces(joined(table, cloud_at(ball)))
+
+
+def test_hardly_any_points_are_no_faces():
+    with pytest.raises(InputError, match="no two are parallel"):
+        find_faces(cloud_at(np.array([[0.0, 0.0, 500.0], [1.0, 0.0, 500.0]])))
+    with pytest.raises(InputError, match="no two are parallel"):
+        find_faces(cloud_at(np.zeros((0, 3))))
+
+
+def test_polygons_choose_the_faces(scan):
+    cloud = scan.measure(np.random.default_rng(7))
+    beside = square(TABLE_MM, 14.0) + [0.0, FOCAL * 52 / TABLE_MM]
+    pair = faces_in_polygons(cloud, square(TABLE_MM - 40, 12.0), beside)
+    assert scan.upper[pair.upper].all()
+    assert not scan.upper[pair.lower].any()
+    flat = np.abs(cloud.points[pair.upper] @ axes().T).max(axis=1)
+    assert 11 < flat.max() < 12.2
+
+
+def test_a_polygon_may_reach_over_the_edge(scan):
+    cloud = scan.measure(np.random.default_rng(8), noise=1e-4, plane_errors=False)
+    pair = faces_in_polygons(cloud, square(TABLE_MM - 40, HALF + 5), square(TABLE_MM, 70.0), margin_mm=3.0)
+    assert scan.upper[pair.upper].all()
+    assert np.abs(cloud.points[pair.upper] @ axes().T).max() < HALF - 2.5
+
+
+def test_polygons_that_hold_nothing_are_named(scan):
+    cloud = scan.measure(np.random.default_rng(9))
+    nothing = [[0, 0], [5, 0], [5, 5]]
+    with pytest.raises(InputError, match=r"upper_polygon_px.*no plane face"):
+        faces_in_polygons(cloud, nothing, square(TABLE_MM, 70.0))
+    with pytest.raises(InputError, match=r"lower_polygon_px.*three corners"):
+        faces_in_polygons(cloud, square(TABLE_MM - 40, 20.0), [[0, 0], [5, 0]])

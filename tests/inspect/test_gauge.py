@@ -1,0 +1,140 @@
+"""Thickness, its uncertainty and its verdict on synthetic scans with known truth."""
+
+import numpy as np
+import pytest
+
+from core.errors import InputError
+from core.inspect.faces import FacePair
+from core.inspect.gauge import RULE, fit_gauge, measure_gauge
+from core.inspect.uncertainty import CAMERA, FAN_CALIBRATION, FORM, POINT_NOISE, SWEEP_PLANES
+from tests.inspect.block_scan import TABLE_MM, BlockScan, square
+
+STRETCH_PX = 13.0  # six points of the synthetic stripes share their noise
+
+
+@pytest.fixture(scope="module")
+def scan():
+    return BlockScan(height=50.0, sweeps=18)
+
+
+def faces(scan):
+    return FacePair(np.flatnonzero(scan.upper), np.flatnonzero(~scan.upper))
+
+
+def rows(result):
+    return {row.source: row.u_mm for row in result.budget}
+
+
+@pytest.mark.parametrize("height", [20.0, 50.0])
+def test_thickness_found_without_being_told_where(height):
+    scan = BlockScan(height=height, sweeps=40)
+    cloud = scan.measure(np.random.default_rng(0), outliers=0.05)
+    result = measure_gauge(cloud, sweep_covariance=scan.covariance, correlation_px=STRETCH_PX)
+    assert result.thickness_mm == pytest.approx(height, abs=0.03)
+    assert abs(result.thickness_mm - height) < 3 * result.u_mm
+    assert result.rule == RULE
+    assert result.parallelism < 0.005
+    assert result.points_used[0] > 1000
+
+
+def test_thickness_in_polygons():
+    scan = BlockScan(height=50.0, sweeps=40)
+    cloud = scan.measure(np.random.default_rng(1), outliers=0.1)
+    result = measure_gauge(cloud, regions=scan.polygons, sweep_covariance=scan.covariance)
+    assert abs(result.thickness_mm - 50) < 3 * result.u_mm
+
+
+def test_faces_exchanged_are_said(scan):
+    cloud = scan.measure(np.random.default_rng(2))
+    upper, _ = scan.polygons
+    beside = square(TABLE_MM, 14.0) + [0.0, 240.0]
+    with pytest.raises(InputError, match=r"behind the lower one.*exchange"):
+        fit_gauge(cloud, regions=(beside, upper))
+
+
+@pytest.mark.parametrize("plane_errors", [False, True], ids=["point noise", "sweep planes too"])
+def test_stated_uncertainty_is_the_scatter_over_scans(scan, plane_errors):
+    rng = np.random.default_rng(3)
+    results = [
+        measure_gauge(
+            scan.measure(rng, plane_errors=plane_errors, noise=0.02),
+            regions=faces(scan),
+            sweep_covariance=scan.covariance if plane_errors else np.zeros_like(scan.covariance),
+            correlation_px=STRETCH_PX,
+            speckle_px=STRETCH_PX,
+        )
+        for _ in range(100)
+    ]
+    thickness = np.array([result.thickness_mm for result in results])
+    stated = np.sqrt(np.mean([result.u_mm**2 for result in results]))
+    assert stated == pytest.approx(thickness.std(), rel=0.2)
+    assert thickness.mean() == pytest.approx(50.0, abs=4 * thickness.std() / 10)
+    if plane_errors:
+        assert rows(results[0])[SWEEP_PLANES] > 2 * rows(results[0])[POINT_NOISE]
+    else:
+        assert rows(results[0])[SWEEP_PLANES] == 0
+
+
+def test_form_error_appears_in_the_budget(scan):
+    flat = np.abs(scan.points @ np.array([0.05, 0.25, 1.0]))  # any smooth coordinate will do
+    wave = 0.05 * np.sin(2 * np.pi * scan.points[:, 0] / 35.0 + 0.1 * flat)
+    plain = scan.measure(np.random.default_rng(4), plane_errors=False)
+    wavy = scan.measure(np.random.default_rng(4), plane_errors=False, shift=np.where(scan.upper, wave, 0.0))
+    settings = {"regions": faces(scan), "sweep_covariance": np.zeros_like(scan.covariance), "correlation_px": 13.0}
+    assert rows(measure_gauge(plain, **settings))[FORM] < 0.0015
+    waved = measure_gauge(wavy, **settings)
+    assert rows(waved)[FORM] > 0.002
+    assert waved.upper.flatness_mm > 1.3 * waved.lower.flatness_mm
+
+
+def test_flatness_holds_95_percent_of_the_points(scan):
+    cloud = scan.measure(np.random.default_rng(5), plane_errors=False, noise=0.03)
+    result = measure_gauge(cloud, regions=faces(scan))
+    across = 0.03 * np.mean(cloud.points @ result.normal / cloud.points[:, 2])  # noise lies along the ray
+    assert result.upper.flatness_mm == pytest.approx(2 * 1.96 * across, rel=0.07)
+    inside = np.abs(result.upper.residuals - np.median(result.upper.residuals)) < result.upper.flatness_mm / 2
+    assert inside.mean() == pytest.approx(0.95, abs=0.02)
+
+
+def test_parallelism_is_the_angle_of_the_free_fits(scan):
+    flat = scan.points[:, 0]
+    tilted = scan.measure(
+        np.random.default_rng(6), plane_errors=False, noise=1e-4, shift=np.where(scan.upper, 0.002 * flat, 0.0)
+    )
+    assert measure_gauge(tilted, regions=faces(scan)).parallelism == pytest.approx(0.002, rel=0.15)
+
+
+def test_calibration_terms_and_verdicts(scan):
+    cloud = scan.measure(np.random.default_rng(7))
+    base = measure_gauge(cloud, regions=faces(scan), sweep_covariance=scan.covariance)
+    full = measure_gauge(
+        cloud,
+        regions=faces(scan),
+        sweep_covariance=scan.covariance,
+        camera_changes=np.array([0.03, 0.04]),
+        fan_changes=np.array([0.0, -0.02]),
+        nominal_mm=50.0,
+        tolerance_mm=0.2,
+    )
+    assert rows(full)[CAMERA] == pytest.approx(0.05)
+    assert rows(full)[FAN_CALIBRATION] == pytest.approx(0.02)
+    assert full.u_mm == pytest.approx(np.sqrt(base.u_mm**2 + 0.05**2 + 0.02**2))
+    assert full.U_mm == pytest.approx(2 * full.u_mm)
+    assert full.verdict == "conforming"
+    assert full.notes == ()
+    assert base.verdict == ""
+    assert "the camera, the fan" in base.notes[0]
+    off = measure_gauge(cloud, regions=faces(scan), nominal_mm=49.0, tolerance_mm=0.2)
+    assert off.verdict == "not conforming"
+    assert off.deviation_mm == pytest.approx(1.0, abs=0.03)
+    unsure = measure_gauge(
+        cloud, regions=faces(scan), nominal_mm=50.0, tolerance_mm=0.01, camera_changes=np.array([0.05])
+    )
+    assert unsure.verdict == "not proven"
+
+
+def test_measured_again_with_all_points_scaled(scan):
+    cloud = scan.measure(np.random.default_rng(8))
+    fit = fit_gauge(cloud, regions=faces(scan))
+    assert fit.thickness_of(cloud.points) == pytest.approx(fit.thickness_mm, abs=1e-6)
+    assert fit.thickness_of(1.001 * cloud.points) == pytest.approx(1.001 * fit.thickness_mm, abs=1e-6)
