@@ -15,7 +15,9 @@ from numpy.typing import NDArray
 from core.errors import InputError
 from core.image.centreline import Centreline
 from core.image.noise import NoiseModel, estimate_noise
-from core.image.stripes import StripeSettings, choose_settings, extract_centrelines
+from core.image.smoothing import smooth
+from core.image.stripe_settings import StripeSettings, choose_settings
+from core.image.stripes import extract_centrelines
 from core.progress import Progress, silent
 from core.scan.crossings import CrossingTable, CrossingWindow, all_crossings
 from core.scan.reference import Picture, check_reference
@@ -106,6 +108,8 @@ def extract_features(
     progress("frames", len(found), total)
     _require_sweeps(found)
     crossings = all_crossings(fan, [frame.centrelines for frame in found], options.window, progress)
+    fan = tuple(smooth(piece) for piece in fan)
+    found = [replace(frame, centrelines=tuple(smooth(piece) for piece in frame.centrelines)) for frame in found]
     height, width = reference.shape
     return ScanFeatures((width, height), fan, tuple(found), crossings, sweep_stripe, fan_stripe, _moved_notes(found))
 
