@@ -4,50 +4,43 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid, Target
 from core.model import Pose
-from core.simulate.boards import black_square, charuco, checkerboard, circle_grid
+from core.simulate.boards import printed
 from core.simulate.image import Picture, Sensor, generator
-from core.simulate.patterns import Pattern
 from core.simulate.poses import camera_poses, plane_poses
 from core.simulate.rays import Map
 from core.simulate.rig import Rig
 from core.simulate.scenario import Scenario
 from core.simulate.targets import camera_picture, fan_centres, plane_pictures
 
-CAMERA_GREY = 190.0
+CAMERA_GREY = 230.0
 PLANE_GREY = 75.0
 """8-bit grey level of a white surface in the room's light, while the camera and while the fan is calibrated."""
 
-SQUARE_SIDE_MM = 60.0
-
-TABLES = {
-    "checkerboard": 'kind = "checkerboard"\ninner_corners = [17, 12]\nsquare_mm = 10.0',
-    "charuco": 'kind = "charuco"\nsquares = [12, 9]\nsquare_mm = 15.0\nmarker_mm = 11.25\ndictionary = "DICT_4X4_100"',
-    "circle_grid": 'kind = "circle_grid"\ncircles = [13, 10]\npitch_mm = 14.0',
-    "black_square": f'kind = "black_square"\nside_mm = {SQUARE_SIDE_MM}',
+PLATES: dict[str, tuple[Target, str]] = {
+    "checkerboard": (
+        Checkerboard(17, 12, 10.0),
+        'kind = "checkerboard"\ninner_corners = [17, 12]\nsquare_mm = 10.0',
+    ),
+    "charuco": (
+        Charuco(12, 9, 15.0, 11.25, "DICT_4X4_100"),
+        'kind = "charuco"\nsquares = [12, 9]\nsquare_mm = 15.0\nmarker_mm = 11.25\ndictionary = "DICT_4X4_100"',
+    ),
+    "circle_grid": (CircleGrid(13, 10, 14.0), 'kind = "circle_grid"\ncircles = [13, 10]\npitch_mm = 14.0'),
+    "black_square": (BlackSquare(60.0), 'kind = "black_square"\nside_mm = 60.0'),
 }
-"""What rig.toml says of each plate."""
-
-
-def plate(kind: str) -> Pattern:
-    """The plate of a kind named in TABLES."""
-    if kind == "checkerboard":
-        return checkerboard(17, 12, 10.0)
-    if kind == "charuco":
-        return charuco(12, 9, 15.0, 11.25, "DICT_4X4_100")
-    if kind == "circle_grid":
-        return circle_grid(13, 10, 14.0)
-    return black_square(SQUARE_SIDE_MM)
+"""Each plate, and what rig.toml says of it."""
 
 
 def rig_toml(scenario: Scenario) -> str:
     """The text of rig.toml for a scenario."""
     lines = [
         "[camera_target]",
-        TABLES[scenario.camera_target],
+        PLATES[scenario.camera_target][1],
         "",
         "[plane_target]",
-        TABLES[scenario.plane_target],
+        PLATES[scenario.plane_target][1],
         "",
         "[laser_fan]",
         "lines = 3",
@@ -64,7 +57,8 @@ class CalibrationPictures:
     def __init__(self, scenario: Scenario, rig: Rig, rays: Map) -> None:
         self._rig, self._rays, self._seed = rig, rays, scenario.seed
         self._sensor = Sensor(rig.optics, scenario.bits, scenario.noise)
-        self._camera_plate, self._plane_plate = plate(scenario.camera_target), plate(scenario.plane_target)
+        self._camera_plate = printed(PLATES[scenario.camera_target][0])
+        self._plane_plate = printed(PLATES[scenario.plane_target][0])
         views = camera_poses(
             rig.camera, self._camera_plate.outline, scenario.camera_views, generator(self._seed, "camera poses")
         )

@@ -14,12 +14,13 @@ from dataclasses import dataclass
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from core.model import LightPlane
 from core.model.arrays import Array, frozen_array, set_field
 from core.simulate.rays import Map
 from core.simulate.rig import Beam, Rig
-from core.simulate.scene import Scene, SurfaceMaps
+from core.simulate.scene import TILE, Scene, SurfaceMaps
 from core.simulate.shadow import ShadowCaster
 
 REACH_SIGMAS = 4.5
@@ -56,7 +57,7 @@ def laser_light(sheet: Sheet, scene: Scene, maps: SurfaceMaps, out: Map | None =
     light = np.zeros(maps.albedo.shape, np.float32) if out is None else out
     beam = sheet.beam
     widest = beam.sigma_mm * np.hypot(1, max(1.0, 400.0 / beam.rayleigh_mm))
-    v, u = _near(maps.points, sheet.plane.normal, sheet.plane.d_mm, REACH_SIGMAS * widest)
+    v, u = _near(maps, sheet.plane, REACH_SIGMAS * widest)
     points = maps.points[v, u].astype(np.float64)
     towards = points - sheet.emitter
     rho = np.linalg.norm(towards, axis=1)
@@ -74,23 +75,28 @@ def laser_light(sheet: Sheet, scene: Scene, maps: SurfaceMaps, out: Map | None =
     return light
 
 
+def _near(maps: SurfaceMaps, plane: LightPlane, reach: float) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Rows and columns of the pixels whose point is within `reach` mm of the plane, tile by tile."""
+    ends = maps.tiles * plane.normal
+    nearest = np.minimum(ends[0], ends[1]).sum(axis=-1) - plane.d_mm
+    farthest = np.maximum(ends[0], ends[1]).sum(axis=-1) - plane.d_mm
+    tiles = np.argwhere((nearest < reach) & (farthest > -reach))
+    rows, columns = _near_in_tiles(tiles, maps.points, plane.normal, plane.d_mm, reach)
+    return rows, columns
+
+
 @njit(cache=True, nogil=True)
-def _near(points, normal, distance, reach):  # type: ignore[no-untyped-def]
-    """Rows and columns of the pixels whose point is within `reach` of the plane normal·X = distance."""
+def _near_in_tiles(tiles, points, normal, distance, reach):  # type: ignore[no-untyped-def]
     height, width = points.shape[:2]
-    room = 4096
-    rows, columns = np.empty(room, np.int64), np.empty(room, np.int64)
+    rows, columns = np.empty(len(tiles) * TILE * TILE, np.int64), np.empty(len(tiles) * TILE * TILE, np.int64)
     count = 0
-    for v in range(height):
-        for u in range(width):
-            z = points[v, u, 2]
-            off = points[v, u, 0] * normal[0] + points[v, u, 1] * normal[1] + z * normal[2] - distance
-            if z > 0 and abs(off) < reach:
-                if count == room:
-                    rows = np.concatenate((rows, np.empty(room, np.int64)))
-                    columns = np.concatenate((columns, np.empty(room, np.int64)))
-                    room *= 2
-                rows[count] = v
-                columns[count] = u
-                count += 1
+    for i in range(len(tiles)):
+        for v in range(tiles[i, 0] * TILE, min(height, (tiles[i, 0] + 1) * TILE)):
+            for u in range(tiles[i, 1] * TILE, min(width, (tiles[i, 1] + 1) * TILE)):
+                z = points[v, u, 2]
+                off = points[v, u, 0] * normal[0] + points[v, u, 1] * normal[1] + z * normal[2] - distance
+                if z > 0 and abs(off) < reach:
+                    rows[count] = v
+                    columns[count] = u
+                    count += 1
     return rows[:count], columns[:count]

@@ -34,14 +34,14 @@ def camera_poses(camera: Camera, outline: Array, views: int, rng: np.random.Gene
 def plane_poses(centres: Sequence[Array], outline: Array, rng: np.random.Generator) -> list[Pose]:
     """Poses of a plate on which the fan shines, the plate's middle near each of `centres` (3,) in mm.
 
-    Moved aside by up to a quarter of the plate, so that lines fall on all parts of it, and tilted to 32°.
+    Moved aside by up to a third of the plate, so that lines fall on all parts of it, and tilted to 32°.
     """
     size = np.ptp(outline, axis=0)[:2]
     middle = outline.mean(axis=0)
     poses = []
     for pose, centre in enumerate(centres):
         angle = 2 * np.pi * pose / max(len(centres), 1)
-        shift = 0.22 * size * [np.cos(2 * angle + 0.5), np.sin(angle + 0.7)] + rng.normal(0, 3.0, 2)
+        shift = size * [0.35 * np.cos(2 * angle + 0.5), 0.22 * np.sin(angle + 0.7)] + rng.normal(0, 3.0, 2)
         tilt = np.radians(8.0 + 24.0 * (pose * 0.618034 % 1))
         rotation = _turn(tilt, 2.4 * pose + rng.normal(0, 0.15), np.radians(rng.normal(0, 9.0)))
         poses.append(Pose(rotation, centre + [*shift, 0.0] - rotation @ middle))

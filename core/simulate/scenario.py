@@ -14,7 +14,7 @@ OBJECTS = ("block", "narrow-block", "steps", "sphere", "mask", "stl", "plane")
 """What can stand on the table."""
 
 CAMERA_TARGETS = ("checkerboard", "charuco", "circle_grid")
-PLANE_TARGETS = ("black_square", "checkerboard")
+PLANE_TARGETS = ("black_square", *CAMERA_TARGETS)
 
 
 @dataclass(frozen=True, slots=True)

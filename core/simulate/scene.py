@@ -15,6 +15,7 @@ from core.simulate.rays import Map, ray_map
 TABLE_ALBEDO = 0.55
 OBJECT_ALBEDO = 0.7
 FARTHEST_MM = 5000.0
+TILE = 16
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -89,13 +90,19 @@ class Scene:
 class SurfaceMaps:
     """What each pixel sees, float32: point (h, w, 3) in mm, unit normal (h, w, 3) to the outside, albedo (h, w).
 
-    A pixel that sees nothing has depth 0 and albedo 0. `table` is True where the table is seen.
+    A pixel that sees nothing has depth 0 and albedo 0. `table` is True where the table is seen. `tiles` is filled in:
+    smallest and largest coordinates (2, rows, columns, 3) in mm within each tile of TILE × TILE pixels, so that what is
+    near a plane is found without looking at every pixel.
     """
 
     points: Map
     normals: Map
     albedo: Map
     table: NDArray[np.bool_] = field(default_factory=lambda: np.zeros((0, 0), np.bool_))
+    tiles: Map = field(init=False)
+
+    def __post_init__(self) -> None:
+        set_field(self, "tiles", np.stack([_by_tile(np.minimum, self.points), _by_tile(np.maximum, self.points)]))
 
     @property
     def depth(self) -> Map:
@@ -134,6 +141,12 @@ def surface_maps(scene: Scene, camera: Camera, rays: Map | None = None) -> Surfa
     return SurfaceMaps(points, normals, albedo, table)
 
 
+def _by_tile(choose: np.ufunc, points: Map) -> Map:
+    rows, columns = np.arange(0, points.shape[0], TILE), np.arange(0, points.shape[1], TILE)
+    chosen: Map = choose.reduceat(choose.reduceat(points, rows, axis=0), columns, axis=1)
+    return chosen
+
+
 def _see_table(pose: Pose, rays: Map, depth: Map, normals: Map) -> None:
     up = pose.rotation[:, 2]
     slope = rays[..., 0] * up[0] + rays[..., 1] * up[1] + up[2]
@@ -159,15 +172,21 @@ def _see_sphere(sphere: Sphere, rays: Map, depth: Map, normals: Map, albedo: Map
 
 
 def _mesh_normals(mesh: Mesh, face: NDArray[np.int32], rays: Map, depth: Map) -> Array:
-    """Unit normals (N, 3) at the points seen: of the flat faces, or blended from the corners."""
+    """Unit normals (N, 3) at the points seen: of the flat faces, or blended from the corners.
+
+    They point to the side that is seen, so thin shells and files with faces turned inside out look right.
+    """
     corners = mesh.triangles[face]
+    directions = np.column_stack([rays, np.ones(len(rays))])
     normals: Array = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    away = np.einsum("ni,ni->n", normals, directions) > 0
     if mesh.normals is not None:
-        points = np.column_stack([rays, np.ones(len(rays))]) * depth[:, None]
+        points = directions * depth[:, None]
         shares = [
             np.einsum("ni,ni->n", np.cross(corners[:, j] - points, corners[:, k] - points), normals)[:, None]
             for j, k in ((1, 2), (2, 0), (0, 1))
         ]
         normals = np.sum([share * mesh.normals[face, i] for i, share in enumerate(shares)], axis=0)
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    normals[away] *= -1
     return normals

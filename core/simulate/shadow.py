@@ -16,7 +16,7 @@ from core.model import LightPlane
 from core.model.arrays import Array
 from core.simulate.scene import Scene
 
-SECTORS = 720
+SECTORS = 4096
 CLEARANCE_MM = 0.02  # a surface does not shade itself by the rounding of its own points
 
 

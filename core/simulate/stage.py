@@ -9,6 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from core.model import Pose
 from core.model.arrays import Array
+from core.simulate.mask import face_mask
 from core.simulate.objects import gauge_block, step_block, stl, turned
 from core.simulate.scenario import Scenario
 from core.simulate.scene import Mesh, Scene, Sphere
@@ -61,7 +62,9 @@ def _thing(scenario: Scenario) -> Mesh | Sphere | None:
         return turned(step_block(STEP_HEIGHTS_MM), yaw)
     if scenario.object == "sphere":
         radius = scenario.height_mm / 2
-        return Sphere(np.array([0.0, 0.0, radius]), radius)
+        return Sphere(np.array([0.0, 3.0, radius]), radius)  # the outer fan lines equally far from its rims
+    if scenario.object == "mask":
+        return turned(face_mask(), yaw)
     if scenario.object == "stl":
         return stl(Path(scenario.stl_path))
     return None

@@ -31,8 +31,7 @@ class Truth:
     sweeps
         Light plane of each frame of the scan, in order, by the frames' names.
     camera_poses, plane_poses
-        `pose_cam_target` by the pictures' names. Frames of the targets: checkerboard: first inner corner, x along
-        columns, y along rows; black square: its centre; z into the plate.
+        `pose_cam_target` by the pictures' names, frames as in :mod:`core.image.targets.kinds`.
     thing
         Kind and figures of the object (`thickness_mm`, `step_heights_mm`, `centre_mm` and `radius_mm`, …), with
         `table_normal` and `table_point` in the camera frame.
