@@ -25,7 +25,7 @@ _END = 0.06
 
 ASTRAY_PX = 0.4
 HOPELESS_PX = 3.0
-"""Scatter of an edge's points about its line in pixels, up to which it is not, and from which it is always suspected."""
+"""Scatter of an edge's points about its line in pixels, not suspected up to here, and always from here on."""
 
 CLIPPED_SHARE = 0.25
 """Shift of a clipped edge (over-exposed plate, or black cut off at zero), as a share of the edge's blur σ."""

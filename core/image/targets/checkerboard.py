@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 
 from core.image.target_view import TargetView
 from core.image.targets.corner_noise import corner_sigma
-from core.image.targets.grid import grow, is_checkered, oriented, refined, spacing
+from core.image.targets.corner_seeds import seed_grids
+from core.image.targets.grid import grow, oriented, refined, spacing
 from core.image.targets.kinds import Checkerboard
 from core.image.targets.not_found import TargetNotFound
 from core.image.targets.picture import Picture, as_8bit, as_refinable, enlarged, noise_of, reduced, without_stripes
@@ -20,15 +21,15 @@ LARGEST_HALF_WINDOW = 11
 SMOOTHED_FROM = 40.0
 """Spacing of the corners in pixels from which on the picture is smoothed by σ = 1 px before the refinement."""
 
-_ANY_SIZE = cv2.CALIB_CB_LARGER | cv2.CALIB_CB_NORMALIZE_IMAGE
+MOST_BOARDS = 12
+"""Seeds followed in one picture."""
 
 
 def detect_checkerboard(board: Checkerboard, picture: Picture, name: str = "") -> TargetView:
     """The inner corners of `board` in `picture`, in the order of `board.points`.
 
-    OpenCV's sector-based search finds boards of any size, or parts of them, on a picture reduced to about 1000 pixels,
-    with laser stripes removed if need be. What it finds is grown until the board ends: so a board of another size, and
-    a part of the board, are told from no board.
+    Nine corners are found on a picture reduced to about 1000 pixels, with laser stripes removed if need be, and grown
+    until the board ends: so a board of another size, and a part of the board, are told from no board.
 
     The corners are refined at full size by cornerSubPix, in windows of up to 23 × 23 pixels. Where the squares are
     large enough to spare the detail, the picture is smoothed first: that halves the error from the pixels' phase,
@@ -44,26 +45,28 @@ def detect_checkerboard(board: Checkerboard, picture: Picture, name: str = "") -
     for longest in (1000, 2000):
         small, factor = reduced(full, longest)
         for candidate in (small, without_stripes(small, 9)):
-            grid = _some_corners(candidate)
-            if grid is None:
-                continue
-            grid, cut_off = grow(candidate, grid)
-            if sorted(grid.shape[:2]) == sorted((board.columns, board.rows)):
-                return _view(board, picture, enlarged(grid, factor), factor, name)
-            seen.append((grid, cut_off))
+            found = _boards(candidate)
+            for grid, _ in found:
+                if sorted(grid.shape[:2]) == sorted((board.columns, board.rows)):
+                    return _view(board, picture, enlarged(grid, factor), factor, name)
+            seen.extend(found)
         if factor == 1:
             break
     raise _failure(board, seen, name)
 
 
-def _some_corners(picture: NDArray[np.uint8]) -> Array | None:
-    """A grid (R, C, 2) of corners of a board or of a part of it, to the pixel; None if there is no board at all."""
-    found, corners, meta = cv2.findChessboardCornersSBWithMeta(picture, (3, 3), _ANY_SIZE)
-    if not found:
-        return None
-    rows, columns = np.asarray(meta).shape[:2]
-    grid = np.asarray(corners, dtype=np.float64).reshape(rows, columns, 2)
-    return grid if is_checkered(picture, grid) else None
+def _boards(picture: NDArray[np.uint8]) -> list[tuple[Array, bool]]:
+    """Corners (R, C, 2) of boards or parts of them, to the pixel, and whether the picture's border cuts them off."""
+    known: list[Array] = []
+    boards: list[tuple[Array, bool]] = []
+    for seed in seed_grids(picture, known):
+        grid, cut_off = grow(picture, seed)
+        known.append(grid)
+        if min(grid.shape[:2]) > 3 or max(grid.shape[:2]) > 4:
+            boards.append((grid, cut_off))
+        if len(known) >= MOST_BOARDS:
+            break
+    return boards
 
 
 def _view(board: Checkerboard, picture: Picture, grid: Array, factor: int, name: str) -> TargetView:
