@@ -33,6 +33,8 @@ WHERE = "planes"
 MORE_POSES = "record more poses of the target, at different distances and tilts"
 SMALLEST_SPREAD = 0.01
 """A plane is not determined by stripes that lie nearer to one straight line than this share of their depth (RMS)."""
+DISTINCT = 0.01
+"""Light planes are two if they cut a ray at depths that differ by more than this share."""
 ODD = 5.0
 """A pose this many times worse than the median pose is left out."""
 
@@ -92,11 +94,12 @@ def fit_fan(
     _check_poses(located)
     located, rough = _assigned(located, camera, options)
     _check_spread(located, options.lines)
+    further = _further_line(located, camera, rough)
     located, free = _solve_without_odd_poses(FreePlanes(rough), located, camera)
     volume = _points_by_line(located, free)
     verdict = judge(free, volume, options.angle, options.constrained)
     used = free if isinstance(verdict.start, FreePlanes) else _solve(verdict.start, located, camera)
-    return summarise(located, free, used, verdict)
+    return summarise(located, free, used, verdict, further)
 
 
 def same_model(options: FanOptions, calibration: FanCalibration) -> FanOptions:
@@ -160,6 +163,19 @@ def _assigned(located: Sequence[LocatedPose], camera: Camera, options: FanOption
         else:
             sorted_poses.append(replace(pose, stripes=stripes))
     return sorted_poses, assignment.pis
+
+
+def _further_line(located: Sequence[LocatedPose], camera: Camera, rough: Array) -> list[str]:
+    """A note if one more light plane than promised is seen in most poses."""
+    rest = [replace(pose, lines=pose.lines_left) for pose in located]
+    assignment = assign_lines([pose.as_lines(camera) for pose in rest], 1, None)
+    for pi, which in zip(assignment.pis, assignment.which, strict=True):
+        lines = [pose.lines[index] for pose, index in zip(rest, which, strict=True) if index != NOT_SEEN]
+        rays = np.vstack([line.pivots for line in lines])
+        apart = np.abs(rays @ (rough - pi).T) / np.abs(rays @ pi)[:, None]
+        if 2 * len(lines) > sum(pose.used for pose in located) and np.median(apart, axis=0).min() > DISTINCT:
+            return [f"a further light plane is seen in {len(lines)} poses: check laser_fan.lines in rig.toml"]
+    return []
 
 
 def _check_spread(located: Sequence[LocatedPose], lines: int) -> None:

@@ -174,7 +174,7 @@ class _Problem:
 
     def _reweight(self, solution: Solution[_State]) -> None:
         """Improve the standard deviations and the stripes' weights from residuals and redundancies."""
-        share = np.einsum("mi,ij,mj->m", solution.jacobian, solution.covariance, solution.jacobian)
+        share = ((solution.jacobian @ solution.covariance) * solution.jacobian).sum(axis=1)
         first = len(share) - 2 * len(self.noise)
         corner = _variance_factor(solution.residuals[:first], share[:first])
         self.corner_scale = float(np.clip(self.corner_scale * np.sqrt(corner), *CORNER_SCALE_RANGE))
@@ -195,7 +195,7 @@ class _Problem:
         unknowns = planes.jacobian.shape[1]
         local = solution.covariance
         stripes = solution.jacobian[-2 * len(self.noise) :]
-        freedom = len(stripes) - float(np.einsum("mi,ij,mj->", stripes, local, stripes))
+        freedom = len(stripes) - float(((stripes @ local) * stripes).sum())
         covariance = planes.jacobian @ local[:unknowns, :unknowns] @ planes.jacobian.T
         return Bundle(
             planes,

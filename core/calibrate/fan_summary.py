@@ -13,12 +13,14 @@ from core.calibrate.results import FanCalibration, PlanePose
 from core.model import LightPlane, Pose
 from core.model.arrays import Array
 
-SATURATED_SHARE = 0.1
+SATURATED_SHARE = 1 / 3
 """A share of saturated stripe points worth a warning."""
 
 
-def summarise(located: Sequence[LocatedPose], free: Bundle, used: Bundle, verdict: Verdict) -> FanCalibration:
-    """Put together the result of a free fit, the fit in use and the verdict between them."""
+def summarise(
+    located: Sequence[LocatedPose], free: Bundle, used: Bundle, verdict: Verdict, notes: Sequence[str]
+) -> FanCalibration:
+    """Put together the result of a free fit, the fit in use and the verdict between them, with `notes` in front."""
     pis = used.planes.pis
     adjusted = iter(used.poses)
     poses = tuple(_plane_pose(pose, next(adjusted) if pose.used else None, pis) for pose in located)
@@ -33,7 +35,7 @@ def summarise(located: Sequence[LocatedPose], free: Bundle, used: Bundle, verdic
         constraint_suits=verdict.suits,
         verdict=verdict.sentence,
         poses=poses,
-        notes=_notes(located),
+        notes=(*notes, *_notes(located)),
         constraint_p=verdict.p,
         stripe_sd_mm=used.extra_mm,
         corner_scale=used.corner_scale,
@@ -72,7 +74,7 @@ def _notes(located: Sequence[LocatedPose]) -> tuple[str, ...]:
     share = float(np.average([s.saturated for s in stripes], weights=[len(s) for s in stripes]))
     if share > SATURATED_SHARE:
         notes.append(
-            f"the stripes are saturated at {share:.0%} of their points, which shifts them: expose shorter, dim the "
+            f"the stripes are saturated at {share:.0%} of their points, which can shift them: expose shorter, dim the "
             "laser, or set channel in rig.toml to a colour in which the laser is weaker"
         )
     return tuple(notes)

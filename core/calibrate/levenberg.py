@@ -40,7 +40,8 @@ def inverse_normal_matrix(jacobian: Array) -> Array:
     """(JᵀJ)⁻¹, with columns scaled to unit length first so that mm, rad and 1/mm do not upset it."""
     scale = np.linalg.norm(jacobian, axis=0)
     scale[scale == 0] = 1.0
-    values, vectors = np.linalg.eigh((jacobian / scale).T @ (jacobian / scale))
+    scaled = jacobian / scale
+    values, vectors = np.linalg.eigh(scaled.T @ scaled)
     values = np.maximum(values, 1e-15 * values[-1])
     inverse: Array = (vectors / values) @ vectors.T / np.outer(scale, scale)
     return inverse

@@ -47,6 +47,11 @@ class LocatedPose:
         """Whether the pose takes part in the fit."""
         return not self.reason
 
+    @property
+    def lines_left(self) -> tuple[StripeLine, ...]:
+        """The straight stripes that no fan line drew."""
+        return tuple(line for line in self.lines if all(line is not stripe for stripe in self.stripes.values()))
+
     def left_out(self, reason: str) -> LocatedPose:
         """The same pose, not used."""
         return replace(self, stripes={}, reason=reason)

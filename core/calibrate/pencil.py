@@ -1,4 +1,4 @@
-"""Light planes as unknowns: each on its own, or tied into one pencil, and their fit to points.
+"""Light planes as unknowns: each on its own, or tied into one pencil.
 
 The planes of a pencil share an axis. With R = (e1 | e2 | d), d along the axis, and a point a on it, the plane at
 angle φ about the axis has the normal n = e1 cos φ + e2 sin φ and is π = n / (n·a). The local unknowns are two small
@@ -13,14 +13,12 @@ depend on the scale of the coefficients: here orthogonal distances are minimised
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol, TypeVar
+from typing import Protocol
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from core.calibrate.levenberg import Solution, minimise
 from core.model.arrays import Array, frozen_array, set_field
 
 HUBER = 2.0
@@ -149,20 +147,6 @@ def pencil_near(pis: Array, angle: float | None) -> Pencil:
     return Pencil(np.column_stack([e1, e2, axis]), point, angles, fixed_angles=angle is not None)
 
 
-def plane_through(points: Array, weights: Array | None = None) -> Array:
-    """π (3,) of the plane nearest to `points` (N, 3) in mm in the sense of orthogonal distances.
-
-    `weights` (N,) are inverse variances. A plane through the camera's centre has no π and gives infinite values.
-    """
-    weight = np.ones(len(points)) if weights is None else weights
-    centre = weight @ points / weight.sum()
-    spread = (points - centre) * np.sqrt(weight)[:, None]
-    normal = np.linalg.eigh(spread.T @ spread)[1][:, 0]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        pi: Array = normal / (normal @ centre)
-    return pi
-
-
 def plane_distances(pis: Array, points: Array) -> tuple[Array, Array]:
     """Signed distances (N,) in mm of `points` (N, 3) from planes `pis` (N, 3), and their derivatives by π (N, 3)."""
     length = np.linalg.norm(pis, axis=1)
@@ -179,48 +163,3 @@ def huber_weights(scaled: Array) -> Array:
 def robust_sd(residuals: Array) -> float:
     """Standard deviation of the good part of `residuals` (N,), by the median of their absolute values."""
     return float(1.4826 * np.median(np.abs(residuals)))
-
-
-Planes = TypeVar("Planes", bound=PlaneSet)
-
-
-def fit_to_points(start: Planes, points: Sequence[Array], sigmas: Sequence[Array]) -> Solution[Planes]:
-    """Fit planes to points by orthogonal distances, robustly (Huber, its scale taken from the data).
-
-    Parameters
-    ----------
-    start
-        Planes near the answer; what they know of each other (a pencil, fixed angles) is kept.
-    points
-        For each plane (n_k, 3) in mm.
-    sigmas
-        For each plane (n_k,) standard deviations of the points' distances, up to one common factor.
-
-    Returns
-    -------
-    The planes with residuals in units of `sigmas` times the scale found, so that its covariance is that of the data.
-    """
-    which = np.repeat(np.arange(len(points)), [len(p) for p in points])
-    stacked, sigma = np.vstack(points), np.concatenate(sigmas)
-    rows = 3 * which[:, None] + np.arange(3)
-    factor = np.ones(len(stacked))
-    scale = 1.0
-
-    def linearise(planes: Planes) -> tuple[Array, Array]:
-        distances, by_pi = plane_distances(planes.pis[which], stacked)
-        weight = np.sqrt(factor) / (sigma * scale)
-        return distances * weight, np.einsum("ni,nip->np", by_pi * weight[:, None], planes.jacobian[rows])
-
-    def move(planes: Planes, step: Array) -> Planes:
-        return planes.moved(step)  # type: ignore[return-value]
-
-    solution = minimise(start, linearise, move)
-    for _ in range(20):
-        distances, _ = plane_distances(solution.state.pis[which], stacked)
-        before = scale
-        scale = max(robust_sd(distances / sigma), 1e-9)
-        factor = huber_weights(distances / (sigma * scale))
-        solution = minimise(solution.state, linearise, move)
-        if abs(scale - before) < 1e-3 * scale:
-            break
-    return solution

@@ -111,7 +111,7 @@ def measure_plane_pose(
     if moved is not None and moved >= options.moved_px:
         reason = f"the target moved by {moved:.2f} px between the pictures with the fan off and on"
         return PoseFeatures(name, view, (), reason)
-    centrelines = _stripes(on, off, settings)
+    centrelines = _stripes(on, off, view, settings)
     if not centrelines:
         return PoseFeatures(name, view, (), "no stripe was found: is the fan on?")
     level = DARK * _plate_level(plate, view)
@@ -122,7 +122,9 @@ def measure_plane_pose(
     return PoseFeatures(name, view, centrelines, notes=notes)
 
 
-def _stripes(on: Picture, off: Picture | None, settings: StripeSettings | None) -> tuple[Centreline, ...]:
+def _stripes(
+    on: Picture, off: Picture | None, view: TargetView, settings: StripeSettings | None
+) -> tuple[Centreline, ...]:
     """Centrelines of the laser in the difference of two pictures, or in the only one."""
     picture = on.astype(np.float32)
     saturated = on >= np.iinfo(on.dtype).max
@@ -133,7 +135,8 @@ def _stripes(on: Picture, off: Picture | None, settings: StripeSettings | None) 
         common = float(np.median(without[::8, ::8]))
         noise = estimate_noise(without).of_difference(common)
         picture = picture - without
-    chosen = settings or choose_settings(picture, float(np.iinfo(on.dtype).max))
+    around = picture[_window(view, picture.shape, margin=1.0)]
+    chosen = settings or choose_settings(np.ascontiguousarray(around), float(np.iinfo(on.dtype).max))
     return () if chosen is None else extract_centrelines(picture, chosen, noise=noise, saturated=saturated)
 
 
@@ -145,13 +148,18 @@ def _movement(on: Picture, view: TargetView, target: Target, camera: Camera | No
         return None
 
 
+def _window(view: TargetView, shape: tuple[int, ...], margin: float) -> tuple[slice, slice]:
+    """Rows and columns of the target's points and `margin` times their extent on each side."""
+    low, high = view.uv.min(axis=0), view.uv.max(axis=0)
+    reach = margin * (high - low)
+    left, top = np.maximum(low - reach, 0).astype(int)
+    right, bottom = np.minimum(high + reach + 1, np.array(shape[::-1])).astype(int)
+    return slice(top, bottom), slice(left, right)
+
+
 def _plate_level(plate: Picture, view: TargetView) -> float:
     """Grey level of the light plate at and around the target's points."""
-    low, high = view.uv.min(axis=0), view.uv.max(axis=0)
-    margin = 0.25 * (high - low)
-    left, top = np.maximum(low - margin, 0).astype(int)
-    right, bottom = (high + margin).astype(int) + 1
-    return float(np.quantile(plate[top:bottom:4, left:right:4], 0.8))
+    return float(np.quantile(plate[_window(view, plate.shape, margin=0.25)][::4, ::4], 0.8))
 
 
 def _on_even_plate(

@@ -96,12 +96,12 @@ class FanCalibration:
     """A calibrated fan and how far it can be trusted.
 
     `fan` is the result to use (constrained when the constraint suits the laser), `free` the planes fitted each on
-    its own. `rms_mm` per line. `angles` (rad) between neighbouring planes of the constrained and the free fit.
-    `pencil_gap_mm` is the largest distance of the free planes from those of one pencil, its angles free, within the
-    work volume; `constraint_suits` None where there is no constraint (one line). `constraint_p` is the probability of
-    a constrained fit this much worse than the free one if the constraint were true. `stripe_sd_mm` is the standard
-    deviation of a whole stripe from its plane beyond the stripe's own noise (flatness of the plate, lens),
-    `corner_scale` the factor by which the target's points scatter more than they stated.
+    its own; their covariances take the camera as known. `rms_mm` per line. `angles` (rad) between neighbouring planes
+    of the constrained and the free fit. `pencil_gap_mm` is the largest distance of the free planes from those of one
+    pencil, its angles free, within the work volume; `constraint_suits` None where there is no constraint (one line).
+    `constraint_p` is the probability of a constrained fit this much worse than the free one if the constraint were
+    true. `stripe_sd_mm` is the standard deviation of a whole stripe from its plane beyond the stripe's own noise
+    (flatness of the plate, lens), `corner_scale` the factor by which the target's points scatter more than they state.
     """
 
     fan: Fan

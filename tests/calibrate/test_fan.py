@@ -3,7 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from core.calibrate.fan import FanOptions, fan_deviations, fit_fan
+from core.calibrate.fan import FanOptions, fan_deviations, fit_fan, same_model
 from core.calibrate.pencil import Pencil, pencil_near, plane_distances
 from core.calibrate.plane_pose import PoseFeatures
 from core.errors import InputError
@@ -150,6 +150,22 @@ def test_deviations_rebuild_the_covariance():
     assert len(fans) == 5
     steps = np.array([(fan.pis - result.fan.pis).ravel() for fan in fans])
     assert steps.T @ steps == pytest.approx(result.fan.covariance, rel=1e-6, abs=1e-9 * result.fan.covariance.max())
+
+
+def test_repeated_fits_keep_the_model_that_was_chosen():
+    options = replace(THREE, constrained="auto")
+    assert same_model(options, fit_fan(features(WHERE, Noise(), 2), CAMERA, options)).constrained == "always"
+    wider = pencil_near(PUBLISHED, np.deg2rad(4.8)).pis
+    axis = fit_fan(features(WHERE, Noise(), 8, pis=wider), CAMERA, options)
+    assert same_model(options, axis).constrained == "axis"
+    again = fit_fan(features(WHERE, Noise(), 8, pis=wider), CAMERA, same_model(options, axis))
+    assert (again.fan.pis == axis.fan.pis).all()
+
+
+def test_more_lines_than_promised_is_noted():
+    result = fit_fan(features(WHERE, Noise(), 2), CAMERA, FanOptions(1))
+    assert any("a further light plane is seen in 7 poses" in note for note in result.notes)
+    assert not fit_fan(features(WHERE, Noise(), 2), CAMERA, THREE).notes
 
 
 def test_saturated_stripes_are_warned_of():
