@@ -173,7 +173,7 @@ def test_simulate_writes_a_set_that_can_be_opened(tmp_path):
     assert not list(out.rglob("*truth*"))
     again = trisect("simulate", "sphere", "--out", out)
     assert again.code == 2
-    assert "something here already" in again.sentence
+    assert "there is something already" in again.sentence
 
 
 def test_the_reader_of_our_output_may_leave_early(simulated, measured, tmp_path):

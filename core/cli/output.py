@@ -20,6 +20,9 @@ from core.scan.results import FrameRecord
 Rows = list[tuple[str, str]]
 _NAMES_SHOWN = 3
 
+PIPE_WIDTH = 1000
+"""Columns in a pipe, where nobody's screen wraps lines: whatever reads it gets them whole."""
+
 
 def print_json(values: Mapping[str, Any]) -> None:
     """One JSON object on standard output."""
@@ -29,16 +32,19 @@ def print_json(values: Mapping[str, Any]) -> None:
 def print_rows(rows: Rows, notes: Sequence[str] = (), files: Mapping[str, Path] | None = None) -> None:
     """A table of labels and values, the notes below it, then where the files are."""
     console = Console(highlight=False)
+    if not console.is_terminal:
+        console.width = PIPE_WIDTH
     table = Table(box=None, show_header=False, padding=(0, 2, 0, 0))
     table.add_column(style="dim", no_wrap=True)
     table.add_column(overflow="fold")
     for label, value in rows:
         table.add_row(label, value)
-    for label, path in (files or {}).items():
-        table.add_row(f"{label} file", str(path))
+    if files:
+        folder = next(iter(files.values())).parent
+        table.add_row("written", f"{folder}: {', '.join(path.name for path in files.values())}")
     console.print(table)
     for note in notes:
-        console.print(f"note: {note}", markup=False)
+        console.print(f"note: {note}", markup=False, soft_wrap=True)
 
 
 def camera_rows(calibration: CameraCalibration) -> Rows:

@@ -6,7 +6,6 @@ import sys
 from pathlib import Path
 
 from core.cli import output
-from core.errors import InputError
 from core.pipeline import RunResult
 from core.progress import Progress
 from core.report.wording import thickness_line
@@ -17,8 +16,6 @@ from core.simulate.scenario import Scenario
 
 def render(scenario: Scenario, out: Path, progress: Progress) -> None:
     """Write the recording set of a scenario into a new folder; InputError if something is there already."""
-    if out.exists() and (not out.is_dir() or any(out.iterdir())):
-        raise InputError("there is something here already", where=out, todo="choose a new folder for the set")
     simulate_set(scenario, out, progress)
 
 
