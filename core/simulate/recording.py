@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import shutil
 import tempfile
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable, Iterator
+from contextlib import closing
 from dataclasses import asdict, replace
 from pathlib import Path
+from typing import cast
 
 from core.errors import InputError
 from core.files.atomic import cannot_write, make_folder, write_text
 from core.files.pictures import write_picture
-from core.model import LightPlane
+from core.model import LightPlane, Pose
 from core.progress import Progress, silent, steps
 from core.simulate.calibration import CalibrationPictures, rig_toml
 from core.simulate.image import Picture, Sensor, generator
@@ -22,7 +24,7 @@ from core.simulate.scan import ScanStage
 from core.simulate.scenario import Scenario
 from core.simulate.stage import WORK_POINT, aim_of, build_scene
 from core.simulate.sweep import hand_sweeps, sweep_range
-from core.simulate.truth import Truth, load_truth, save_truth, truth_folder
+from core.simulate.truth import TRUTH_FILE, Truth, load_truth, save_truth, truth_folder
 from core.threads import ordered_map
 
 RENDER_THREADS = 2
@@ -52,6 +54,9 @@ def simulate_set(
     folder = folder.absolute()
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise InputError("there is something already", where=folder, todo="name a new folder, or empty this one")
+    beside_it = truth_folder(folder)
+    if beside_it.exists() and not (beside_it / TRUTH_FILE).exists():
+        raise InputError("this is where the truth would go, but it is something else", where=beside_it)
     make_folder(folder.parent)
     try:
         with tempfile.TemporaryDirectory(prefix=f".{folder.name}.", dir=folder.parent) as beside:
@@ -135,11 +140,14 @@ def _write_all(
         for path, picture in render(name):
             write_picture(made / path, picture)
 
-    for _ in steps(ordered_map(write, names, RENDER_THREADS), progress, step, len(names)):
-        pass
+    rendered = cast("Generator[None, None, None]", ordered_map(write, names, RENDER_THREADS))
+    with closing(rendered) as written:  # so that no thread outlives a cancelled job
+        for _ in steps(written, progress, step, len(names)):
+            pass
 
 
-def _copy_calibration(earlier: Path, made: Path, rig: Rig) -> tuple[dict, dict]:  # type: ignore[type-arg]
+def _copy_calibration(earlier: Path, made: Path, rig: Rig) -> tuple[dict[str, Pose], dict[str, Pose]]:
+    """Copy camera/ and planes/ of an earlier set; returns the poses in them."""
     truth = load_truth(earlier)
     same = truth.camera.image_size == rig.camera.image_size and abs(truth.fan.pis - rig.fan.pis).max() < 1e-12
     if not same:

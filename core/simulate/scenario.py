@@ -81,7 +81,7 @@ class Scenario:
                 listed = ", ".join(str(one) for one in allowed)
                 raise InputError(f"{getattr(self, name)!r} is not one of {listed}", where=name)
         ranges = (
-            ("height_mm", 1.0, 200.0),
+            ("height_mm", 1.0, 120.0),
             ("seed", 0, 2**63 - 1),
             ("scale", 0.1, 2.0),
             ("frames", 0, 100_000),

@@ -1,0 +1,55 @@
+"""The embedded sample: rendered on first use, then kept in the user's cache folder."""
+
+from __future__ import annotations
+
+import hashlib
+from importlib.resources import files
+from pathlib import Path
+
+import platformdirs
+
+import core
+from core.errors import InputError
+from core.progress import Progress, silent
+from core.simulate.recording import simulate_set
+from core.simulate.scenario import Scenario
+
+SAMPLE = "sample.toml"
+
+
+def sample_scenario() -> Scenario:
+    """What the sample shows."""
+    return Scenario.from_toml((files("resources") / "sample" / SAMPLE).read_text(encoding="utf-8"), SAMPLE)
+
+
+def sample_set(progress: Progress = silent) -> Path:
+    """The folder of the sample's recording set, rendered (in well under a minute) if it is not there yet.
+
+    Raises
+    ------
+    InputError
+        If the cache folder cannot be written to.
+    """
+    scenario = sample_scenario()
+    folder = Path(platformdirs.user_cache_dir("trisect", appauthor=False)) / f"sample-{_key(scenario)}"
+    if not _whole(folder):
+        try:
+            simulate_set(scenario, folder, progress)
+        except InputError:
+            if not _whole(folder):  # another process may have been quicker
+                raise
+    return folder
+
+
+def _whole(folder: Path) -> bool:
+    """Whether a set is there: it appears in one step."""
+    return (folder / "rig.toml").exists()
+
+
+def _key(scenario: Scenario) -> str:
+    """Another scenario, another release or changed rendering make another sample."""
+    digest = hashlib.sha256(f"{core.__version__} {scenario.key}".encode())
+    for source in sorted(files("core.simulate").iterdir(), key=lambda entry: entry.name):
+        if source.name.endswith(".py"):
+            digest.update(source.read_bytes())
+    return digest.hexdigest()[:16]
