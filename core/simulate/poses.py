@@ -19,14 +19,16 @@ def camera_poses(camera: Camera, outline: Array, views: int, rng: np.random.Gene
     Distances from 450 to 650 mm (farther where the plate would not fit in), tilt axes all round, a little turned. The
     plate is wholly in each picture.
     """
-    golden = (np.sqrt(5) - 1) / 2
     poses = []
     for view in range(views):
-        place = np.array([((view + 0.5) / views + 0.13) % 1, (0.5 + view * golden) % 1])  # spread evenly
-        tilt = np.radians(6.0 + 29.0 * ((view * golden * 2.7 + 0.9) % 1))
-        axis = 2 * np.pi * (view * golden * 1.7 % 1) + rng.normal(0, 0.1)
+        across = (view + 0.5) / views
+        # irrational steps, unrelated to each other, spread every choice evenly whatever the number of views
+        down, tilted, about, away = (0.5 + view * np.sqrt([1.25, 2.0, 3.0, 11.0])) % 1
+        tilt = np.radians(5.0 + 30.0 * tilted)
+        axis = 2 * np.pi * about + rng.normal(0, 0.1)
         roll = np.radians(rng.normal(0, 6.0)) + (np.pi / 2 if view % 7 == 3 else 0.0)
-        distance = 450.0 + 200.0 * ((view * 0.381966 + 0.1) % 1) + rng.normal(0, 5.0)
+        distance = 450.0 + 200.0 * away + rng.normal(0, 5.0)
+        place = np.array([across, down])
         poses.append(_fitted(camera, outline, 2.4 * (place - 0.5), _turn(tilt, axis, roll), distance))
     return poses
 

@@ -31,7 +31,7 @@ class Speckle:
     def __init__(self, contrast: float, grain_px: float, rng: np.random.Generator) -> None:
         field = rng.standard_normal((TILE, TILE), dtype=np.float32)
         pad = int(np.ceil(4 * grain_px))
-        smooth = cv2.GaussianBlur(np.pad(field, pad, mode="wrap"), (0, 0), grain_px / np.sqrt(2))[pad:-pad, pad:-pad]
+        smooth = cv2.GaussianBlur(np.pad(field, pad, mode="wrap"), (0, 0), grain_px / 2)[pad:-pad, pad:-pad]
         smooth = (smooth - smooth.mean()) / smooth.std()
         spread = np.sqrt(np.log1p(contrast**2))
         self._tile: Map = np.exp(spread * smooth - spread**2 / 2).astype(np.float32)
