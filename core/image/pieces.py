@@ -17,6 +17,8 @@ from core.model.arrays import Array
 END_TRIM_PX = 4.0
 """Left out at the ends of a stripe, at least: the filter sees only half of it there."""
 _END_TRIM = 1.2  # the same in filter σ
+_FADE_REACH = 20.0  # filter σ from an end that a fading shadow is looked for
+_FADED = 0.8  # less than this share of what is further in
 _BREAK_GAP = 2.0  # filter σ on either side of a kink that its rounding reaches
 _BREAK_ARM = 8.0  # filter σ looked at on either side
 _SIGNIFICANT = 6.0  # standard uncertainties
@@ -29,9 +31,7 @@ _NEIGHBOUR = 3.5
 def arc_length(run: Array) -> Array:
     """Length along a run (N, ≥ 2) up to each point, in pixels."""
     steps = np.diff(run[:, :2], axis=0)
-    length = np.zeros(len(run))
-    np.cumsum(np.hypot(steps[:, 0], steps[:, 1]), out=length[1:])
-    return length
+    return np.append(0.0, np.cumsum(np.hypot(steps[:, 0], steps[:, 1])))
 
 
 def correlation_length(filter_px: float) -> float:
@@ -44,8 +44,9 @@ def cut_ends(run: Array, filter_px: float) -> Array:
     arc = arc_length(run)
     trim = max(END_TRIM_PX, _END_TRIM * filter_px)
     start = _real_end(arc, run[:, 4], filter_px) + trim
-    end = arc[-1] - _real_end(arc[-1] - arc[::-1], run[::-1, 4], filter_px) - trim
-    return run[(arc >= start) & (arc <= end)]
+    end = float(arc[-1]) - _real_end(arc[-1] - arc[::-1], run[::-1, 4], filter_px) - trim
+    inside: Array = run[(arc >= start) & (arc <= end)]
+    return inside
 
 
 def _real_end(arc: Array, response: Array, filter_px: float) -> float:
@@ -54,6 +55,28 @@ def _real_end(arc: Array, response: Array, filter_px: float) -> float:
     if len(inner) == 0:
         return 0.0
     return float(arc[np.argmax(response >= 0.5 * np.median(inner))])
+
+
+def fully_lit(arc: Array, height: Array, width: Array, filter_px: float) -> slice:
+    """The part of a run between its fading ends, from the height and width (N,) of its cross-section.
+
+    An oblique shadow cuts the stripe on one side first and pulls the line to the other while its crest is still as
+    bright as before. What gives it away is height · width², which speckle hardly changes: its grains make the stripe
+    dimmer and wider, or brighter and narrower.
+    """
+    spread = height * width**2
+    first = _fading(arc, spread, filter_px)
+    last = len(arc) - _fading(arc[-1] - arc[::-1], spread[::-1], filter_px)
+    return slice(first, max(first, last))
+
+
+def _fading(arc: Array, spread: Array, filter_px: float) -> int:
+    """How many points at the start have less light than the stretch behind them."""
+    reach = min(_FADE_REACH * filter_px, 0.2 * float(arc[-1]))
+    inner = spread[(arc >= reach) & (arc <= 2.5 * reach)]
+    if len(inner) == 0:
+        return 0
+    return int(np.argmax((spread >= _FADED * np.median(inner)) | (arc >= reach)))
 
 
 def split_at_breaks(run: Array, filter_px: float, sigma_px: Array) -> list[Array]:

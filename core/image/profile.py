@@ -39,6 +39,12 @@ class Profiles:
     slope_sigma: Array
     width: Array
 
+    def select(self, part: slice) -> Profiles:
+        """The cross-sections of a part of the run."""
+        return Profiles(
+            self.height[part], self.background[part], self.slope[part], self.slope_sigma[part], self.width[part]
+        )
+
 
 def measure_profiles(
     picture: NDArray[np.float32],

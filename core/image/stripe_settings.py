@@ -95,7 +95,7 @@ def choose_settings(
         state[mask] |= IGNORED
         picture = np.where(mask, np.float32(np.median(picture[~mask])) if not mask.all() else 0, picture)
     noise = estimate_noise(picture, mask).read_grey
-    stripe_px, height = _first_guess(picture)
+    stripe_px, height = _first_guess(picture, noise)
     for _ in range(_ROUNDS):
         filter_px = max(FILTER_IN_SIGMA * stripe_px, _SMALLEST_FILTER_PX)
         faintest = max(_ABOVE_NOISE * response_noise(noise, stripe_px, filter_px), _FAINTEST * full_scale, noise)
@@ -112,17 +112,17 @@ def choose_settings(
     return StripeSettings(WIDTH_IN_SIGMA * stripe_px, float(np.quantile(sections[0], _FAINT)))
 
 
-def _first_guess(picture: NDArray[np.float32]) -> tuple[float, float]:
+def _first_guess(picture: NDArray[np.float32], noise: float) -> tuple[float, float]:
     """σ in pixels and height of the strongest stripes, from the crests at several block sizes."""
     best, guess = 0.0, (1.0, 0.0)
     for block in _BLOCKS:
         if min(picture.shape) < 8 * block:
             break
-        found = coarse_crests(picture, block, 0.0)[:, 2]
-        strongest = np.sort(found)[::-1][: max(4, sum(picture.shape) // (4 * block))]
-        if not strongest.size:
+        found = coarse_crests(picture, block, _ABOVE_NOISE * noise / block / 2)[:, 2]
+        if not found.size:
             continue
-        response = float(np.median(strongest))
+        number = max(4, sum(picture.shape) // (4 * block))
+        response = float(np.median(np.sort(found)[-number:]))
         if response / math.sqrt(block) > best:
             best = response / math.sqrt(block)
             guess = (float(block), response * 2.83)  # a stripe of σ 1 under a filter of σ 1: A/2^1.5

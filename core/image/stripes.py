@@ -32,7 +32,15 @@ from numpy.typing import NDArray
 from core.image.centreline import Centreline
 from core.image.linking import IGNORED, SATURATED, Hysteresis, link
 from core.image.noise import NoiseModel
-from core.image.pieces import arc_length, beside_another, correlation_length, curvature, cut_ends, split_at_breaks
+from core.image.pieces import (
+    arc_length,
+    beside_another,
+    correlation_length,
+    curvature,
+    cut_ends,
+    fully_lit,
+    split_at_breaks,
+)
 from core.image.precision import noise_sigma, response_noise, roughness, saturated_points
 from core.image.profile import Profiles, measure_profiles
 from core.image.stripe_settings import StripeSettings, choose_settings
@@ -146,24 +154,22 @@ def _smooth_pieces(
     shortest: float,
 ) -> list[tuple[Array, Profiles]]:
     """One run cut at its ends, kinks and jumps, with the cross-sections of each piece."""
-    run = cut_ends(run, settings.filter_px)
+    g = settings.filter_px
+    run = cut_ends(run, g)
     if len(run) < shortest:
         return []
-    arc = arc_length(run)
-    profiles = measure_profiles(picture, state, run, arc, settings.stripe_px, settings.filter_px)
-    sigma = noise_sigma(profiles, noise, settings.filter_px)
+    profiles = measure_profiles(picture, state, run, arc_length(run), settings.stripe_px, g)
+    sigma = noise_sigma(profiles, noise, g)
     (extra,) = roughness([(run, sigma)], correlation_length_px(settings))
-    pieces = split_at_breaks(run, settings.filter_px, np.hypot(sigma, extra))
-    if len(pieces) == 1 and len(pieces[0]) == len(run):
-        return [(run, profiles)]
-    return [
-        (
-            piece,
-            measure_profiles(picture, state, piece, arc_length(piece), settings.stripe_px, settings.filter_px),
-        )
-        for piece in pieces
-        if len(piece) >= shortest
-    ]
+    pieces = []
+    for piece in split_at_breaks(run, g, np.hypot(sigma, extra)):
+        arc = arc_length(piece)
+        if len(piece) < len(run):  # the running median must not reach across the break
+            profiles = measure_profiles(picture, state, piece, arc, settings.stripe_px, g)
+        lit = fully_lit(arc, profiles.height, profiles.width, g)
+        if len(piece[lit]) >= shortest:
+            pieces.append((piece[lit], profiles.select(lit)))
+    return pieces
 
 
 def _corrected(run: Array, profiles: Profiles, settings: StripeSettings) -> Array:
