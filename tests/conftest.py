@@ -14,9 +14,9 @@ def simulated(tmp_path_factory) -> Path:
 @pytest.fixture(scope="session")
 def measured(simulated, tmp_path_factory) -> Path:
     """All results of the small set; copy them before changing them."""
-    from tests.simulated import trisect
+    from tests.simulated import CUT, trisect
 
     out = tmp_path_factory.mktemp("measured") / "out"
-    said = trisect("run", simulated, "--out", out)
+    said = trisect("run", simulated, "--out", out, *CUT)
     assert said.code in (0, 1), said.err
     return out

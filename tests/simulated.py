@@ -11,7 +11,10 @@ from core.simulate.recording import simulate_set
 from core.cli import main
 from core.simulate.scenario import Scenario
 
-SMALL = Scenario(scale=0.25, frames=14, camera_views=8, plane_poses=6, seed=3)
+SMALL = Scenario(scale=0.25, frames=20, camera_views=8, plane_poses=6, seed=3)
+
+CUT = ("--sigma-cut", "0.3")
+"""A quarter of the pixels and a third of the frames give points three times as uncertain as the default cut allows."""
 
 
 @dataclass(frozen=True)

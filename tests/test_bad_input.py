@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from core.files.pictures import read_picture, write_picture
-from tests.simulated import SMALL, copy_of, trisect
+from tests.simulated import CUT, SMALL, copy_of, trisect
 
 pytestmark = pytest.mark.xdist_group("small simulated set")
 
@@ -79,7 +79,7 @@ def test_errors_in_json_for_machines(tmp_path):
 def test_one_truncated_frame_among_good_ones_is_skipped_counted_and_reported(folder, out):
     victim = frames_of(folder)[3]
     victim.write_bytes(victim.read_bytes()[: victim.stat().st_size // 2])
-    said = trisect("scan", folder, "--out", out, "--json")
+    said = trisect("scan", folder, "--out", out, *CUT, "--json")
     assert said.code == 0, said.err
     values = json.loads(said.out)
     name = f"scan/{victim.name}"
@@ -93,7 +93,7 @@ def test_one_truncated_frame_among_good_ones_is_skipped_counted_and_reported(fol
 def test_truncated_reference_is_named(folder, out):
     reference = folder / "scan" / "reference.png"
     reference.write_bytes(reference.read_bytes()[:-100])
-    said = trisect("scan", folder, "--out", out)
+    said = trisect("scan", folder, "--out", out, *CUT)
     assert said.code == 2
     assert "reference.png: the picture ends early" in said.sentence
 
@@ -101,7 +101,7 @@ def test_truncated_reference_is_named(folder, out):
 def test_mixed_picture_sizes_name_the_odd_file(folder, out):
     victim = frames_of(folder)[5]
     write_picture(victim, np.ascontiguousarray(read_picture(victim)[:, :-2]))
-    said = trisect("scan", folder, "--out", out)
+    said = trisect("scan", folder, "--out", out, *CUT)
     assert said.code == 2
     assert victim.name in said.sentence
     assert "pixels" in said.sentence
@@ -175,7 +175,7 @@ def test_black_and_white_frames_among_good_ones(folder, out):
     frames = frames_of(folder)
     spoil(frames[2], "black")
     spoil(frames[6], "white")
-    said = trisect("scan", folder, "--out", out)
+    said = trisect("scan", folder, "--out", out, *CUT)
     assert said.code == 0, said.err
     records = frame_records(out)
     assert [record["points"] > 0 for record in (records[2], records[6])] == [False, False]
@@ -187,7 +187,7 @@ def test_black_and_white_frames_among_good_ones(folder, out):
 def test_only_black_or_white_frames(folder, out, how):
     for frame in frames_of(folder):
         spoil(frame, how)
-    said = trisect("scan", folder, "--out", out)
+    said = trisect("scan", folder, "--out", out, *CUT)
     assert said.code == 2
     assert "scan" in said.sentence
 
@@ -195,7 +195,7 @@ def test_only_black_or_white_frames(folder, out, how):
 @pytest.mark.parametrize("how", ["black", "white"])
 def test_black_or_white_reference(folder, out, how):
     spoil(folder / "scan" / "reference.png", how)
-    said = trisect("scan", folder, "--out", out)
+    said = trisect("scan", folder, "--out", out, *CUT)
     assert said.code == 2
     assert "reference" in said.sentence
 
@@ -210,15 +210,16 @@ def test_fewer_fan_lines_than_promised(folder, out):
 
 
 def test_no_sweep_crosses_the_fan(folder, out):
+    size = 220
     reference = read_picture(folder / "scan" / "reference.png")
-    row, column = darkest_patch(reference, 60)
+    row, column = darkest_patch(reference, size)
+    rows, columns = np.mgrid[:size, :size]
     for number, frame in enumerate(frames_of(folder)):
+        stripe = 120 * np.exp(-((rows - columns * 0.03 * (number % 5) - 100) ** 2) / 5)
         picture = reference.astype(np.float64)
-        rows, columns = np.mgrid[:40, :40]
-        stripe = 120 * np.exp(-((columns - rows * 0.1 * (number % 5) - 15) ** 2) / 8)
-        picture[row + 10 : row + 50, column + 10 : column + 50] += stripe
+        picture[row : row + size, column : column + size] += stripe
         write_picture(frame, np.clip(picture, 0, 255).astype(np.uint8))
-    said = trisect("scan", folder, "--out", out)
+    said = trisect("scan", folder, "--out", out, *CUT)
     assert said.code == 2
     assert "scan: no sweep crosses the fan" in said.sentence
 
@@ -233,7 +234,7 @@ def darkest_patch(picture, size):
 def test_the_object_moves_half_way(folder, out):
     for frame in frames_of(folder)[SMALL.frames // 2 :]:
         write_picture(frame, np.roll(read_picture(frame), (2, 3), axis=(0, 1)))
-    said = trisect("scan", folder, "--out", out, "--json")
+    said = trisect("scan", folder, "--out", out, *CUT, "--json")
     assert said.code == 0, said.err
     moved = [record for record in frame_records(out) if "moved" in record["reason"]]
     assert [record["index"] for record in moved] == list(range(SMALL.frames // 2, SMALL.frames))
@@ -253,7 +254,7 @@ def test_nan_or_zero_in_a_calibration_file(simulated, out, name, change, parts):
     tables = json.loads((out / name).read_text())
     change(tables)
     (out / name).write_text(json.dumps(tables))
-    said = trisect("scan", simulated, "--out", out)
+    said = trisect("scan", simulated, "--out", out, *CUT)
     assert said.code == 2
     for part in [str(out / name), *parts]:
         assert part in said.sentence

@@ -12,7 +12,7 @@ from plyfile import PlyData
 from pypdf import PdfReader
 
 from core import __version__
-from tests.simulated import SMALL, copy_of, trisect
+from tests.simulated import CUT, SMALL, copy_of, trisect
 
 pytestmark = pytest.mark.xdist_group("small simulated set")
 
@@ -39,11 +39,13 @@ def test_the_cloud_has_a_sigma_at_every_point_below_the_cut(measured):
     vertices = PlyData.read(str(measured / "cloud.ply"))["vertex"].data
     assert len(vertices) > 1000
     assert vertices["sigma"].min() > 0
-    assert vertices["sigma"].max() <= 0.05
+    assert vertices["sigma"].max() <= 0.3
     assert set(np.unique(vertices["frame"])) <= set(range(-1, SMALL.frames))
     normals = np.column_stack([vertices[name] for name in ("nx", "ny", "nz")])
     towards = -np.einsum("ni,ni->n", normals, np.column_stack([vertices[name] for name in "xyz"]))
-    assert np.mean(towards > 0) > 0.95
+    known = normals.any(axis=1)
+    assert known.mean() > 0.5
+    assert np.all(towards[known] > 0)
 
 
 def test_run_json_has_a_hash_of_every_input_and_a_record_of_every_frame(simulated, measured):
@@ -69,7 +71,7 @@ def test_the_report_names_part_thickness_and_version(measured):
 def test_each_step_alone_gives_the_same_files_as_the_whole_run(simulated, measured, tmp_path):
     out = tmp_path / "out"
     for step in ("camera", "planes", "scan", "gauge", "report"):
-        said = trisect(step, simulated, "--out", out)
+        said = trisect(step, simulated, "--out", out, *(CUT if step == "scan" else ()))
         assert said.code in (0, 1), said.err
     whole, steps = digests(measured), digests(out)
     for name in (RESULTS | COMPANIONS) - {"run.json", "report.pdf"}:
@@ -91,40 +93,32 @@ def test_the_report_alone_gives_the_same_bytes(simulated, measured, tmp_path):
     assert (out / "report.pdf").read_bytes() == (measured / "report.pdf").read_bytes()
 
 
-def test_json_is_one_object_with_the_thickness(simulated, measured, tmp_path):
-    out = copy_of(measured, tmp_path / "out")
-    said = trisect("gauge", simulated, "--out", out, "--json")
-    values = json.loads(said.out)
-    gauge = json.loads((measured / "gauge.json").read_text())
-    assert values["thickness_mm"] == gauge["thickness_mm"]
-    assert values["verdict"] == gauge["verdict"]
-    assert values["files"]["gauge"] == str(out / "gauge.json")
-    assert said.err == ""
+def with_gauge(folder, table):
+    rig = folder / "rig.toml"
+    rig.write_text(rig.read_text().partition("[gauge]")[0] + table)
+    return folder
 
 
 def test_exit_code_1_when_the_part_is_out_of_tolerance(simulated, measured, tmp_path):
-    folder = copy_of(simulated, tmp_path / "set")
-    rig = folder / "rig.toml"
-    text = rig.read_text().partition("[gauge]")[0]
-    rig.write_text(text + "[gauge]\nnominal_mm = 45.0\ntolerance_mm = 0.2\n")
+    folder = with_gauge(copy_of(simulated, tmp_path / "set"), "[gauge]\nnominal_mm = 45.0\ntolerance_mm = 0.2\n")
     said = trisect("gauge", folder, "--out", copy_of(measured, tmp_path / "out"))
     assert said.code == 1
     assert "not conforming" in said.out
 
 
-def test_exit_code_0_without_a_nominal_value(simulated, measured, tmp_path):
-    folder = copy_of(simulated, tmp_path / "set")
-    rig = folder / "rig.toml"
-    rig.write_text(rig.read_text().partition("[gauge]")[0])
-    said = trisect("gauge", folder, "--out", copy_of(measured, tmp_path / "out"), "--json")
-    assert said.code == 0
-    assert json.loads(said.out)["verdict"] == ""
-    assert json.loads(said.out)["nominal_mm"] is None
+def test_without_a_nominal_value_no_verdict_and_exit_code_0(simulated, measured, tmp_path):
+    out = copy_of(measured, tmp_path / "out")
+    said = trisect("gauge", with_gauge(copy_of(simulated, tmp_path / "set"), ""), "--out", out, "--json")
+    values = json.loads(said.out)  # one object and nothing else
+    assert (said.code, said.err) == (0, "")
+    assert (values["verdict"], values["nominal_mm"]) == ("", None)
+    assert values["thickness_mm"] == json.loads((measured / "gauge.json").read_text())["thickness_mm"]
+    assert values["files"]["gauge"] == str(out / "gauge.json")
 
 
 def test_the_papers_method_by_name(simulated, measured, tmp_path):
     out = copy_of(measured, tmp_path / "out")
-    said = trisect("scan", simulated, "--out", out, "--method", "three-crossings", "--json")
+    said = trisect("scan", simulated, "--out", out, "--method", "three-crossings", *CUT, "--json")
     assert said.code == 0, said.err
     assert json.loads((out / "run.json").read_text())["settings"]["scan"]["method"] == "three-crossings"
     assert (out / "cloud.ply").read_bytes() != (measured / "cloud.ply").read_bytes()
@@ -133,7 +127,7 @@ def test_the_papers_method_by_name(simulated, measured, tmp_path):
 def test_a_scan_without_reference_makes_one_of_its_frames(simulated, measured, tmp_path):
     folder = copy_of(simulated, tmp_path / "set")
     (folder / "scan" / "reference.png").unlink()
-    said = trisect("scan", folder, "--out", copy_of(measured, tmp_path / "out"))
+    said = trisect("scan", folder, "--out", copy_of(measured, tmp_path / "out"), *CUT)
     assert said.code == 0, said.err
     assert "There is no scan/reference.png" in said.out
 
@@ -178,7 +172,7 @@ def test_simulate_writes_a_set_that_can_be_opened(tmp_path):
 
 def test_the_reader_of_our_output_may_leave_early(simulated, measured, tmp_path):
     shutil.copytree(measured, tmp_path / "out")
-    command = [sys.executable, "-m", "core.cli", "camera", str(simulated), "--out", str(tmp_path / "out")]
+    command = [sys.executable, "-m", "core.cli", "report", str(simulated), "--out", str(tmp_path / "out"), "--json"]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     process.stdout.close()
     complaints = process.stderr.read()

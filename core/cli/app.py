@@ -51,6 +51,7 @@ SigmaCut = Annotated[
     float, typer.Option("--sigma-cut", metavar="MM", help="Leave out points with a larger standard uncertainty.")
 ]
 NoSkew = Annotated[bool, typer.Option("--no-skew", help="Fix the camera's skew γ to 0.")]
+Part = Annotated[str, typer.Option(metavar="NAME", help="Name of the part in the report; else the name of SET.")]
 K3 = Annotated[bool, typer.Option("--k3", help="Free the third radial coefficient, for wide lenses.")]
 
 
@@ -99,12 +100,13 @@ def run(
     sigma_cut: SigmaCut = 0.05,
     no_skew: NoSkew = False,
     k3: K3 = False,
+    part: Part = "",
     json: Json = False,
 ) -> None:
     """Measure a recording set: calibrations, cloud, mesh, thickness, report."""
     from core.cli import measuring
 
-    options = measuring.options(method.value, sigma_cut, skew=not no_skew, k3=k3)
+    options = measuring.options(method.value, sigma_cut, skew=not no_skew, k3=k3, part=part)
     with bars() as progress:
         result = measuring.run_all(folder, out, options, progress)
     measuring.show_run(result, as_json=json)
@@ -157,12 +159,12 @@ def gauge(folder: Set, out: Out, json: Json = False) -> None:
 
 
 @app.command()
-def report(folder: Set, out: Out, json: Json = False) -> None:
+def report(folder: Set, out: Out, part: Part = "", json: Json = False) -> None:
     """Put the results in DIR into report.pdf."""
     from core.cli import measuring
 
     with bars() as progress:
-        shown = measuring.run_report(folder, out, progress)
+        shown = measuring.run_report(folder, out, part, progress)
     shown.show(as_json=json)
 
 
@@ -214,9 +216,9 @@ def demo(
     """Measure the embedded sample, a 50 mm gauge block; it is rendered on first use and kept in your cache."""
     from core.cli import measuring, simulating
 
-    with bars() as progress:
-        folder = simulating.sample(progress, quick=quick)
-        result = measuring.run_all(folder, out, measuring.options("network", 0.05), progress)
+    options = measuring.options("network", simulating.QUICK_CUT_MM if quick else 0.05, part=simulating.PART)
+    with bars() as progress, simulating.sample(progress, quick=quick) as folder:
+        result = measuring.run_all(folder, out, options, progress)
     measuring.show_run(result, as_json=json)
     if not json:
         simulating.show_demo(result)
@@ -231,7 +233,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     cv2.utils.logging.setLogLevel(cv2.utils.logging.LOG_LEVEL_SILENT)
     words = list(sys.argv[1:] if arguments is None else arguments)
     try:
-        app(words, prog_name="trisect")  # leaves by SystemExit with the command's own code
+        _run(words)
     except InputError as error:
         _refuse(str(error), as_json="--json" in words)
         sys.exit(BAD_INPUT)
@@ -241,6 +243,14 @@ def main(arguments: Sequence[str] | None = None) -> None:
     except BrokenPipeError:
         # Whoever read our output has left; Python would complain once more when it closes standard output.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _run(words: list[str]) -> None:
+    """Run the commands; they leave by SystemExit with their own code."""
+    try:
+        app(words, prog_name="trisect")
+    finally:
+        sys.stdout.flush()  # here, where a closed pipe can still be told apart from a failure
 
 
 def _refuse(sentence: str, *, as_json: bool) -> None:

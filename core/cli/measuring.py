@@ -46,9 +46,9 @@ class Shown:
             output.print_rows(self.rows, self.notes, self.files)
 
 
-def options(method: str, sigma_cut: float, *, skew: bool = True, k3: bool = False) -> Options:
+def options(method: str, sigma_cut: float, *, skew: bool = True, k3: bool = False, part: str = "") -> Options:
     """The pipeline's options from the command line's; InputError if one is absurd."""
-    return Options(cast(Method, method), sigma_cut, CameraOptions(skew=skew, k3=k3))
+    return Options(cast(Method, method), sigma_cut, CameraOptions(skew=skew, k3=k3), part)
 
 
 def exit_code(gauge: GaugeResult | None) -> int:
@@ -107,9 +107,9 @@ def run_gauge(folder: Path, out: Path, progress: Progress) -> tuple[GaugeResult,
     return gauge, _shown(work, "gauge", output.gauge_rows(gauge), output.gauge_json(gauge), "gauge")
 
 
-def run_report(folder: Path, out: Path, progress: Progress) -> Shown:
+def run_report(folder: Path, out: Path, part: str, progress: Progress) -> Shown:
     """Report step."""
-    work = _open(folder, out)
+    work = Workspace.open(open_set(folder), out, part)
     report_step(work, progress)
     return _shown(work, "report", [], {}, "report")
 

@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 import sys
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 
 from core.cli import output
@@ -10,8 +14,11 @@ from core.pipeline import RunResult
 from core.progress import Progress
 from core.report.wording import thickness_line
 from core.simulate.recording import simulate_set
-from core.simulate.sample import sample_set
+from core.simulate.sample import sample_scenario, sample_set
 from core.simulate.scenario import Scenario
+
+PART = "gauge block of the embedded sample"
+QUICK_SCALE, QUICK_FRAMES, QUICK_CUT_MM = 0.25, 24, 0.3
 
 
 def render(scenario: Scenario, out: Path, progress: Progress) -> None:
@@ -27,9 +34,17 @@ def show(out: Path, *, as_json: bool) -> None:
         sys.stdout.write(f"recording set in {out}; measure it with: trisect run {out} --out DIR\n")
 
 
-def sample(progress: Progress, *, quick: bool) -> Path:
-    """The embedded sample's folder, rendered on first use."""
-    return sample_set(quick=quick, progress=progress)
+@contextmanager
+def sample(progress: Progress, *, quick: bool) -> Iterator[Path]:
+    """The embedded sample's folder, rendered on first use; the quick one is smaller and forgotten afterwards."""
+    if not quick:
+        yield sample_set(progress)
+        return
+    scenario = replace(sample_scenario(), scale=QUICK_SCALE, frames=QUICK_FRAMES)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "sample"
+        simulate_set(scenario, path, progress)
+        yield path
 
 
 def show_demo(result: RunResult) -> None:

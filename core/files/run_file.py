@@ -34,8 +34,8 @@ class RunRecord:
 
     Parameters
     ----------
-    set_name
-        Name of the recording set's folder.
+    set_name, part
+        Name of the recording set's folder, and of the part in the report.
     measured_at
         When the last measuring step began, with its time zone.
     settings, notes
@@ -49,6 +49,7 @@ class RunRecord:
     """
 
     set_name: str
+    part: str
     measured_at: datetime
     settings: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     notes: Mapping[str, Sequence[str]] = field(default_factory=dict)
@@ -92,6 +93,7 @@ class _Frame(ResultFile):
 
 class _RunFile(ResultFile):
     set: str
+    part: str = ""
     measured_at: str = Field(description=_A_TIME)
     settings: dict[str, dict[str, Any]] = Field(default_factory=dict)
     notes: dict[str, list[str]] = Field(default_factory=dict)
@@ -108,11 +110,12 @@ def write_run(path: Path, record: RunRecord) -> None:
             {
                 "version": __version__,
                 "set": record.set_name,
+                "part": record.part,
                 "measured_at": record.measured_at.isoformat(timespec="seconds"),
                 "timings_s": record.timings,
                 "settings": record.settings,
                 "notes": record.notes,
-                "versions": {"python": platform.python_version(), **_library_versions()},
+                "versions": _versions(),
                 "frames": [_frame(frame) for frame in record.frames],
                 "inputs": record.inputs,
             }
@@ -132,6 +135,7 @@ def read_run(path: Path) -> RunRecord:
         raise InputError(f"measured_at is {file.measured_at!r}, not {_A_TIME}", where=path) from error
     return RunRecord(
         set_name=file.set,
+        part=file.part or file.set,
         measured_at=measured_at,
         settings=file.settings,
         notes=file.notes,
@@ -141,9 +145,9 @@ def read_run(path: Path) -> RunRecord:
     )
 
 
-def _library_versions() -> dict[str, str]:
-    """Versions of LIBRARIES; one may be installed under another name, as OpenCV with windows is."""
-    versions = {}
+def _versions() -> dict[str, str]:
+    """Versions of Python and of LIBRARIES; one may be installed under another name, as OpenCV with windows is."""
+    versions = {"python": platform.python_version()}
     for name in LIBRARIES:
         with contextlib.suppress(PackageNotFoundError):
             versions[name] = version(name)

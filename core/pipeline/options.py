@@ -26,6 +26,8 @@ class Options:
         Points with a larger standard uncertainty of depth are left out.
     camera
         Which camera parameters are free.
+    part
+        Name of the part for the report; else it is named like the set.
 
     Raises
     ------
@@ -36,6 +38,7 @@ class Options:
     method: Method = "network"
     sigma_cut_mm: float = 0.05
     camera: CameraOptions = field(default_factory=CameraOptions)
+    part: str = ""
 
     def __post_init__(self) -> None:
         if self.method not in METHODS:

@@ -62,7 +62,7 @@ def run(set_folder: Path, out_folder: Path, options: Options | None = None, prog
     require_camera(found)
     require_planes(found)
     require_scan(found)
-    work = Workspace.open(found, out_folder)
+    work = Workspace.open(found, out_folder, options.part)
     work.clear()
     camera = camera_step(work, options, progress)
     fan = planes_step(work, progress)

@@ -60,19 +60,20 @@ class StepLog:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Workspace:
-    """A recording set and the folder its results go to."""
+    """A recording set and the folder its results go to; `part` names the part if it is not named like the set."""
 
     found: RecordingSet
     out: Path
+    part: str = ""
 
     @classmethod
-    def open(cls, found: RecordingSet, out: Path) -> Workspace:
+    def open(cls, found: RecordingSet, out: Path, part: str = "") -> Workspace:
         """Make the folder if need be; InputError if nothing can be written there."""
         if out.resolve() == found.folder.resolve():
             raise InputError(
                 "the results cannot go into the recording set itself", where=out, todo="choose another --out"
             )
-        return cls(found, make_folder(out))
+        return cls(found, make_folder(out), part)
 
     def path(self, name: str) -> Path:
         """Where the result `name`, a key of FILES, lies."""
@@ -99,7 +100,8 @@ class Workspace:
         """What run.json says so far; a fresh record where there is none."""
         if self.path("run").exists():
             return read_run(self.path("run"))
-        return RunRecord(self.found.folder.resolve().name, _now())
+        name = self.found.folder.resolve().name
+        return RunRecord(name, self.part or name, _now())
 
     @contextmanager
     def step(self, name: str, *, measures: bool = True) -> Iterator[StepLog]:
@@ -117,6 +119,8 @@ class Workspace:
         yield log
         seconds = time.perf_counter() - started
         record = before.with_step(name, seconds, self.found.hashes, log.settings, log.notes)
+        if self.part:
+            record = replace(record, part=self.part)
         if measures:
             record = replace(record, measured_at=begun)
         if log.frames:

@@ -400,13 +400,14 @@ def test_gauge_of_another_cloud_is_refused(tmp_path, cloud, gauge):
 
 def test_run_round_trip(tmp_path):
     frame = FrameRecord(3, "scan/f.png", False, "no stripe", condition=np.inf, sigma_mm=np.nan)
-    record = RunRecord("set", datetime(2025, 1, 31, 12, 0, 5, tzinfo=UTC), frames=(frame,))
+    record = RunRecord("set", "a block", datetime(2025, 1, 31, 12, 0, 5, tzinfo=UTC), frames=(frame,))
     record = record.with_step("camera", 1.23456, {"b": "2", "a": "1"}, {"skew": True}, ["Tilt more."])
     record = record.with_step("scan", 2.0, {"c": "3"}, {"method": "network"}, [])
     record = record.with_step("camera", 4.0, {}, {"skew": False}, ["Fine."])
     write_run(tmp_path / "run.json", record)
     back = read_run(tmp_path / "run.json")
     assert back.measured_at == record.measured_at
+    assert (back.set_name, back.part) == ("set", "a block")
     assert back.settings == {"camera": {"skew": False}, "scan": {"method": "network"}}
     assert back.timings == {"camera": 4.0, "scan": 2.0}
     assert list(back.inputs) == ["a", "b", "c"]
