@@ -14,7 +14,7 @@ from core.simulate.scene import OBJECT_ALBEDO, Mesh
 HALF_WIDTH_MM = 46.0
 HALF_LENGTH_MM = 62.0
 HEIGHT_MM = 36.0
-"""Of the bare ellipsoid; the nose rises 14 mm above it."""
+"""Of the bare ellipsoid, before the whole is brought to its height."""
 
 _BUMPS = (
     # height, x, y, half-width in x, half-width in y; mirrored where x is not 0
@@ -37,9 +37,11 @@ _EAR_LEAN = np.radians(35.0)
 _EAR_ROLL_MM = 3.2
 
 
-def face_mask() -> Mesh:
-    """The mask, shaded smoothly; about 50,000 triangles."""
+def face_mask(height_mm: float = 50.0) -> Mesh:
+    """The mask, its nose `height_mm` above the table, shaded smoothly; about 50,000 triangles."""
     parts = [_face(), _ear(1.0), _ear(-1.0)]
+    rise = height_mm / max(part[..., 2].max() for part in parts)
+    parts = [part * [1.0, 1.0, rise] for part in parts]
     triangles, normals = zip(*(_woven(part) for part in parts), strict=True)
     return Mesh(np.concatenate(triangles), OBJECT_ALBEDO, np.concatenate(normals))
 

@@ -57,14 +57,14 @@ def _thing(scenario: Scenario) -> Mesh | Sphere | None:
     if scenario.object == "block":
         return turned(gauge_block(scenario.height_mm), yaw)
     if scenario.object == "narrow-block":
-        return turned(gauge_block(scenario.height_mm, (50.0, 30.0)), yaw, (0.0, 5.0))
+        return turned(gauge_block(scenario.height_mm, (50.0, 30.0)), yaw, (0.0, 8.0))
     if scenario.object == "steps":
         return turned(step_block(STEP_HEIGHTS_MM), yaw)
     if scenario.object == "sphere":
         radius = scenario.height_mm / 2
         return Sphere(np.array([0.0, 3.0, radius]), radius)  # the outer fan lines equally far from its rims
     if scenario.object == "mask":
-        return turned(face_mask(), yaw)
+        return turned(face_mask(scenario.height_mm), yaw)
     if scenario.object == "stl":
         return stl(Path(scenario.stl_path))
     return None

@@ -59,3 +59,15 @@ def test_all_three_lines_fall_on_the_default_block_and_on_the_table_on_both_side
         on_table = np.flatnonzero((lit & maps.table).any(axis=0))
         assert (on_table < block_columns[0]).sum() > 80
         assert (on_table > block_columns[-1]).sum() > 80
+
+
+def test_the_narrow_block_takes_two_lines():
+    rig = paper_rig(0.2)
+    scene, _ = build_scene(Scenario(object="narrow-block"))
+    maps = surface_maps(scene, rig.camera)
+    up = scene.pose_cam_table.rotation[:, 2]
+    above = (maps.points - scene.pose_cam_table.translation.astype(np.float32)) @ up.astype(np.float32)
+    top = np.abs(above - 50.0) < 0.01
+    width = np.ptp(np.flatnonzero(top.any(axis=0)))
+    lit = [(laser_light(sheet, scene, maps) > 20) & top for sheet in fan_sheets(rig, WORK_POINT)]
+    assert sum(np.ptp(np.flatnonzero(one.any(axis=0))) > 0.9 * width for one in lit if one.any()) == 2

@@ -100,6 +100,12 @@ def test_ears_of_the_mask_hide_a_part_of_themselves():
     assert np.abs(np.diff(maps.depth, axis=1))[middle[:, 1:] & middle[:, :-1]].max() < 3
 
 
+def test_the_mask_has_the_height_asked_for():
+    points = face_mask(42.0).triangles[..., 2]
+    assert points.max() == pytest.approx(42.0)
+    assert points.min() >= -1e-9
+
+
 def test_thin_shells_are_lit_from_the_side_they_are_seen():
     triangle = np.array([[[-20.0, -20, 500], [20, -20, 500], [0, 30, 500]]])
     for turned in (triangle, triangle[:, ::-1]):
