@@ -15,7 +15,6 @@ from plyfile import PlyData, PlyElement, PlyParseError
 from core import __version__
 from core.errors import InputError
 from core.files.atomic import write_bytes
-from core.files.pictures import read_bytes
 from core.model.arrays import Array
 from core.scan.cloud import Cloud
 from core.scan.surface import Mesh
@@ -125,8 +124,7 @@ def read_mesh(path: Path) -> Mesh:
     data = _read(path, "measure the scan first: trisect scan SET --out DIR")
     vertices = _element(data, "vertex", [name for name, _ in _MESH], path)
     faces = _element(data, "face", ["vertex_indices"], path)
-    triangles = faces["vertex_indices"]
-    corners = np.array(list(triangles) if triangles.dtype == object else triangles, dtype=np.int64).reshape(-1, 3)
+    corners = np.array(faces["vertex_indices"], dtype=np.int64).reshape(-1, 3)
     if len(corners) and (corners.min() < 0 or corners.max() >= len(vertices)):
         raise InputError("a triangle names a vertex that is not there", where=path)
     return Mesh(
@@ -150,12 +148,15 @@ def _write(path: Path, elements: list[PlyElement], comments: list[str], calibrat
 
 
 def _read(path: Path, todo: str) -> PlyData:
+    """The whole file, mapped into memory: reading it row by row would take seconds."""
     if not path.exists():
         raise InputError("the file is missing", where=path, todo=todo)
     try:
-        return PlyData.read(io.BytesIO(read_bytes(path)))
+        return PlyData.read(str(path), known_list_len={"face": {"vertex_indices": 3}})
     except (PlyParseError, UnicodeDecodeError, ValueError, EOFError) as error:
         raise InputError(f"this is no whole PLY file ({error})", where=path, todo="make it again") from error
+    except OSError as error:
+        raise InputError(f"cannot be read ({error.strerror or error})", where=path) from error
 
 
 def _element(data: PlyData, name: str, properties: Sequence[str], path: Path) -> NDArray[Any]:
