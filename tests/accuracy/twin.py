@@ -1,0 +1,79 @@
+"""Sets rendered with hidden truth, measured the way a user would, and compared."""
+
+import shutil
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from scipy.ndimage import map_coordinates
+
+from core.calibrate.results import CAMERA_PARAMETERS, CameraCalibration
+from core.files.camera_file import read_camera
+from core.files.gauge_file import read_gauge
+from core.files.ply import read_cloud
+from core.files.recording_set import open_set
+from core.inspect.results import GaugeResult
+from core.pipeline import Workspace, camera_step, gauge_step, planes_step, scan_step
+from core.scan.cloud import Cloud
+from core.simulate.recording import simulate_set
+from core.simulate.scenario import Scenario
+from core.simulate.truth import Truth, load_truth
+
+
+@dataclass
+class Measured:
+    """A finished measurement beside the truth it was rendered from."""
+
+    truth: Truth
+    camera: CameraCalibration
+    cloud: Cloud
+    gauge: GaugeResult | None
+
+    def depth_errors(self) -> np.ndarray:
+        """Measured minus true depth of every point in mm; NaN within two pixels of a depth edge."""
+        u, v = self.cloud.uv.T
+        true = map_coordinates(self.truth.depth.astype(float), [v, u], order=1, mode="nearest")
+        near = [
+            map_coordinates(self.truth.depth.astype(float), [v + dv, u + du], order=1, mode="nearest")
+            for du, dv in ((2, 0), (-2, 0), (0, 2), (0, -2))
+        ]
+        errors = self.cloud.points[:, 2] - true
+        errors[np.abs(np.array(near) - true).max(axis=0) > 2.0] = np.nan
+        return errors
+
+    def camera_errors(self) -> dict[str, float]:
+        """Error of each camera parameter in its own stated standard deviations."""
+        found, true = (
+            np.array([c.matrix[0, 0], c.matrix[1, 1], c.matrix[0, 1], c.matrix[0, 2], c.matrix[1, 2], *c.distortion])
+            for c in (self.camera.camera, self.truth.camera)
+        )
+        return {
+            name: (found[i] - true[i]) / self.camera.sd[name]
+            for i, name in enumerate(CAMERA_PARAMETERS)
+            if self.camera.sd[name] > 0
+        }
+
+
+def measure(scenario: Scenario, folder: Path, calibrated: Path | None = None) -> Measured:
+    """Render `scenario` and measure it in `folder`; with `calibrated`, a folder measured earlier, its calibration is
+    taken over, pictures and results."""
+    recording, out = folder / "set", folder / "out"
+    simulate_set(scenario, recording, calibration_from=calibrated / "set" if calibrated else None)
+    work = Workspace.open(open_set(recording), out)
+    if calibrated:
+        for name in ("camera.json", "planes.json", "planes.npz"):
+            shutil.copy(calibrated / "out" / name, out / name)
+    else:
+        camera_step(work)
+        planes_step(work)
+    scan_step(work)
+    gauged = scenario.object in ("block", "narrow-block", "steps")
+    if gauged:
+        gauge_step(work)
+    cloud = read_cloud(work.path("cloud")).cloud
+    return Measured(
+        load_truth(recording),
+        read_camera(work.path("camera")),
+        cloud,
+        read_gauge(work.path("gauge"), cloud) if gauged else None,
+    )
