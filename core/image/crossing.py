@@ -51,7 +51,7 @@ class Crossing:
     covariance
         (2, 2) of `uv` in px².
     curved
-        Whether the bend of either line matters: a straight fit would be off by more than the standard uncertainty.
+        Whether the bend of either line matters: a straight fit would be off by three standard uncertainties.
     """
 
     uv: Array
@@ -274,7 +274,7 @@ def _local_fit(line: Array, at: int, origin: Array, half: float, correlation: fl
         sigma = math.sqrt(fit[3] * spread)
         if result[0] > 0 and (fit[3] * spread > result[6] ** 2 or _disagree(result, fit[0], sigma)):
             break
-        bent = abs(fit[2]) * reach * reach / 3 > sigma
+        bent = abs(fit[2]) * reach * reach / 3 > 3 * sigma
         result[:] = np.array([1.0, frame[2], frame[3], fit[0], fit[1], fit[2], sigma, 1.0 if bent else 0.0])
     return result
 

@@ -240,11 +240,14 @@ def _follow(
                 break  # a closed curve
             continue
         if missed + blind == 0 and count > 2:
-            back = min(count - 1, int(2 * filter_px) + 1)  # a chord is steadier than the last tangent
-            tu, tv = out[count - 1, 0] - out[count - 1 - back, 0], out[count - 1, 1] - out[count - 1 - back, 1]
+            # a chord is steadier than the last tangent; close to a saturated patch the line itself is bent
+            bent = int(2.5 * filter_px) if here & SATURATED else 0
+            last = max(count - 1 - bent, 1)
+            first = max(last - int((4 if bent else 2) * filter_px) - 1, 0)
+            tu, tv = out[last, 0] - out[first, 0], out[last, 1] - out[first, 1]
             length = math.hypot(tu, tv)
-            tu /= length
-            tv /= length
+            tu, tv = tu / length, tv / length
+            u, v = out[last, 0] + (count - last) * tu, out[last, 1] + (count - last) * tv
         if here & SATURATED:
             blind += 1
         else:

@@ -16,7 +16,7 @@ from core.model.arrays import Array
 
 END_TRIM_PX = 4.0
 """Left out at the ends of a stripe, at least: the filter sees only half of it there."""
-_END_TRIM = 1.2  # the same in filter σ
+_END_TRIM = 2.5  # the same in filter σ
 _FADE_REACH = 20.0  # filter σ from an end that a fading shadow is looked for
 _FADED = 0.8  # less than this share of what is further in
 _BREAK_GAP = 2.0  # filter σ on either side of a kink that its rounding reaches
@@ -79,24 +79,25 @@ def _fading(arc: Array, spread: Array, filter_px: float) -> int:
     return int(np.argmax((spread >= _FADED * np.median(inner)) | (arc >= reach)))
 
 
-def split_at_breaks(run: Array, filter_px: float, sigma_px: Array) -> list[Array]:
-    """Split a run (N, ≥ 4) at jumps sideways and at kinks, leaving out what the filter rounds there.
+def split_at_breaks(run: Array, usable: NDArray[np.bool_], filter_px: float, sigma_px: Array) -> list[slice]:
+    """Parts of a run (N, ≥ 4) between jumps sideways and kinks, leaving out what the filter rounds there.
 
     At every point a curve y = a + b·x + c·x² with a jump and a kink at that point is fitted to both sides, up to 8
     filter σ away and leaving out the nearest 2. The run is broken where jump or kink is large and significant, given
-    the points' standard uncertainties `sigma_px` (N,).
+    the points' standard uncertainties `sigma_px` (N,). Only `usable` points (N,) are judged.
     """
-    arc = arc_length(run)
+    whole = arc_length(run)
+    arc = whole[usable]
     gap, arm = _BREAK_GAP * filter_px, _BREAK_ARM * filter_px
-    score, misfit = _break_scores(run[:, :4], arc, sigma_px, gap, arm, correlation_length(filter_px))
-    pieces, start = [], -math.inf
+    score, misfit = _break_scores(run[usable, :4], arc, sigma_px[usable], gap, arm, correlation_length(filter_px))
+    parts, start = [], 0
     for first, last in _stretches(score > 1):
         # a fit beside the break is spoilt by it too: the break is where the broken curve fits best
         at = float(arc[first + int(np.argmin(misfit[first:last]))])
-        pieces.append(run[(arc > start) & (arc < at - gap)])
-        start = at + gap
-    pieces.append(run[arc > start])
-    return [piece for piece in pieces if len(piece) > 1]
+        parts.append(slice(start, int(np.searchsorted(whole, at - gap))))
+        start = int(np.searchsorted(whole, at + gap))
+    parts.append(slice(start, len(run)))
+    return [part for part in parts if part.stop - part.start > 1]
 
 
 def _stretches(flags: NDArray[np.bool_]) -> NDArray[np.int64]:

@@ -46,8 +46,8 @@ def noise_sigma(profiles: Profiles, noise: NoiseModel, filter_px: float) -> Arra
     return np.hypot(sigma, _FLOOR_PX)
 
 
-def roughness(lines: list[tuple[Array, Array]], correlation: float) -> list[Array]:
-    """Scatter in px beyond the law, one array (N,) for each line (points (N, ≥ 4), sigma (N,)).
+def roughness(lines: list[tuple[Array, Array]], correlation: float) -> list[float]:
+    """Scatter in px beyond the law of each line, given as points (N, ≥ 4) and sigma (N,).
 
     Measured by third differences between points one correlation length apart, which see neither the line's place
     and direction nor its curvature. Short lines lean on what all lines show.
@@ -57,8 +57,7 @@ def roughness(lines: list[tuple[Array, Array]], correlation: float) -> list[Arra
     number = sum(n for _, n in sums)
     overall = sum(total for total, _ in sums) / number if number else 0.0
     lean = 5.0  # independent differences
-    excess = [math.sqrt(max(0.0, (total + lean * overall) / (n + lean))) for total, n in sums]
-    return [np.full(len(points), extra) for (points, _), extra in zip(lines, excess, strict=True)]
+    return [math.sqrt(max(0.0, (total + lean * overall) / (n + lean))) for total, n in sums]
 
 
 def _excess(points: Array, sigma: Array, lag: int, correlation: float) -> tuple[float, float]:

@@ -21,9 +21,12 @@ from numpy.typing import NDArray
 from scipy.ndimage import median_filter
 
 from core.image.linking import IGNORED, SATURATED
+from core.image.pieces import arc_length
 from core.model.arrays import Array
 
 _BINS_PER_PX = 2
+_REACH = 3.2
+"""Stripe σ looked at on either side; further out a neighbour that is still harmless would pass for a slope."""
 _PIXEL_VARIANCE = 1 / 12
 """What integrating over a pixel adds to the variance of a cross-section."""
 _UNKNOWNS = 5
@@ -47,17 +50,13 @@ class Profiles:
 
 
 def measure_profiles(
-    picture: NDArray[np.float32],
-    state: NDArray[np.uint8],
-    run: Array,
-    arc: Array,
-    stripe_px: float,
-    filter_px: float,
+    picture: NDArray[np.float32], state: NDArray[np.uint8], run: Array, stripe_px: float, filter_px: float
 ) -> Profiles:
-    """Cross-sections along a `run` (N, ≥ 4: u, v, n_u, n_v) of arc lengths `arc` (N,).
+    """Cross-sections along a `run` (N, ≥ 4): u, v, n_u, n_v.
 
     They are measured every filter σ or so, freed of outliers by a running median, and interpolated.
     """
+    arc = arc_length(run)
     stride = max(1, round(filter_px))
     at = np.unique(np.append(np.arange(0, len(run), stride), len(run) - 1))
     fits = _fit_all(picture, state, run[at, :4], stripe_px, filter_px)
@@ -100,7 +99,7 @@ def _fit_all(
     picture: NDArray[np.float32], state: NDArray[np.uint8], places: Array, stripe_px: float, filter_px: float
 ) -> Array:
     """Fitted height, background, slope, width (K, 4) at `places` (K, 4); height 0 where the fit failed."""
-    reach = 4.0 * stripe_px + 1.5
+    reach = _REACH * stripe_px + 1.0
     bins = 2 * math.ceil(reach * _BINS_PER_PX) + 1
     section = np.empty((3, bins))
     fits = np.zeros((len(places), 4))

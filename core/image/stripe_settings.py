@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from core.image.linking import IGNORED, SATURATED, Hysteresis, coarse_crests, link
 from core.image.noise import estimate_noise
-from core.image.pieces import arc_length, cut_ends
+from core.image.pieces import cut_ends
 from core.image.precision import response_noise
 from core.image.profile import measure_profiles
 from core.model.arrays import Array
@@ -140,7 +140,7 @@ def _sections(
             continue
         run = cut_ends(traced, filter_px)
         if len(run) > 1:
-            profiles = measure_profiles(picture, state, run, arc_length(run), stripe_px, filter_px)
+            profiles = measure_profiles(picture, state, run, stripe_px, filter_px)
             seen = profiles.height > 0
             sections.append(np.array([profiles.height[seen], profiles.width[seen]]))
     return np.hstack(sections)

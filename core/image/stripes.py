@@ -9,7 +9,7 @@ what pulls a point                 what is done about it
 pixel phase                        the point is looked at again from its own place (`core.image.ridge`)
 curvature, radius R                (g² + 1/12)/(2R) towards the centre is taken off
 background slope b                 b·(s² + g²)^1.5/(A·s) is taken off where b is significant
-end of a stripe, kink, jump        4 px (1.2 g) and 2 g are left out; a piece never crosses them
+end of a stripe, kink, jump        4 px (2.5 g) and 2 g are left out; a piece never crosses them
 neighbour, crossing line           points nearer than 3.5·√(s² + g²) are left out
 border of the picture              points nearer than 4 g are never found
 saturation                         flagged; stay in place
@@ -25,6 +25,8 @@ Sun et al., Sensors 2023, 23, 13, §4, doi:10.3390/s23010013.
 """
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,6 +52,7 @@ __all__ = ["StripeSettings", "choose_settings", "correlation_length_px", "extrac
 
 _HIGH, _LOW = 0.35, 0.12  # of the contrast: a run starts, a run goes on
 _HIGH_NOISE, _LOW_NOISE = 6.0, 3.0  # of the response's own noise, at least
+_CURVATURE_ARM = 6.0  # filter σ on either side
 _SHORTEST_PIECE = 7.0  # filter σ: two independent points
 
 
@@ -87,38 +90,51 @@ def extract_centrelines(
         If the picture is not a 2-D float32 array or a mask has another shape.
     """
     state = _state_map(picture, saturated, ignore)
-    runs = link(picture, state, settings.stripe_px, settings.filter_px, _limits(settings, noise, saturated is not None))
     correlation = correlation_length_px(settings)
+    runs = link(picture, state, settings.stripe_px, settings.filter_px, _limits(settings, noise, saturated is not None))
     shortest = _SHORTEST_PIECE * settings.filter_px
     pieces = [
-        (piece, profiles)
+        piece
         for run in runs
-        for piece, profiles in _smooth_pieces(picture, state, run, settings, noise, shortest)
+        for piece in _smooth_pieces(picture, state, run, settings, noise)
+        if len(piece.run) >= shortest
     ]
-    filtered_width = float(np.hypot(settings.stripe_px, settings.filter_px))
-    crowded = beside_another([piece for piece, _ in pieces], filtered_width)
-    lines = []
-    for (piece, profiles), flags in zip(pieces, crowded, strict=True):
-        points = _corrected(piece, profiles, settings)
-        sigma = noise_sigma(profiles, noise, settings.filter_px)
-        lines.append((points, profiles, sigma, ~flags))
-    excess = roughness([(points, sigma) for points, _, sigma, _ in lines], correlation)
+    crowded = beside_another([piece.run for piece in pieces], float(np.hypot(settings.stripe_px, settings.filter_px)))
+    pieces = [_corrected(piece, settings) for piece in pieces]
+    sigmas = [noise_sigma(piece.profiles, noise, settings.filter_px) for piece in pieces]
+    excess = roughness([piece.judged(s) for piece, s in zip(pieces, sigmas, strict=True)], correlation)
     found = [
         Centreline(
-            points[:, :2],
-            points[:, 2:4],
-            profiles.width,
-            profiles.height,
-            np.sqrt(sigma**2 + extra**2),
-            saturated_points(state, points, settings.filter_px)
-            if saturated is not None
-            else np.zeros(len(points), bool),
+            piece.run[:, :2],
+            piece.run[:, 2:4],
+            piece.profiles.width,
+            piece.profiles.height,
+            np.hypot(sigma, extra),
+            piece.saturated,
             correlation,
-        ).select(keep)
-        for (points, profiles, sigma, keep), extra in zip(lines, excess, strict=True)
-        if np.count_nonzero(keep) >= shortest
+        ).select(~near)
+        for piece, sigma, extra, near in zip(pieces, sigmas, excess, crowded, strict=True)
+        if np.count_nonzero(~near) >= shortest
     ]
     return tuple(sorted(found, key=len, reverse=True))
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class _Piece:
+    """Line points (N, ≥ 4) on one smooth surface, their cross-sections, and which are saturated (N,)."""
+
+    run: Array
+    profiles: Profiles
+    saturated: NDArray[np.bool_]
+
+    @property
+    def usable(self) -> NDArray[np.bool_]:
+        """Points to judge the line by: those not saturated, or all when there is no other."""
+        return ~self.saturated if np.count_nonzero(~self.saturated) > 1 else np.ones_like(self.saturated)
+
+    def judged(self, sigma: Array) -> tuple[Array, Array]:
+        """Usable points and their standard uncertainty."""
+        return self.run[self.usable], sigma[self.usable]
 
 
 def _state_map(
@@ -146,36 +162,32 @@ def _limits(settings: StripeSettings, noise: NoiseModel, knows_saturation: bool)
 
 
 def _smooth_pieces(
-    picture: NDArray[np.float32],
-    state: NDArray[np.uint8],
-    run: Array,
-    settings: StripeSettings,
-    noise: NoiseModel,
-    shortest: float,
-) -> list[tuple[Array, Profiles]]:
+    picture: NDArray[np.float32], state: NDArray[np.uint8], run: Array, settings: StripeSettings, noise: NoiseModel
+) -> list[_Piece]:
     """One run cut at its ends, kinks and jumps, with the cross-sections of each piece."""
     g = settings.filter_px
     run = cut_ends(run, g)
-    if len(run) < shortest:
+    if len(run) < _SHORTEST_PIECE * g:
         return []
-    profiles = measure_profiles(picture, state, run, arc_length(run), settings.stripe_px, g)
-    sigma = noise_sigma(profiles, noise, g)
-    (extra,) = roughness([(run, sigma)], correlation_length_px(settings))
+    saturated = saturated_points(state, run, g)
+    whole = _Piece(run, measure_profiles(picture, state, run, settings.stripe_px, g), saturated)
+    sigma = noise_sigma(whole.profiles, noise, g)
+    (extra,) = roughness([whole.judged(sigma)], correlation_length_px(settings))
     pieces = []
-    for piece in split_at_breaks(run, g, np.hypot(sigma, extra)):
-        arc = arc_length(piece)
+    for part in split_at_breaks(run, whole.usable, g, np.hypot(sigma, extra)):
+        piece, profiles = run[part], whole.profiles
         if len(piece) < len(run):  # the running median must not reach across the break
-            profiles = measure_profiles(picture, state, piece, arc, settings.stripe_px, g)
-        lit = fully_lit(arc, profiles.height, profiles.width, g)
-        if len(piece[lit]) >= shortest:
-            pieces.append((piece[lit], profiles.select(lit)))
+            profiles = measure_profiles(picture, state, piece, settings.stripe_px, g)
+        lit = fully_lit(arc_length(piece), profiles.height, profiles.width, g)
+        pieces.append(_Piece(piece[lit], profiles.select(lit), saturated[part][lit]))
     return pieces
 
 
-def _corrected(run: Array, profiles: Profiles, settings: StripeSettings) -> Array:
-    """The run (N, ≥ 4) freed of the curvature's and the background's pull."""
-    g = settings.filter_px
-    bend = curvature(run, arc_length(run), 6 * g)
+def _corrected(piece: _Piece, settings: StripeSettings) -> _Piece:
+    """The piece freed of the curvature's and the background's pull."""
+    g, run, profiles = settings.filter_px, piece.run, piece.profiles
+    arc, usable = arc_length(run), piece.usable
+    bend = np.interp(arc, arc[usable], curvature(run[usable], arc[usable], _CURVATURE_ARM * g))
     shift = bend * (g**2 + 1 / 12) / 2
     slope = np.where(np.abs(profiles.slope) > 3 * profiles.slope_sigma, profiles.slope, 0.0)
     visible = profiles.height > 0
@@ -184,4 +196,4 @@ def _corrected(run: Array, profiles: Profiles, settings: StripeSettings) -> Arra
     shift += np.where(visible, np.clip(tilt, -0.5, 0.5), 0.0)
     corrected = run.copy()
     corrected[:, :2] -= shift[:, None] * run[:, 2:4]
-    return corrected
+    return _Piece(corrected, profiles, piece.saturated)
