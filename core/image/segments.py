@@ -1,0 +1,87 @@
+"""Where polylines cut each other: the coarse part of the search for crossings.
+
+Runs of 16 segments share a bounding box; only segments of overlapping boxes are compared one by one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from core.image.centreline import Centreline
+from core.model.arrays import Array
+
+_CHUNK = 16
+
+
+class Stack:
+    """Several centrelines in one array: `points` (N, 3) u, v, weight; piece i is starts[i] … starts[i + 1]."""
+
+    __slots__ = ("points", "starts")
+
+    def __init__(self, lines: Sequence[Centreline]) -> None:
+        self.starts = np.cumsum([0, *map(len, lines)])
+        self.points = np.empty((int(self.starts[-1]), 3))
+        for line, start, end in zip(lines, self.starts[:-1], self.starts[1:], strict=True):
+            self.points[start:end, :2] = line.uv
+            self.points[start:end, 2] = np.where(line.saturated, 0.0, 1 / line.sigma**2)
+
+
+@njit(cache=True, nogil=True)
+def _chunks(points: Array, starts: NDArray[np.int64]) -> Array:
+    """Bounding boxes of up to _CHUNK segments: (K, 7) piece, first, last point, u and v from, to."""
+    count = 0
+    for i in range(len(starts) - 1):
+        count += max(0, (starts[i + 1] - starts[i] - 2) // _CHUNK + 1)
+    boxes = np.empty((count, 7))
+    k = 0
+    for i in range(len(starts) - 1):
+        for first in range(starts[i], starts[i + 1] - 1, _CHUNK):
+            last = min(first + _CHUNK, starts[i + 1] - 1)
+            boxes[k, 0], boxes[k, 1], boxes[k, 2] = i, first, last
+            boxes[k, 3], boxes[k, 5] = points[first : last + 1, 0].min(), points[first : last + 1, 0].max()
+            boxes[k, 4], boxes[k, 6] = points[first : last + 1, 1].min(), points[first : last + 1, 1].max()
+            k += 1
+    return boxes[:k]
+
+
+@njit(cache=True, nogil=True)
+def meeting_segments(a: Array, starts_a: NDArray[np.int64], b: Array, starts_b: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Segments that cut each other: (K, 4) piece and first point within it, of a and of b."""
+    boxes_a, boxes_b = _chunks(a, starts_a), _chunks(b, starts_b)
+    found = np.empty((16, 4), dtype=np.int64)
+    count = 0
+    for p in range(len(boxes_a)):
+        for q in range(len(boxes_b)):
+            if (
+                boxes_a[p, 5] < boxes_b[q, 3]
+                or boxes_b[q, 5] < boxes_a[p, 3]
+                or boxes_a[p, 6] < boxes_b[q, 4]
+                or boxes_b[q, 6] < boxes_a[p, 4]
+            ):
+                continue
+            for k in range(int(boxes_a[p, 1]), int(boxes_a[p, 2])):
+                for m in range(int(boxes_b[q, 1]), int(boxes_b[q, 2])):
+                    if not _segments_cut(a[k], a[k + 1], b[m], b[m + 1]):
+                        continue
+                    if count == len(found):
+                        found = np.concatenate((found, np.empty_like(found)))
+                    i, j = int(boxes_a[p, 0]), int(boxes_b[q, 0])
+                    found[count, 0], found[count, 1] = i, k - starts_a[i]
+                    found[count, 2], found[count, 3] = j, m - starts_b[j]
+                    count += 1
+    return found[:count]
+
+
+@njit(cache=True, nogil=True)
+def _segments_cut(p: Array, q: Array, r: Array, s: Array) -> bool:
+    du, dv, eu, ev = q[0] - p[0], q[1] - p[1], s[0] - r[0], s[1] - r[1]
+    cross = du * ev - dv * eu
+    if cross == 0.0:
+        return False
+    along_a = ((r[0] - p[0]) * ev - (r[1] - p[1]) * eu) / cross
+    along_b = ((r[0] - p[0]) * dv - (r[1] - p[1]) * du) / cross
+    return bool(0 <= along_a < 1 and 0 <= along_b < 1)
