@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from core.calibrate.fan import FanOptions, fit_fan
+from core.calibrate.fan import FanOptions, fit_fan, same_model
 from core.files.fan_file import fan_id
 from core.files.gauge_file import read_gauge, write_gauge
 from core.files.ply import read_cloud
@@ -23,6 +23,7 @@ from core.pipeline.options import Options
 from core.pipeline.workspace import Calibration, Workspace, check_calibration
 from core.progress import Progress, silent
 from core.scan.cloud import FAN, Cloud
+from core.scan.fan_lines import FanLines
 from core.scan.reconstruct import ReconstructOptions, reconstruct
 
 _NO_CUT_MM = 1e6
@@ -109,14 +110,14 @@ def _refit_fan(work: Workspace, calibration: Calibration) -> Callable[[Camera], 
         return None
     rig = work.found.rig
     used = {pose.name for pose in calibration.fan.poses if pose.used}
-    options = FanOptions(rig.lines, rig.angle or None)
+    options = same_model(FanOptions(rig.lines, rig.angle or None), calibration.fan)
     return lambda camera: fit_fan([pose for pose in poses if pose.name in used], camera, options).fan
 
 
 def _measured_again(scan: ScanFile, cloud: Cloud, camera: Camera, fan: Fan, options: Options) -> Array:
     """The cloud's points (N, 3) with another camera and fan: its sweeps solved again, the same pixels triangulated."""
     solving = ReconstructOptions(method=options.method, sigma_cut_mm=_NO_CUT_MM)
-    again = reconstruct(scan.features, camera, fan, solving)
+    again = reconstruct(scan.features, camera, fan, solving, fan_lines=FanLines.settled_as(scan.fan_line))
     place = np.searchsorted(again.sweep_frames, scan.sweep_frames)
     swept = cloud.sweep >= 0
     pis = np.empty((len(cloud), 3))

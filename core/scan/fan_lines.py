@@ -6,8 +6,10 @@ the laser. So each centreline can only carry the numbers that leave room for tho
 leaves a choice, the number that gives the depth nearest to its neighbours' is taken for the time being, and the sweeps
 that cross it decide once their planes are known.
 
-Across the fan is measured about the pencil's axis: with a the axis direction, lines at one depth differ in the angle of
-their rays about a, and keep r·a/|r⊥| along it.
+The order holds where camera and laser look along one plane: on the lines of the picture that meet in the image of the
+laser's aperture (epipolar lines). The aperture lies on the pencil's axis, but where on it is not known; so places all
+along the stretch of the axis that could light the scene are tried, and where they number the lines differently the
+sweeps decide again. Across the fan is measured as the angle of the rays about the axis.
 """
 
 from __future__ import annotations
@@ -28,6 +30,9 @@ LEAST_OVERLAP = 0.1
 """Two centrelines lie side by side if they do so over this share of the shorter one: at a depth edge the light before
 and behind it overlaps a little."""
 
+WIDEST_FAN = float(np.deg2rad(45.0))
+"""Half the opening of a line laser, at most."""
+
 Order = NDArray[np.bool_]
 Counts = NDArray[np.int64]
 
@@ -43,6 +48,16 @@ class FanLines:
     reason: tuple[str, ...]
     choices: tuple[tuple[int, ...], ...]
 
+    @classmethod
+    def settled_as(cls, line: Sequence[int]) -> FanLines:
+        """Numbers settled earlier."""
+        return cls(tuple(line), ("",) * len(line), tuple((k,) for k in line))
+
+    @property
+    def settled(self) -> int:
+        """How many centrelines the order alone has given a number."""
+        return sum(k != UNASSIGNED and len(c) == 1 for k, c in zip(self.line, self.choices, strict=True))
+
     @property
     def sure(self) -> FanLines:
         """Only the numbers that the order alone has settled."""
@@ -50,19 +65,25 @@ class FanLines:
         return replace(self, line=tuple(kept))
 
 
-def assign_fan_lines(pieces: Sequence[Centreline], camera: Camera, fan: Fan) -> FanLines:
-    """Number the fan's centrelines, 0 … N − 1."""
+def possible_fan_lines(pieces: Sequence[Centreline], camera: Camera, fan: Fan) -> tuple[FanLines, ...]:
+    """Number the fan's centrelines, 0 … N − 1: every numbering that some place of the laser allows, likeliest first."""
     if fan.lines == 1:
-        return FanLines((0,) * len(pieces), ("",) * len(pieces), ((0,),) * len(pieces))
-    frame = _fan_frame(fan)
+        return (FanLines((0,) * len(pieces), ("",) * len(pieces), ((0,),) * len(pieces)),)
     rays = [camera.rays(piece.uv) for piece in pieces]
-    profiles = [_profile(r, frame) for r in rays]
     lengths = np.array([len(piece) for piece in pieces])
-    before = _order(profiles)
-    kept = _drop_surplus(before, lengths, fan.lines)
-    lowest = _chain(before, kept)
-    highest = fan.lines - 1 - _chain(before.T, kept)
-    return _choose(rays, fan, before, kept, lowest, highest)
+    frame = _fan_frame(fan)
+    middle = np.median(np.concatenate(rays), axis=0)
+    found: dict[tuple[int, ...], FanLines] = {}
+    for aperture in _apertures(fan, middle):
+        before = _order([_profile(r, frame, aperture, middle) for r in rays])
+        kept = _drop_surplus(before, lengths, fan.lines)
+        lowest = _chain(before, kept)
+        highest = fan.lines - 1 - _chain(before.T, kept)
+        lines = _choose(rays, fan, before, kept, lowest, highest)
+        known = found.get(lines.line)
+        if known is None or lines.settled > known.settled:
+            found[lines.line] = lines
+    return tuple(sorted(found.values(), key=lambda lines: -lines.settled))
 
 
 def _fan_frame(fan: Fan) -> Array:
@@ -79,10 +100,25 @@ def _fan_frame(fan: Fan) -> Array:
     return np.array([axis, across, forward if forward @ ahead > 0 else -forward])
 
 
-def _profile(rays: Array, frame: Array) -> Array:
-    """(N, 2): where along the fan, and where across it (an angle), each ray points; sorted along."""
-    along, across, forward = (rays @ frame.T).T
-    profile = np.column_stack([along / np.hypot(across, forward), np.arctan2(across, forward)])
+def _apertures(fan: Fan, middle: Array) -> Array:
+    """(7, 3): places on the pencil's axis, in mm, from where the laser could light the scene's middle."""
+    u, sizes, rows = np.linalg.svd(fan.pis)
+    axis = rows[2]
+    on_axis = (u[:, :2].T @ np.ones(fan.lines) / sizes[:2]) @ rows[:2]  # nearest to the camera
+    scene = fan.planes[fan.lines // 2].points(middle[None])[0]
+    foot = on_axis + ((scene - on_axis) @ axis) * axis
+    reach = np.linalg.norm(scene - foot) * np.tan(WIDEST_FAN)
+    return np.asarray(foot + np.linspace(-reach, reach, 7)[:, None] * axis)
+
+
+def _profile(rays: Array, frame: Array, aperture: Array, middle: Array) -> Array:
+    """(N, 2): which epipolar plane each ray is in, and where across the fan it points, both as angles; sorted."""
+    baseline = aperture / np.linalg.norm(aperture)
+    ahead = middle - (middle @ baseline) * baseline
+    ahead /= np.linalg.norm(ahead)
+    _, across, forward = (rays @ frame.T).T
+    plane = np.arctan2(rays @ np.cross(baseline, ahead), rays @ ahead)
+    profile = np.column_stack([plane, np.arctan2(across, forward)])
     ordered: Array = profile[np.argsort(profile[:, 0], kind="stable")]
     return ordered
 

@@ -19,7 +19,7 @@ from core.model.arrays import Array
 from core.progress import Progress, silent
 from core.scan.cloud import FAN, Cloud
 from core.scan.crossings import CrossingTable
-from core.scan.fan_lines import UNASSIGNED, FanLines, assign_fan_lines, settle_by_sweeps
+from core.scan.fan_lines import UNASSIGNED, FanLines, possible_fan_lines, settle_by_sweeps
 from core.scan.features import ScanFeatures
 from core.scan.geometry import CrossingRays, inverse_depth_gradient, noise_gains
 from core.scan.network import FanStretches, solve_network
@@ -54,17 +54,15 @@ class _Sweeps:
     notes: tuple[str, ...]
 
 
-_Solve = Callable[[CrossingTable, NDArray[np.int64], Camera, Fan], _Sweeps]
-
-
 def reconstruct(
     features: ScanFeatures,
     camera: Camera,
     fan: Fan,
     options: ReconstructOptions | None = None,
     progress: Progress = silent,
+    fan_lines: FanLines | None = None,
 ) -> ScanResult:
-    """Solve the scan.
+    """Solve the scan; `fan_lines` takes over the numbers an earlier solution has given to the fan's centrelines.
 
     Raises
     ------
@@ -74,7 +72,7 @@ def reconstruct(
     options = options or ReconstructOptions()
     progress("network", 0, 3)
     solve = _solve_network if options.method == "network" else _solve_each
-    lines = _settled(assign_fan_lines(features.fan, camera, fan), features, camera, fan, solve)
+    lines = fan_lines or _number_fan_lines(features, camera, fan)
     crossings, line = _numbered(features.crossings, lines)
     if not np.any(crossings.with_fan):
         raise InputError(
@@ -109,15 +107,22 @@ def reconstruct(
     )
 
 
-def _settled(lines: FanLines, features: ScanFeatures, camera: Camera, fan: Fan, solve: _Solve) -> FanLines:
+def _number_fan_lines(features: ScanFeatures, camera: Camera, fan: Fan) -> FanLines:
+    """The numbering of the fan's centrelines that the sweeps agree with best."""
+    numberings = possible_fan_lines(features.fan, camera, fan)
+    if len(numberings) == 1 and numberings[0].settled == len(features.fan):
+        return numberings[0]
+    settled = [_settled(lines, features, camera, fan) for lines in numberings]
+    return min(settled, key=lambda lines: _disagreement(lines, features, camera, fan))
+
+
+def _settled(lines: FanLines, features: ScanFeatures, camera: Camera, fan: Fan) -> FanLines:
     """Decide unsure fan lines by sweeps that are solved without them."""
     unsure = [i for i, choices in enumerate(lines.choices) if len(choices) > 1]
-    if not unsure:
-        return lines
     crossings, line = _numbered(features.crossings, lines.sure)
-    if np.unique(line[crossings.with_fan]).size < 2:
+    if not unsure or np.unique(line[crossings.with_fan]).size < 2:
         return lines
-    sweeps = solve(crossings, line, camera, fan)
+    sweeps = _solve_network(crossings, line, camera, fan)
     crossings, _ = _numbered(features.crossings, lines)
     rows = crossings.select(
         crossings.with_fan & np.isin(crossings.a, sweeps.frames) & np.isin(crossings.piece_b, unsure)
@@ -125,6 +130,17 @@ def _settled(lines: FanLines, features: ScanFeatures, camera: Camera, fan: Fan, 
     rays = camera.rays(rows.uv)
     pis = sweeps.pis[np.searchsorted(sweeps.frames, rows.a)]
     return settle_by_sweeps(lines, rows.piece_b, rays, np.einsum("mi,mi->m", rays, pis), fan)
+
+
+def _disagreement(lines: FanLines, features: ScanFeatures, camera: Camera, fan: Fan) -> float:
+    """Share of the fan's crossings that the network leaves out or that have no number."""
+    crossings, line = _numbered(features.crossings, lines)
+    fan_crossings = np.count_nonzero(features.crossings.with_fan)
+    if not np.any(crossings.with_fan):
+        return 1.0
+    sweeps = _solve_network(crossings, line, camera, fan)
+    agreeing = np.sum(sweeps.weights[crossings.with_fan])
+    return 1.0 - float(agreeing) / max(int(fan_crossings), 1)
 
 
 def _numbered(crossings: CrossingTable, lines: FanLines) -> tuple[CrossingTable, NDArray[np.int64]]:
