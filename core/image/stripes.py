@@ -129,8 +129,8 @@ class _Piece:
 
     @property
     def usable(self) -> NDArray[np.bool_]:
-        """Points to judge the line by: those not saturated, or all when there is no other."""
-        return ~self.saturated if np.count_nonzero(~self.saturated) > 1 else np.ones_like(self.saturated)
+        """Points to judge the line by: those not saturated, or all where most of them are."""
+        return ~self.saturated if np.mean(self.saturated) < 0.5 else np.ones_like(self.saturated)
 
     def judged(self, sigma: Array) -> tuple[Array, Array]:
         """Usable points and their standard uncertainty."""

@@ -331,3 +331,13 @@ def test_settings_and_noise_refuse_nonsense() -> None:
         StripeSettings(6.0, float("nan"))
     with pytest.raises(ValueError, match="read_grey"):
         NoiseModel(-1.0)
+
+
+def test_a_stripe_saturated_all_along_still_has_an_honest_sigma() -> None:
+    rng = np.random.default_rng(13)
+    truth = straight((160.2, 120.1), 0.35)
+    light = draw((240, 320), truth, 2.0, 500.0) * speckle((240, 320), 0.18, 2.0, rng)
+    picture = np.clip(np.round(expose(light, rng)), 0, 255)
+    (line,) = find(picture, NOISY, StripeSettings(8.0, 250.0), saturated=picture >= 255)
+    assert line.saturated.mean() > 0.9
+    assert 0.7 < np.sqrt(np.mean((errors(line, truth) / line.sigma) ** 2)) < 1.4
