@@ -1,6 +1,7 @@
 """Targets drawn through the full camera model, each pixel integrated over its area: the analytic truth of the tests."""
 
 from collections.abc import Callable
+from functools import lru_cache
 
 import cv2
 import numpy as np
@@ -23,6 +24,15 @@ def pose(tilt_x: float, tilt_y: float, roll: float, centre, distance: float, shi
     return Pose(turn, np.array([*shift, distance]) - turn @ np.array([*centre, 0.0]))
 
 
+@lru_cache(maxsize=4)
+def _pixels(size, matrix: bytes, distortion: bytes):
+    """Pixel coordinates u, v, their rays (N, 2), and the rays' Jacobian (N, 2, 2)."""
+    camera = Camera(size, np.frombuffer(matrix).reshape(3, 3), np.frombuffer(distortion))
+    v, u = np.mgrid[0 : size[1], 0 : size[0]].astype(float)
+    xy = camera.undistort(np.column_stack([u.ravel(), v.ravel()]))
+    return u, v, xy, camera.ray_jacobian(np.column_stack([xy, np.ones(len(xy))]))
+
+
 def render(
     camera: Camera,
     where: Pose,
@@ -41,20 +51,22 @@ def render(
 
     `stripes` are (a, b, c, width, height): Gaussian lines a·u + b·v = c of light added in the picture.
     """
-    width, height = camera.image_size
-    v, u = np.mgrid[0:height, 0:width].astype(float)
-    xy = camera.undistort(np.column_stack([u.ravel(), v.ravel()]))
-    jacobian = camera.ray_jacobian(np.column_stack([xy, np.ones(len(xy))]))
-    plane = np.column_stack([where.rotation[:, :2], where.translation])
-    back = np.linalg.inv(plane)
-    total = np.zeros(len(xy))
-    offsets = (np.arange(samples) + 0.5) / samples - 0.5
-    for dv in offsets:
-        for du in offsets:
-            sub = xy + jacobian[:, :, 0] * du + jacobian[:, :, 1] * dv
-            on = np.column_stack([sub, np.ones(len(sub))]) @ back.T
-            total += pattern(on[:, 0] / on[:, 2], on[:, 1] / on[:, 2])
-    share = total.reshape(height, width) / samples**2
+    u, v, xy, jacobian = _pixels(camera.image_size, camera.matrix.tobytes(), camera.distortion.tobytes())
+    back = np.linalg.inv(np.column_stack([where.rotation[:, :2], where.translation]))
+
+    def seen(rays):
+        on = np.column_stack([rays, np.ones(len(rays))]) @ back.T
+        return pattern(on[:, 0] / on[:, 2], on[:, 1] / on[:, 2])
+
+    share = seen(xy)
+    grid = share.reshape(u.shape)
+    around = np.ones((3, 3), np.uint8)
+    edge = np.flatnonzero(cv2.dilate(grid, around) != cv2.erode(grid, around))
+    # samples² points spread evenly over the pixel, no two in one row or column: edges along the rows stay smooth
+    spread = (0.5 + np.arange(samples**2)[:, None] * [0.7548776662466927, 0.5698402909980532]) % 1 - 0.5
+    offsets = spread - spread.mean(axis=0)
+    share[edge] = np.mean([seen(xy[edge] + jacobian[edge] @ offset) for offset in offsets], axis=0)
+    share = share.reshape(u.shape)
     scale = 1 if dtype is np.uint8 else 256
     picture = cv2.GaussianBlur(dark + (light - dark) * share, (0, 0), blur)
     for a, b, c, sigma, peak in stripes:

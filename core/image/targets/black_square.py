@@ -27,7 +27,7 @@ ASTRAY_PX = 0.4
 HOPELESS_PX = 3.0
 """Scatter of an edge's points about its line in pixels, not suspected up to here, and always from here on."""
 
-CLIPPED_SHARE = 0.25
+CLIPPED_SHARE = 0.5
 """Shift of a clipped edge (over-exposed plate, or black cut off at zero), as a share of the edge's blur σ."""
 
 
@@ -116,18 +116,21 @@ def _astray(edges: list[Line | None], k: int) -> bool:
 def _undisturbed(edges: list[Profiles]) -> list[NDArray[np.bool_]]:
     """For each edge, which of its profiles (K,) no stripe of light crosses.
 
-    Levels must stay near their own running median, and must not exceed the four edges' common level by more than 15 %
-    of the contrast: a stripe that runs along an edge is usual there. Where that leaves too little (uneven light), the
-    first rule alone decides.
+    From dark to bright the level must not fall again, by more than noise and 10 % of the contrast; it must stay near
+    its own running median at either end, and not exceed the four edges' common level by more than 15 % of the contrast
+    (a stripe that runs along an edge is usual there). Where that leaves too little, uneven light is taken to be the
+    reason and the last rule is dropped.
     """
     dark = float(np.nanmedian([np.nanmedian(edge.dark) for edge in edges]))
     bright = float(np.nanmedian([np.nanmedian(edge.bright) for edge in edges]))
     slack = 0.15 * (bright - dark)
+    usual_fall = float(np.nanmedian(np.concatenate([edge.fall for edge in edges])))
     chosen = []
     for edge in edges:
-        steady = edge.valid & _usual(edge.dark) & _usual(edge.bright)
         with np.errstate(invalid="ignore"):
-            common = edge.valid & (edge.dark < dark + slack) & (edge.bright < bright + slack)
+            rising = edge.valid & (edge.fall < 1.5 * usual_fall + 0.1 * (bright - dark))
+            common = rising & (edge.dark < dark + slack) & (edge.bright < bright + slack)
+        steady = rising & _usual(edge.dark) & _usual(edge.bright)
         both = steady & common
         if both.sum() < 0.3 * len(both):
             both = common if common.sum() >= 0.3 * len(both) else steady

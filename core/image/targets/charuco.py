@@ -12,13 +12,17 @@ from core.image.targets.grid import refined
 from core.image.targets.homography import homography_of, map_by
 from core.image.targets.kinds import Charuco
 from core.image.targets.not_found import TargetNotFound
-from core.image.targets.picture import Picture, as_8bit, as_refinable, enlarged, noise_of, reduced, without_stripes
+from core.image.targets.picture import Picture, as_8bit, enlarged, noise_of, reduced, without_stripes
 from core.model.arrays import Array
 
 LEAST_CORNERS = 6
 """Fewer corners fix neither a pose nor a camera with anything to spare."""
 
 LARGEST_HALF_WINDOW = 11
+"""Half the window of the corner refinement in pixels, where the markers leave room for it."""
+
+SMOOTHING = 1.0
+"""σ in pixels of the smoothing before the refinement, against the error from the pixels' phase."""
 
 
 def detect_charuco(board: Charuco, picture: Picture, name: str = "") -> TargetView:
@@ -71,14 +75,15 @@ def _view(
     board: Charuco, picture: Picture, corners: Array, ids: NDArray[np.intp], factor: int, name: str
 ) -> TargetView:
     """Refine at full size, in a window that keeps clear of the markers."""
-    pixels = as_refinable(picture)
+    pixels = cv2.GaussianBlur(picture.astype(np.float32), (0, 0), SMOOTHING)
     points = board.points[ids]
     reach = _clear_of_markers(board, points[:, :2], corners)
     if factor > 1:
         corners = refined(pixels, corners, int(np.clip(reach, 3, 2 * factor + 1)))
     half = int(np.clip(round(reach), 2, LARGEST_HALF_WINDOW))
     corners = refined(pixels, corners, half)
-    return TargetView(points, corners, corner_sigma(picture, corners, half, noise_of(picture)), name)
+    sigma = corner_sigma(pixels, corners, half, noise_of(picture, corners), SMOOTHING)
+    return TargetView(points, corners, sigma, name)
 
 
 def _clear_of_markers(board: Charuco, xy: Array, corners: Array) -> float:
@@ -86,7 +91,7 @@ def _clear_of_markers(board: Charuco, xy: Array, corners: Array) -> float:
     homography = homography_of(xy, corners, robust=True)
     if homography is None:
         return 2.0
-    step = 0.7 * (board.square_mm - board.marker_mm) / 2
+    step = 0.9 * (board.square_mm - board.marker_mm) / 2
     moved = [map_by(homography, xy + offset) - map_by(homography, xy) for offset in ([step, 0.0], [0.0, step])]
     return float(np.linalg.norm(moved, axis=2).min())
 

@@ -21,7 +21,13 @@ from core.model.arrays import Array
 SYSTEMATIC_PX = 0.005
 """What is left on perfect pictures, RMS per coordinate."""
 
-MOST_SPOTS = 12
+ASTRAY_PX = 0.03
+"""σ of a circle's centre up to which its outline is not suspected."""
+
+LEAST_SHARE = 0.8
+"""Share of the circles whose outline must be seen."""
+
+MOST_SPOTS = 2
 """More round spots than this many grids' worth, and the picture shows a texture, not a target."""
 
 
@@ -31,7 +37,7 @@ def detect_circle_grid(grid: CircleGrid, picture: Picture, name: str = "", camer
     An ellipse is fitted to each circle's sub-pixel outline. Its centre is not the image of the circle's centre: under
     perspective it lies off by up to f r² sin θ cos θ / Z² (0.3 px on a usual board). The shift follows from the plane's
     homography and the circles' radius, both measured here, and is taken off; the homography is that of undistorted
-    rays if there is a `camera`.
+    rays if there is a `camera`. Circles whose outline cannot be followed (a laser stripe over them) are left out.
 
     Raises
     ------
@@ -50,6 +56,8 @@ def detect_circle_grid(grid: CircleGrid, picture: Picture, name: str = "", camer
         for candidate in (small, without_stripes(small, 7)):
             spots = _spots(candidate, grid)
             most_seen = max(most_seen, len(spots.uv))
+            if most_seen > 2 * MOST_SPOTS * grid.columns * grid.rows:
+                raise _failure(grid, most_seen, name)
             centres = _grid_centres(candidate, grid, spots)
             if centres is not None:
                 _check_complete(grid, spots, centres, name)
@@ -147,21 +155,26 @@ def _view(
 ) -> TargetView:
     """Ellipses at full size, and the perspective's shift taken off their centres."""
     fitted = [fit_dark_ellipse(picture, *spot) for spot in zip(centres, radii, strict=True)]
+    usual = float(np.median([ellipse.sigma for ellipse in fitted if ellipse is not None] or [0.0]))
+    fitted = [
+        ellipse if ellipse is not None and ellipse.sigma < max(ASTRAY_PX, 5 * usual) else None for ellipse in fitted
+    ]
+    followed = np.array([ellipse is not None for ellipse in fitted])
     ellipses = [ellipse for ellipse in fitted if ellipse is not None]
-    if len(ellipses) < len(fitted):
+    if len(ellipses) < LEAST_SHARE * len(fitted):
         raise TargetNotFound(
             f"the outlines of {len(fitted) - len(ellipses)} of the {len(fitted)} circles cannot be followed",
             where=name,
-            todo="check focus and exposure, and that nothing covers a circle",
+            todo="check focus and exposure, and that nothing covers the circles",
         )
+    points = grid.points[followed]
     uv = np.array([ellipse.centre for ellipse in ellipses])
     sigma = np.hypot([ellipse.sigma for ellipse in ellipses], SYSTEMATIC_PX)
-    return TargetView(grid.points, _without_shift(grid, uv, ellipses, camera), sigma, name)
+    return TargetView(points, _without_shift(points[:, :2], uv, ellipses, camera), sigma, name)
 
 
-def _without_shift(grid: CircleGrid, uv: Array, ellipses: list[Ellipse], camera: Camera | None) -> Array:
-    """Images (N, 2) of the circles' centres from the ellipses' centres `uv` (N, 2)."""
-    xy = grid.points[:, :2]
+def _without_shift(xy: Array, uv: Array, ellipses: list[Ellipse], camera: Camera | None) -> Array:
+    """Images (N, 2) of the circles' centres `xy` (N, 2) from the ellipses' centres `uv` (N, 2)."""
     area = np.array([abs(np.linalg.det(ellipse.shape)) for ellipse in ellipses])  # over π
     if camera is None:
         flat, flat_area = uv, area

@@ -13,9 +13,10 @@ from scipy.ndimage import gaussian_filter
 from core.image.targets.picture import Picture
 from core.model.arrays import Array
 
-SYSTEMATIC_PX = 0.022
-SYSTEMATIC_SMOOTHED_PX = 0.012
-"""What is left on perfect, sharp pictures: the pixels' phase, RMS per coordinate; as taken, and smoothed by 1 px."""
+SYSTEMATIC_PX = 0.025
+SYSTEMATIC_SMOOTHED_PX = 0.015
+"""What the pixels' phase leaves on perfect, sharp pictures, RMS per coordinate in windows of 23 pixels: as taken, and
+smoothed by 1 px. It grows with the root of a smaller window."""
 
 
 def corner_sigma(picture: Picture, corners: Array, half: int, noise: float, smoothing: float = 0.0) -> Array:
@@ -64,6 +65,6 @@ def corner_sigma(picture: Picture, corners: Array, half: int, noise: float, smoo
     spread = np.einsum("anij,bnij->nab", influence, influence) * noise**2
     inverse = np.linalg.inv(normal)
     covariance = inverse @ spread @ inverse
-    systematic = SYSTEMATIC_SMOOTHED_PX if smoothing else SYSTEMATIC_PX
+    systematic = (SYSTEMATIC_SMOOTHED_PX if smoothing else SYSTEMATIC_PX) * np.sqrt(11 / half)
     sigma: Array = np.sqrt(np.trace(covariance, axis1=1, axis2=2) / 2 + systematic**2)
     return sigma

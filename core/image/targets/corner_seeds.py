@@ -7,12 +7,19 @@ from collections.abc import Iterator
 import cv2
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 from core.image.targets.grid import is_checkered, refined
 from core.model.arrays import Array
 
 MOST_SADDLES = 1500
 """Saddle points looked at, the strongest ones of the picture."""
+
+MOST_TRIES = 500
+"""Saddle points tried in vain before the search ends."""
+
+NEIGHBOURS = 200
+"""Saddle points about one of them among which its neighbours in the grid must be."""
 
 ALIKE = 0.1
 """Strength of a corner's neighbours, as a share of its own, at least (it goes with the square of the contrast)."""
@@ -30,13 +37,17 @@ def seed_grids(picture: NDArray[np.uint8], known: list[Array]) -> Iterator[Array
     points, edges, strength = _saddles(picture)
     if len(points) < 9:
         return
+    near = np.asarray(cKDTree(points).query(points, k=min(NEIGHBOURS, len(points)))[1], dtype=np.intp)
+    tries = 0
     for k, point in enumerate(points):
         if any(_within(grid, point) for grid in known):
             continue
-        alike = points[: np.searchsorted(-strength, -ALIKE * strength[k])]
-        seed = _seed(picture, alike, edges[k], k) if len(alike) >= 9 else None
+        seed = _seed(picture, points[near[k][strength[near[k]] >= ALIKE * strength[k]]], edges[k])
         if seed is not None:
             yield seed
+        tries += seed is None
+        if tries > MOST_TRIES:
+            return
 
 
 def _within(grid: Array, point: Array) -> bool:
@@ -62,9 +73,11 @@ def _saddles(picture: NDArray[np.uint8]) -> tuple[Array, Array, Array]:
     return np.column_stack([u, v]).astype(np.float64), directions, strength[v, u].astype(np.float64)
 
 
-def _seed(picture: NDArray[np.uint8], points: Array, edges: Array, k: int) -> Array | None:
-    """The grid (3, 3, 2) about saddle `k`, if its neighbours are there and black and white alternate."""
-    offsets = points - points[k]
+def _seed(picture: NDArray[np.uint8], points: Array, edges: Array) -> Array | None:
+    """The grid (3, 3, 2) about the first of `points`, if its neighbours are there and black and white alternate."""
+    if len(points) < 9:
+        return None
+    offsets = points - points[0]
     steps = [_next_along(offsets, sign * edge) for edge in edges for sign in (-1, 1)]
     before, after, above, below = steps
     if before is None or after is None or above is None or below is None:
@@ -78,13 +91,13 @@ def _seed(picture: NDArray[np.uint8], points: Array, edges: Array, k: int) -> Ar
     )
     spread = np.linalg.norm(rough, axis=2)
     reach = float(spread[spread > 0].min())
-    distance = np.linalg.norm((points[k] + rough).reshape(-1, 1, 2) - points, axis=2)
+    distance = np.linalg.norm((points[0] + rough).reshape(-1, 1, 2) - points, axis=2)
     index = distance.argmin(axis=1)
     if distance.min(axis=1).max() > 0.35 * reach or len(set(index)) < 9:
         return None
     height, width = picture.shape
     grid = refined(picture, points[index], int(np.clip(0.3 * reach, 2, 8))).reshape(3, 3, 2)
-    if not ((grid > 0) & (grid < [width, height])).all() or np.linalg.norm(grid[1, 1] - points[k]) > 0.3 * reach:
+    if not ((grid > 0) & (grid < [width, height])).all() or np.linalg.norm(grid[1, 1] - points[0]) > 0.3 * reach:
         return None
     return grid if is_checkered(picture, grid) else None
 

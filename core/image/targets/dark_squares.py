@@ -19,6 +19,10 @@ LEAST_SIDE = 14
 """Side in pixels below which a quadrilateral's shape cannot be judged."""
 
 
+MOST_PIECES = 12
+"""Pieces that stripes may cut a square into."""
+
+
 @dataclass(frozen=True, eq=False, slots=True)
 class DarkSquares:
     """What was seen: whole quadrilaterals (4, 2) clockwise in the picture, largest first, and how many are cut off."""
@@ -36,7 +40,8 @@ def dark_squares(picture: NDArray[np.uint8]) -> DarkSquares:
         for mask in _thresholded(opened):
             whole, cut = _quadrilaterals(opened, mask)
             cut_off = max(cut_off, cut)
-            found.extend(quad for quad in whole if width == 1 or _mostly_dark(picture, opened, quad))
+            large = [quad for quad in whole if _sides(quad).min() >= 3 * width]
+            found.extend(quad for quad in large if width == 1 or _mostly_dark(picture, opened, quad))
     found.sort(key=lambda quad: -cv2.contourArea(quad.astype(np.float32)))
     largest: list[Array] = []
     for quad in found:  # what lies within another is the same square, or what stripes leave of it
@@ -77,11 +82,14 @@ def _quadrilaterals(picture: NDArray[np.uint8], mask: NDArray[np.uint8]) -> tupl
         if len(corners) != 4 or not 0.9 < area / cv2.contourArea(corners) < 1.1:
             continue
         quad = clockwise(corners.reshape(4, 2).astype(np.float64))
-        if np.linalg.norm(np.roll(quad, -1, axis=0) - quad, axis=1).min() >= LEAST_SIDE and _dark_on_light(
-            picture, quad
-        ):
+        if _sides(quad).min() >= LEAST_SIDE and _dark_on_light(picture, quad):
             whole.append(quad)
     return whole, cut
+
+
+def _sides(quad: Array) -> Array:
+    lengths: Array = np.linalg.norm(np.roll(quad, -1, axis=0) - quad, axis=1)
+    return lengths
 
 
 def _polygon(hull: NDArray[np.int32]) -> NDArray[np.int32]:
@@ -112,13 +120,20 @@ def _dark_on_light(picture: NDArray[np.uint8], quad: Array) -> bool:
 
 
 def _mostly_dark(picture: NDArray[np.uint8], opened: NDArray[np.uint8], quad: Array) -> bool:
-    """Whether at least half of the inside was dark before stripes were taken out: many gaps are no stripes."""
+    """Whether the inside, before stripes were taken out, was dark at least by half, and in few pieces.
+
+    Otherwise it is a pattern whose gaps were taken for stripes.
+    """
     inside = np.zeros(picture.shape, dtype=np.uint8)
     cv2.fillConvexPoly(inside, np.rint(quad).astype(np.int32), 1)
     before, after = picture[inside > 0], opened[inside > 0]
     lightest = float(np.quantile(before, 0.98))
     middle = (float(np.median(after)) + lightest) / 2
-    return float(np.mean(before < middle)) > 0.5
+    if float(np.mean(before < middle)) < 0.5:
+        return False
+    dark = np.where((picture < middle) & (inside > 0), 255, 0).astype(np.uint8)
+    areas = cv2.connectedComponentsWithStats(dark, connectivity=4)[2][1:, cv2.CC_STAT_AREA]
+    return int(np.count_nonzero(areas > 0.005 * inside.sum())) <= MOST_PIECES
 
 
 def _levels(picture: NDArray[np.uint8], uv: Array) -> Array:

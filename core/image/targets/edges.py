@@ -26,14 +26,16 @@ class Profiles:
     """Grey profiles across an edge.
 
     `offset` (K,) in pixels along the normal to the steepest rise; `steepness` (K,) its slope in grey levels per pixel;
-    `dark`, `bright` (K,) the levels at either end of the profile; `valid` (K,) False where it leaves the picture or
-    where the steepest place is at its end.
+    `dark`, `bright` (K,) the levels at either end of the profile; `fall` (K,) by how much the level drops again on the
+    way from dark to bright, which a mere edge does by its noise only; `valid` (K,) False where it leaves the picture
+    or where the steepest place is at its end.
     """
 
     offset: Array
     steepness: Array
     dark: Array
     bright: Array
+    fall: Array
     valid: NDArray[np.bool_]
 
 
@@ -83,5 +85,6 @@ def profiles(spline: PictureSpline, uv: Array, normal: Array, half_width: float)
         steepness=top,
         dark=levels[:, 4:10].mean(axis=1),
         bright=levels[:, -10:-4].mean(axis=1),
+        fall=(np.maximum.accumulate(levels, axis=1) - levels).max(axis=1),
         valid=valid,
     )

@@ -43,8 +43,13 @@ def _fit_once(spline: PictureSpline, about: Ellipse, half_width: float) -> Ellip
     uv = about.centre + circle @ about.shape.T
     across = profiles(spline, uv, outward, half_width)
     points = uv + across.offset[:, None] * outward
-    steep = across.steepness > 0.4 * np.median(across.steepness[across.valid]) if across.valid.any() else across.valid
-    used = across.valid & steep
+    if not across.valid.any():
+        return None
+    steep = across.valid & (across.steepness > 0.4 * np.median(across.steepness[across.valid]))
+    with np.errstate(invalid="ignore"):
+        usual_fall = np.quantile(across.fall[across.valid], 0.3) + 0.1 * np.nanmedian(across.bright - across.dark)
+        plain = steep & (across.fall < 1.5 * usual_fall)  # no stripe crosses the profile
+    used = plain
     ellipse, distance = about, np.zeros(count)
     for _ in range(4):
         if used.sum() < max(8, 0.6 * count):
@@ -55,7 +60,7 @@ def _fit_once(spline: PictureSpline, about: Ellipse, half_width: float) -> Ellip
         ellipse = fitted
         distance = _distances(ellipse, points)
         scale = max(1.4826 * float(np.median(np.abs(distance[used]))), 0.02)
-        used = across.valid & steep & (np.abs(distance) < 4 * scale)
+        used = plain & (np.abs(distance) < 4 * scale)
     sigma = float(np.sqrt(np.mean(distance[used] ** 2) * 2 / used.sum()))
     return Ellipse(ellipse.centre, ellipse.shape, sigma)
 

@@ -14,6 +14,9 @@ from core.model.arrays import Array
 LEAST_STEP = 0.3
 """Share of the board's contrast by which black and white squares at a corner must differ."""
 
+LEAST_GOOD = 0.65
+"""Share of a further row's corners that must look like corners."""
+
 
 def spacing(grid: Array) -> Array:
     """Distance (R, C) in pixels from each corner of `grid` (R, C, 2) to its nearest neighbour."""
@@ -115,7 +118,14 @@ def _next_row(picture: NDArray[np.uint8], grid: Array, contrast: float) -> tuple
     expected = -blackness(picture, grid[0], along, down, contrast)
     seen = blackness(picture, row, along, down, contrast)
     stayed = np.linalg.norm(row - guess, axis=1) < 0.6 * reach
-    return (row if np.mean((seen == expected) & (seen != 0) & stayed) > 0.75 else None), False
+    good = (seen == expected) & (seen != 0) & stayed
+    if good.mean() < LEAST_GOOD:
+        return None, False
+    if not good.all():  # a stripe may hide a corner or two: put them where the others of the row say
+        place = np.arange(len(row))
+        curve = np.polynomial.polynomial.polyfit(place[good], row[good], min(2, int(good.sum()) - 1))
+        row = np.where(good[:, None], row, np.polynomial.polynomial.polyval(place, curve).T)
+    return row, False
 
 
 def _board_reaches_out(picture: NDArray[np.uint8], grid: Array, contrast: float) -> bool:

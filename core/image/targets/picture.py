@@ -85,14 +85,20 @@ def without_stripes(picture: NDArray[np.uint8], width: int) -> NDArray[np.uint8]
     return np.asarray(cv2.morphologyEx(picture, cv2.MORPH_OPEN, disc), dtype=np.uint8)
 
 
-def noise_of(picture: Picture) -> float:
-    """Standard deviation of the pixel noise in grey levels, from the median absolute response of a mask blind to edges.
+def noise_of(picture: Picture, uv: Array) -> float:
+    """Standard deviation of the pixel noise in grey levels around the points `uv` (N, 2).
+
+    From the median absolute response of a mask blind to edges, apart for the darker and the brighter half of the area,
+    as noise grows with light.
 
     The mask is the difference of two Laplacians (Immerkær, Fast noise variance estimation, CVIU 64 (1996),
     doi:10.1006/cviu.1996.0060). Never less than the noise of rounding to whole grey levels.
     """
-    top, left = (max(0, (side - 1024) // 2) for side in picture.shape)
-    middle = picture[top : top + 1024, left : left + 1024].astype(np.float32)
+    left, top = np.floor(uv.min(axis=0)).astype(int).clip(0)
+    right, bottom = np.ceil(uv.max(axis=0)).astype(int) + 1
+    area = picture[top:bottom, left:right].astype(np.float32)
     mask = np.array([[1, -2, 1], [-2, 4, -2], [1, -2, 1]], dtype=np.float32)
-    response = np.abs(cv2.filter2D(middle, -1, mask))
-    return max(float(np.median(response)) / (0.6745 * 6), 0.29)
+    response = np.abs(cv2.filter2D(area, -1, mask)) / (0.6745 * 6)
+    bright = area > np.mean(area)
+    halves = [float(np.median(response[half])) for half in (bright, ~bright) if half.any()]
+    return max(float(np.sqrt(np.mean(np.square(halves)))), 0.29)

@@ -213,11 +213,12 @@ def _apart(a: Pose, b: Pose) -> bool:
 
 def _covariance(view: TargetView, camera: Camera, fit: _Fit) -> Array:
     """(6, 6) of `fit.pose.vector`."""
-    jacobian = _jacobian(view, camera, fit.pose) * (np.sqrt(fit.weight) / view.sigma)[:, None, None]
+    used = fit.weight > 0
+    jacobian = _jacobian(view, camera, fit.pose)[used] / view.sigma[used, None, None]
     covariance = np.linalg.inv(np.einsum("nki,nkj->ij", jacobian, jacobian))
     if len(fit.length) >= ROBUST_FROM:
-        freedom = max(1.0, 2 * float(np.count_nonzero(fit.weight)) - 6)
-        covariance *= max(1.0, float((fit.weight * fit.length**2).sum()) / freedom)
+        freedom = max(1.0, 2 * float(np.count_nonzero(used)) - 6)
+        covariance *= max(1.0, float((fit.length[used] ** 2).sum()) / freedom)
     change = np.eye(6)
     change[:3, :3] = _vector_by_turn(fit.pose.vector[:3])
     return change @ covariance @ change.T

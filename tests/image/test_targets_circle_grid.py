@@ -1,0 +1,85 @@
+"""Circle grids against the analytic truth of rendered pictures, and in real ones."""
+
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+
+from core.image.targets import CircleGrid, TargetNotFound, camera_shift, detect
+from core.image.targets.ellipses import centre_shift
+from tests.image.rendered_targets import circles, pose, render, rig
+
+GRID = CircleGrid(7, 7, 12.0)
+CAMERA = rig(1 / 6)
+STEEP = pose(-25, 40, 20, (36, 36), 380)
+LINELIGHT = Path(__file__).resolve().parents[2].parent / "shared" / "real" / "linelight"
+
+
+def nearest(view, true):
+    """Errors (N, 2) of a view of a grid that may be numbered from another of its corners."""
+    index = np.linalg.norm(view.uv[:, None] - true[None], axis=2).argmin(axis=1)
+    assert len(set(index)) == len(view.uv)
+    return view.uv - true[index]
+
+
+@pytest.mark.parametrize("camera", [CAMERA, None], ids=["rays", "pixels"])
+def test_centres_are_true_although_perspective_shifts_the_ellipses(camera):
+    errors = nearest(
+        detect(GRID, render(CAMERA, STEEP, circles(GRID.points, 3.5), noise=0.5), camera=camera),
+        CAMERA.project_pose(STEEP, GRID.points),
+    )
+    assert np.sqrt(np.mean(errors**2)) < 0.015
+    assert np.abs(errors.mean(axis=0)).max() < 0.005
+
+
+def test_the_shift_of_an_ellipse_is_that_of_the_middle_of_its_widest_chord():
+    homography = np.array([[900.0, 20.0, 300.0], [-30.0, 700.0, 200.0], [0.2, 0.35, 1.0]])
+    centre, radius = np.array([[0.3, -0.2]]), 0.15
+    angle = np.linspace(0, 2 * np.pi, 20001)
+    rim = centre + radius * np.column_stack([np.cos(angle), np.sin(angle)])
+    image = np.column_stack([rim, np.ones(len(rim))]) @ homography.T
+    image = image[:, :2] / image[:, 2:]
+    middle = (image.min(axis=0) + image.max(axis=0)) / 2  # of the box around an ellipse: its centre
+    true = np.append(centre[0], 1.0) @ homography.T
+    assert centre_shift(homography, centre, radius)[0] == pytest.approx(middle - true[:2] / true[2], abs=1e-4)
+
+
+def test_an_asymmetric_grid_is_found_in_its_order():
+    grid = CircleGrid(4, 11, 8.0, asymmetric=True)
+    where = pose(10, -15, 92, (28, 40), 420)
+    view = detect(grid, render(CAMERA, where, circles(grid.points, 3.0), noise=1))
+    assert np.abs(view.uv - CAMERA.project_pose(where, grid.points)).max() < 0.06
+
+
+def test_a_circle_under_a_stripe_is_kept_true_or_left_out():
+    picture = render(CAMERA, STEEP, circles(GRID.points, 3.5), noise=0.5, stripes=[(0.3, 1, 330, 1.5, 150)])
+    view = detect(GRID, picture)
+    assert len(view.uv) >= 40
+    assert np.abs(nearest(view, CAMERA.project_pose(STEEP, GRID.points))).max() < 0.15
+
+
+def test_a_grid_of_another_size_or_a_part_of_it_is_named():
+    picture = render(CAMERA, STEEP, circles(GRID.points, 3.5), samples=3)
+    with pytest.raises(TargetNotFound, match=r"shows more than 6 × 6 circles|no 6 × 6 grid"):
+        detect(CircleGrid(6, 6, 12.0), picture)
+    with pytest.raises(TargetNotFound, match="49 round dark spots are seen, but no 8 × 7 grid"):
+        detect(CircleGrid(8, 7, 12.0), picture)
+    with pytest.raises(TargetNotFound, match="round dark spots are seen, but no 7 × 7 grid"):
+        detect(GRID, np.ascontiguousarray(picture[:, :330]))
+
+
+@pytest.mark.skipif(not LINELIGHT.is_dir(), reason="the real pictures of linelight are not on this machine")
+def test_linelight_is_found_in_all_poses_with_the_laser_on_and_off():
+    grid = CircleGrid(7, 7, 37.5)
+    uv = []
+    for k in range(12):
+        off = cv2.imread(str(LINELIGHT / "calib_picture" / f"calib{k}.jpg"), cv2.IMREAD_GRAYSCALE)
+        on = cv2.imread(str(LINELIGHT / "light_picture" / f"light{k}.jpg"), cv2.IMREAD_GRAYSCALE)
+        view = detect(grid, off, f"calib{k}.jpg")
+        assert len(view.uv) == 49
+        assert camera_shift(view, detect(grid, on, f"light{k}.jpg")) < 0.05
+        uv.append(view.uv.astype(np.float32))
+    rms, matrix, *_ = cv2.calibrateCamera([grid.points.astype(np.float32)] * 12, uv, (1920, 1080), None, None)
+    assert rms < 0.0986  # what OpenCV's blob centres give
+    assert matrix[[0, 1], [0, 1]] == pytest.approx([1144.4393, 1142.4883], abs=1.5)
