@@ -11,10 +11,10 @@ demo: $(READY)            ## measure the embedded sample: cloud, mesh and report
 	$(BIN)/trisect demo --out $(OUT)
 
 test: check               ## format, lint, types, rooms, and every test
-	$(BIN)/pytest -n 2 --dist loadgroup
+	$(BIN)/pytest -n 2 --dist loadscope
 
 quick: check              ## the same without the slow proofs
-	$(BIN)/pytest -n 2 --dist loadgroup -m "not slow"
+	$(BIN)/pytest -n 2 --dist loadscope -m "not slow"
 
 check: $(READY)
 	$(BIN)/ruff format --check .

@@ -6,9 +6,8 @@ from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import dataclass
 from pathlib import Path
 
-from core.simulate.recording import simulate_set
-
 from core.cli import main
+from core.simulate.recording import simulate_set
 from core.simulate.scenario import Scenario
 
 SMALL = Scenario(scale=0.25, frames=20, camera_views=8, plane_poses=6, seed=3)

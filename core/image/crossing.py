@@ -24,6 +24,7 @@ import numpy as np
 from numba import njit
 
 from core.image.centreline import Centreline
+from core.image.local_arc import BIAS_ALLOWED, arc_bias
 from core.image.segments import Stack, meeting_segments
 from core.model.arrays import Array, frozen_array, set_field
 
@@ -179,7 +180,7 @@ def _local_fit(line: Array, at: int, origin: Array, half: float, correlation: fl
     """Local curve around `origin`: ok, t_u, t_v, a, b, c, σ of a, whether its bend matters.
 
     A parabola over ± half / 2, and over twice and four times that as long as it agrees with the shorter ones
-    (Lepski's rule): the longest window over which the line still is a parabola.
+    (Lepski's rule) and an arc of the bend found so far still is a parabola: the longest window over which the line is.
     """
     result = np.zeros(8)
     spread = max(correlation, 1.0)  # points within one correlation length share their error
@@ -199,6 +200,8 @@ def _local_fit(line: Array, at: int, origin: Array, half: float, correlation: fl
             continue
         sigma = math.sqrt(fit[3] * spread)
         if result[0] > 0 and (fit[3] * spread > result[6] ** 2 or _disagree(result, fit[0], sigma)):
+            break
+        if result[0] > 0 and arc_bias(2 * abs(result[5]), reach) > BIAS_ALLOWED * sigma:
             break
         bent = abs(fit[2]) * reach * reach / 3 > 3 * sigma
         result[:] = np.array([1.0, frame[2], frame[3], fit[0], fit[1], fit[2], sigma, 1.0 if bent else 0.0])

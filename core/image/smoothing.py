@@ -1,9 +1,10 @@
-"""A centreline averaged along itself, as far as it is straight.
+"""A centreline averaged along itself, as far as it is smooth.
 
 The noise of a stripe's points falls with the root of the length they are averaged over, but a window must not span a
-bend. So for each point straight lines are fitted to windows that grow, and the largest window is taken whose answer
-still agrees with those of all smaller ones: the intersection of confidence intervals. On a flat face windows become
-long; at a bend they stay short. A window never leaves its unbroken run, and so never spans a depth edge.
+bend. So for each point parabolas are fitted to windows that grow, and the largest window is taken whose answer still
+agrees with those of all smaller ones: the intersection of confidence intervals. On a flat face windows become long, at
+a bend they stay short, and on an arc they stay so short that it is not flattened. A window never leaves its unbroken
+run, and so never spans a depth edge.
 
 References
 ----------
@@ -16,22 +17,24 @@ doi:10.1109/78.782208.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import comb
 
 import numpy as np
 from numpy.typing import NDArray
 
 from core.image.centreline import Centreline
+from core.image.local_arc import BIAS_ALLOWED, arc_bias_at
 from core.model.arrays import Array
 
-WINDOWS = (6.0, 9.0, 13.0, 19.0, 28.0, 41.0)
+WINDOWS = (9.0, 13.0, 19.0, 28.0, 41.0, 60.0, 88.0)
 """Half lengths of the windows tried, in pixels."""
 
-AGREE = 2.0
+AGREE = 1.0
 """Half width of the confidence intervals in standard deviations."""
 
 
 def smooth(centreline: Centreline, windows: tuple[float, ...] = WINDOWS) -> Centreline:
-    """The centreline moved across itself onto local straight lines, with the σ that leaves.
+    """The centreline moved across itself onto local parabolas, with the σ that leaves.
 
     Normals, widths and strengths stay. `correlation_px` becomes the typical length of the windows chosen; saturated
     points have no weight but are moved like the others.
@@ -39,15 +42,16 @@ def smooth(centreline: Centreline, windows: tuple[float, ...] = WINDOWS) -> Cent
     if len(centreline) < 3:
         return centreline
     arc = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(centreline.uv, axis=0), axis=1))])
-    best = _LineFits.at(centreline, arc, windows[0])
+    best = _Fits.at(centreline, arc, windows[0])
     chosen = np.full(len(arc), windows[0])
     low, high = best.shift - AGREE * best.sigma, best.shift + AGREE * best.sigma
     growing = np.isfinite(best.shift)
     for window in windows[1:]:
-        fits = _LineFits.at(centreline, arc, window)
+        fits = _Fits.at(centreline, arc, window)
         low = np.fmax(low, fits.shift - AGREE * fits.sigma)
         high = np.fmin(high, fits.shift + AGREE * fits.sigma)
-        growing &= (low <= high) & np.isfinite(fits.shift)
+        straight = arc_bias_at(best.curvature, window) <= BIAS_ALLOWED * fits.sigma
+        growing &= (low <= high) & np.isfinite(fits.shift) & straight
         best = best.replaced(fits, growing)
         chosen[growing] = window
     moved = np.isfinite(best.shift)
@@ -58,47 +62,62 @@ def smooth(centreline: Centreline, windows: tuple[float, ...] = WINDOWS) -> Cent
         centreline.strength,
         np.where(moved, best.sigma, centreline.sigma),
         centreline.saturated,
-        max(centreline.correlation_px, 2 * float(np.median(chosen))),
+        max(centreline.correlation_px, float(np.median(chosen))),
     )
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class _LineFits:
-    """For every point, how far (px, along its normal) the line through its window lies from it, and that line's σ."""
+class _Fits:
+    """For every point, how far (px, along its normal) the parabola through its window lies from it.
+
+    With that its σ in px and the parabola's curvature in 1/px, (N,) each; NaN where a window holds too little.
+    """
 
     shift: Array
     sigma: Array
+    curvature: Array
 
     @classmethod
-    def at(cls, line: Centreline, arc: Array, half_length: float) -> _LineFits:
-        """Weighted straight lines u(s), v(s) through all points within `half_length` of each, by running sums."""
+    def at(cls, line: Centreline, arc: Array, half_length: float) -> _Fits:
+        """Weighted parabolas u(s), v(s) through all points within `half_length` of each, by running sums."""
         first = np.searchsorted(arc, arc - half_length, side="left")
         last = np.searchsorted(arc, arc + half_length, side="right")
+        spacing = (arc[last - 1] - arc[first]) / np.maximum(last - first - 1, 1)
+        usable = (
+            (last - first >= 7) & (arc - arc[first] > 0.3 * half_length) & (arc[last - 1] - arc > 0.3 * half_length)
+        )
         weight = np.where(line.saturated, 0.0, 1 / line.sigma**2)
 
         def window_sum(values: Array) -> Array:
             total = np.concatenate([np.zeros((1, *values.shape[1:])), np.cumsum(values, axis=0)])
             return np.asarray(total[last] - total[first])
 
-        s0 = window_sum(weight)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            mean_s = window_sum(weight * arc) / s0
-            mean_uv = window_sum(weight[:, None] * line.uv) / s0[:, None]
-            spread = window_sum(weight * arc**2) / s0 - mean_s**2
-            slope = (window_sum((weight * arc)[:, None] * line.uv) / s0[:, None] - mean_s[:, None] * mean_uv) / spread[
-                :, None
-            ]
-            here = mean_uv + slope * (arc - mean_s)[:, None]
-            shift = np.einsum("ni,ni->n", here - line.uv, line.normal)
-            spacing = (arc[last - 1] - arc[first]) / np.maximum(last - first - 1, 1)
-            repeats = np.maximum(1.0, line.correlation_px / np.maximum(spacing, 1e-9))
-            variance = repeats / s0 * (1 + (arc - mean_s) ** 2 / spread)
-        usable = (s0 > 0) & (spread > 1e-3 * half_length**2) & _several(last - first)
-        return cls(np.where(usable, shift, np.nan), np.sqrt(np.where(usable, variance, np.nan)))
+        # Moments about the middle of the run, in units of the window, then moved to each point.
+        t = (arc - arc.mean()) / half_length
+        raw = np.stack([window_sum(weight * t**power) for power in range(5)])
+        moments = _about(raw, t)
+        target = _about(np.stack([window_sum((weight * t**power)[:, None] * line.uv) for power in range(3)]), t)
+        normal_matrix = moments[np.add.outer(np.arange(3), np.arange(3))].transpose(2, 0, 1)
+        usable &= np.linalg.det(normal_matrix) > 1e-6 * np.maximum(moments[0], 1e-300) ** 3
+        normal_matrix[~usable] = np.eye(3)
+        inverse = np.linalg.inv(normal_matrix)
+        coefficients = np.einsum("nik,knj->inj", inverse, target)
+        shift = np.einsum("ni,ni->n", coefficients[0] - line.uv, line.normal)
+        curvature = 2 * np.abs(np.einsum("ni,ni->n", coefficients[2], line.normal)) / half_length**2
+        repeats = np.maximum(1.0, line.correlation_px / np.maximum(spacing, 1e-9))
+        sigma = np.sqrt(repeats * inverse[:, 0, 0])
+        return cls(*(np.where(usable, values, np.nan) for values in (shift, sigma, curvature)))
 
-    def replaced(self, other: _LineFits, where: NDArray[np.bool_]) -> _LineFits:
-        return _LineFits(np.where(where, other.shift, self.shift), np.where(where, other.sigma, self.sigma))
+    def replaced(self, other: _Fits, where: NDArray[np.bool_]) -> _Fits:
+        pairs = ((other.shift, self.shift), (other.sigma, self.sigma), (other.curvature, self.curvature))
+        return _Fits(*(np.where(where, new, old) for new, old in pairs))
 
 
-def _several(points: NDArray[np.intp]) -> NDArray[np.bool_]:
-    return np.asarray(points >= 5)
+def _about(moments: Array, origin: Array) -> Array:
+    """Moments Σ w (t − origin)^k of each window from Σ w t^k, k = 0, 1, …; one origin per window."""
+    shape = (-1,) + (1,) * (moments.ndim - 2)
+    moved = np.zeros_like(moments)
+    for k in range(len(moments)):
+        for j in range(k + 1):
+            moved[k] += comb(k, j) * (-origin.reshape(shape)) ** (k - j) * moments[j]
+    return moved

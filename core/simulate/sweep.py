@@ -21,6 +21,9 @@ FRAMES_PER_PASS = 12
 TILTS_DEG = (18.0, -24.0, 42.0, -40.0, 4.0, 33.0, -10.0, -33.0)
 """Middle tilt of the stripe against the picture's vertical, pass by pass."""
 
+RIM_MM = 20.0
+"""How far beyond the object the hand goes before it turns back."""
+
 
 @dataclass(frozen=True, slots=True)
 class SweepRange:
@@ -61,7 +64,7 @@ def sweep_range(scene: Scene, centre: Array) -> SweepRange:
     extents = [mesh.triangles.reshape(-1, 3)[:, 0] for mesh in scene.meshes]
     extents += [sphere.centre[0] + np.array([-sphere.radius, sphere.radius]) for sphere in scene.spheres]
     widest = max((float(np.abs(x - centre[0]).max()) for x in extents), default=40.0)
-    return SweepRange((float(centre[0]), float(centre[1]), float(centre[2])), widest + 35.0)
+    return SweepRange((float(centre[0]), float(centre[1]), float(centre[2])), widest + RIM_MM)
 
 
 def _sheet(rig: Rig, emitter: Array, aim: Array, stripe: Array) -> Sheet:

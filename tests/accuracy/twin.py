@@ -12,6 +12,7 @@ from core.files.camera_file import read_camera
 from core.files.gauge_file import read_gauge
 from core.files.ply import read_cloud
 from core.files.recording_set import open_set
+from core.files.scan_file import read_scan
 from core.inspect.results import GaugeResult
 from core.pipeline import Workspace, camera_step, gauge_step, planes_step, scan_step
 from core.scan.cloud import Cloud
@@ -28,6 +29,7 @@ class Measured:
     camera: CameraCalibration
     cloud: Cloud
     gauge: GaugeResult | None
+    sweep_covariance: np.ndarray
 
     def depth_errors(self) -> np.ndarray:
         """Measured minus true depth of every point in mm; NaN within two pixels of a depth edge."""
@@ -76,4 +78,5 @@ def measure(scenario: Scenario, folder: Path, calibrated: Path | None = None) ->
         read_camera(work.path("camera")),
         cloud,
         read_gauge(work.path("gauge"), cloud) if gauged else None,
+        read_scan(work.path("scan")).covariance,
     )

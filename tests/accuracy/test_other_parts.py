@@ -1,0 +1,57 @@
+"""Parts other than the wide block, against hidden truth."""
+
+import numpy as np
+import pytest
+
+from core.files.recording_set import open_set
+from core.inspect.sphere import find_sphere, fit_sphere
+from core.pipeline import Options, Workspace, camera_step, planes_step, scan_step
+from core.simulate.recording import simulate_set
+from core.simulate.scenario import Scenario
+from tests.accuracy.twin import measure
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.fixture(scope="module")
+def sphere(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("sphere")
+    return folder, measure(Scenario(object="sphere", height_mm=50.0, seed=5, scale=0.5, frames=60), folder)
+
+
+def test_a_sphere_of_50_mm_has_its_radius(sphere):
+    _, measured = sphere
+    fit = fit_sphere(measured.cloud, find_sphere(measured.cloud), sweep_covariance=measured.sweep_covariance)
+    assert abs(fit.radius_mm - 25.0) <= 0.10
+    assert abs(fit.radius_mm - 25.0) <= 3 * fit.u_mm
+    assert np.linalg.norm(fit.centre - measured.truth.thing["centre_mm"]) < 0.3
+
+
+@pytest.mark.parametrize(
+    ("thing", "height"), [("narrow-block", 50.0), ("block", 20.0)], ids=["two fan lines on it", "low"]
+)
+def test_other_blocks_are_measured_too(sphere, tmp_path, thing, height):
+    calibrated, _ = sphere
+    scenario = Scenario(object=thing, height_mm=height, seed=6, scale=0.5, frames=60)
+    block = measure(scenario, tmp_path, calibrated)
+    assert abs(block.gauge.thickness_mm - height) <= 0.10
+    assert abs(block.gauge.thickness_mm - height) <= 3 * block.gauge.u_mm
+
+
+def test_a_mask_with_folded_ears_is_reconstructed(sphere, tmp_path):
+    calibrated, _ = sphere
+    mask = measure(Scenario(object="mask", height_mm=60.0, seed=7, scale=0.5, frames=60), tmp_path, calibrated)
+    errors = mask.depth_errors()
+    on_mask = ~mask.truth.table[tuple(np.rint(mask.cloud.uv[:, ::-1]).astype(int).T)]
+    assert np.count_nonzero(on_mask) > 5000
+    assert np.nanmedian(np.abs(errors[on_mask])) <= 0.12
+
+
+def test_the_papers_own_method_works_on_the_same_recording_and_is_far_less_complete(tmp_path):
+    simulate_set(Scenario(seed=8, scale=0.5, frames=30), tmp_path / "set")
+    work = Workspace.open(open_set(tmp_path / "set"), tmp_path / "out")
+    camera_step(work)
+    planes_step(work)
+    network = len(scan_step(work).scan.cloud)
+    paper = len(scan_step(work, Options(method="three-crossings")).scan.cloud)
+    assert 0 < paper < 0.6 * network
