@@ -10,7 +10,7 @@ from numba import njit
 
 from core.model.arrays import Array
 
-BIAS_ALLOWED = 0.3
+BIAS_ALLOWED = 0.1
 """Largest bias of a local fit, in its standard uncertainties."""
 
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from core.image.centreline import Centreline
 from core.image.crossing import Crossing, cross_centrelines
+from core.image.shading import shading_sigma
 from core.model.arrays import Array
 from core.progress import Progress, silent, steps
 
@@ -86,61 +87,82 @@ def all_crossings(
 ) -> CrossingTable:
     """Every crossing of each sweep with the fan and with each later sweep."""
     rows: list[_Row] = []
-    for a, pieces in steps(enumerate(sweeps), progress, "crossings", len(sweeps)):
-        rows.extend(_meetings(pieces, fan, a, -1, window))
+    stripes = [_shaded(pieces) for pieces in sweeps]
+    fixed = _shaded(fan)
+    for a, pieces in steps(enumerate(stripes), progress, "crossings", len(sweeps)):
+        rows.extend(_meetings(pieces, fixed, a, -1, window))
         for b in range(a + 1, len(sweeps)):
-            rows.extend(_meetings(pieces, sweeps[b], a, b, window))
+            rows.extend(_meetings(pieces, stripes[b], a, b, window))
     return _table(rows, window)
 
 
 @dataclass(frozen=True, eq=False, slots=True)
+class _Shaded:
+    """The centrelines of one picture, with what uneven brightness adds to their σ, and the length along them."""
+
+    pieces: Sequence[Centreline]
+    shading: Sequence[Array]
+    arc: Sequence[Array]
+
+
+def _shaded(pieces: Sequence[Centreline]) -> _Shaded:
+    arcs = [np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(p.uv, axis=0), axis=1))]) for p in pieces]
+    return _Shaded(pieces, [shading_sigma(piece) for piece in pieces], arcs)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
 class _Row:
-    a: int
-    b: int
-    piece_a: int
-    piece_b: int
-    along_a: float
-    along_b: float
+    """One crossing: (a, b, piece of a, piece of b); where along, and the σ of, each centreline."""
+
+    index: tuple[int, int, int, int]
+    along: tuple[float, float]
+    sigma: tuple[float, float]
     crossing: Crossing
 
 
-def _meetings(
-    pieces_a: Sequence[Centreline], pieces_b: Sequence[Centreline], a: int, b: int, window: CrossingWindow
-) -> list[_Row]:
-    found = cross_centrelines(pieces_a, pieces_b, half_length_px=window.half_length_px, min_angle=window.min_angle)
-    return [
-        _Row(a, b, i, j, _along(pieces_a[i], crossing.uv), _along(pieces_b[j], crossing.uv), crossing)
-        for i, j, crossing in found
-    ]
+def _meetings(of_a: _Shaded, of_b: _Shaded, a: int, b: int, window: CrossingWindow) -> list[_Row]:
+    found = cross_centrelines(
+        of_a.pieces, of_b.pieces, half_length_px=window.half_length_px, min_angle=window.min_angle
+    )
+    rows = []
+    for i, j, crossing in found:
+        at_a, at_b = _nearest(of_a.pieces[i], crossing.uv), _nearest(of_b.pieces[j], crossing.uv)
+        rows.append(
+            _Row(
+                (a, b, i, j),
+                (float(of_a.arc[i][at_a]), float(of_b.arc[j][at_b])),
+                (
+                    float(np.hypot(crossing.sigma_a, of_a.shading[i][at_a])),
+                    float(np.hypot(crossing.sigma_b, of_b.shading[j][at_b])),
+                ),
+                crossing,
+            )
+        )
+    return rows
 
 
-def _along(piece: Centreline, uv: Array) -> float:
-    """Length along `piece` from its first point to the one nearest to `uv`."""
-    nearest = int(np.argmin(np.sum((piece.uv - uv) ** 2, axis=1)))
-    return float(np.sum(np.linalg.norm(np.diff(piece.uv[: nearest + 1], axis=0), axis=1)))
+def _nearest(piece: Centreline, uv: Array) -> int:
+    return int(np.argmin(np.sum((piece.uv - uv) ** 2, axis=1)))
 
 
 def _table(rows: list[_Row], window: CrossingWindow) -> CrossingTable:
     def vectors(name: str) -> Array:
         return np.array([getattr(row.crossing, name) for row in rows], dtype=np.float64).reshape(-1, 2)
 
-    def scalars(name: str) -> Array:
-        return np.array([getattr(row.crossing, name) for row in rows], dtype=np.float64)
-
-    def indices(name: str) -> Index:
-        return np.array([getattr(row, name) for row in rows], dtype=np.int64)
-
+    index = np.array([row.index for row in rows], dtype=np.int64).reshape(-1, 4)
+    along = np.array([row.along for row in rows], dtype=np.float64).reshape(-1, 2)
+    sigma = np.array([row.sigma for row in rows], dtype=np.float64).reshape(-1, 2)
     return CrossingTable(
         uv=vectors("uv"),
         tangent_a=vectors("tangent_a"),
         tangent_b=vectors("tangent_b"),
-        sigma_a=scalars("sigma_a"),
-        sigma_b=scalars("sigma_b"),
-        a=indices("a"),
-        b=indices("b"),
-        piece_a=indices("piece_a"),
-        piece_b=indices("piece_b"),
-        along_a=np.array([row.along_a for row in rows]),
-        along_b=np.array([row.along_b for row in rows]),
+        sigma_a=sigma[:, 0],
+        sigma_b=sigma[:, 1],
+        a=index[:, 0],
+        b=index[:, 1],
+        piece_a=index[:, 2],
+        piece_b=index[:, 3],
+        along_a=along[:, 0],
+        along_b=along[:, 1],
         half_length_px=window.half_length_px,
     )

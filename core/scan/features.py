@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from core.errors import InputError
 from core.image.centreline import Centreline
 from core.image.noise import NoiseModel, estimate_noise
+from core.image.shading import shading_sigma
 from core.image.smoothing import smooth
 from core.image.stripe_settings import StripeSettings, choose_settings
 from core.image.stripes import extract_centrelines
@@ -108,8 +109,8 @@ def extract_features(
     progress("frames", len(found), total)
     _require_sweeps(found)
     crossings = all_crossings(fan, [frame.centrelines for frame in found], options.window, progress)
-    fan = tuple(smooth(piece) for piece in fan)
-    found = [replace(frame, centrelines=tuple(smooth(piece) for piece in frame.centrelines)) for frame in found]
+    fan = _refined(fan)
+    found = [replace(frame, centrelines=_refined(frame.centrelines)) for frame in found]
     height, width = reference.shape
     return ScanFeatures((width, height), fan, tuple(found), crossings, sweep_stripe, fan_stripe, _moved_notes(found))
 
@@ -150,6 +151,12 @@ class _FrameJob:
         pieces = extract_centrelines(difference, self.stripe, noise=self.noise, saturated=saturated)
         reason = "" if pieces else "no stripe of the hand-held laser"
         return FrameFeatures(index, name, pieces, reason, check.shift_px)
+
+
+def _refined(pieces: tuple[Centreline, ...]) -> tuple[Centreline, ...]:
+    """Averaged along themselves, and as uncertain as uneven brightness makes them."""
+    smoothed = (smooth(piece) for piece in pieces)
+    return tuple(replace(piece, sigma=np.hypot(piece.sigma, shading_sigma(piece))) for piece in smoothed)
 
 
 def _full_scale(picture: Picture) -> float:

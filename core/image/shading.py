@@ -1,0 +1,30 @@
+"""How far uneven brightness may have moved a centreline.
+
+Where a surface turns away from the laser, light falls off across the stripe too: a Gaussian section of width s times
+a slope g = ∂ln I/∂n has its crest moved by s² g, and no estimator can see it, for the section stays a Gaussian. Across
+the stripe g is not known, but along it the brightness can be read off, and on a bent surface the two are alike. So
+s² |∂ln I/∂s| is what the crest may be off by, and it counts as uncertainty. On an evenly lit face it vanishes.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.ndimage import uniform_filter1d
+
+from core.image.centreline import Centreline
+from core.model.arrays import Array
+
+WINDOW_PX = 41
+"""Length over which speckle is averaged out of the brightness."""
+
+
+def shading_sigma(centreline: Centreline) -> Array:
+    """Standard uncertainty (N,) in px, across the stripe, from the brightness that changes along it."""
+    count = len(centreline)
+    if count < 5:
+        return np.zeros(count)
+    window = min(WINDOW_PX, count)
+    brightness = np.log(np.maximum(centreline.strength, 1e-3))
+    even = uniform_filter1d(brightness, window, mode="nearest")
+    slope = uniform_filter1d(np.gradient(even), window, mode="nearest")
+    return np.asarray(np.median(centreline.width) ** 2 * np.abs(slope))
