@@ -5,16 +5,21 @@ BIN    := $(VENV)/bin
 READY  := $(VENV)/.ready
 OUT    ?= out
 
+# Two tests at a time, each on one core: linear algebra on more threads than cores is many times slower.
+SIDE_BY_SIDE := -n 2 --dist loadscope
+test quick: export OPENBLAS_NUM_THREADS = 1
+test quick: export OMP_NUM_THREADS = 1
+
 .PHONY: demo test quick check wheel clean
 
 demo: $(READY)            ## measure the embedded sample: cloud, mesh and report of a 50 mm gauge block in ./out
 	$(BIN)/trisect demo --out $(OUT)
 
 test: check               ## format, lint, types, rooms, and every test
-	$(BIN)/pytest -n 2 --dist loadscope
+	$(BIN)/pytest $(SIDE_BY_SIDE)
 
 quick: check              ## the same without the slow proofs
-	$(BIN)/pytest -n 2 --dist loadscope -m "not slow"
+	$(BIN)/pytest $(SIDE_BY_SIDE) -m "not slow"
 
 check: $(READY)
 	$(BIN)/ruff format --check .

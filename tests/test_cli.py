@@ -12,6 +12,7 @@ from plyfile import PlyData
 from pypdf import PdfReader
 
 from core import __version__
+from core.report.wording import with_uncertainty
 from tests.simulated import CUT, SMALL, copy_of, trisect
 
 pytestmark = pytest.mark.xdist_group("small simulated set")
@@ -65,7 +66,8 @@ def test_the_report_names_part_thickness_and_version(measured):
     text = "\n".join(page.extract_text() for page in PdfReader(str(measured / "report.pdf")).pages)
     assert 1 <= len(PdfReader(str(measured / "report.pdf")).pages) <= 3
     assert __version__ in text
-    assert f"{gauge['thickness_mm']:.1f}" in text
+    value, uncertainty = with_uncertainty(gauge["thickness_mm"], gauge["U_mm"])
+    assert f"{value} mm ± {uncertainty} mm" in " ".join(text.split())
 
 
 def test_each_step_alone_gives_the_same_files_as_the_whole_run(simulated, measured, tmp_path):

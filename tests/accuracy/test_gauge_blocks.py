@@ -23,9 +23,10 @@ class BlocksOfOneSeed:
     seed: int
 
     @pytest.fixture(scope="class")
-    def block(self, tmp_path_factory):
+    @classmethod
+    def block(cls, tmp_path_factory):
         """Measured blocks by height, each rendered when it is first asked for."""
-        folder = tmp_path_factory.mktemp(f"seed{self.seed}")
+        folder = tmp_path_factory.mktemp(f"seed{cls.seed}")
         done: dict[float, Measured] = {}
 
         def of_height(height: float) -> Measured:
@@ -33,7 +34,7 @@ class BlocksOfOneSeed:
                 calibrated = None if height == HEIGHTS[0] else folder / f"{HEIGHTS[0]:g}"
                 if calibrated:
                     of_height(HEIGHTS[0])
-                scenario = Scenario(object="block", height_mm=height, seed=self.seed, scale=0.5, frames=60)
+                scenario = Scenario(object="block", height_mm=height, seed=cls.seed, scale=0.5, frames=60)
                 done[height] = measure(scenario, folder / f"{height:g}", calibrated)
             return done[height]
 
@@ -45,17 +46,16 @@ class BlocksOfOneSeed:
         assert max(abs(error) for error in errors.values()) < 4
 
     @pytest.mark.parametrize("height", HEIGHTS)
-    def test_thickness_and_depth_are_true_within_what_they_state(self, block, height, capsys):
+    def test_thickness_and_depth_are_true_within_what_they_state(self, block, height):
         measured = block(height)
         error, u = measured.gauge.thickness_mm - height, measured.gauge.u_mm
         depth_errors = measured.depth_errors()
         known = np.isfinite(depth_errors)
         median = np.median(np.abs(depth_errors[known]))
-        with capsys.disabled():
-            print(
-                f"\nseed {self.seed}, {height:g} mm: thickness error {error:+.4f} mm, u {u:.4f} mm, "
-                f"median |depth error| {median:.4f} mm, {len(depth_errors)} points"
-            )
+        print(  # pytest -rP shows the figures of the README's table
+            f"seed {self.seed}, {height:g} mm: thickness error {error:+.4f} mm, u {u:.4f} mm, "
+            f"median |depth error| {median:.4f} mm, {len(depth_errors)} points"
+        )
         assert abs(error) <= THICKNESS_MM
         assert abs(error) <= 3 * u
         assert u < 0.05
