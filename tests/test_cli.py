@@ -181,3 +181,17 @@ def test_the_reader_of_our_output_may_leave_early(simulated, measured, tmp_path)
     process.stderr.close()
     process.wait(timeout=120)
     assert complaints == b""
+
+
+def test_width_and_contrast_of_the_stripes_can_be_given(simulated, measured, tmp_path):
+    out = copy_of(measured, tmp_path / "out")
+    said = trisect("scan", simulated, "--out", out, *CUT, "--stripe-width", 4, "--contrast", 60)
+    assert said.code == 0, said.err
+    stripe = json.loads((out / "run.json").read_text())["settings"]["scan"]["stripe"]
+    assert stripe == {"width_px": 4.0, "contrast": 60.0}
+
+
+def test_a_width_without_a_contrast_is_refused(simulated, tmp_path):
+    said = trisect("scan", simulated, "--out", tmp_path, "--stripe-width", 4)
+    assert said.code == 2
+    assert "--contrast" in said.sentence

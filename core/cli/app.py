@@ -20,7 +20,7 @@ from typer.core import TyperGroup
 from core import __version__
 from core.cli.bars import bars
 from core.errors import Cancelled, InputError
-from core.simulate.scenario import OBJECTS, Scenario
+from core.simulate.scenario import CAMERA_TARGETS, OBJECTS, PLANE_TARGETS, Scenario
 
 BAD_INPUT, INTERRUPTED = 2, 130
 
@@ -53,6 +53,18 @@ SigmaCut = Annotated[
 NoSkew = Annotated[bool, typer.Option("--no-skew", help="Fix the camera's skew γ to 0.")]
 Part = Annotated[str, typer.Option(metavar="NAME", help="Name of the part in the report; else the name of SET.")]
 K3 = Annotated[bool, typer.Option("--k3", help="Free the third radial coefficient, for wide lenses.")]
+
+
+StripeWidth = Annotated[
+    float,
+    typer.Option(
+        "--stripe-width", metavar="PX", help="Visible width of the scan's stripes; 0: chosen from the pictures."
+    ),
+]
+Contrast = Annotated[
+    float,
+    typer.Option("--contrast", metavar="GREY", help="Height of a rather faint stripe above its background; 0: chosen."),
+]
 
 
 class _Commands(TyperGroup):
@@ -98,6 +110,8 @@ def run(
     out: Out,
     method: MethodOption = Method.network,
     sigma_cut: SigmaCut = 0.05,
+    stripe_width: StripeWidth = 0.0,
+    contrast: Contrast = 0.0,
     no_skew: NoSkew = False,
     k3: K3 = False,
     part: Part = "",
@@ -106,7 +120,15 @@ def run(
     """Measure a recording set: calibrations, cloud, mesh, thickness, report."""
     from core.cli import measuring
 
-    options = measuring.options(method.value, sigma_cut, skew=not no_skew, k3=k3, part=part)
+    options = measuring.options(
+        method.value,
+        sigma_cut,
+        skew=not no_skew,
+        k3=k3,
+        part=part,
+        stripe_width=stripe_width,
+        contrast=contrast,
+    )
     with bars() as progress:
         result = measuring.run_all(folder, out, options, progress)
     measuring.show_run(result, as_json=json)
@@ -136,12 +158,18 @@ def planes(folder: Set, out: Out, json: Json = False) -> None:
 
 @app.command()
 def scan(
-    folder: Set, out: Out, method: MethodOption = Method.network, sigma_cut: SigmaCut = 0.05, json: Json = False
+    folder: Set,
+    out: Out,
+    method: MethodOption = Method.network,
+    sigma_cut: SigmaCut = 0.05,
+    stripe_width: StripeWidth = 0.0,
+    contrast: Contrast = 0.0,
+    json: Json = False,
 ) -> None:
     """Measure the surface from SET/scan, with the calibrations in DIR; writes cloud.ply and mesh.ply."""
     from core.cli import measuring
 
-    options = measuring.options(method.value, sigma_cut)
+    options = measuring.options(method.value, sigma_cut, stripe_width=stripe_width, contrast=contrast)
     with bars() as progress:
         shown = measuring.run_scan(folder, out, options, progress)
     shown.show(as_json=json)
@@ -184,6 +212,16 @@ def simulate(
     noise: Annotated[float, typer.Option(help="Factor on shot and read noise; 0 for none.")] = SCENARIO.noise,
     speckle: Annotated[float, typer.Option(help="Contrast of the lasers' speckle; 0 for none.")] = SCENARIO.speckle,
     bits: Annotated[int, typer.Option(help="Depth of the pictures, 8 or 16.")] = SCENARIO.bits,
+    ambient: Annotated[float, typer.Option(help="Grey level of a white surface in the room's light.")] = (
+        SCENARIO.ambient_grey
+    ),
+    texture: Annotated[float, typer.Option(help="Relative unevenness of the surfaces.")] = SCENARIO.texture,
+    camera_target: Annotated[str, typer.Option(help=f"One of {', '.join(CAMERA_TARGETS)}.")] = SCENARIO.camera_target,
+    plane_target: Annotated[str, typer.Option(help=f"One of {', '.join(PLANE_TARGETS)}.")] = SCENARIO.plane_target,
+    published_planes: Annotated[
+        bool, typer.Option("--published-planes", help="The paper's printed planes instead of an exact 5° pencil.")
+    ] = False,
+    no_reference: Annotated[bool, typer.Option("--no-reference", help="Leave scan/reference.png out.")] = False,
     json: Json = False,
 ) -> None:
     """Render a recording set as the paper's rig would record it; its truth is written beside it, never inside."""
@@ -201,6 +239,12 @@ def simulate(
         noise=noise,
         speckle=speckle,
         bits=bits,
+        ambient_grey=ambient,
+        texture=texture,
+        camera_target=camera_target,
+        plane_target=plane_target,
+        published_planes=published_planes,
+        reference=not no_reference,
     )
     with bars() as progress:
         simulating.render(scenario, out, progress)

@@ -9,7 +9,9 @@ from typing import Any, cast
 
 from core.calibrate.camera import CameraOptions
 from core.cli import output
+from core.errors import InputError
 from core.files.recording_set import open_set
+from core.image.stripe_settings import StripeSettings
 from core.inspect.results import GaugeResult
 from core.pipeline import (
     Options,
@@ -46,9 +48,25 @@ class Shown:
             output.print_rows(self.rows, self.notes, self.files)
 
 
-def options(method: str, sigma_cut: float, *, skew: bool = True, k3: bool = False, part: str = "") -> Options:
+def options(
+    method: str,
+    sigma_cut: float,
+    *,
+    skew: bool = True,
+    k3: bool = False,
+    part: str = "",
+    stripe_width: float = 0.0,
+    contrast: float = 0.0,
+) -> Options:
     """The pipeline's options from the command line's; InputError if one is absurd."""
-    return Options(cast(Method, method), sigma_cut, CameraOptions(skew=skew, k3=k3), part)
+    if (stripe_width > 0) != (contrast > 0) or min(stripe_width, contrast) < 0:
+        raise InputError(
+            "width and contrast of the stripes belong together, both above 0",
+            where="--stripe-width, --contrast",
+            todo="give both, or neither to have them chosen from the pictures",
+        )
+    stripe = StripeSettings(stripe_width, contrast) if stripe_width > 0 else None
+    return Options(cast(Method, method), sigma_cut, CameraOptions(skew=skew, k3=k3), part, stripe)
 
 
 def exit_code(gauge: GaugeResult | None) -> int:

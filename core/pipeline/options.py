@@ -8,6 +8,7 @@ from typing import Any
 
 from core.calibrate.camera import CameraOptions
 from core.errors import InputError
+from core.image.stripe_settings import StripeSettings
 from core.scan.reconstruct import Method
 
 METHODS: tuple[Method, ...] = ("network", "three-crossings")
@@ -26,6 +27,8 @@ class Options:
         Points with a larger standard uncertainty of depth are left out.
     camera
         Which camera parameters are free.
+    stripe
+        Width and contrast of the stripes in the scan's pictures; None: chosen from the pictures, for each laser.
     part
         Name of the part for the report; else it is named like the set.
 
@@ -39,6 +42,7 @@ class Options:
     sigma_cut_mm: float = 0.05
     camera: CameraOptions = field(default_factory=CameraOptions)
     part: str = ""
+    stripe: StripeSettings | None = None
 
     def __post_init__(self) -> None:
         if self.method not in METHODS:
@@ -55,4 +59,6 @@ class Options:
     @property
     def scan_settings(self) -> Mapping[str, Any]:
         """What the scan is told, for run.json."""
-        return {"method": self.method, "sigma_cut_mm": self.sigma_cut_mm}
+        stripe = self.stripe
+        chosen = "automatic" if stripe is None else {"width_px": stripe.width_px, "contrast": stripe.contrast}
+        return {"method": self.method, "sigma_cut_mm": self.sigma_cut_mm, "stripe": chosen}

@@ -15,7 +15,7 @@ from core.model import Camera
 from core.pipeline.options import Options
 from core.pipeline.workspace import Workspace, check_size
 from core.progress import Progress, silent
-from core.scan.features import ScanFeatures, extract_features
+from core.scan.features import FeatureOptions, ScanFeatures, extract_features
 from core.scan.fusion import fuse
 from core.scan.mesh import build_mesh
 from core.scan.normals import with_normals
@@ -54,7 +54,8 @@ def scan_step(work: Workspace, options: Options | None = None, progress: Progres
         log.settings.update(options.scan_settings)
         reference, note = _reference(found, camera)
         log.notes.extend(note)
-        features = extract_features(reference, found.stream(found.frames), len(found.frames), progress=progress)
+        looking = FeatureOptions(sweep_stripe=options.stripe, fan_stripe=options.stripe)
+        features = extract_features(reference, found.stream(found.frames), len(found.frames), looking, progress)
         solving = ReconstructOptions(method=options.method, sigma_cut_mm=options.sigma_cut_mm)
         scan = reconstruct(features, camera, fan, solving, progress)
         scan = replace(scan, cloud=with_normals(scan.cloud, progress=progress))
