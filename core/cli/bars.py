@@ -41,7 +41,7 @@ def bars() -> Iterator[Progress]:
 def _interruptible() -> Iterator[Callable[[], None]]:
     """Remember Ctrl-C besides raising KeyboardInterrupt, and give a check that raises Cancelled if it came.
 
-    An exception that falls into a finaliser or a callback of compiled code is dropped by Python, and the job would go on.
+    Python drops an exception that falls into a finaliser or a callback of compiled code, and the job would go on.
     """
     asked = threading.Event()
 
