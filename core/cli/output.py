@@ -12,6 +12,7 @@ from rich.console import Console
 from rich.table import Table
 
 from core.calibrate.results import CAMERA_PARAMETERS, CameraCalibration, FanCalibration
+from core.files.gauge_file import gauge_summary
 from core.files.json_text import to_json
 from core.inspect.results import GaugeResult
 from core.report.wording import count, decimals_of, fixed, grouped, thickness_line, with_uncertainty
@@ -126,16 +127,7 @@ def gauge_json(gauge: GaugeResult | None) -> dict[str, Any]:
     if gauge is None:
         return {"thickness_mm": None, "verdict": ""}
     return {
-        "thickness_mm": gauge.thickness_mm,
-        "u_mm": gauge.u_mm,
-        "U_mm": gauge.U_mm,
-        "k": gauge.k,
-        "nominal_mm": gauge.nominal_mm,
-        "tolerance_mm": gauge.tolerance_mm,
-        "deviation_mm": gauge.deviation_mm,
-        "verdict": gauge.verdict,
-        "flatness_mm": {"upper": gauge.upper.flatness_mm, "lower": gauge.lower.flatness_mm},
-        "parallelism_deg": math.degrees(gauge.parallelism),
+        **gauge_summary(gauge),
         "points_on_faces": dict(zip(("upper", "lower"), gauge.points_used, strict=True)),
     }
 

@@ -61,6 +61,22 @@ class _GaugeFile(ResultFile):
     calibration_id: str = ""
 
 
+def gauge_summary(gauge: GaugeResult) -> dict[str, Any]:
+    """What everyone asks of a thickness, by the names used in files and on the command line."""
+    return {
+        "thickness_mm": gauge.thickness_mm,
+        "u_mm": gauge.u_mm,
+        "U_mm": gauge.U_mm,
+        "k": gauge.k,
+        "nominal_mm": gauge.nominal_mm,
+        "tolerance_mm": gauge.tolerance_mm,
+        "deviation_mm": gauge.deviation_mm,
+        "verdict": gauge.verdict,
+        "flatness_mm": {"upper": gauge.upper.flatness_mm, "lower": gauge.lower.flatness_mm},
+        "parallelism_deg": math.degrees(gauge.parallelism),
+    }
+
+
 def write_gauge(path: Path, gauge: GaugeResult, calibration_id: str) -> None:
     """Write gauge.json at `path`, and gauge.npz beside it; InputError if they cannot be written."""
     write_arrays(path.with_suffix(".npz"), {"upper": gauge.upper.indices, "lower": gauge.lower.indices})
@@ -68,18 +84,9 @@ def write_gauge(path: Path, gauge: GaugeResult, calibration_id: str) -> None:
         path,
         to_json(
             {
-                "thickness_mm": gauge.thickness_mm,
-                "u_mm": gauge.u_mm,
-                "U_mm": gauge.U_mm,
-                "k": gauge.k,
-                "nominal_mm": gauge.nominal_mm,
-                "tolerance_mm": gauge.tolerance_mm,
-                "deviation_mm": gauge.deviation_mm,
-                "verdict": gauge.verdict,
+                **gauge_summary(gauge),
                 "rule": gauge.rule,
                 "notes": gauge.notes,
-                "flatness_mm": {"upper": gauge.upper.flatness_mm, "lower": gauge.lower.flatness_mm},
-                "parallelism_deg": math.degrees(gauge.parallelism),
                 "points": dict(zip(("upper", "lower"), gauge.points_used, strict=True)),
                 "normal": gauge.normal,
                 "budget": [{"source": row.source, "u_mm": row.u_mm} for row in gauge.budget],
