@@ -179,8 +179,8 @@ def test_black_and_white_frames_among_good_ones(folder, out):
     assert said.code == 0, said.err
     records = frame_records(out)
     assert [record["points"] > 0 for record in (records[2], records[6])] == [False, False]
-    assert records[2]["reason"]
-    assert records[6]["reason"]
+    assert records[2]["reason"] == "the picture is all black"
+    assert records[6]["reason"] == "the picture is all white"
 
 
 @pytest.mark.parametrize("how", ["black", "white"])

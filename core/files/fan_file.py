@@ -24,12 +24,18 @@ _VECTOR = "three finite numbers, not all zero"
 
 class _Plane(ResultFile):
     pi: Row3 = Field(description=_VECTOR)
+    normal: Row3 | None = None
+    d_mm: Finite | None = None
     rms_mm: Maybe = None
 
     @model_validator(mode="after")
     def _is_a_plane(self) -> _Plane:
         if not any(self.pi):
             raise Clash("pi", f"is [0, 0, 0], not {_VECTOR}")
+        if self.normal is not None and self.d_mm is not None:
+            said = [coordinate * self.d_mm for coordinate in self.pi]
+            if not np.allclose(said, self.normal, rtol=0, atol=1e-6):
+                raise Clash("normal", "and d_mm do not agree with pi")
         return self
 
 

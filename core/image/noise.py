@@ -21,7 +21,6 @@ from core.model.arrays import Array
 
 _MASK = np.array([[1, -2, 1], [-2, 4, -2], [1, -2, 1]], dtype=np.float32) / 6
 _TILE = 16
-_MAD_TO_SIGMA = 1.4826
 _ROUNDING = 1 / 12
 """Variance of rounding to whole grey levels: no digital picture is better."""
 

@@ -60,6 +60,11 @@ def gauge_step(work: Workspace, progress: Progress = silent) -> GaugeResult:
         )
         log.settings.update({"nominal_mm": spec.nominal_mm, "tolerance_mm": spec.tolerance_mm, "rule": gauge.rule})
         log.notes.extend(gauge.notes)
+        if not work.path("poses").exists():
+            log.notes.append(
+                f"{work.path('poses').name} is missing, so the fan was not calibrated anew with displaced cameras; "
+                "U is larger than it need be."
+            )
         write_gauge(work.path("gauge"), gauge, calibration.id)
     return read_gauge(work.path("gauge"), cloud)
 

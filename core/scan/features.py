@@ -24,6 +24,9 @@ from core.scan.crossings import CrossingTable, CrossingWindow, all_crossings
 from core.scan.reference import Picture, check_reference
 from core.threads import ordered_map
 
+MOVED = "object or camera moved during the scan: the fan's light lies elsewhere than in the reference"
+LOST = "the fan's light is gone: object or camera moved far during the scan, or the three-line laser was off"
+
 LOOK_AHEAD = 8
 """How many frames are looked at for the stripe's width and contrast when they are not given."""
 
@@ -132,19 +135,15 @@ class _FrameJob:
             return FrameFeatures(index, name, (), picture)
         if picture.shape != self.base.shape:
             return FrameFeatures(index, name, (), _sizes_differ(picture, self.base))
+        if nothing := _shows_nothing(picture, self.full_scale):
+            return FrameFeatures(index, name, (), nothing)
         difference = picture.astype(np.float32)
         difference -= self.base
         check = check_reference(difference, self.fan)
-        if check.shift_px > self.move_limit_px or check.lost:
-            u, v = check.at
-            what = "the fan's light is gone" if check.lost else f"the fan's light moved by {check.shift_px:.1f} px"
-            return FrameFeatures(
-                index,
-                name,
-                (),
-                f"object or camera moved since the reference ({what} near {u:.0f}, {v:.0f})",
-                check.shift_px,
-            )
+        if check.lost:
+            return FrameFeatures(index, name, (), LOST, check.shift_px)
+        if check.shift_px > self.move_limit_px:
+            return FrameFeatures(index, name, (), MOVED, check.shift_px)
         if self.stripe is None:
             return FrameFeatures(index, name, (), "no stripe of the hand-held laser", check.shift_px)
         saturated = picture >= self.full_scale
@@ -194,6 +193,16 @@ def _sweep_settings(frames: list[Frame], base: NDArray[np.float32], full_scale: 
     )
 
 
+def _shows_nothing(picture: Picture, full_scale: float) -> str:
+    """Why a picture without any contrast is of no use, or nothing."""
+    sample = picture[::4, ::4]
+    if sample.max() <= 0.01 * full_scale:
+        return "the picture is all black"
+    if sample.min() >= 0.99 * full_scale:
+        return "the picture is all white"
+    return ""
+
+
 def _sizes_differ(picture: Picture, base: NDArray[np.float32]) -> str:
     (height, width), (base_height, base_width) = picture.shape, base.shape
     return f"its size {width} × {height} differs from the reference's {base_width} × {base_height}"
@@ -212,10 +221,12 @@ def _require_sweeps(frames: list[FrameFeatures]) -> None:
 
 
 def _moved_notes(frames: list[FrameFeatures]) -> tuple[str, ...]:
-    moved = [frame for frame in frames if frame.reason.startswith("object or camera moved")]
+    moved = [frame for frame in frames if frame.reason in (MOVED, LOST)]
     if not moved:
         return ()
+    first = moved[0]
     return (
-        f"Object or camera moved during the scan: {len(moved)} of {len(frames)} frames, the first {moved[0].name}, "
-        "were left out. Hold both still and scan again to use them all.",
+        f"Object or camera moved during the scan: {len(moved)} of {len(frames)} frames were left out, the first "
+        f"{first.name} (the fan's light is {first.shift_px:.1f} px or more aside, measured across its lines). "
+        "Hold both still and scan again to use them all.",
     )

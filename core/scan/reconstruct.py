@@ -85,11 +85,12 @@ def reconstruct(
     clouds = _fan_clouds(features, lines, camera, fan) + _sweep_clouds(features, sweeps, camera)
     cloud = _cut(join(clouds), options.sigma_cut_mm)
     progress("network", 2, 3)
-    if not len(cloud):
+    if not np.any(cloud.sweep >= 0):
         raise InputError(
-            f"no point of the scan is known to {options.sigma_cut_mm} mm",
+            f"no point of any sweep is known to {options.sigma_cut_mm} mm" + "".join(f" ({n})" for n in sweeps.notes),
             where="scan",
-            todo="cross more of the fan with each sweep and tilt the laser between sweeps, or raise the σ cut",
+            todo="cross more of the fan with each sweep and tilt the laser between sweeps, check laser_fan.lines in "
+            "rig.toml, or raise the σ cut",
         )
     records = _records(features, crossings, line, sweeps, cloud, camera)
     progress("network", 3, 3)
@@ -280,4 +281,7 @@ def _why_no_points(crossings: int, solved: bool) -> str:
 
 def _fan_notes(lines: FanLines) -> tuple[str, ...]:
     left_out = [reason for reason in lines.reason if reason]
-    return (f"{len(left_out)} stretches of the fan's light were not used: {left_out[0]}.",) if left_out else ()
+    if not left_out:
+        return ()
+    many = "1 stretch" if len(left_out) == 1 else f"{len(left_out)} stretches"
+    return (f"Not used of the fan's light: {many} ({left_out[0]}).",)

@@ -49,12 +49,11 @@ def quantile_reference(pictures: Sequence[Picture], quantile: float = 0.35) -> P
 class ReferenceCheck:
     """How far a frame has departed from the reference.
 
-    `shift_px` is the largest median shift of any of the fan's centrelines across itself; `at` the pixel in its middle;
-    `lost` says that a whole stretch of the fan's light is gone; `light` the change of the background in grey levels.
+    `shift_px` is the largest median shift of any of the fan's centrelines across itself; `lost` says that a whole
+    stretch of the fan's light is gone; `light` the change of the background in grey levels.
     """
 
     shift_px: float
-    at: tuple[float, float]
     lost: bool
     light: float
 
@@ -66,7 +65,7 @@ def check_reference(difference: NDArray[np.float32], fan: Sequence[Centreline]) 
     crosses few of a stripe's points, and the median over them does not see it.
     """
     light = float(np.median(difference[::16, ::16]))
-    worst, at, lost = 0.0, (0.0, 0.0), False
+    worst, lost = 0.0, False
     for piece in fan:
         thin = piece.select(slice(None, None, 3))
         if len(thin) < 20:
@@ -78,10 +77,8 @@ def check_reference(difference: NDArray[np.float32], fan: Sequence[Centreline]) 
         slope = 2 * np.exp(-0.5) * thin.strength / thin.width
         shift = abs(float(np.median((flank_plus - flank_minus) / slope)))
         lost = lost or float(np.median((centre - light) / thin.strength)) < -0.5
-        if shift > worst:
-            middle = piece.uv[len(piece) // 2]
-            worst, at = shift, (float(middle[0]), float(middle[1]))
-    return ReferenceCheck(worst, at, lost, light)
+        worst = max(worst, shift)
+    return ReferenceCheck(worst, lost, light)
 
 
 def _sample(picture: NDArray[np.float32], uv: Array) -> Array:

@@ -28,6 +28,13 @@ def test_a_sphere_of_50_mm_has_its_radius(sphere):
     assert np.linalg.norm(fit.centre - measured.truth.thing["centre_mm"]) < 0.3
 
 
+@pytest.mark.xfail(reason="round surfaces come out small: fading light pulls the crest; see the README")
+def test_a_sphere_has_its_radius_on_the_worst_of_five_seeds_too(tmp_path):
+    measured = measure(Scenario(object="sphere", height_mm=50.0, seed=12, scale=0.5, frames=60), tmp_path)
+    fit = fit_sphere(measured.cloud, find_sphere(measured.cloud), sweep_covariance=measured.sweep_covariance)
+    assert abs(fit.radius_mm - 25.0) <= 0.10
+
+
 @pytest.mark.parametrize(
     ("thing", "height"), [("narrow-block", 50.0), ("block", 20.0)], ids=["two fan lines on it", "low"]
 )

@@ -171,6 +171,16 @@ def test_fan_round_trip_is_exact_and_has_the_keys_of_the_design(tmp_path, camera
     assert back.poses[0].name == "p1"
 
 
+def test_a_normal_that_contradicts_pi_is_refused(tmp_path, camera, fan):
+    path = tmp_path / "planes.json"
+    write_fan(path, fan, camera.camera)
+    tables = json.loads(path.read_text())
+    tables["planes"][1]["normal"] = [0.0, 0.0, 0.0]
+    path.write_text(json.dumps(tables))
+    with pytest.raises(InputError, match=r"planes\[1\].*normal"):
+        read_fan(path, camera.camera)
+
+
 def test_planes_of_another_camera_are_refused(tmp_path, camera, fan):
     write_fan(tmp_path / "planes.json", fan, camera.camera)
     other = Camera((1920, 1374), camera.camera.matrix * [[1.001, 1, 1], [1, 1, 1], [1, 1, 1]])
