@@ -18,6 +18,7 @@ from core.progress import Progress, silent
 from core.scan.features import FeatureOptions, ScanFeatures, extract_features
 from core.scan.fusion import fuse
 from core.scan.mesh import build_mesh
+from core.scan.network import SILENCED
 from core.scan.normals import with_normals
 from core.scan.reconstruct import ReconstructOptions, reconstruct
 from core.scan.reference import quantile_reference, sample_indices
@@ -25,8 +26,6 @@ from core.scan.results import FrameRecord, ScanResult
 from core.scan.surface import Mesh
 
 FEWEST_FOR_QUANTILE = 3
-LEFT_OUT_BELOW = 0.05
-"""A crossing with less weight than this counts as left out."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -104,7 +103,7 @@ def _left_out(frames: tuple[FrameRecord, ...]) -> list[str]:
 
 def _file(features: ScanFeatures, scan: ScanResult, calibration_id: str) -> ScanFile:
     shown = _shown(scan.frames)
-    mine = (scan.crossings.a == shown) & scan.crossings.with_fan & (scan.crossing_weights > LEFT_OUT_BELOW)
+    mine = (scan.crossings.a == shown) & scan.crossings.with_fan & (scan.crossing_weights > SILENCED)
     return ScanFile(
         features=features,
         pis=scan.pis,

@@ -44,6 +44,9 @@ REJECT_AT = 5.0
 MOST_FAN_REJECTED = 0.25
 """If more of the fan's crossings than this would be silenced, the adjustment is not robust but wrong: none is."""
 
+SILENCED = 0.05
+"""A crossing with less weight than this counts as left out."""
+
 ROUNDS = 12
 
 RIDGE = 1e-13
@@ -274,7 +277,7 @@ def _robust_scale(residuals: Array) -> float:
 
 
 def _share_silenced(crossings: CrossingTable, weights: Array) -> float:
-    return float(np.mean(weights[crossings.with_fan] < 0.05))
+    return float(np.mean(weights[crossings.with_fan] < SILENCED))
 
 
 def _overlap(crossings: CrossingTable) -> Array:

@@ -22,7 +22,7 @@ from core.scan.crossings import CrossingTable
 from core.scan.fan_lines import UNASSIGNED, FanLines, possible_fan_lines, settle_by_sweeps
 from core.scan.features import ScanFeatures
 from core.scan.geometry import CrossingRays, inverse_depth_gradient, noise_gains
-from core.scan.network import FanStretches, solve_network
+from core.scan.network import SILENCED, FanStretches, solve_network
 from core.scan.results import FrameRecord, ScanResult
 from core.scan.sweep_plane import plane_condition, solve_sweep_plane
 from core.scan.triangulate import join, triangulate
@@ -262,7 +262,7 @@ def _records(
                 fan_crossings=count(with_fan),
                 fan_lines_met=len(np.unique(line[with_fan])),
                 sweep_crossings=count(mine & ~crossings.with_fan),
-                left_out=count(mine & (sweeps.weights < 0.05)),
+                left_out=count(mine & (sweeps.weights < SILENCED)),
                 condition=plane_condition(rays[with_fan]),
                 points=number,
                 sigma_mm=float(np.median(cloud.sigma[points])) if number else float("nan"),
