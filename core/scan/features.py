@@ -5,7 +5,7 @@ Frames stream: one is decoded, subtracted, reduced to its centrelines and forgot
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import chain, islice
 
@@ -96,58 +96,89 @@ def extract_features(
         If the reference shows no fan line, or no frame shows a sweep.
     """
     options = options or FeatureOptions()
-    full_scale = _full_scale(reference)
-    base = reference.astype(np.float32)
-    noise = estimate_noise(base)
-    fan_stripe, fan = _fan_centrelines(base, full_scale, noise, options)
+    seen = read_reference(reference, options)
     stream = iter(frames)
     ahead = list(islice(stream, LOOK_AHEAD))
-    sweep_stripe = options.sweep_stripe or _sweep_settings(ahead, base, full_scale)
-    difference_noise = noise.of_difference(float(np.median(base)))
-    job = _FrameJob(base, full_scale, difference_noise, fan, sweep_stripe, options.move_limit_px)
+    sweep_stripe = options.sweep_stripe or choose_sweep_stripe(ahead, seen)
+    reader = FrameReader(seen, sweep_stripe, options.move_limit_px)
     found: list[FrameFeatures] = []
-    for features in ordered_map(job, enumerate(chain(ahead, stream))):
+    for features in ordered_map(reader, enumerate(chain(ahead, stream))):
         progress("frames", len(found), total)
         found.append(features)
     progress("frames", len(found), total)
     _require_sweeps(found)
-    crossings = all_crossings(fan, [frame.centrelines for frame in found], options.window, progress)
-    fan = _refined(fan)
+    crossings = all_crossings(seen.fan, [frame.centrelines for frame in found], options.window, progress)
     found = [replace(frame, centrelines=_refined(frame.centrelines)) for frame in found]
-    height, width = reference.shape
-    return ScanFeatures((width, height), fan, tuple(found), crossings, sweep_stripe, fan_stripe, _moved_notes(found))
+    return ScanFeatures(
+        seen.image_size, _refined(seen.fan), tuple(found), crossings, sweep_stripe, seen.stripe, _moved_notes(found)
+    )
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class _FrameJob:
-    """Everything one frame needs; called from several threads."""
+class ReferenceFeatures:
+    """What the picture with the fan alone shows, and what frames are compared with.
+
+    `base` (H, W) is the picture, `full_scale` its largest possible grey level, `noise` that of a frame minus the
+    picture; `fan` the fan's centrelines, `stripe` how they were looked for.
+    """
 
     base: NDArray[np.float32]
     full_scale: float
     noise: NoiseModel
     fan: tuple[Centreline, ...]
+    stripe: StripeSettings
+
+    @property
+    def image_size(self) -> tuple[int, int]:
+        """(width, height) in pixels."""
+        height, width = self.base.shape
+        return width, height
+
+
+def read_reference(picture: Picture, options: FeatureOptions | None = None) -> ReferenceFeatures:
+    """The fan's centrelines in the picture with the fan alone.
+
+    Raises
+    ------
+    InputError
+        If it shows no fan line.
+    """
+    options = options or FeatureOptions()
+    full_scale = _full_scale(picture)
+    base = picture.astype(np.float32)
+    noise = estimate_noise(base)
+    stripe, fan = _fan_centrelines(base, full_scale, noise, options)
+    return ReferenceFeatures(base, full_scale, noise.of_difference(float(np.median(base))), fan, stripe)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class FrameReader:
+    """A frame and its number to features, against one reference; called from several threads."""
+
+    reference: ReferenceFeatures
     stripe: StripeSettings | None
-    move_limit_px: float
+    move_limit_px: float = FeatureOptions().move_limit_px
 
     def __call__(self, item: tuple[int, Frame]) -> FrameFeatures:
         index, (name, picture) = item
         if isinstance(picture, str):
             return FrameFeatures(index, name, (), picture)
-        if picture.shape != self.base.shape:
-            return FrameFeatures(index, name, (), _sizes_differ(picture, self.base))
-        if nothing := _shows_nothing(picture, self.full_scale):
+        base, full_scale, fan = self.reference.base, self.reference.full_scale, self.reference.fan
+        if picture.shape != base.shape:
+            return FrameFeatures(index, name, (), _sizes_differ(picture, base))
+        if nothing := _shows_nothing(picture, full_scale):
             return FrameFeatures(index, name, (), nothing)
         difference = picture.astype(np.float32)
-        difference -= self.base
-        check = check_reference(difference, self.fan)
+        difference -= base
+        check = check_reference(difference, fan)
         if check.lost:
             return FrameFeatures(index, name, (), LOST, check.shift_px)
         if check.shift_px > self.move_limit_px:
             return FrameFeatures(index, name, (), MOVED, check.shift_px)
         if self.stripe is None:
             return FrameFeatures(index, name, (), "no stripe of the hand-held laser", check.shift_px)
-        saturated = picture >= self.full_scale
-        pieces = extract_centrelines(difference, self.stripe, noise=self.noise, saturated=saturated)
+        saturated = picture >= full_scale
+        pieces = extract_centrelines(difference, self.stripe, noise=self.reference.noise, saturated=saturated)
         reason = "" if pieces else "no stripe of the hand-held laser"
         return FrameFeatures(index, name, pieces, reason, check.shift_px)
 
@@ -176,12 +207,13 @@ def _fan_centrelines(
     return settings, fan
 
 
-def _sweep_settings(frames: list[Frame], base: NDArray[np.float32], full_scale: float) -> StripeSettings | None:
-    """The median width and contrast over the frames looked at; None when none of them shows a stripe."""
+def choose_sweep_stripe(frames: Sequence[Frame], reference: ReferenceFeatures) -> StripeSettings | None:
+    """The median width and contrast of the sweep's stripe in `frames`; None when none of them shows a stripe."""
+    base = reference.base
     seen = []
     for _, picture in frames:
         if not isinstance(picture, str) and picture.shape == base.shape:
-            settings = choose_settings(picture.astype(np.float32) - base, full_scale)
+            settings = choose_settings(picture.astype(np.float32) - base, reference.full_scale)
             if settings is not None:
                 seen.append(settings)
     if not seen:

@@ -1,0 +1,143 @@
+"""Where the sweeps are: numbers for the fan's stretches and light planes for the frames, from crossings alone."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import block_diag
+
+from core.errors import InputError
+from core.image.centreline import Centreline
+from core.model import Camera, Fan
+from core.model.arrays import Array
+from core.scan.crossings import CrossingTable
+from core.scan.fan_lines import UNASSIGNED, FanLines, possible_fan_lines, settle_by_sweeps
+from core.scan.geometry import CrossingRays, inverse_depth_gradient, noise_gains
+from core.scan.network import FanStretches, solve_network
+from core.scan.sweep_plane import solve_sweep_plane
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class LocatedSweeps:
+    """Solved planes: `frames` (S,) and, per crossing, the weight it had."""
+
+    frames: NDArray[np.int64]
+    pis: Array
+    covariance: Array
+    weights: Array
+    scale: float
+    notes: tuple[str, ...]
+
+
+def number_fan_lines(pieces: Sequence[Centreline], crossings: CrossingTable, camera: Camera, fan: Fan) -> FanLines:
+    """The numbering of the fan's centrelines that the sweeps agree with best."""
+    numberings = possible_fan_lines(pieces, camera, fan)
+    if len(numberings) == 1 and numberings[0].settled == len(pieces):
+        return numberings[0]
+    settled = [_settled(lines, crossings, camera, fan) for lines in numberings]
+    return min(settled, key=lambda lines: _disagreement(lines, crossings, camera, fan))
+
+
+def _settled(lines: FanLines, all_of_them: CrossingTable, camera: Camera, fan: Fan) -> FanLines:
+    """Decide unsure fan lines by sweeps that are solved without them."""
+    unsure = [i for i, choices in enumerate(lines.choices) if len(choices) > 1]
+    crossings, line = numbered(all_of_them, lines.sure)
+    if not unsure or np.unique(line[crossings.with_fan]).size < 2:
+        return lines
+    sweeps = locate_together(crossings, line, camera, fan)
+    crossings, _ = numbered(all_of_them, lines)
+    rows = crossings.select(
+        crossings.with_fan & np.isin(crossings.a, sweeps.frames) & np.isin(crossings.piece_b, unsure)
+    )
+    rays = camera.rays(rows.uv)
+    pis = sweeps.pis[np.searchsorted(sweeps.frames, rows.a)]
+    return settle_by_sweeps(lines, rows.piece_b, rays, np.einsum("mi,mi->m", rays, pis), fan)
+
+
+def _disagreement(lines: FanLines, all_of_them: CrossingTable, camera: Camera, fan: Fan) -> float:
+    """Share of the fan's crossings that the network leaves out or that have no number."""
+    crossings, line = numbered(all_of_them, lines)
+    fan_crossings = np.count_nonzero(all_of_them.with_fan)
+    if not np.any(crossings.with_fan):
+        return 1.0
+    sweeps = locate_together(crossings, line, camera, fan)
+    agreeing = np.sum(sweeps.weights[crossings.with_fan])
+    return 1.0 - float(agreeing) / max(int(fan_crossings), 1)
+
+
+def numbered(crossings: CrossingTable, lines: FanLines) -> tuple[CrossingTable, NDArray[np.int64]]:
+    """Crossings whose fan stretch has a number, and that number (−1 for crossings between sweeps)."""
+    numbers = np.array([*lines.line, UNASSIGNED], dtype=np.int64)
+    line = np.where(crossings.with_fan, numbers[np.where(crossings.with_fan, crossings.piece_b, -1)], -1)
+    keep = ~crossings.with_fan | (line != UNASSIGNED)
+    return crossings.select(keep), line[keep]
+
+
+def locate_together(crossings: CrossingTable, line: NDArray[np.int64], camera: Camera, fan: Fan) -> LocatedSweeps:
+    """All sweeps in one adjustment; `line` (M,) is the fan line of each crossing, −1 between sweeps.
+
+    Raises
+    ------
+    ValueError
+        If there is no crossing with the fan.
+    """
+    frames = np.unique(np.concatenate([crossings.a, crossings.b[~crossings.with_fan]]))
+    renumbered = crossings.renumber(np.searchsorted(frames, np.arange(frames[-1] + 1)))
+    network = solve_network(
+        renumbered, CrossingRays.of(crossings, camera), _stretches(crossings, line), fan, len(frames)
+    )
+    notes: tuple[str, ...] = ()
+    if network.fan_silenced:
+        notes = (
+            "Many crossings with the fan disagree with the sweeps; none was left out: check the fan's calibration, "
+            "and that object and camera stood still.",
+        )
+    return LocatedSweeps(frames, network.pis, network.covariance, network.weights, network.scale, notes)
+
+
+def _stretches(crossings: CrossingTable, line: NDArray[np.int64]) -> FanStretches:
+    """Cut the fan's centrelines into stretches as long as the crossings' fit window."""
+    with_fan = crossings.with_fan
+    bins = np.floor(crossings.along_b / (2 * crossings.half_length_px)).astype(np.int64)
+    keys = crossings.piece_b * 100_000 + bins
+    stretch = np.full(len(crossings), -1, dtype=np.int64)
+    stretch[with_fan] = np.unique(keys[with_fan], return_inverse=True)[1]
+    return FanStretches(stretch, line)
+
+
+def locate_each(crossings: CrossingTable, line: NDArray[np.int64], camera: Camera, fan: Fan) -> LocatedSweeps:
+    """Every frame on its own, from its crossings with the fan: the paper's §4.
+
+    Raises
+    ------
+    InputError
+        If no frame has three of them.
+    """
+    geometry = CrossingRays.of(crossings, camera)
+    weights = np.zeros(len(crossings))
+    frames, pis, covariances = [], [], []
+    for frame in np.unique(crossings.a):
+        rows = np.flatnonzero((crossings.a == frame) & crossings.with_fan)
+        if len(rows) < 3:
+            continue
+        fan_pis = fan.pis[line[rows]]
+        inverse_depths = np.einsum("mi,mi->m", geometry.rays[rows], fan_pis)
+        # The sweep's own plane is not known yet; half the fan's gradient stands for the difference of the two.
+        gradient = inverse_depth_gradient(fan_pis, geometry.jacobians[rows])
+        gain_a, gain_b = noise_gains(crossings.select(rows), gradient)
+        sigmas = np.hypot(gain_a * crossings.sigma_a[rows], gain_b * crossings.sigma_b[rows])
+        plane = solve_sweep_plane(geometry.rays[rows], inverse_depths, np.maximum(sigmas, 0.1 * np.median(sigmas)))
+        frames.append(frame)
+        pis.append(plane.pi)
+        covariances.append(plane.covariance)
+        weights[rows] = plane.used
+    if not frames:
+        raise InputError(
+            "no frame has three crossings with the fan",
+            where="scan",
+            todo="cross all of the fan's lines with each sweep, or use the network method",
+        )
+    return LocatedSweeps(np.array(frames), np.array(pis), block_diag(*covariances), weights, 1.0, ())
