@@ -25,7 +25,7 @@ from core.image.targets import Charuco, Checkerboard, CircleGrid, Target
 from core.model.arrays import Array
 from core.pipeline.workspace import Workspace, check_calibration
 from core.progress import Progress, silent
-from core.report.content import FrameRecord, Overlay, ReportContent
+from core.report.content import Overlay, ReportContent
 from core.report.pdf import build_report
 from core.scan.cloud import Cloud
 
@@ -61,7 +61,7 @@ def report_step(work: Workspace, progress: Progress = silent) -> Path:
             mesh=read_mesh(work.path("mesh")),
             gauge=gauge,
             overlay=_overlay(work.found, scan, cloud_file.cloud),
-            frames=tuple(FrameRecord(frame.name, frame.used, frame.reason) for frame in record.frames),
+            frames=record.frames,
             hashes=record.inputs,
             settings=_settings_in_words(record),
             notes=record.all_notes,

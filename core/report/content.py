@@ -7,6 +7,8 @@ from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from datetime import datetime
+from types import MappingProxyType
+from typing import Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,16 +18,43 @@ from core.image.centreline import Centreline
 from core.inspect.results import GaugeResult
 from core.model.arrays import Array, frozen_array, set_field
 from core.scan.cloud import Cloud
+from core.scan.results import FrameRecord
 from core.scan.surface import Mesh
+
+SECTIONS: Mapping[str, str] = MappingProxyType(
+    {
+        "surface": "Measured surface",
+        "frame": "One frame of the scan",
+        "maps": "Residuals of both faces, or depth and σ of the cloud",
+        "budget": "Uncertainty budget of the thickness",
+        "repeats": "Repeated scans",
+        "calibrations": "Calibrations and rig",
+        "frames": "Frames and calibration pictures",
+        "remarks": "Remarks of the operator",
+        "settings": "Software and settings",
+        "inputs": "Inputs, each with its hash",
+    }
+)
+"""Name and title of each section that can be left out, in printing order.
+
+What a reader must not miss is not among them: the result, what it does not cover, warnings, and the hash over all
+inputs.
+"""
+
+Paper: TypeAlias = Literal["A4", "Letter"]
+"""What a report is printed on."""
 
 
 @dataclass(frozen=True, slots=True)
-class FrameRecord:
-    """What became of one frame: used, or left out for a reason (a few words, without a full stop)."""
+class RepeatLine:
+    """One of several scans of the same part: its thickness and U = k·u in mm, and the calibration it rests on."""
 
-    name: str
-    used: bool
-    reason: str = ""
+    scan: str
+    thickness_mm: float
+    U_mm: float
+    k: float
+    calibration_id: str
+    measured_at: datetime
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -74,8 +103,12 @@ class ReportContent:
 
     Parameters
     ----------
-    part, serial, laboratory, operator
+    part, serial, laboratory, operator, customer
         Names for the title block; an empty one is left out (an empty `part` is printed as "not named").
+    air_celsius, part_celsius
+        Temperatures in °C as somebody read them, or None; printed, never used.
+    remarks
+        The operator's own words; may have several lines.
     rig
         Description of the rig in printing order: {"Camera target": "checkerboard, 17 × 12 inner corners, 10 mm"}.
     camera, fan
@@ -101,7 +134,18 @@ class ReportContent:
     version
         Version of the software.
     timestamp
-        When the measurement was evaluated: the only date printed.
+        When the measurement was evaluated: the only date printed besides those of `repeats`.
+    repeats
+        Scans of the same part to be compared, in the order of measuring; this one may be among them.
+    hidden
+        Names out of SECTIONS that are left out; the last page says so.
+    paper
+        What the report is printed on.
+
+    Raises
+    ------
+    ValueError
+        If `hidden` has a name that is not in SECTIONS.
     """
 
     rig: Mapping[str, str]
@@ -123,6 +167,17 @@ class ReportContent:
     serial: str = ""
     laboratory: str = ""
     operator: str = ""
+    customer: str = ""
+    air_celsius: float | None = None
+    part_celsius: float | None = None
+    remarks: str = ""
+    repeats: tuple[RepeatLine, ...] = ()
+    hidden: frozenset[str] = frozenset()
+    paper: Paper = "A4"
+
+    def __post_init__(self) -> None:
+        if unknown := self.hidden - SECTIONS.keys():
+            raise ValueError(f"{', '.join(sorted(unknown))}: no section of that name can be left out")
 
     @property
     def inputs_digest(self) -> str:
@@ -134,10 +189,14 @@ class ReportContent:
     def report_id(self) -> str:
         """Name of this report: from the inputs' hashes, the settings and the software version, never random.
 
-        The same pictures evaluated with other settings give another report and so another name.
+        The same pictures evaluated with other settings give another report and so another name; and so do other
+        words of the user or other sections.
         """
         lines = [self.inputs_digest, self.version, self.method, self.part, self.serial]
         lines += [f"{name}={value}" for name, value in sorted(self.settings.items())]
+        choices = {name: getattr(self, name) for name in ("customer", "air_celsius", "part_celsius", "remarks")}
+        choices |= {"repeats": self.repeats, "hidden": sorted(self.hidden)}
+        lines += [f"{name}: {value!r}" for name, value in choices.items() if value not in ("", None, (), [])]
         digest = hashlib.sha256("\n".join(lines).encode()).hexdigest().upper()
         return "TR-" + "-".join(digest[start : start + 4] for start in (0, 4, 8))
 

@@ -11,8 +11,9 @@ from core.image.centreline import Centreline
 from core.image.target_view import TargetView
 from core.inspect.results import Contribution, Face, GaugeResult
 from core.model import Camera, Fan, LightPlane, Pose
-from core.report.content import FrameRecord, Overlay, ReportContent
+from core.report.content import Overlay, ReportContent
 from core.scan.cloud import Cloud
+from core.scan.results import FrameRecord
 from core.scan.surface import Mesh
 
 CAMERA = Camera(
@@ -168,7 +169,7 @@ def frames():
         18: "no sweep stripe found",
         44: "the sweep crosses no fan line",
     }
-    return tuple(FrameRecord(f"frame_{n:03d}.png", n not in reasons, reasons.get(n, "")) for n in range(60))
+    return tuple(FrameRecord(n, f"frame_{n:03d}.png", n not in reasons, reasons.get(n, "")) for n in range(60))
 
 
 def block_content(**changes):

@@ -9,8 +9,8 @@ import pytest
 from pypdf import PdfReader
 
 from core.errors import Cancelled
-from core.report.content import FrameRecord
 from core.report.pdf import build_report
+from core.scan.results import FrameRecord
 from core.scan.surface import Mesh
 
 from .report_samples import block_content, gauge
@@ -201,7 +201,7 @@ def test_a_text_beyond_measure_is_shortened_and_says_so(quick):
 
 def test_a_long_scan_stays_within_three_pages_and_counts_what_it_leaves_out(content):
     hashes = {f"scan/frame_{n:05d}.png": sha256(str(n).encode()).hexdigest() for n in range(1500)}
-    frames = tuple(FrameRecord(f"frame_{n:05d}.png", n % 3 > 0, f"reason {n % 40}") for n in range(1500))
+    frames = tuple(FrameRecord(n, f"frame_{n:05d}.png", n % 3 > 0, f"reason {n % 40}") for n in range(1500))
     notes = tuple(f"Note {n} of a long series." for n in range(60))
     data = build_report(replace(content, hashes=hashes, frames=frames, notes=notes))
     text = words(data)
