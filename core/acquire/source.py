@@ -1,0 +1,143 @@
+"""What every live source of frames is: opened, told what to do, read frame by frame, closed.
+
+One source is used from one thread at a time. Times are those of a clock that only runs forward, in s, from an origin
+of the source's own. A source that is unplugged raises :class:`Unplugged` once and is then closed: `open` it again.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.errors import InputError
+
+Step = Literal["camera", "planes", "scan"]
+"""What is being recorded, named as the part of the recording set it becomes."""
+
+Picture = NDArray[np.uint8] | NDArray[np.uint16]
+"""Grey levels (height, width)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Lasers:
+    """Which lasers are on: the fixed fan, and the one moved by hand."""
+
+    fan: bool
+    hand: bool
+
+
+@dataclass(frozen=True, slots=True)
+class SourceSettings:
+    """What a camera can be told; None leaves it as it is.
+
+    Parameters
+    ----------
+    exposure_ms
+        Exposure time in ms.
+    gain_db
+        Amplification in dB.
+    rate_hz
+        Frames per second; for a replay, 0 means as fast as they are read.
+
+    Raises
+    ------
+    InputError
+        If a value is out of any camera's range.
+    """
+
+    exposure_ms: float | None = None
+    gain_db: float | None = None
+    rate_hz: float | None = None
+
+    def __post_init__(self) -> None:
+        if self.exposure_ms is not None and not 0 < self.exposure_ms <= 60_000:
+            raise InputError(f"{self.exposure_ms:g} ms is not above 0 and at most 60 000 ms", where="exposure")
+        if self.gain_db is not None and not -40 <= self.gain_db <= 80:
+            raise InputError(f"{self.gain_db:g} dB is not between -40 and 80 dB", where="gain")
+        if self.rate_hz is not None and not 0 <= self.rate_hz <= 10_000:
+            raise InputError(f"{self.rate_hz:g} Hz is not between 0 and 10 000 Hz", where="frame rate")
+
+
+@dataclass(frozen=True, slots=True)
+class SourceChoice:
+    """Which source: its kind by name, and which of that kind.
+
+    Parameters
+    ----------
+    kind
+        "simulated", "opencv", "replay" or "basler"; see :data:`core.pipeline.sources.SOURCES`.
+    id
+        Number or address of an OpenCV camera, folder of a replay, serial number of a Basler camera, scenario of the
+        simulated rig (TOML, or the path of a TOML file). "" is the first or usual one.
+    """
+
+    kind: str
+    id: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class SourceInfo:
+    """One source that can be chosen, as a list shows it: its name, and what else is known of it."""
+
+    choice: SourceChoice
+    name: str
+    detail: str = ""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Frame:
+    """One picture of a source.
+
+    Parameters
+    ----------
+    picture
+        (height, width) uint8 or uint16.
+    index
+        Number of the frame since the source was opened, from 0; lost ones are counted, so a gap is a loss.
+    time_s
+        When it was exposed, in s on the source's clock.
+    dropped
+        Frames lost so far, exact where the driver tells, else as far as it is known.
+    """
+
+    picture: Picture
+    index: int
+    time_s: float
+    dropped: int
+
+
+class Unplugged(InputError):
+    """The source is gone in the middle of its work; it may come back, so open it again."""
+
+
+class Ended(Exception):
+    """A replay is at its end: there are no more frames."""
+
+
+class FrameSource(Protocol):
+    """A camera, or what stands in for one."""
+
+    @property
+    def name(self) -> str:
+        """What a person calls it."""
+
+    def open(self) -> None:
+        """Make it ready to be read, also again after `close` or `Unplugged`; InputError says what to do if it fails."""
+
+    def configure(self, settings: SourceSettings) -> None:
+        """Set what is not None, before `open` or after it; InputError if the source refuses a value."""
+
+    def prepare(self, step: Step) -> None:
+        """Say what will be recorded. Only what knows its own scene (simulated rig, replay) acts on it."""
+
+    def lasers(self, lasers: Lasers) -> bool:
+        """Switch the lasers. True: the source has done it itself; False: a person must."""
+
+    def read(self, timeout_s: float) -> Frame | None:
+        """The next frame, or None if there is none within `timeout_s`; raises Unplugged and Ended."""
+
+    def close(self) -> None:
+        """Let go of it; harmless when it is closed already."""
