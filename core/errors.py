@@ -26,6 +26,14 @@ class InputError(Exception):
         back = f"; {todo}" if todo else ""
         super().__init__(f"{front}{what}{back}.")
 
+    def __reduce__(self) -> tuple[object, ...]:
+        return _restored, (type(self), self.what, self.where, self.todo)
+
+
+def _restored(kind: type[InputError], what: str, where: str, todo: str) -> InputError:
+    """An InputError that came from another process."""
+    return kind(what, where=where, todo=todo)
+
 
 class Cancelled(Exception):
     """The user asked a job to stop; nothing half done may be kept."""

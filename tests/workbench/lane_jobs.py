@@ -1,0 +1,59 @@
+"""Jobs for the tests of lanes; they run in another process."""
+
+from __future__ import annotations
+
+import os
+import time
+from typing import Any
+
+from core.errors import InputError
+from core.progress import Progress
+
+
+def double(value: int, progress: Progress) -> int:
+    progress("doubling", 1, 1)
+    return 2 * value
+
+
+def refuse(progress: Progress) -> None:
+    raise InputError("the board has 8 × 6 corners, not 9 × 6", where="view03.png", todo="check rig.toml")
+
+
+def crash(progress: Progress) -> None:
+    raise ZeroDivisionError("nothing goes into nothing")
+
+
+def die(progress: Progress) -> None:
+    os._exit(3)
+
+
+def count_until_cancelled(progress: Progress) -> None:
+    for i in range(10_000):
+        progress("counting", i, 10_000)
+        time.sleep(0.01)
+
+
+def deaf(progress: Progress) -> None:
+    time.sleep(60)
+
+
+def unsendable(progress: Progress) -> Any:
+    return lambda: None
+
+
+def watched(count: int, progress: Progress, watch: Any) -> int:
+    for i in range(count):
+        watch(i)
+    return count
+
+
+def echo(channel: Any) -> list[Any]:
+    heard: list[Any] = []
+    while True:
+        command = channel.command()
+        if command == "stop":
+            return heard
+        if command is not None:
+            heard.append(command)
+            channel.offer(command)
+        time.sleep(0.005)

@@ -1,0 +1,149 @@
+from __future__ import annotations
+
+import time
+from typing import Any
+
+import pytest
+
+from core.errors import InputError
+from workbench.bench import Bench
+from workbench.jobs import Job
+from workbench.tasks import Lane, Task, details, sentence
+from workbench.worker import Failure
+
+
+def job(name: str) -> Job:
+    return Job(f"tests.workbench.lane_jobs:{name}")
+
+
+class Answers:
+    """Collects what a task says."""
+
+    def __init__(self) -> None:
+        self.got: list[tuple[str, Any]] = []
+
+    def run(self, lane: Lane, name: str, *args: Any, **more: Any) -> Task:
+        return lane.run(
+            job(name),
+            *args,
+            label=name,
+            on_done=lambda value: self.got.append(("done", value)),
+            on_failed=lambda problem: self.got.append(("failed", problem)),
+            on_cancelled=lambda: self.got.append(("cancelled", None)),
+            **more,
+        )
+
+
+@pytest.fixture
+def lane(bench: Bench) -> Lane:
+    return bench.quick
+
+
+def finish(qtbot: Any, lane: Lane, seconds: float = 20) -> None:
+    qtbot.waitUntil(lambda: not lane.busy, timeout=int(seconds * 1000))
+
+
+def test_a_job_gives_its_result_and_tells_its_progress(qtbot: Any, lane: Lane) -> None:
+    answers, told = Answers(), []
+    task = answers.run(lane, "double", 21)
+    task.progressed.connect(lambda *what: told.append(what))
+    finish(qtbot, lane)
+    assert answers.got == [("done", 42)]
+    assert told == [("doubling", 1, 1)]
+
+
+def test_jobs_run_in_the_order_they_were_given(qtbot: Any, lane: Lane) -> None:
+    answers = Answers()
+    for value in (1, 2, 3):
+        answers.run(lane, "double", value)
+    finish(qtbot, lane)
+    assert [value for _, value in answers.got] == [2, 4, 6]
+
+
+def test_only_the_newest_waiting_job_of_a_label_is_run_if_asked(qtbot: Any, lane: Lane) -> None:
+    answers = Answers()
+    for value in (1, 2, 3):
+        answers.run(lane, "double", value, replace_waiting=True)
+    finish(qtbot, lane)
+    assert answers.got == [("cancelled", None), ("done", 2), ("done", 6)]
+
+
+def test_bad_input_arrives_as_its_one_sentence(qtbot: Any, lane: Lane) -> None:
+    answers = Answers()
+    answers.run(lane, "refuse")
+    finish(qtbot, lane)
+    ((kind, problem),) = answers.got
+    assert kind == "failed"
+    assert isinstance(problem, InputError)
+    assert sentence(problem) == "view03.png: the board has 8 × 6 corners, not 9 × 6; check rig.toml."
+    assert details(problem) == ""
+
+
+@pytest.mark.parametrize(("name", "kind"), [("crash", "ZeroDivisionError"), ("die", "ProcessEnded")])
+def test_a_job_that_breaks_down_is_told_and_the_lane_goes_on(qtbot: Any, lane: Lane, name: str, kind: str) -> None:
+    answers = Answers()
+    answers.run(lane, name)
+    answers.run(lane, "double", 4)
+    finish(qtbot, lane)
+    (failed, problem), done = answers.got
+    assert failed == "failed"
+    assert isinstance(problem, Failure)
+    assert problem.kind == kind
+    assert done == ("done", 8)
+
+
+def test_a_result_that_cannot_be_sent_is_a_failure(qtbot: Any, lane: Lane) -> None:
+    answers = Answers()
+    answers.run(lane, "unsendable")
+    finish(qtbot, lane)
+    assert answers.got[0][0] == "failed"
+
+
+@pytest.mark.parametrize("name", ["count_until_cancelled", "deaf"])
+def test_cancel_acts_within_a_second_even_on_a_job_that_does_not_listen(qtbot: Any, lane: Lane, name: str) -> None:
+    answers = Answers()
+    answers.run(lane, "double", 1)
+    finish(qtbot, lane)
+    task = answers.run(lane, name)
+    qtbot.wait(100)
+    begun = time.monotonic()
+    task.cancel()
+    finish(qtbot, lane, 3)
+    assert time.monotonic() - begun < 1.5
+    assert answers.got[1:] == [("cancelled", None)]
+    answers.run(lane, "double", 5)
+    finish(qtbot, lane)
+    assert answers.got[-1] == ("done", 10)
+
+
+def test_a_waiting_job_can_be_cancelled_before_it_begins(qtbot: Any, lane: Lane) -> None:
+    answers = Answers()
+    answers.run(lane, "double", 1)
+    answers.run(lane, "double", 2).cancel()
+    finish(qtbot, lane)
+    assert answers.got == [("cancelled", None), ("done", 2)]
+
+
+def test_events_arrive_while_the_job_runs_and_before_its_result(qtbot: Any, lane: Lane) -> None:
+    answers = Answers()
+    task = answers.run(lane, "watched", 5, offers={"progress": "progress", "watch": "watch"})
+    task.event.connect(lambda value: answers.got.append(("event", value)))
+    finish(qtbot, lane)
+    assert answers.got == [*(("event", i) for i in range(5)), ("done", 5)]
+
+
+def test_a_view_is_sent_only_after_the_last_one_was_shown(qtbot: Any, lane: Lane) -> None:
+    answers, views = Answers(), []
+    task = answers.run(lane, "echo", offers={"channel": "channel"})
+    task.view.connect(views.append)
+    for command in ("a", "b", "c"):
+        task.send(command)
+    qtbot.waitUntil(lambda: views == ["a"], timeout=10_000)
+    qtbot.wait(100)
+    assert views == ["a"]
+    task.shown()
+    task.send("d")
+    qtbot.waitUntil(lambda: views == ["a", "d"], timeout=5_000)
+    task.send("stop")
+    finish(qtbot, lane)
+    assert answers.got == [("done", ["a", "b", "c", "d"])]

@@ -1,0 +1,34 @@
+"""What the window asks `core` to do, by name.
+
+Named instead of imported: a job runs in another process, and a window that imported the numerical libraries would
+open seconds later. `tests/workbench/test_jobs.py` holds every name to a function that exists.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import Any, NewType
+
+Job = NewType("Job", str)
+
+_STEPS = "core.pipeline.project_steps"
+
+FIND_VIEWS = Job(f"{_STEPS}:find_views")
+SOLVE_VIEWS = Job(f"{_STEPS}:solve_views")
+ACCEPT_CAMERA = Job(f"{_STEPS}:accept_camera")
+FIND_POSES = Job(f"{_STEPS}:find_poses")
+SOLVE_POSES = Job(f"{_STEPS}:solve_poses")
+ACCEPT_FAN = Job(f"{_STEPS}:accept_fan")
+MEASURE_SCAN = Job(f"{_STEPS}:measure_scan")
+MEASURE_GAUGE = Job(f"{_STEPS}:measure_gauge")
+MAKE_REPORT = Job(f"{_STEPS}:make_report")
+FRAME_STAGES = Job("core.pipeline.frame_stages:frame_stages")
+RUN_LIVE = Job("workbench.live_job:run_live_job")
+SAMPLE_PROJECT = Job("core.pipeline.sample_project:sample_project")
+LOAD_RESULTS = Job(f"{_STEPS}:load_results")
+
+
+def resolve(job: Job) -> Any:
+    """The function behind the name; imports its module."""
+    module, _, name = job.partition(":")
+    return getattr(import_module(module), name)

@@ -1,0 +1,142 @@
+"""The only messages: what the window tells the technician, kept in a list and in a log file.
+
+Exceptions that nobody foresaw, in any thread, and Qt's own warnings end here as well. The hooks may run on any thread,
+so all they do is emit a signal.
+"""
+
+from __future__ import annotations
+
+import logging
+import sys
+import threading
+import traceback
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from datetime import datetime
+from enum import StrEnum
+from logging.handlers import RotatingFileHandler
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+import platformdirs
+from PySide6.QtCore import QMessageLogContext, QObject, QtMsgType, Signal, qInstallMessageHandler
+
+log = logging.getLogger("trisect.workbench")
+
+KEPT = 500
+"""So many notices are kept in the list; the log file has them all."""
+
+
+class Level(StrEnum):
+    """How much a notice matters."""
+
+    INFO = "info"
+    WARNING = "warning"
+    ERROR = "error"
+
+
+@dataclass(frozen=True, slots=True)
+class Notice:
+    """One message: a sentence, and details to copy."""
+
+    level: Level
+    text: str
+    details: str = ""
+    at: datetime = field(default_factory=lambda: datetime.now().astimezone())
+
+
+class Notices(QObject):
+    """All messages of this session, newest last."""
+
+    added = Signal(object)
+    _raised = Signal(str, str, str)
+
+    def __init__(self, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self.all: list[Notice] = []
+        self._raised.connect(lambda level, text, details: self.add(Level(level), text, details))
+        self._restore: list[Callable[[], object]] = []
+
+    def add(self, level: Level, text: str, details: str = "") -> None:
+        """Tell the technician; call in the GUI thread only."""
+        notice = Notice(level, text, details)
+        self.all.append(notice)
+        del self.all[:-KEPT]
+        log.log(_LOG_LEVEL[level], "%s%s", text, f"\n{details}" if details else "")
+        self.added.emit(notice)
+
+    def info(self, text: str) -> None:
+        """Something that is good to know."""
+        self.add(Level.INFO, text)
+
+    def warning(self, text: str, details: str = "") -> None:
+        """Something to look at."""
+        self.add(Level.WARNING, text, details)
+
+    def error(self, text: str, details: str = "") -> None:
+        """Something that kept a job from being done."""
+        self.add(Level.ERROR, text, details)
+
+    def raised(self, kind: type[BaseException], value: BaseException, trace: TracebackType | None) -> None:
+        """An exception nobody caught, on whatever thread: one notice, and the program goes on."""
+        details = "".join(traceback.format_exception(kind, value, trace))
+        text = self.tr("Something went wrong in the program; your work is kept. Details: {0}").format(kind.__name__)
+        self._raised.emit(Level.ERROR, text, details)
+
+    def catch_everything(self) -> None:
+        """Route uncaught exceptions of all threads and Qt's warnings here until `release`."""
+        if self._restore:
+            return
+        before = sys.excepthook, threading.excepthook, sys.unraisablehook
+        sys.excepthook = self.raised
+        threading.excepthook = lambda args: self.raised(
+            args.exc_type, args.exc_value or args.exc_type(), args.exc_traceback
+        )
+        sys.unraisablehook = lambda args: self.raised(
+            args.exc_type, args.exc_value or args.exc_type(), args.exc_traceback
+        )
+        qt_before = qInstallMessageHandler(_qt_message)
+
+        def restore() -> None:
+            sys.excepthook, threading.excepthook, sys.unraisablehook = before
+            qInstallMessageHandler(qt_before)
+
+        self._restore.append(restore)
+
+    def release(self) -> None:
+        """Give the hooks back."""
+        while self._restore:
+            self._restore.pop()()
+
+
+def log_to_file(folder: Path | None = None) -> Path | None:
+    """Write the log to a file of the user's log folder, a few megabytes at most; None where nothing can be written."""
+    folder = folder or Path(platformdirs.user_log_dir("trisect", appauthor=False))
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        handler = RotatingFileHandler(
+            folder / "workbench.log", maxBytes=1_000_000, backupCount=3, encoding="utf-8", delay=True
+        )
+    except OSError as error:
+        log.warning("no log file: %s", error)
+        return None
+    handler.setFormatter(logging.Formatter("%(asctime)s %(levelname)s %(name)s %(message)s"))
+    root = logging.getLogger("trisect")
+    root.setLevel(logging.INFO)
+    root.propagate = False
+    root.addHandler(handler)
+    return folder / "workbench.log"
+
+
+def _qt_message(kind: QtMsgType, context: QMessageLogContext, text: str | None) -> None:
+    log.log(_QT_LEVEL.get(kind, logging.WARNING), "Qt: %s (%s)", text, getattr(context, "category", ""))
+
+
+_LOG_LEVEL = {Level.INFO: logging.INFO, Level.WARNING: logging.WARNING, Level.ERROR: logging.ERROR}
+_QT_LEVEL: dict[Any, int] = {
+    QtMsgType.QtDebugMsg: logging.DEBUG,
+    QtMsgType.QtInfoMsg: logging.INFO,
+    QtMsgType.QtWarningMsg: logging.WARNING,
+    QtMsgType.QtCriticalMsg: logging.ERROR,
+}

@@ -1,0 +1,69 @@
+"""What all presenters have in common: they decide, keep no widgets, and say when their page must look again."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QObject, Signal
+
+from core.files.project import Project
+from workbench.bench import Bench
+from workbench.step_state import StepState, step_states
+
+
+class StepPresenter(QObject):
+    """The decisions of one page.
+
+    `step` is its name in `workbench.step_state.ORDER`. `changed` is emitted whenever the page must be drawn anew. A
+    subclass overrides `blocker` and, as needed, `opened` (another project), `project_changed` (an edit, undo or redo),
+    `entered` and `left` (the page is shown or hidden).
+    """
+
+    step = ""
+    changed = Signal()
+
+    def __init__(self, bench: Bench) -> None:
+        super().__init__()
+        self.bench, self.model = bench, bench.model
+        self.model.opened.connect(self._opened)
+        self.model.changed.connect(self._project_changed)
+        self.model.results_changed.connect(self.changed)
+
+    @property
+    def project(self) -> Project:
+        """The project in force."""
+        return self.model.project
+
+    @property
+    def state(self) -> StepState:
+        """How far this step is."""
+        return step_states(self.model.project, self.model.results)[self.step]
+
+    def blocker(self) -> str:
+        """One sentence saying what is missing before Next makes sense, or ""."""
+        return ""
+
+    def busy(self) -> str:
+        """One sentence saying what would be lost if the window were closed now (a live recording), or ""."""
+        return ""
+
+    def opened(self) -> None:
+        """Another project is open (or none): forget what belonged to the last one, load what this one has."""
+
+    def project_changed(self, before: Project, after: Project) -> None:
+        """The project was edited, or an edit undone."""
+
+    def entered(self) -> None:
+        """The page is shown."""
+
+    def left(self) -> None:
+        """The page is hidden."""
+
+    def stop(self) -> None:
+        """The window closes: stop what runs, keep what is recorded."""
+
+    def _opened(self) -> None:
+        self.opened()
+        self.changed.emit()
+
+    def _project_changed(self, before: Project, after: Project) -> None:
+        self.project_changed(before, after)
+        self.changed.emit()

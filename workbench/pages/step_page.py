@@ -1,0 +1,106 @@
+"""The form all pages share: the picture or 3D view in the middle, a panel of parameters and quality at the side."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QFrame, QLabel, QScrollArea, QSizePolicy, QSplitter, QVBoxLayout, QWidget
+from superqt import QCollapsible
+
+from workbench.pages.presenter import StepPresenter
+from workbench.theme import icon
+
+SIDE_WIDTH = 380
+
+
+class StepPage(QWidget):
+    """A page of the wizard; `refresh` is called whenever its presenter has changed and the page is visible."""
+
+    def __init__(self, presenter: StepPresenter, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.presenter: Any = presenter
+        self._stale = True
+        self.centre = QVBoxLayout()
+        self.centre.setContentsMargins(8, 8, 8, 8)
+        self.side = QVBoxLayout()
+        self.side.setContentsMargins(10, 8, 10, 8)
+        self.side.setSpacing(8)
+        self.splitter = QSplitter(Qt.Orientation.Horizontal)
+        self.splitter.addWidget(_holding(self.centre))
+        self.splitter.addWidget(self._side_panel())
+        self.splitter.setStretchFactor(0, 1)
+        self.splitter.setCollapsible(0, False)
+        self.splitter.setSizes([900, SIDE_WIDTH])
+        outer = QVBoxLayout(self)
+        outer.setContentsMargins(0, 0, 0, 0)
+        outer.addWidget(self.splitter)
+        presenter.changed.connect(self._changed)
+
+    def refresh(self) -> None:
+        """Show what the presenter says now."""
+
+    def add_panel(self, title: str, widget: QWidget, *, collapsed: bool = False) -> QCollapsible:
+        """A titled panel at the side that can be folded away."""
+        panel = QCollapsible(title)
+        panel.setDuration(0)
+        panel.layout().setContentsMargins(0, 0, 0, 0)
+        panel.content().layout().setContentsMargins(4, 2, 2, 4)
+        panel.setExpandedIcon(icon("mdi6.chevron-down", colour="muted"))
+        panel.setCollapsedIcon(icon("mdi6.chevron-right", colour="muted"))
+        panel.addWidget(widget)
+        if collapsed:
+            panel.collapse(animate=False)
+        else:
+            panel.expand(animate=False)
+        self.side.insertWidget(self.side.count() - 1, panel)
+        return panel
+
+    def add_to_side(self, widget: QWidget) -> None:
+        """A widget at the side that is always there, below what was added before."""
+        self.side.insertWidget(self.side.count() - 1, widget)
+
+    def showEvent(self, event: Any) -> None:
+        super().showEvent(event)
+        if self._stale:
+            self._stale = False
+            self.refresh()
+
+    def _changed(self) -> None:
+        if self.isVisible():
+            self.refresh()
+        else:
+            self._stale = True
+
+    def _side_panel(self) -> QWidget:
+        self.side.addStretch(1)
+        inside = _holding(self.side)
+        inside.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Preferred)
+        scroll = QScrollArea()
+        scroll.setWidget(inside)
+        scroll.setWidgetResizable(True)
+        scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        scroll.setFrameShape(QFrame.Shape.NoFrame)
+        scroll.setMinimumWidth(300)
+        return scroll
+
+
+def heading(text: str) -> QLabel:
+    """A small title within a panel."""
+    label = QLabel(text)
+    label.setObjectName("heading")
+    return label
+
+
+def muted(text: str = "") -> QLabel:
+    """An explaining sentence, wrapped."""
+    label = QLabel(text)
+    label.setObjectName("muted")
+    label.setWordWrap(True)
+    return label
+
+
+def _holding(layout: QVBoxLayout) -> QWidget:
+    widget = QWidget()
+    widget.setLayout(layout)
+    return widget

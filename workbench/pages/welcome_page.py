@@ -1,0 +1,135 @@
+"""The first thing one sees: the ways in."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from PySide6.QtCore import QEvent, QSize, Qt
+from PySide6.QtWidgets import (
+    QCommandLinkButton,
+    QFrame,
+    QGridLayout,
+    QHBoxLayout,
+    QLabel,
+    QListWidget,
+    QListWidgetItem,
+    QVBoxLayout,
+    QWidget,
+)
+
+from workbench.pages.project_doors import ProjectDoors
+from workbench.theme import icon
+from workbench.views.notice_list import Banner
+
+
+class WelcomePage(QWidget):
+    """New, open, recent, sample, simulated rig."""
+
+    def __init__(self, doors: ProjectDoors, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._doors = doors
+        self.banner = Banner()
+        self._links: list[tuple[QCommandLinkButton, str]] = []
+        title = QLabel("Trisect")
+        title.setStyleSheet("font-size: 34px; font-weight: 300;")
+        claim = QLabel(self.tr("Measure a part with one camera and two lasers, and know how far to trust the number."))
+        claim.setObjectName("muted")
+        grid = QGridLayout()
+        grid.setSpacing(10)
+        self.sample = self._link(
+            "mdi6.cube-scan",
+            self.tr("Open sample"),
+            self.tr("A finished measurement of a 50 mm gauge block, to look around in. The first time it is rendered "
+                    "and measured, in about a minute."),
+            doors.open_sample,
+        )
+        self.simulated = self._link(
+            "mdi6.laser-pointer",
+            self.tr("Try with the simulated rig"),
+            self.tr("Calibrate, scan and measure live, without any hardware."),
+            doors.try_simulated,
+        )
+        self.new = self._link(
+            "mdi6.file-plus-outline",
+            self.tr("New project"),
+            self.tr("Start an empty project for your own rig."),
+            doors.new_project,
+        )
+        self.open = self._link(
+            "mdi6.folder-open-outline",
+            self.tr("Open project"),
+            self.tr("Go on with a project, or drop its folder here."),
+            doors.choose_project,
+        )
+        self.from_set = self._link(
+            "mdi6.folder-multiple-image",
+            self.tr("Project from a recording set"),
+            self.tr("Measure pictures that are there already: a folder with rig.toml."),
+            doors.choose_set,
+        )
+        for place, link in enumerate((self.sample, self.simulated, self.new, self.open, self.from_set)):
+            grid.addWidget(link, place, 0)
+        self.recent = QListWidget()
+        self.recent.setAccessibleName(self.tr("Recent projects"))
+        self.recent.itemActivated.connect(lambda item: doors.open_project(item.data(Qt.ItemDataRole.UserRole)))
+        self.recent.itemClicked.connect(lambda item: doors.open_project(item.data(Qt.ItemDataRole.UserRole)))
+        heading = QLabel(self.tr("Recent projects"))
+        heading.setObjectName("heading")
+        self._none = QLabel(self.tr("Projects you open appear here."))
+        self._none.setObjectName("muted")
+        right = QVBoxLayout()
+        right.addWidget(heading)
+        right.addWidget(self._none)
+        right.addWidget(self.recent, 1)
+        card = QFrame()
+        card.setObjectName("card")
+        card.setMaximumSize(1080, 620)
+        inside = QVBoxLayout(card)
+        inside.setContentsMargins(36, 28, 36, 28)
+        inside.addWidget(title)
+        inside.addWidget(claim)
+        inside.addSpacing(18)
+        columns = QHBoxLayout()
+        columns.setSpacing(28)
+        left = QVBoxLayout()
+        left.addLayout(grid)
+        left.addStretch(1)
+        columns.addLayout(left, 3)
+        columns.addLayout(right, 2)
+        inside.addLayout(columns, 1)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(24, 12, 24, 24)
+        layout.addWidget(self.banner)
+        layout.addStretch(1)
+        row = QHBoxLayout()
+        row.addStretch(1)
+        row.addWidget(card, 20)
+        row.addStretch(1)
+        layout.addLayout(row, 20)
+        layout.addStretch(1)
+        self.refresh()
+
+    def refresh(self) -> None:
+        """Show the recent projects."""
+        self.recent.clear()
+        for path in self._doors.bench.settings.recent:
+            item = QListWidgetItem(f"{path.name}\n{path.parent}")
+            item.setData(Qt.ItemDataRole.UserRole, path)
+            item.setToolTip(str(path))
+            self.recent.addItem(item)
+        self.recent.setVisible(self.recent.count() > 0)
+        self._none.setVisible(self.recent.count() == 0)
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "_links"):
+            for link, symbol in self._links:
+                link.setIcon(icon(symbol, colour="accent"))
+
+    def _link(self, symbol: str, text: str, help_text: str, do: Callable[[], object]) -> QCommandLinkButton:
+        link = QCommandLinkButton(text, help_text)
+        link.setIcon(icon(symbol, colour="accent"))
+        link.setIconSize(QSize(26, 26))
+        link.clicked.connect(lambda: do())
+        self._links.append((link, symbol))
+        return link

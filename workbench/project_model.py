@@ -1,0 +1,158 @@
+"""The only state of the window: one open project, its undo history, and how it is kept on disk."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from PySide6.QtCore import QObject, QTimer, Signal
+from PySide6.QtGui import QUndoStack
+
+from core.errors import InputError
+from core.files.project import (
+    Done,
+    Project,
+    ProjectFile,
+    new_project,
+    read_project,
+    recoverable,
+    remove_autosave,
+    write_autosave,
+    write_project,
+)
+from workbench.edits import Edit
+
+AUTOSAVE_MS = 1000
+"""An edit is on disk at most so long after it was made."""
+
+
+class ProjectModel(QObject):
+    """Project (what the user decided; undoable) and results (what was measured; facts, never undone)."""
+
+    opened = Signal()
+    changed = Signal(object, object)
+    results_changed = Signal()
+    modified = Signal(bool)
+    failed = Signal(str)
+
+    def __init__(self, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self.folder: Path | None = None
+        self._file = ProjectFile(new_project(""))
+        self._saved: ProjectFile | None = None
+        self.undo_stack = QUndoStack(self)
+        self._autosave = QTimer(self)
+        self._autosave.setSingleShot(True)
+        self._autosave.setInterval(AUTOSAVE_MS)
+        self._autosave.timeout.connect(self.autosave)
+
+    @property
+    def project(self) -> Project:
+        """The project in force."""
+        return self._file.project
+
+    @property
+    def results(self) -> Mapping[str, Done]:
+        """What was measured, by step."""
+        return self._file.results
+
+    @property
+    def is_open(self) -> bool:
+        """Whether a project is open."""
+        return self.folder is not None
+
+    @property
+    def is_modified(self) -> bool:
+        """Whether project.json says something else."""
+        return self.is_open and self._file != self._saved
+
+    def create(self, folder: Path, project: Project) -> None:
+        """Make a new project in `folder` and open it.
+
+        Raises
+        ------
+        InputError
+            If there is a project already, or nothing can be written there.
+        """
+        if (folder / "project.json").exists():
+            raise InputError("there is a project already", where=folder, todo="choose another name, or open it")
+        self._take(folder, ProjectFile(project), saved=None)
+        self.save()
+
+    def open(self, path: Path, *, recover: bool = False) -> None:
+        """Open a project folder; with `recover`, its autosaved state.
+
+        Raises
+        ------
+        InputError
+            If there is none, or it is damaged or of a newer program.
+        """
+        folder = path.parent if path.name == "project.json" else path
+        saved = read_project(folder)
+        rescued = recoverable(folder) if recover else None
+        self._take(folder, rescued or saved, saved=saved)
+        if not recover:
+            remove_autosave(folder)
+
+    def close(self) -> None:
+        """Forget the project; save first if it is to be kept."""
+        self._autosave.stop()
+        self._take(None, ProjectFile(new_project("")), saved=None)
+
+    def edit(self, label: str, after: Project, merge_key: str = "") -> None:
+        """Put `after` in force, undoable under the name `label`; nothing happens if it is the same."""
+        if after != self.project:
+            self.undo_stack.push(Edit(label, self.project, after, self._show, merge_key))
+
+    def record(self, step: str, done: Done | None) -> None:
+        """A step has been measured (or its result is gone)."""
+        results = {name: result for name, result in self.results.items() if name != step}
+        if done is not None:
+            results[step] = done
+        self._file = ProjectFile(self.project, results)
+        self._touched()
+        self.results_changed.emit()
+
+    def save(self) -> None:
+        """Write project.json; the last five versions are kept.
+
+        Raises
+        ------
+        InputError
+            If it cannot be written.
+        """
+        if self.folder is None:
+            return
+        self._autosave.stop()
+        write_project(self.folder, self._file)
+        remove_autosave(self.folder)
+        self._saved = self._file
+        self.undo_stack.setClean()
+        self.modified.emit(False)
+
+    def autosave(self) -> None:
+        """Write the state beside project.json, for recovery after a crash."""
+        self._autosave.stop()
+        if self.folder is None or not self.is_modified:
+            return
+        try:
+            write_autosave(self.folder, self._file)
+        except InputError as error:
+            self.failed.emit(str(error))
+
+    def _show(self, project: Project) -> None:
+        before = self.project
+        self._file = ProjectFile(project, self.results)
+        self._touched()
+        self.changed.emit(before, project)
+
+    def _touched(self) -> None:
+        if self.is_open:
+            self._autosave.start()
+            self.modified.emit(self.is_modified)
+
+    def _take(self, folder: Path | None, file: ProjectFile, saved: ProjectFile | None) -> None:
+        self.folder, self._file, self._saved = folder, file, saved
+        self.undo_stack.clear()
+        self.opened.emit()
+        self.modified.emit(self.is_modified)

@@ -1,0 +1,78 @@
+"""What the program remembers between sessions; nothing in it belongs to a project."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from PySide6.QtCore import QByteArray, QObject, QSettings, Signal
+
+RECENT = 8
+"""So many projects are remembered."""
+
+THEMES = ("system", "light", "dark")
+
+
+class AppSettings(QObject):
+    """The user's own settings, kept by Qt where each system keeps such things, or in `file` (for tests)."""
+
+    recent_changed = Signal()
+    theme_changed = Signal(str)
+
+    def __init__(self, file: Path | None = None, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self._store = QSettings(str(file), QSettings.Format.IniFormat) if file else QSettings("trisect", "workbench")
+
+    @property
+    def recent(self) -> list[Path]:
+        """Projects opened last, the newest first; those that are gone are left out."""
+        stored = self._store.value("recent", [])
+        paths = [stored] if isinstance(stored, str) else list(stored or [])
+        return [path for path in map(Path, paths) if (path / "project.json").exists()]
+
+    def remember(self, project: Path) -> None:
+        """Put a project at the top of the recent ones."""
+        paths = [project, *(path for path in self.recent if path != project)][:RECENT]
+        self._store.setValue("recent", [str(path) for path in paths])
+        self.recent_changed.emit()
+
+    @property
+    def theme(self) -> str:
+        """One of THEMES."""
+        theme = str(self._store.value("theme", "system"))
+        return theme if theme in THEMES else "system"
+
+    @theme.setter
+    def theme(self, name: str) -> None:
+        self._store.setValue("theme", name)
+        self.theme_changed.emit(name)
+
+    @property
+    def projects_folder(self) -> Path:
+        """Where new projects are put."""
+        return Path(str(self._store.value("projects_folder", Path.home() / "Trisect projects")))
+
+    @projects_folder.setter
+    def projects_folder(self, folder: Path) -> None:
+        self._store.setValue("projects_folder", str(folder))
+
+    def layout(self, name: str) -> QByteArray | None:
+        """A window's or splitter's saved geometry."""
+        value = self._store.value(f"layout/{name}")
+        return value if isinstance(value, QByteArray) else None
+
+    def keep_layout(self, name: str, state: QByteArray) -> None:
+        """Save a window's or splitter's geometry."""
+        self._store.setValue(f"layout/{name}", state)
+
+    def stage_seconds(self, label: str) -> dict[str, float]:
+        """How long each stage of a job with this label took last time; the guess for the next time."""
+        stored = self._store.value(f"stages/{label}", {})
+        return {str(k): float(v) for k, v in stored.items()} if isinstance(stored, dict) else {}
+
+    def keep_stage_seconds(self, label: str, seconds: dict[str, float]) -> None:
+        """Remember how long the stages of a job took."""
+        self._store.setValue(f"stages/{label}", seconds)
+
+    def flush(self) -> None:
+        """Write now."""
+        self._store.sync()

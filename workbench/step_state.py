@@ -1,0 +1,88 @@
+"""How far each step is, computed from facts: what the project says now, and what each result was made from."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+
+from PySide6.QtCore import QCoreApplication
+
+from core.files.project import Done, Project
+from core.files.project_keys import changed, rests_on
+
+ORDER = ("project", "camera", "planes", "scan", "inspect", "report")
+"""The steps in the order of work."""
+
+NEEDS: Mapping[str, tuple[str, ...]] = {
+    "project": (),
+    "camera": (),
+    "planes": ("camera",),
+    "scan": ("camera", "planes"),
+    "inspect": ("scan",),
+    "report": ("scan",),
+}
+"""What must be there before a step can be done."""
+
+
+class State(StrEnum):
+    """A step's place on the rail."""
+
+    TODO = "todo"
+    READY = "ready"
+    DONE = "done"
+    OUTDATED = "outdated"
+
+
+@dataclass(frozen=True, slots=True)
+class StepState:
+    """A step's state, and the sentence that explains it (shown as the rail's tooltip and on the page)."""
+
+    state: State
+    sentence: str
+
+
+def step_states(project: Project, results: Mapping[str, Done]) -> dict[str, StepState]:
+    """The state of every step, by its name in ORDER."""
+    states: dict[str, StepState] = {}
+    for step in ORDER:
+        states[step] = _project_state(project) if step == "project" else _state(step, project, results, states)
+    return states
+
+
+def _project_state(project: Project) -> StepState:
+    if project.info.name.strip():
+        return StepState(State.DONE, _tr("The project has a name; everything else here is for the report."))
+    return StepState(State.READY, _tr("Give the project a name."))
+
+
+def _state(step: str, project: Project, results: Mapping[str, Done], before: Mapping[str, StepState]) -> StepState:
+    done = results.get(step)
+    if done is not None:
+        why = list(changed(done.rests_on, rests_on(step, project, results)))
+        stale = [need for need in NEEDS[step] if before[need].state is State.OUTDATED]
+        if why:
+            return StepState(State.OUTDATED, _tr("Out of date: changed since: {0}.").format(", ".join(why)))
+        if stale:
+            names = ", ".join(_NAMES[need]() for need in stale)
+            return StepState(State.OUTDATED, _tr("Out of date, because this is: {0}.").format(names))
+        at = done.at.astimezone().strftime("%Y-%m-%d %H:%M")
+        return StepState(State.DONE, _tr("Done on {0}.").format(at))
+    missing = [need for need in NEEDS[step] if need not in results]
+    if missing:
+        return StepState(State.TODO, _tr("First: {0}.").format(", ".join(_NAMES[need]() for need in missing)))
+    return StepState(State.READY, _tr("Ready to be done."))
+
+
+def _tr(text: str) -> str:
+    return QCoreApplication.translate("StepState", text)
+
+
+_NAMES = {
+    "project": lambda: _tr("the project"),
+    "camera": lambda: _tr("calibrate the camera"),
+    "planes": lambda: _tr("calibrate the laser planes"),
+    "scan": lambda: _tr("scan"),
+    "inspect": lambda: _tr("inspect"),
+    "report": lambda: _tr("report"),
+}

@@ -1,0 +1,113 @@
+"""Questions that need an answer before anything goes on; the one place where windows are modal."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from PySide6.QtCore import QCoreApplication
+from PySide6.QtWidgets import (
+    QDialog,
+    QDialogButtonBox,
+    QFileDialog,
+    QFormLayout,
+    QHBoxLayout,
+    QLabel,
+    QLineEdit,
+    QMessageBox,
+    QPushButton,
+    QWidget,
+)
+
+
+def ask(parent: QWidget | None, title: str, text: str, answers: Sequence[str]) -> int:
+    """Put a question; returns the place of the chosen answer. The last one is the safe one: Escape means it."""
+    box = QMessageBox(QMessageBox.Icon.Question, title, text, QMessageBox.StandardButton.NoButton, parent)
+    last = len(answers) - 1
+    buttons = [
+        box.addButton(
+            answer, QMessageBox.ButtonRole.AcceptRole if place < last else QMessageBox.ButtonRole.RejectRole
+        )
+        for place, answer in enumerate(answers)
+    ]
+    box.setDefaultButton(buttons[0])
+    box.setEscapeButton(buttons[-1])
+    box.exec()
+    clicked = box.clickedButton()
+    return buttons.index(clicked) if clicked in buttons else last  # type: ignore[arg-type]
+
+
+def choose_folder(parent: QWidget | None, title: str, start: Path) -> Path | None:
+    """Let a folder be chosen, or None."""
+    chosen = QFileDialog.getExistingDirectory(parent, title, str(start))
+    return Path(chosen) if chosen else None
+
+
+def choose_file_to_save(parent: QWidget | None, title: str, start: Path, kinds: str) -> Path | None:
+    """Let a file to write be chosen, or None; `kinds` as "PDF (*.pdf)"."""
+    chosen, _ = QFileDialog.getSaveFileName(parent, title, str(start), kinds)
+    return Path(chosen) if chosen else None
+
+
+def ask_name_and_folder(parent: QWidget | None, title: str, name: str, folder: Path) -> tuple[str, Path] | None:
+    """Ask for a project's name and the folder it is to be put in, or None."""
+    dialog = _NameAndFolder(parent, title, name, folder)
+    return dialog.answer() if dialog.exec() == QDialog.DialogCode.Accepted else None
+
+
+class _NameAndFolder(QDialog):
+    def __init__(self, parent: QWidget | None, title: str, name: str, folder: Path) -> None:
+        super().__init__(parent)
+        self.setWindowTitle(title)
+        self.setMinimumWidth(480)
+        self._name, self._folder = QLineEdit(name), QLineEdit(str(folder))
+        self._name.selectAll()
+        browse = QPushButton(self.tr("Browse …"))
+        browse.clicked.connect(self._browse)
+        place = QHBoxLayout()
+        place.addWidget(self._folder, 1)
+        place.addWidget(browse)
+        self._will = QLabel()
+        self._will.setObjectName("muted")
+        self._will.setWordWrap(True)
+        self._buttons = QDialogButtonBox(
+            QDialogButtonBox.StandardButton.Ok | QDialogButtonBox.StandardButton.Cancel, self
+        )
+        self._buttons.accepted.connect(self.accept)
+        self._buttons.rejected.connect(self.reject)
+        form = QFormLayout(self)
+        form.addRow(self.tr("Name"), self._name)
+        form.addRow(self.tr("In folder"), place)
+        form.addRow(self._will)
+        form.addRow(self._buttons)
+        self._name.textChanged.connect(self._check)
+        self._folder.textChanged.connect(self._check)
+        self._check()
+
+    def answer(self) -> tuple[str, Path]:
+        """Name and folder."""
+        return self._name.text().strip(), Path(self._folder.text().strip())
+
+    def _browse(self) -> None:
+        folder = choose_folder(self, self.tr("Folder for the project"), Path(self._folder.text()))
+        if folder is not None:
+            self._folder.setText(str(folder))
+
+    def _check(self) -> None:
+        name, folder = self.answer()
+        target = folder / file_name(name)
+        ok = self._buttons.button(QDialogButtonBox.StandardButton.Ok)
+        if not name:
+            problem = self.tr("Give the project a name.")
+        elif target.exists():
+            problem = self.tr("{0} exists already; choose another name.").format(target)
+        else:
+            problem = ""
+        ok.setEnabled(not problem)
+        self._will.setText(problem or self.tr("The project will be the folder {0}.").format(target))
+
+
+def file_name(name: str) -> str:
+    """A project's name as the name of a folder on every system."""
+    kept = "".join("-" if c in '<>:"/\\|?*' or ord(c) < 32 else c for c in name).strip(" .")
+    return kept or QCoreApplication.translate("Ask", "project")

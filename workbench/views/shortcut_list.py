@@ -1,0 +1,30 @@
+"""The list of keys shown under ?."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from PySide6.QtWidgets import QDialog, QDialogButtonBox, QGridLayout, QLabel, QVBoxLayout, QWidget
+
+
+class ShortcutList(QDialog):
+    """All keys and what they do."""
+
+    def __init__(self, keys: Sequence[tuple[str, str]], parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setWindowTitle(self.tr("Keys"))
+        grid = QGridLayout()
+        grid.setHorizontalSpacing(24)
+        half = (len(keys) + 1) // 2
+        for place, (key, meaning) in enumerate(keys):
+            row, column = place % half, 2 * (place // half)
+            name = QLabel(key)
+            name.setObjectName("heading")
+            grid.addWidget(name, row, column)
+            grid.addWidget(QLabel(meaning), row, column + 1)
+        buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close)
+        buttons.rejected.connect(self.reject)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(18, 16, 18, 12)
+        layout.addLayout(grid)
+        layout.addWidget(buttons)

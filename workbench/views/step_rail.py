@@ -1,0 +1,100 @@
+"""The rail of steps at the left: where one is, and how far each step is."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from PySide6.QtCore import QEvent, QSize, Qt, Signal
+from PySide6.QtWidgets import QButtonGroup, QFrame, QHBoxLayout, QLabel, QToolButton, QVBoxLayout, QWidget
+
+from workbench.theme import icon, shades
+
+BADGES = {
+    "todo": ("mdi6.circle-outline", "line"),
+    "ready": ("mdi6.circle-half-full", "accent"),
+    "done": ("mdi6.check-circle", "good"),
+    "outdated": ("mdi6.alert-circle-outline", "warn"),
+}
+"""Icon and colour of each state; the shapes differ as well."""
+
+
+class StepRail(QFrame):
+    """A column of buttons, one a step, each with a badge for its state."""
+
+    chosen = Signal(str)
+
+    def __init__(self, steps: Sequence[tuple[str, str, str]], parent: QWidget | None = None) -> None:
+        """`steps`: name, title and icon of each."""
+        super().__init__(parent)
+        self._icons = {name: symbol for name, _, symbol in steps}
+        self._states: dict[str, str] = dict.fromkeys(self._icons, "todo")
+        self._buttons: dict[str, QToolButton] = {}
+        self._badges: dict[str, QLabel] = {}
+        self._words: dict[str, QLabel] = {}
+        group = QButtonGroup(self)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(6, 10, 6, 10)
+        layout.setSpacing(4)
+        for number, (name, title, _) in enumerate(steps, start=1):
+            button = QToolButton()
+            button.setText(f"{number}  {title}")
+            button.setCheckable(True)
+            button.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
+            button.setIconSize(QSize(20, 20))
+            button.setAccessibleName(title)
+            button.clicked.connect(lambda _=False, step=name: self.chosen.emit(step))
+            button.setMinimumWidth(150)
+            button.setMinimumHeight(36)
+            group.addButton(button)
+            badge, words = QLabel(), QLabel()
+            words.setObjectName("help")
+            row = QHBoxLayout()
+            row.setSpacing(4)
+            row.addWidget(button, 1)
+            row.addWidget(badge)
+            layout.addLayout(row)
+            self._buttons[name], self._badges[name], self._words[name] = button, badge, words
+        layout.addStretch(1)
+        self._dress()
+
+    def set_current(self, name: str) -> None:
+        """Mark the step whose page is shown."""
+        self._buttons[name].setChecked(True)
+
+    def set_states(self, states: Mapping[str, tuple[str, str]]) -> None:
+        """`states`: for each step its state (a key of BADGES) and the sentence that explains it."""
+        for name, (state, sentence) in states.items():
+            self._states[name] = state
+            self._buttons[name].setToolTip(sentence)
+            self._badges[name].setToolTip(sentence)
+            self._buttons[name].setAccessibleDescription(sentence)
+        self._show_badges()
+
+    def state_of(self, name: str) -> str:
+        """The state shown for a step."""
+        return self._states[name]
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.PaletteChange and self._buttons:
+            self._dress()
+
+    def _dress(self) -> None:
+        s = shades()
+        self.setStyleSheet(
+            f"StepRail {{ background: {s.panel}; border: none; border-right: 1px solid {s.line}; }}"
+            f"StepRail QToolButton {{ border: none; border-radius: 5px; padding: 6px 8px; text-align: left;"
+            f" color: {s.text}; }}"
+            f"StepRail QToolButton:hover {{ background: {s.window}; }}"
+            f"StepRail QToolButton:focus {{ border: 1px solid {s.accent}; }}"
+            f"StepRail QToolButton:checked {{ background: {s.window}; color: {s.accent}; font-weight: 600; }}"
+            f"StepRail QToolButton:disabled {{ color: {s.muted}; }}"
+        )
+        for name, button in self._buttons.items():
+            button.setIcon(icon(self._icons[name]))
+        self._show_badges()
+
+    def _show_badges(self) -> None:
+        for name, badge in self._badges.items():
+            symbol, colour = BADGES[self._states[name]]
+            badge.setPixmap(icon(symbol, colour=colour).pixmap(QSize(16, 16)))

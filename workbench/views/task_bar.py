@@ -1,0 +1,60 @@
+"""Progress, remaining time and Cancel in the status bar."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QTimer, Signal
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QProgressBar, QPushButton, QWidget
+
+
+class TaskBar(QWidget):
+    """Shows one running job; hidden while there is none."""
+
+    cancel_pressed = Signal()
+    tick = Signal()
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._label, self._left = QLabel(), QLabel()
+        self._left.setObjectName("muted")
+        self._bar = QProgressBar()
+        self._bar.setFixedWidth(220)
+        self._bar.setTextVisible(False)
+        self.cancel = QPushButton(self.tr("Cancel"))
+        self.cancel.clicked.connect(self.cancel_pressed)
+        row = QHBoxLayout(self)
+        row.setContentsMargins(6, 1, 6, 1)
+        for widget in (self._label, self._bar, self._left, self.cancel):
+            row.addWidget(widget)
+        self._clock = QTimer(self)
+        self._clock.setInterval(500)
+        self._clock.timeout.connect(self.tick)
+        self.hide()
+
+    def begin(self, label: str) -> None:
+        """A job has started."""
+        self._label.setText(label)
+        self._bar.setRange(0, 0)
+        self._left.setText("")
+        self.cancel.setEnabled(True)
+        self._clock.start()
+        self.show()
+
+    def progress(self, label: str, stage: str, share: float | None, left: str) -> None:
+        """What the job is doing, the share of it that is done (None: unknown), and the time left in words."""
+        self._label.setText(f"{label}: {stage}" if stage else label)
+        if share is None:
+            self._bar.setRange(0, 0)
+        else:
+            self._bar.setRange(0, 1000)
+            self._bar.setValue(round(share * 1000))
+        self._left.setText(left)
+
+    def cancelling(self) -> None:
+        """Cancel was pressed."""
+        self.cancel.setEnabled(False)
+        self._left.setText(self.tr("stopping …"))
+
+    def end(self) -> None:
+        """The job is over."""
+        self._clock.stop()
+        self.hide()
