@@ -10,16 +10,27 @@ SIDE_BY_SIDE := -n 2 --dist loadscope
 test quick: export OPENBLAS_NUM_THREADS = 1
 test quick: export OMP_NUM_THREADS = 1
 
-.PHONY: demo test quick check wheel clean
+# Windows are tested twice: without a screen, and on a virtual one with the real 3D view.
+SCREEN := $(shell command -v xvfb-run >/dev/null && echo 'xvfb-run -a -s "-screen 0 1920x1080x24"')
+
+.PHONY: demo app test quick check screenshots wheel clean
 
 demo: $(READY)            ## measure the embedded sample: cloud, mesh and report of a 50 mm gauge block in ./out
 	$(BIN)/trisect demo --out $(OUT)
 
-test: check               ## format, lint, types, rooms, and every test
-	$(BIN)/pytest $(SIDE_BY_SIDE)
+app: $(READY)             ## open the workbench
+	$(BIN)/trisect-workbench
+
+test: check               ## format, lint, types, rooms, and every test; windows offscreen and on a virtual screen
+	QT_QPA_PLATFORM=offscreen $(BIN)/pytest $(SIDE_BY_SIDE)
+	@if [ -n '$(SCREEN)' ]; then $(SCREEN) $(BIN)/pytest $(SIDE_BY_SIDE) tests/workbench; \
+	else echo "xvfb-run is not installed: the windows were tested without a screen only"; fi
 
 quick: check              ## the same without the slow proofs
-	$(BIN)/pytest $(SIDE_BY_SIDE) -m "not slow"
+	QT_QPA_PLATFORM=offscreen $(BIN)/pytest $(SIDE_BY_SIDE) -m "not slow"
+
+screenshots: $(READY)     ## pictures of every page, both sizes, both themes, in ./screenshots
+	$(SCREEN) $(BIN)/python -m tests.workbench.screenshots screenshots
 
 check: $(READY)
 	$(BIN)/ruff format --check .
@@ -40,4 +51,4 @@ $(READY): pyproject.toml constraints.txt
 	touch $(READY)
 
 clean:
-	rm -rf $(VENV) build dist $(OUT)
+	rm -rf $(VENV) build dist $(OUT) screenshots
