@@ -70,10 +70,14 @@ class Crossing:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class CrossingSearch:
-    """All crossings of two pictures: (piece of a, piece of b, crossing), and how many were left out for what reason."""
+    """All crossings of two pictures: (piece of a, piece of b, crossing).
+
+    `rejected` counts those left out by reason; `left_out` has about where (2,) in pixels each of them is, and why.
+    """
 
     found: tuple[tuple[int, int, Crossing], ...]
     rejected: Mapping[str, int]
+    left_out: tuple[tuple[Array, str], ...] = ()
 
 
 def cross_centrelines(
@@ -100,6 +104,7 @@ def search_crossings(
     """
     rejected: Counter[str] = Counter()
     found: list[tuple[int, int, Crossing]] = []
+    left_out: list[tuple[Array, str]] = []
     if not a or not b:
         return CrossingSearch((), rejected)
     lines_a, lines_b = Stack(a), Stack(b)
@@ -116,14 +121,16 @@ def search_crossings(
             min_angle,
         )
         if row[0] > 0:
-            rejected[_REASONS[int(row[0]) - 1]] += 1
+            reason = _REASONS[int(row[0]) - 1]
+            rejected[reason] += 1
+            left_out.append((lines_a.points[lines_a.starts[i] + k, :2].copy(), reason))
             continue
         crossing = _crossing(row)
         if not any(  # one meeting of two rough lines may be met twice
             (i, j) == (p, q) and np.hypot(*(c.uv - crossing.uv)) < half_length_px / 2 for p, q, c in found
         ):
             found.append((int(i), int(j), crossing))
-    return CrossingSearch(tuple(found), rejected)
+    return CrossingSearch(tuple(found), rejected, tuple(left_out))
 
 
 def _crossing(row: Array) -> Crossing:

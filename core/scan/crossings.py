@@ -70,6 +70,13 @@ class CrossingTable:
         b = np.where(self.with_fan, -1, number[np.maximum(self.b, 0)])
         return replace(self, a=number[self.a], b=b)
 
+    def followed_by(self, *others: CrossingTable) -> CrossingTable:
+        """The rows of this table and then of the `others`."""
+        names = [f.name for f in fields(self) if f.name != "half_length_px"]
+        tables = (self, *others)
+        joined = {name: np.concatenate([getattr(table, name) for table in tables]) for name in names}
+        return CrossingTable(**joined, half_length_px=self.half_length_px)
+
 
 @dataclass(frozen=True, slots=True)
 class CrossingWindow:
@@ -86,18 +93,18 @@ def all_crossings(
     progress: Progress = silent,
 ) -> CrossingTable:
     """Every crossing of each sweep with the fan and with each later sweep."""
-    rows: list[_Row] = []
-    stripes = [_shaded(pieces) for pieces in sweeps]
-    fixed = _shaded(fan)
+    rows: list[Meeting] = []
+    stripes = [shaded(pieces) for pieces in sweeps]
+    fixed = shaded(fan)
     for a, pieces in steps(enumerate(stripes), progress, "crossings", len(sweeps)):
-        rows.extend(_meetings(pieces, fixed, a, -1, window))
+        rows.extend(meetings(pieces, fixed, a, -1, window))
         for b in range(a + 1, len(sweeps)):
-            rows.extend(_meetings(pieces, stripes[b], a, b, window))
-    return _table(rows, window)
+            rows.extend(meetings(pieces, stripes[b], a, b, window))
+    return crossing_table(rows, window)
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class _Shaded:
+class ShadedLines:
     """The centrelines of one picture, with what uneven brightness adds to their σ, and the length along them."""
 
     pieces: Sequence[Centreline]
@@ -105,13 +112,14 @@ class _Shaded:
     arc: Sequence[Array]
 
 
-def _shaded(pieces: Sequence[Centreline]) -> _Shaded:
+def shaded(pieces: Sequence[Centreline]) -> ShadedLines:
+    """Centrelines made ready to be crossed with many others."""
     arcs = [np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(p.uv, axis=0), axis=1))]) for p in pieces]
-    return _Shaded(pieces, [shading_sigma(piece) for piece in pieces], arcs)
+    return ShadedLines(pieces, [shading_sigma(piece) for piece in pieces], arcs)
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class _Row:
+class Meeting:
     """One crossing: (a, b, piece of a, piece of b); where along, and the σ of, each centreline."""
 
     index: tuple[int, int, int, int]
@@ -120,15 +128,23 @@ class _Row:
     crossing: Crossing
 
 
-def _meetings(of_a: _Shaded, of_b: _Shaded, a: int, b: int, window: CrossingWindow) -> list[_Row]:
+def meetings(of_a: ShadedLines, of_b: ShadedLines, a: int, b: int, window: CrossingWindow) -> list[Meeting]:
+    """The crossings of one picture's centrelines with another's, which are called frame `a` and frame `b`."""
     found = cross_centrelines(
         of_a.pieces, of_b.pieces, half_length_px=window.half_length_px, min_angle=window.min_angle
     )
+    return meetings_at(found, of_a, of_b, a, b)
+
+
+def meetings_at(
+    found: Sequence[tuple[int, int, Crossing]], of_a: ShadedLines, of_b: ShadedLines, a: int, b: int
+) -> list[Meeting]:
+    """Crossings (piece of a, piece of b, crossing) that were `found` by a search, with what the table wants of them."""
     rows = []
     for i, j, crossing in found:
         at_a, at_b = _nearest(of_a.pieces[i], crossing.uv), _nearest(of_b.pieces[j], crossing.uv)
         rows.append(
-            _Row(
+            Meeting(
                 (a, b, i, j),
                 (float(of_a.arc[i][at_a]), float(of_b.arc[j][at_b])),
                 (
@@ -145,7 +161,9 @@ def _nearest(piece: Centreline, uv: Array) -> int:
     return int(np.argmin(np.sum((piece.uv - uv) ** 2, axis=1)))
 
 
-def _table(rows: list[_Row], window: CrossingWindow) -> CrossingTable:
+def crossing_table(rows: Sequence[Meeting], window: CrossingWindow) -> CrossingTable:
+    """The crossings as arrays, in their order."""
+
     def vectors(name: str) -> Array:
         return np.array([getattr(row.crossing, name) for row in rows], dtype=np.float64).reshape(-1, 2)
 

@@ -5,13 +5,14 @@ Frames stream: one is decoded, subtracted, reduced to its centrelines and forgot
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import chain, islice
+from itertools import chain
 
 import numpy as np
 from numpy.typing import NDArray
 
+from core.calibrate.results import LEFT_OUT
 from core.errors import InputError
 from core.image.centreline import Centreline
 from core.image.noise import NoiseModel, estimate_noise
@@ -73,22 +74,25 @@ Frame = tuple[str, Picture | str]
 
 
 def extract_features(
-    reference: Picture,
+    reference: Picture | ReferenceFeatures,
     frames: Iterable[Frame],
     total: int,
     options: FeatureOptions | None = None,
     progress: Progress = silent,
+    watch: Callable[[FrameFeatures], None] | None = None,
 ) -> ScanFeatures:
     """Reduce a scan to features.
 
     Parameters
     ----------
     reference
-        The picture with the fan alone.
+        The picture with the fan alone, or what has been read from it.
     frames
         In the order of the recording; read once.
     total
         How many there are, for progress.
+    watch
+        Shown the features of each frame as they come, in the order of the recording, on the calling thread.
 
     Raises
     ------
@@ -96,15 +100,19 @@ def extract_features(
         If the reference shows no fan line, or no frame shows a sweep.
     """
     options = options or FeatureOptions()
-    seen = read_reference(reference, options)
+    progress("frames", 0, total)
+    seen = reference if isinstance(reference, ReferenceFeatures) else read_reference(reference, options)
     stream = iter(frames)
-    ahead = list(islice(stream, LOOK_AHEAD))
+    ahead = _look_ahead(stream)
+    progress("frames", 0, total)
     sweep_stripe = options.sweep_stripe or choose_sweep_stripe(ahead, seen)
     reader = FrameReader(seen, sweep_stripe, options.move_limit_px)
     found: list[FrameFeatures] = []
     for features in ordered_map(reader, enumerate(chain(ahead, stream))):
         progress("frames", len(found), total)
         found.append(features)
+        if watch is not None:
+            watch(features)
     progress("frames", len(found), total)
     _require_sweeps(found)
     crossings = all_crossings(seen.fan, [frame.centrelines for frame in found], options.window, progress)
@@ -205,6 +213,18 @@ def _fan_centrelines(
             todo="switch the three-line laser on, expose longer, or darken the room",
         )
     return settings, fan
+
+
+def _look_ahead(frames: Iterator[Frame]) -> list[Frame]:
+    """The first frames, of which LOOK_AHEAD are not left out by hand."""
+    ahead: list[Frame] = []
+    wanted = LOOK_AHEAD
+    for name, picture in frames:
+        ahead.append((name, picture))
+        wanted -= not isinstance(picture, str) or picture != LEFT_OUT
+        if not wanted:
+            break
+    return ahead
 
 
 def choose_sweep_stripe(frames: Sequence[Frame], reference: ReferenceFeatures) -> StripeSettings | None:

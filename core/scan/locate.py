@@ -34,8 +34,12 @@ class LocatedSweeps:
 
 def number_fan_lines(pieces: Sequence[Centreline], crossings: CrossingTable, camera: Camera, fan: Fan) -> FanLines:
     """The numbering of the fan's centrelines that the sweeps agree with best."""
-    numberings = possible_fan_lines(pieces, camera, fan)
-    if len(numberings) == 1 and numberings[0].settled == len(pieces):
+    return choose_numbering(possible_fan_lines(pieces, camera, fan), crossings, camera, fan)
+
+
+def choose_numbering(numberings: Sequence[FanLines], crossings: CrossingTable, camera: Camera, fan: Fan) -> FanLines:
+    """That of the `numberings` that the sweeps agree with best, unsure stretches settled by them."""
+    if len(numberings) == 1 and numberings[0].settled == len(numberings[0].line):
         return numberings[0]
     settled = [_settled(lines, crossings, camera, fan) for lines in numberings]
     return min(settled, key=lambda lines: _disagreement(lines, crossings, camera, fan))

@@ -1,0 +1,175 @@
+"""Sweeps located while they come: each by the fan and by a few sweeps before it, the anchors.
+
+The anchors are spread over the sweeps so far and adjusted together as a small network, anew each time there are a
+third more sweeps. Every other sweep is located by its crossings with the fan and with them (`core.scan.one_sweep`). So
+the work for a frame does not grow with the length of the scan. When the anchors have been adjusted, all sweeps before
+are located anew by them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.image.centreline import Centreline
+from core.image.crossing import search_crossings
+from core.model import Camera, Fan
+from core.model.arrays import Array
+from core.scan.crossings import (
+    CrossingTable,
+    CrossingWindow,
+    Meeting,
+    ShadedLines,
+    crossing_table,
+    meetings,
+    meetings_at,
+    shaded,
+)
+from core.scan.fan_lines import UNASSIGNED, FanLines, possible_fan_lines
+from core.scan.geometry import CrossingRays
+from core.scan.locate import LocatedSweeps, choose_numbering, locate_together, numbered
+from core.scan.movement import movement_px
+from core.scan.one_sweep import KnownPlanes, OneSweep, locate_one
+
+FIRST_ADJUSTMENT = 4
+GROWTH = 4 / 3
+"""The anchors are adjusted again when there are so many times as many sweeps as the last time."""
+
+SURE_AFTER = 3
+"""A numbering of the fan's lines that has been chosen so often in a row is kept."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class TrackedSweep:
+    """A sweep, its crossings with the fan (b = −1) and with anchors (b their frame), and its plane if it is known.
+
+    `used` (M,) are the rows of `crossings` that `plane` rests on; `left_out` the meetings that gave no crossing, each
+    with about where in pixels, and why.
+    """
+
+    frame: int
+    crossings: CrossingTable
+    geometry: CrossingRays
+    left_out: tuple[tuple[Array, str], ...]
+    plane: OneSweep | None
+    used: NDArray[np.int64]
+
+
+class SweepTracker:
+    """Locates sweeps one after another.
+
+    `lines` are the numbers of the fan's centrelines as far as they are settled.
+    """
+
+    def __init__(
+        self,
+        fan_pieces: Sequence[Centreline],
+        camera: Camera,
+        fan: Fan,
+        window: CrossingWindow,
+        most_anchors: int = 40,
+        stride_px: float = 6.0,
+    ) -> None:
+        self._fixed = shaded(fan_pieces)
+        self._camera, self._fan, self._window = camera, fan, window
+        self._numberings = possible_fan_lines(fan_pieces, camera, fan)
+        self.lines: FanLines = self._numberings[0]
+        self._chosen_alike = 0
+        self._sweeps: list[TrackedSweep] = []
+        self._anchors: dict[int, ShadedLines] = {}
+        self._last_anchor: Sequence[Centreline] = ()
+        self._most_anchors, self._stride_px = most_anchors, stride_px
+        self._adjusted: LocatedSweeps | None = None
+        self._due = FIRST_ADJUSTMENT
+
+    def add(self, frame: int, pieces: Sequence[Centreline]) -> tuple[TrackedSweep, bool]:
+        """Locate the sweep of `frame`; True if all sweeps before it were located anew as well."""
+        lines = shaded(pieces)
+        window = self._window
+        search = search_crossings(pieces, self._fixed.pieces, window.half_length_px, window.min_angle)
+        rows: list[Meeting] = meetings_at(search.found, lines, self._fixed, frame, -1)
+        for anchor, others in self._anchors.items():
+            rows.extend(meetings(lines, others, frame, anchor, window))
+        table = crossing_table(rows, window)
+        sweep = TrackedSweep(
+            frame, table, CrossingRays.of(table, self._camera), search.left_out, None, np.zeros(0, np.int64)
+        )
+        sweep = self._located(sweep)
+        self._sweeps.append(sweep)
+        if len(rows) and self._is_new(pieces):
+            self._anchors[frame] = lines
+            self._last_anchor = pieces
+            self._thin_out()
+        if len(self._sweeps) < self._due or len(self._anchors) < FIRST_ADJUSTMENT:
+            return sweep, False
+        self._due = round(GROWTH * len(self._sweeps))
+        renewed = self._adjust()
+        return self._sweeps[-1], renewed
+
+    def sweeps(self) -> Iterator[TrackedSweep]:
+        """All sweeps so far, in the order they came."""
+        return iter(self._sweeps)
+
+    def _is_new(self, pieces: Sequence[Centreline]) -> bool:
+        return not self._last_anchor or not movement_px(pieces, self._last_anchor) < self._stride_px
+
+    def _thin_out(self) -> None:
+        """Keep every second anchor when there are too many, and from now on take them twice as far apart."""
+        if len(self._anchors) <= self._most_anchors:
+            return
+        self._anchors = {frame: self._anchors[frame] for frame in list(self._anchors)[::2]}
+        self._stride_px *= 2
+
+    def _adjust(self) -> bool:
+        """Adjust the anchors as a network and locate all sweeps by them; False if they are not tied to the fan."""
+        table = self._among_anchors()
+        if table is None or not np.any(table.with_fan):
+            return False
+        if self._chosen_alike < SURE_AFTER:
+            lines = choose_numbering(self._numberings, table, self._camera, self._fan)
+            self._chosen_alike = self._chosen_alike + 1 if lines.line == self.lines.line else 0
+            self.lines = lines
+        table, line = numbered(table, self.lines)
+        if not np.any(table.with_fan):
+            return False
+        self._adjusted = locate_together(table, line, self._camera, self._fan)
+        self._sweeps = [self._located(sweep) for sweep in self._sweeps]
+        return True
+
+    def _among_anchors(self) -> CrossingTable | None:
+        """The crossings of the anchors with the fan and with each other."""
+        anchors = np.array(list(self._anchors), dtype=np.int64)
+        tables = [
+            sweep.crossings.select(sweep.crossings.with_fan | np.isin(sweep.crossings.b, anchors))
+            for sweep in self._sweeps
+            if sweep.frame in self._anchors
+        ]
+        return tables[0].followed_by(*tables[1:]) if tables else None
+
+    def _located(self, sweep: TrackedSweep) -> TrackedSweep:
+        """The sweep with its plane from what is known now."""
+        known, used = self._known(sweep.crossings)
+        if len(used) < 3:
+            return TrackedSweep(sweep.frame, sweep.crossings, sweep.geometry, sweep.left_out, None, used)
+        geometry = CrossingRays(sweep.geometry.rays[used], sweep.geometry.jacobians[used])
+        plane = locate_one(sweep.crossings.select(used), geometry, known)
+        return TrackedSweep(sweep.frame, sweep.crossings, sweep.geometry, sweep.left_out, plane, used)
+
+    def _known(self, table: CrossingTable) -> tuple[KnownPlanes, NDArray[np.int64]]:
+        """The planes that crossings are with, and the rows of those crossings of which it is known."""
+        numbers = np.array([*self.lines.line, UNASSIGNED], dtype=np.int64)
+        line = np.where(table.with_fan, numbers[np.where(table.with_fan, table.piece_b, -1)], UNASSIGNED)
+        pis = self._fan.pis[np.maximum(line, 0)]
+        sweep = np.full(len(table), -1, dtype=np.int64)
+        covariance = np.zeros((0, 0))
+        if self._adjusted is not None:
+            frames = self._adjusted.frames
+            place = np.minimum(np.searchsorted(frames, table.b), len(frames) - 1)
+            sweep = np.where(~table.with_fan & (frames[place] == table.b), place, -1)
+            pis = np.where((sweep >= 0)[:, None], self._adjusted.pis[np.maximum(sweep, 0)], pis)
+            covariance = self._adjusted.covariance
+        used = np.flatnonzero((line != UNASSIGNED) | (sweep >= 0))
+        return KnownPlanes(pis[used], sweep[used], covariance), used
