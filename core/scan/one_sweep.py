@@ -86,7 +86,7 @@ def locate_one(crossings: CrossingTable, geometry: CrossingRays, known: KnownPla
         if step < ROUNDS - 1:
             weights = _weights(residuals, reject=step >= _REJECT_FROM - 1)
     used = (known.sweep < 0) & (weights > _LEAST_WEIGHT)
-    return OneSweep(pi, covariance, weights, residuals, plane_condition(rays[used]))
+    return OneSweep(pi, np.asarray(covariance, dtype=np.float64), weights, residuals, plane_condition(rays[used]))
 
 
 def _shared(rays: Array, known: KnownPlanes) -> Array:

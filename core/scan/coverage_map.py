@@ -1,0 +1,49 @@
+"""How much of the picture a scan has covered with points, cell by cell."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from core.model.arrays import Array
+
+CELLS_ACROSS = 96
+
+
+class CoverageMap:
+    """Cells of the picture, about square, in which there are points.
+
+    `cells` (rows, columns) is True where points are; `lit` where any laser light has been seen, measured or not.
+    """
+
+    def __init__(self, image_size: tuple[int, int], columns: int = CELLS_ACROSS) -> None:
+        width, height = image_size
+        self._columns, self._rows = columns, max(1, round(columns * height / width))
+        self._per_px = np.array([self._columns / width, self._rows / height])
+        self.cells: NDArray[np.bool_] = np.zeros((self._rows, self._columns), dtype=np.bool_)
+        self.lit: NDArray[np.bool_] = np.zeros_like(self.cells)
+
+    def add(self, uv: Array) -> None:
+        """Points were measured at `uv` (N, 2) in pixels."""
+        self._mark(self.cells, uv)
+        self._mark(self.lit, uv)
+
+    def add_lit(self, uv: Array) -> None:
+        """Light was seen at `uv` (N, 2) in pixels, whether it could be measured or not."""
+        self._mark(self.lit, uv)
+
+    @property
+    def share(self) -> float:
+        """Covered share (0 … 1) of what has been lit: of the hull around all light seen; 0 before there is any."""
+        rows, columns = np.nonzero(self.lit)
+        if not len(rows):
+            return 0.0
+        hull = np.zeros(self.lit.shape, dtype=np.uint8)
+        corners = cv2.convexHull(np.column_stack([columns, rows]).astype(np.int32))
+        cv2.fillConvexPoly(hull, corners, 1)
+        return float(np.count_nonzero(self.cells & (hull > 0)) / np.count_nonzero(hull))
+
+    def _mark(self, grid: NDArray[np.bool_], uv: Array) -> None:
+        where = ((np.asarray(uv, dtype=np.float64) + 0.5) * self._per_px).astype(np.intp)
+        grid[np.clip(where[:, 1], 0, self._rows - 1), np.clip(where[:, 0], 0, self._columns - 1)] = True

@@ -1,0 +1,58 @@
+"""What to tell the hand that moves the laser, one short sentence each."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+MOST_HINTS = 2
+
+
+@dataclass(frozen=True, slots=True)
+class HintLimits:
+    """When a hint is given.
+
+    `sigma_mm`: a frame whose points are this uncertain (median) needs better crossings. `speed_share`: movement from
+    frame to frame over the picture's width. `faint` of the largest grey level: a stripe lower than this. `saturated`:
+    share of the stripe's points that are overexposed.
+    """
+
+    sigma_mm: float = 0.2
+    speed_share: float = 0.05
+    faint: float = 0.06
+    saturated: float = 0.3
+
+
+@dataclass(frozen=True, slots=True)
+class HandState:
+    """How the hand-held laser does in one frame.
+
+    `lines_met` of the fan's `lines` are crossed; `sigma_mm` is the median over the frame's points, NaN when the sweep
+    is not located; `speed_px` since the frame before, NaN if not known; `width_px` the picture's; `strength` and
+    `full_scale` in grey levels; `saturated` share of the stripe's points.
+    """
+
+    lines_met: int
+    lines: int
+    sigma_mm: float
+    speed_px: float
+    width_px: int
+    strength: float
+    full_scale: float
+    saturated: float
+
+
+def hints_for(state: HandState, limits: HintLimits) -> tuple[str, ...]:
+    """At most two sentences, the more urgent first; none when all is well."""
+    hints: list[str] = []
+    if state.strength < limits.faint * state.full_scale:
+        hints.append("Brighter: the stripe is faint.")
+    elif state.saturated > limits.saturated:
+        hints.append("Darker: the stripe is overexposed.")
+    if state.speed_px > limits.speed_share * state.width_px:
+        hints.append(f"Slower: the stripe moves {state.speed_px:.0f} px from frame to frame.")
+    if not state.sigma_mm <= limits.sigma_mm:
+        if state.lines_met < min(3, state.lines):
+            hints.append("Cross more of the fan.")
+        else:
+            hints.append("Tilt the laser more.")
+    return tuple(hints[:MOST_HINTS])

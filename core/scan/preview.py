@@ -1,0 +1,241 @@
+"""What is shown while a scan runs: each frame's crossings, its light plane, and points good enough to look at.
+
+The network over all frames is the result; this is only the preview. Each sweep is located as it comes
+(`core.scan.tracking`), the numbers of the fan's lines are settled on the way, and the cloud shown so far is renewed
+when more is known.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.image.centreline import Centreline
+from core.model import Camera, Fan
+from core.model.arrays import Array
+from core.scan.crossing_marks import CrossingMarks, mark_crossings
+from core.scan.crossings import CrossingWindow
+from core.scan.fan_lines import UNASSIGNED
+from core.scan.features import FrameFeatures, ReferenceFeatures
+from core.scan.hints import HandState, HintLimits, hints_for
+from core.scan.movement import movement_px
+from core.scan.preview_cloud import PreviewCloud, StripeRays
+from core.scan.sweep_plane import plane_condition
+from core.scan.tracking import SweepTracker, TrackedSweep
+
+
+@dataclass(frozen=True, slots=True)
+class PreviewOptions:
+    """How a preview is made: points up to `sigma_cut_mm` are shown, every `thin`-th of a stripe."""
+
+    sigma_cut_mm: float = 1.0
+    thin: int = 3
+    window: CrossingWindow = field(default_factory=CrossingWindow)
+    hints: HintLimits = field(default_factory=HintLimits)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class FramePreview:
+    """What one frame shows.
+
+    Parameters
+    ----------
+    index, name
+        Of the frame.
+    centrelines
+        The stripe, thinned for display.
+    sigma_mm
+        For each of the centrelines, (N,) standard uncertainty of depth in mm; NaN where it is unknown.
+    crossing_uv
+        (M, 2) in pixels.
+    crossing_status
+        (M,) 0 good, 1 weak, 2 left out.
+    crossing_reason
+        One sentence for each crossing.
+    crossing_with_fan
+        (M,) False for crossings with other sweeps.
+    condition
+        Of the crossings with the fan: ratio of singular values, infinite when they are collinear or too few.
+    speed_px
+        How far the stripe has moved since the frame before, in pixels; NaN if not known.
+    points, point_sigma, point_intensity
+        (P, 3) in mm in the camera frame, (P,) in mm, (P,) in grey levels: the points worth showing.
+    point_uv
+        (P, 2) where they are in the picture, in pixels.
+    hints
+        At most two short sentences for the hand.
+    reason
+        Why there are no points; empty if there are.
+    renewed
+        Not None: all points so far, this frame's and the fan's own included, located anew; they replace all that was
+        given before.
+    """
+
+    index: int
+    name: str
+    centrelines: tuple[Centreline, ...]
+    sigma_mm: tuple[Array, ...]
+    crossing_uv: Array
+    crossing_status: NDArray[np.int8]
+    crossing_reason: tuple[str, ...]
+    crossing_with_fan: NDArray[np.bool_]
+    condition: float
+    speed_px: float
+    points: Array
+    point_sigma: Array
+    point_intensity: Array
+    point_uv: Array
+    hints: tuple[str, ...]
+    reason: str
+    renewed: PreviewCloud | None = None
+
+
+class Preview:
+    """Turns the features of a scan's frames, one after another, into what is shown of them.
+
+    Built once per scan from the features of its reference picture (:func:`core.scan.features.read_reference`). Not to
+    be called from two threads at once.
+    """
+
+    def __init__(
+        self, reference: ReferenceFeatures, camera: Camera, fan: Fan, options: PreviewOptions | None = None
+    ) -> None:
+        self._options = options = options or PreviewOptions()
+        self._camera, self._fan, self._reference = camera, fan, reference
+        self._tracker = SweepTracker(reference.fan, camera, fan, options.window)
+        self._thin_fan = [piece.select(slice(None, None, options.thin)) for piece in reference.fan]
+        self._fan_rays = [StripeRays.of(-1, [piece], camera) for piece in self._thin_fan]
+        self._stripes: dict[int, StripeRays] = {}
+        self._before: Sequence[Centreline] = ()
+        self._speed_before = float("nan")
+        self._limits = _depth_limits(self._fan_clouds())
+
+    @property
+    def fan_lines(self) -> tuple[tuple[Centreline, ...], ...]:
+        """The fan's centrelines by line number, thinned for display, as far as they are settled."""
+        pieces = list(zip(self._thin_fan, self._tracker.lines.line, strict=True))
+        return tuple(tuple(piece for piece, k in pieces if k == line) for line in range(self._fan.lines))
+
+    def cloud(self) -> PreviewCloud:
+        """All points so far, the fan's own first."""
+        clouds = self._fan_clouds()
+        self._limits = _depth_limits(clouds)
+        for sweep in self._tracker.sweeps():
+            if sweep.plane is not None:
+                stripe = self._stripes[sweep.frame]
+                depth, sigma = stripe.depth(sweep.plane.pi, sweep.plane.covariance)
+                clouds.append(stripe.cloud(depth, sigma, self._worth_showing(depth, sigma)))
+        return PreviewCloud.joined(clouds)
+
+    def __call__(self, features: FrameFeatures) -> FramePreview:
+        """What `features` show; frames in the order of time."""
+        if not features.centrelines:
+            self._before, self._speed_before = (), float("nan")
+            return _nothing(features)
+        sweep, renewed = self._tracker.add(features.index, features.centrelines)
+        thin = tuple(piece.select(slice(None, None, self._options.thin)) for piece in features.centrelines)
+        stripe = self._stripes[features.index] = StripeRays.of(features.index, thin, self._camera)
+        nowhere = np.full(len(stripe.rays), np.nan)
+        plane = sweep.plane
+        depth, sigma = (nowhere, nowhere) if plane is None else stripe.depth(plane.pi, plane.covariance)
+        shown = self._worth_showing(depth, sigma)
+        points = stripe.cloud(depth, sigma, shown)
+        marks = mark_crossings(sweep, self._tracker.lines)
+        lines_met, condition = self._met(sweep)
+        speed = movement_px(features.centrelines, self._before)
+        lasting = min(speed, self._speed_before)  # one jump, as from the end of a pass to the next, is no haste
+        self._before, self._speed_before = features.centrelines, speed
+        return FramePreview(
+            features.index,
+            features.name,
+            thin,
+            tuple(np.split(sigma, np.cumsum([len(piece) for piece in thin])[:-1])),
+            marks.uv,
+            marks.status,
+            marks.reason,
+            marks.with_fan,
+            condition,
+            speed,
+            np.asarray(points.points, dtype=np.float64),
+            np.asarray(points.sigma, dtype=np.float64),
+            np.asarray(points.intensity, dtype=np.float64),
+            np.asarray(points.uv, dtype=np.float64),
+            self._hints(stripe, lines_met, sigma, lasting),
+            "" if len(points) else _why_no_points(marks, located=plane is not None),
+            self.cloud() if renewed else None,
+        )
+
+    def _met(self, sweep: TrackedSweep) -> tuple[int, float]:
+        """How many lines of the fan the sweep crosses, and the condition of those crossings."""
+        table = sweep.crossings
+        rows = np.flatnonzero(table.with_fan)
+        line = np.array([self._tracker.lines.line[piece] for piece in table.piece_b[rows]], dtype=np.int64)
+        rows, line = rows[line != UNASSIGNED], line[line != UNASSIGNED]
+        condition = plane_condition(sweep.geometry.rays[rows]) if sweep.plane is None else sweep.plane.condition
+        return len(np.unique(line)), condition
+
+    def _hints(self, stripe: StripeRays, lines_met: int, sigma: Array, speed: float) -> tuple[str, ...]:
+        known = sigma[np.isfinite(sigma)]
+        state = HandState(
+            lines_met,
+            self._fan.lines,
+            float(np.median(known)) if len(known) else float("nan"),
+            speed,
+            self._reference.image_size[0],
+            float(np.median(stripe.intensity)),
+            self._reference.full_scale,
+            float(np.mean(~stripe.usable)),
+        )
+        return hints_for(state, self._options.hints)
+
+    def _fan_clouds(self) -> list[PreviewCloud]:
+        """The fan's own points, measured directly."""
+        clouds = []
+        for stripe, line in zip(self._fan_rays, self._tracker.lines.line, strict=True):
+            if line != UNASSIGNED:
+                depth, sigma = stripe.depth(self._fan.planes[line].pi, np.zeros((3, 3)))
+                clouds.append(stripe.cloud(depth, sigma, np.isfinite(depth)))
+        return clouds
+
+    def _worth_showing(self, depth: Array, sigma: Array) -> NDArray[np.bool_]:
+        near, far = self._limits
+        return np.asarray((sigma <= self._options.sigma_cut_mm) & (depth > near) & (depth < far))
+
+
+def _depth_limits(fan: Sequence[PreviewCloud]) -> tuple[float, float]:
+    """Depths in mm not wildly away from where the fan sees the object: what is beyond is a reflection."""
+    depth = PreviewCloud.joined(fan).points[:, 2]
+    return (0.6 * float(depth.min()), 1.5 * float(depth.max())) if len(depth) else (0.0, np.inf)
+
+
+def _nothing(features: FrameFeatures) -> FramePreview:
+    none, empty = np.zeros(0), np.zeros((0, 2))
+    return FramePreview(
+        features.index,
+        features.name,
+        (),
+        (),
+        empty,
+        np.zeros(0, np.int8),
+        (),
+        np.zeros(0, np.bool_),
+        float("inf"),
+        float("nan"),
+        np.zeros((0, 3)),
+        none,
+        none,
+        empty,
+        (),
+        features.reason,
+    )
+
+
+def _why_no_points(marks: CrossingMarks, *, located: bool) -> str:
+    if located:
+        return "its light plane is too uncertain for any point to be shown"
+    if not len(marks.uv):
+        return "its stripe crosses no line of the fan"
+    return "fewer than three crossings with the fan"
