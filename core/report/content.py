@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from core.calibrate.results import CameraCalibration, FanCalibration
 from core.image.centreline import Centreline
 from core.inspect.results import GaugeResult
+from core.inspect.study import RepeatStatistics, repeat_statistics
 from core.model.arrays import Array, frozen_array, set_field
 from core.scan.cloud import Cloud
 from core.scan.results import FrameRecord
@@ -199,6 +200,32 @@ class ReportContent:
         lines += [f"{name}: {value!r}" for name, value in choices.items() if value not in ("", None, (), [])]
         digest = hashlib.sha256("\n".join(lines).encode()).hexdigest().upper()
         return "TR-" + "-".join(digest[start : start + 4] for start in (0, 4, 8))
+
+    @property
+    def nominal_mm(self) -> float | None:
+        """Nominal value of the thickness, if one was given."""
+        return self.gauge.nominal_mm if self.gauge else None
+
+    @property
+    def repeat_statistics(self) -> RepeatStatistics | None:
+        """What the repeats say together, or None without any."""
+        thicknesses = [repeat.thickness_mm for repeat in self.repeats]
+        return repeat_statistics(thicknesses, self.nominal_mm) if thicknesses else None
+
+    @property
+    def printable(self) -> Mapping[str, str]:
+        """Name and heading of those SECTIONS that this content has something for, hidden or not."""
+        missing = {
+            "frame": self.overlay is None,
+            "maps": self.gauge is None and not len(self.cloud),
+            "budget": self.gauge is None,
+            "repeats": not self.repeats,
+            "remarks": not self.remarks.strip(),
+            "inputs": not self.hashes,
+        }
+        headings = dict(SECTIONS)
+        headings["maps"] = "Residuals of both faces" if self.gauge else "Depth and its uncertainty over the picture"
+        return {name: heading for name, heading in headings.items() if not missing.get(name, False)}
 
     @property
     def all_notes(self) -> tuple[str, ...]:

@@ -1,42 +1,50 @@
-"""The report put together: one to three pages A4, the same bytes for the same content."""
+"""The report put together: one to three pages, the same bytes for the same content."""
 
 from __future__ import annotations
 
 import io
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import Any
 
 import cv2
 from matplotlib.figure import Figure
-from reportlab.lib.pagesizes import A4
+from reportlab.lib.pagesizes import A4, LETTER
 from reportlab.lib.units import mm
 from reportlab.lib.utils import ImageReader
 from reportlab.platypus import BaseDocTemplate, Frame, PageTemplate
 
 from core.progress import Progress, silent
 from core.report import figures, plots
-from core.report.content import ReportContent
+from core.report.content import Paper, ReportContent
+from core.report.layout import Limits
 from core.report.overlay_plot import overlay_figure
-from core.report.sections import TITLE, Limits, story
-from core.report.style import HAIRLINE, INK, MARGIN, MUTED, SANS, TEXT_WIDTH, color, prepare_reportlab
+from core.report.run_chart import run_chart_figure
+from core.report.sections import TITLE, story
+from core.report.style import HAIRLINE, INK, MUTED, SANS, TEXT_WIDTH, color, prepare_reportlab
 
 MOST_PAGES = 3
+"""Of one scan; repeats or long remarks may have one more."""
+LONG_REMARKS = 1000
+"""Characters of remarks beyond which they need room of their own."""
+
+PAGE_SIZES: Mapping[Paper, tuple[float, float]] = {"A4": A4, "Letter": LETTER}
 FOOT = 16 * mm
 HEAD = 15 * mm
 
 LIMITS = (
-    Limits(inputs=150, reasons=10, names=6, notes=12, settings=30, picture_scale=1.0),
-    Limits(inputs=96, reasons=8, names=6, notes=10, settings=20, picture_scale=1.0),
-    Limits(inputs=72, reasons=6, names=6, notes=8, settings=16, picture_scale=1.0),
-    Limits(inputs=60, reasons=6, names=5, notes=8, settings=14, picture_scale=1.0),
-    Limits(inputs=48, reasons=5, names=4, notes=6, settings=14, picture_scale=0.92),
-    Limits(inputs=30, reasons=3, names=2, notes=5, settings=10, picture_scale=0.84),
-    Limits(inputs=9, reasons=2, names=1, notes=4, settings=6, picture_scale=0.72),
-    Limits(inputs=3, reasons=1, names=1, notes=2, settings=4, picture_scale=0.72),
+    Limits(inputs=150, reasons=10, names=6, notes=12, settings=30, repeats=60, picture_scale=1.0),
+    Limits(inputs=96, reasons=8, names=6, notes=10, settings=20, repeats=40, picture_scale=1.0),
+    Limits(inputs=72, reasons=6, names=6, notes=8, settings=16, repeats=30, picture_scale=1.0),
+    Limits(inputs=60, reasons=6, names=5, notes=8, settings=14, repeats=25, picture_scale=1.0),
+    Limits(inputs=48, reasons=5, names=4, notes=6, settings=14, repeats=20, picture_scale=0.92),
+    Limits(inputs=30, reasons=3, names=2, notes=5, settings=10, repeats=15, picture_scale=0.84),
+    Limits(inputs=9, reasons=2, names=1, notes=4, settings=6, repeats=10, picture_scale=0.72),
+    Limits(inputs=3, reasons=1, names=1, notes=2, settings=4, repeats=10, picture_scale=0.72),
 )
-"""Tried in this order until the report has no more than MOST_PAGES pages."""
+"""Tried in this order until the report has no more pages than it may."""
 
-SURFACE_MM, OVERLAY_MM, FACES_MM, CLOUD_MM = 104.0, 116.0, 50.0, 58.0
+SURFACE_MM, OVERLAY_MM, FACES_MM, CLOUD_MM, CHART_MM = 104.0, 116.0, 50.0, 58.0, 42.0
 """Heights of the pictures at scale 1."""
 
 
@@ -57,16 +65,24 @@ def build_report(content: ReportContent, progress: Progress = silent) -> bytes:
     pictures = {}
     for done, (name, draw) in enumerate(drawings.items()):
         progress(step, done, total)
-        pictures[name] = _image(draw(), photo=name == "overlay")
+        pictures[name] = _image(draw(), photo=name == "frame")
     progress(step, total - 2, total)
-    for limits in LIMITS:
+    most_pages = MOST_PAGES + (len(content.repeats) > 0 or len(content.remarks) > LONG_REMARKS)
+    shorter = _page_room(content.paper) / _page_room("A4")
+    for step_limits in LIMITS:
+        limits = replace(step_limits, picture_scale=step_limits.picture_scale * shorter)
         pages, _ = _typeset(content, pictures, limits, 0)
-        if pages <= MOST_PAGES:
+        if pages <= most_pages:
             break
     progress(step, total - 1, total)
     _, data = _typeset(content, pictures, limits, pages)
     progress(step, total, total)
     return data
+
+
+def _page_room(paper: Paper) -> float:
+    """Height for text on one page, in points."""
+    return float(PAGE_SIZES[paper][1] - HEAD - FOOT)
 
 
 def _drawings(content: ReportContent) -> dict[str, Callable[[], Figure]]:
@@ -78,13 +94,16 @@ def _drawings(content: ReportContent) -> dict[str, Callable[[], Figure]]:
         plane = gauge.lower.plane if gauge else None
         drawings["surface"] = lambda: plots.surface_figure(content.mesh, content.cloud, plane, width, SURFACE_MM)
     if overlay is not None:
-        drawings["overlay"] = lambda: overlay_figure(overlay, width, OVERLAY_MM)
+        drawings["frame"] = lambda: overlay_figure(overlay, width, OVERLAY_MM)
     if gauge is not None:
         drawings["maps"] = lambda: plots.residual_figure(gauge, content.cloud, width, FACES_MM)
     elif len(content.cloud):
         size = content.camera.camera.image_size
         drawings["maps"] = lambda: plots.cloud_figure(content.cloud, size, width, CLOUD_MM)
-    return drawings
+    if len(content.repeats) > 1:
+        tolerance = gauge.tolerance_mm if gauge else None
+        drawings["repeats"] = lambda: run_chart_figure(content.repeats, content.nominal_mm, tolerance, width, CHART_MM)
+    return {name: draw for name, draw in drawings.items() if name not in content.hidden}
 
 
 def _image(figure: Figure, *, photo: bool) -> ImageReader:
@@ -103,9 +122,11 @@ def _typeset(
 ) -> tuple[int, bytes]:
     """Lay everything out; gives the number of pages and the file. `pages` is what the foot of each page says."""
     stream = io.BytesIO()
+    page = PAGE_SIZES[content.paper]
+    margin = (page[0] - TEXT_WIDTH) / 2
     document = BaseDocTemplate(
         stream,
-        pagesize=A4,
+        pagesize=page,
         title=f"{TITLE} {content.report_id}",
         author=", ".join(name for name in (content.laboratory, content.operator) if name) or "not named",
         subject=_subject(content),
@@ -116,10 +137,10 @@ def _typeset(
         lang="en",
     )
     frame = Frame(
-        MARGIN,
+        margin,
         FOOT,
         TEXT_WIDTH,
-        A4[1] - HEAD - FOOT,
+        _page_room(content.paper),
         leftPadding=0,
         rightPadding=0,
         topPadding=0,
@@ -129,7 +150,7 @@ def _typeset(
     def on_page(canvas: Any, _: BaseDocTemplate) -> None:
         # the file's own date is the measurement's, not that of a clock
         canvas.setDateFormatter(lambda *_: f"{content.timestamp:D:%Y%m%d%H%M%S}{_pdf_zone(content)}")
-        _foot(canvas, content, pages)
+        _foot(canvas, content, pages, margin)
 
     document.addPageTemplates(PageTemplate("page", [frame], onPage=on_page))
     document.build(story(content, pictures, limits))
@@ -147,16 +168,16 @@ def _pdf_zone(content: ReportContent) -> str:
     return f"{zone[:3]}'{zone[3:5]}'" if zone else ""
 
 
-def _foot(canvas: Any, content: ReportContent, pages: int) -> None:
+def _foot(canvas: Any, content: ReportContent, pages: int, margin: float) -> None:
     """Rule, report id, software, page n of m."""
     canvas.saveState()
     canvas.setStrokeColor(color(HAIRLINE))
     canvas.setLineWidth(0.5)
-    canvas.line(MARGIN, 12.5 * mm, MARGIN + TEXT_WIDTH, 12.5 * mm)
+    canvas.line(margin, 12.5 * mm, margin + TEXT_WIDTH, 12.5 * mm)
     canvas.setFillColor(color(MUTED))
     canvas.setFont(SANS, 7)
-    canvas.drawString(MARGIN, 8.8 * mm, f"{TITLE} {content.report_id}")
-    canvas.drawCentredString(MARGIN + TEXT_WIDTH / 2, 8.8 * mm, f"Trisect {content.version}")
+    canvas.drawString(margin, 8.8 * mm, f"{TITLE} {content.report_id}")
+    canvas.drawCentredString(margin + TEXT_WIDTH / 2, 8.8 * mm, f"Trisect {content.version}")
     canvas.setFillColor(color(INK))
-    canvas.drawRightString(MARGIN + TEXT_WIDTH, 8.8 * mm, f"page {canvas.getPageNumber()} of {pages}")
+    canvas.drawRightString(margin + TEXT_WIDTH, 8.8 * mm, f"page {canvas.getPageNumber()} of {pages}")
     canvas.restoreState()

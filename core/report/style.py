@@ -24,8 +24,11 @@ ACCENT, INK, MUTED, HAIRLINE, TINT = "#14586E", "#1D2327", "#5C6870", "#CBD3D7",
 MOST_CHARACTERS = 900
 """Longest text of one cell or paragraph; a page could not hold a cell without any limit."""
 
-MARGIN = 20 * mm
 TEXT_WIDTH = 170 * mm
+"""On every paper, centred: so tables and pictures are the same on all of them."""
+
+MOST_REMARKS = 6000
+"""Longest remarks of an operator, in characters."""
 
 SANS, BOLD, OBLIQUE, MONO = "Trisect-Sans", "Trisect-Bold", "Trisect-Oblique", "Trisect-Mono"
 _FILES = {
@@ -147,6 +150,17 @@ STYLES = {
 def text(words: str, style: str = "body") -> Paragraph:
     """A paragraph of plain `words`: whatever they hold is printed, never taken for markup."""
     return Paragraph(markup(words), STYLES[style])
+
+
+def lines_of(words: str) -> list[Paragraph]:
+    """Plain `words` that may be long and may have line ends; an empty line is a gap."""
+    if len(words) > MOST_REMARKS:
+        words = f"{words[:MOST_REMARKS]}…\n(shortened from {len(words)} characters)"
+    lines = [line.strip() for line in words.strip().splitlines()]
+    pieces = [
+        line[start : start + MOST_CHARACTERS] for line in lines for start in range(0, len(line) or 1, MOST_CHARACTERS)
+    ]
+    return [Paragraph(markup(piece) or "\u00a0", STYLES["small"]) for piece in pieces]
 
 
 def bullets(sentences: tuple[str, ...]) -> list[Paragraph]:

@@ -265,6 +265,6 @@ def _hash_cell(path: str, digest: str) -> Paragraph:
     return Paragraph(f"{name} {code}", STYLES["hash"])
 
 
-def more_line(left: int) -> list[Flowable]:
+def more_line(left: int, where: str = "run.json") -> list[Flowable]:
     """'and 12 more, listed in run.json', or nothing."""
-    return [text(f"and {grouped(left)} more, listed in run.json", "label")] if left > 0 else []
+    return [text(f"and {grouped(left)} more, listed in {where}", "label")] if left > 0 else []

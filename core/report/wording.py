@@ -96,24 +96,38 @@ def verdict_sentence(gauge: GaugeResult) -> str:
     )
 
 
-def limits_of_thickness(gauge: GaugeResult) -> tuple[str, ...]:
-    """What no thickness of this instrument covers."""
+def limits_of_thickness(gauge: GaugeResult, *, temperatures: bool = False) -> tuple[str, ...]:
+    """What no thickness of this instrument covers; `temperatures`: whether somebody stated them."""
     rule = gauge.rule or "distance of two parallel planes fitted to the points of both faces"
     return (
         f"The thickness is the {rule}. It is no local length: form deviations of the faces are stated apart, as "
         "flatness.",
         "The result rests on one scan. Repeatability over several scans is in it only where the uncertainty "
         "budget names it.",
-        "Temperature was not measured; nothing is corrected to 20 °C.",
+        limit_of_temperature(temperatures),
         "Faces turned away from the camera or in the shadow of a laser were not measured.",
     )
 
 
-def limits_of_cloud() -> tuple[str, ...]:
-    """What no cloud of this instrument covers."""
+def limits_of_cloud(*, temperatures: bool = False) -> tuple[str, ...]:
+    """What no cloud of this instrument covers; `temperatures`: whether somebody stated them."""
     return (
         "The σ of a point is the standard uncertainty of its depth within this scan. What is common to all points "
         "(camera, fan) comes on top and is not in it.",
-        "Temperature was not measured; nothing is corrected to 20 °C.",
+        limit_of_temperature(temperatures),
         "Surfaces turned away from the camera or in the shadow of a laser were not measured.",
     )
+
+
+def limit_of_temperature(stated: bool) -> str:
+    """What a temperature, stated or not, did not do."""
+    if stated:
+        return "Temperatures are those the operator stated; nothing is corrected to 20 °C."
+    return "Temperature was not measured; nothing is corrected to 20 °C."
+
+
+def temperatures_line(air_celsius: float | None, part_celsius: float | None) -> str:
+    """'air 20.4 °C, part 21.0 °C; not corrected to 20 °C', or nothing where neither is known."""
+    known = {"air": air_celsius, "part": part_celsius}
+    words = [f"{name} {fixed(value, 1)} °C" for name, value in known.items() if value is not None]
+    return f"{', '.join(words)}; no correction to 20 °C was made" if words else ""

@@ -1,7 +1,7 @@
 """A made-up scan of a 50 mm block on a table, 560 mm from the camera, and what a report needs besides."""
 
 from dataclasses import replace
-from datetime import UTC, datetime
+from datetime import UTC, datetime, timedelta
 from hashlib import sha256
 
 import numpy as np
@@ -11,7 +11,7 @@ from core.image.centreline import Centreline
 from core.image.target_view import TargetView
 from core.inspect.results import Contribution, Face, GaugeResult
 from core.model import Camera, Fan, LightPlane, Pose
-from core.report.content import Overlay, ReportContent
+from core.report.content import Overlay, RepeatLine, ReportContent
 from core.scan.cloud import Cloud
 from core.scan.results import FrameRecord
 from core.scan.surface import Mesh
@@ -170,6 +170,16 @@ def frames():
         44: "the sweep crosses no fan line",
     }
     return tuple(FrameRecord(n, f"frame_{n:03d}.png", n not in reasons, reasons.get(n, "")) for n in range(60))
+
+
+def repeats(count=10):
+    """Scans of the block, five minutes apart; their mean is 50.012 mm."""
+    offsets = np.resize([-0.021, 0.013, 0.002, -0.009, 0.015], count)
+    start = datetime(2026, 3, 14, 14, 0, tzinfo=UTC)
+    return tuple(
+        RepeatLine(f"scan-{n + 1:02d}", 50.012 + offset, 0.024, 2.0, "c3f1a09b22d4", start + timedelta(minutes=5 * n))
+        for n, offset in enumerate(offsets)
+    )
 
 
 def block_content(**changes):

@@ -1,0 +1,152 @@
+"""What the user adds to a report and leaves out of it: names, temperatures, remarks, repeats, sections, paper."""
+
+import io
+from dataclasses import replace
+
+import numpy as np
+import pypdfium2
+import pytest
+from pypdf import PdfReader
+
+from core.report.content import SECTIONS
+from core.report.pdf import build_report
+from core.scan.surface import Mesh
+
+from .report_samples import block_content, gauge, repeats
+
+NO_MESH = Mesh(np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0), np.zeros((0, 3), np.int64))
+
+
+def pages(data):
+    return [" ".join(page.extract_text().split()) for page in PdfReader(io.BytesIO(data)).pages]
+
+
+def words(data):
+    return " ".join(pages(data))
+
+
+@pytest.fixture(scope="module")
+def content():
+    return block_content(repeats=repeats(), remarks="Cleaned with alcohol.\n\nLamp <off> & table warm.")
+
+
+@pytest.fixture(scope="module")
+def quick(content):
+    """The same without a point, so there is little to draw."""
+    cloud = content.cloud.select(np.arange(0))
+    bare = replace(content, overlay=None, mesh=NO_MESH, cloud=cloud, repeats=(), remarks="")
+    return replace(bare, gauge=gauge(cloud, np.zeros(0, dtype=bool)))
+
+
+def test_every_section_can_be_left_out_and_the_last_page_names_it(content):
+    whole = words(build_report(content))
+    assert "Left out of this report by choice" not in whole
+    pictures = ["surface", "frame", "maps"]  # drawn once is enough
+    for name, heading in content.printable.items():
+        hidden = [section for section in SECTIONS if section in (name, *pictures)]
+        left_out = build_report(replace(content, hidden=frozenset(hidden)))
+        named = "; ".join(content.printable[section] for section in hidden)
+        assert f"Left out of this report by choice: {named}." in pages(left_out)[-1]
+        assert words(left_out).count(heading) == 1, name
+        assert heading in whole or name == "inputs"
+
+
+def test_result_limits_warnings_and_the_hash_over_all_inputs_cannot_be_left_out(content):
+    text = words(build_report(replace(content, hidden=frozenset(SECTIONS))))
+    for needed in (
+        "50.012 mm ± 0.024 mm",
+        "What this result does not cover",
+        "saturated on 0.8 %",
+        content.inputs_digest,
+    ):
+        assert needed in text
+    assert "frame_017.png" not in text
+    assert text.index("Left out of this report") < text.index("End of report")
+
+
+def test_a_section_that_was_empty_anyway_is_not_said_to_be_left_out(quick):
+    text = words(build_report(replace(quick, hidden=frozenset({"repeats", "remarks", "frame", "settings"}))))
+    assert "Left out of this report by choice: Software and settings." in text
+
+
+def test_what_is_not_a_section_cannot_be_left_out(quick):
+    with pytest.raises(ValueError, match="result: no section"):
+        replace(quick, hidden=frozenset({"result"}))
+
+
+def test_customer_and_temperatures_are_printed_and_nothing_is_corrected(quick):
+    text = words(build_report(replace(quick, customer="Brandt & Söhne", air_celsius=20.42, part_celsius=-3.0)))
+    assert "Customer Brandt & Söhne" in text
+    assert "air 20.4 °C, part −3.0 °C; no correction to 20 °C was made" in text
+    assert "Temperatures are those the operator stated; nothing is corrected to 20 °C." in text
+    assert "Temperature was not measured" not in text
+
+
+def test_one_temperature_alone_is_printed_alone(quick):
+    text = words(build_report(replace(quick, part_celsius=21.0)))
+    assert "Temperatures part 21.0 °C; no correction" in text
+
+
+def test_remarks_keep_their_lines_and_their_characters(quick):
+    text = words(build_report(replace(quick, remarks="First line.\n\n  2 < 3 & <b>so on</b>\n" + "校正ブロック " * 40)))
+    assert "Remarks of the operator First line. 2 < 3 & <b>so on</b>" in text
+    assert text.count("校正ブロック") == 40
+
+
+def test_remarks_without_end_are_shortened_and_say_so(quick):
+    data = build_report(replace(quick, remarks="word " * 5000))
+    assert "shortened from 25000 characters" in words(data)
+    assert len(pages(data)) <= 4
+
+
+def test_repeats_are_listed_with_their_statistics(content):
+    text = words(build_report(content))
+    assert "Repeated scans 10 scans of the part; errors are measured − nominal value, 50 mm." in text
+    assert (
+        "mean, mm mean error, mm RMSE, mm standard deviation, mm largest error, mm 50.012 +0.012 0.018 0.014 0.027"
+        in text
+    )
+    assert "1 scan-01 2026-03-14 14:00 49.991 0.024 2 −0.009 c3f1a09b22d4" in text
+    assert "10 scan-10 2026-03-14 14:45" in text
+
+
+def test_one_repeat_has_no_spread_and_no_chart(quick):
+    text = words(build_report(replace(quick, repeats=repeats(1))))
+    assert "1 scan of the part" in text
+    assert "in the order of measuring" not in text
+    assert "standard deviation, mm largest error, mm 49.991 −0.009 0.009 unknown 0.009" in text
+
+
+def test_many_repeats_with_long_names_are_cut_in_number_and_not_in_width(quick):
+    name = "no_space_" * 12
+    many = tuple(replace(one, scan=name, calibration_id="0123456789abcdef" * 2) for one in repeats(200))
+    data = build_report(replace(quick, repeats=many, gauge=None))
+    text = "".join(words(data).split())
+    shown = text.count(name)
+    assert 10 <= shown < 200
+    assert f"and{200 - shown}more,listedintheproject" in text
+    assert len(pages(data)) <= 5
+
+
+@pytest.mark.parametrize(("paper", "size"), [("A4", (595.28, 841.89)), ("Letter", (612, 792))])
+def test_every_page_has_the_size_of_its_paper_and_white_margins(content, paper, size):
+    document = pypdfium2.PdfDocument(build_report(replace(content, paper=paper)))
+    assert 2 <= len(document) <= 4
+    for page in document:
+        assert page.get_size() == pytest.approx(size, abs=0.01)
+        picture = page.render(scale=1).to_numpy()
+        assert picture[:, :48].min() == picture[:, -48:].min() == picture[:36].min() == 255
+
+
+def test_other_words_and_other_sections_give_the_report_another_name(quick):
+    changes = [
+        {},
+        {"customer": "X"},
+        {"air_celsius": 20.0},
+        {"part_celsius": 20.0},
+        {"remarks": "X"},
+        {"repeats": repeats(1)},
+        {"hidden": frozenset({"frame"})},
+    ]
+    assert len({replace(quick, **change).report_id for change in changes}) == len(changes)
+    assert replace(quick, paper="Letter").report_id == quick.report_id
