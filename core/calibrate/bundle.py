@@ -24,6 +24,9 @@ from core.model.arrays import Array
 RAYLEIGH_MEDIAN = 1.1774100225154747
 """Median length of a residual vector whose two components have standard deviation 1: √(2 ln 2)."""
 
+NO_PARAMETERS = np.zeros(0, dtype=np.intp)
+"""For `refine`: the camera is known and only the poses are looked for."""
+
 _MAX_ITERATIONS = 60
 _HUBER_LIMIT = 2.5
 _HUBER_ROUNDS = 6

@@ -12,19 +12,27 @@ Zhang, Z., IEEE Trans. PAMI 22 (2000) 1330–1334, doi:10.1109/34.888718.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
 
-from core.calibrate.bundle import Bundle, Observed, normal_equations, refine, refine_robustly, residuals
+from core.calibrate.bundle import (
+    NO_PARAMETERS,
+    Bundle,
+    Observed,
+    normal_equations,
+    refine,
+    refine_robustly,
+    residuals,
+)
 from core.calibrate.camera_covariance import Widening, free_covariance, principal_deviations
 from core.calibrate.camera_notes import notes_on
-from core.calibrate.camera_quality import cross_validation_mm, rms_and_mean, view_qualities
+from core.calibrate.camera_quality import cross_validation_mm, rms_and_mean, view_qualities, view_without_part
 from core.calibrate.coverage import coverage, tilt_range
-from core.calibrate.results import CAMERA_PARAMETERS, CameraCalibration, ViewQuality
+from core.calibrate.results import CAMERA_PARAMETERS, LEFT_OUT, CameraCalibration, ViewQuality
 from core.calibrate.screening import Outliers, Verdict, judge, screen
 from core.calibrate.zhang import centred_matrix, intrinsic_matrix, pose_from_homography, radial_start
 from core.errors import InputError
@@ -42,7 +50,6 @@ _LOOSE_CENTRE = 0.1
 _MAX_JUDGEMENTS = 8
 _STEP = "Calibrating the camera"
 _STAGES = 5
-_NO_PARAMETERS = np.zeros(0, dtype=np.intp)
 _MORE_VIEWS = "take 10 to 15 pictures of the whole target, tilted by up to 30° in different directions"
 
 
@@ -87,10 +94,12 @@ def calibrate_camera(
     image_size: tuple[int, int],
     options: CameraOptions | None = None,
     progress: Progress = silent,
+    excluded: Collection[str] = (),
 ) -> CameraCalibration:
     """Calibrate the camera that took `views` of a flat target, in pictures of `image_size` (width, height).
 
-    Corners are weighted by their `sigma` relative to each other; how large it really is, the residuals tell.
+    Corners are weighted by their `sigma` relative to each other; how large it really is, the residuals tell. Views
+    whose name is in `excluded` have no part in the solution; they come back with their residuals under it.
 
     Raises
     ------
@@ -100,6 +109,23 @@ def calibrate_camera(
         When a `sigma` is not positive.
     """
     options = options or CameraOptions()
+    calibration = _calibrated([view for view in views if view.name not in excluded], image_size, options, progress)
+    left_out = [view for view in views if view.name in excluded]
+    if not left_out:
+        return calibration
+    solved = iter(calibration.views)
+    qualities = tuple(
+        view_without_part(view, calibration.camera, LEFT_OUT) if view.name in excluded else next(solved)
+        for view in views
+    )
+    note = f"{len(left_out)} of {len(views)} views are left out by hand: {', '.join(view.name for view in left_out)}."
+    return replace(calibration, views=qualities, notes=(note, *calibration.notes))
+
+
+def _calibrated(
+    views: Sequence[TargetView], image_size: tuple[int, int], options: CameraOptions, progress: Progress
+) -> CameraCalibration:
+    """The camera from those of `views` that fit together."""
     progress(_STEP, 0, _STAGES)
     screened = [screen(view) for view in views]
     usable = [index for index, (_, reason) in enumerate(screened) if not reason]
@@ -203,7 +229,7 @@ def _fit(start: Bundle, observed: Sequence[Observed], verdicts: Sequence[Verdict
     for i, view in enumerate(observed):
         if i not in poses:
             alone = Bundle(solved.camera, (start.poses[i],))
-            poses[i] = refine_robustly(alone, [view], _NO_PARAMETERS).poses[0]
+            poses[i] = refine_robustly(alone, [view], NO_PARAMETERS).poses[0]
     return Bundle(solved.camera, tuple(poses[i] for i in range(len(observed))))
 
 

@@ -7,10 +7,11 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from core.calibrate.bundle import Bundle, Observed, refine
+from core.calibrate.bundle import NO_PARAMETERS, Bundle, Observed, refine, refine_robustly
 from core.calibrate.coverage import disagreement_mm, tilt
 from core.calibrate.results import ViewQuality
-from core.calibrate.screening import Verdict
+from core.calibrate.screening import Verdict, screen
+from core.calibrate.zhang import pose_from_homography
 from core.image.target_view import TargetView
 from core.model import Camera, Pose
 from core.model.arrays import Array
@@ -27,6 +28,20 @@ def unfitted_view(view: TargetView, reason: str) -> ViewQuality:
     """A view for which no pose was looked for."""
     nowhere, none = np.full(view.uv.shape, np.nan), np.zeros(len(view.uv), dtype=np.bool_)
     return ViewQuality(view, Pose.identity(), nowhere, np.nan, np.nan, np.nan, False, reason, none)
+
+
+def view_without_part(view: TargetView, camera: Camera, reason: str) -> ViewQuality:
+    """How a view that had no part in calibrating `camera` fits it, at the pose that suits the view best.
+
+    Where it does not even look like the target there is no pose, and it says so after the `reason`.
+    """
+    homography, doubt = screen(view)
+    if homography is None:
+        return unfitted_view(view, f"{reason}; {doubt}")
+    alone = Bundle(camera, (pose_from_homography(camera.matrix, homography),))
+    seen = Observed(view.points, view.uv, (float(np.median(view.sigma)) / view.sigma) ** 2)
+    (pose,) = refine_robustly(alone, [seen], NO_PARAMETERS).poses
+    return fitted_view(view, camera, pose, Verdict(False, np.ones(len(view.uv), dtype=np.bool_), reason))
 
 
 def view_qualities(

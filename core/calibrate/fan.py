@@ -11,7 +11,7 @@ Sun et al., Sensors 2023, 23, 13, §3.2, doi:10.3390/s23010013.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -23,7 +23,7 @@ from core.calibrate.line_assignment import NOT_SEEN, assign_lines
 from core.calibrate.located_pose import LocatedPose, locate, on_target
 from core.calibrate.pencil import FreePlanes, PlaneSet
 from core.calibrate.plane_pose import PoseFeatures
-from core.calibrate.results import FanCalibration
+from core.calibrate.results import LEFT_OUT, FanCalibration
 from core.errors import InputError
 from core.model import Camera, Fan, LightPlane
 from core.model.arrays import Array
@@ -71,7 +71,11 @@ class FanOptions:
 
 
 def fit_fan(
-    features: Sequence[PoseFeatures], camera: Camera, options: FanOptions, progress: Progress = silent
+    features: Sequence[PoseFeatures],
+    camera: Camera,
+    options: FanOptions,
+    progress: Progress = silent,
+    excluded: Collection[str] = (),
 ) -> FanCalibration:
     """Calibrate the fan.
 
@@ -84,6 +88,8 @@ def fit_fan(
         repeated to see how the camera's uncertainty goes on into the fan's.
     options
         What is known of the laser.
+    excluded
+        Names of poses that are located, but have no part in the fit.
 
     Raises
     ------
@@ -91,6 +97,7 @@ def fit_fan(
         If no pose is usable, fewer lines are seen than promised, or the poses are too alike to determine a plane.
     """
     located = [locate(pose, camera) for pose in steps(features, progress, "fan poses", len(features))]
+    located = [pose.left_out(LEFT_OUT) if pose.used and pose.features.name in excluded else pose for pose in located]
     _check_poses(located)
     located, rough = _assigned(located, camera, options)
     _check_spread(located, options.lines)
@@ -103,12 +110,12 @@ def fit_fan(
 
 
 def same_model(options: FanOptions, calibration: FanCalibration) -> FanOptions:
-    """`options` that repeat what "auto" chose for `calibration`, so that repeated fits differ only by their input."""
+    """`options` that repeat what was chosen for `calibration`, so that repeated fits differ only by their input."""
     if calibration.constraint_suits is None or options.constrained != "auto":
         return options
-    if calibration.constraint_suits:
-        return replace(options, constrained="always")
     free = np.array_equal(calibration.fan.pis, calibration.free.pis)
+    if calibration.constraint_suits and not free:  # free all the same where that was asked for
+        return replace(options, constrained="always")
     return replace(options, constrained="never" if free else "axis")
 
 

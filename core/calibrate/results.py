@@ -16,6 +16,9 @@ from core.model.arrays import Array
 CAMERA_PARAMETERS = ("alpha", "beta", "gamma", "u0", "v0", "k1", "k2", "p1", "p2", "k3")
 """Names and order of the camera's parameters in covariances."""
 
+LEFT_OUT = "left out by hand"
+"""Why a view, a pose or a frame was not used that the technician has left out."""
+
 
 @dataclass(frozen=True, eq=False, slots=True)
 class ViewQuality:

@@ -105,7 +105,7 @@ def run_camera(folder: Path, out: Path, chosen: Options, progress: Progress) -> 
 def run_planes(folder: Path, out: Path, progress: Progress) -> Shown:
     """Planes step."""
     work = _open(folder, out)
-    calibration = planes_step(work, progress)
+    calibration = planes_step(work, progress=progress)
     return _shown(work, "planes", output.fan_rows(calibration), output.fan_json(calibration), "planes")
 
 

@@ -1,9 +1,9 @@
-"""Camera step: views of the target → camera.json."""
+"""Camera step: views of the target → camera.json. Finding the target takes long, solving does not: two functions."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 
@@ -25,13 +25,36 @@ FEWEST_VIEWS = 3
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class _Seen:
+class SeenView:
     """One picture: the target found in it, or the reason why it was not; size (width, height) if it could be read."""
 
     name: str
     view: TargetView | None = None
     reason: str = ""
     size: tuple[int, int] | None = None
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class SeenViews:
+    """What all pictures of the camera target show, in the order of the set; `folder` is the set's, for messages."""
+
+    views: tuple[SeenView, ...]
+    folder: Path
+
+    @property
+    def size(self) -> tuple[int, int] | None:
+        """(width, height) of the pictures; None if none could be read."""
+        return next((one.size for one in self.views if one.size is not None), None)
+
+    @property
+    def found(self) -> tuple[TargetView, ...]:
+        """The targets that were found."""
+        return tuple(one.view for one in self.views if one.view is not None)
+
+    @property
+    def lost(self) -> tuple[SeenView, ...]:
+        """The pictures in which there is no usable target."""
+        return tuple(one for one in self.views if one.view is None)
 
 
 def camera_step(work: Workspace, options: Options | None = None, progress: Progress = silent) -> CameraCalibration:
@@ -43,65 +66,87 @@ def camera_step(work: Workspace, options: Options | None = None, progress: Progr
         If there are too few views of the target, or they do not determine the camera.
     """
     options = options or Options()
-    require_camera(work.found)
     with work.step("camera") as log:
         log.settings.update(options.camera_settings)
-        seen = _detect_all(work.found, progress)
-        views = [one.view for one in seen if one.view is not None]
-        size = next((one.size for one in seen if one.size is not None), None)
-        if size is None or len(views) < FEWEST_VIEWS:
-            raise _too_few(seen, work.found)
-        calibration = _with_lost(calibrate_camera(views, size, options.camera, progress), seen)
+        calibration = solve_camera(see_views(work.found, progress), options, progress)
         log.notes.extend(calibration.notes)
         write_camera(work.path("camera"), calibration)
     return read_camera(work.path("camera"))
 
 
-def _detect_all(found: RecordingSet, progress: Progress) -> list[_Seen]:
-    """Look for the target in every view, a few pictures at a time."""
+def see_views(found: RecordingSet, progress: Progress = silent) -> SeenViews:
+    """Look for the target in every view, a few pictures at a time.
 
-    def look(item: tuple[str, Picture | str]) -> _Seen:
+    Raises
+    ------
+    InputError
+        If there are no pictures of it, or they differ in depth.
+    """
+    require_camera(found)
+
+    def look(item: tuple[str, Picture | str]) -> SeenView:
         name, picture = item
         if isinstance(picture, str):
-            return _Seen(name, reason=picture)
+            return SeenView(name, reason=picture)
         size = (picture.shape[1], picture.shape[0])
         try:
-            return _Seen(name, detect(found.rig.camera_target, picture, name), size=size)
+            return SeenView(name, detect(found.rig.camera_target, picture, name), size=size)
         except InputError as error:
-            return _Seen(name, reason=error.what, size=size)
+            return SeenView(name, reason=error.what, size=size)
 
-    seen: list[_Seen] = []
+    seen: list[SeenView] = []
     total = len(found.camera)
     progress("camera views", 0, total)
     for one in ordered_map(look, found.stream(found.camera)):
         seen.append(one)
         progress("camera views", len(seen), total)
-    return seen
+    return SeenViews(tuple(seen), found.folder)
 
 
-def _too_few(seen: Sequence[_Seen], found: RecordingSet) -> InputError:
-    lost = [one for one in seen if one.view is None]
-    number = len(seen) - len(lost)
+def solve_camera(seen: SeenViews, options: Options | None = None, progress: Progress = silent) -> CameraCalibration:
+    """The camera from what the pictures show, without those left out by hand: they are judged by the solution.
+
+    Raises
+    ------
+    InputError
+        If there are too few views of the target, or they do not determine the camera.
+    """
+    options = options or Options()
+    found, size = seen.found, seen.size
+    if size is None or len(found) < FEWEST_VIEWS:
+        raise _too_few(seen)
+    left = sum(view.name not in options.excluded for view in found)
+    if left < min(FEWEST_VIEWS, len(found)):
+        raise InputError(
+            f"only {left} of {len(found)} views are not left out by hand, but {FEWEST_VIEWS} are needed",
+            where="camera",
+            todo="take some of them in again, or record more",
+        )
+    return _with_lost(calibrate_camera(found, size, options.camera, progress, options.excluded), seen)
+
+
+def _too_few(seen: SeenViews) -> InputError:
+    lost, number = seen.lost, len(seen.found)
     hits = f"only {number}" if number else "none"
     why = f" ({lost[0].name}: {lost[0].reason})" if lost else ""
     return InputError(
-        f"the camera target was found in {hits} of {len(seen)} pictures{why}, but {FEWEST_VIEWS} are needed",
-        where=found.folder / "camera",
+        f"the camera target was found in {hits} of {len(seen.views)} pictures{why}, but {FEWEST_VIEWS} are needed",
+        where=seen.folder / "camera",
         todo="check [camera_target] in rig.toml, or record more views" if lost else "record ten or more views",
     )
 
 
-def _with_lost(calibration: CameraCalibration, seen: Sequence[_Seen]) -> CameraCalibration:
+def _with_lost(calibration: CameraCalibration, seen: SeenViews) -> CameraCalibration:
     """The calibration with the pictures in which no target was found among its views, in the order of the set."""
-    solved = iter(calibration.views)
-    views = tuple(next(solved) if one.view is not None else _lost(one) for one in seen)
-    lost = [one for one in seen if one.view is None]
+    lost = seen.lost
     if not lost:
         return calibration
-    note = f"{len(lost)} of {len(seen)} views show no usable target, the first {lost[0].name}: {lost[0].reason}."
+    solved = iter(calibration.views)
+    views = tuple(next(solved) if one.view is not None else _lost(one) for one in seen.views)
+    note = f"{len(lost)} of {len(seen.views)} views show no usable target, the first {lost[0].name}: {lost[0].reason}."
     return replace(calibration, views=views, notes=(*calibration.notes, note))
 
 
-def _lost(one: _Seen) -> ViewQuality:
+def _lost(one: SeenView) -> ViewQuality:
     nothing = TargetView(np.zeros((0, 3)), np.zeros((0, 2)), np.zeros(0), one.name)
     return ViewQuality(nothing, Pose.identity(), np.zeros((0, 2)), np.nan, np.nan, np.nan, False, one.reason)

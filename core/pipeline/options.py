@@ -31,6 +31,10 @@ class Options:
         Width and contrast of the stripes in the scan's pictures; None: chosen from the pictures, for each laser.
     part
         Name of the part for the report; else it is named like the set.
+    excluded
+        Pictures left out by hand, named as in a set: "camera/view03.png", "planes/pose02", "scan/frame0007.png".
+    constrain_fan
+        Hold the fan's planes to one pencil where that suits the laser; else they are free.
 
     Raises
     ------
@@ -43,6 +47,8 @@ class Options:
     camera: CameraOptions = field(default_factory=CameraOptions)
     part: str = ""
     stripe: StripeSettings | None = None
+    excluded: frozenset[str] = frozenset()
+    constrain_fan: bool = True
 
     def __post_init__(self) -> None:
         if self.method not in METHODS:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from core.calibrate.fan import FanOptions, fit_fan
 from core.calibrate.plane_pose import PoseFeatures, measure_plane_pose
 from core.calibrate.results import FanCalibration
@@ -10,13 +12,18 @@ from core.files.camera_file import read_camera
 from core.files.fan_file import fan_id, read_fan, write_fan
 from core.files.poses_file import write_poses
 from core.files.recording_set import PlanePair, RecordingSet, require_planes
+from core.files.rig import Rig
 from core.model import Camera
+from core.pipeline.options import Options
 from core.pipeline.workspace import Workspace, check_size
 from core.progress import Progress, silent
 from core.threads import ordered_map
 
+FOLDER = "planes/"
+"""In front of a pose's name where pictures of all kinds are named, as in the options."""
 
-def planes_step(work: Workspace, progress: Progress = silent) -> FanCalibration:
+
+def planes_step(work: Workspace, options: Options | None = None, progress: Progress = silent) -> FanCalibration:
     """Calibrate the fan of a set with the camera in camera.json, and write planes.json.
 
     Raises
@@ -24,23 +31,29 @@ def planes_step(work: Workspace, progress: Progress = silent) -> FanCalibration:
     InputError
         If camera.json is missing or wrong, the pictures have another size, or the poses do not determine the fan.
     """
+    options = options or Options()
     require_planes(work.found)
     camera = read_camera(work.path("camera")).camera
     with work.step("planes") as log:
-        rig = work.found.rig
-        options = FanOptions(rig.lines, rig.angle or None)
-        log.settings.update({"lines": options.lines, "angle_rad": options.angle, "constrained": options.constrained})
-        features = _measure_all(work.found, camera, progress)
-        calibration = fit_fan(features, camera, options, progress)
-        log.notes.extend(note for pose in features for note in pose.notes)
+        log.settings.update(planes_settings(work.found.rig, options))
+        poses = measure_poses(work.found, camera, progress)
+        calibration = solve_planes(poses, camera, work.found.rig, options, progress)
+        log.notes.extend(note for pose in poses for note in pose.notes)
         log.notes.extend(calibration.notes)
         write_fan(work.path("planes"), calibration, camera)
-        write_poses(work.path("poses"), fan_id(calibration.fan), features)
+        write_poses(work.path("poses"), fan_id(calibration.fan), poses)
     return read_fan(work.path("planes"), camera)
 
 
-def _measure_all(found: RecordingSet, camera: Camera, progress: Progress) -> list[PoseFeatures]:
-    """Target and stripes of every pose, a few poses at a time."""
+def measure_poses(found: RecordingSet, camera: Camera, progress: Progress = silent) -> tuple[PoseFeatures, ...]:
+    """Target and stripes of every pose, a few poses at a time.
+
+    Raises
+    ------
+    InputError
+        If there are no poses, or their pictures have another size than the camera's.
+    """
+    require_planes(found)
 
     def measure(pair: PlanePair) -> PoseFeatures:
         try:
@@ -61,4 +74,34 @@ def _measure_all(found: RecordingSet, camera: Camera, progress: Progress) -> lis
     for pose in ordered_map(measure, found.planes):
         features.append(pose)
         progress("plane poses", len(features), total)
-    return features
+    return tuple(features)
+
+
+def solve_planes(
+    poses: Sequence[PoseFeatures],
+    camera: Camera,
+    rig: Rig,
+    options: Options | None = None,
+    progress: Progress = silent,
+) -> FanCalibration:
+    """The fan from what the pictures of all poses show, without those left out by hand.
+
+    Raises
+    ------
+    InputError
+        If the poses do not determine the fan.
+    """
+    options = options or Options()
+    excluded = {name.removeprefix(FOLDER) for name in options.excluded if name.startswith(FOLDER)}
+    return fit_fan(poses, camera, fan_options(rig, options), progress, excluded)
+
+
+def fan_options(rig: Rig, options: Options) -> FanOptions:
+    """What is known of the laser, and whether its planes may be held to one pencil."""
+    return FanOptions(rig.lines, rig.angle or None, "auto" if options.constrain_fan else "never")
+
+
+def planes_settings(rig: Rig, options: Options) -> dict[str, object]:
+    """What the fan's calibration is told, for run.json."""
+    fan = fan_options(rig, options)
+    return {"lines": fan.lines, "angle_rad": fan.angle, "constrained": fan.constrained}

@@ -65,7 +65,7 @@ def run(set_folder: Path, out_folder: Path, options: Options | None = None, prog
     work = Workspace.open(found, out_folder, options.part)
     work.clear()
     camera = camera_step(work, options, progress)
-    fan = planes_step(work, progress)
+    fan = planes_step(work, options, progress)
     measured = scan_step(work, options, progress)
     gauge = _gauge(work, progress)
     report_step(work, progress)

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 
+from core.calibrate.results import LEFT_OUT
 from core.errors import InputError
 from core.files.pictures import Picture
 from core.files.ply import write_cloud, write_mesh
@@ -14,12 +17,20 @@ from core.files.scan_file import ScanFile, write_scan
 from core.model import Camera
 from core.pipeline.options import Options
 from core.pipeline.workspace import Workspace, check_size
-from core.progress import Progress, silent
-from core.scan.features import FeatureOptions, ScanFeatures, extract_features
+from core.progress import Progress, silent, steps
+from core.scan.features import (
+    FeatureOptions,
+    Frame,
+    FrameFeatures,
+    ScanFeatures,
+    extract_features,
+    read_reference,
+)
 from core.scan.fusion import fuse
 from core.scan.mesh import build_mesh
 from core.scan.network import SILENCED
 from core.scan.normals import with_normals
+from core.scan.preview import FramePreview, Preview
 from core.scan.reconstruct import ReconstructOptions, reconstruct
 from core.scan.reference import quantile_reference, sample_indices
 from core.scan.results import FrameRecord, ScanResult
@@ -36,8 +47,15 @@ class Measured:
     mesh: Mesh
 
 
-def scan_step(work: Workspace, options: Options | None = None, progress: Progress = silent) -> Measured:
+def scan_step(
+    work: Workspace,
+    options: Options | None = None,
+    progress: Progress = silent,
+    watch: Callable[[FramePreview], None] | None = None,
+) -> Measured:
     """Measure the surface with the calibration in camera.json and planes.json.
+
+    `watch` is shown each frame with what it would give by itself, in the order of the recording, on this thread.
 
     Raises
     ------
@@ -47,36 +65,91 @@ def scan_step(work: Workspace, options: Options | None = None, progress: Progres
     options = options or Options()
     found = work.found
     require_scan(found)
+    _require_frames(found, options)
     calibration = work.calibration()
     camera, fan = calibration.camera.camera, calibration.fan.fan
     with work.step("scan") as log:
         log.settings.update(options.scan_settings)
-        reference, note = _reference(found, camera)
+        looking = feature_options(options)
+        progress("reference", 0, 1)
+        picture, note = reference_picture(found, camera, options, progress)
+        reference = read_reference(picture, looking)
         log.notes.extend(note)
-        looking = FeatureOptions(sweep_stripe=options.stripe, fan_stripe=options.stripe)
-        features = extract_features(reference, found.stream(found.frames), len(found.frames), looking, progress)
+        progress("reference", 1, 1)
+        frames, total = stream_frames(found, options), len(found.frames)
+        show = _shown_to(watch, Preview(reference, camera, fan)) if watch else None
+        features = extract_features(reference, frames, total, looking, progress, show)
         solving = ReconstructOptions(method=options.method, sigma_cut_mm=options.sigma_cut_mm)
         scan = reconstruct(features, camera, fan, solving, progress)
         scan = replace(scan, cloud=with_normals(scan.cloud, progress=progress))
         log.frames.extend(scan.frames)
         log.notes.extend(_left_out(scan.frames))
         log.notes.extend(scan.notes)
-        write_cloud(work.path("cloud"), scan.cloud, calibration.id)
-        write_scan(work.path("scan"), _file(features, scan, calibration.id))
         surface = with_normals(fuse(scan.cloud, camera.image_size, progress=progress), progress=progress)
         mesh = build_mesh(surface, progress=progress)
-        write_mesh(work.path("mesh"), mesh, calibration.id)
+        _write(work, scan, mesh, _file(features, scan, calibration.id))
     return Measured(scan, mesh)
 
 
-def _reference(found: RecordingSet, camera: Camera) -> tuple[Picture, list[str]]:
-    """The picture with the fan alone, taken or made from the frames, and a note on how it was made."""
+def _shown_to(watch: Callable[[FramePreview], None], preview: Preview) -> Callable[[FrameFeatures], None]:
+    return lambda features: watch(preview(features))
+
+
+def _write(work: Workspace, scan: ScanResult, mesh: Mesh, file: ScanFile) -> None:
+    """All results at once, after all the work: who cancels keeps the old ones, and old and new never mix."""
+    before = work.digest("cloud")
+    work.clear(("cloud", "scan", "mesh"))
+    write_cloud(work.path("cloud"), scan.cloud, file.calibration_id)
+    write_scan(work.path("scan"), file)
+    write_mesh(work.path("mesh"), mesh, file.calibration_id)
+    if before != work.digest("cloud"):
+        work.clear(("gauge", "faces"))
+
+
+def feature_options(options: Options) -> FeatureOptions:
+    """How the pictures of a scan are looked at."""
+    return FeatureOptions(sweep_stripe=options.stripe, fan_stripe=options.stripe)
+
+
+def stream_frames(found: RecordingSet, options: Options) -> Iterator[Frame]:
+    """Every frame in the order of the recording; those left out by hand are not read."""
+    pictures = found.stream(_taken(found, options))
+    for path in found.frames:
+        name = found.name_of(path)
+        yield (name, LEFT_OUT) if name in options.excluded else next(pictures)
+
+
+def _require_frames(found: RecordingSet, options: Options) -> None:
+    """InputError if all frames are left out by hand."""
+    if not _taken(found, options):
+        raise InputError(
+            f"all {len(found.frames)} frames are left out by hand", where="scan", todo="take some of them in again"
+        )
+
+
+def _taken(found: RecordingSet, options: Options) -> list[Path]:
+    """The frames that are not left out by hand."""
+    return [path for path in found.frames if found.name_of(path) not in options.excluded]
+
+
+def reference_picture(
+    found: RecordingSet, camera: Camera, options: Options, progress: Progress = silent
+) -> tuple[Picture, list[str]]:
+    """The picture with the fan alone, taken or made from the frames, and a note on how it was made.
+
+    Raises
+    ------
+    InputError
+        If there is none and the frames are too few to make one from, or it has another size than the camera's.
+    """
     if found.reference is not None:
         reference = found.read(found.reference)
         check_size(found.reference, reference, camera)
         return reference, []
-    sample = [found.frames[index] for index in sample_indices(len(found.frames))]
-    pictures = [picture for _, picture in found.stream(sample) if not isinstance(picture, str)]
+    taken = _taken(found, options)
+    sample = [taken[index] for index in sample_indices(len(taken))]
+    stream = steps(found.stream(sample), progress, "reference", len(sample))
+    pictures = [picture for _, picture in stream if not isinstance(picture, str)]
     if len(pictures) < FEWEST_FOR_QUANTILE:
         raise InputError(
             f"there is no reference.png, and {len(pictures)} readable frames are too few to make one from",

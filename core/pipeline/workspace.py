@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -15,7 +16,7 @@ from core.errors import InputError
 from core.files.atomic import cannot_write, make_folder
 from core.files.camera_file import camera_id, read_camera
 from core.files.fan_file import fan_id, read_fan
-from core.files.pictures import Picture
+from core.files.pictures import Picture, read_bytes
 from core.files.recording_set import RecordingSet
 from core.files.run_file import RunRecord, read_run, write_run
 from core.model import Camera
@@ -86,6 +87,11 @@ class Workspace:
                 self.path(name).unlink(missing_ok=True)
             except OSError as error:
                 raise cannot_write(self.path(name), error) from error
+
+    def digest(self, name: str) -> str:
+        """SHA-256 in hex of a result's bytes; nothing if it is not there."""
+        path = self.path(name)
+        return hashlib.sha256(read_bytes(path)).hexdigest() if path.exists() else ""
 
     def written(self) -> dict[str, Path]:
         """The results that are there, by their keys in FILES."""
