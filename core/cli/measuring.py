@@ -11,7 +11,7 @@ from core.calibrate.camera import CameraOptions
 from core.cli import output
 from core.errors import InputError
 from core.files.recording_set import open_set
-from core.image.stripe_settings import StripeSettings
+from core.image.stripe import StripeSettings
 from core.inspect.results import GaugeResult
 from core.pipeline import (
     Options,
@@ -25,7 +25,7 @@ from core.pipeline import (
     scan_step,
 )
 from core.progress import Progress
-from core.scan.reconstruct import Method
+from core.scan.method import Method
 
 PROVEN = ("", "conforming")
 """Verdicts that leave with exit code 0."""

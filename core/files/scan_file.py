@@ -22,7 +22,7 @@ from core.files.arrays_file import (
     unpack_centrelines,
     write_arrays,
 )
-from core.image.stripes import StripeSettings
+from core.image.stripe import StripeSettings
 from core.model.arrays import Array
 from core.scan.crossings import CrossingTable
 from core.scan.features import FrameFeatures, ScanFeatures

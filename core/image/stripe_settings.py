@@ -1,9 +1,8 @@
-"""What a technician tells of a stripe (width and contrast), and how to choose it from a picture."""
+"""How to choose width and contrast of the stripes from a picture."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,13 +12,8 @@ from core.image.noise import estimate_noise
 from core.image.pieces import cut_ends
 from core.image.precision import response_noise
 from core.image.profile import measure_profiles
+from core.image.stripe import WIDTH_IN_SIGMA, StripeSettings, filter_for
 from core.model.arrays import Array
-
-WIDTH_IN_SIGMA = 4.0
-"""The visible width of a laser stripe, where it has fallen to 1/e² of its height, in σ."""
-FILTER_IN_SIGMA = 1.4
-"""Filter over stripe σ: within 3 % of the Cramér–Rao bound under shot noise, and blunt to too small a width."""
-_SMALLEST_FILTER_PX = 1.2  # sampled Gaussian derivatives alias below
 
 _BLOCKS = (1, 2, 3, 4, 6, 9, 13)
 """Stripe σ looked for at first, in pixels."""
@@ -29,40 +23,6 @@ _FAINTEST = 0.008  # of full scale
 _ABOVE_NOISE = 8.0
 _SHARE_OF_STRONGEST = 0.12
 _FAINT = 0.2  # quantile of the heights along all stripes that is taken as their contrast
-
-
-@dataclass(frozen=True, slots=True)
-class StripeSettings:
-    """What a technician can say of a stripe by looking at it.
-
-    Parameters
-    ----------
-    width_px
-        Its visible width in pixels: from where the light rises out of the background to where it is gone. For a
-        Gaussian section of σ = s this is the laser trade's 1/e² width, 4 s.
-    contrast
-        Height of a stripe above its background, in grey levels of the picture, where it is rather faint. Stripes are
-        found from about a third of it.
-    """
-
-    width_px: float
-    contrast: float
-
-    def __post_init__(self) -> None:
-        for name in ("width_px", "contrast"):
-            value = getattr(self, name)
-            if not (np.isfinite(value) and value > 0):
-                raise ValueError(f"{name} is {value}, not a positive number")
-
-    @property
-    def stripe_px(self) -> float:
-        """σ of the stripe's cross-section in pixels."""
-        return self.width_px / WIDTH_IN_SIGMA
-
-    @property
-    def filter_px(self) -> float:
-        """σ of the Gaussian filter in pixels."""
-        return max(FILTER_IN_SIGMA * self.stripe_px, _SMALLEST_FILTER_PX)
 
 
 def choose_settings(
@@ -97,7 +57,7 @@ def choose_settings(
     noise = estimate_noise(picture, mask).read_grey
     stripe_px, height = _first_guess(picture, noise)
     for _ in range(_ROUNDS):
-        filter_px = max(FILTER_IN_SIGMA * stripe_px, _SMALLEST_FILTER_PX)
+        filter_px = filter_for(stripe_px)
         faintest = max(_ABOVE_NOISE * response_noise(noise, stripe_px, filter_px), _FAINTEST * full_scale, noise)
         if height < faintest:
             return None

@@ -45,7 +45,8 @@ from core.image.pieces import (
 )
 from core.image.precision import noise_sigma, response_noise, roughness, saturated_points
 from core.image.profile import Profiles, measure_profiles
-from core.image.stripe_settings import StripeSettings, choose_settings
+from core.image.stripe import StripeSettings
+from core.image.stripe_settings import choose_settings
 from core.model.arrays import Array
 
 __all__ = ["StripeSettings", "choose_settings", "correlation_length_px", "extract_centrelines"]

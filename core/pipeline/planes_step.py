@@ -104,4 +104,5 @@ def fan_options(rig: Rig, options: Options) -> FanOptions:
 def planes_settings(rig: Rig, options: Options) -> dict[str, object]:
     """What the fan's calibration is told, for run.json."""
     fan = fan_options(rig, options)
-    return {"lines": fan.lines, "angle_rad": fan.angle, "constrained": fan.constrained}
+    told = {"lines": fan.lines, "angle_rad": fan.angle, "constrained": fan.constrained}
+    return {**told, **options.excluded_settings("planes")}

@@ -18,7 +18,8 @@ from core.image.centreline import Centreline
 from core.image.noise import NoiseModel, estimate_noise
 from core.image.shading import shading_sigma
 from core.image.smoothing import smooth
-from core.image.stripe_settings import StripeSettings, choose_settings
+from core.image.stripe import StripeSettings
+from core.image.stripe_settings import choose_settings
 from core.image.stripes import extract_centrelines
 from core.progress import Progress, silent
 from core.scan.crossings import CrossingTable, CrossingWindow, all_crossings

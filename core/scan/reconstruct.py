@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,12 +19,11 @@ from core.scan.crossings import CrossingTable
 from core.scan.fan_lines import UNASSIGNED, FanLines
 from core.scan.features import ScanFeatures
 from core.scan.locate import LocatedSweeps, locate_each, locate_together, number_fan_lines, numbered
+from core.scan.method import Method
 from core.scan.network import SILENCED
 from core.scan.results import FrameRecord, ScanResult
 from core.scan.sweep_plane import plane_condition
 from core.scan.triangulate import join, triangulate
-
-Method = Literal["network", "three-crossings"]
 
 
 @dataclass(frozen=True, slots=True)

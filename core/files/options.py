@@ -1,0 +1,81 @@
+"""What a run can be told; everything has a default that suits most sets."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from core.calibrate.camera import CameraOptions
+from core.errors import InputError
+from core.image.stripe import StripeSettings
+from core.scan.method import METHODS, Method
+
+__all__ = ["METHODS", "Options"]
+
+
+@dataclass(frozen=True, slots=True)
+class Options:
+    """What a run can be told.
+
+    Parameters
+    ----------
+    method
+        "network": all sweeps adjusted together; "three-crossings": each frame from its own crossings with the fan, as
+        the paper does.
+    sigma_cut_mm
+        Points with a larger standard uncertainty of depth are left out.
+    camera
+        Which camera parameters are free.
+    stripe
+        Width and contrast of the stripes in the scan's pictures; None: chosen from the pictures, for each laser.
+    part
+        Name of the part for the report; else it is named like the set.
+    excluded
+        Pictures left out by hand, named as in a set: "camera/view03.png", "planes/pose02", "scan/frame0007.png".
+    constrain_fan
+        Hold the fan's planes to one pencil where that suits the laser; else they are free.
+
+    Raises
+    ------
+    InputError
+        If the method is unknown or the cut is absurd.
+    """
+
+    method: Method = "network"
+    sigma_cut_mm: float = 0.05
+    camera: CameraOptions = field(default_factory=CameraOptions)
+    part: str = ""
+    stripe: StripeSettings | None = None
+    excluded: frozenset[str] = frozenset()
+    constrain_fan: bool = True
+
+    def __post_init__(self) -> None:
+        if self.method not in METHODS:
+            raise InputError(f"{self.method!r} is not {' or '.join(METHODS)}", where="method")
+        if not 0 < self.sigma_cut_mm <= 10:
+            raise InputError(f"{self.sigma_cut_mm:g} is not above 0 and at most 10 mm", where="sigma-cut")
+
+    @property
+    def camera_settings(self) -> Mapping[str, Any]:
+        """What the camera's calibration is told, for run.json."""
+        camera = self.camera
+        told = {"skew": camera.skew, "k3": camera.k3, "fixed": sorted(camera.fixed), "outliers": camera.outliers}
+        return {**told, **self.excluded_settings("camera")}
+
+    @property
+    def scan_settings(self) -> Mapping[str, Any]:
+        """What the scan is told, for run.json."""
+        stripe = self.stripe
+        chosen = "automatic" if stripe is None else {"width_px": stripe.width_px, "contrast": stripe.contrast}
+        told = {"method": self.method, "sigma_cut_mm": self.sigma_cut_mm, "stripe": chosen}
+        return {**told, **self.excluded_settings("scan")}
+
+    def excluded_in(self, part: str) -> tuple[str, ...]:
+        """The pictures left out by hand of one part (camera, planes or scan), in the order of their names."""
+        return tuple(sorted(name for name in self.excluded if name.startswith(part + "/")))
+
+    def excluded_settings(self, part: str) -> Mapping[str, Any]:
+        """For run.json what is left out by hand of one part; nothing if nothing is."""
+        names = self.excluded_in(part)
+        return {"excluded": names} if names else {}
