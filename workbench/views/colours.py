@@ -1,0 +1,96 @@
+"""What each colour and symbol on a picture means. Hues after Okabe & Ito, told apart by colour-blind eyes.
+
+Every meaning has a symbol of its own as well, so nothing is told by colour alone. All are readable on dark pictures;
+symbols are drawn with a dark rim, which makes them readable on light ones too.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from PySide6.QtGui import QColor
+
+Symbol = Literal["o", ".", "t", "x", "+", "s", "d"]
+"""Open circle, disc, triangle, saltire, cross, square, diamond."""
+
+ColourLike = str | tuple[int, int, int] | tuple[int, int, int, int] | QColor
+
+Level = Literal["", "good", "warn", "bad"]
+
+
+@dataclass(frozen=True, slots=True)
+class Mark:
+    """How one meaning is drawn."""
+
+    colour: str
+    symbol: Symbol = "o"
+
+
+FAN = ("#56B4E9", "#FF9E2C", "#F57FC4")
+"""Fan lines 1, 2 and 3; `fan_colour` for any number of them."""
+
+SWEEP = "#F4F4F4"
+"""Sweep centrelines without σ."""
+
+EXCLUDED = "#8C9196"
+"""Whatever does not count: left out by hand, over the limit, without σ."""
+
+REGION = "#FFD54A"
+"""Regions drawn by hand."""
+
+FACE_UPPER, FACE_LOWER = "#56B4E9", "#FF9E2C"
+"""Points of the two faces of a gauge."""
+
+CROSSING_GOOD = Mark("#3DDC84", "o")
+CROSSING_WEAK = Mark("#FFB000", "t")
+CROSSING_LEFT_OUT = Mark("#FF5C57", "x")
+CORNER = Mark("#35E0D0", "+")
+CORNER_LEFT_OUT = Mark("#FF5C57", "x")
+RESIDUAL = "#FFB000"
+COVERED = "#3DDC84"
+
+# viridis without its dark third, which would drown in a dark picture
+_SIGMA_STOPS = "6f7ff0 4f9be0 3bb5b8 4fc987 95d94a fde725"
+
+
+def fan_colour(line: int) -> str:
+    """The colour of fan line 1, 2, 3, …; they repeat."""
+    return FAN[(line - 1) % len(FAN)]
+
+
+def to_colour(colour: ColourLike) -> QColor:
+    """Any way of naming a colour as a QColor."""
+    if isinstance(colour, QColor):
+        return colour
+    return QColor(colour) if isinstance(colour, str) else QColor(*colour)
+
+
+def to_rgba(colour: ColourLike) -> tuple[int, int, int, int]:
+    """Any way of naming a colour as four numbers, 0 … 255."""
+    chosen = to_colour(colour)
+    return chosen.red(), chosen.green(), chosen.blue(), chosen.alpha()
+
+
+@cache
+def sigma_table() -> NDArray[np.uint8]:
+    """The colours of σ from nought (blue, good) to the limit (yellow): (256, 4)."""
+    stops = np.array([list(bytes.fromhex(stop)) for stop in _SIGMA_STOPS.split()], dtype=np.float64)
+    at = np.linspace(0, len(stops) - 1, 256)
+    columns = [np.interp(at, np.arange(len(stops)), stops[:, i]) for i in range(3)]
+    rounded: NDArray[np.uint8] = np.round(np.column_stack([*columns, np.full(256, 255.0)])).astype(np.uint8)
+    rounded.flags.writeable = False
+    return rounded
+
+
+def sigma_colours(sigma_mm: ArrayLike, limit_mm: float) -> NDArray[np.uint8]:
+    """Colours (N, 4) of standard uncertainties (N,): blue is good, yellow at the limit, grey beyond it or unknown."""
+    sigma = np.asarray(sigma_mm, dtype=np.float64).reshape(-1)
+    known = np.isfinite(sigma) & (sigma <= limit_mm)
+    scaled = np.clip(np.where(known, sigma, 0.0) * (255.0 / limit_mm), 0, 255)
+    colours = sigma_table()[scaled.astype(np.uint8)]
+    colours[~known] = to_rgba(EXCLUDED)
+    return colours
