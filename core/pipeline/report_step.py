@@ -21,12 +21,12 @@ from core.files.rig import Rig
 from core.files.run_file import RunRecord
 from core.files.scan_file import ScanFile, read_scan
 from core.image.centreline import Centreline
-from core.image.targets import Charuco, Checkerboard, CircleGrid, Target
 from core.model.arrays import Array
 from core.pipeline.workspace import Workspace, check_calibration
 from core.progress import Progress, silent
 from core.report.content import Overlay, ReportContent
 from core.report.pdf import build_report
+from core.report.wording import target_in_words
 from core.scan.cloud import Cloud
 
 METHOD_IN_WORDS = {
@@ -77,27 +77,13 @@ def _rig_in_words(rig: Rig, image_size: tuple[int, int]) -> Mapping[str, str]:
     lines = f"{rig.lines} lines, {math.degrees(rig.angle):g}° apart" if rig.lines > 1 else "1 line"
     words = {
         "Picture": f"{image_size[0]} × {image_size[1]} px" + (f", {rig.channel} channel" if rig.channel else ""),
-        "Camera target": _target_in_words(rig.camera_target),
-        "Plane target": _target_in_words(rig.plane_target),
+        "Camera target": target_in_words(rig.camera_target),
+        "Plane target": target_in_words(rig.plane_target),
         "Fixed laser": lines,
     }
     if rig.gauge and rig.gauge.nominal_mm is not None:
         words["Nominal"] = f"{rig.gauge.nominal_mm:g} mm ± {rig.gauge.tolerance_mm:g} mm"
     return words
-
-
-def _target_in_words(target: Target) -> str:
-    if isinstance(target, Checkerboard):
-        return f"checkerboard, {target.columns} × {target.rows} inner corners, {target.square_mm:g} mm"
-    if isinstance(target, Charuco):
-        return (
-            f"ChArUco board, {target.columns} × {target.rows} squares of {target.square_mm:g} mm, "
-            f"markers {target.marker_mm:g} mm"
-        )
-    if isinstance(target, CircleGrid):
-        kind = "asymmetric circle grid" if target.asymmetric else "circle grid"
-        return f"{kind}, {target.columns} × {target.rows}, pitch {target.pitch_mm:g} mm"
-    return f"black square, side {target.side_mm:g} mm"
 
 
 def _settings_in_words(record: RunRecord) -> Mapping[str, str]:

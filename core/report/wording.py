@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from decimal import ROUND_HALF_EVEN, Decimal
 
+from core.image.targets import Charuco, Checkerboard, CircleGrid, Target
 from core.inspect.results import GaugeResult
 
 COVERAGE = {1.0: "68 %", 2.0: "95 %", 3.0: "99.7 %"}
@@ -131,3 +132,18 @@ def temperatures_line(air_celsius: float | None, part_celsius: float | None) -> 
     known = {"air": air_celsius, "part": part_celsius}
     words = [f"{name} {fixed(value, 1)} °C" for name, value in known.items() if value is not None]
     return f"{', '.join(words)}; no correction to 20 °C was made" if words else ""
+
+
+def target_in_words(target: Target) -> str:
+    """'checkerboard, 17 × 12 inner corners, 10 mm'."""
+    if isinstance(target, Checkerboard):
+        return f"checkerboard, {target.columns} × {target.rows} inner corners, {target.square_mm:g} mm"
+    if isinstance(target, Charuco):
+        return (
+            f"ChArUco board, {target.columns} × {target.rows} squares of {target.square_mm:g} mm, "
+            f"markers {target.marker_mm:g} mm"
+        )
+    if isinstance(target, CircleGrid):
+        kind = "asymmetric circle grid" if target.asymmetric else "circle grid"
+        return f"{kind}, {target.columns} × {target.rows}, pitch {target.pitch_mm:g} mm"
+    return f"black square, side {target.side_mm:g} mm"
