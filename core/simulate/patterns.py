@@ -111,23 +111,54 @@ def _share(distance, gradient_u, gradient_v):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, nogil=True)
+def _widest_step(rays):  # type: ignore[no-untyped-def]
+    """Largest step of a ray coordinate from pixel to pixel, looked for here and there: distortion is smooth."""
+    height, width = rays.shape[:2]
+    widest = 0.0
+    for v in range(0, height - 1, 16):
+        for u in range(0, width - 1, 16):
+            for k in range(2):
+                here = rays[v, u, k]
+                widest = max(widest, abs(rays[v, u + 1, k] - here), abs(rays[v + 1, u, k] - here))
+    return widest
+
+
+@njit(cache=True, nogil=True)
+def _stepped(ascending, i, value):  # type: ignore[no-untyped-def]
+    """How many of `ascending` are below `value`, looked for from `i` on: the neighbouring pixel's answer."""
+    while i < len(ascending) and ascending[i] < value:
+        i += 1
+    while i > 0 and ascending[i - 1] >= value:
+        i -= 1
+    return i
+
+
+@njit(cache=True, nogil=True)
 def _draw_cells(x_edges, y_edges, cells, rotation, translation, rays):  # type: ignore[no-untyped-def]
     height, width = rays.shape[:2]
     points = np.zeros((height, width, 3), np.float32)
     albedo = np.full((height, width), cells[0, 0], np.float32)
     x_middles, y_middles = (x_edges[1:] + x_edges[:-1]) / 2, (y_edges[1:] + y_edges[:-1]) / 2
+    step = 2 * _widest_step(rays)
+    i = j = 0
     for v in range(height):
         below = v + 1 if v + 1 < height else v - 1
         for u in range(width):
-            px, py, z = _on_plate(rays[v, u, 0], rays[v, u, 1], rotation, translation)
+            x, y = rays[v, u, 0], rays[v, u, 1]
+            px, py, z = _on_plate(x, y, rotation, translation)
             if z == 0.0 or px < x_edges[0] - 5 or px > x_edges[-1] + 5 or py < y_edges[0] - 5 or py > y_edges[-1] + 5:
                 continue
-            right = u + 1 if u + 1 < width else u - 1
-            xu, yu, _ = _on_plate(rays[v, right, 0], rays[v, right, 1], rotation, translation)
-            xv, yv, _ = _on_plate(rays[below, u, 0], rays[below, u, 1], rotation, translation)
-            i, j = np.searchsorted(x_middles, px), np.searchsorted(y_middles, py)  # nearest edges
-            right_share = _share(px - x_edges[i], xu - px, xv - px)
-            lower_share = _share(py - y_edges[j], yu - py, yv - py)
+            i, j = _stepped(x_middles, i, px), _stepped(y_middles, j, py)  # nearest edges
+            off_x, off_y = px - x_edges[i], py - y_edges[j]
+            facing = rotation[0, 2] * x + rotation[1, 2] * y + rotation[2, 2]
+            reach = step * z * (1 + x * x + y * y) / facing  # no pixel is wider on the plate
+            xu, yu, xv, yv = px, py, px, py
+            if min(abs(off_x), abs(off_y)) < reach:
+                right = u + 1 if u + 1 < width else u - 1
+                xu, yu, _ = _on_plate(rays[v, right, 0], rays[v, right, 1], rotation, translation)
+                xv, yv, _ = _on_plate(rays[below, u, 0], rays[below, u, 1], rotation, translation)
+            right_share = _share(off_x, xu - px, xv - px)
+            lower_share = _share(off_y, yu - py, yv - py)
             upper = cells[j, i] * (1 - right_share) + cells[j, i + 1] * right_share
             lower = cells[j + 1, i] * (1 - right_share) + cells[j + 1, i + 1] * right_share
             albedo[v, u] = upper * (1 - lower_share) + lower * lower_share

@@ -52,7 +52,8 @@ class ScanStage:
         self.maps = _textured(surface_maps(scene, rig.camera, rays), texture, rig.scale, seed)
         contrast = rig.optics.speckle_contrast
         self._speckle = Speckle(contrast, rig.grain_px, generator(seed, "speckle")) if contrast > 0 else None
-        self._still = self._room(ambient_grey) + self._fan(aim)
+        self._room_light = self._room(ambient_grey)
+        self._still = self._room_light + self._fan(aim)
 
     def reference(self) -> Picture:
         """The picture with the hand-held laser off: room light and fan."""
@@ -61,10 +62,24 @@ class ScanStage:
     def frame(self, index: int, sheet: Sheet) -> Picture:
         """Frame number `index`, the hand-held laser at `sheet`."""
         rng = generator(self.seed, "frame", index)
+        return self.sensor.expose(self.lit_by(sheet, rng), rng)
+
+    @property
+    def room_light(self) -> Map:
+        """The room's light (h, w) alone, in grey levels: all lasers off."""
+        return self._room_light
+
+    @property
+    def still(self) -> Map:
+        """Light (h, w) in grey levels that is the same in every frame: the room's and the fan's."""
+        return self._still
+
+    def lit_by(self, sheet: Sheet, rng: np.random.Generator) -> Map:
+        """Light (h, w) in grey levels with the hand-held laser at `sheet`; `rng` chooses its speckle."""
         light = blurred(laser_light(sheet, self.scene, self.maps), self.rig.blur_px)
         light = self._sparkling(light, rng)
         light += self._still
-        return self.sensor.expose(light, rng)
+        return light
 
     def fan_light(self, aim: Array) -> Map:
         """Light of the fan's sheets (h, w) before lens and speckle, in grey levels."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from core.model import Camera, Pose
@@ -102,7 +103,7 @@ class SurfaceMaps:
     tiles: Map = field(init=False)
 
     def __post_init__(self) -> None:
-        set_field(self, "tiles", np.stack([_by_tile(np.minimum, self.points), _by_tile(np.maximum, self.points)]))
+        set_field(self, "tiles", _extent_by_tile(self.points))
 
     @property
     def depth(self) -> Map:
@@ -141,10 +142,18 @@ def surface_maps(scene: Scene, camera: Camera, rays: Map | None = None) -> Surfa
     return SurfaceMaps(points, normals, albedo, table)
 
 
-def _by_tile(choose: np.ufunc, points: Map) -> Map:
-    rows, columns = np.arange(0, points.shape[0], TILE), np.arange(0, points.shape[1], TILE)
-    chosen: Map = choose.reduceat(choose.reduceat(points, rows, axis=0), columns, axis=1)
-    return chosen
+@njit(cache=True, nogil=True)
+def _extent_by_tile(points):  # type: ignore[no-untyped-def]
+    height, width = points.shape[:2]
+    extent = np.empty((2, (height + TILE - 1) // TILE, (width + TILE - 1) // TILE, 3), np.float32)
+    extent[0], extent[1] = np.inf, -np.inf
+    for v in range(height):
+        for u in range(width):
+            for k in range(3):
+                value = points[v, u, k]
+                extent[0, v // TILE, u // TILE, k] = min(extent[0, v // TILE, u // TILE, k], value)
+                extent[1, v // TILE, u // TILE, k] = max(extent[1, v // TILE, u // TILE, k], value)
+    return extent
 
 
 def _see_table(pose: Pose, rays: Map, depth: Map, normals: Map) -> None:

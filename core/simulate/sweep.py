@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from core.model import LightPlane
 from core.model.arrays import Array
@@ -33,8 +34,47 @@ class SweepRange:
     half_width_mm: float = 75.0
 
 
-def hand_sweeps(rig: Rig, reach: SweepRange, frames: int, rng: np.random.Generator) -> list[Sheet]:
-    """The sheets of light of a scan of `frames` frames, in the camera frame, in the order of time."""
+@dataclass(frozen=True, eq=False, slots=True)
+class HandCourse:
+    """The hand at N instants: where the laser is held, and how.
+
+    Parameters
+    ----------
+    number
+        (N,) which pass over the object, from 0.
+    tilt
+        (N,) of the stripe against the picture's vertical, in rad.
+    side
+        (N,) side of the camera the laser is held at, +1 (right) or −1.
+    baseline, sway, nearness
+        (N,) distance from the optical axis in mm, wandering off it (a number about 0), and z in mm.
+    aims
+        (N, 3) points the laser is pointed to, in mm.
+    """
+
+    number: NDArray[np.intp]
+    tilt: Array
+    side: Array
+    baseline: Array
+    sway: Array
+    nearness: Array
+    aims: Array
+
+    def sheets(self, rig: Rig) -> list[Sheet]:
+        """The sheet of light at each instant, in the camera frame."""
+        emitters = np.column_stack(
+            [
+                self.side * self.baseline * np.cos(self.tilt) + 5 * self.sway,
+                self.side * self.baseline * np.sin(self.tilt) * 0.8 + 25 * self.sway,
+                self.nearness,
+            ]
+        )
+        stripes = np.column_stack([-np.sin(self.tilt), np.cos(self.tilt), np.zeros(len(self.tilt))])
+        return [_sheet(rig, *row) for row in zip(emitters, self.aims, stripes, strict=True)]
+
+
+def hand_course(reach: SweepRange, frames: int, rng: np.random.Generator) -> HandCourse:
+    """How the hand moves during a scan of `frames` frames, in the order of time."""
     passes = max(min(4, frames), round(frames / FRAMES_PER_PASS))
     number = np.arange(frames) * passes // frames
     begins = np.searchsorted(number, np.arange(passes))
@@ -46,17 +86,15 @@ def hand_sweeps(rig: Rig, reach: SweepRange, frames: int, rng: np.random.Generat
     middle = np.radians(np.array(TILTS_DEG)[number % len(TILTS_DEG)])
     tilt = np.clip(middle + np.radians(4.0) * wander[:, 0] + rng.normal(0, np.radians(0.5), frames), -0.8, 0.8)
     baseline = 240.0 + 55.0 * np.tanh(wander[:, 1])
-    emitters = np.column_stack(
-        [
-            side * baseline * np.cos(tilt) + 5 * wander[:, 2],
-            side * baseline * np.sin(tilt) * 0.8 + 25 * wander[:, 2],
-            40.0 + 35.0 * np.tanh(wander[:, 3]),
-        ]
-    )
+    nearness = 40.0 + 35.0 * np.tanh(wander[:, 3])
     across = (2 * along - 1) * reach.half_width_mm + rng.normal(0, 0.8, frames)
     aims = np.array(reach.centre) + np.column_stack([across, 6 * wander[:, 4], np.zeros(frames)])
-    stripes = np.column_stack([-np.sin(tilt), np.cos(tilt), np.zeros(frames)])
-    return [_sheet(rig, *row) for row in zip(emitters, aims, stripes, strict=True)]
+    return HandCourse(number, tilt, side, baseline, wander[:, 2], nearness, aims)
+
+
+def hand_sweeps(rig: Rig, reach: SweepRange, frames: int, rng: np.random.Generator) -> list[Sheet]:
+    """The sheets of light of a scan of `frames` frames, in the camera frame, in the order of time."""
+    return hand_course(reach, frames, rng).sheets(rig)
 
 
 def sweep_range(scene: Scene, centre: Array) -> SweepRange:

@@ -37,14 +37,19 @@ def plane_pictures(
     points, light = room_light(pattern, pose, rays, grey)
     light = blurred(light, rig.blur_px)
     albedo = draw_pattern(replace(pattern, background=0.0), pose, rays)[1]
+    fan = speckled(fan_light(rig, points, albedo, pose), rig, generator(seed, "plane speckle", index))
+    on = sensor.expose(light + fan, generator(seed, "plane on", index))
+    return on, sensor.expose(light, generator(seed, "plane off", index))
+
+
+def fan_light(rig: Rig, points: Map, albedo: Map, pose: Pose) -> Map:
+    """The fan's light (h, w) on a plate, as the lens shows it, before speckle."""
     normals = np.broadcast_to((-pose.rotation[:, 2]).astype(np.float32), points.shape)
     maps = SurfaceMaps(points, normals, albedo)
     fan = np.zeros(albedo.shape, np.float32)
     for sheet in fan_sheets(rig, pose.translation):
         laser_light(sheet, Scene(None), maps, fan)
-    fan = speckled(blurred(fan, rig.blur_px), rig, generator(seed, "plane speckle", index))
-    on = sensor.expose(light + fan, generator(seed, "plane on", index))
-    return on, sensor.expose(light, generator(seed, "plane off", index))
+    return blurred(fan, rig.blur_px)
 
 
 def speckled(light: Map, rig: Rig, rng: np.random.Generator) -> Map:
