@@ -1,123 +1,24 @@
-"""rig.toml: the targets, the laser and the gauge of a recording set, checked key by key."""
+"""rig.toml: the targets, the laser and the gauge of a recording set, read and written."""
 
 from __future__ import annotations
 
+import json
 import math
 import tomllib
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Literal, TypeAlias
+from typing import Any
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import ValidationError
 
 from core.errors import InputError
-from core.files.complaints import Clash, complaint
+from core.files.complaints import complaint
 from core.files.pictures import Channel
+from core.files.rig_tables import GaugeTable, RigTables, TargetTable
 from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid, Target
-from core.model.arrays import Array
-
-# The description of a field ends the sentence "… is <value>, not <description>".
-_Count = Annotated[int, Field(ge=3, le=500)]
-_Length = Annotated[float, Field(gt=0, le=5000, allow_inf_nan=False)]
-_A_LENGTH = "a length in mm above 0 and at most 5000"
-_TWO_COUNTS = "two whole numbers from 3 to 500, [columns, rows]"
-_Vertex = Annotated[list[Annotated[float, Field(allow_inf_nan=False)]], Field(min_length=2, max_length=2)]
-_Polygon = Annotated[list[_Vertex], Field(min_length=3)]
-_A_POLYGON = "a list of three or more [u, v] in pixels"
-
-
-class _Table(BaseModel):
-    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
-
-
-class _Checkerboard(_Table):
-    kind: Literal["checkerboard"]
-    inner_corners: list[_Count] = Field(min_length=2, max_length=2, description=_TWO_COUNTS)
-    square_mm: _Length = Field(description=_A_LENGTH)
-
-    def target(self) -> Target:
-        columns, rows = self.inner_corners
-        return Checkerboard(columns, rows, self.square_mm)
-
-
-class _Charuco(_Table):
-    kind: Literal["charuco"]
-    squares: list[_Count] = Field(min_length=2, max_length=2, description=_TWO_COUNTS)
-    square_mm: _Length = Field(description=_A_LENGTH)
-    marker_mm: _Length = Field(description=_A_LENGTH + ", smaller than square_mm")
-    dictionary: str = Field(
-        "DICT_4X4_50", pattern=r"^DICT_(4X4|5X5|6X6|7X7)_(50|100|250|1000)$", description='one like "DICT_4X4_50"'
-    )
-
-    @model_validator(mode="after")
-    def _marker_inside_square(self) -> _Charuco:
-        if self.marker_mm >= self.square_mm:
-            raise Clash("marker_mm", f"is {self.marker_mm:g}, not smaller than square_mm = {self.square_mm:g}")
-        return self
-
-    def target(self) -> Target:
-        columns, rows = self.squares
-        return Charuco(columns, rows, self.square_mm, self.marker_mm, self.dictionary)
-
-
-class _CircleGrid(_Table):
-    kind: Literal["circle_grid"]
-    circles: list[_Count] = Field(min_length=2, max_length=2, description=_TWO_COUNTS)
-    pitch_mm: _Length = Field(description=_A_LENGTH)
-    asymmetric: bool = Field(False, description="true or false")
-
-    def target(self) -> Target:
-        columns, rows = self.circles
-        return CircleGrid(columns, rows, self.pitch_mm, self.asymmetric)
-
-
-class _BlackSquare(_Table):
-    kind: Literal["black_square"]
-    side_mm: _Length = Field(description=_A_LENGTH)
-
-    def target(self) -> Target:
-        return BlackSquare(self.side_mm)
-
-
-_CameraTarget: TypeAlias = Annotated[_Checkerboard | _Charuco | _CircleGrid, Field(discriminator="kind")]
-_PlaneTarget: TypeAlias = Annotated[_Checkerboard | _Charuco | _CircleGrid | _BlackSquare, Field(discriminator="kind")]
-
-
-class _LaserFan(_Table):
-    lines: int = Field(ge=1, le=20, description="a whole number from 1 to 20")
-    angle_deg: float | None = Field(
-        None, gt=0, le=45, allow_inf_nan=False, description="an angle between neighbouring lines above 0 and at most 45"
-    )
-
-    @model_validator(mode="after")
-    def _angle_of_a_pencil(self) -> _LaserFan:
-        if self.lines > 1 and self.angle_deg is None:
-            raise Clash("angle_deg", "is missing; a fan of several lines needs the angle between neighbouring lines")
-        return self
-
-
-class _Gauge(_Table):
-    nominal_mm: _Length | None = Field(None, description=_A_LENGTH)
-    tolerance_mm: _Length | None = Field(None, description=_A_LENGTH)
-    upper_polygon_px: _Polygon | None = Field(None, description=_A_POLYGON)
-    lower_polygon_px: _Polygon | None = Field(None, description=_A_POLYGON)
-
-    @model_validator(mode="after")
-    def _pairs(self) -> _Gauge:
-        for one, other in (("nominal_mm", "tolerance_mm"), ("upper_polygon_px", "lower_polygon_px")):
-            missing = [name for name in (one, other) if getattr(self, name) is None]
-            if len(missing) == 1:
-                raise Clash(missing[0], f"is missing; {one} and {other} go together, give both or neither")
-        return self
-
-
-class _RigFile(_Table):
-    camera_target: _CameraTarget = Field(description="a table [camera_target] with kind and sizes")
-    plane_target: _PlaneTarget = Field(description="a table [plane_target] with kind and sizes")
-    laser_fan: _LaserFan = Field(description="a table [laser_fan] with lines and angle_deg")
-    gauge: _Gauge | None = Field(None, description="a table [gauge]")
-    channel: Literal["red", "green", "blue"] | None = Field(None, description='"red", "green" or "blue"')
+from core.model.arrays import Array, frozen_array, set_field
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -129,8 +30,27 @@ class GaugeSpec:
     upper_polygon_px: Array | None = None
     lower_polygon_px: Array | None = None
 
+    def __post_init__(self) -> None:
+        for name in ("upper_polygon_px", "lower_polygon_px"):
+            polygon = getattr(self, name)
+            if polygon is not None:
+                set_field(self, name, frozen_array(polygon, (None, 2), name))
 
-@dataclass(frozen=True, eq=False, slots=True)
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, GaugeSpec):
+            return NotImplemented
+        return self._values() == other._values()
+
+    def __hash__(self) -> int:
+        return hash(self._values())
+
+    def _values(self) -> tuple[object, ...]:
+        polygons = (self.upper_polygon_px, self.lower_polygon_px)
+        corners = [None if polygon is None else tuple(map(tuple, polygon.tolist())) for polygon in polygons]
+        return self.nominal_mm, self.tolerance_mm, *corners
+
+
+@dataclass(frozen=True, slots=True)
 class Rig:
     """What rig.toml says. `angle` between neighbouring lines is in rad (0 with one line)."""
 
@@ -140,6 +60,11 @@ class Rig:
     angle: float
     gauge: GaugeSpec | None = None
     channel: Channel | None = None
+
+
+def default_rig() -> Rig:
+    """The rig of the paper: its checkerboard, its black square, three laser lines 5° apart; nothing to be measured."""
+    return Rig(Checkerboard(17, 12, 10.0), BlackSquare(60.0), lines=3, angle=math.radians(5.0))
 
 
 def read_rig(path: Path) -> Rig:
@@ -164,28 +89,108 @@ def read_rig(path: Path) -> Rig:
     except tomllib.TOMLDecodeError as error:
         raise InputError(f"this is no valid TOML: {error}", where=path) from error
     try:
-        rig = _RigFile.model_validate(tables)
+        rig = RigTables.model_validate(tables)
     except ValidationError as error:
-        raise complaint(path, error, _RigFile) from error
-    gauge = rig.gauge
+        raise complaint(path, error, RigTables) from error
+    return rig_of(rig, path)
+
+
+def rig_of(tables: RigTables, path: Path, within: str = "") -> Rig:
+    """The rig that checked `tables` describe; `path`, and the field `within` it, are for complaints."""
+    angle = math.radians(tables.laser_fan.angle_deg or 0.0)
     return Rig(
-        _target(path, "camera_target", rig.camera_target),
-        _target(path, "plane_target", rig.plane_target),
-        rig.laser_fan.lines,
-        math.radians(rig.laser_fan.angle_deg or 0.0),
-        GaugeSpec(gauge.nominal_mm, gauge.tolerance_mm, _array(gauge.upper_polygon_px), _array(gauge.lower_polygon_px))
-        if gauge
-        else None,
-        rig.channel,
+        _target(path, f"{within}camera_target", tables.camera_target),
+        _target(path, f"{within}plane_target", tables.plane_target),
+        tables.laser_fan.lines,
+        angle,
+        _gauge(tables.gauge) if tables.gauge else None,
+        tables.channel,
     )
 
 
-def _target(path: Path, name: str, table: _PlaneTarget) -> Target:
+def rig_tables(rig: Rig) -> dict[str, Any]:
+    """The tables of `rig` as rig.toml has them, without those that are not there; `RigTables` checks them."""
+    tables = {
+        "channel": rig.channel,
+        "camera_target": _target_table(rig.camera_target),
+        "plane_target": _target_table(rig.plane_target),
+        "laser_fan": _present({"lines": rig.lines, "angle_deg": _in_degrees(rig.angle) if rig.angle else None}),
+        "gauge": None if rig.gauge is None else _gauge_table(rig.gauge),
+    }
+    return _present(tables)
+
+
+def rig_to_toml(rig: Rig) -> str:
+    """The text of a rig.toml that :func:`read_rig` reads as the same rig."""
+    tables = rig_tables(rig)
+    keys = [f"{key} = {json.dumps(value)}" for key, value in tables.items() if not isinstance(value, Mapping)]
+    lines = [*keys]
+    for name, table in tables.items():
+        if isinstance(table, Mapping):
+            lines += ["", f"[{name}]", *(f"{key} = {json.dumps(value)}" for key, value in table.items())]
+    return "\n".join(lines).lstrip() + "\n"
+
+
+def _target(path: Path, name: str, table: TargetTable) -> Target:
     try:
         return table.target()
     except ValueError as error:  # what only the target itself can judge, as a dictionary of markers
         raise InputError(f"{name}: {error}", where=path) from error
 
 
-def _array(polygon: list[list[float]] | None) -> Array | None:
-    return None if polygon is None else np.array(polygon, dtype=np.float64)
+def _target_table(target: Target) -> dict[str, Any]:
+    if isinstance(target, Checkerboard):
+        return {
+            "kind": "checkerboard",
+            "inner_corners": [target.columns, target.rows],
+            "square_mm": float(target.square_mm),
+        }
+    if isinstance(target, Charuco):
+        return {
+            "kind": "charuco",
+            "squares": [target.columns, target.rows],
+            "square_mm": float(target.square_mm),
+            "marker_mm": float(target.marker_mm),
+            "dictionary": target.dictionary_id,
+        }
+    if isinstance(target, CircleGrid):
+        return {
+            "kind": "circle_grid",
+            "circles": [target.columns, target.rows],
+            "pitch_mm": float(target.pitch_mm),
+            "asymmetric": target.asymmetric,
+        }
+    return {"kind": "black_square", "side_mm": float(target.side_mm)}
+
+
+def _gauge(table: GaugeTable) -> GaugeSpec:
+    def array(polygon: list[list[float]] | None) -> Array | None:
+        return None if polygon is None else np.array(polygon, dtype=np.float64)
+
+    upper, lower = array(table.upper_polygon_px), array(table.lower_polygon_px)
+    return GaugeSpec(table.nominal_mm, table.tolerance_mm, upper, lower)
+
+
+def _gauge_table(gauge: GaugeSpec) -> dict[str, Any]:
+    polygons = {"upper_polygon_px": gauge.upper_polygon_px, "lower_polygon_px": gauge.lower_polygon_px}
+    return _present(
+        {
+            "nominal_mm": gauge.nominal_mm,
+            "tolerance_mm": gauge.tolerance_mm,
+            **{name: None if polygon is None else polygon.tolist() for name, polygon in polygons.items()},
+        }
+    )
+
+
+def _present(table: Mapping[str, Any]) -> dict[str, Any]:
+    return {key: value for key, value in table.items() if value is not None}
+
+
+def _in_degrees(angle: float) -> float:
+    """The shortest number of degrees that is `angle` in rad to the last bit, if there is one."""
+    degrees = math.degrees(angle)
+    near = (degrees, math.nextafter(degrees, 0), math.nextafter(degrees, math.inf))
+    exact = [
+        value for value in (*(round(degrees, digits) for digits in range(16)), *near) if math.radians(value) == angle
+    ]
+    return exact[0] if exact else degrees
