@@ -21,7 +21,7 @@ from core.image.smoothing import smooth
 from core.image.stripe import StripeSettings
 from core.image.stripe_settings import choose_settings
 from core.image.stripes import extract_centrelines
-from core.progress import Progress, silent
+from core.progress import Progress, Told, silent, steps
 from core.scan.crossings import CrossingTable, CrossingWindow, all_crossings
 from core.scan.reference import Picture, check_reference
 from core.threads import ordered_map
@@ -101,15 +101,17 @@ def extract_features(
         If the reference shows no fan line, or no frame shows a sweep.
     """
     options = options or FeatureOptions()
+    progress = told = Told(progress)
     progress("frames", 0, total)
     seen = reference if isinstance(reference, ReferenceFeatures) else read_reference(reference, options)
     stream = iter(frames)
     ahead = _look_ahead(stream)
     progress("frames", 0, total)
-    sweep_stripe = options.sweep_stripe or choose_sweep_stripe(ahead, seen)
+    sweep_stripe = options.sweep_stripe or choose_sweep_stripe(ahead, seen, told.again)
     reader = FrameReader(seen, sweep_stripe, options.move_limit_px)
     found: list[FrameFeatures] = []
-    for features in ordered_map(reader, enumerate(chain(ahead, stream))):
+    numbered = enumerate(chain(ahead, stream))
+    for features in ordered_map(reader, numbered, idle=lambda: told.again("frames", 0, total)):
         progress("frames", len(found), total)
         found.append(features)
         if watch is not None:
@@ -117,7 +119,10 @@ def extract_features(
     progress("frames", len(found), total)
     _require_sweeps(found)
     crossings = all_crossings(seen.fan, [frame.centrelines for frame in found], options.window, progress)
-    found = [replace(frame, centrelines=_refined(frame.centrelines)) for frame in found]
+    found = [
+        replace(frame, centrelines=_refined(frame.centrelines))
+        for frame in steps(found, progress, "smoothing", len(found))
+    ]
     return ScanFeatures(
         seen.image_size, _refined(seen.fan), tuple(found), crossings, sweep_stripe, seen.stripe, _moved_notes(found)
     )
@@ -228,11 +233,13 @@ def _look_ahead(frames: Iterator[Frame]) -> list[Frame]:
     return ahead
 
 
-def choose_sweep_stripe(frames: Sequence[Frame], reference: ReferenceFeatures) -> StripeSettings | None:
+def choose_sweep_stripe(
+    frames: Sequence[Frame], reference: ReferenceFeatures, progress: Progress = silent
+) -> StripeSettings | None:
     """The median width and contrast of the sweep's stripe in `frames`; None when none of them shows a stripe."""
     base = reference.base
     seen = []
-    for _, picture in frames:
+    for _, picture in steps(frames, progress, "stripe", len(frames)):
         if not isinstance(picture, str) and picture.shape == base.shape:
             settings = choose_settings(picture.astype(np.float32) - base, reference.full_scale)
             if settings is not None:

@@ -13,6 +13,7 @@ from core.errors import InputError
 from core.image.centreline import Centreline
 from core.model import Camera, Fan
 from core.model.arrays import Array
+from core.progress import Progress, silent, steps
 from core.scan.crossings import CrossingTable
 from core.scan.fan_lines import UNASSIGNED, FanLines, possible_fan_lines, settle_by_sweeps
 from core.scan.geometry import CrossingRays, inverse_depth_gradient, noise_gains
@@ -32,26 +33,30 @@ class LocatedSweeps:
     notes: tuple[str, ...]
 
 
-def number_fan_lines(pieces: Sequence[Centreline], crossings: CrossingTable, camera: Camera, fan: Fan) -> FanLines:
+def number_fan_lines(
+    pieces: Sequence[Centreline], crossings: CrossingTable, camera: Camera, fan: Fan, progress: Progress = silent
+) -> FanLines:
     """The numbering of the fan's centrelines that the sweeps agree with best."""
-    return choose_numbering(possible_fan_lines(pieces, camera, fan), crossings, camera, fan)
+    return choose_numbering(possible_fan_lines(pieces, camera, fan), crossings, camera, fan, progress)
 
 
-def choose_numbering(numberings: Sequence[FanLines], crossings: CrossingTable, camera: Camera, fan: Fan) -> FanLines:
+def choose_numbering(
+    numberings: Sequence[FanLines], crossings: CrossingTable, camera: Camera, fan: Fan, progress: Progress = silent
+) -> FanLines:
     """That of the `numberings` that the sweeps agree with best, unsure stretches settled by them."""
     if len(numberings) == 1 and numberings[0].settled == len(numberings[0].line):
         return numberings[0]
-    settled = [_settled(lines, crossings, camera, fan) for lines in numberings]
-    return min(settled, key=lambda lines: _disagreement(lines, crossings, camera, fan))
+    settled = [_settled(lines, crossings, camera, fan, progress) for lines in numberings]
+    return min(settled, key=lambda lines: _disagreement(lines, crossings, camera, fan, progress))
 
 
-def _settled(lines: FanLines, all_of_them: CrossingTable, camera: Camera, fan: Fan) -> FanLines:
+def _settled(lines: FanLines, all_of_them: CrossingTable, camera: Camera, fan: Fan, progress: Progress) -> FanLines:
     """Decide unsure fan lines by sweeps that are solved without them."""
     unsure = [i for i, choices in enumerate(lines.choices) if len(choices) > 1]
     crossings, line = numbered(all_of_them, lines.sure)
     if not unsure or np.unique(line[crossings.with_fan]).size < 2:
         return lines
-    sweeps = locate_together(crossings, line, camera, fan)
+    sweeps = locate_together(crossings, line, camera, fan, progress)
     crossings, _ = numbered(all_of_them, lines)
     rows = crossings.select(
         crossings.with_fan & np.isin(crossings.a, sweeps.frames) & np.isin(crossings.piece_b, unsure)
@@ -61,13 +66,13 @@ def _settled(lines: FanLines, all_of_them: CrossingTable, camera: Camera, fan: F
     return settle_by_sweeps(lines, rows.piece_b, rays, np.einsum("mi,mi->m", rays, pis), fan)
 
 
-def _disagreement(lines: FanLines, all_of_them: CrossingTable, camera: Camera, fan: Fan) -> float:
+def _disagreement(lines: FanLines, all_of_them: CrossingTable, camera: Camera, fan: Fan, progress: Progress) -> float:
     """Share of the fan's crossings that the network leaves out or that have no number."""
     crossings, line = numbered(all_of_them, lines)
     fan_crossings = np.count_nonzero(all_of_them.with_fan)
     if not np.any(crossings.with_fan):
         return 1.0
-    sweeps = locate_together(crossings, line, camera, fan)
+    sweeps = locate_together(crossings, line, camera, fan, progress)
     agreeing = np.sum(sweeps.weights[crossings.with_fan])
     return 1.0 - float(agreeing) / max(int(fan_crossings), 1)
 
@@ -80,7 +85,9 @@ def numbered(crossings: CrossingTable, lines: FanLines) -> tuple[CrossingTable, 
     return crossings.select(keep), line[keep]
 
 
-def locate_together(crossings: CrossingTable, line: NDArray[np.int64], camera: Camera, fan: Fan) -> LocatedSweeps:
+def locate_together(
+    crossings: CrossingTable, line: NDArray[np.int64], camera: Camera, fan: Fan, progress: Progress = silent
+) -> LocatedSweeps:
     """All sweeps in one adjustment; `line` (M,) is the fan line of each crossing, −1 between sweeps.
 
     Raises
@@ -91,7 +98,7 @@ def locate_together(crossings: CrossingTable, line: NDArray[np.int64], camera: C
     frames = np.unique(np.concatenate([crossings.a, crossings.b[~crossings.with_fan]]))
     renumbered = crossings.renumber(np.searchsorted(frames, np.arange(frames[-1] + 1)))
     network = solve_network(
-        renumbered, CrossingRays.of(crossings, camera), _stretches(crossings, line), fan, len(frames)
+        renumbered, CrossingRays.of(crossings, camera), _stretches(crossings, line), fan, len(frames), progress
     )
     notes: tuple[str, ...] = ()
     if network.fan_silenced:
@@ -112,7 +119,9 @@ def _stretches(crossings: CrossingTable, line: NDArray[np.int64]) -> FanStretche
     return FanStretches(stretch, line)
 
 
-def locate_each(crossings: CrossingTable, line: NDArray[np.int64], camera: Camera, fan: Fan) -> LocatedSweeps:
+def locate_each(
+    crossings: CrossingTable, line: NDArray[np.int64], camera: Camera, fan: Fan, progress: Progress = silent
+) -> LocatedSweeps:
     """Every frame on its own, from its crossings with the fan: the paper's §4.
 
     Raises
@@ -123,7 +132,8 @@ def locate_each(crossings: CrossingTable, line: NDArray[np.int64], camera: Camer
     geometry = CrossingRays.of(crossings, camera)
     weights = np.zeros(len(crossings))
     frames, pis, covariances = [], [], []
-    for frame in np.unique(crossings.a):
+    sweeping = np.unique(crossings.a)
+    for frame in steps(sweeping, progress, "adjustment", len(sweeping)):
         rows = np.flatnonzero((crossings.a == frame) & crossings.with_fan)
         if len(rows) < 3:
             continue

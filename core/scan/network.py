@@ -28,6 +28,7 @@ from scipy.sparse import csr_array, diags_array
 
 from core.model import Fan
 from core.model.arrays import Array
+from core.progress import Progress, silent, steps
 from core.scan.crossings import CrossingTable, Index
 from core.scan.geometry import CrossingRays, floored, inverse_depth_gradient, noise_gains
 from core.scan.sweep_plane import PRIOR_SD
@@ -93,7 +94,12 @@ class Network:
 
 
 def solve_network(
-    crossings: CrossingTable, geometry: CrossingRays, stretches: FanStretches, fan: Fan, sweeps: int
+    crossings: CrossingTable,
+    geometry: CrossingRays,
+    stretches: FanStretches,
+    fan: Fan,
+    sweeps: int,
+    progress: Progress = silent,
 ) -> Network:
     """Adjust all `sweeps` planes to all `crossings`.
 
@@ -106,9 +112,9 @@ def solve_network(
         raise ValueError("no sweep crosses the fan")
     overlap = _overlap(crossings)
     problem = _Problem(crossings, geometry, stretches, fan, sweeps, overlap)
-    solution, silenced = _adjust(problem, redescend=True), False
+    solution, silenced = _adjust(problem, progress, redescend=True), False
     if _share_silenced(crossings, solution.weights) > MOST_FAN_REJECTED:
-        solution, silenced = _adjust(problem, redescend=False), True
+        solution, silenced = _adjust(problem, progress, redescend=False), True
     return Network(
         solution.pis, problem.covariance(solution), solution.residuals, solution.weights, solution.scale, silenced
     )
@@ -259,10 +265,10 @@ def _within(offsets: Array, variances: Array) -> Array:
     return np.clip(offsets, -limit, limit)
 
 
-def _adjust(problem: _Problem, *, redescend: bool) -> _Solution:
+def _adjust(problem: _Problem, progress: Progress, *, redescend: bool) -> _Solution:
     """Iterate: the rig's geometry first, then Huber's weights, and only then, if at all, rejection."""
     solution = problem.start()
-    for step in range(ROUNDS):
+    for step in steps(range(ROUNDS), progress, "adjustment", ROUNDS):
         size = np.abs(solution.residuals) / max(1.0, _robust_scale(solution.residuals))
         if redescend and step >= ROUNDS // 2:
             weights = np.clip(1 - (size / REJECT_AT) ** 2, 0, None) ** 2

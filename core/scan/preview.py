@@ -20,6 +20,7 @@ from core.scan.crossing_marks import CrossingMarks, mark_crossings
 from core.scan.crossings import CrossingWindow
 from core.scan.fan_lines import UNASSIGNED
 from core.scan.features import FrameFeatures, ReferenceFeatures
+from core.scan.frame_preview import FramePreview, empty_preview
 from core.scan.hints import HandState, HintLimits, hints_for
 from core.scan.movement import movement_px
 from core.scan.preview_cloud import PreviewCloud, StripeRays
@@ -35,62 +36,6 @@ class PreviewOptions:
     thin: int = 3
     window: CrossingWindow = field(default_factory=CrossingWindow)
     hints: HintLimits = field(default_factory=HintLimits)
-
-
-@dataclass(frozen=True, eq=False, slots=True)
-class FramePreview:
-    """What one frame shows.
-
-    Parameters
-    ----------
-    index, name
-        Of the frame.
-    centrelines
-        The stripe, thinned for display.
-    sigma_mm
-        For each of the centrelines, (N,) standard uncertainty of depth in mm; NaN where it is unknown.
-    crossing_uv
-        (M, 2) in pixels.
-    crossing_status
-        (M,) 0 good, 1 weak, 2 left out.
-    crossing_reason
-        One sentence for each crossing.
-    crossing_with_fan
-        (M,) False for crossings with other sweeps.
-    condition
-        Of the crossings with the fan: ratio of singular values, infinite when they are collinear or too few.
-    speed_px
-        How far the stripe has moved since the frame before, in pixels; NaN if not known.
-    points, point_sigma, point_intensity
-        (P, 3) in mm in the camera frame, (P,) in mm, (P,) in grey levels: the points worth showing.
-    point_uv
-        (P, 2) where they are in the picture, in pixels.
-    hints
-        At most two short sentences for the hand.
-    reason
-        Why there are no points; empty if there are.
-    renewed
-        Not None: all points so far, this frame's and the fan's own included, located anew; they replace all that was
-        given before.
-    """
-
-    index: int
-    name: str
-    centrelines: tuple[Centreline, ...]
-    sigma_mm: tuple[Array, ...]
-    crossing_uv: Array
-    crossing_status: NDArray[np.int8]
-    crossing_reason: tuple[str, ...]
-    crossing_with_fan: NDArray[np.bool_]
-    condition: float
-    speed_px: float
-    points: Array
-    point_sigma: Array
-    point_intensity: Array
-    point_uv: Array
-    hints: tuple[str, ...]
-    reason: str
-    renewed: PreviewCloud | None = None
 
 
 class Preview:
@@ -134,7 +79,7 @@ class Preview:
         """What `features` show; frames in the order of time."""
         if not features.centrelines:
             self._before, self._speed_before = (), float("nan")
-            return _nothing(features)
+            return empty_preview(features.index, features.name, features.reason)
         sweep, renewed = self._tracker.add(features.index, features.centrelines)
         thin = tuple(piece.select(slice(None, None, self._options.thin)) for piece in features.centrelines)
         stripe = self._stripes[features.index] = StripeRays.of(features.index, thin, self._camera)
@@ -209,28 +154,6 @@ def _depth_limits(fan: Sequence[PreviewCloud]) -> tuple[float, float]:
     """Depths in mm not wildly away from where the fan sees the object: what is beyond is a reflection."""
     depth = PreviewCloud.joined(fan).points[:, 2]
     return (0.6 * float(depth.min()), 1.5 * float(depth.max())) if len(depth) else (0.0, np.inf)
-
-
-def _nothing(features: FrameFeatures) -> FramePreview:
-    none, empty = np.zeros(0), np.zeros((0, 2))
-    return FramePreview(
-        features.index,
-        features.name,
-        (),
-        (),
-        empty,
-        np.zeros(0, np.int8),
-        (),
-        np.zeros(0, np.bool_),
-        float("inf"),
-        float("nan"),
-        np.zeros((0, 3)),
-        none,
-        none,
-        empty,
-        (),
-        features.reason,
-    )
 
 
 def _why_no_points(marks: CrossingMarks, *, located: bool) -> str:

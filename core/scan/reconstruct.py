@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from core.errors import InputError
 from core.model import Camera, Fan
-from core.progress import Progress, silent
+from core.progress import Progress, Told, silent
 from core.scan.cloud import FAN, Cloud
 from core.scan.crossings import CrossingTable
 from core.scan.fan_lines import UNASSIGNED, FanLines
@@ -54,9 +54,10 @@ def reconstruct(
         If no sweep crosses the fan, or no point is left.
     """
     options = options or ReconstructOptions()
+    progress = told = Told(progress)
     progress("network", 0, 3)
     solve = locate_together if options.method == "network" else locate_each
-    lines = fan_lines or number_fan_lines(features.fan, features.crossings, camera, fan)
+    lines = fan_lines or number_fan_lines(features.fan, features.crossings, camera, fan, told.again)
     crossings, line = numbered(features.crossings, lines)
     if not np.any(crossings.with_fan):
         raise InputError(
@@ -64,7 +65,7 @@ def reconstruct(
             where="scan",
             todo="sweep the single line across the fan's lines, and check that the fan was on",
         )
-    sweeps = solve(crossings, line, camera, fan)
+    sweeps = solve(crossings, line, camera, fan, told.again)
     progress("network", 1, 3)
     clouds = _fan_clouds(features, lines, camera, fan) + _sweep_clouds(features, sweeps, camera)
     cloud = _cut(join(clouds), options.sigma_cut_mm)

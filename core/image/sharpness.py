@@ -1,0 +1,66 @@
+"""How sharp a picture is where it matters: at the marks of a target."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+from scipy.spatial import cKDTree
+
+from core.image.targets.picture import Picture
+from core.model.arrays import Array
+
+SMOOTHING_PX = 1.0
+"""σ of the Gaussian that keeps noise from passing for a steep edge; taken off the result."""
+
+_CENTRAL_DIFFERENCE = 4 / 12
+"""Variance in px² of the central difference's own footprint, two pixels wide."""
+
+_MOST_MARKS = 40
+_SMALLEST_REACH, _LARGEST_REACH = 4, 32
+
+
+def edge_blur_px(picture: Picture, uv: Array) -> float:
+    """Gaussian σ in pixels of the edges around the marks at `uv` (N, 2); NaN if there is no edge.
+
+    A step of height c blurred by σ is at most c / (√(2π) σ) steep. Around each mark, as far as half-way to the next,
+    c is the range of grey levels and the steepness the largest gradient: that of the steepest edge, and that of the
+    steepest one across it, for a movement smears only the edges it does not run along. The flatter of the two counts,
+    and the median over the marks.
+    """
+    reach = _reach(uv)
+    marks = np.rint(uv[:: max(1, len(uv) // _MOST_MARKS)]).astype(np.intp)
+    height, width = picture.shape
+    sigmas = []
+    for u, v in marks:
+        part = picture[max(v - reach, 0) : min(v + reach + 1, height), max(u - reach, 0) : min(u + reach + 1, width)]
+        if min(part.shape) < 2 * _SMALLEST_REACH:
+            continue
+        smooth = np.asarray(cv2.GaussianBlur(part.astype(np.float32), (0, 0), SMOOTHING_PX), dtype=np.float64)
+        low, high = np.quantile(smooth, [0.05, 0.95])
+        rise_v, rise_u = np.gradient(smooth)
+        steepness = _steepness_both_ways(rise_u.ravel(), rise_v.ravel())
+        if steepness > 0 and high > low:
+            sigmas.append((high - low) / (np.sqrt(2 * np.pi) * steepness))
+    if not sigmas:
+        return float("nan")
+    return float(np.sqrt(max(float(np.median(sigmas)) ** 2 - SMOOTHING_PX**2 - _CENTRAL_DIFFERENCE, 0.01)))
+
+
+def _steepness_both_ways(rise_u: Array, rise_v: Array) -> float:
+    """The largest gradient, or the largest among those more across than along it if that is smaller."""
+    size = np.hypot(rise_u, rise_v)
+    top = int(np.argmax(size))
+    along = rise_u * rise_u[top] + rise_v * rise_v[top]
+    across = np.abs(along) < np.sqrt(0.5) * size * size[top]
+    steepest = float(np.quantile(size, 0.995))
+    if np.count_nonzero(across) < len(size) // 50:
+        return steepest
+    return min(steepest, float(np.quantile(size[across], 0.99)))
+
+
+def _reach(uv: Array) -> int:
+    """How far around a mark to look: not as far as its neighbour."""
+    if len(uv) < 2:
+        return _LARGEST_REACH
+    distances = np.asarray(cKDTree(uv).query(uv, k=2)[0], dtype=np.float64)
+    return int(np.clip(0.45 * np.median(distances[:, 1]), _SMALLEST_REACH, _LARGEST_REACH))

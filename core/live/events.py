@@ -1,0 +1,305 @@
+"""What a window tells a live recording, and what it hears of it. All of it can be pickled."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.acquire.source import Lasers, SourceChoice, SourceSettings, Step
+from core.files.options import Options
+from core.files.rig import Rig
+from core.image.centreline import Centreline
+from core.model import Camera, Fan
+from core.model.arrays import Array
+from core.scan.frame_preview import FramePreview
+from core.scan.preview_cloud import PreviewCloud
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class LiveRequest:
+    """A live recording to be made.
+
+    Parameters
+    ----------
+    step
+        What is recorded.
+    source, settings
+        The source, and what it is told at first.
+    rig
+        Targets and lasers.
+    folder
+        Made for the pictures; must not hold anything yet.
+    camera, fan
+        The calibrations as far as they are known; a scan without both shows stripes, but no points.
+    options
+        How the scan will be measured.
+    display_px
+        Width of the pictures for display, at most.
+    auto
+        Take views and poses without being told.
+    pairs
+        Take each pose of the plane target with the fan on and off.
+    """
+
+    step: Step
+    source: SourceChoice
+    settings: SourceSettings
+    rig: Rig
+    folder: Path
+    camera: Camera | None = None
+    fan: Fan | None = None
+    options: Options = field(default_factory=Options)
+    display_px: int = 1280
+    auto: bool = True
+    pairs: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class Capture:
+    """Take this view or pose now, whatever is thought of it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Auto:
+    """Take views and poses without being told, or no longer."""
+
+    on: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Switch:
+    """Switch the lasers, if the source can."""
+
+    lasers: Lasers
+
+
+@dataclass(frozen=True, slots=True)
+class TakeReference:
+    """The hand-held laser is off, the fan on: take the reference. Said again while waiting: take it as it is."""
+
+
+@dataclass(frozen=True, slots=True)
+class Pause:
+    """Record nothing until Resume."""
+
+
+@dataclass(frozen=True, slots=True)
+class Resume:
+    """Record."""
+
+
+@dataclass(frozen=True, slots=True)
+class Stop:
+    """Finish: what has been recorded is complete."""
+
+
+@dataclass(frozen=True, slots=True)
+class Configure:
+    """Tell the source new settings."""
+
+    settings: SourceSettings
+
+
+@dataclass(frozen=True, slots=True)
+class Discard:
+    """Put the view or pose of this name aside, into the folder `discarded`."""
+
+    name: str
+
+
+Command = Capture | Auto | Switch | TakeReference | Pause | Resume | Stop | Configure | Discard
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class CameraDetail:
+    """What the live picture shows of the camera's target.
+
+    Parameters
+    ----------
+    index
+        The frame this is about; the picture it comes with may be a later one.
+    uv
+        (N, 2) corners in pixels of the full picture; None if the target is not seen.
+    sentence
+        Why the view is taken or not.
+    cells
+        (rows, columns) True where the views taken cover the picture.
+    missing
+        At most four sentences on what to record next.
+    views
+        How many views are taken.
+    auto
+        Whether views are taken without being told.
+    """
+
+    index: int
+    uv: Array | None
+    sentence: str
+    cells: NDArray[np.bool_]
+    missing: tuple[str, ...]
+    views: int
+    auto: bool
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class PlanesDetail:
+    """What the live picture shows of the plane target and the fan on it.
+
+    `stripes` are (N, 2) in pixels each, `line` the fan line (from 0) each of them is likely to be, −1 where that is not
+    clear. Else as CameraDetail; `poses` are taken.
+    """
+
+    index: int
+    uv: Array | None
+    stripes: tuple[Array, ...]
+    line: tuple[int, ...]
+    sentence: str
+    cells: NDArray[np.bool_]
+    missing: tuple[str, ...]
+    poses: int
+    auto: bool
+
+
+ScanStage = Literal["reference", "ready", "scanning", "paused"]
+"""Waiting for the reference; waiting for Resume; recording; not recording until Resume."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class ScanDetail:
+    """What the scan shows so far.
+
+    Parameters
+    ----------
+    index
+        The frame this is about, counted in recorded frames; −1 before there is one.
+    stage
+        What is going on.
+    preview
+        Of that frame; None without calibrations or before the scan.
+    stripe
+        The sweep's centrelines when there is no preview.
+    fan_lines
+        The fan's centrelines by line number, as far as settled; what is not settled is in none.
+    cells, lit
+        (rows, columns) True where there are points, and where any laser light was seen.
+    share
+        Covered share (0 … 1) of what was lit.
+    points
+        Points that are new since the last view, or, if `renewed`, all points so far: they replace those before. Only
+        these are complete; `preview.points` are of this frame alone, and frames between two views are not shown.
+    """
+
+    index: int
+    stage: ScanStage
+    preview: FramePreview | None
+    stripe: tuple[Centreline, ...]
+    fan_lines: tuple[tuple[Centreline, ...], ...]
+    cells: NDArray[np.bool_]
+    lit: NDArray[np.bool_]
+    share: float
+    points: PreviewCloud
+    renewed: bool
+
+
+Detail = CameraDetail | PlanesDetail | ScanDetail
+
+
+@dataclass(frozen=True, slots=True)
+class LiveStarted:
+    """The first picture is there: the source's name, and the full (width, height) of its pictures."""
+
+    name: str
+    image_size: tuple[int, int]
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class LiveView:
+    """A picture to show.
+
+    Parameters
+    ----------
+    picture
+        (h, w) uint8, reduced by the whole factor `scale`: a point uv of the full picture is at
+        (uv + 0.5) / scale − 0.5.
+    index
+        Number of the frame since the source was opened.
+    rate_hz
+        Frames per second as they come.
+    recorded
+        Pictures recorded so far: views, poses or frames of the scan.
+    dropped
+        Frames lost so far, by the source or because the disk is too slow.
+    detail
+        What was found in it, or in a frame a little before.
+    """
+
+    picture: NDArray[np.uint8]
+    scale: int
+    index: int
+    rate_hz: float
+    recorded: int
+    dropped: int
+    detail: Detail | None
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class LiveTaken:
+    """A view, a pose or the reference is on the disk: its name without ending, and a small (h, w) picture of it."""
+
+    name: str
+    thumbnail: NDArray[np.uint8]
+
+
+@dataclass(frozen=True, slots=True)
+class LiveAsk:
+    """A person must do something and then press a button of this name, which sends `answer`.
+
+    It stands until LiveAnswered, or until another one takes its place.
+    """
+
+    sentence: str
+    button: str
+    answer: Command
+
+
+@dataclass(frozen=True, slots=True)
+class LiveAnswered:
+    """What LiveAsk asked for is done."""
+
+
+@dataclass(frozen=True, slots=True)
+class LiveNotice:
+    """A sentence to show; nothing stops for it."""
+
+    sentence: str
+
+
+@dataclass(frozen=True, slots=True)
+class LiveUnplugged:
+    """The source is gone; it is looked for every second. What is recorded is kept."""
+
+    sentence: str
+
+
+@dataclass(frozen=True, slots=True)
+class LiveBack:
+    """The source is there again and the recording goes on."""
+
+
+@dataclass(frozen=True, slots=True)
+class LiveEnded:
+    """It is over: where the pictures are, how many, how many were lost; `error` is a sentence if it ended by itself."""
+
+    folder: Path
+    recorded: int
+    dropped: int
+    error: str = ""
+
+
+LiveEvent = (
+    LiveStarted | LiveView | LiveTaken | LiveAsk | LiveAnswered | LiveNotice | LiveUnplugged | LiveBack | LiveEnded
+)
