@@ -5,31 +5,45 @@ from __future__ import annotations
 import os
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor, wait
 from typing import TypeVar
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
 
+IDLE_EVERY_S = 0.2
+"""How often `idle` is called while a result is waited for."""
+
 
 def ordered_map(
-    function: Callable[[Item], Result], items: Iterable[Item], workers: int | None = None
+    function: Callable[[Item], Result],
+    items: Iterable[Item],
+    workers: int | None = None,
+    idle: Callable[[], object] | None = None,
 ) -> Iterator[Result]:
     """Apply `function` to `items` in threads, yielding results in the order of the items.
 
     At most two items per worker are read ahead, so memory does not grow with their number. Pictures are decoded and
     filtered outside Python's lock; that is what makes threads worth while. An exception is raised at its item's turn.
+    While a result is waited for, `idle` is called now and then, on the caller's thread; when it raises, what is under
+    way is left to end by itself.
     """
     workers = workers or min(4, os.cpu_count() or 1)
-    with ThreadPoolExecutor(workers) as pool:
-        waiting: deque[Future[Result]] = deque()
-        try:
-            for item in items:
-                waiting.append(pool.submit(function, item))
-                if len(waiting) > 2 * workers:
-                    yield waiting.popleft().result()
-            while waiting:
-                yield waiting.popleft().result()
-        finally:
-            for future in waiting:
-                future.cancel()
+    pool = ThreadPoolExecutor(workers)
+    waiting: deque[Future[Result]] = deque()
+    try:
+        for item in items:
+            waiting.append(pool.submit(function, item))
+            if len(waiting) > 2 * workers:
+                yield _result(waiting.popleft(), idle)
+        while waiting:
+            yield _result(waiting.popleft(), idle)
+        pool.shutdown()
+    finally:
+        pool.shutdown(wait=False, cancel_futures=True)
+
+
+def _result(future: Future[Result], idle: Callable[[], object] | None) -> Result:
+    while idle is not None and not wait([future], IDLE_EVERY_S).done:
+        idle()
+    return future.result()

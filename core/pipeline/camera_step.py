@@ -97,7 +97,7 @@ def see_views(found: RecordingSet, progress: Progress = silent) -> SeenViews:
     seen: list[SeenView] = []
     total = len(found.camera)
     progress("camera views", 0, total)
-    for one in ordered_map(look, found.stream(found.camera)):
+    for one in ordered_map(look, found.stream(found.camera), idle=lambda: progress("camera views", len(seen), total)):
         seen.append(one)
         progress("camera views", len(seen), total)
     return SeenViews(tuple(seen), found.folder)

@@ -21,7 +21,7 @@ from core.model import Camera, Fan
 from core.model.arrays import Array
 from core.pipeline.options import Options
 from core.pipeline.workspace import Calibration, Workspace, check_calibration
-from core.progress import Progress, silent
+from core.progress import Progress, Told, silent
 from core.scan.cloud import FAN, Cloud
 from core.scan.fan_lines import FanLines
 from core.scan.reconstruct import ReconstructOptions, reconstruct
@@ -65,6 +65,7 @@ def gauge_step(work: Workspace, progress: Progress = silent) -> GaugeResult:
                 f"{work.path('poses').name} is missing, so the fan was not calibrated anew with displaced cameras; "
                 "U is larger than it need be."
             )
+        work.clear(("gauge", "faces"))  # two files: better none than one of each measurement
         write_gauge(work.path("gauge"), gauge, calibration.id)
     return read_gauge(work.path("gauge"), cloud)
 
@@ -97,18 +98,19 @@ def _calibration_changes(
     """
     camera, fan = calibration.camera.camera, calibration.fan.fan
     refit = _refit_fan(work, calibration)
+    told = Told(progress)
     method = work.record().settings.get("scan", {}).get("method", Options().method)
     options = Options(method)
 
     def measure(displaced: Camera, given: Fan) -> float:
-        used = refit(displaced) if displaced is not camera and refit is not None else given
-        return fit.thickness_of(_measured_again(scan, cloud, displaced, used, options))
+        used = refit(displaced, told.again) if displaced is not camera and refit is not None else given
+        return fit.thickness_of(_measured_again(scan, cloud, displaced, used, options, told.again))
 
-    of_camera, of_fan = calibration_changes(measure, camera, calibration.camera.covariance, fan, progress=progress)
+    of_camera, of_fan = calibration_changes(measure, camera, calibration.camera.covariance, fan, progress=told)
     return of_camera if len(of_camera) else None, of_fan if len(of_fan) else None
 
 
-def _refit_fan(work: Workspace, calibration: Calibration) -> Callable[[Camera], Fan] | None:
+def _refit_fan(work: Workspace, calibration: Calibration) -> Callable[[Camera, Progress], Fan] | None:
     """How to calibrate the fan with another camera, if the poses' features are at hand."""
     poses = read_poses(work.path("poses"), fan_id(calibration.fan.fan))
     if not poses:
@@ -116,13 +118,18 @@ def _refit_fan(work: Workspace, calibration: Calibration) -> Callable[[Camera], 
     rig = work.found.rig
     used = {pose.name for pose in calibration.fan.poses if pose.used}
     options = same_model(FanOptions(rig.lines, rig.angle or None), calibration.fan)
-    return lambda camera: fit_fan([pose for pose in poses if pose.name in used], camera, options).fan
+    return lambda camera, progress: (
+        fit_fan([pose for pose in poses if pose.name in used], camera, options, progress).fan
+    )
 
 
-def _measured_again(scan: ScanFile, cloud: Cloud, camera: Camera, fan: Fan, options: Options) -> Array:
+def _measured_again(
+    scan: ScanFile, cloud: Cloud, camera: Camera, fan: Fan, options: Options, progress: Progress
+) -> Array:
     """The cloud's points (N, 3) with another camera and fan: its sweeps solved again, the same pixels triangulated."""
     solving = ReconstructOptions(method=options.method, sigma_cut_mm=_NO_CUT_MM)
-    again = reconstruct(scan.features, camera, fan, solving, fan_lines=FanLines.settled_as(scan.fan_line))
+    lines = FanLines.settled_as(scan.fan_line)
+    again = reconstruct(scan.features, camera, fan, solving, progress, fan_lines=lines)
     place = np.searchsorted(again.sweep_frames, scan.sweep_frames)
     swept = cloud.sweep >= 0
     pis = np.empty((len(cloud), 3))

@@ -71,7 +71,7 @@ def measure_poses(found: RecordingSet, camera: Camera, progress: Progress = sile
     features: list[PoseFeatures] = []
     total = len(found.planes)
     progress("plane poses", 0, total)
-    for pose in ordered_map(measure, found.planes):
+    for pose in ordered_map(measure, found.planes, idle=lambda: progress("plane poses", len(features), total)):
         features.append(pose)
         progress("plane poses", len(features), total)
     return tuple(features)
