@@ -101,8 +101,8 @@ def _least_median(xy: Array) -> tuple[Array, Array]:
 
 def _correlation(distance: Array) -> float:
     """Variance of means of 16 neighbours, over that of independent points; at least 1."""
-    blocks = len(distance) // 16
-    if blocks < 6:
+    blocks, variance = len(distance) // 16, float(np.mean(distance**2))
+    if blocks < 6 or variance == 0:  # a drawn picture, straight along the pixels, has no scatter at all
         return 1.0
     means = distance[: blocks * 16].reshape(blocks, 16).mean(axis=1)
-    return max(1.0, float(16 * (means**2).sum() / (blocks - 2) / np.mean(distance**2)))
+    return max(1.0, float(16 * (means**2).sum() / (blocks - 2) / variance))
