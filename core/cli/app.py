@@ -37,6 +37,13 @@ class Method(str, Enum):  # noqa: UP042  (Typer shows the values of a str Enum)
     three_crossings = "three-crossings"
 
 
+class Which(str, Enum):  # noqa: UP042
+    """One of a rig's two targets."""
+
+    camera = "camera"
+    plane = "plane"
+
+
 Set = Annotated[Path, typer.Argument(metavar="SET", help="The recording set: a folder with rig.toml and pictures.")]
 Out = Annotated[Path, typer.Option("--out", "-o", metavar="DIR", help="Folder of the results; made if need be.")]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object for machines instead of a table.")]
@@ -194,6 +201,45 @@ def report(folder: Set, out: Out, part: Part = "", json: Json = False) -> None:
     with bars() as progress:
         shown = measuring.run_report(folder, out, part, progress)
     shown.show(as_json=json)
+
+
+@app.command()
+def target(
+    out: Annotated[Path, typer.Option("--out", "-o", metavar="FILE", help="The PDF to write.")],
+    kind: Annotated[
+        str, typer.Argument(metavar="KIND", help="checkerboard, charuco, circle_grid or black_square.")
+    ] = "",
+    columns: Annotated[
+        int | None, typer.Option(help="Inner corners (checkerboard), squares (charuco) or circles in a row.")
+    ] = None,
+    rows: Annotated[int | None, typer.Option(help="The same in a column.")] = None,
+    size_mm: Annotated[
+        float | None, typer.Option("--size-mm", metavar="MM", help="Side of a square, or pitch of the circles.")
+    ] = None,
+    marker_mm: Annotated[
+        float | None, typer.Option("--marker-mm", metavar="MM", help="Side of a ChArUco marker; else 3/4 of a square.")
+    ] = None,
+    dictionary: Annotated[str, typer.Option(metavar="NAME", help="OpenCV's name of the markers.")] = "DICT_4X4_100",
+    asymmetric: Annotated[bool, typer.Option("--asymmetric", help="Every second row of circles moved.")] = False,
+    paper: Annotated[str, typer.Option(help="A4, A3, A2, Letter or Tabloid.")] = "A4",
+    title: Annotated[str, typer.Option(metavar="NAME", help="A name of yours to print with it.")] = "",
+    rig: Annotated[
+        Path | None, typer.Option("--rig", metavar="FILE", help="Take the target from this rig.toml instead.")
+    ] = None,
+    which: Annotated[Which, typer.Option(help="Which of rig.toml's two targets.")] = Which.camera,
+    json: Json = False,
+) -> None:
+    """Write a calibration target as a PDF to scale, to be printed at 100 %."""
+    from core.cli import target_sheets
+
+    target_sheets.chosen(kind, rig)
+    printed = (
+        target_sheets.from_rig(rig, which.value)
+        if rig
+        else target_sheets.described(kind, columns, rows, size_mm, marker_mm, dictionary, asymmetric=asymmetric)
+    )
+    target_sheets.write_sheet(printed, paper, title, out)
+    target_sheets.show(printed, paper, out, as_json=json)
 
 
 @app.command()
