@@ -1,4 +1,4 @@
-"""A recording set: the folder of pictures that one measurement is made from.
+"""A recording set: the pictures that one measurement is made from.
 
 The layout is fixed, so that any program can write one::
 
@@ -7,45 +7,57 @@ The layout is fixed, so that any program can write one::
     SET/planes/NAME.png     target with the fan on it; NAME_off.png = same pose, laser off (optional)
     SET/scan/reference.png  fan only (optional)
     SET/scan/*              frames, in the order of their names
+
+A project measures from three folders that may lie anywhere; they are gathered into the same set, with the same names.
 """
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
-from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from PIL import Image
-
 from core.acquire.folder import read_ahead
 from core.errors import InputError
-from core.files.pictures import Picture, decode_picture, is_picture, read_bytes
-from core.files.rig import Rig, read_rig
+from core.files.pictures import Picture, decode_picture, read_bytes
+from core.files.rig import Rig, read_rig, rig_to_toml
+from core.files.set_listing import PlanePair, check_sizes, pictures_in, plane_pairs, scan_frames
 
-_OFF = "_off"
-_REFERENCE = "reference"
+__all__ = [
+    "PARTS",
+    "PlanePair",
+    "RecordingSet",
+    "gather_set",
+    "open_set",
+    "require_camera",
+    "require_planes",
+    "require_scan",
+]
 
-
-@dataclass(frozen=True, eq=False, slots=True)
-class PlanePair:
-    """One pose of the plane target: the picture with the fan on, and the one with it off, if there is one."""
-
-    name: str
-    on: Path
-    off: Path | None
+PARTS = ("camera", "planes", "scan")
+"""The parts of a set, each a folder of pictures."""
+RIG = "rig.toml"
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class RecordingSet:
     """The files of one recording set, in the order of their names, and the readers for them.
 
-    `hashes` fills up with the SHA-256 of every file as it is read, by its name within the set.
+    Parameters
+    ----------
+    name
+        What the set is called; its part is called so, too, if nobody says otherwise.
+    folders
+        By part: the folder it lies in, whatever that is called. A part that is not there may have none.
+    hashes
+        Fills up with the SHA-256 of every file as it is read, by its name within the set.
     """
 
-    folder: Path
+    name: str
     rig: Rig
+    folders: Mapping[str, Path]
     camera: tuple[Path, ...]
     planes: tuple[PlanePair, ...]
     reference: Path | None
@@ -53,8 +65,33 @@ class RecordingSet:
     hashes: dict[str, str] = field(default_factory=dict)
 
     def name_of(self, path: Path) -> str:
-        """The name of a file within the set, with forward slashes on every system."""
-        return path.relative_to(self.folder).as_posix()
+        """The name of a picture within the set, as "camera/view00.png", wherever it lies."""
+        for part, folder in self.folders.items():
+            if path.parent == folder:
+                return f"{part}/{path.name}"
+        raise ValueError(f"{path} is no picture of {self.name}")
+
+    def path_of(self, name: str) -> Path:
+        """Where the picture of this name lies.
+
+        Raises
+        ------
+        InputError
+            If the part it names has no folder.
+        """
+        part, _, file = name.partition("/")
+        if part not in self.folders or not file:
+            raise InputError("there is no such picture in the set", where=name)
+        return self.folders[part] / file
+
+    def where(self, part: str) -> Path | str:
+        """The folder of a part, or its name if it has none: what a complaint about it begins with."""
+        return self.folders.get(part, part)
+
+    def contains(self, folder: Path) -> bool:
+        """Whether `folder` holds a part of the set, so that nothing else should be written there."""
+        own = {path.resolve() for place in self.folders.values() for path in (place, place.parent)}
+        return folder.resolve() in own
 
     def read(self, path: Path) -> Picture:
         """Read one picture of the set as the rig wants it, and take its hash.
@@ -117,26 +154,37 @@ def open_set(folder: Path) -> RecordingSet:
             where=folder,
             todo="it needs rig.toml and pictures in camera, planes and scan",
         )
-    rig_file = folder / "rig.toml"
-    rig = read_rig(rig_file)
-    scan = _pictures(folder / "scan")
-    references = [path for path in scan if path.stem.lower() == _REFERENCE]
-    if len(references) > 1:
-        raise InputError(
-            f"there are {len(references)} references ({', '.join(path.name for path in references)})",
-            where=folder / "scan",
-            todo="keep one of them",
-        )
-    found = RecordingSet(
-        folder,
-        rig,
-        _pictures(folder / "camera"),
-        _pairs(folder / "planes"),
-        references[0] if references else None,
-        tuple(path for path in scan if path not in references),
-        {rig_file.name: hashlib.sha256(read_bytes(rig_file)).hexdigest()},
-    )
-    _check_sizes(found)
+    rig = read_rig(folder / RIG)
+    found = _listed(folder.resolve().name, rig, {part: folder / part for part in PARTS}, _hash_of(folder / RIG))
+    check_sizes([path for part in PARTS for path in _paths(found, part)])
+    return found
+
+
+def gather_set(rig: Rig, camera: Path | None, planes: Path | None, scan: Path | None, name: str = "") -> RecordingSet:
+    """One set from three folders of pictures that may lie anywhere; one that is not there leaves its part empty.
+
+    Names and hashes are those of a set in one folder. The rig's hash is that of the rig.toml beside one of the folders
+    if it says the same, else of the rig.toml that could be written. Without a `name`, the set is called like the folder
+    that holds the scan's.
+
+    Raises
+    ------
+    InputError
+        If one folder is to be two parts, or the pictures of one part are not all of one size.
+    """
+    given = dict(zip(PARTS, (camera, planes, scan), strict=True))
+    folders = {part: folder for part, folder in given.items() if folder is not None}
+    taken: dict[Path, str] = {}
+    for part, folder in folders.items():
+        other = taken.setdefault(folder.resolve(), part)
+        if other != part:
+            raise InputError(
+                f"is the folder of both {other} and {part}", where=folder, todo="keep their pictures in two folders"
+            )
+    places = [folders[part] for part in reversed(PARTS) if part in folders]
+    found = _listed(name or (places[0].resolve().parent.name if places else ""), rig, folders, _rig_hash(rig, places))
+    for part in PARTS:  # between the parts, each step compares with the camera's calibration
+        check_sizes(_paths(found, part))
     return found
 
 
@@ -144,7 +192,7 @@ def require_camera(found: RecordingSet) -> None:
     """InputError unless the set has views of the camera target."""
     if not found.camera:
         raise InputError(
-            "there are no pictures of the camera target", where=found.folder / "camera", todo="record ten or more"
+            "there are no pictures of the camera target", where=found.where("camera"), todo="record ten or more"
         )
 
 
@@ -153,7 +201,7 @@ def require_planes(found: RecordingSet) -> None:
     if not found.planes:
         raise InputError(
             "there are no pictures of the plane target with the fan on",
-            where=found.folder / "planes",
+            where=found.where("planes"),
             todo="record five or more poses",
         )
 
@@ -162,54 +210,31 @@ def require_scan(found: RecordingSet) -> None:
     """InputError unless the set has frames of a scan."""
     if not found.frames:
         raise InputError(
-            "there are no frames of a scan", where=found.folder / "scan", todo="record 30 or more sweep positions"
+            "there are no frames of a scan", where=found.where("scan"), todo="record 30 or more sweep positions"
         )
 
 
-def _pictures(folder: Path) -> tuple[Path, ...]:
-    if not folder.is_dir():
-        return ()
-    return tuple(sorted((path for path in folder.iterdir() if is_picture(path)), key=lambda path: path.name))
+def _listed(name: str, rig: Rig, folders: Mapping[str, Path], rig_hash: str) -> RecordingSet:
+    camera, planes = pictures_in(folders.get("camera")), plane_pairs(folders.get("planes"))
+    reference, frames = scan_frames(folders.get("scan"))
+    return RecordingSet(name, rig, folders, camera, planes, reference, frames, {RIG: rig_hash})
 
 
-def _pairs(folder: Path) -> tuple[PlanePair, ...]:
-    """Pictures with the fan on, each with its partner NAME_off; an off picture without partner is an error."""
-    pictures = {path.stem: path for path in _pictures(folder)}
-    pairs = [
-        PlanePair(stem, path, pictures.get(stem + _OFF)) for stem, path in pictures.items() if not stem.endswith(_OFF)
-    ]
-    partners = {pair.off for pair in pairs}
-    for stem, path in pictures.items():
-        if stem.endswith(_OFF) and path not in partners:
-            wanted = stem.removesuffix(_OFF) + path.suffix
-            raise InputError(
-                f"there is no picture {wanted} with the fan on beside it", where=path, todo="add it or remove this one"
-            )
-    return tuple(pairs)
-
-
-def _check_sizes(found: RecordingSet) -> None:
-    """InputError naming the odd ones out unless all pictures have one size. Reads only the files' heads."""
+def _paths(found: RecordingSet, part: str) -> list[Path]:
+    """All pictures of one part."""
     planes = [path for pair in found.planes for path in (pair.on, pair.off) if path is not None]
     scan = [*([found.reference] if found.reference else []), *found.frames]
-    sizes = {path: size for path in (*found.camera, *planes, *scan) if (size := _size(path)) is not None}
-    if len(set(sizes.values())) <= 1:
-        return
-    usual = Counter(sizes.values()).most_common(1)[0][0]
-    odd = [path for path, size in sizes.items() if size != usual]
-    width, height = sizes[odd[0]]
-    others = f" (and {len(odd) - 1} more like it)" if len(odd) > 1 else ""
-    raise InputError(
-        f"the picture has {width} × {height} pixels{others}, but the others of the set have {usual[0]} × {usual[1]}",
-        where=odd[0],
-        todo="record all pictures with one camera setting, or take this one out",
-    )
+    return {"camera": list(found.camera), "planes": planes, "scan": scan}[part]
 
 
-def _size(path: Path) -> tuple[int, int] | None:
-    """(width, height) from the head of a picture file, or None if it has none; reading it will tell why."""
-    try:
-        with Image.open(path) as picture:
-            return picture.size
-    except (OSError, SyntaxError, ValueError, Image.DecompressionBombError):
-        return None
+def _rig_hash(rig: Rig, places: Sequence[Path]) -> str:
+    """SHA-256 of the rig.toml beside one of `places` that says the same as `rig`, else of its own text."""
+    for path in dict.fromkeys(place.parent / RIG for place in places):
+        with contextlib.suppress(InputError):
+            if read_rig(path) == rig:
+                return _hash_of(path)
+    return hashlib.sha256(rig_to_toml(rig).encode()).hexdigest()
+
+
+def _hash_of(path: Path) -> str:
+    return hashlib.sha256(read_bytes(path)).hexdigest()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
 
@@ -36,10 +35,10 @@ class SeenView:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class SeenViews:
-    """What all pictures of the camera target show, in the order of the set; `folder` is the set's, for messages."""
+    """What all pictures of the camera target show, in the order of the set; `where` they lie, for messages."""
 
     views: tuple[SeenView, ...]
-    folder: Path
+    where: str
 
     @property
     def size(self) -> tuple[int, int] | None:
@@ -100,7 +99,7 @@ def see_views(found: RecordingSet, progress: Progress = silent) -> SeenViews:
     for one in ordered_map(look, found.stream(found.camera), idle=lambda: progress("camera views", len(seen), total)):
         seen.append(one)
         progress("camera views", len(seen), total)
-    return SeenViews(tuple(seen), found.folder)
+    return SeenViews(tuple(seen), str(found.where("camera")))
 
 
 def solve_camera(seen: SeenViews, options: Options | None = None, progress: Progress = silent) -> CameraCalibration:
@@ -131,7 +130,7 @@ def _too_few(seen: SeenViews) -> InputError:
     why = f" ({lost[0].name}: {lost[0].reason})" if lost else ""
     return InputError(
         f"the camera target was found in {hits} of {len(seen.views)} pictures{why}, but {FEWEST_VIEWS} are needed",
-        where=seen.folder / "camera",
+        where=seen.where,
         todo="check [camera_target] in rig.toml, or record more views" if lost else "record ten or more views",
     )
 

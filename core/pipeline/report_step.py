@@ -106,7 +106,7 @@ def _overlay(found: RecordingSet, scan: ScanFile, cloud: Cloud) -> Overlay | Non
         return None
     shown = scan.features.frames[scan.shown]
     try:
-        picture = found.read(found.folder / shown.name)
+        picture = found.read(found.path_of(shown.name))
     except InputError:
         return None  # calibrations and clouds can be reported without the pictures they were made from
     lines = range(max(scan.fan_line, default=-1) + 1)

@@ -153,7 +153,7 @@ def reference_picture(
     if len(pictures) < FEWEST_FOR_QUANTILE:
         raise InputError(
             f"there is no reference.png, and {len(pictures)} readable frames are too few to make one from",
-            where=found.folder / "scan",
+            where=found.where("scan"),
             todo="record reference.png with the fan alone, or more frames",
         )
     check_size(sample[0], pictures[0], camera)

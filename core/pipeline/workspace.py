@@ -70,7 +70,7 @@ class Workspace:
     @classmethod
     def open(cls, found: RecordingSet, out: Path, part: str = "") -> Workspace:
         """Make the folder if need be; InputError if nothing can be written there."""
-        if out.resolve() == found.folder.resolve():
+        if found.contains(out):
             raise InputError(
                 "the results cannot go into the recording set itself", where=out, todo="choose another --out"
             )
@@ -106,8 +106,7 @@ class Workspace:
         """What run.json says so far; a fresh record where there is none."""
         if self.path("run").exists():
             return read_run(self.path("run"))
-        name = self.found.folder.resolve().name
-        return RunRecord(name, self.part or name, _now())
+        return RunRecord(self.found.name, self.part or self.found.name, _now())
 
     @contextmanager
     def step(self, name: str, *, measures: bool = True) -> Iterator[StepLog]:

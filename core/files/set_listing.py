@@ -1,0 +1,90 @@
+"""What lies in the picture folders of a recording set, in the order of the names; nothing is decoded here."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from PIL import Image
+
+from core.errors import InputError
+from core.files.pictures import is_picture
+
+_OFF = "_off"
+_REFERENCE = "reference"
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class PlanePair:
+    """One pose of the plane target: the picture with the fan on, and the one with it off, if there is one."""
+
+    name: str
+    on: Path
+    off: Path | None
+
+
+def pictures_in(folder: Path | None) -> tuple[Path, ...]:
+    """The pictures in a folder; nothing if there is no such folder, InputError if it cannot be listed."""
+    if folder is None or not folder.is_dir():
+        return ()
+    try:
+        found = [path for path in folder.iterdir() if is_picture(path)]
+    except OSError as error:
+        raise InputError(f"cannot be listed ({error.strerror or error})", where=folder) from error
+    return tuple(sorted(found, key=lambda path: path.name))
+
+
+def plane_pairs(folder: Path | None) -> tuple[PlanePair, ...]:
+    """Pictures with the fan on, each with its partner NAME_off; an off picture without partner is an error."""
+    pictures = {path.stem: path for path in pictures_in(folder)}
+    pairs = [
+        PlanePair(stem, path, pictures.get(stem + _OFF)) for stem, path in pictures.items() if not stem.endswith(_OFF)
+    ]
+    partners = {pair.off for pair in pairs}
+    for stem, path in pictures.items():
+        if stem.endswith(_OFF) and path not in partners:
+            wanted = stem.removesuffix(_OFF) + path.suffix
+            raise InputError(
+                f"there is no picture {wanted} with the fan on beside it", where=path, todo="add it or remove this one"
+            )
+    return tuple(pairs)
+
+
+def scan_frames(folder: Path | None) -> tuple[Path | None, tuple[Path, ...]]:
+    """The reference, if there is one, and the frames; InputError if there are several references."""
+    scan = pictures_in(folder)
+    references = [path for path in scan if path.stem.lower() == _REFERENCE]
+    if len(references) > 1:
+        raise InputError(
+            f"there are {len(references)} references ({', '.join(path.name for path in references)})",
+            where=folder,
+            todo="keep one of them",
+        )
+    return references[0] if references else None, tuple(path for path in scan if path not in references)
+
+
+def check_sizes(paths: Sequence[Path]) -> None:
+    """InputError naming the odd ones out unless all pictures have one size. Reads only the files' heads."""
+    sizes = {path: size for path in paths if (size := _size(path)) is not None}
+    if len(set(sizes.values())) <= 1:
+        return
+    usual = Counter(sizes.values()).most_common(1)[0][0]
+    odd = [path for path, size in sizes.items() if size != usual]
+    width, height = sizes[odd[0]]
+    others = f" (and {len(odd) - 1} more like it)" if len(odd) > 1 else ""
+    raise InputError(
+        f"the picture has {width} × {height} pixels{others}, but the others of the set have {usual[0]} × {usual[1]}",
+        where=odd[0],
+        todo="record all pictures with one camera setting, or take this one out",
+    )
+
+
+def _size(path: Path) -> tuple[int, int] | None:
+    """(width, height) from the head of a picture file, or None if it has none; reading it will tell why."""
+    try:
+        with Image.open(path) as picture:
+            return picture.size
+    except (OSError, SyntaxError, ValueError, Image.DecompressionBombError):
+        return None
