@@ -1,0 +1,138 @@
+"""What every step's result is made of, as keys that can be compared: so a step knows that it is out of date, and why.
+
+Pure functions of what the user decided. A key is a short text; two keys are equal if nothing that matters is changed.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import asdict
+from datetime import datetime
+from typing import Any
+
+from core.files.project_data import Done, Project
+from core.files.rig import rig_tables
+
+STEPS = ("camera", "planes", "scan", "inspect", "report")
+"""The steps that have a result, in the order of work."""
+
+Keys = Mapping[str, str]
+"""Name of an input, in the user's words → its key."""
+
+
+def rests_on(step: str, project: Project, results: Mapping[str, Done]) -> dict[str, str]:
+    """The key of everything the result of `step` would be made of now, by its name.
+
+    `results` are the finished ones: what is inspected and reported is the scan that was measured, however the project
+    has changed since.
+
+    Raises
+    ------
+    ValueError
+        If there is no such step.
+    """
+    match step:
+        case "camera":
+            return _camera(project)
+        case "planes":
+            return _planes(project)
+        case "scan":
+            return _scan(project)
+        case "inspect":
+            return _inspect(project, results)
+        case "report":
+            return _report(project, results)
+    raise ValueError(f"{step} is none of {', '.join(STEPS)}")
+
+
+def changed(before: Keys, now: Keys) -> tuple[str, ...]:
+    """Names of the inputs that are not what they were, in the order of `now`."""
+    names = dict.fromkeys((*now, *before))
+    return tuple(name for name in names if before.get(name) != now.get(name))
+
+
+def finished(step: str, project: Project, results: Mapping[str, Done], at: datetime | None = None) -> Done:
+    """The record of `step` just finished with `project` as it is; `at` is now if not given."""
+    keys = rests_on(step, project, results)
+    return Done(_digest(keys), keys, at or datetime.now().astimezone())
+
+
+def _camera(project: Project) -> dict[str, str]:
+    camera = project.options.camera
+    return {
+        "pictures of the camera target": project.sources.camera,
+        "camera target": _digest(rig_tables(project.rig)["camera_target"]),
+        "colour channel": project.rig.channel or "",
+        "left-out views": _left_out(project, "camera"),
+        "camera settings": _digest([camera.skew, camera.k3, sorted(camera.fixed), camera.outliers]),
+        "accepted camera calibration": _whether(project.accepted.camera),
+    }
+
+
+def _planes(project: Project) -> dict[str, str]:
+    tables = rig_tables(project.rig)
+    return {
+        "camera calibration": project.accepted.camera,
+        "pictures of the plane target": project.sources.planes,
+        "plane target": _digest(tables["plane_target"]),
+        "laser": _digest(tables["laser_fan"]),
+        "colour channel": project.rig.channel or "",
+        "left-out poses": _left_out(project, "planes"),
+        "constraint of the fan": str(project.options.constrain_fan),
+        "accepted laser planes": _whether(project.accepted.fan),
+    }
+
+
+def _scan(project: Project) -> dict[str, str]:
+    options, stripe = project.options, project.options.stripe
+    settings = [options.method, options.sigma_cut_mm, [stripe.width_px, stripe.contrast] if stripe else None]
+    return {
+        "camera calibration": project.accepted.camera,
+        "laser planes": project.accepted.fan,
+        "recording": project.sources.scan,
+        "colour channel": project.rig.channel or "",
+        "left-out frames": _left_out(project, "scan"),
+        "scan settings": _digest(settings),
+    }
+
+
+def _inspect(project: Project, results: Mapping[str, Done]) -> dict[str, str]:
+    gauge = rig_tables(project.rig).get("gauge", {})
+    return {
+        "scan": _key_of("scan", results),
+        "thickness regions": _digest([gauge.get("upper_polygon_px"), gauge.get("lower_polygon_px")]),
+        "nominal thickness": _digest([gauge.get("nominal_mm"), gauge.get("tolerance_mm")]),
+    }
+
+
+def _report(project: Project, results: Mapping[str, Done]) -> dict[str, str]:
+    return {
+        "scan": _key_of("scan", results),
+        "thickness": _key_of("inspect", results),
+        "project fields": _digest(asdict(project.info)),
+        "repeats": _digest([[*asdict(repeat).values()] for repeat in project.repeats]),
+        "sections of the report": _digest([sorted(project.report.hidden), project.report.paper]),
+    }
+
+
+def _key_of(step: str, results: Mapping[str, Done]) -> str:
+    """The key of a finished result; nothing if there is none."""
+    return results[step].key if step in results else ""
+
+
+def _left_out(project: Project, part: str) -> str:
+    names = project.options.excluded_in(part)
+    return _digest(names) if names else ""
+
+
+def _whether(id_: str) -> str:
+    """Any calibration will do: which one it is, the next step minds."""
+    return "yes" if id_ else ""
+
+
+def _digest(value: Any) -> str:
+    """Twelve hex digits that name `value`."""
+    text = json.dumps(value, sort_keys=True, default=str)
+    return hashlib.sha256(text.encode()).hexdigest()[:12]

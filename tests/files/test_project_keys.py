@@ -1,0 +1,113 @@
+"""What makes a step out of date, and what does not."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from core.files.project_data import Accepted, Repeat, ReportChoices, Sources, new_project
+from core.files.project_keys import STEPS, changed, finished, rests_on
+from core.files.rig import GaugeSpec
+from core.image.targets import Checkerboard
+
+START = replace(
+    new_project("block"),
+    sources=Sources("recordings/camera-1", "recordings/planes-1", "recordings/scan-1"),
+    accepted=Accepted("cam1", "fan1"),
+)
+
+
+def measured(project=START):
+    results = {}
+    for step in STEPS:
+        results[step] = finished(step, project, results)
+    return results
+
+
+def out_of_date(project):
+    """Step → the inputs that changed since everything was measured with START."""
+    results = measured()
+    why = {step: changed(results[step].rests_on, rests_on(step, project, results)) for step in STEPS}
+    return {step: names for step, names in why.items() if names}
+
+
+def with_options(**changes):
+    return replace(START, options=replace(START.options, **changes))
+
+
+def test_nothing_is_out_of_date_when_all_is_measured():
+    assert out_of_date(START) == {}
+
+
+def test_another_operator_makes_only_the_report_out_of_date():
+    project = replace(START, info=replace(START.info, operator="Ada"))
+    assert out_of_date(project) == {"report": ("project fields",)}
+
+
+def test_another_camera_calibration_makes_planes_and_scan_out_of_date_and_says_so():
+    project = replace(START, accepted=Accepted("cam2", "fan1"))
+    assert out_of_date(project) == {"planes": ("camera calibration",), "scan": ("camera calibration",)}
+
+
+@pytest.mark.parametrize(
+    ("project", "expected"),
+    [
+        (with_options(excluded=frozenset({"camera/view03.png"})), {"camera": ("left-out views",)}),
+        (with_options(excluded=frozenset({"planes/pose02"})), {"planes": ("left-out poses",)}),
+        (with_options(excluded=frozenset({"scan/frame0007.png"})), {"scan": ("left-out frames",)}),
+        (with_options(sigma_cut_mm=0.1), {"scan": ("scan settings",)}),
+        (with_options(constrain_fan=False), {"planes": ("constraint of the fan",)}),
+        (with_options(camera=replace(START.options.camera, k3=True)), {"camera": ("camera settings",)}),
+        (replace(START, sources=replace(START.sources, scan="recordings/scan-2")), {"scan": ("recording",)}),
+        (replace(START, report=ReportChoices(frozenset({"inputs"}))), {"report": ("sections of the report",)}),
+        (replace(START, accepted=Accepted("cam1", "fan2")), {"scan": ("laser planes",)}),
+        (
+            replace(START, rig=replace(START.rig, gauge=GaugeSpec(50.0, 0.2))),
+            {"inspect": ("nominal thickness",)},
+        ),
+        (
+            replace(START, rig=replace(START.rig, gauge=GaugeSpec(None, None, np.eye(3, 2), np.eye(3, 2)))),
+            {"inspect": ("thickness regions",)},
+        ),
+        (
+            replace(START, rig=replace(START.rig, camera_target=Checkerboard(9, 6, 10.0))),
+            {"camera": ("camera target",)},
+        ),
+    ],
+)
+def test_an_edit_makes_out_of_date_what_it_changes_and_nothing_else(project, expected):
+    assert out_of_date(project) == expected
+
+
+def test_a_colour_channel_is_in_every_picture():
+    project = replace(START, rig=replace(START.rig, channel="green"))
+    assert set(out_of_date(project)) == {"camera", "planes", "scan"}
+
+
+def test_a_scan_measured_anew_with_other_settings_makes_thickness_and_report_out_of_date():
+    results = measured()
+    project = with_options(sigma_cut_mm=0.1)
+    results["scan"] = finished("scan", project, results)
+    assert changed(results["inspect"].rests_on, rests_on("inspect", project, results)) == ("scan",)
+    assert changed(results["report"].rests_on, rests_on("report", project, results)) == ("scan",)
+
+
+def test_repeats_are_part_of_the_report():
+    at = finished("scan", START, {}).at
+    project = replace(START, repeats=(Repeat("scan-1", 50.0, 0.01, 2.0, "cam1-fan1", at),))
+    assert out_of_date(project) == {"report": ("repeats",)}
+
+
+def test_an_edit_taken_back_leaves_everything_in_date():
+    there = with_options(excluded=frozenset({"scan/frame0007.png"}))
+    back = replace(there, options=replace(there.options, excluded=frozenset()))
+    assert out_of_date(back) == {}
+
+
+def test_a_calibration_given_up_is_missed_by_its_own_step():
+    assert "accepted camera calibration" in out_of_date(replace(START, accepted=Accepted("", "fan1")))["camera"]
+
+
+def test_an_unknown_step_is_refused():
+    with pytest.raises(ValueError, match="weigh"):
+        rests_on("weigh", START, {})
