@@ -74,11 +74,11 @@ class ScanStage:
         """Light (h, w) in grey levels that is the same in every frame: the room's and the fan's."""
         return self._still
 
-    def lit_by(self, sheet: Sheet, rng: np.random.Generator) -> Map:
+    def lit_by(self, sheet: Sheet, rng: np.random.Generator, *, fan: bool = True) -> Map:
         """Light (h, w) in grey levels with the hand-held laser at `sheet`; `rng` chooses its speckle."""
         light = blurred(laser_light(sheet, self.scene, self.maps), self.rig.blur_px)
         light = self._sparkling(light, rng)
-        light += self._still
+        light += self._still if fan else self._room_light
         return light
 
     def fan_light(self, aim: Array) -> Map:

@@ -20,7 +20,12 @@ from core.simulate.speckle import Speckle
 def room_light(pattern: Pattern, pose: Pose, rays: Map, grey: float) -> tuple[Map, Map]:
     """Points (h, w, 3) seen on a plate, and the room's light it sends back (h, w); white head-on gives `grey`."""
     points, albedo = draw_pattern(pattern, pose, rays)
-    return points, albedo * np.float32(grey * (0.35 + 0.65 * abs(pose.rotation[2, 2])))
+    return points, albedo * room_shade(pose, grey)
+
+
+def room_shade(pose: Pose, grey: float) -> np.float32:
+    """Grey level of a white plate in the room's light, `grey` if it faces the camera."""
+    return np.float32(grey * (0.35 + 0.65 * abs(pose.rotation[2, 2])))
 
 
 def camera_picture(

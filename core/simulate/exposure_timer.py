@@ -1,0 +1,77 @@
+"""When a simulated camera exposes, and which exposures it misses."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import floor
+
+RATE_HZ = 12.0
+
+
+class ExposureTimer:
+    """Counts the exposures of a camera that runs at a fixed rate.
+
+    With a rate of 0 it has a time of its own, that goes on by 1/12 s with each frame that is delivered.
+
+    Parameters
+    ----------
+    clock
+        Time in s that only runs forward.
+    """
+
+    def __init__(self, clock: Callable[[], float]) -> None:
+        self._clock = clock
+        self._origin = clock()
+        self._rate, self._paced = RATE_HZ, True
+        self._base_number, self._base_s = 0, 0.0
+        self._last = self._delivered = -1
+        self._forgiven = True
+
+    def start(self) -> None:
+        """Begin anew: the next exposure is number 0, at 0 s."""
+        self._origin = self._clock()
+        self._base_number, self._base_s = 0, 0.0
+        self._last = self._delivered = -1
+        self._forgiven = True
+
+    def set_rate(self, rate_hz: float) -> None:
+        """Go on at another rate; 0: in a time of its own."""
+        self.skip()
+        now = self.now()
+        self._base_number, self._base_s = self._last + 1, now
+        self._rate, self._paced = rate_hz or RATE_HZ, rate_hz > 0
+        self._origin = self._clock() - now
+
+    def now(self) -> float:
+        """The time in s since the start."""
+        return self._clock() - self._origin if self._paced else self.time_of(self._delivered + 1)
+
+    def time_of(self, number: int) -> float:
+        """When exposure `number` is made, in s since the start."""
+        return self._base_s + (number - self._base_number) / self._rate
+
+    def wait_s(self) -> float:
+        """How long it is to the next exposure; 0 or less if it is due."""
+        return self.time_of(self._last + 1) - self.now() if self._paced else 0.0
+
+    def expose(self) -> tuple[int, int]:
+        """The number of the exposure that is due, and how many were missed since the last one."""
+        number = self._last + 1
+        if self._paced:
+            due = self._base_number + floor((self.now() - self._base_s) * self._rate)
+            number = max(number, due)
+        lost = 0 if self._forgiven else number - self._last - 1
+        self._last, self._forgiven = number, False
+        return number, lost
+
+    def delivered(self) -> None:
+        """The last exposure has reached its reader."""
+        self._delivered = self._last
+
+    def skip(self) -> None:
+        """Forget the exposures up to now: the next one is not made before, and none of them counts as missed."""
+        self._forgiven = True
+        if self._paced:
+            self._last = max(self._last, self._base_number + floor((self.now() - self._base_s) * self._rate))
+        else:
+            self._last = self._delivered

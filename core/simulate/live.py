@@ -1,0 +1,181 @@
+"""The simulated rig as a live source: a camera in real time, without a camera.
+
+Pictures are made on a thread of its own, one ahead of whoever reads them. A frame belongs to the instant at which the
+camera would have exposed it; instants for which nobody was ready (the reader was busy, or the machine too slow) are
+lost and counted, as with a real camera.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+from core.acquire.source import Frame, Lasers, SourceSettings, Step
+from core.simulate.exposure_timer import ExposureTimer
+from core.simulate.live_scene import LiveScene, LiveTruth, Moment
+
+EXPOSURE_MS = 8.0
+"""Exposure time of the pictures as the twin makes them; another one makes them brighter or darker."""
+
+
+@dataclass(frozen=True, slots=True)
+class _State:
+    """What is before the camera and what lights it, and since when, in s."""
+
+    step: Step
+    lasers: Lasers
+    began_s: float = 0.0
+    swept_s: float = 0.0
+    lit_s: float = 0.0
+
+    def lit(self, lasers: Lasers, now_s: float) -> _State:
+        return replace(self, lasers=lasers, swept_s=self._sweep(now_s), lit_s=now_s)
+
+    def at(self, number: int, time_s: float) -> Moment:
+        return Moment(self.step, self.lasers, max(0.0, time_s - self.began_s), self._sweep(time_s), number)
+
+    def _sweep(self, time_s: float) -> float:
+        return self.swept_s + (max(0.0, time_s - self.lit_s) if self.lasers.hand else 0.0)
+
+
+class SimulatedSource:
+    """The simulated rig behind :class:`core.acquire.source.FrameSource`.
+
+    With a rate of 0 it has a time of its own: every frame is there as soon as it can be made, 1/12 s after the last
+    one, none is lost, and the same calls give the same pictures.
+
+    Parameters
+    ----------
+    scene
+        What its camera sees.
+    name
+        What a person calls it.
+    clock
+        Time in s that only runs forward.
+    """
+
+    def __init__(
+        self, scene: LiveScene, name: str = "Simulated rig", clock: Callable[[], float] = time.monotonic
+    ) -> None:
+        self.name = name
+        self._scene = scene
+        self._timer = ExposureTimer(clock)
+        self._state = _State("camera", Lasers(fan=False, hand=False))
+        self._exposure = self._gain = 1.0
+        self._changed = threading.Condition()
+        self._thread: threading.Thread | None = None
+        self._stopping = False
+        self._waiting: Frame | None = None
+        self._problem: Exception | None = None
+        self._delivered = self._lost = self._orders = 0
+
+    @property
+    def truth(self) -> LiveTruth:
+        """What really is before the camera."""
+        return self._scene.truth
+
+    def open(self) -> None:
+        """Begin to expose; opened anew, time and counting begin anew."""
+        self.close()
+        with self._changed:
+            self._stopping, self._problem = False, None
+            self._delivered = self._lost = 0
+            self._timer.start()
+            self._state = _State(self._state.step, self._state.lasers)
+        self._thread = threading.Thread(target=self._expose, name="simulated rig", daemon=True)
+        self._thread.start()
+
+    def configure(self, settings: SourceSettings) -> None:
+        """Set exposure (usual: 8 ms), gain (usual: 0 dB) and rate (usual: 12 Hz; 0: as fast as it is read)."""
+        with self._changed:
+            if settings.exposure_ms is not None:
+                self._exposure = settings.exposure_ms / EXPOSURE_MS
+            if settings.gain_db is not None:
+                self._gain = 10 ** (settings.gain_db / 20)
+            if settings.rate_hz is not None:
+                self._timer.set_rate(settings.rate_hz)
+            self._ordered()
+
+    def prepare(self, step: Step) -> None:
+        """Put the step's target, or the object, before the camera; its motion begins now."""
+        with self._changed:
+            now = self._timer.now()
+            self._state = _State(step, self._state.lasers, began_s=now, lit_s=now)
+            self._ordered()
+
+    def lasers(self, lasers: Lasers) -> bool:
+        """Switch them; the hand goes on where it stopped. Always True."""
+        with self._changed:
+            self._state = self._state.lit(lasers, self._timer.now())
+            self._ordered()
+        return True
+
+    def read(self, timeout_s: float) -> Frame | None:
+        """The next frame, exposed after the last order was given; None if there is none within the time."""
+        with self._changed:
+            self._changed.wait_for(lambda: self._waiting is not None or self._problem is not None, timeout_s)
+            if self._problem is not None:
+                raise self._problem
+            frame, self._waiting = self._waiting, None
+            if frame is not None:
+                self._delivered += 1
+                self._timer.delivered()
+                self._changed.notify_all()
+            return frame
+
+    def close(self) -> None:
+        """Stop exposing and end the thread."""
+        with self._changed:
+            self._stopping = True
+            self._changed.notify_all()
+        if self._thread is not None:
+            self._thread.join()
+            self._thread = None
+        self._waiting = None
+
+    def _ordered(self) -> None:
+        """Whatever was exposed before an order does not show it: forget it."""
+        self._orders += 1
+        self._waiting = None
+        self._timer.skip()
+        self._changed.notify_all()
+
+    def _expose(self) -> None:
+        try:
+            warm: set[Step] = set()
+            while (task := self._next_exposure()) is not None:
+                orders, moment, lost, exposure, gain = task
+                picture = self._scene.picture(moment, exposure, gain)
+                if moment.step not in warm:  # the first one takes long, and is no measure of the machine
+                    warm.add(moment.step)
+                    with self._changed:
+                        self._timer.skip()
+                    continue
+                with self._changed:
+                    if orders == self._orders:
+                        self._lost += lost
+                        when = self._timer.time_of(moment.number)
+                        self._waiting = Frame(picture, self._delivered + self._lost, when, self._lost)
+                        self._changed.notify_all()
+        except Exception as problem:  # noqa: BLE001 (told to the reader, whose thread it concerns)
+            with self._changed:
+                self._problem = problem
+                self._changed.notify_all()
+
+    def _next_exposure(self) -> tuple[int, Moment, int, float, float] | None:
+        """Wait for the next instant at which a frame is wanted; None when it is time to stop."""
+        with self._changed:
+            while not self._stopping:
+                if self._waiting is not None:
+                    self._changed.wait()
+                    continue
+                wait_s = self._timer.wait_s()
+                if wait_s > 0:
+                    self._changed.wait(wait_s)
+                    continue
+                number, lost = self._timer.expose()
+                moment = self._state.at(number, self._timer.time_of(number))
+                return self._orders, moment, lost, self._exposure, self._gain
+        return None

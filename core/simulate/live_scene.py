@@ -1,0 +1,193 @@
+"""What the simulated rig's camera sees at any time: a plate moved by hand, or a still object being swept.
+
+Everything is a function of time, and chance of the number of the frame, so the same times give the same pictures.
+One rig, one seed for all steps: calibrations made from these pictures are right for these scans.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from core.acquire.source import Lasers, Step
+from core.errors import InputError
+from core.image.targets import Target
+from core.model import Camera, Fan, Pose
+from core.model.arrays import Array
+from core.simulate.boards import printed
+from core.simulate.calibration import CAMERA_GREY, PLANE_GREY, PLATES
+from core.simulate.image import NoiseTile, Picture, Sensor, blurred, generator
+from core.simulate.motion import HandPath, PlateMotion
+from core.simulate.patterns import Pattern, draw_pattern
+from core.simulate.poses import camera_poses, plane_poses
+from core.simulate.rays import Map, ray_map
+from core.simulate.recording import scan_of, scenario_rig
+from core.simulate.rig import Rig
+from core.simulate.scan import ScanStage
+from core.simulate.scenario import Scenario
+from core.simulate.stage import aim_of, build_scene
+from core.simulate.sweep import sweep_range
+from core.simulate.targets import fan_centres, fan_light, room_shade, speckled
+
+CAMERA_RESTS, CAMERA_REST_S, CAMERA_MOVE_S = 16, 1.2, 1.3
+PLANE_RESTS, PLANE_REST_S, PLANE_MOVE_S = 10, 2.5, 1.3
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class LiveTruth:
+    """What really is before the camera; `thickness_mm` is None where the object has no two parallel faces."""
+
+    camera: Camera
+    fan: Fan
+    thickness_mm: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class Moment:
+    """When a picture is exposed.
+
+    Parameters
+    ----------
+    step, lasers
+        What is before the camera, and what lights it.
+    time_s
+        Since the step began.
+    sweep_s
+        How long the hand-held laser has been moved so far.
+    number
+        Of the exposure; its noise and speckle follow from it.
+    """
+
+    step: Step
+    lasers: Lasers
+    time_s: float
+    sweep_s: float
+    number: int
+
+
+class LiveScene:
+    """The pictures of the simulated rig.
+
+    Parameters
+    ----------
+    scenario
+        Object, picture size, noise and seed; its numbers of frames, views and poses are not used.
+    camera_target, plane_target
+        The plates shown; without them, those of the scenario.
+
+    Raises
+    ------
+    InputError
+        If the object cannot be made, or a plate is too large for the picture.
+    """
+
+    def __init__(
+        self, scenario: Scenario, camera_target: Target | None = None, plane_target: Target | None = None
+    ) -> None:
+        self._scenario = scenario
+        self.rig: Rig = scenario_rig(scenario)
+        self._scene, figures = build_scene(scenario)
+        thickness = figures.get("thickness_mm")
+        self.truth = LiveTruth(self.rig.camera, self.rig.fan, thickness if isinstance(thickness, float) else None)
+        self._plates = {
+            "camera": printed(camera_target or PLATES[scenario.camera_target][0]),
+            "planes": printed(plane_target or PLATES[scenario.plane_target][0]),
+        }
+        self._motions = {"camera": self._camera_motion(), "planes": self._plane_motion()}
+        reach = sweep_range(self._scene, aim_of(self._scene))
+        self._hand = HandPath(self.rig, reach, generator(scenario.seed, "live sweeps"))
+        self._rays: Map | None = None
+        self._stage: ScanStage | None = None
+        self._view: _PlateView | None = None
+        self._sensor = Sensor(self.rig.optics, scenario.bits, scenario.noise)
+
+    def warm_up(self, step: Step) -> None:
+        """Compute what all pictures of a step share, so that each comes quickly."""
+        width, height = self.rig.camera.image_size
+        if self._rays is None:
+            self._rays = ray_map(self.rig.camera)
+            if self._scenario.noise > 0:
+                tile = NoiseTile((height, width), generator(self._scenario.seed, "live noise"))
+                self._sensor = replace(self._sensor, tile=tile)
+        if step == "scan" and self._stage is None:
+            self._stage = scan_of(self._scenario, self.rig)[0]
+
+    def picture(self, moment: Moment, exposure: float = 1.0, gain: float = 1.0) -> Picture:
+        """The picture (height, width) exposed at `moment`; `exposure` and `gain` are factors on the usual ones."""
+        self.warm_up(moment.step)
+        rng = generator(self._scenario.seed, f"live {moment.step}", moment.number)
+        light = self._scan_light(moment, rng) if moment.step == "scan" else self._plate_light(moment, rng)
+        return replace(self._sensor, exposure=exposure, gain=gain).expose(light, rng)
+
+    def _scan_light(self, moment: Moment, rng: np.random.Generator) -> Map:
+        assert self._stage is not None
+        if moment.lasers.hand:
+            return self._stage.lit_by(self._hand.sheet(moment.sweep_s), rng, fan=moment.lasers.fan)
+        return self._stage.still if moment.lasers.fan else self._stage.room_light
+
+    def _plate_light(self, moment: Moment, rng: np.random.Generator) -> Map:
+        """Light of the plate; while it rests nothing changes but the noise, so it is kept."""
+        pose, rest = self._motions[moment.step].at(moment.time_s)
+        view = self._view
+        if view is None or rest is None or view.key != (moment.step, rest):
+            assert self._rays is not None
+            grey = CAMERA_GREY if moment.step == "camera" else PLANE_GREY
+            plate = self._plates[moment.step]
+            view = self._view = _PlateView((moment.step, rest), self.rig, self._rays, plate, pose, grey)
+        if not moment.lasers.fan:
+            return view.room
+        seed = self._scenario.seed
+        return view.with_fan(rng if rest is None else generator(seed, f"live {moment.step} speckle", rest))
+
+    def _camera_motion(self) -> PlateMotion:
+        outline = self._plates["camera"].outline
+        try:
+            poses = camera_poses(self.rig.camera, outline, CAMERA_RESTS, self._generator("live camera poses"))
+        except ValueError as error:
+            raise InputError("the camera target is too large for the simulated rig's picture") from error
+        return PlateMotion(poses, outline.mean(axis=0), CAMERA_REST_S, CAMERA_MOVE_S)
+
+    def _plane_motion(self) -> PlateMotion:
+        outline = self._plates["planes"].outline
+        poses = plane_poses(fan_centres(self.rig, PLANE_RESTS), outline, self._generator("live plane poses"))
+        return PlateMotion(poses, outline.mean(axis=0), PLANE_REST_S, PLANE_MOVE_S)
+
+    def _generator(self, kind: str) -> np.random.Generator:
+        return generator(self._scenario.seed, kind)
+
+
+class _PlateView:
+    """The light of a plate in one pose: the room's, and with the fan's when it is asked for.
+
+    Only the window of the picture in which the plate lies is drawn.
+    """
+
+    def __init__(
+        self, key: tuple[Step, int | None], rig: Rig, rays: Map, pattern: Pattern, pose: Pose, grey: float
+    ) -> None:
+        self.key, self._rig, self._pose = key, rig, pose
+        self._window = _window(rig, pose, pattern.outline)
+        self._points, self._albedo = draw_pattern(pattern, pose, np.ascontiguousarray(rays[self._window]))
+        shade = room_shade(pose, grey)
+        self.room = np.full(rays.shape[:2], pattern.background * shade, np.float32)
+        self.room[self._window] = blurred(self._albedo * shade, rig.blur_px)
+        self._both: Map | None = None
+
+    def with_fan(self, rng: np.random.Generator) -> Map:
+        """Room and fan (h, w); `rng` chooses the speckle, once."""
+        if self._both is None:
+            fan = fan_light(self._rig, self._points, self._albedo, self._pose)
+            self._both = self.room.copy()
+            self._both[self._window] += speckled(fan, self._rig, rng)
+        return self._both
+
+
+def _window(rig: Rig, pose: Pose, outline: Array) -> tuple[slice, slice]:
+    """Rows and columns round a plate, with room for the lens's blur and the bow of its edges; one pixel at least."""
+    margin = 8 + 24 * rig.scale
+    uv = rig.camera.project_pose(pose, outline)
+    width, height = rig.camera.image_size
+    (u0, v0), (u1, v1) = uv.min(axis=0) - margin, uv.max(axis=0) + margin
+    rows = slice(int(np.clip(v0, 0, height - 2)), int(np.clip(v1, 2, height)))
+    return rows, slice(int(np.clip(u0, 0, width - 2)), int(np.clip(u1, 2, width)))

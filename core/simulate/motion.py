@@ -1,0 +1,107 @@
+"""Hands in real time: a plate that is held still now and then, and a laser swept to and fro without end."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import PchipInterpolator
+from scipy.spatial.transform import Rotation, Slerp
+
+from core.model import Pose
+from core.model.arrays import Array
+from core.simulate.laser import Sheet
+from core.simulate.rig import Rig
+from core.simulate.sweep import HandCourse, SweepRange, hand_course
+
+PASS_S = 2.4
+"""Time of one pass of the laser over the object: about 70 mm a second."""
+
+TURN_S, CROSSING_S = 0.4, 1.3
+"""Time to turn back at the end of a pass, and to take the laser round to the other side of the camera."""
+
+PASSES = 32
+KNOTS = 12
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class PlateMotion:
+    """A plate that rests at each of its poses and is moved smoothly from one to the next, for ever.
+
+    Parameters
+    ----------
+    poses
+        `pose_cam_target` of the rests.
+    pivot
+        The plate's middle (3,) in its own frame, in mm: it moves straight while the plate turns about it.
+    rest_s, move_s
+        How long it rests, and how long a move takes.
+    """
+
+    poses: Sequence[Pose]
+    pivot: Array
+    rest_s: float
+    move_s: float
+
+    def at(self, time_s: float) -> tuple[Pose, int | None]:
+        """The pose at a time from the beginning of the first rest, and the number of the rest, or None in a move."""
+        number, within = divmod(max(time_s, 0.0), self.rest_s + self.move_s)
+        rest = int(number) % len(self.poses)
+        if within < self.rest_s:
+            return self.poses[rest], rest
+        share = (within - self.rest_s) / self.move_s
+        eased = share**3 * (10 - 15 * share + 6 * share**2)
+        return self._between(self.poses[rest], self.poses[(rest + 1) % len(self.poses)], eased), None
+
+    def _between(self, first: Pose, second: Pose, share: float) -> Pose:
+        turns = Rotation.from_matrix(np.stack([first.rotation, second.rotation]))
+        rotation = np.asarray(Slerp([0.0, 1.0], turns)(share).as_matrix())
+        ends = [pose.apply(self.pivot[None])[0] for pose in (first, second)]
+        return Pose(rotation, ends[0] + share * (ends[1] - ends[0]) - rotation @ self.pivot)
+
+
+class HandPath:
+    """The hand-held laser at any time: :func:`core.simulate.sweep.hand_course` joined up smoothly.
+
+    Between two passes from different sides the laser is taken round above the camera, so that at every moment its
+    light is a sheet the camera can measure with. After PASSES passes it begins again.
+
+    Parameters
+    ----------
+    rig, reach
+        Whose laser it is, and how far it goes.
+    rng
+        How this hand wanders and trembles.
+    """
+
+    def __init__(self, rig: Rig, reach: SweepRange, rng: np.random.Generator) -> None:
+        self._rig = rig
+        course = hand_course(reach, PASSES * KNOTS, rng)
+        times, self._period = _knot_times(course)
+        held = np.column_stack(
+            [
+                course.tilt - np.pi * (course.side < 0),  # the left side is half a turn from the right one
+                course.baseline,
+                course.sway,
+                course.nearness,
+                course.aims,
+            ]
+        )
+        self._held = PchipInterpolator(np.append(times, self._period), np.concatenate([held, held[:1]]))
+
+    def sheet(self, time_s: float) -> Sheet:
+        """The sheet of light at a time from the beginning of the first pass, in the camera frame."""
+        tilt, baseline, sway, nearness, *aim = np.asarray(self._held(time_s % self._period))[:, None]
+        course = HandCourse(np.zeros(1, np.intp), tilt, np.ones(1), baseline, sway, nearness, np.transpose(aim))
+        return course.sheets(self._rig)[0]
+
+
+def _knot_times(course: HandCourse) -> tuple[Array, float]:
+    """When (N,) the hand is at each of its instants, in s, and when it is back at the first."""
+    steps = np.full(len(course.number), PASS_S / (KNOTS - 1))
+    ends = np.append(np.diff(course.number) != 0, True)
+    crosses = course.side != np.roll(course.side, -1)
+    steps[ends] = np.where(crosses[ends], CROSSING_S, TURN_S)
+    when = np.cumsum(steps)
+    return np.concatenate([[0.0], when[:-1]]), float(when[-1])
