@@ -57,6 +57,11 @@ class LiveSession(QObject):
         if self._task is not None:
             self._task.send(command)
 
+    def abandon(self) -> None:
+        """Do not wait any longer for a source that hangs: end its process."""
+        if self._task is not None:
+            self._task.cancel()
+
     def shown(self) -> None:
         """The last view has been shown."""
         if self._task is not None:

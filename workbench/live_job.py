@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from core.pipeline.live import LiveEnded, LiveEvent, LiveRequest, LiveView, run_live
+
 from workbench.worker import Channel
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from PySide6.QtCore import QCoreApplication, QSize, Qt
+from PySide6.QtCore import QCoreApplication, QEvent, QSize, Qt
 from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent
 from PySide6.QtWidgets import (
     QDockWidget,
@@ -72,6 +72,7 @@ class MainWindow(QMainWindow):
         self.messages = self._messages_dock()
         self.menus = Menus(self)
         self._connect()
+        self._dress()
         if layout := bench.settings.layout("window"):
             self.restoreGeometry(layout)
         self._project_opened()
@@ -130,6 +131,11 @@ class MainWindow(QMainWindow):
         self.bench.close()
         event.accept()
 
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "menus"):
+            self._dress()
+
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:
         if _dropped(event):
             event.acceptProposedAction()
@@ -174,13 +180,16 @@ class MainWindow(QMainWindow):
         self.addDockWidget(Qt.DockWidgetArea.BottomDockWidgetArea, dock)
         dock.hide()
         self._messages_button = QPushButton(self.tr("Messages"))
-        self._messages_button.setIcon(icon("mdi6.message-text-outline"))
         self._messages_button.setFlat(True)
         self._messages_button.setIconSize(QSize(14, 14))
         self._messages_button.clicked.connect(lambda: dock.setVisible(not dock.isVisible()))
         self.statusBar().addWidget(self.task_bar, 1)
         self.statusBar().addPermanentWidget(self._messages_button)
         return dock
+
+    def _dress(self) -> None:
+        self._messages_button.setIcon(icon("mdi6.message-text-outline"))
+        self.back.setIcon(icon("mdi6.chevron-left"))
 
     def _connect(self) -> None:
         self.rail.chosen.connect(self.go_to)
@@ -271,8 +280,6 @@ class MainWindow(QMainWindow):
         if task is self._task:
             self._task = None
             self.task_bar.end()
-
-
 
 
 def _dropped(event: QDragEnterEvent | QDropEvent) -> Path | None:

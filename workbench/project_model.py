@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 from PySide6.QtCore import QObject, QTimer, Signal
@@ -30,6 +31,9 @@ class ProjectModel(QObject):
     """Project (what the user decided; undoable) and results (what was measured; facts, never undone)."""
 
     opened = Signal()
+    leaving = Signal()
+    """The project is about to be saved and closed: finish what must be in it."""
+
     changed = Signal(object, object)
     results_changed = Signal()
     modified = Signal(bool)
@@ -109,7 +113,7 @@ class ProjectModel(QObject):
         results = {name: result for name, result in self.results.items() if name != step}
         if done is not None:
             results[step] = done
-        self._file = ProjectFile(self.project, results)
+        self._file = replace(self._file, results=results)
         self._touched()
         self.results_changed.emit()
 
@@ -142,7 +146,7 @@ class ProjectModel(QObject):
 
     def _show(self, project: Project) -> None:
         before = self.project
-        self._file = ProjectFile(project, self.results)
+        self._file = replace(self._file, project=project)
         self._touched()
         self.changed.emit(before, project)
 

@@ -55,6 +55,14 @@ class AppSettings(QObject):
     def projects_folder(self, folder: Path) -> None:
         self._store.setValue("projects_folder", str(folder))
 
+    def text(self, name: str, default: str) -> str:
+        """Any other setting, by its name."""
+        return str(self._store.value(name, default))
+
+    def keep_text(self, name: str, value: str) -> None:
+        """Remember a setting by its name."""
+        self._store.setValue(name, value)
+
     def layout(self, name: str) -> QByteArray | None:
         """A window's or splitter's saved geometry."""
         value = self._store.value(f"layout/{name}")

@@ -26,8 +26,12 @@ class Shades:
     bad: str
 
 
-LIGHT = Shades("#f3f4f6", "#ffffff", "#1d2530", "#5c6773", "#d3d8de", "#1f6feb", "#ffffff", "#1a7f37", "#9a6700", "#cf222e")
-DARK = Shades("#1b1f24", "#23282f", "#e3e8ee", "#98a3af", "#39414b", "#5aa2ff", "#0d1117", "#4ac26b", "#e0a52c", "#ff7b72")
+LIGHT = Shades(
+    "#f3f4f6", "#ffffff", "#1d2530", "#5c6773", "#d3d8de", "#1f6feb", "#ffffff", "#1a7f37", "#9a6700", "#cf222e"
+)
+DARK = Shades(
+    "#1b1f24", "#23282f", "#e3e8ee", "#98a3af", "#39414b", "#5aa2ff", "#0d1117", "#4ac26b", "#e0a52c", "#ff7b72"
+)
 
 
 def shades() -> Shades:
@@ -98,11 +102,12 @@ QPushButton:hover {{ border-color: {s.accent}; }}
 QPushButton:pressed {{ background: {s.window}; }}
 QPushButton:focus {{ border: 1px solid {s.accent}; }}
 QPushButton:disabled {{ color: {s.muted}; background: {s.window}; }}
-QPushButton[primary="true"] {{ background: {s.accent}; color: {s.on_accent}; border-color: {s.accent}; font-weight: 600; }}
+QPushButton[primary="true"] {{ background: {s.accent}; color: {s.on_accent}; border-color: {s.accent};
+    font-weight: 600; }}
 QPushButton[primary="true"]:disabled {{ background: {s.window}; color: {s.muted}; border-color: {s.line}; }}
 QPushButton:checked {{ border-color: {s.accent}; color: {s.accent}; }}
-QLineEdit, QPlainTextEdit, QAbstractSpinBox, QComboBox {{ padding: 3px 5px; border: 1px solid {s.line}; border-radius: 4px;
-    background: {s.panel}; selection-background-color: {s.accent}; }}
+QLineEdit, QPlainTextEdit, QAbstractSpinBox, QComboBox {{ padding: 3px 5px; border: 1px solid {s.line};
+    border-radius: 4px; background: {s.panel}; selection-background-color: {s.accent}; }}
 QLineEdit:focus, QPlainTextEdit:focus, QAbstractSpinBox:focus, QComboBox:focus {{ border-color: {s.accent}; }}
 QProgressBar {{ border: 1px solid {s.line}; border-radius: 3px; text-align: center; height: 14px; }}
 QProgressBar::chunk {{ background: {s.accent}; border-radius: 2px; }}
@@ -110,5 +115,13 @@ QSplitter::handle {{ background: {s.line}; }}
 QSplitter::handle:horizontal {{ width: 1px; }}
 QSplitter::handle:vertical {{ height: 1px; }}
 QScrollArea {{ border: none; background: transparent; }}
+StepRail {{ background: {s.panel}; border: none; border-right: 1px solid {s.line}; }}
+StepRail QToolButton {{ border: 1px solid transparent; border-radius: 5px; padding: 6px 8px; text-align: left; }}
+StepRail QToolButton:hover {{ background: {s.window}; }}
+StepRail QToolButton:focus {{ border-color: {s.line}; }}
+StepRail QToolButton:checked {{ background: {s.window}; color: {s.accent}; font-weight: 600; }}
+Banner {{ background: {s.panel}; border: 1px solid {s.line}; border-left: 4px solid {s.accent}; }}
+Banner[level="warning"] {{ border-left-color: {s.warn}; }}
+Banner[level="error"] {{ border-left-color: {s.bad}; }}
 QTabWidget::pane {{ border: 1px solid {s.line}; border-radius: 4px; }}
 """

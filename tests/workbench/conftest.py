@@ -61,7 +61,9 @@ def nothing_left_behind(request: pytest.FixtureRequest) -> Iterator[None]:
         return
     app.processEvents()
     left = [
-        t for t in threading.enumerate() if t not in before and t.is_alive() and not t.name.startswith(("lane-", "pyvista"))
+        t
+        for t in threading.enumerate()
+        if t not in before and t.is_alive() and not t.name.startswith(("lane-", "pyvista"))
     ]
     for thread in left:
         thread.join(2)

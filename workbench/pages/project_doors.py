@@ -31,15 +31,15 @@ class ProjectDoors(QObject):
 
     def choose_project(self) -> None:
         """Ask for a project folder and open it."""
-        folder = ask.choose_folder(
-            self._window, self.tr("Open a project folder"), self.bench.settings.projects_folder
-        )
+        folder = ask.choose_folder(self._window, self.tr("Open a project folder"), self.bench.settings.projects_folder)
         if folder is not None:
             self.open_dropped(folder)
 
     def choose_set(self) -> None:
         """Ask for a recording set and make a project of it."""
-        folder = ask.choose_folder(self._window, self.tr("Choose a recording set (a folder with rig.toml)"), Path.home())
+        folder = ask.choose_folder(
+            self._window, self.tr("Choose a recording set (a folder with rig.toml)"), Path.home()
+        )
         if folder is not None:
             self.open_set(folder)
 
@@ -82,7 +82,10 @@ class ProjectDoors(QObject):
             self.open_project(folder)
             return
         self.bench.measure(
-            jobs.SAMPLE_PROJECT, folder, label=self.tr("Preparing the sample"), on_done=lambda made: self.open_project(made)
+            jobs.SAMPLE_PROJECT,
+            folder,
+            label=self.tr("Preparing the sample"),
+            on_done=lambda made: self.open_project(made),
         )
 
     def try_simulated(self) -> None:
@@ -121,6 +124,7 @@ class ProjectDoors(QObject):
             text = self.tr("{0} What is recorded is kept. Stop it and leave?").format(running)
             if ask.ask(self._window, self.tr("Leave the project"), text, [self.tr("Stop and leave"), self.tr("Stay")]):
                 return False
+        self.model.leaving.emit()
         if not self.model.is_modified or self.save():
             return True
         text = self.tr("The project cannot be saved. Leave and lose the changes?")
@@ -151,4 +155,3 @@ class ProjectDoors(QObject):
             return False
         self.bench.settings.remember(folder)
         return True
-

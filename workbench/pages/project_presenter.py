@@ -9,6 +9,7 @@ from PySide6.QtCore import QCoreApplication
 
 from core.files.project import ProjectInfo
 from workbench.pages.presenter import StepPresenter
+from workbench.step_state import ORDER, State, step_states
 
 
 class ProjectPresenter(StepPresenter):
@@ -31,6 +32,44 @@ class ProjectPresenter(StepPresenter):
 
     def blocker(self) -> str:
         return "" if self.project.info.name.strip() else self.tr("Give the project a name first.")
+
+    def progress_rows(self) -> list[tuple[str, str, str, str]]:
+        """One row a step: title, state in words, the sentence that explains it, level."""
+        words = {
+            State.TODO: (self.tr("to do"), ""),
+            State.READY: (self.tr("ready"), ""),
+            State.DONE: (self.tr("done"), "good"),
+            State.OUTDATED: (self.tr("out of date"), "warn"),
+        }
+        states = step_states(self.project, self.model.results)
+        titles = self._titles()
+        return [
+            (titles[step], words[states[step].state][0], states[step].sentence, words[states[step].state][1])
+            for step in ORDER
+            if step != "project"
+        ]
+
+    def next_words(self) -> str:
+        """What to do next, in one sentence."""
+        states = step_states(self.project, self.model.results)
+        for step in ORDER:
+            if states[step].state is not State.DONE:
+                return self.tr("Next: {0}. {1}").format(self._titles()[step], states[step].sentence)
+        return self.tr("All steps are done.")
+
+    def place(self) -> str:
+        """The project's folder."""
+        return str(self.model.folder or "")
+
+    def _titles(self) -> dict[str, str]:
+        return {
+            "project": self.tr("Project"),
+            "camera": self.tr("Camera"),
+            "planes": self.tr("Laser planes"),
+            "scan": self.tr("Scan"),
+            "inspect": self.tr("Inspect"),
+            "report": self.tr("Report"),
+        }
 
     def label(self, name: str) -> str:
         """What a field is called on screen."""

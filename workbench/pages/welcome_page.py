@@ -39,8 +39,10 @@ class WelcomePage(QWidget):
         self.sample = self._link(
             "mdi6.cube-scan",
             self.tr("Open sample"),
-            self.tr("A finished measurement of a 50 mm gauge block, to look around in. The first time it is rendered "
-                    "and measured, in about a minute."),
+            self.tr(
+                "A finished measurement of a 50 mm gauge block, to look around in. The first time it is rendered "
+                "and measured, in about a minute."
+            ),
             doors.open_sample,
         )
         self.simulated = self._link(
@@ -78,9 +80,11 @@ class WelcomePage(QWidget):
         self._none = QLabel(self.tr("Projects you open appear here."))
         self._none.setObjectName("muted")
         right = QVBoxLayout()
+        right.setAlignment(Qt.AlignmentFlag.AlignTop)
         right.addWidget(heading)
-        right.addWidget(self._none)
+        right.addWidget(self._none, 0, Qt.AlignmentFlag.AlignTop)
         right.addWidget(self.recent, 1)
+        right.addStretch(0)
         card = QFrame()
         card.setObjectName("card")
         card.setMaximumSize(1080, 620)

@@ -25,9 +25,7 @@ def ask(parent: QWidget | None, title: str, text: str, answers: Sequence[str]) -
     box = QMessageBox(QMessageBox.Icon.Question, title, text, QMessageBox.StandardButton.NoButton, parent)
     last = len(answers) - 1
     buttons = [
-        box.addButton(
-            answer, QMessageBox.ButtonRole.AcceptRole if place < last else QMessageBox.ButtonRole.RejectRole
-        )
+        box.addButton(answer, QMessageBox.ButtonRole.AcceptRole if place < last else QMessageBox.ButtonRole.RejectRole)
         for place, answer in enumerate(answers)
     ]
     box.setDefaultButton(buttons[0])

@@ -18,7 +18,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from workbench.theme import icon, shades
+from workbench.theme import icon
 
 SYMBOLS = {
     "info": ("mdi6.information-outline", "accent"),
@@ -112,6 +112,9 @@ class Banner(QFrame):
     def show_notice(self, level: str, text: str, details: str) -> None:
         """Show a message."""
         self._level, self._text, self._more = level, text, details
+        self.setProperty("level", level)
+        self.style().unpolish(self)
+        self.style().polish(self)
         self._label.setText(text)
         self._copy.setVisible(bool(details))
         self._dress()
@@ -129,6 +132,3 @@ class Banner(QFrame):
     def _dress(self) -> None:
         symbol, colour = SYMBOLS[self._level]
         self._symbol.setPixmap(icon(symbol, colour=colour).pixmap(QSize(18, 18)))
-        s = shades()
-        edge = getattr(s, colour)
-        self.setStyleSheet(f"Banner {{ background: {s.panel}; border: 1px solid {edge}; border-left: 4px solid {edge}; }}")

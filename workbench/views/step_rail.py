@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from PySide6.QtCore import QEvent, QSize, Qt, Signal
 from PySide6.QtWidgets import QButtonGroup, QFrame, QHBoxLayout, QLabel, QToolButton, QVBoxLayout, QWidget
 
-from workbench.theme import icon, shades
+from workbench.theme import icon
 
 BADGES = {
     "todo": ("mdi6.circle-outline", "line"),
@@ -80,16 +80,6 @@ class StepRail(QFrame):
             self._dress()
 
     def _dress(self) -> None:
-        s = shades()
-        self.setStyleSheet(
-            f"StepRail {{ background: {s.panel}; border: none; border-right: 1px solid {s.line}; }}"
-            f"StepRail QToolButton {{ border: none; border-radius: 5px; padding: 6px 8px; text-align: left;"
-            f" color: {s.text}; }}"
-            f"StepRail QToolButton:hover {{ background: {s.window}; }}"
-            f"StepRail QToolButton:focus {{ border: 1px solid {s.accent}; }}"
-            f"StepRail QToolButton:checked {{ background: {s.window}; color: {s.accent}; font-weight: 600; }}"
-            f"StepRail QToolButton:disabled {{ color: {s.muted}; }}"
-        )
         for name, button in self._buttons.items():
             button.setIcon(icon(self._icons[name]))
         self._show_badges()

@@ -1,0 +1,78 @@
+"""The project page: what is measured, by whom, for whom."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QScrollArea, QVBoxLayout, QWidget
+
+from workbench.pages.project_presenter import ProjectPresenter
+from workbench.pages.step_page import StepPage, heading, muted
+from workbench.views.forms import SettingsForm
+from workbench.views.value_rows import ValueRows
+
+
+class ProjectPage(StepPage):
+    """Two columns of fields, and at the side how far the whole work is."""
+
+    presenter: ProjectPresenter
+
+    def __init__(self, presenter: ProjectPresenter, parent: QWidget | None = None) -> None:
+        super().__init__(presenter, parent)
+        p = presenter
+        self.what, self.who = SettingsForm(), SettingsForm()
+        w, h = self.what, self.who
+        w.add_text("name", p.label("name"), self.tr("What you call this project; the window's title."))
+        w.add_text("part", p.label("part"), self.tr("What is measured, as on the drawing."))
+        w.add_text("serial", p.label("serial"), self.tr("Serial or inventory number of the part."))
+        for key, highest, words in (
+            ("air_celsius", 60.0, self.tr("Printed with the result; nothing is corrected to 20 °C.")),
+            ("part_celsius", 100.0, self.tr("A steel part grows by 11.5 µm per metre and kelvin.")),
+        ):
+            none = self.tr("not measured")
+            w.add_number(
+                key, p.label(key), "°C", words, minimum=-20, maximum=highest, decimals=1, step=0.5, none_text=none
+            )
+        h.add_text("operator", p.label("operator"), self.tr("Who measures."))
+        h.add_text("laboratory", p.label("laboratory"), self.tr("Who answers for the report: its heading."))
+        h.add_text("customer", p.label("customer"), self.tr("Whom the report is for."))
+        h.add_multiline("notes", p.label("notes"), self.tr("Printed in the report as remarks."))
+        for form in (self.what, self.who):
+            form.edited.connect(presenter.set_field)
+        self.centre.addWidget(self._columns())
+        self.rows, self.next_words = ValueRows(), muted()
+        self.add_panel(self.tr("How far the work is"), self.rows)
+        self.add_to_side(self.next_words)
+        self.place = muted()
+        self.place.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
+        self.add_panel(self.tr("Where it is kept"), self.place, collapsed=True)
+
+    def refresh(self) -> None:
+        values = self.presenter.values()
+        for form in (self.what, self.who):
+            form.set_values({key: value for key, value in values.items() if key in form.values()})
+        self.rows.set_rows(self.presenter.progress_rows())
+        self.next_words.setText(self.presenter.next_words())
+        self.place.setText(self.presenter.place())
+
+    def _columns(self) -> QWidget:
+        inside = QWidget()
+        row = QHBoxLayout(inside)
+        row.setContentsMargins(0, 0, 0, 0)
+        row.setSpacing(12)
+        for title, form in ((self.tr("Part"), self.what), (self.tr("People and remarks"), self.who)):
+            row.addWidget(_card(heading(title), form), 1, Qt.AlignmentFlag.AlignTop)
+        scroll = QScrollArea()
+        scroll.setWidget(inside)
+        scroll.setWidgetResizable(True)
+        scroll.setFrameShape(QFrame.Shape.NoFrame)
+        return scroll
+
+
+def _card(title: QLabel, form: QWidget) -> QFrame:
+    card = QFrame()
+    card.setObjectName("card")
+    column = QVBoxLayout(card)
+    column.setContentsMargins(16, 12, 16, 14)
+    column.addWidget(title)
+    column.addWidget(form)
+    return card
