@@ -7,6 +7,7 @@ import time
 import traceback
 from collections import deque
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from multiprocessing.connection import Connection
 from typing import Any
@@ -90,7 +91,8 @@ def serve(connection: Connection, cancel: Any, warm: tuple[Job, ...]) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the window decides
     try:
         for job in warm:
-            resolve(job)
+            with suppress(ImportError, AttributeError):  # told when the job is asked for
+                resolve(job)
         while True:
             kind, value = connection.recv()
             if kind == "run":

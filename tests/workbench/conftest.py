@@ -44,11 +44,6 @@ def bench(qapp: QApplication, lanes: dict[str, Lane], tmp_path: Path) -> Iterato
     for lane in lanes.values():
         if lane.busy:
             lane.close()
-        for signal in (lane.task_started, lane.task_ended):
-            try:
-                signal.disconnect()
-            except (RuntimeError, TypeError):
-                continue  # nothing was connected
 
 
 @pytest.fixture(autouse=True)
