@@ -1,0 +1,137 @@
+"""Where pictures come from: a recorded folder, chosen or dropped, or a live source."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from PySide6.QtCore import QEvent, Qt, Signal
+from PySide6.QtGui import QDragEnterEvent, QDropEvent
+from PySide6.QtWidgets import QButtonGroup, QHBoxLayout, QLabel, QPushButton, QStackedWidget, QVBoxLayout, QWidget
+
+from workbench.theme import icon
+from workbench.views import ask
+
+
+class SourceChooser(QWidget):
+    """A recorded folder or a live source; `live_panel` is a LivePanel. A folder may be dropped anywhere on it.
+
+    Also takes drops for another widget (the picture) by `accept_drops_on`.
+    """
+
+    folder_chosen = Signal(object)
+    """Path of the folder."""
+
+    mode_changed = Signal(str)
+    """"folder" or "live"."""
+
+    def __init__(self, live_panel: QWidget, *, what: str, parent: QWidget | None = None) -> None:
+        """`what`: what the folder holds, as "Folder with pictures of the target"."""
+        super().__init__(parent)
+        self._what, self._folder = what, Path.home()
+        self.recorded, self.live = QPushButton(self.tr("Recorded folder")), QPushButton(self.tr("Live source"))
+        self.recorded.setToolTip(self.tr("Measure pictures that are there already"))
+        self.live.setToolTip(self.tr("Take the pictures now, with a camera or the simulated rig"))
+        self._modes = QButtonGroup(self)
+        modes = QHBoxLayout()
+        modes.setContentsMargins(0, 0, 0, 0)
+        modes.setSpacing(0)
+        for place, button in enumerate((self.recorded, self.live)):
+            button.setCheckable(True)
+            self._modes.addButton(button, place)
+            modes.addWidget(button, 1)
+        self.path, self.detail, self.browse = QLabel(), QLabel(), QPushButton(self.tr("Choose folder …"))
+        self.browse.setToolTip(self.tr("Choose a folder of pictures, or drop one here"))
+        self._stack = QStackedWidget()
+        self._stack.addWidget(self._folder_part())
+        self._stack.addWidget(live_panel)
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.addLayout(modes)
+        column.addWidget(self._stack)
+        self._modes.idToggled.connect(self._toggled)
+        self.browse.clicked.connect(lambda: self.choose())
+        self.recorded.setChecked(True)
+        self.accept_drops_on(self)
+        self._dress()
+
+    @property
+    def mode(self) -> str:
+        """Which one is shown: "folder" or "live"."""
+        return "live" if self._stack.currentIndex() == 1 else "folder"
+
+    def set_mode(self, mode: str) -> None:
+        """Show the folder or the live source."""
+        self._modes.button(1 if mode == "live" else 0).setChecked(True)
+
+    def set_folder(self, folder: Path | None, detail: str = "") -> None:
+        """Show the folder in use and a sentence about it ("24 pictures")."""
+        if folder is not None:
+            self._folder = folder
+        self.path.setText(_breakable(str(folder)) if folder is not None else self.tr("No folder is chosen yet."))
+        self.path.setToolTip(str(folder) if folder is not None else "")
+        self.detail.setText(detail or ("" if folder is not None else self.tr("Choose a folder, or drop one here.")))
+
+    def choose(self) -> None:
+        """Ask for the folder."""
+        folder = ask.choose_folder(self, self._what, self._folder)
+        if folder is not None:
+            self.folder_chosen.emit(folder)
+
+    def accept_drops_on(self, widget: QWidget) -> None:
+        """Take folders that are dropped on `widget`."""
+        widget.setAcceptDrops(True)
+        widget.installEventFilter(self)
+
+    def eventFilter(self, watched: Any, event: QEvent) -> bool:
+        if isinstance(event, QDropEvent) and event.type() in (QEvent.Type.DragEnter, QEvent.Type.Drop):
+            folder = dropped_folder(event)
+            if folder is not None:
+                event.acceptProposedAction()
+                if event.type() == QEvent.Type.Drop:
+                    self.set_mode("folder")
+                    self.folder_chosen.emit(folder)
+                return True
+        return super().eventFilter(watched, event)
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "_stack"):
+            self._dress()
+
+    def _folder_part(self) -> QWidget:
+        self.path.setWordWrap(True)
+        self.path.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
+        self.detail.setObjectName("muted")
+        self.detail.setWordWrap(True)
+        part = QWidget()
+        column = QVBoxLayout(part)
+        column.setContentsMargins(0, 4, 0, 0)
+        column.addWidget(self.path)
+        column.addWidget(self.detail)
+        column.addWidget(self.browse)
+        column.addStretch(1)
+        return part
+
+    def _dress(self) -> None:
+        self.recorded.setIcon(icon("mdi6.folder-image"))
+        self.live.setIcon(icon("mdi6.video-outline"))
+        self.browse.setIcon(icon("mdi6.folder-open-outline"))
+
+    def _toggled(self, place: int, on: bool) -> None:
+        if on:
+            self._stack.setCurrentIndex(place)
+            self.mode_changed.emit(self.mode)
+
+
+def dropped_folder(event: QDropEvent | QDragEnterEvent) -> Path | None:
+    """The folder that is dropped, or the one a dropped file is in."""
+    paths = [Path(url.toLocalFile()) for url in event.mimeData().urls() if url.isLocalFile()]
+    if not paths or (paths[0] / "project.json").exists() or (paths[0] / "rig.toml").exists():
+        return None  # a project or a whole recording set: the window opens it
+    return paths[0] if paths[0].is_dir() else paths[0].parent
+
+
+def _breakable(path: str) -> str:
+    """A path that can be wrapped after each separator."""
+    return path.replace("/", "/\u200b").replace("\\", "\\\u200b")
