@@ -17,6 +17,9 @@ from PySide6.QtGui import QColor
 Symbol = Literal["o", ".", "t", "x", "+", "s", "d"]
 """Open circle, disc, triangle, saltire, cross, square, diamond."""
 
+KeySign = Symbol | Literal["line", "scale"]
+"""What a legend shows beside a title: a symbol, a line, or the scale of σ."""
+
 ColourLike = str | tuple[int, int, int] | tuple[int, int, int, int] | QColor
 
 Level = Literal["", "good", "warn", "bad"]

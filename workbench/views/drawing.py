@@ -1,0 +1,178 @@
+"""Drawing a region on a picture: by clicks at its corners or one stroke round it, by mouse or by keys."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+from PySide6.QtCore import QObject, QPointF, Qt, Signal
+from PySide6.QtGui import QColor, QKeyEvent, QPainter, QPen, QPolygonF
+from PySide6.QtWidgets import QStyleOptionGraphicsItem, QWidget
+
+from workbench.views.colours import REGION
+from workbench.views.overlays import Layer, Points
+from workbench.views.picture_box import PictureBox
+from workbench.views.symbols import RIM
+
+FEWEST_CORNERS = 3
+ARROWS = {
+    Qt.Key.Key_Left: (-1, 0),
+    Qt.Key.Key_Right: (1, 0),
+    Qt.Key.Key_Up: (0, -1),
+    Qt.Key.Key_Down: (0, 1),
+}
+_LASSO_STEP, _SAME_PLACE = 3.0, 2.0
+_STEP, _LEAP = 1, 20
+
+
+@dataclass(slots=True)
+class Draft:
+    """A region being drawn; places are (u, v)."""
+
+    name: str
+    kind: Literal["polygon", "lasso"]
+    corners: list[tuple[float, float]] = field(default_factory=list)
+    pencil: tuple[float, float] | None = None
+
+    def add(self, u: float, v: float, pixel: float) -> None:
+        """A corner, or the next point of the stroke; a screen pixel is `pixel` wide. The same place twice is once."""
+        step = (_LASSO_STEP if self.kind == "lasso" else _SAME_PLACE) * pixel
+        if not self.corners or np.hypot(self.corners[-1][0] - u, self.corners[-1][1] - v) > step:
+            self.corners.append((u, v))
+
+    def outline(self) -> Points:
+        """The corners (N, 2)."""
+        return np.array(self.corners, dtype=np.float64).reshape(-1, 2)
+
+
+class DraftLayer(Layer):
+    """Shows the unfinished region, with the line to the pencil."""
+
+    draft: Draft | None = None
+
+    def paint(self, painter: QPainter, option: QStyleOptionGraphicsItem, widget: QWidget | None = None) -> None:
+        if self.draft is None:
+            return
+        transform = painter.worldTransform()
+        painter.resetTransform()
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        colour = QColor(REGION)
+        corners = [transform.map(QPointF(u, v)) for u, v in self.draft.corners]
+        pencil = None if self.draft.pencil is None else transform.map(QPointF(*self.draft.pencil))
+        path = [*corners, pencil] if pencil is not None and self.draft.kind == "polygon" else corners
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+        for pen in (QPen(RIM, 3.4), QPen(colour, 1.6)):
+            painter.setPen(pen)
+            painter.drawPolyline(QPolygonF(path))
+        if len(path) >= FEWEST_CORNERS:
+            painter.setPen(QPen(colour, 1.0, Qt.PenStyle.DashLine))
+            painter.drawLine(path[-1], path[0])
+        if self.draft.kind == "polygon":
+            painter.setPen(QPen(RIM, 1.0))
+            painter.setBrush(colour)
+            for corner in corners:
+                painter.drawEllipse(corner, 4.0, 4.0)
+        if pencil is not None:
+            painter.setPen(QPen(colour, 1.2))
+            painter.drawLine(pencil + QPointF(-9, 0), pencil + QPointF(9, 0))
+            painter.drawLine(pencil + QPointF(0, -9), pencil + QPointF(0, 9))
+
+
+class DrawingTool(QObject):
+    """The pencil. While `active`, the view hands it what mouse and keys do."""
+
+    drawn = Signal(str, object)
+    cancelled = Signal(str)
+    active_changed = Signal(bool)
+
+    def __init__(self, box: PictureBox, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self._box, self._layer = box, DraftLayer()
+        box.addItem(self._layer, ignoreBounds=True)
+        self._layer.setZValue(1e6)
+
+    @property
+    def draft(self) -> Draft | None:
+        """What is being drawn."""
+        return self._layer.draft
+
+    @property
+    def lasso(self) -> bool:
+        """Whether a stroke is to be drawn, rather than corners clicked."""
+        return self.draft is not None and self.draft.kind == "lasso"
+
+    def start(self, name: str, kind: Literal["polygon", "lasso"]) -> None:
+        """Begin a region; one being drawn is cancelled."""
+        self.stop()
+        self._layer.draft = Draft(name, kind)
+        self.active_changed.emit(True)
+
+    def stop(self) -> None:
+        """End without a result."""
+        if (draft := self._end()) is not None:
+            self.cancelled.emit(draft.name)
+
+    def finish(self) -> None:
+        """Close the region if it has corners enough; a stroke that has not begins again."""
+        if self.draft is None:
+            return
+        if len(self.draft.corners) >= FEWEST_CORNERS:
+            draft = self._end()
+            assert draft is not None
+            self.drawn.emit(draft.name, draft.outline())
+        elif self.lasso:
+            self.draft.corners.clear()
+            self._layer.update()
+
+    def add(self, place: QPointF) -> None:
+        """A corner, or the next point of the stroke."""
+        if self.draft is not None:
+            self.draft.add(place.x(), place.y(), self._box.pixel)
+            self._layer.update()
+
+    def take_back(self) -> None:
+        """Forget the last corner."""
+        if self.draft is not None and self.draft.corners:
+            self.draft.corners.pop()
+            self._layer.update()
+
+    def hover(self, place: QPointF | None) -> None:
+        """The pencil is there."""
+        if self.draft is not None:
+            self.draft.pencil = None if place is None else (place.x(), place.y())
+            self._layer.update()
+
+    def key(self, event: QKeyEvent) -> bool:
+        """What a key means to the pencil; False if nothing. Arrows move it, Space sets a corner."""
+        if self.draft is None:
+            return False
+        key = Qt.Key(event.key())
+        if key == Qt.Key.Key_Escape:
+            self.stop()
+        elif key in (Qt.Key.Key_Return, Qt.Key.Key_Enter):
+            self.finish()
+        elif key == Qt.Key.Key_Backspace:
+            self.take_back()
+        elif key in ARROWS:
+            self._step(*ARROWS[key], _LEAP if event.modifiers() & Qt.KeyboardModifier.ShiftModifier else _STEP)
+        elif key == Qt.Key.Key_Space:
+            if self.draft.pencil is not None:
+                self.add(QPointF(*self.draft.pencil))
+        else:
+            return False
+        return True
+
+    def _step(self, right: int, down: int, pixels: int) -> None:
+        assert self.draft is not None
+        middle = self._box.viewRect().center()
+        u, v = self.draft.pencil or (middle.x(), middle.y())
+        step = pixels * max(self._box.pixel, 1.0)
+        self.hover(QPointF(u + right * step, v + down * step))
+
+    def _end(self) -> Draft | None:
+        draft, self._layer.draft = self._layer.draft, None
+        if draft is not None:
+            self._layer.update()
+            self.active_changed.emit(False)
+        return draft

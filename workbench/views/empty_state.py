@@ -1,0 +1,46 @@
+"""What stands where there is nothing to show yet: one sentence, and a button when something can be done about it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QLabel, QPushButton, QSizePolicy, QVBoxLayout, QWidget
+
+
+class EmptyState(QWidget):
+    """A sentence in the middle, with an optional button."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._on_button: Callable[[], None] | None = None
+        self._label = QLabel()
+        self._label.setObjectName("muted")
+        self._label.setWordWrap(True)
+        self._label.setAlignment(Qt.AlignmentFlag.AlignCenter)
+        self._label.setMaximumWidth(420)
+        self._label.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Minimum)
+        self.button = QPushButton()
+        self.button.clicked.connect(self._pressed)
+        column = QVBoxLayout(self)
+        column.setSpacing(12)
+        column.addStretch(1)
+        column.addWidget(self._label, 0, Qt.AlignmentFlag.AlignHCenter)
+        column.addWidget(self.button, 0, Qt.AlignmentFlag.AlignHCenter)
+        column.addStretch(1)
+
+    def say(self, message: str, button: str = "", on_button: Callable[[], None] | None = None) -> None:
+        """Show a sentence; the button only if it is named."""
+        self._label.setText(message)
+        self.button.setText(button)
+        self.button.setVisible(bool(button))
+        self._on_button = on_button
+
+    @property
+    def message(self) -> str:
+        """The sentence."""
+        return self._label.text()
+
+    def _pressed(self) -> None:
+        if self._on_button is not None:
+            self._on_button()

@@ -1,0 +1,299 @@
+"""The picture in its frame: zoom and pan, readout, buttons, legend, and what stands there without a picture."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pyqtgraph as pg
+from numpy.typing import ArrayLike
+from PySide6.QtCore import QEvent, QPoint, QPointF, QRectF, Qt
+from PySide6.QtGui import QContextMenuEvent, QGuiApplication, QIcon, QKeyEvent
+from PySide6.QtWidgets import QFileDialog, QLabel, QMenu, QVBoxLayout, QWidget
+
+from workbench.theme import is_dark
+from workbench.views.drawing import ARROWS, DrawingTool
+from workbench.views.empty_state import EmptyState
+from workbench.views.image_tools import Legend, ToneMenu, ToolStrip, key_pixmap
+from workbench.views.layer_stack import LayerStack
+from workbench.views.picture_box import ZOOM_STEP, PictureBox
+from workbench.views.picture_item import PictureItem
+
+GROUND = {True: "#12151A", False: "#DDE1E6"}
+"""Round the picture, in the dark and in the light theme."""
+
+_PAN = 60
+_KEYS = {Qt.Key.Key_F, Qt.Key.Key_1, Qt.Key.Key_Plus, Qt.Key.Key_Minus, Qt.Key.Key_Equal, *ARROWS}
+
+
+class ImageFrame(QWidget):
+    """One picture and everything round it; `ImageView` adds the layers."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._picture, self._box = PictureItem(), PictureBox()
+        self._canvas = pg.GraphicsView(background=None)
+        self._canvas.setCentralItem(self._box)
+        self._canvas.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self._canvas.setContextMenuPolicy(Qt.ContextMenuPolicy.NoContextMenu)
+        self._box.addItem(self._picture, ignoreBounds=True)
+        self._layers, self._drawing = LayerStack(self._box, self), DrawingTool(self._box, self)
+        self._legend, self._legend_wanted = Legend(self._canvas), True
+        self._hint = QLabel(self._canvas)
+        self._hint.setStyleSheet(
+            "background: rgba(12, 16, 20, 200); color: #F4F6F8; border-radius: 4px; padding: 5px 9px;"
+        )
+        self._hint.hide()
+        self._empty = EmptyState(self._canvas)
+        self._strip, self._tone = ToolStrip(), ToneMenu(self)
+        self._layers_menu = QMenu(self)
+        self._fitted = True
+        self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(0)
+        column.addWidget(self._canvas, 1)
+        column.addWidget(self._strip)
+        self._connect()
+        self._dress()
+        self.clear()
+
+    # ---- the picture
+
+    def set_picture(
+        self,
+        picture: ArrayLike,
+        *,
+        keep_view: bool = True,
+        scale: float = 1.0,
+        levels: tuple[float, float] | None = None,
+    ) -> None:
+        """Show a picture (rows, columns) of uint8, uint16, float or bool, or (rows, columns, 3) of uint8.
+
+        `scale` is how many full-resolution pixels one pixel of a reduced picture is wide. `levels` are the values of
+        black and white; by default those of the type, of the camera's bits, or of the values of a float picture. The
+        view is kept unless the picture is of another size.
+
+        Raises
+        ------
+        ValueError
+            If it is no picture by its shape.
+        """
+        self._picture.set_picture(np.asarray(picture), scale, levels)
+        if self._picture.rect != self._box.extent or not keep_view:
+            self._box.extent = self._picture.rect
+            self.fit()
+        if not self._empty.isHidden():
+            self._empty.hide()
+            self._strip.setEnabled(True)
+            self._arrange()
+
+    def clear(self, message: str = "", button: str = "", on_button: Callable[[], None] | None = None) -> None:
+        """Show no picture and no layer but a sentence in the middle, with a button if one is named."""
+        self._drawing.stop()
+        self._layers.clear()
+        self._picture.set_picture(None, 1.0, None)
+        self._box.extent = QRectF()
+        self._fitted = True
+        self._strip.readout.clear()
+        self._strip.zoom.clear()
+        self._strip.setEnabled(False)
+        self._empty.say(message, button, on_button)
+        self._empty.show()
+        self._arrange()
+
+    @property
+    def has_picture(self) -> bool:
+        """Whether there is a picture."""
+        return self._picture.picture is not None
+
+    @property
+    def empty_state(self) -> EmptyState:
+        """What stands there without a picture."""
+        return self._empty
+
+    # ---- the view
+
+    def fit(self) -> None:
+        """Show the whole picture, and go on doing so when the window changes its size."""
+        self._fitted = True
+        self._box.fit()
+
+    def one_to_one(self) -> None:
+        """One pixel of the picture on one of the screen."""
+        self._fitted = False
+        self._box.show_at_zoom(1.0 / self.devicePixelRatioF())
+
+    def centre_on(self, u: float, v: float) -> None:
+        """Bring a place into the middle."""
+        self._fitted = False
+        self._box.show_at_zoom(1.0 / self._box.pixel, QPointF(u, v))
+
+    @property
+    def zoom(self) -> float:
+        """How many pixels of the screen one of the picture is wide."""
+        return self.devicePixelRatioF() / self._box.pixel
+
+    def to_screen(self, u: float, v: float) -> QPoint:
+        """Where a place of the picture is in `canvas`."""
+        place = self._box.mapViewToScene(QPointF(u, v))
+        return QPoint(round(place.x()), round(place.y()))
+
+    @property
+    def canvas(self) -> QWidget:
+        """The widget the picture is drawn on, which takes the mouse."""
+        viewport: QWidget = self._canvas.viewport()
+        return viewport
+
+    @property
+    def readout(self) -> str:
+        """What is said about the pixel under the mouse."""
+        return self._strip.readout.text()
+
+    def add_tool(self, widget: QWidget) -> None:
+        """A page's own widget in the strip under the picture."""
+        self._strip.add_tool(widget)
+
+    def set_legend_visible(self, visible: bool) -> None:
+        """Show or hide the key of colours and symbols."""
+        self._legend_wanted = visible
+        self._show_legend()
+
+    @property
+    def legend_titles(self) -> list[str]:
+        """What the legend lists; empty while it is hidden."""
+        return [] if self._legend.isHidden() else self._legend.titles
+
+    def set_tone(self, gain: float, gamma: float) -> None:
+        """Brighten the picture on the screen: grey · gain, then to the power 1/gamma."""
+        self._picture.set_tone(gain, gamma)
+
+    # ---- events
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        if self._drawing.key(event):
+            return
+        key = Qt.Key(event.key())
+        if not self.has_picture:
+            super().keyPressEvent(event)
+        elif key == Qt.Key.Key_F:
+            self.fit()
+        elif key == Qt.Key.Key_1:
+            self.one_to_one()
+        elif key in (Qt.Key.Key_Plus, Qt.Key.Key_Equal):
+            self._box.zoom_by(ZOOM_STEP)
+        elif key == Qt.Key.Key_Minus:
+            self._box.zoom_by(1 / ZOOM_STEP)
+        elif key in ARROWS:
+            self._box.pan_by(*(_PAN * step for step in ARROWS[key]))
+        else:
+            super().keyPressEvent(event)
+
+    def event(self, event: QEvent) -> bool:
+        if isinstance(event, QKeyEvent) and event.type() == QEvent.Type.ShortcutOverride:
+            plain = event.modifiers() in (Qt.KeyboardModifier.NoModifier, Qt.KeyboardModifier.KeypadModifier)
+            drawing = self._drawing.draft is not None and event.key() in (
+                Qt.Key.Key_Escape,
+                Qt.Key.Key_Return,
+                Qt.Key.Key_Enter,
+                Qt.Key.Key_Backspace,
+                Qt.Key.Key_Space,
+            )
+            if drawing or (plain and self.has_picture and event.key() in _KEYS):
+                event.accept()
+        return super().event(event)
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "_strip"):
+            self._dress()
+
+    def contextMenuEvent(self, event: QContextMenuEvent) -> None:
+        if not self.has_picture or self._drawing.draft is not None:
+            return
+        menu = QMenu(self)
+        menu.addAction(self.tr("Whole picture"), self.fit)
+        menu.addAction(self.tr("Pixel on pixel"), self.one_to_one)
+        menu.addSeparator()
+        menu.addAction(
+            self.tr("Copy what is shown"), lambda: QGuiApplication.clipboard().setPixmap(self._canvas.grab())
+        )
+        menu.addAction(self.tr("Save what is shown …"), self._save)
+        menu.exec(event.globalPos())
+        menu.deleteLater()
+
+    # ---- inside
+
+    def _connect(self) -> None:
+        self._box.zoomed.connect(self._unfit)
+        self._box.sigResized.connect(self._resized)
+        self._box.sigRangeChanged.connect(self._say_zoom)
+        self._layers.changed.connect(self._show_legend)
+        self._drawing.active_changed.connect(self._show_hint)
+        self._tone.changed.connect(self.set_tone)
+        self._strip.fit.clicked.connect(self.fit)
+        self._strip.one.clicked.connect(self.one_to_one)
+        self._strip.tone.setMenu(self._tone)
+        self._strip.layers.setMenu(self._layers_menu)
+        self._layers_menu.aboutToShow.connect(self._fill_layers_menu)
+
+    def _unfit(self) -> None:
+        self._fitted = False
+
+    def _resized(self) -> None:
+        if self._fitted:
+            self._box.fit()
+        self._arrange()
+
+    def _say_zoom(self) -> None:
+        if self.has_picture:
+            self._strip.zoom.setText(f"{100 * self.zoom:.0f} %")
+
+    def _arrange(self) -> None:
+        size = self._canvas.size()
+        if not self._empty.isHidden():
+            self._empty.setGeometry(0, 0, size.width(), size.height())
+        self._legend.move(8, 8)
+        self._hint.adjustSize()
+        self._hint.move((size.width() - self._hint.width()) // 2, size.height() - self._hint.height() - 10)
+
+    def _show_legend(self) -> None:
+        entries = self._layers.legend()
+        self._legend.set_entries(entries)
+        self._legend.setVisible(bool(entries) and self._legend_wanted)
+
+    def _show_hint(self, drawing: bool) -> None:
+        if drawing:
+            self._hint.setText(
+                self.tr("Draw round the region with the button held down. Esc cancels.")
+                if self._drawing.lasso
+                else self.tr("Click the corners. Double-click or Enter closes, Backspace takes one back, Esc cancels.")
+            )
+        self._hint.setVisible(drawing)
+        self._canvas.viewport().setCursor(Qt.CursorShape.CrossCursor if drawing else Qt.CursorShape.ArrowCursor)
+        self._arrange()
+
+    def _fill_layers_menu(self) -> None:
+        self._layers_menu.clear()
+        for name in self._layers:
+            layer = self._layers[name]
+            sign = QIcon(key_pixmap(*layer.key, self.devicePixelRatioF()))
+            action = self._layers_menu.addAction(sign, layer.title or name)
+            action.setCheckable(True)
+            action.setChecked(self._layers.is_visible(name))
+            action.toggled.connect(lambda on, name=name: self._layers.set_visible(name, on))
+        self._layers_menu.addSeparator()
+        legend = self._layers_menu.addAction(self.tr("Legend"))
+        legend.setCheckable(True)
+        legend.setChecked(self._legend_wanted)
+        legend.toggled.connect(self.set_legend_visible)
+
+    def _save(self) -> None:
+        path, _ = QFileDialog.getSaveFileName(
+            self, self.tr("Save what is shown"), "picture.png", self.tr("Picture (*.png)")
+        )
+        if path:
+            self._canvas.grab().save(path)
+
+    def _dress(self) -> None:
+        self._canvas.setBackground(GROUND[is_dark()])

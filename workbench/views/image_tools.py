@@ -1,0 +1,204 @@
+"""What stands round a picture: the strip with readout and buttons, the brightness popover, the legend."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from PySide6.QtCore import QEvent, QSize, Qt, Signal
+from PySide6.QtGui import QFontDatabase, QPainter, QPen, QPixmap
+from PySide6.QtWidgets import (
+    QFrame,
+    QGridLayout,
+    QHBoxLayout,
+    QLabel,
+    QMenu,
+    QPushButton,
+    QSlider,
+    QToolButton,
+    QWidget,
+    QWidgetAction,
+)
+
+from workbench.theme import icon
+from workbench.views.colours import ColourLike, KeySign, sigma_table, to_colour, to_rgba
+from workbench.views.symbols import symbol_pixmap
+
+_STEPS = 20
+"""Slider steps for a factor of two."""
+
+
+class ToolStrip(QFrame):
+    """Readout at the left, buttons at the right."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.readout = QLabel()
+        self.readout.setFont(QFontDatabase.systemFont(QFontDatabase.SystemFont.FixedFont))
+        self.readout.setObjectName("muted")
+        self.zoom = QLabel()
+        self.zoom.setObjectName("muted")
+        self.zoom.setToolTip(self.tr("Size of a picture pixel on the screen"))
+        self.fit = self._button("mdi6.fit-to-page-outline", self.tr("Show the whole picture (F)"))
+        self.one = self._button("mdi6.numeric-1-box-outline", self.tr("One picture pixel on one screen pixel (1)"))
+        self.tone = self._button("mdi6.brightness-6", self.tr("Brightness of the picture on the screen"))
+        self.layers = self._button("mdi6.layers-outline", self.tr("Show or hide what is drawn on the picture"))
+        for button in (self.tone, self.layers):
+            button.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
+        self._row = QHBoxLayout(self)
+        self._row.setContentsMargins(6, 1, 2, 1)
+        self._row.setSpacing(2)
+        self._row.addWidget(self.readout, 1)
+        self._row.addWidget(self.zoom)
+        self._row.addSpacing(6)
+        self._place_for_tools = self._row.count()
+        for button in (self.fit, self.one, self.tone, self.layers):
+            self._row.addWidget(button)
+        self._dress()
+
+    def add_tool(self, widget: QWidget) -> None:
+        """A widget before the buttons."""
+        self._row.insertWidget(self._place_for_tools, widget)
+        self._place_for_tools += 1
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "_row"):
+            self._dress()
+
+    def _button(self, symbol: str, tip: str) -> QToolButton:
+        button = QToolButton()
+        button.setAutoRaise(True)
+        button.setIconSize(QSize(18, 18))
+        button.setToolTip(tip)
+        button.setAccessibleName(tip)
+        button.setProperty("symbol", symbol)
+        return button
+
+    def _dress(self) -> None:
+        for button in (self.fit, self.one, self.tone, self.layers):
+            button.setIcon(icon(str(button.property("symbol"))))
+
+
+class ToneMenu(QMenu):
+    """Two sliders: how bright, and how much the dark is lifted. Only the screen changes, never what is measured."""
+
+    changed = Signal(float, float)
+    """Gain and gamma."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.gain, self._gain_text = self._slider(-2 * _STEPS, 5 * _STEPS)
+        self.gamma, self._gamma_text = self._slider(-_STEPS, 2 * _STEPS)
+        self.gain.setAccessibleName(self.tr("Brightness"))
+        self.gamma.setAccessibleName(self.tr("Dark parts"))
+        panel = QWidget()
+        grid = QGridLayout(panel)
+        grid.setContentsMargins(12, 10, 12, 10)
+        for row, (title, slider, text) in enumerate(
+            (
+                (self.tr("Brightness"), self.gain, self._gain_text),
+                (self.tr("Lift the dark"), self.gamma, self._gamma_text),
+            )
+        ):
+            grid.addWidget(QLabel(title), row, 0)
+            grid.addWidget(slider, row, 1)
+            grid.addWidget(text, row, 2)
+        note = QLabel(self.tr("On the screen only; measuring is not affected."))
+        note.setObjectName("help")
+        reset = QPushButton(self.tr("Reset"))
+        reset.clicked.connect(self.reset)
+        grid.addWidget(note, 2, 0, 1, 2)
+        grid.addWidget(reset, 2, 2)
+        action = QWidgetAction(self)
+        action.setDefaultWidget(panel)
+        self.addAction(action)
+        self._say()
+
+    @property
+    def values(self) -> tuple[float, float]:
+        """Gain and gamma."""
+        return 2.0 ** (self.gain.value() / _STEPS), 2.0 ** (self.gamma.value() / _STEPS)
+
+    def reset(self) -> None:
+        """As the picture is."""
+        self.gain.setValue(0)
+        self.gamma.setValue(0)
+
+    def _slider(self, low: int, high: int) -> tuple[QSlider, QLabel]:
+        slider = QSlider(Qt.Orientation.Horizontal)
+        slider.setRange(low, high)
+        slider.setMinimumWidth(180)
+        slider.valueChanged.connect(self._say)
+        text = QLabel()
+        text.setMinimumWidth(64)
+        text.setAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
+        return slider, text
+
+    def _say(self) -> None:
+        gain, gamma = self.values
+        self._gain_text.setText(f"× {gain:.2f}")
+        self._gamma_text.setText(f"γ {gamma:.2f}")
+        self.changed.emit(gain, gamma)
+
+
+class Legend(QFrame):
+    """A key of symbols and colours over a corner of the picture; the mouse goes through it."""
+
+    def __init__(self, parent: QWidget) -> None:
+        super().__init__(parent)
+        self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
+        self.setStyleSheet(
+            "Legend { background: rgba(12, 16, 20, 175); border-radius: 4px; } QLabel { color: #F4F6F8; }"
+        )
+        self._grid = QGridLayout(self)
+        self._grid.setContentsMargins(8, 5, 10, 5)
+        self._grid.setHorizontalSpacing(6)
+        self._grid.setVerticalSpacing(1)
+        self._entries: list[tuple[str, KeySign, tuple[int, int, int, int]]] = []
+        self.hide()
+
+    def set_entries(self, entries: Sequence[tuple[str, KeySign, ColourLike]]) -> None:
+        """Title, sign and colour of each; nothing is rebuilt when nothing has changed."""
+        wanted = [(title, sign, to_rgba(colour)) for title, sign, colour in entries]
+        if wanted == self._entries:
+            return
+        self._entries = wanted
+        while (item := self._grid.takeAt(0)) is not None:
+            if (widget := item.widget()) is not None:
+                widget.hide()
+                widget.deleteLater()
+        for row, (title, sign, rgba) in enumerate(wanted):
+            key = QLabel()
+            key.setPixmap(key_pixmap(sign, rgba, self.devicePixelRatioF()))
+            self._grid.addWidget(key, row, 0)
+            self._grid.addWidget(QLabel(title), row, 1)
+        self._grid.activate()
+        self.adjustSize()
+
+    @property
+    def titles(self) -> list[str]:
+        """What it lists."""
+        return [title for title, _, _ in self._entries]
+
+
+def key_pixmap(sign: KeySign, colour: ColourLike, ratio: float) -> QPixmap:
+    """A sign for a legend or a menu."""
+    rgba = to_rgba(colour)
+    pixmap = QPixmap(round(18 * ratio), round(14 * ratio))
+    pixmap.setDevicePixelRatio(ratio)
+    pixmap.fill(Qt.GlobalColor.transparent)
+    painter = QPainter(pixmap)
+    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+    if sign == "line":
+        painter.setPen(QPen(to_colour(rgba), 2.4))
+        painter.drawLine(1, 7, 17, 7)
+    elif sign == "scale":
+        for x, shade in enumerate(sigma_table()[::16], start=1):
+            painter.fillRect(x, 5, 1, 4, to_colour((int(shade[0]), int(shade[1]), int(shade[2]))))
+    else:
+        symbol = QPixmap(symbol_pixmap(sign, rgba, 9, ratio))
+        symbol.setDevicePixelRatio(ratio)
+        side = symbol.width() / ratio
+        painter.drawPixmap(round(9 - side / 2), round(7 - side / 2), symbol)
+    painter.end()
+    return pixmap

@@ -1,0 +1,252 @@
+"""Layers of points, lines and arrows over a picture: one graphics item each, however many points it has."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from pyqtgraph.Qt import internals
+from PySide6.QtCore import QLineF, QPointF, QRectF, Qt
+from PySide6.QtGui import QPainter, QPen, QPixmap, QTransform
+from PySide6.QtWidgets import QGraphicsItem, QStyleOptionGraphicsItem, QWidget
+
+from workbench.views.colours import EXCLUDED, ColourLike, KeySign, Symbol, sigma_table, to_colour, to_rgba
+from workbench.views.labels import draw_label
+from workbench.views.symbols import symbol_pixmap
+
+Points = NDArray[np.float64]
+
+_EVERYWHERE = QRectF(-1e6, -1e6, 2e6, 2e6)
+_VALUE_COLOURS = 16
+_REACH = 8.0
+
+
+class Layer(QGraphicsItem):
+    """One layer. Its points are full-resolution pixels; symbols and widths are screen pixels.
+
+    `title` stands in the legend beside `key`.
+    """
+
+    def __init__(self, title: str = "") -> None:
+        super().__init__()
+        self.title = title
+        self.setAcceptedMouseButtons(Qt.MouseButton.NoButton)
+
+    @property
+    def key(self) -> tuple[KeySign, ColourLike]:
+        """How the legend shows it."""
+        return "line", EXCLUDED
+
+    def point_at(self, u: float, v: float, pixel: float) -> int | None:
+        """The index of the point at (u, v), None where there is none; a screen pixel is `pixel` wide there."""
+        return None
+
+    def tip(self, index: int) -> str:
+        """What hovering over a point says."""
+        return ""
+
+    def boundingRect(self) -> QRectF:
+        return _EVERYWHERE
+
+
+class PointsLayer(Layer):
+    """Symbols at points."""
+
+    def __init__(
+        self,
+        uv: ArrayLike,
+        colour: ColourLike | ArrayLike,
+        symbol: Symbol,
+        size: float,
+        tips: Sequence[str] | None,
+        title: str,
+    ) -> None:
+        super().__init__(title)
+        self.uv = as_points(uv)
+        self._symbol, self._size, self._tips = symbol, size, tips
+        self._groups = _by_colour(colour, len(self.uv))
+        self._fragments = internals.PrimitiveArray(QPainter.PixmapFragment, 10)
+
+    @property
+    def key(self) -> tuple[KeySign, ColourLike]:
+        return self._symbol, self._groups[0][0] if self._groups else EXCLUDED
+
+    def point_at(self, u: float, v: float, pixel: float) -> int | None:
+        if not len(self.uv):
+            return None
+        distance = np.hypot(self.uv[:, 0] - u, self.uv[:, 1] - v)
+        distance[~np.isfinite(distance)] = np.inf
+        nearest = int(np.argmin(distance))
+        return nearest if distance[nearest] <= max(_REACH, self._size / 2 + 2) * pixel else None
+
+    def tip(self, index: int) -> str:
+        return self._tips[index] if self._tips is not None and index < len(self._tips) else ""
+
+    def paint(self, painter: QPainter, option: QStyleOptionGraphicsItem, widget: QWidget | None = None) -> None:
+        ratio = widget.devicePixelRatioF() if widget is not None else 1.0
+        spots = on_screen(painter.worldTransform(), self.uv)
+        painter.resetTransform()
+        for rgba, chosen in self._groups:
+            pixmap = symbol_pixmap(self._symbol, rgba, self._size, ratio)
+            self._stamp(painter, spots[chosen], pixmap, ratio)
+
+    def _stamp(self, painter: QPainter, spots: Points, pixmap: QPixmap, ratio: float) -> None:
+        spots = spots[np.abs(spots).max(axis=1, initial=0.0) < 1e5]  # NaN compares false
+        if not len(spots):
+            return
+        self._fragments.resize(len(spots))
+        rows = self._fragments.ndarray()
+        rows[:, :2] = spots
+        rows[:, 2:] = [0, 0, pixmap.width(), pixmap.height(), 1 / ratio, 1 / ratio, 0, 1]
+        draw: Any = painter.drawPixmapFragments  # PySide's stub does not know of the array
+        draw(*self._fragments.drawargs(), pixmap)
+
+
+class LinesLayer(Layer):
+    """Polylines: in one colour, in one each, or coloured by a value at each point."""
+
+    def __init__(
+        self,
+        lines: Sequence[ArrayLike],
+        colours: Sequence[ColourLike],
+        values: Sequence[ArrayLike] | None,
+        limits: tuple[float, float],
+        width: float,
+        labels: Sequence[str] | None,
+        title: str,
+    ) -> None:
+        super().__init__(title)
+        points = [as_points(line) for line in lines]
+        self._width, self._colours = width, list(colours)
+        self._sign: KeySign = "line" if values is None else "scale"
+        self._batches = _coloured(points, self._colours) if values is None else _valued(points, values, limits)
+        self._labels = []
+        for line, text, colour in zip(points, labels or [""] * len(points), self._colours, strict=True):
+            known = line[np.isfinite(line).all(axis=1)]
+            if text and len(known):
+                self._labels.append((QPointF(*known[0]), text, to_colour(colour)))
+
+    @property
+    def key(self) -> tuple[KeySign, ColourLike]:
+        return self._sign, self._colours[0] if self._colours else EXCLUDED
+
+    def paint(self, painter: QPainter, option: QStyleOptionGraphicsItem, widget: QWidget | None = None) -> None:
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        for rgba, lines in self._batches:
+            painter.setPen(cosmetic(rgba, self._width))
+            painter.drawLines(*lines.drawargs())
+        if self._labels:
+            transform = painter.worldTransform()
+            painter.resetTransform()
+            for start, text, colour in self._labels:
+                draw_label(painter, transform.map(start) + QPointF(0, -12), text, colour, within=widget)
+
+
+class VectorsLayer(Layer):
+    """Arrows."""
+
+    def __init__(self, uv: ArrayLike, d_uv: ArrayLike, factor: float, colour: ColourLike, title: str) -> None:
+        super().__init__(title)
+        self._colour = colour
+        start, along = as_points(uv), as_points(d_uv) * factor
+        tip = start + along
+        side = np.column_stack([-along[:, 1], along[:, 0]])
+        barbs = [tip - 0.28 * along + turn * 0.14 * side for turn in (-1, 1)]
+        self._lines = _primitive(np.vstack([np.hstack([start, tip]), *(np.hstack([tip, barb]) for barb in barbs)]))
+
+    @property
+    def key(self) -> tuple[KeySign, ColourLike]:
+        return "line", self._colour
+
+    def paint(self, painter: QPainter, option: QStyleOptionGraphicsItem, widget: QWidget | None = None) -> None:
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter.setPen(cosmetic(to_rgba(self._colour), 1.4))
+        painter.drawLines(*self._lines.drawargs())
+
+
+def as_points(uv: ArrayLike) -> Points:
+    """(N, 2) of whatever is given; nothing gives (0, 2)."""
+    return np.asarray(uv, dtype=np.float64).reshape(-1, 2)
+
+
+def on_screen(transform: QTransform, uv: Points) -> Points:
+    """Points of the picture as points of the screen, (N, 2)."""
+    turn = np.array([[transform.m11(), transform.m12()], [transform.m21(), transform.m22()]])
+    mapped: Points = uv @ turn + [transform.dx(), transform.dy()]
+    return mapped
+
+
+def cosmetic(rgba: tuple[int, int, int, int], width: float) -> QPen:
+    """A pen as wide on the screen whatever the zoom."""
+    pen = QPen(to_colour(rgba), width)
+    pen.setCosmetic(True)
+    return pen
+
+
+def _by_colour(
+    colour: ColourLike | ArrayLike, count: int
+) -> list[tuple[tuple[int, int, int, int], NDArray[np.intp] | slice]]:
+    """Which points have which colour: one for all, or (N, 3 or 4) of them."""
+    if isinstance(colour, np.ndarray | list):
+        table = np.asarray(colour, dtype=np.uint8).reshape(count, -1)
+        if table.shape[1] == 3:
+            table = np.column_stack([table, np.full(count, 255, dtype=np.uint8)])
+        packed = np.ascontiguousarray(table).view(np.uint32).reshape(count)
+        distinct, which = np.unique(packed, return_inverse=True)
+        colours = distinct.view(np.uint8).reshape(-1, 4)
+        return [
+            ((int(r), int(g), int(b), int(a)), np.flatnonzero(which == i)) for i, (r, g, b, a) in enumerate(colours)
+        ]
+    return [(to_rgba(colour), slice(None))]  # type: ignore[arg-type]
+
+
+def _coloured(lines: Sequence[Points], colours: Sequence[ColourLike]) -> list[tuple[tuple[int, int, int, int], Any]]:
+    grouped: dict[tuple[int, int, int, int], list[Points]] = {}
+    for line, colour in zip(lines, colours, strict=True):
+        grouped.setdefault(to_rgba(colour), []).append(line)
+    return [(rgba, _primitive(_segments(group)[0])) for rgba, group in grouped.items()]
+
+
+def _valued(
+    lines: Sequence[Points], values: Sequence[ArrayLike], limits: tuple[float, float]
+) -> list[tuple[tuple[int, int, int, int], Any]]:
+    """Pieces of line in a few colours: drawing one colour is fast, changing it is not."""
+    segments, owner = _segments(lines)
+    all_values = (
+        np.concatenate([np.asarray(v, dtype=np.float64).reshape(-1) for v in values]) if values else np.zeros(0)
+    )
+    low, high = limits
+    with np.errstate(invalid="ignore"):
+        mean = 0.5 * (all_values[owner] + all_values[owner + 1])
+        step = np.floor((mean - low) * (_VALUE_COLOURS / (high - low)))
+        known = np.isfinite(mean) & (mean <= high)
+    step = np.where(known, np.clip(step, 0, _VALUE_COLOURS - 1), _VALUE_COLOURS).astype(np.intp)
+    table = sigma_table()
+    shades = [table[round((k + 0.5) * 255 / _VALUE_COLOURS)] for k in range(_VALUE_COLOURS)]
+    palette = [(int(r), int(g), int(b), 255) for r, g, b, _ in shades] + [to_rgba(EXCLUDED)]
+    return [(palette[k], _primitive(segments[step == k])) for k in np.unique(step)]
+
+
+def _segments(lines: Sequence[Points]) -> tuple[NDArray[np.float64], NDArray[np.intp]]:
+    """The pieces (M, 4) between neighbouring points of each line, and the number of the point each starts at."""
+    if not lines:
+        return np.zeros((0, 4)), np.zeros(0, dtype=np.intp)
+    points = np.concatenate(lines)
+    last = np.cumsum([len(line) for line in lines]) - 1
+    starts = np.ones(len(points), dtype=bool)
+    starts[last[last >= 0]] = False
+    owner = np.flatnonzero(starts)
+    segments = np.hstack([points[owner], points[owner + 1]])
+    finite = np.isfinite(segments).all(axis=1)
+    return segments[finite], owner[finite]
+
+
+def _primitive(segments: NDArray[np.float64]) -> Any:
+    """Pieces of line as Qt draws them at one go."""
+    segments = segments[np.isfinite(segments).all(axis=1)]
+    lines = internals.PrimitiveArray(QLineF, 4)
+    lines.resize(len(segments))
+    lines.ndarray()[:] = segments
+    return lines

@@ -1,0 +1,146 @@
+"""The picture itself: an array as a QImage, its brightness, and where its pixels lie."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from PySide6.QtCore import QRectF, Qt
+from PySide6.QtGui import QImage, QPainter
+from PySide6.QtWidgets import QGraphicsItem, QStyleOptionGraphicsItem, QWidget
+
+_SIXTEEN_BIT_WHITES = (1023, 4095, 16383, 65535)
+
+
+class PictureItem(QGraphicsItem):
+    """Draws one picture with the centre of its first full-resolution pixel at (0, 0).
+
+    Pixels are sharp squares when enlarged and averaged when reduced.
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.picture: NDArray[Any] | None = None
+        self.scale_factor = 1.0
+        self.gain, self.gamma = 1.0, 1.0
+        self._grey: NDArray[np.uint8] = np.zeros((0, 0), dtype=np.uint8)
+        self._image = QImage()
+        self._reduced: list[QImage] = []
+
+    @property
+    def rect(self) -> QRectF:
+        """What the picture covers, in full-resolution pixels."""
+        if self.picture is None:
+            return QRectF()
+        rows, columns = self.picture.shape[:2]
+        return QRectF(-0.5, -0.5, columns * self.scale_factor, rows * self.scale_factor)
+
+    def set_picture(self, picture: NDArray[Any] | None, scale: float, levels: tuple[float, float] | None) -> None:
+        """Show an array; see `ImageView.set_picture`.
+
+        Raises
+        ------
+        ValueError
+            If it is no picture by its shape.
+        """
+        if picture is not None and (not picture.size or (picture.ndim != 2 and picture.shape[2:] != (3,))):
+            raise ValueError(f"an array of shape {picture.shape} is no picture")
+        before = self.rect
+        self.picture, self.scale_factor = picture, scale
+        if self.rect != before:
+            self.prepareGeometryChange()
+        if picture is not None:
+            self._grey = np.ascontiguousarray(_eight_bit(picture, levels))
+            self._render()
+
+    def set_tone(self, gain: float, gamma: float) -> None:
+        """Brighten: grey · gain, then to the power 1/gamma."""
+        if (gain, gamma) != (self.gain, self.gamma):
+            self.gain, self.gamma = gain, gamma
+            if self.picture is not None:
+                self._render()
+
+    def value_at(self, u: float, v: float) -> str:
+        """The value of the pixel at (u, v) as text, "" outside."""
+        if self.picture is None:
+            return ""
+        column, row = (int(np.floor((x + 0.5) / self.scale_factor)) for x in (u, v))
+        rows, columns = self.picture.shape[:2]
+        if not (0 <= column < columns and 0 <= row < rows):
+            return ""
+        value = self.picture[row, column]
+        if value.ndim:
+            return " ".join(str(int(part)) for part in value)
+        return f"{value:.3g}" if value.dtype.kind == "f" else str(int(value))
+
+    def image(self) -> QImage:
+        """The picture as it is shown, full size."""
+        return self._image.copy()
+
+    def boundingRect(self) -> QRectF:
+        return self.rect
+
+    def paint(self, painter: QPainter, option: QStyleOptionGraphicsItem, widget: QWidget | None = None) -> None:
+        if self.picture is None:
+            return
+        device = widget.devicePixelRatioF() if widget is not None else 1.0
+        on_screen = abs(painter.worldTransform().m11()) * self.scale_factor * device
+        painter.setRenderHint(QPainter.RenderHint.SmoothPixmapTransform, on_screen < 1.0)
+        painter.drawImage(self.rect, self._fitting(on_screen))
+
+    def _fitting(self, on_screen: float) -> QImage:
+        """The picture, halved as often as it can be without losing what the screen can show."""
+        image, halvings = self._image, 0
+        while on_screen <= 0.5 and min(image.width(), image.height()) > 8:
+            if halvings == len(self._reduced):
+                self._reduced.append(
+                    image.scaled(
+                        image.width() // 2,
+                        image.height() // 2,
+                        Qt.AspectRatioMode.IgnoreAspectRatio,
+                        Qt.TransformationMode.SmoothTransformation,
+                    )
+                )
+            image, halvings, on_screen = self._reduced[halvings], halvings + 1, on_screen * 2
+        return image
+
+    def _render(self) -> None:
+        shown = np.clip(np.arange(256) / 255.0 * self.gain, 0.0, 1.0) ** (1.0 / self.gamma) * 255.0
+        tone = np.round(shown).astype(np.uint8)
+        rows, columns = self._grey.shape[:2]
+        if self._grey.ndim == 3:
+            coloured = tone[self._grey]
+            image = QImage(coloured.data, columns, rows, 3 * columns, QImage.Format.Format_RGB888)
+        else:
+            image = QImage(self._grey.data, columns, rows, columns, QImage.Format.Format_Indexed8)
+            image.setColorTable([0xFF000000 | int(grey) * 0x010101 for grey in tone])
+        self._image = image.convertToFormat(QImage.Format.Format_RGB32)
+        self._reduced = []
+        self.update()
+
+
+def _eight_bit(picture: NDArray[Any], levels: tuple[float, float] | None) -> NDArray[np.uint8]:
+    """Values between the levels as 0 … 255."""
+    if picture.dtype == np.uint8 and levels is None:
+        return picture
+    if picture.dtype == np.bool_:
+        return picture.astype(np.uint8) * np.uint8(255)
+    low, high = _levels(picture) if levels is None else levels
+    width = high - low if high > low else 1.0
+    if picture.dtype in (np.uint8, np.uint16):
+        values = np.arange(np.iinfo(picture.dtype).max + 1)
+        table = np.clip((values - low) * (255.0 / width), 0, 255).astype(np.uint8)
+        looked_up: NDArray[np.uint8] = np.take(table, picture)
+        return looked_up
+    scaled = np.clip((picture - low) * (255.0 / width), 0, 255)
+    return np.nan_to_num(scaled, nan=0.0, copy=False).astype(np.uint8)
+
+
+def _levels(picture: NDArray[Any]) -> tuple[float, float]:
+    """Black and white where none are given: a camera's 10, 12, 14 or 16 bits, or what a float picture holds."""
+    if picture.dtype == np.uint16:
+        brightest = int(picture.max())
+        return 0.0, float(next(white for white in _SIXTEEN_BIT_WHITES if brightest <= white))
+    finite = picture[np.isfinite(picture)]
+    return (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
