@@ -11,15 +11,18 @@ from pathlib import Path
 
 from core.errors import InputError
 
+ANOTHER_OUT = "choose another folder with --out"
+"""What to do on the command line where nothing can be written; a window says something else."""
+
 _REASONS = {
     errno.ENOSPC: ("the disk is full", "free some space or choose another folder, then run again"),
     errno.EDQUOT: ("your disk quota is used up", "free some space or choose another folder, then run again"),
     errno.EFBIG: ("the file system does not take a file of this size", "choose another folder"),
-    errno.EACCES: ("there is no permission to write here", "choose another folder with --out"),
-    errno.EPERM: ("there is no permission to write here", "choose another folder with --out"),
-    errno.EROFS: ("the disk is read-only", "choose another folder with --out"),
-    errno.ENOTDIR: ("a file stands where a folder is needed", "choose another folder with --out"),
-    errno.EEXIST: ("a file stands where a folder is needed", "choose another folder with --out"),
+    errno.EACCES: ("there is no permission to write here", ANOTHER_OUT),
+    errno.EPERM: ("there is no permission to write here", ANOTHER_OUT),
+    errno.EROFS: ("the disk is read-only", ANOTHER_OUT),
+    errno.ENOTDIR: ("a file stands where a folder is needed", ANOTHER_OUT),
+    errno.EEXIST: ("a file stands where a folder is needed", ANOTHER_OUT),
     errno.EISDIR: ("a folder stands where a file is to be written", "move it away or choose another folder"),
 }
 
@@ -81,5 +84,5 @@ def make_folder(path: Path) -> Path:
 
 def cannot_write(path: Path, error: OSError) -> InputError:
     """The sentence for a file or folder that could not be written."""
-    what, todo = _REASONS.get(error.errno or 0, (error.strerror or str(error), "choose another folder with --out"))
+    what, todo = _REASONS.get(error.errno or 0, (error.strerror or str(error), ANOTHER_OUT))
     return InputError(f"cannot be written, because {what}", where=path, todo=todo)

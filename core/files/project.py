@@ -14,6 +14,20 @@ from core.files.project_data import (
     Sources,
     new_project,
 )
+from core.files.project_folder import (
+    backups,
+    is_project,
+    project_from_set,
+    read_autosave,
+    read_project,
+    recoverable,
+    remove_autosave,
+    source_folder,
+    sources_of_set,
+    stored_source,
+    write_autosave,
+    write_project,
+)
 
 __all__ = [
     "Accepted",
@@ -25,5 +39,17 @@ __all__ = [
     "Repeat",
     "ReportChoices",
     "Sources",
+    "backups",
+    "is_project",
     "new_project",
+    "project_from_set",
+    "read_autosave",
+    "read_project",
+    "recoverable",
+    "remove_autosave",
+    "source_folder",
+    "sources_of_set",
+    "stored_source",
+    "write_autosave",
+    "write_project",
 ]

@@ -1,0 +1,200 @@
+"""A project's folder: project.json with its last versions, the autosaved state, and the folders of pictures.
+
+Layout::
+
+    PROJECT/project.json            the project
+    PROJECT/.autosave.json          changes that are not saved yet; there only while a project is open, or after a crash
+    PROJECT/backups/                the last versions of project.json
+    PROJECT/recordings/             raw frames, one folder for each recording
+    PROJECT/calibrations/           every calibration that was kept
+    PROJECT/results/                what was measured, as `trisect run` writes it
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from datetime import datetime
+from pathlib import Path
+
+from core.errors import InputError
+from core.files.atomic import ANOTHER_OUT, cannot_write, make_folder, write_bytes, write_text
+from core.files.project_data import Project, ProjectFile, ProjectInfo, Sources
+from core.files.project_json import project_text, read_project_text
+from core.files.recording_set import PARTS
+from core.files.rig import read_rig
+
+PROJECT = "project.json"
+AUTOSAVE = ".autosave.json"
+BACKUPS = "backups"
+KEPT = 5
+"""So many earlier versions of project.json are kept."""
+
+_BACKUP = re.compile(r"^project-(\d+)-\d{8}-\d{6}\.json$")
+_ELSEWHERE = "make the folder writable, or copy the project to another disk and open it there"
+
+
+def is_project(path: Path) -> bool:
+    """Whether `path` is the folder of a project, or the project.json in it."""
+    try:
+        return (path / PROJECT).is_file() or (path.name == PROJECT and path.is_file())
+    except OSError:  # a place that cannot even be looked at
+        return False
+
+
+def read_project(path: Path) -> ProjectFile:
+    """Read a project; `path` is its folder, or the project.json in it (or a version of it in backups).
+
+    Raises
+    ------
+    InputError
+        If there is none, it is damaged or of a newer program, or it has an unknown key or a wrong value; names the file
+        and the field.
+    """
+    file = _file_of(path)
+    if path.is_dir() and not file.exists():
+        raise InputError(f"there is no {PROJECT} here", where=path, todo="choose the folder of a project")
+    return read_project_text(file)
+
+
+def write_project(folder: Path, file: ProjectFile) -> None:
+    """Write project.json, whole or not at all; what it said before goes to backups. Left alone if it says the same.
+
+    `created` is kept from the version before, if `file` does not say; `saved` becomes now.
+
+    Raises
+    ------
+    InputError
+        If nothing can be written there, or a value is not what it must be.
+    """
+    path = folder / PROJECT
+    before = _readable(path)
+    if before == file:
+        return
+    now = datetime.now().astimezone()
+    created = file.created or (before.created if before else None) or now
+    text = project_text(replace(file, created=created, saved=now), path)
+    try:
+        make_folder(folder)
+        if path.exists():
+            _keep(folder / BACKUPS, path)
+        write_text(path, text)
+    except (InputError, OSError) as error:
+        raise _unsaved(path, error) from error
+
+
+def backups(folder: Path) -> tuple[Path, ...]:
+    """Earlier versions of project.json, the newest first; :func:`read_project` reads them."""
+    numbered = _numbered(folder / BACKUPS)
+    return tuple(numbered[number] for number in sorted(numbered, reverse=True))
+
+
+def write_autosave(folder: Path, file: ProjectFile) -> None:
+    """Write the state beside project.json, whole or not at all; InputError if it cannot be written."""
+    path = folder / AUTOSAVE
+    text = project_text(replace(file, saved=datetime.now().astimezone()), path)
+    try:
+        write_text(
+            path, text, sync=False
+        )  # outlives the program, if not the power supply; the disk need not be awaited
+    except InputError as error:
+        raise _unsaved(path, error) from error
+
+
+def read_autosave(folder: Path) -> ProjectFile | None:
+    """The autosaved state; None if there is none, InputError if it is damaged."""
+    path = folder / AUTOSAVE
+    return read_project_text(path) if path.exists() else None
+
+
+def remove_autosave(folder: Path) -> None:
+    """Remove the autosaved state, if there is one; InputError if it cannot be removed."""
+    path = folder / AUTOSAVE
+    try:
+        path.unlink(missing_ok=True)
+    except OSError as error:
+        raise _unsaved(path, error) from error
+
+
+def recoverable(folder: Path) -> ProjectFile | None:
+    """The autosaved state, if it says something else than project.json and is not older; else None.
+
+    A state that cannot be read counts as none: there is nothing to recover from it. Where project.json itself cannot be
+    read, the autosaved state is all there is.
+    """
+    autosaved, saved = _readable(folder / AUTOSAVE), _readable(folder / PROJECT)
+    if autosaved is None or autosaved == saved:
+        return None
+    if saved is None or saved.saved is None or autosaved.saved is None:
+        return autosaved
+    return autosaved if autosaved.saved >= saved.saved else None
+
+
+def stored_source(project_folder: Path, pictures: Path) -> str:
+    """How a project names a folder of pictures: relative inside the project's folder, in full elsewhere."""
+    full = pictures.resolve()
+    own = project_folder.resolve()
+    return full.relative_to(own).as_posix() if full.is_relative_to(own) else full.as_posix()
+
+
+def source_folder(project_folder: Path, stored: str) -> Path | None:
+    """The folder of pictures that a project names so; None where it names none."""
+    return project_folder / stored if stored else None
+
+
+def sources_of_set(folder: Path) -> Sources:
+    """The folders of pictures in a recording set, in full; nothing for a part that is not there."""
+    folders = {part: folder.resolve() / part for part in PARTS}
+    return Sources(**{part: path.as_posix() if path.is_dir() else "" for part, path in folders.items()})
+
+
+def project_from_set(folder: Path, name: str) -> Project:
+    """A project that measures a recording set where it lies; the part is called like the set.
+
+    Raises
+    ------
+    InputError
+        If rig.toml is missing or wrong.
+    """
+    rig = read_rig(folder / "rig.toml")
+    return Project(ProjectInfo(name=name, part=folder.resolve().name), rig, sources_of_set(folder))
+
+
+def _file_of(path: Path) -> Path:
+    return path / PROJECT if path.is_dir() else path
+
+
+def _readable(path: Path) -> ProjectFile | None:
+    """What a file says; None if it is not there or cannot be read."""
+    try:
+        return read_project_text(path)
+    except InputError:
+        return None
+
+
+def _unsaved(path: Path, error: InputError | OSError) -> InputError:
+    """Why nothing can be written, and what to do about it in a window, which has no --out."""
+    told = error if isinstance(error, InputError) else cannot_write(path, error)
+    todo = _ELSEWHERE if told.todo == ANOTHER_OUT else told.todo
+    return InputError(told.what, where=told.where, todo=todo)
+
+
+def _keep(folder: Path, path: Path) -> None:
+    """Copy project.json into the folder of its versions, and let go of the oldest ones."""
+    data = path.read_bytes()
+    make_folder(folder)
+    numbered = _numbered(folder)
+    newest = max(numbered, default=0)
+    if newest and numbered[newest].read_bytes() == data:
+        return  # kept by an attempt to save that failed afterwards
+    time = datetime.fromtimestamp(path.stat().st_mtime).astimezone()
+    write_bytes(folder / f"project-{newest + 1:05d}-{time:%Y%m%d-%H%M%S}.json", data, sync=False)
+    for number in sorted(numbered)[: len(numbered) + 1 - KEPT]:
+        numbered[number].unlink(missing_ok=True)
+
+
+def _numbered(folder: Path) -> dict[int, Path]:
+    if not folder.is_dir():
+        return {}
+    found = ((path, _BACKUP.match(path.name)) for path in folder.iterdir())
+    return {int(match[1]): path for path, match in found if match}
