@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.calibrate.coverage import picture_cells
-from core.calibrate.missing import ViewGeometry, stand_in_camera, view_geometry, what_is_missing
+from core.calibrate.missing import ViewGeometry, missing_from, stand_in_camera, view_geometry, what_is_missing
 from core.image.target_view import TargetView
 from core.model import Camera
 from core.model.arrays import Array
@@ -124,7 +124,7 @@ class CaptureJudge:
 
     def missing(self) -> tuple[str, ...]:
         """What the views taken so far lack, in words."""
-        return what_is_missing(self.views, self._image_size, self._camera)
+        return missing_from(self.views, [geometry for _, geometry in self._taken], self._image_size)
 
     def _just_taken(self, time_s: float) -> str:
         return "Taken." if 0 <= time_s - self._taken_at < _SHOWN_FOR_S else ""

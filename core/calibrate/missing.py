@@ -76,19 +76,26 @@ def what_is_missing(
 
     `camera` tells the tilts; without it, a usual one does (they come out right within some degrees).
     """
+    camera = camera or stand_in_camera(image_size)
+    return missing_from(views, [view_geometry(view, camera) for view in views], image_size)
+
+
+def missing_from(
+    views: Sequence[TargetView], geometries: Sequence[ViewGeometry | None], image_size: tuple[int, int]
+) -> tuple[str, ...]:
+    """The same, with what is known already of how the target stands in each view."""
+    if not views:
+        return (f"Record at least {ENOUGH_VIEWS} views; there is none.",)
     sentences: list[str] = []
     if len(views) < ENOUGH_VIEWS:
         there = f"there is {len(views)}" if len(views) == 1 else f"there are {len(views)}"
-        sentences.append(f"Record at least {ENOUGH_VIEWS} views; {there if views else 'there is none'}.")
-    if not views:
-        return tuple(sentences)
+        sentences.append(f"Record at least {ENOUGH_VIEWS} views; {there}.")
     empty = empty_regions(np.concatenate([view.uv for view in views]), image_size)
     if empty:
         sentences.append(f"No view reaches the {_listed([_PLACES[name] for name in empty])} of the picture.")
-    known = (view_geometry(view, camera or stand_in_camera(image_size)) for view in views)
-    geometries = [geometry for geometry in known if geometry is not None]
-    if len(geometries) > 1:
-        sentences += _on_tilts(geometries)
+    known = [geometry for geometry in geometries if geometry is not None]
+    if len(known) > 1:
+        sentences += _on_tilts(known)
     return tuple(sentences[:MOST_SENTENCES])
 
 

@@ -179,9 +179,7 @@ class ScanDetail:
     stage
         What is going on.
     preview
-        Of that frame; None without calibrations or before the scan.
-    stripe
-        The sweep's centrelines when there is no preview.
+        Of that frame; None before there is one. Without calibrations it has the stripe's centrelines only, sigma_mm ().
     fan_lines
         The fan's centrelines by line number, as far as settled; what is not settled is in none.
     cells, lit
@@ -196,7 +194,6 @@ class ScanDetail:
     index: int
     stage: ScanStage
     preview: FramePreview | None
-    stripe: tuple[Centreline, ...]
     fan_lines: tuple[tuple[Centreline, ...], ...]
     cells: NDArray[np.bool_]
     lit: NDArray[np.bool_]

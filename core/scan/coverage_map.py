@@ -6,7 +6,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from core.model.arrays import Array
+
+Pixels = NDArray[np.float64] | NDArray[np.float32]
 
 CELLS_ACROSS = 96
 
@@ -24,12 +25,12 @@ class CoverageMap:
         self.cells: NDArray[np.bool_] = np.zeros((self._rows, self._columns), dtype=np.bool_)
         self.lit: NDArray[np.bool_] = np.zeros_like(self.cells)
 
-    def add(self, uv: Array) -> None:
+    def add(self, uv: Pixels) -> None:
         """Points were measured at `uv` (N, 2) in pixels."""
         self._mark(self.cells, uv)
         self._mark(self.lit, uv)
 
-    def add_lit(self, uv: Array) -> None:
+    def add_lit(self, uv: Pixels) -> None:
         """Light was seen at `uv` (N, 2) in pixels, whether it could be measured or not."""
         self._mark(self.lit, uv)
 
@@ -44,6 +45,6 @@ class CoverageMap:
         cv2.fillConvexPoly(hull, corners, 1)
         return float(np.count_nonzero(self.cells & (hull > 0)) / np.count_nonzero(hull))
 
-    def _mark(self, grid: NDArray[np.bool_], uv: Array) -> None:
+    def _mark(self, grid: NDArray[np.bool_], uv: Pixels) -> None:
         where = ((np.asarray(uv, dtype=np.float64) + 0.5) * self._per_px).astype(np.intp)
         grid[np.clip(where[:, 1], 0, self._rows - 1), np.clip(where[:, 0], 0, self._columns - 1)] = True

@@ -18,7 +18,7 @@ from core.model import Camera, Fan
 from core.model.arrays import Array
 from core.scan.crossing_marks import CrossingMarks, mark_crossings
 from core.scan.crossings import CrossingWindow
-from core.scan.fan_lines import UNASSIGNED
+from core.scan.fan_lines import UNASSIGNED, FanLines
 from core.scan.features import FrameFeatures, ReferenceFeatures
 from core.scan.frame_preview import FramePreview, empty_preview
 from core.scan.hints import HandState, HintLimits, hints_for
@@ -46,11 +46,16 @@ class Preview:
     """
 
     def __init__(
-        self, reference: ReferenceFeatures, camera: Camera, fan: Fan, options: PreviewOptions | None = None
+        self,
+        reference: ReferenceFeatures,
+        camera: Camera,
+        fan: Fan,
+        options: PreviewOptions | None = None,
+        lines: FanLines | None = None,
     ) -> None:
         self._options = options = options or PreviewOptions()
         self._camera, self._fan, self._reference = camera, fan, reference
-        self._tracker = SweepTracker(reference.fan, camera, fan, options.window)
+        self._tracker = SweepTracker(reference.fan, camera, fan, options.window, lines=lines)
         self._thin_fan = [piece.select(slice(None, None, options.thin)) for piece in reference.fan]
         self._fan_rays = [StripeRays.of(-1, [piece], camera) for piece in self._thin_fan]
         self._stripes: dict[int, StripeRays] = {}

@@ -61,7 +61,7 @@ class TrackedSweep:
 class SweepTracker:
     """Locates sweeps one after another.
 
-    `lines` are the numbers of the fan's centrelines as far as they are settled.
+    `lines` are the numbers of the fan's centrelines as far as they are settled; given at first, they stay.
     """
 
     def __init__(
@@ -72,12 +72,13 @@ class SweepTracker:
         window: CrossingWindow,
         most_anchors: int = 40,
         stride_px: float = 6.0,
+        lines: FanLines | None = None,
     ) -> None:
         self._fixed = shaded(fan_pieces)
         self._camera, self._fan, self._window = camera, fan, window
-        self._numberings = possible_fan_lines(fan_pieces, camera, fan)
+        self._numberings = (lines,) if lines else possible_fan_lines(fan_pieces, camera, fan)
         self.lines: FanLines = self._numberings[0]
-        self._chosen_alike = 0
+        self._chosen_alike = SURE_AFTER if lines else 0
         self._sweeps: list[TrackedSweep] = []
         self._anchors: dict[int, ShadedLines] = {}
         self._last_anchor: Sequence[Centreline] = ()

@@ -1,0 +1,121 @@
+"""Live views of the camera's target: found in the picture, judged, and taken when they add something."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from core.acquire.source import Frame, Lasers
+from core.calibrate.capture import CaptureJudge
+from core.errors import InputError
+from core.image.sharpness import edge_blur_px
+from core.image.target_view import TargetView
+from core.image.targets import Target, detect
+from core.live.events import Auto, CameraDetail, Capture, Command, Discard
+from core.model import Camera
+from core.pipeline.live_desk import Desk, as_sentence
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Look:
+    """What one frame shows of a target: the view and how blurred its edges are, or why there is none."""
+
+    frame: Frame
+    view: TargetView | None
+    blur_px: float = float("nan")
+    why_not: str = ""
+
+
+def look_for_target(frame: Frame, target: Target, camera: Camera | None) -> Look:
+    """Find `target` in a frame."""
+    try:
+        view = detect(target, frame.picture, "", camera)
+    except InputError as error:
+        return Look(frame, None, why_not=as_sentence(error.what))
+    return Look(frame, view, edge_blur_px(frame.picture, view.uv))
+
+
+class LiveCamera:
+    """The camera step of a live recording."""
+
+    paired = False
+
+    def __init__(self, desk: Desk) -> None:
+        self._desk = desk
+        self._auto, self._capture = desk.request.auto, False
+        self._judge: CaptureJudge | None = None
+        self._look: Look | None = None
+        self._sentence = ""
+        self._missing: tuple[str, ...] = ()
+        self._number = 0
+
+    def begin(self) -> None:
+        """Lasers off."""
+        self._desk.switch(Lasers(fan=False, hand=False))
+
+    def frame(self, frame: Frame) -> None:
+        """Look for the target, if the last look is over."""
+        if self._judge is None:
+            height, width = frame.picture.shape
+            self._judge = CaptureJudge((width, height), self._desk.request.camera)
+            self._missing = self._judge.missing()
+        self._desk.worker.start(look_for_target, frame, self._desk.request.rig.camera_target, self._desk.request.camera)
+
+    def poll(self) -> Frame | None:
+        """Judge what has been seen, and take it."""
+        look = self._desk.worker.take()
+        if not isinstance(look, Look) or self._judge is None:
+            return None
+        verdict = self._judge.judge(look.view, look.blur_px, look.frame.time_s, look.why_not)
+        self._look, self._sentence = look, verdict.sentence
+        if look.view is not None and (self._capture or (verdict.take and self._auto)):
+            self._take(look.frame, look.view, self._judge)
+        elif self._capture:
+            self._desk.notice(f"Nothing was taken. {look.why_not}")
+        elif verdict.take:
+            self._sentence = "Press Capture to take this view."
+        self._capture = False
+        return look.frame
+
+    def detail(self) -> CameraDetail | None:
+        """What was seen last."""
+        if self._look is None or self._judge is None:
+            return None
+        view = self._look.view
+        return CameraDetail(
+            index=self._look.frame.index,
+            uv=None if view is None else view.uv,
+            sentence=self._sentence,
+            cells=self._judge.cells,
+            missing=self._missing,
+            views=len(self._judge.views),
+            auto=self._auto,
+        )
+
+    def tell(self, command: Command) -> None:
+        """Capture, Auto and Discard."""
+        match command:
+            case Capture():
+                self._capture = True
+            case Auto(on):
+                self._auto = on
+            case Discard(name) if self._judge is not None and self._desk.put_aside(name):
+                self._judge.forget(name)
+                self._missing = self._judge.missing()
+                self._desk.recorded -= 1
+
+    def finish(self) -> None:
+        """All is on the disk already."""
+
+    def _take(self, frame: Frame, view: TargetView, judge: CaptureJudge) -> None:
+        name = f"view{self._number:02d}"
+        self._number += 1
+        self._desk.write(name, frame.picture)
+        self._desk.recorded += 1
+        judge.taken(named(view, name), frame.time_s)
+        self._sentence, self._missing = "Taken.", judge.missing()
+        self._desk.took(name, frame.picture)
+
+
+def named(view: TargetView, name: str) -> TargetView:
+    """The view under another name."""
+    return TargetView(view.points, view.uv, view.sigma, name)

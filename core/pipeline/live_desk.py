@@ -1,0 +1,151 @@
+"""What the steps of a live recording share: the source's lasers, the folder, the events, and a second pair of hands."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import Future, ThreadPoolExecutor
+from typing import Any, Protocol
+
+from core.acquire.source import Frame, FrameSource, Lasers, Picture
+from core.files.pictures import write_picture
+from core.live.events import (
+    Command,
+    Detail,
+    LiveAnswered,
+    LiveAsk,
+    LiveEvent,
+    LiveNotice,
+    LiveRequest,
+    LiveTaken,
+)
+from core.pipeline.live_display import Display
+
+THUMBNAIL_PX = 240
+DISCARDED = "discarded"
+"""Folder within the recording for what was put aside."""
+
+
+class LiveStep(Protocol):
+    """What camera, planes and scan do with the frames of a live source."""
+
+    @property
+    def paired(self) -> bool:
+        """Whether a picture is only worth showing together with what was found in it."""
+
+    def begin(self) -> None:
+        """The source is open."""
+
+    def frame(self, frame: Frame) -> None:
+        """A frame has come: record it if it is to be recorded, and have it looked at if there is time."""
+
+    def poll(self) -> Frame | None:
+        """See whether a frame has been looked at; the frame that `detail` is about now, if that is news."""
+
+    def detail(self) -> Detail | None:
+        """What is known now; asked for when it is really shown."""
+
+    def tell(self, command: Command) -> None:
+        """A command that is not for the loop itself."""
+
+    def finish(self) -> None:
+        """No frame comes any more: have everything on the disk."""
+
+
+class Worker:
+    """Does one thing at a time on a thread of its own; whoever comes while it is busy is turned away."""
+
+    def __init__(self) -> None:
+        self._pool = ThreadPoolExecutor(1, thread_name_prefix="live")
+        self._job: Future[Any] | None = None
+
+    @property
+    def busy(self) -> bool:
+        """Whether a job runs, or its result has not been taken."""
+        return self._job is not None
+
+    def start(self, job: Callable[..., Any], *args: Any) -> bool:
+        """Begin `job(*args)`; False if something else is being done."""
+        if self._job is not None:
+            return False
+        self._job = self._pool.submit(job, *args)
+        return True
+
+    def take(self, timeout_s: float = 0.0) -> Any | None:
+        """The result of the job if it is done, once, else None; raises what the job raised."""
+        job = self._job
+        if job is None or not (job.done() or timeout_s > 0):
+            return None
+        try:
+            return job.result(timeout_s)
+        except TimeoutError:
+            if job.done():
+                raise
+            return None
+        finally:
+            if job.done():
+                self._job = None
+
+    def close(self) -> None:
+        """Take no more jobs; one that runs ends by itself, nobody waits for it."""
+        self._pool.shutdown(wait=False, cancel_futures=True)
+
+
+class Desk:
+    """What every step works with.
+
+    `recorded` counts what is on the disk, `lost` frames the disk was too slow for.
+    """
+
+    def __init__(self, request: LiveRequest, source: FrameSource, emit: Callable[[LiveEvent], None]) -> None:
+        self.request, self.source, self.emit = request, source, emit
+        self.worker = Worker()
+        self.recorded = self.lost = 0
+        self.lasers = Lasers(fan=False, hand=False)
+        self._asking = False
+        self._told = ""
+
+    def switch(self, lasers: Lasers) -> bool:
+        """Want the lasers like this from now on; True if the source switches them itself."""
+        self.lasers = lasers
+        return self.source.lasers(lasers)
+
+    def ask(self, sentence: str, button: str, answer: Command) -> None:
+        """Ask a person to do something."""
+        self._asking = True
+        self.emit(LiveAsk(sentence, button, answer))
+
+    def answered(self) -> None:
+        """What was asked for is done."""
+        if self._asking:
+            self._asking = False
+            self.emit(LiveAnswered())
+
+    def notice(self, sentence: str) -> None:
+        """Tell a sentence, but not the same one twice in a row."""
+        if sentence != self._told:
+            self._told = sentence
+            self.emit(LiveNotice(sentence))
+
+    def write(self, name: str, picture: Picture) -> None:
+        """Write a picture of this name (without ending); InputError if the disk is full."""
+        write_picture(self.request.folder / f"{name}.png", picture)
+
+    def took(self, name: str, picture: Picture) -> None:
+        """A view, pose or reference is on the disk."""
+        self._told = ""
+        self.emit(LiveTaken(name, Display(THUMBNAIL_PX).reduced(picture)[0]))
+
+    def put_aside(self, *names: str) -> bool:
+        """Move pictures (names without ending) out of the recording; False if there is none of them."""
+        there = [path for name in names if (path := self.request.folder / f"{name}.png").exists()]
+        if there:
+            aside = self.request.folder / DISCARDED
+            aside.mkdir(exist_ok=True)
+            for path in there:
+                path.replace(aside / path.name)
+        return bool(there)
+
+
+def as_sentence(what: str) -> str:
+    """The words of an InputError as a sentence of their own."""
+    return f"{what[:1].upper()}{what[1:]}."

@@ -1,0 +1,181 @@
+"""Live poses of the plane target: the fan on it, taken with the fan on and off when the target is still and sharp."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from core.acquire.source import Frame, Lasers, Picture
+from core.calibrate.capture import CaptureJudge
+from core.image.target_view import TargetView
+from core.live.events import Auto, Capture, Command, Discard, PlanesDetail
+from core.pipeline.live_camera import named
+from core.pipeline.live_desk import Desk, as_sentence
+from core.pipeline.live_pose import MeasuredPair, PoseLook, look_at_pose, measure_pair, settings_of
+
+STALE_FRAMES = 2
+"""So many frames after the fan was switched may still have been exposed before."""
+
+MOST_TRIES = 5
+"""So many pictures with the fan off are tried before a pose is given up."""
+
+_FAN_ON, _FAN_OFF = Lasers(fan=True, hand=False), Lasers(fan=False, hand=False)
+
+Stage = Literal["looking", "asking", "second picture"]
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class _Pending:
+    """A pose being taken: its picture with the fan on and what that shows."""
+
+    on: Frame
+    view: TargetView
+    tries: int = 0
+
+
+class LivePlanes:
+    """The planes step of a live recording."""
+
+    paired = False
+
+    def __init__(self, desk: Desk) -> None:
+        self._desk, request = desk, desk.request
+        self._target, self._camera, self._lines = request.rig.plane_target, request.camera, request.rig.lines
+        self._auto, self._capture = request.auto, False
+        self._settings = request.options.stripe
+        self._judge: CaptureJudge | None = None
+        self._look: PoseLook | None = None
+        self._stage: Stage = "looking"
+        self._pending: _Pending | None = None
+        self._skip = 0
+        self._sentence = ""
+        self._missing: tuple[str, ...] = ()
+        self._number = 0
+
+    def begin(self) -> None:
+        """The fan on."""
+        if not self._desk.switch(_FAN_ON if self._stage != "second picture" else _FAN_OFF):
+            self._desk.notice("Switch the three-line laser on, and the hand-held laser off.")
+        self._skip = STALE_FRAMES
+
+    def frame(self, frame: Frame) -> None:
+        """Look at the pose, or take the picture with the fan off."""
+        if self._judge is None:
+            height, width = frame.picture.shape
+            self._judge = CaptureJudge((width, height), self._camera)
+            self._missing = self._judge.missing()
+        if self._skip > 0:
+            self._skip -= 1
+        elif self._stage == "looking":
+            self._desk.worker.start(look_at_pose, frame, self._target, self._camera, self._settings, self._lines)
+        elif self._stage == "second picture" and self._pending is not None:
+            self._measure(self._pending, frame.picture)
+
+    def poll(self) -> Frame | None:
+        """See what has been found, and take the pose."""
+        result = self._desk.worker.take()
+        if isinstance(result, MeasuredPair) and self._pending is not None and self._judge is not None:
+            self._finish_pair(self._pending, result, self._judge)
+        elif isinstance(result, PoseLook) and self._stage == "looking" and self._judge is not None:
+            self._judged(result, self._judge)
+            return result.frame
+        return None
+
+    def detail(self) -> PlanesDetail | None:
+        """What was seen last."""
+        look = self._look
+        if look is None or self._judge is None:
+            return None
+        return PlanesDetail(
+            index=look.frame.index,
+            uv=None if look.pose.view is None else look.pose.view.uv,
+            stripes=look.stripes,
+            line=look.line,
+            sentence=self._sentence,
+            cells=self._judge.cells,
+            missing=self._missing,
+            poses=len(self._judge.views),
+            auto=self._auto,
+        )
+
+    def tell(self, command: Command) -> None:
+        """Capture, Auto and Discard."""
+        match command:
+            case Capture() if self._stage == "asking":
+                self._desk.answered()
+                self._stage, self._skip = "second picture", STALE_FRAMES
+            case Capture():
+                self._capture = True
+            case Auto(on):
+                self._auto = on
+            case Discard(name) if self._judge is not None and self._desk.put_aside(name, f"{name}_off"):
+                self._judge.forget(name)
+                self._missing = self._judge.missing()
+                self._desk.recorded -= 1
+
+    def finish(self) -> None:
+        """All is on the disk already."""
+
+    def _judged(self, look: PoseLook, judge: CaptureJudge) -> None:
+        view, pose = look.pose.view, look.pose
+        why_not = "" if view is not None else as_sentence(pose.reason)
+        verdict = judge.judge(view, look.blur_px, look.frame.time_s, why_not)
+        self._look, self._sentence = look, verdict.sentence
+        if pose.centrelines and self._settings is None:
+            self._settings = settings_of(pose)
+        if view is not None and not pose.centrelines:
+            why_not = self._sentence = "The fan's light is not seen on the target."
+        by_itself = verdict.take and self._auto and not why_not
+        if view is not None and not why_not and (self._capture or by_itself):
+            self._begin_pair(look.frame, view)
+        elif self._capture:
+            self._desk.notice(f"Nothing was taken. {why_not}")
+        elif verdict.take and not why_not:
+            self._sentence = "Press Capture to take this pose."
+        self._capture = False
+
+    def _begin_pair(self, frame: Frame, view: TargetView) -> None:
+        """The picture with the fan on is taken; now the one with the fan off, if there is to be one."""
+        self._pending = _Pending(frame, view)
+        self._sentence = "Hold still."
+        if not self._desk.request.pairs:
+            self._measure(self._pending, None)
+            return
+        if self._desk.switch(_FAN_OFF):
+            self._stage, self._skip = "second picture", STALE_FRAMES
+            return
+        self._stage = "asking"
+        self._desk.ask(
+            "Leave the target as it is, switch the three-line laser off, then press Continue.", "Continue", Capture()
+        )
+
+    def _measure(self, pending: _Pending, off: Picture | None) -> None:
+        name, on = self._name(), pending.on.picture
+        self._desk.worker.start(measure_pair, name, on, off, self._target, self._camera, self._settings)
+
+    def _finish_pair(self, pending: _Pending, pair: MeasuredPair, judge: CaptureJudge) -> None:
+        """Keep the pose, try another picture, or say why it is of no use."""
+        reason, off = pair.features.reason, pair.off
+        still_on = off is not None and pair.features.view is not None and not pair.features.centrelines
+        if reason and still_on and "moved" not in reason and pending.tries < MOST_TRIES:
+            self._pending = _Pending(pending.on, pending.view, pending.tries + 1)
+            return
+        name = self._name()
+        if reason:
+            self._desk.notice(f"The pose was not taken: {reason}.")
+        else:
+            self._desk.write(name, pending.on.picture)
+            if off is not None:
+                self._desk.write(f"{name}_off", off)
+            self._number += 1
+            self._desk.recorded += 1
+            judge.taken(named(pending.view, name), pending.on.time_s)
+            self._sentence, self._missing = "Taken.", judge.missing()
+            self._desk.took(name, pending.on.picture)
+        self._pending, self._stage = None, "looking"
+        if off is not None and not self._desk.switch(_FAN_ON):
+            self._desk.notice("Switch the three-line laser on again, and hold the target another way.")
+        self._skip = STALE_FRAMES
+
+    def _name(self) -> str:
+        return f"pose{self._number:02d}"

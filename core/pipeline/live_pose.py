@@ -1,0 +1,95 @@
+"""What live pictures of the plane target show: its corners, the fan's stripes on it, and which line each is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.acquire.source import Frame, Picture
+from core.calibrate.plane_pose import PoseFeatures, measure_plane_pose
+from core.calibrate.stripe_lines import straight_lines
+from core.image.sharpness import edge_blur_px
+from core.image.stripe import WIDTH_IN_SIGMA, StripeSettings
+from core.image.targets import Target
+from core.model import Camera
+from core.model.arrays import Array
+
+NUMBERING_UNCLEAR = -1
+
+_THIN = 3  # points of a stripe for display
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class PoseLook:
+    """What one frame with the fan on shows: the pose's features, edge blur, and for each stripe its likely line."""
+
+    frame: Frame
+    pose: PoseFeatures
+    blur_px: float
+    stripes: tuple[Array, ...]
+    line: tuple[int, ...]
+
+
+def look_at_pose(
+    frame: Frame, target: Target, camera: Camera | None, settings: StripeSettings | None, lines: int
+) -> PoseLook:
+    """Find the target and the stripes on it in one frame."""
+    pose = measure_plane_pose("", frame.picture, None, target, camera, settings)
+    if pose.view is None:
+        return PoseLook(frame, pose, float("nan"), (), ())
+    stripes, line = _numbered_stripes(pose, camera, lines)
+    return PoseLook(frame, pose, edge_blur_px(frame.picture, pose.view.uv), stripes, line)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class MeasuredPair:
+    """A pose read from its pictures, ready to be kept or not."""
+
+    features: PoseFeatures
+    off: Picture | None
+
+
+def measure_pair(
+    name: str, on: Picture, off: Picture | None, target: Target, camera: Camera | None, settings: StripeSettings | None
+) -> MeasuredPair:
+    """Read a pose as its calibration will."""
+    return MeasuredPair(measure_plane_pose(name, on, off, target, camera, settings), off)
+
+
+def _numbered_stripes(
+    pose: PoseFeatures, camera: Camera | None, lines: int
+) -> tuple[tuple[Array, ...], tuple[int, ...]]:
+    """The stripes on the target, and the line each is likely to be: in order from the top, or from the left if steep.
+
+    Where there are not as many straight stripes as the fan has lines, none has a number.
+    """
+    if camera is None or pose.view is None:
+        stripes = tuple(piece.uv[::_THIN] for piece in pose.centrelines)
+        return stripes, (NUMBERING_UNCLEAR,) * len(stripes)
+    low, high = pose.view.uv.min(axis=0), pose.view.uv.max(axis=0)
+    margin = 0.5 * (high - low)
+    inside = []
+    for piece in pose.centrelines:
+        near = np.all((piece.uv > low - margin) & (piece.uv < high + margin), axis=1)
+        if np.count_nonzero(near) > 1:
+            inside.append(piece.select(near))
+    straight = straight_lines(inside, camera, limit=2 * lines)
+    if not straight:
+        stripes = tuple(piece.uv[::_THIN] for piece in inside)
+        return stripes, (NUMBERING_UNCLEAR,) * len(stripes)
+    across = np.mean([np.abs(line.across) for line in straight], axis=0)
+    axis = 0 if across[0] > across[1] else 1
+    ordered = sorted(straight, key=lambda line: float(np.median(line.uv[:, axis])))
+    known = len(ordered) == lines
+    return (
+        tuple(line.uv[::_THIN] for line in ordered),
+        tuple(k if known else NUMBERING_UNCLEAR for k in range(len(ordered))),
+    )
+
+
+def settings_of(pose: PoseFeatures) -> StripeSettings:
+    """Width and contrast of the stripes found, so that they need not be looked for in each picture."""
+    width = float(np.median(np.concatenate([piece.width for piece in pose.centrelines])))
+    strength = float(np.quantile(np.concatenate([piece.strength for piece in pose.centrelines]), 0.2))
+    return StripeSettings(WIDTH_IN_SIGMA * width, strength)

@@ -1,0 +1,103 @@
+"""The preview of a live scan: pictures in, what is shown of them out. Called from one thread beside the recording."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from core.acquire.source import Frame, Picture
+from core.files.options import Options
+from core.image.centreline import Centreline
+from core.image.stripe import StripeSettings
+from core.model import Camera, Fan
+from core.scan.features import FeatureOptions, FrameReader, ReferenceFeatures, choose_sweep_stripe, read_reference
+from core.scan.frame_preview import FramePreview, empty_preview
+from core.scan.preview import Preview
+from core.scan.preview_cloud import PreviewCloud
+
+SETTINGS_FROM = 3
+"""The stripe's width and contrast are looked for anew in so many frames that show it, and then kept."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class PreviewedFrame:
+    """A frame and what is shown of it."""
+
+    frame: Frame
+    preview: FramePreview
+
+
+@dataclass(frozen=True, slots=True)
+class PreviewFailed:
+    """The preview has come to its end, and why; the recording goes on."""
+
+    sentence: str
+
+
+class ScanPreviewer:
+    """Looks at the reference and then at frames, one at a time.
+
+    Without a calibrated camera and fan it shows stripes only. An error nobody thought of ends the preview, never the
+    recording.
+    """
+
+    def __init__(self, camera: Camera | None, fan: Fan | None, options: Options) -> None:
+        self._camera, self._fan, self._options = camera, fan, options
+        self._reference: ReferenceFeatures | None = None
+        self._preview: Preview | None = None
+        self._seen: list[StripeSettings] = []
+        self._failed = False
+
+    @property
+    def fan_lines(self) -> tuple[tuple[Centreline, ...], ...]:
+        """The fan's centrelines by line number, as far as settled; without calibration all in one."""
+        if self._preview is not None:
+            return self._preview.fan_lines
+        return () if self._reference is None else (self._reference.fan,)
+
+    def fan_cloud(self) -> PreviewCloud:
+        """The fan's own points."""
+        return PreviewCloud.joined([]) if self._preview is None else self._preview.cloud()
+
+    def read_reference(self, picture: Picture) -> Picture:
+        """Get ready with this reference, and return it.
+
+        Raises
+        ------
+        InputError
+            If it shows no line of the fan.
+        """
+        stripe = self._options.stripe
+        self._reference = read_reference(picture, FeatureOptions(fan_stripe=stripe))
+        if self._camera is not None and self._fan is not None:
+            self._preview = Preview(self._reference, self._camera, self._fan)
+        return picture
+
+    def look(self, index: int, name: str, frame: Frame) -> PreviewedFrame | PreviewFailed | None:
+        """What frame number `index` of the recording shows."""
+        if self._reference is None or self._failed:
+            return None
+        try:
+            return PreviewedFrame(frame, self._shown(self._reference, index, name, frame.picture))
+        except Exception as error:  # noqa: BLE001  a preview is never worth a recording
+            self._failed = True
+            return PreviewFailed(
+                f"The preview has stopped because of an error in it ({type(error).__name__}: {error}). "
+                "The frames are recorded all the same."
+            )
+
+    def _shown(self, reference: ReferenceFeatures, index: int, name: str, picture: Picture) -> FramePreview:
+        features = FrameReader(reference, self._stripe(reference, picture))((index, (name, picture)))
+        if self._preview is not None:
+            return self._preview(features)
+        return replace(empty_preview(index, name, features.reason), centrelines=features.centrelines)
+
+    def _stripe(self, reference: ReferenceFeatures, picture: Picture) -> StripeSettings | None:
+        """Width and contrast as given, or as the first frames show them."""
+        if self._options.stripe is not None:
+            return self._options.stripe
+        if len(self._seen) < SETTINGS_FROM:
+            found = choose_sweep_stripe([("", picture)], reference)
+            if found is None:
+                return None
+            self._seen.append(found)
+        return sorted(self._seen, key=lambda stripe: stripe.contrast)[len(self._seen) // 2]

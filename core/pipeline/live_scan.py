@@ -1,0 +1,227 @@
+"""A live scan: the reference first, then every frame to the disk, and as many as there is time for to the preview."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Protocol
+
+import numpy as np
+
+from core.acquire.source import Frame, Lasers, Picture
+from core.errors import InputError
+from core.live.events import Command, Pause, Resume, ScanDetail, ScanStage, TakeReference
+from core.pipeline.live_desk import Desk
+from core.pipeline.live_preview import PreviewedFrame, PreviewFailed, ScanPreviewer
+from core.scan.coverage_map import CoverageMap
+from core.scan.frame_preview import FramePreview
+from core.scan.preview_cloud import PreviewCloud
+
+REFERENCE = "reference"
+
+STALE_FRAMES = 2
+"""So many frames after a laser was switched may still have been exposed before."""
+
+STILL_SHARE = 2e-4
+"""Two pictures of a scene at rest differ in no larger share of their pixels."""
+STILL_LEVELS = 0.12
+"""A pixel differs if it does by more than this share of the largest grey level."""
+
+_FAN_ALONE, _BOTH = Lasers(fan=True, hand=False), Lasers(fan=True, hand=True)
+
+
+class FrameStore(Protocol):
+    """Writes frames without keeping anybody waiting (core.files.recorder.Recorder)."""
+
+    @property
+    def written(self) -> int:
+        """How many are on the disk."""
+
+    def write(self, name: str, picture: Picture) -> bool:
+        """Take a picture to be written; False if the disk is too slow."""
+
+    def close(self) -> None:
+        """Wait until all are on the disk."""
+
+
+class LiveScan:
+    """The scan step of a live recording."""
+
+    def __init__(self, desk: Desk, store: FrameStore) -> None:
+        self._desk, self._store, request = desk, store, desk.request
+        self._previewer = ScanPreviewer(request.camera, request.fan, request.options)
+        self._stage: ScanStage = "reference"
+        self._self_switching = False
+        self._looking = self._forced = False
+        self._before: Picture | None = None
+        self._skip = 0
+        self._number = 0
+        self._preview: FramePreview | None = None
+        self._coverage: CoverageMap | None = None
+        self._new: list[PreviewCloud] = []
+        self._renewed = False
+
+    @property
+    def paired(self) -> bool:
+        """While scanning: a stripe drawn beside its light would look wrong."""
+        return self._stage == "scanning"
+
+    def begin(self) -> None:
+        """The lasers as they must be now; the reference, if there is none yet."""
+        self._self_switching = self._desk.switch(_FAN_ALONE if self._stage == "reference" else _BOTH)
+        self._skip, self._before = STALE_FRAMES, None
+        if self._stage != "reference":
+            return
+        if self._self_switching:
+            self._looking = True
+        elif not self._looking:
+            self._ask_for_reference()
+
+    def frame(self, frame: Frame) -> None:
+        """Record the frame, and have it looked at if there is time."""
+        if self._coverage is None:
+            height, width = frame.picture.shape
+            self._coverage = CoverageMap((width, height))
+        if self._skip > 0:
+            self._skip -= 1
+            return
+        if self._stage == "reference" and self._looking:
+            self._try_reference(frame.picture)
+        elif self._stage == "scanning":
+            name = f"frame{self._number:05d}"
+            if not self._store.write(name, frame.picture):
+                self._desk.lost += 1
+                return
+            self._desk.worker.start(self._previewer.look, self._number, name, frame)
+            self._number += 1
+            self._desk.recorded += 1
+
+    def poll(self) -> Frame | None:
+        """See what has become of the reference or the frame that was looked at."""
+        try:
+            result = self._desk.worker.take()
+        except InputError as error:  # the reference shows no fan
+            self._refused(str(error))
+            return None
+        match result:
+            case PreviewFailed(sentence):
+                self._desk.notice(sentence)
+            case PreviewedFrame(frame, preview):
+                self._add(preview)
+                return frame
+            case np.ndarray() if self._stage == "reference":
+                self._accept(result)
+        return None
+
+    def detail(self) -> ScanDetail | None:
+        """The last preview, and all points since the last time this was asked for."""
+        if self._coverage is None:
+            return None
+        points, renewed = PreviewCloud.joined(self._new), self._renewed
+        self._new, self._renewed = [], False
+        return ScanDetail(
+            index=-1 if self._preview is None else self._preview.index,
+            stage=self._stage,
+            preview=self._preview,
+            fan_lines=self._previewer.fan_lines,
+            cells=self._coverage.cells.copy(),
+            lit=self._coverage.lit.copy(),
+            share=self._coverage.share,
+            points=points,
+            renewed=renewed,
+        )
+
+    def tell(self, command: Command) -> None:
+        """TakeReference, Pause and Resume."""
+        match command:
+            case TakeReference() if self._stage == "reference":
+                self._desk.answered()
+                self._forced, self._looking, self._before = self._looking, True, None
+            case TakeReference():
+                self._desk.notice("The reference is taken already: stop, and start another recording for a new one.")
+            case Resume() if self._stage in ("ready", "paused"):
+                self._desk.answered()
+                self._stage = "scanning"
+            case Pause() if self._stage == "scanning":
+                self._stage = "paused"
+
+    def finish(self) -> None:
+        """Have all frames on the disk."""
+        self._store.close()
+
+    def _ask_for_reference(self) -> None:
+        self._desk.ask(
+            "Switch the three-line laser on and the hand-held laser off, then take the reference.",
+            "Take the reference",
+            TakeReference(),
+        )
+
+    def _try_reference(self, picture: Picture) -> None:
+        """Take a picture that is like the one before: nothing moves, no laser is swept over it."""
+        before, self._before = self._before, picture
+        if self._desk.worker.busy:
+            return
+        if not self._forced and before is None:
+            return
+        if not self._forced and before is not None and not _alike(before, picture):
+            self._desk.notice(
+                "Something moves in the picture: keep object and camera at rest, the hand-held laser off."
+            )
+            return
+        self._desk.worker.start(self._previewer.read_reference, picture)
+
+    def _accept(self, picture: Picture) -> None:
+        """The reference is good: keep it and go on."""
+        self._desk.write(REFERENCE, picture)
+        self._desk.took(REFERENCE, picture)
+        self._looking = self._forced = False
+        fan = self._previewer.fan_cloud()
+        self._new, self._renewed = [fan], True
+        if self._coverage is not None:
+            self._coverage.add(fan.uv)
+        if self._self_switching and self._desk.switch(_BOTH):
+            self._stage, self._skip = "scanning", STALE_FRAMES
+            return
+        self._stage = "ready"
+        self._desk.lasers = _BOTH
+        self._desk.ask(
+            "Switch the hand-held laser on, press Start, and sweep it slowly over the object.", "Start", Resume()
+        )
+
+    def _refused(self, sentence: str) -> None:
+        self._desk.notice(sentence)
+        self._forced = False
+        if not self._self_switching:
+            self._looking = False
+            self._ask_for_reference()
+
+    def _add(self, preview: FramePreview) -> None:
+        """Keep what the frame adds until it is shown."""
+        self._preview = preview
+        if self._coverage is not None:
+            for piece in preview.centrelines:
+                self._coverage.add_lit(piece.uv)
+        renewed = preview.renewed
+        if renewed is not None:
+            self._new, self._renewed = [renewed], True
+        elif len(preview.points):
+            self._new.append(_cloud_of(preview))
+        if self._coverage is not None:
+            self._coverage.add(preview.point_uv if renewed is None else renewed.uv)
+        self._preview = replace(preview, renewed=None)
+
+
+def _cloud_of(preview: FramePreview) -> PreviewCloud:
+    return PreviewCloud(
+        preview.points.astype(np.float32),
+        preview.point_sigma.astype(np.float32),
+        preview.point_intensity.astype(np.float32),
+        preview.point_uv.astype(np.float32),
+        np.full(len(preview.points), preview.index, np.int32),
+    )
+
+
+def _alike(before: Picture, after: Picture) -> bool:
+    """Whether two pictures show the same light: a hand-held laser trembles and is seen as a change."""
+    limit = STILL_LEVELS * np.iinfo(after.dtype).max
+    difference = np.abs(after[::2, ::2].astype(np.int32) - before[::2, ::2])
+    return bool(np.mean(difference > limit) <= STILL_SHARE)
