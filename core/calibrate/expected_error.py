@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import Delaunay
+from scipy.spatial import ConvexHull, Delaunay
 
 from core.calibrate.reprojection import linearise
 from core.calibrate.results import CameraCalibration
@@ -88,8 +88,9 @@ def expected_error(
     width, height = camera.image_size
     uv = np.stack(np.meshgrid(np.linspace(0, width - 1, columns), np.linspace(0, height - 1, rows)), axis=-1)
     flat = uv.reshape(-1, 2)
-    covered = Delaunay(field.uv).find_simplex(flat) >= 0
-    volume = _volume(camera, field.uv, (float(depths.min()), float(depths.max())))
+    hull = field.uv[ConvexHull(field.uv).vertices]
+    covered = _inside(flat, hull)
+    volume = _volume(camera, hull, (float(depths.min()), float(depths.max())))
     motion = _common_motion(camera, *volume)
 
     seen = np.isfinite(camera.undistort(flat)).all(axis=1)
@@ -131,9 +132,14 @@ def _volume(camera: Camera, corners: Array, depths: tuple[float, float]) -> tupl
     low, high = corners.min(axis=0), corners.max(axis=0)
     axes = [np.linspace(low[i], high[i], _VOLUME[i]) for i in range(2)]
     uv = np.stack(np.meshgrid(*axes), axis=-1).reshape(-1, 2)
-    inside = uv[Delaunay(corners).find_simplex(uv) >= 0]
+    inside = uv[_inside(uv, corners)]
     inside = inside[np.isfinite(camera.undistort(inside)).all(axis=1)]
     return np.tile(inside, (_VOLUME[2], 1)), np.repeat(np.linspace(*depths, _VOLUME[2]), len(inside))
+
+
+def _inside(uv: Array, corners: Array) -> NDArray[np.bool_]:
+    """Which of `uv` (N, 2) lie within the convex hull of `corners`."""
+    return np.asarray(Delaunay(corners).find_simplex(uv) >= 0)
 
 
 def _across(camera: Camera, uv: Array, depths: Array) -> tuple[Array, Array]:
