@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from core.calibrate.camera import calibrate_camera
 from core.calibrate.results import CameraCalibration, ViewQuality
+from core.calibrate.seen_views import SeenView, SeenViews
 from core.errors import InputError
 from core.files.camera_file import read_camera, write_camera
 from core.files.pictures import Picture
@@ -20,40 +21,9 @@ from core.pipeline.workspace import Workspace
 from core.progress import Progress, silent
 from core.threads import ordered_map
 
+__all__ = ["FEWEST_VIEWS", "SeenView", "SeenViews", "camera_step", "see_views", "solve_camera"]
+
 FEWEST_VIEWS = 3
-
-
-@dataclass(frozen=True, eq=False, slots=True)
-class SeenView:
-    """One picture: the target found in it, or the reason why it was not; size (width, height) if it could be read."""
-
-    name: str
-    view: TargetView | None = None
-    reason: str = ""
-    size: tuple[int, int] | None = None
-
-
-@dataclass(frozen=True, eq=False, slots=True)
-class SeenViews:
-    """What all pictures of the camera target show, in the order of the set; `where` they lie, for messages."""
-
-    views: tuple[SeenView, ...]
-    where: str
-
-    @property
-    def size(self) -> tuple[int, int] | None:
-        """(width, height) of the pictures; None if none could be read."""
-        return next((one.size for one in self.views if one.size is not None), None)
-
-    @property
-    def found(self) -> tuple[TargetView, ...]:
-        """The targets that were found."""
-        return tuple(one.view for one in self.views if one.view is not None)
-
-    @property
-    def lost(self) -> tuple[SeenView, ...]:
-        """The pictures in which there is no usable target."""
-        return tuple(one for one in self.views if one.view is None)
 
 
 def camera_step(work: Workspace, options: Options | None = None, progress: Progress = silent) -> CameraCalibration:
