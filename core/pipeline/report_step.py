@@ -7,20 +7,19 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from core import __version__
 from core.errors import InputError
 from core.files.atomic import write_bytes
 from core.files.gauge_file import read_gauge
-from core.files.pictures import Picture
 from core.files.ply import read_cloud, read_mesh
 from core.files.recording_set import RecordingSet
 from core.files.rig import Rig
 from core.files.run_file import RunRecord
 from core.files.scan_file import ScanFile, read_scan
 from core.image.centreline import Centreline
+from core.image.display import in_8_bit
 from core.model.arrays import Array
 from core.pipeline.workspace import Workspace, check_calibration
 from core.progress import Progress, silent
@@ -112,7 +111,7 @@ def _overlay(found: RecordingSet, scan: ScanFile, cloud: Cloud) -> Overlay | Non
     lines = range(max(scan.fan_line, default=-1) + 1)
     return Overlay(
         name=shown.name,
-        picture=_in_8_bit(picture),
+        picture=in_8_bit(picture, 255 if picture.dtype == np.uint8 else max(int(picture.max()), 1)),
         fan=tuple(
             tuple(piece for piece, number in zip(scan.features.fan, scan.fan_line, strict=True) if number == line)
             for line in lines
@@ -133,10 +132,3 @@ def _sigmas(sweep: tuple[Centreline, ...], points: Cloud) -> tuple[Array, ...]:
         distance, nearest = tree.query(line.uv)
         sigmas.append(np.where(distance < _SAME_POINT_PX, points.sigma[nearest], np.nan))
     return tuple(sigmas)
-
-
-def _in_8_bit(picture: Picture) -> NDArray[np.uint8]:
-    if picture.dtype == np.uint8:
-        return picture.astype(np.uint8, copy=False)
-    brightest = max(int(picture.max()), 1)
-    return (picture.astype(np.float32) * (255 / brightest)).astype(np.uint8)

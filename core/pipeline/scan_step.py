@@ -113,7 +113,7 @@ def feature_options(options: Options) -> FeatureOptions:
 
 def stream_frames(found: RecordingSet, options: Options) -> Iterator[Frame]:
     """Every frame in the order of the recording; those left out by hand are not read."""
-    pictures = found.stream(_taken(found, options))
+    pictures = found.stream(taken_frames(found, options))
     for path in found.frames:
         name = found.name_of(path)
         yield (name, LEFT_OUT) if name in options.excluded else next(pictures)
@@ -121,19 +121,19 @@ def stream_frames(found: RecordingSet, options: Options) -> Iterator[Frame]:
 
 def _require_frames(found: RecordingSet, options: Options) -> None:
     """InputError if all frames are left out by hand."""
-    if not _taken(found, options):
+    if not taken_frames(found, options):
         raise InputError(
             f"all {len(found.frames)} frames are left out by hand", where="scan", todo="take some of them in again"
         )
 
 
-def _taken(found: RecordingSet, options: Options) -> list[Path]:
+def taken_frames(found: RecordingSet, options: Options) -> list[Path]:
     """The frames that are not left out by hand."""
     return [path for path in found.frames if found.name_of(path) not in options.excluded]
 
 
 def reference_picture(
-    found: RecordingSet, camera: Camera, options: Options, progress: Progress = silent
+    found: RecordingSet, camera: Camera | None, options: Options, progress: Progress = silent
 ) -> tuple[Picture, list[str]]:
     """The picture with the fan alone, taken or made from the frames, and a note on how it was made.
 
@@ -144,9 +144,10 @@ def reference_picture(
     """
     if found.reference is not None:
         reference = found.read(found.reference)
-        check_size(found.reference, reference, camera)
+        if camera is not None:
+            check_size(found.reference, reference, camera)
         return reference, []
-    taken = _taken(found, options)
+    taken = taken_frames(found, options)
     sample = [taken[index] for index in sample_indices(len(taken))]
     stream = steps(found.stream(sample), progress, "reference", len(sample))
     pictures = [picture for _, picture in stream if not isinstance(picture, str)]
@@ -156,7 +157,8 @@ def reference_picture(
             where=found.where("scan"),
             todo="record reference.png with the fan alone, or more frames",
         )
-    check_size(sample[0], pictures[0], camera)
+    if camera is not None:
+        check_size(sample[0], pictures[0], camera)
     note = f"There is no scan/reference.png: the darkest third of {len(pictures)} frames stands for it, pixel by pixel."
     return quantile_reference(pictures), [note]
 

@@ -1,0 +1,223 @@
+"""Every stage from a picture to its crossings, for looking at one frame of a recording after another."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.errors import InputError
+from core.files.options import Options
+from core.files.pictures import Picture
+from core.files.recording_set import RecordingSet
+from core.image.centreline import Centreline
+from core.image.display import in_8_bit, white_level
+from core.image.ridge_picture import ridge_strength
+from core.image.stripe import StripeSettings
+from core.model import Camera, Fan
+from core.pipeline.scan_step import feature_options, reference_picture, taken_frames
+from core.progress import Progress, Told, silent
+from core.scan.fan_lines import UNASSIGNED, FanLines, possible_fan_lines
+from core.scan.features import (
+    LOOK_AHEAD,
+    FrameReader,
+    ReferenceFeatures,
+    choose_sweep_stripe,
+    read_reference,
+)
+from core.scan.frame_preview import FramePreview
+from core.scan.preview import Preview, PreviewOptions
+
+Picture8 = NDArray[np.uint8]
+"""(H, W) grey levels for display."""
+
+STRIPE_AT = 160.0
+"""Difference and ridge strength are shown so that a rather faint stripe has this grey level."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class FrameStages:
+    """What every stage makes of one frame.
+
+    Parameters
+    ----------
+    index, name
+        Of the frame, in the order of the recording.
+    picture
+        As it was recorded.
+    difference
+        Frame − reference, brightened alike for all frames; what is darker than the reference is black.
+    ridge
+        Steger's strength at the stripe's scale, brightened in the same way.
+    brighter
+        Grey levels of `difference` and `ridge` for one grey level of the picture.
+    sweep
+        The hand-held laser's centrelines.
+    fan
+        The fan's centrelines, and in `fan_line` the line (from 0) each of them belongs to; −1 where that is not known.
+    seen
+        Crossings, each good, weak or left out with the reason, as this frame gives them by itself; None without
+        calibrations.
+    shift_px
+        How far the fan's light is from where it is in the reference.
+    left_out
+        Whether this frame is left out by hand; its stages are shown all the same.
+    reason
+        Why there is no sweep; empty if there is.
+    """
+
+    index: int
+    name: str
+    picture: Picture8
+    difference: Picture8
+    ridge: Picture8
+    brighter: float
+    sweep: tuple[Centreline, ...]
+    fan: tuple[Centreline, ...]
+    fan_line: tuple[int, ...]
+    seen: FramePreview | None
+    shift_px: float
+    left_out: bool
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class SettledScan:
+    """What a finished measurement of the recording has settled: how stripes look, and the lines of the fan's pieces."""
+
+    sweep_stripe: StripeSettings | None
+    fan_stripe: StripeSettings
+    fan_line: tuple[int, ...]
+
+
+def frame_stages(
+    found: RecordingSet,
+    name: str,
+    camera: Camera | None = None,
+    fan: Fan | None = None,
+    options: Options | None = None,
+    progress: Progress = silent,
+    settled: SettledScan | None = None,
+) -> FrameStages:
+    """Look at one frame in every stage. What all frames have in common is kept until another recording is looked at.
+
+    Parameters
+    ----------
+    found
+        The recording.
+    name
+        The frame within it, as "scan/frame0007.png".
+    camera, fan
+        The calibrations, if there are any: without both of them there are no line numbers and crossings.
+    options
+        Width and contrast of the stripes, and what is left out.
+    progress
+        Told how far it is where the recording is looked at for the first time.
+    settled
+        What a measurement with these options has settled; found anew without it.
+
+    Raises
+    ------
+    InputError
+        If there is no such frame, it cannot be read or has another size than the reference, or there is no reference
+        and no fan line in it.
+    """
+    options = options or Options()
+    path = found.path_of(name)
+    if path not in found.frames:
+        raise InputError("there is no such frame in the recording", where=name)
+    index = found.frames.index(path)
+    common = _common(_Recording.of(found, options, settled, progress))
+    picture = found.read(path)
+    base = common.reference.base
+    if picture.shape != base.shape:
+        raise InputError(
+            f"the picture has {picture.shape[1]} × {picture.shape[0]} pixels, but the reference has "
+            f"{base.shape[1]} × {base.shape[0]}",
+            where=path,
+        )
+    reader = FrameReader(common.reference, common.stripe)
+    features = reader((index, (name, picture)))
+    stripe = common.stripe or common.reference.stripe
+    brighter = STRIPE_AT / stripe.contrast
+    difference = picture.astype(np.float32) - base
+    lines = _lines(common, camera, fan, settled)
+    return FrameStages(
+        index=index,
+        name=name,
+        picture=in_8_bit(picture, common.brightest),
+        difference=in_8_bit(difference, 255 / brighter),
+        ridge=in_8_bit(ridge_strength(difference, stripe), 255 / brighter),
+        brighter=brighter,
+        sweep=features.centrelines,
+        fan=common.reference.fan,
+        fan_line=lines.line if lines else (UNASSIGNED,) * len(common.reference.fan),
+        seen=Preview(common.reference, camera, fan, PreviewOptions(thin=1), lines)(features)
+        if camera and fan
+        else None,
+        shift_px=features.shift_px,
+        left_out=name in options.excluded,
+        reason=features.reason,
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class _Common:
+    """What all frames of a recording have in common; `brightest` is white in their pictures."""
+
+    reference: ReferenceFeatures
+    stripe: StripeSettings | None
+    brightest: float
+
+
+@dataclass(frozen=True, slots=True)
+class _Recording:
+    """A recording as a key: equal if what its frames have in common is."""
+
+    reference: Path | None
+    written_ns: int
+    taken: tuple[Path, ...]
+    channel: str | None
+    stripe: StripeSettings | None
+    settled: SettledScan | None
+    found: RecordingSet = field(compare=False)
+    options: Options = field(compare=False)
+    progress: Progress = field(compare=False)
+
+    @classmethod
+    def of(cls, found: RecordingSet, options: Options, settled: SettledScan | None, progress: Progress) -> _Recording:
+        reference = found.reference
+        written = reference.stat().st_mtime_ns if reference is not None and reference.exists() else 0
+        taken = tuple(taken_frames(found, options)) or found.frames
+        seen = taken if reference is None else taken[:LOOK_AHEAD]
+        return cls(reference, written, seen, found.rig.channel, options.stripe, settled, found, options, progress)
+
+
+@lru_cache(maxsize=2)
+def _common(recording: _Recording) -> _Common:
+    found, options, settled = recording.found, recording.options, recording.settled
+    told = Told(recording.progress)
+    told("reference", 0, 2)
+    picture, _ = reference_picture(found, None, options, told.again)
+    looking = feature_options(options)
+    if settled and options.stripe is None:
+        looking = feature_options(Options(stripe=settled.fan_stripe))
+    reference = read_reference(picture, looking)
+    told("reference", 1, 2)
+    stripe = options.stripe or (settled.sweep_stripe if settled else None)
+    if stripe is None:
+        ahead: list[tuple[str, Picture | str]] = list(found.stream(recording.taken[:LOOK_AHEAD]))
+        stripe = choose_sweep_stripe(ahead, reference, told.again)
+    told("reference", 2, 2)
+    return _Common(reference, stripe, white_level(picture))
+
+
+def _lines(common: _Common, camera: Camera | None, fan: Fan | None, settled: SettledScan | None) -> FanLines | None:
+    """The numbers of the fan's centrelines: the settled ones if they are of these very pieces, else the likeliest."""
+    pieces = common.reference.fan
+    if settled and len(settled.fan_line) == len(pieces):
+        return FanLines.settled_as(settled.fan_line)
+    return possible_fan_lines(pieces, camera, fan)[0] if camera and fan else None
