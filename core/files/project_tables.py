@@ -20,7 +20,7 @@ def _aware(value: object) -> object:
 
 
 _A_TIME = "a date and time with its zone, as in 2025-01-31T12:00:00+00:00"
-_Time = Annotated[datetime, BeforeValidator(_aware), Field(description=_A_TIME)]
+Time = Annotated[datetime, BeforeValidator(_aware), Field(description=_A_TIME)]
 _Finite = Annotated[float, Field(allow_inf_nan=False)]
 _Above0 = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 _Celsius = Annotated[float, Field(ge=-273.15, le=2000, allow_inf_nan=False)]
@@ -104,7 +104,7 @@ class RepeatTable(Table):
     U_mm: Annotated[float, Field(ge=0, allow_inf_nan=False)] = Field(description="a length in mm, 0 or above")
     k: _Above0 = Field(description="a number above 0")
     calibration_id: str
-    measured_at: _Time = Field(description=_A_TIME)
+    measured_at: Time = Field(description=_A_TIME)
 
 
 class ReportTable(Table):
@@ -119,7 +119,7 @@ class DoneTable(Table):
 
     key: str
     rests_on: dict[str, str] = Field(default_factory=dict, description="a table of texts")
-    at: _Time = Field(description=_A_TIME)
+    at: Time = Field(description=_A_TIME)
 
 
 class ProjectTables(Table):
@@ -127,8 +127,8 @@ class ProjectTables(Table):
 
     schema_version: int
     version: str = ""
-    created: _Time | None = Field(default=None, description=_A_TIME)
-    saved: _Time | None = Field(default=None, description=_A_TIME)
+    created: Time | None = Field(default=None, description=_A_TIME)
+    saved: Time | None = Field(default=None, description=_A_TIME)
     info: InfoTable = Field(description="a table of name, part, …")
     rig: RigTables = Field(description="a table as in rig.toml")
     sources: SourcesTable = SourcesTable()

@@ -1,0 +1,254 @@
+"""A project's history of calibrations: everyone that was kept, to be compared, restored and measured with.
+
+Layout::
+
+    PROJECT/calibrations/camera-ID.json         as camera.json
+    PROJECT/calibrations/planes-ID.json         as planes.json; planes-ID.npz beside it: what the poses showed
+    PROJECT/calibrations/KIND-ID.kept.json      when it was kept, and its quality in short; written last
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from datetime import datetime
+from pathlib import Path
+from typing import Any, Literal
+
+from pydantic import Field, ValidationError
+
+from core.calibrate.plane_pose import PoseFeatures
+from core.calibrate.results import CameraCalibration, FanCalibration
+from core.errors import InputError
+from core.files.atomic import make_folder, write_bytes, write_text
+from core.files.camera_file import Finite, Maybe, ResultFile, camera_id, number, read_camera, write_camera
+from core.files.complaints import complaint
+from core.files.fan_file import fan_id, read_fan, write_fan
+from core.files.json_text import read_json, to_json
+from core.files.options import Options
+from core.files.pictures import read_bytes
+from core.files.poses_file import read_poses, write_poses
+from core.files.project_data import Accepted
+from core.files.project_tables import Time
+from core.model import Camera
+
+FOLDER = "calibrations"
+
+Kind = Literal["camera", "fan"]
+
+_FILES: Mapping[Kind, str] = {"camera": "camera", "fan": "planes"}
+_KEPT = ".kept.json"
+
+
+@dataclass(frozen=True, slots=True)
+class StoredCalibration:
+    """One calibration of the history, in short.
+
+    Parameters
+    ----------
+    kind, id
+        What is calibrated, and the id in the file's name.
+    kept_at
+        When it was (last) kept.
+    used, total
+        Views or poses that count, and all there were.
+    rms_px
+        RMS of the reprojection of a camera; NaN for a fan.
+    expected_error_mm
+        RMS distance between the points that cameras solved from odd and from even views give; NaN if not known.
+    rms_mm
+        RMS distance from each light plane of a fan; nothing for a camera.
+    camera_id
+        The camera a fan rests on.
+    settings
+        What the calibration was told, as in run.json.
+    """
+
+    kind: Kind
+    id: str
+    kept_at: datetime
+    used: int
+    total: int
+    rms_px: float = math.nan
+    expected_error_mm: float = math.nan
+    rms_mm: tuple[float, ...] = ()
+    camera_id: str = ""
+    settings: Mapping[str, Any] = field(default_factory=dict, hash=False)
+
+
+class _KeptFile(ResultFile):
+    kind: Kind = Field(description='"camera" or "fan"')
+    id: str
+    kept_at: Time
+    used: int
+    total: int
+    rms_px: Maybe = None
+    expected_error_mm: Maybe = None
+    rms_mm: list[Finite | None] = Field(default_factory=list, description="a list of lengths in mm")
+    camera_id: str = ""
+    settings: dict[str, Any] = Field(default_factory=dict)
+
+
+def keep_camera(project_folder: Path, calibration: CameraCalibration, options: Options) -> str:
+    """Put a camera's calibration into the history; one that is there already becomes the newest. Returns its id.
+
+    Raises
+    ------
+    InputError
+        If it cannot be written.
+    """
+    id_ = camera_id(calibration.camera)
+    folder = make_folder(project_folder / FOLDER)
+    write_camera(_path(folder, "camera", id_), calibration)
+    about = {
+        **_counts([view.used for view in calibration.views]),
+        "rms_px": calibration.rms_px,
+        "expected_error_mm": calibration.cross_validation_mm,
+        "settings": options.camera_settings,
+    }
+    _write_about(folder, "camera", id_, about)
+    return id_
+
+
+def keep_fan(
+    project_folder: Path,
+    calibration: FanCalibration,
+    camera: Camera,
+    poses: Sequence[PoseFeatures],
+    settings: Mapping[str, Any] | None = None,
+) -> str:
+    """Put a fan's calibration into the history, with what its poses showed, and the camera it rests on.
+
+    Returns its id; one that is there already becomes the newest.
+
+    Raises
+    ------
+    InputError
+        If it cannot be written.
+    """
+    id_ = fan_id(calibration.fan)
+    folder = make_folder(project_folder / FOLDER)
+    path = _path(folder, "fan", id_)
+    write_poses(path.with_suffix(".npz"), id_, poses)
+    write_fan(path, calibration, camera)
+    about = {
+        **_counts([pose.used for pose in calibration.poses]),
+        "rms_mm": calibration.rms_mm,
+        "camera_id": camera_id(camera),
+        "settings": settings or {},
+    }
+    _write_about(folder, "fan", id_, about)
+    return id_
+
+
+def history(project_folder: Path) -> tuple[StoredCalibration, ...]:
+    """Every calibration that was kept and is still there, the newest first.
+
+    Raises
+    ------
+    InputError
+        If an entry is damaged; names its file.
+    """
+    folder = project_folder / FOLDER
+    entries = [_read_about(path) for path in sorted(folder.glob(f"*{_KEPT}"))] if folder.is_dir() else []
+    there = [entry for entry in entries if _path(folder, entry.kind, entry.id).exists()]
+    return tuple(sorted(there, key=lambda entry: entry.kept_at, reverse=True))
+
+
+def read_stored_camera(project_folder: Path, id_: str) -> CameraCalibration:
+    """A camera's calibration of the history; InputError if it is not there, or damaged."""
+    path = _found(project_folder, "camera", id_)
+    calibration = read_camera(path)
+    _check_id(path, camera_id(calibration.camera), id_)
+    return calibration
+
+
+def read_stored_fan(project_folder: Path, id_: str, camera: Camera) -> FanCalibration:
+    """A fan's calibration of the history; InputError if it is not there, damaged, or rests on another camera."""
+    path = _found(project_folder, "fan", id_)
+    calibration = read_fan(path, camera)
+    _check_id(path, fan_id(calibration.fan), id_)
+    return calibration
+
+
+def read_stored_poses(project_folder: Path, id_: str) -> tuple[PoseFeatures, ...]:
+    """What the poses of a fan's calibration showed; InputError if it is not there, or damaged."""
+    return read_poses(_found(project_folder, "fan", id_).with_suffix(".npz"), id_)
+
+
+def put_in_place(project_folder: Path, accepted: Accepted, results: Path) -> None:
+    """Copy the accepted calibrations to camera.json, planes.json and planes.npz among the results.
+
+    A file that says the same already is left alone.
+
+    Raises
+    ------
+    InputError
+        If none is accepted, one is not in the history, the two are not of each other, or nothing can be written.
+    """
+    for kind, id_ in (("camera", accepted.camera), ("laser planes", accepted.fan)):
+        if not id_:
+            raise InputError(f"no calibration of the {kind} is accepted yet", todo="calibrate, and accept the result")
+    camera = read_stored_camera(project_folder, accepted.camera)
+    read_stored_fan(project_folder, accepted.fan, camera.camera)
+    fan = _found(project_folder, "fan", accepted.fan)
+    copies = {
+        "camera.json": _found(project_folder, "camera", accepted.camera),
+        "planes.json": fan,
+        "planes.npz": fan.with_suffix(".npz"),
+    }
+    make_folder(results)
+    for name, source in copies.items():
+        _copy(source, results / name)
+
+
+def _path(folder: Path, kind: Kind, id_: str) -> Path:
+    return folder / f"{_FILES[kind]}-{id_}.json"
+
+
+def _found(project_folder: Path, kind: Kind, id_: str) -> Path:
+    path = _path(project_folder / FOLDER, kind, id_)
+    if not path.exists():
+        raise InputError(f"the calibration {id_} is not in the project", where=path, todo="calibrate again")
+    return path
+
+
+def _check_id(path: Path, found: str, wanted: str) -> None:
+    if found != wanted:
+        raise InputError(f"the file holds the calibration {found}", where=path, todo="it was changed; calibrate again")
+
+
+def _counts(used: Sequence[bool]) -> dict[str, int]:
+    return {"used": sum(used), "total": len(used)}
+
+
+def _write_about(folder: Path, kind: Kind, id_: str, about: Mapping[str, Any]) -> None:
+    kept_at = datetime.now().astimezone().isoformat()
+    path = _path(folder, kind, id_)
+    write_text(path.with_suffix(_KEPT), to_json({"kind": kind, "id": id_, "kept_at": kept_at, **about}))
+
+
+def _read_about(path: Path) -> StoredCalibration:
+    try:
+        file = _KeptFile.model_validate(read_json(path))
+    except ValidationError as error:
+        raise complaint(path, error, _KeptFile) from error
+    return StoredCalibration(
+        kind=file.kind,
+        id=file.id,
+        kept_at=file.kept_at,
+        used=file.used,
+        total=file.total,
+        rms_px=number(file.rms_px),
+        expected_error_mm=number(file.expected_error_mm),
+        rms_mm=tuple(number(rms) for rms in file.rms_mm),
+        camera_id=file.camera_id,
+        settings=file.settings,
+    )
+
+
+def _copy(source: Path, target: Path) -> None:
+    data = read_bytes(source)
+    if not target.exists() or read_bytes(target) != data:
+        write_bytes(target, data)
