@@ -33,8 +33,9 @@ class CaptureLimits:
 
     Parameters
     ----------
-    still_views, still_px_s
-        Over so many views in a row the corners must not move faster than so many px/s, in a picture 1920 px wide.
+    still_s, still_px_s
+        For so long, seen in two views at least, the corners must not move faster than so many px/s, in a picture
+        1920 px wide.
     blur_px
         Gaussian σ of the edges, at most.
     blurred
@@ -43,7 +44,7 @@ class CaptureLimits:
         Angle in rad, and ratio of distances, from which on two views are different.
     """
 
-    still_views: int = 3
+    still_s: float = 0.2
     still_px_s: float = 8.0
     blur_px: float = 2.5
     blurred: float = 1.5
@@ -71,7 +72,7 @@ class CaptureJudge:
         self._image_size, self._limits = image_size, limits or CaptureLimits()
         self._camera = camera or stand_in_camera(image_size)
         self._rows = max(1, round(COLUMNS * image_size[1] / image_size[0]))
-        self._recent: deque[tuple[float, TargetView]] = deque(maxlen=self._limits.still_views)
+        self._recent: deque[tuple[float, TargetView]] = deque()
         self._sharpest = float("inf")
         self._taken: list[tuple[TargetView, ViewGeometry | None]] = []
         self._taken_at = float("-inf")
@@ -130,12 +131,16 @@ class CaptureJudge:
         return "Taken." if 0 <= time_s - self._taken_at < _SHOWN_FOR_S else ""
 
     def _still(self) -> bool:
-        if len(self._recent) < self._limits.still_views:
+        """Whether the target has rested for long enough; forgets what is older than needed to tell."""
+        recent = self._recent
+        while len(recent) > 2 and recent[-1][0] - recent[1][0] >= self._limits.still_s:
+            recent.popleft()
+        if len(recent) < 2 or recent[-1][0] - recent[0][0] < self._limits.still_s:
             return False
         limit = self._limits.still_px_s * max(self._image_size) / 1920
         return all(
             _moved_px(view, moved) <= limit * max(after - before, 1e-3)
-            for (before, view), (after, moved) in pairwise(self._recent)
+            for (before, view), (after, moved) in pairwise(recent)
         )
 
     def _already_there(self, view: TargetView) -> str:
