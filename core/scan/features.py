@@ -29,6 +29,9 @@ from core.threads import ordered_map
 MOVED = "object or camera moved during the scan: the fan's light lies elsewhere than in the reference"
 LOST = "the fan's light is gone: object or camera moved far during the scan, or the three-line laser was off"
 
+LIGHT_SHARE, LIGHT_FLOOR = 0.2, 0.02
+"""A change of the background counts as one of the room's light from this share of it, and of the full scale, on."""
+
 LOOK_AHEAD = 8
 """How many frames are looked at for the stripe's width and contrast when they are not given."""
 
@@ -48,13 +51,18 @@ class FeatureOptions:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class FrameFeatures:
-    """The sweep's centrelines in one frame, or the `reason` there are none; `shift_px` against the reference."""
+    """The sweep's centrelines in one frame, or the `reason` there are none.
+
+    Against the reference: `shift_px` of the fan's light, and `light_change` of the background as a share of it, 0 where
+    it is too small to tell.
+    """
 
     index: int
     name: str
     centrelines: tuple[Centreline, ...]
     reason: str = ""
     shift_px: float = 0.0
+    light_change: float = 0.0
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -124,7 +132,7 @@ def extract_features(
         for frame in steps(found, progress, "smoothing", len(found))
     ]
     return ScanFeatures(
-        seen.image_size, _refined(seen.fan), tuple(found), crossings, sweep_stripe, seen.stripe, _moved_notes(found)
+        seen.image_size, _refined(seen.fan), tuple(found), crossings, sweep_stripe, seen.stripe, _notes(found)
     )
 
 
@@ -147,6 +155,13 @@ class ReferenceFeatures:
         """(width, height) in pixels."""
         height, width = self.base.shape
         return width, height
+
+    def light_change(self, grey: float) -> float:
+        """A change of the background by `grey` levels as a share of it; 0 where stripes do not feel it."""
+        background = max(float(np.median(self.base[::16, ::16])), 1.0)
+        if abs(grey) < max(LIGHT_SHARE * background, LIGHT_FLOOR * self.full_scale):
+            return 0.0
+        return grey / background
 
 
 def read_reference(picture: Picture, options: FeatureOptions | None = None) -> ReferenceFeatures:
@@ -185,16 +200,17 @@ class FrameReader:
         difference = picture.astype(np.float32)
         difference -= base
         check = check_reference(difference, fan)
+        light = self.reference.light_change(check.light)
         if check.lost:
-            return FrameFeatures(index, name, (), LOST, check.shift_px)
+            return FrameFeatures(index, name, (), LOST, check.shift_px, light)
         if check.shift_px > self.move_limit_px:
-            return FrameFeatures(index, name, (), MOVED, check.shift_px)
+            return FrameFeatures(index, name, (), MOVED, check.shift_px, light)
         if self.stripe is None:
-            return FrameFeatures(index, name, (), "no stripe of the hand-held laser", check.shift_px)
+            return FrameFeatures(index, name, (), "no stripe of the hand-held laser", check.shift_px, light)
         saturated = picture >= full_scale
         pieces = extract_centrelines(difference, self.stripe, noise=self.reference.noise, saturated=saturated)
         reason = "" if pieces else "no stripe of the hand-held laser"
-        return FrameFeatures(index, name, pieces, reason, check.shift_px)
+        return FrameFeatures(index, name, pieces, reason, check.shift_px, light)
 
 
 def _refined(pieces: tuple[Centreline, ...]) -> tuple[Centreline, ...]:
@@ -277,6 +293,23 @@ def _require_sweeps(frames: list[FrameFeatures]) -> None:
         f"none of the {len(frames)} frames shows a usable sweep; the most common reason: {common}",
         where="scan",
         todo="record the scan again with the hand-held laser on and object and camera at rest",
+    )
+
+
+def _notes(frames: list[FrameFeatures]) -> tuple[str, ...]:
+    return _moved_notes(frames) + _light_notes(frames)
+
+
+def _light_notes(frames: list[FrameFeatures]) -> tuple[str, ...]:
+    changed = [frame for frame in frames if frame.light_change]
+    if not changed:
+        return ()
+    most = max(changed, key=lambda frame: abs(frame.light_change))
+    which = "brighter" if most.light_change > 0 else "darker"
+    return (
+        f"The room's light changed in {len(changed)} of {len(frames)} frames, the first {changed[0].name}: the "
+        f"background is up to {100 * abs(most.light_change):.0f} % {which} than in the reference, which makes stripes "
+        "less sure. Keep the light as it is during a scan, or scan again.",
     )
 
 
