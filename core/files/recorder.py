@@ -1,0 +1,167 @@
+"""Raw frames to the disk as they come, without keeping anybody waiting and without losing any unnoticed."""
+
+from __future__ import annotations
+
+import threading
+from collections import deque
+from collections.abc import Callable
+from pathlib import Path
+
+from core.acquire.source import Picture
+from core.errors import InputError
+from core.files.atomic import make_folder
+from core.files.pictures import write_picture
+
+WAITING_BYTES = 256 * 2**20
+"""Pictures waiting for the disk may take so much memory; what comes on top is dropped and counted."""
+
+
+class Recorder:
+    """Writes pictures losslessly as PNG, on a thread of its own, in the order in which they are given.
+
+    A file is there whole or not at all, at whatever moment the program dies. When the disk does not take a picture, it
+    and those behind it are kept and the next call raises InputError; the call after that finds them being tried again,
+    so that nothing is lost if room has been made meanwhile.
+
+    Parameters
+    ----------
+    folder
+        Where to; made if it is not there.
+    waiting_bytes
+        How much may wait for the disk; at least one picture always may.
+    put
+        Writes one picture.
+
+    Raises
+    ------
+    InputError
+        If the folder cannot be made or written to.
+    """
+
+    def __init__(
+        self,
+        folder: Path,
+        *,
+        waiting_bytes: int = WAITING_BYTES,
+        put: Callable[[Path, Picture], None] = write_picture,
+    ) -> None:
+        self._folder = make_folder(folder)
+        self._limit, self._put = waiting_bytes, put
+        self._changed = threading.Condition()
+        self._queue: deque[tuple[Path, Picture]] = deque()
+        self._waiting_bytes = self._written = self._dropped = 0
+        self._problem: InputError | None = None
+        self._closing = False
+        self._thread = threading.Thread(target=self._run, name="recorder", daemon=True)
+        self._thread.start()
+
+    @property
+    def written(self) -> int:
+        """How many pictures are on the disk."""
+        with self._changed:
+            return self._written
+
+    @property
+    def dropped(self) -> int:
+        """How many were not taken because the disk is too slow, or given up by `close` because it is full."""
+        with self._changed:
+            return self._dropped
+
+    @property
+    def waiting(self) -> int:
+        """How many are taken but not yet on the disk."""
+        with self._changed:
+            return len(self._queue)
+
+    def write(self, name: str, picture: Picture) -> bool:
+        """Take a picture, which nobody may change any more, to be written as `name` (".png" is added if missing).
+
+        Returns
+        -------
+        bool
+            False if too many are waiting for the disk: the picture is dropped, and counted.
+
+        Raises
+        ------
+        InputError
+            If an earlier picture could not be written; this one is not taken, and counted as dropped.
+        ValueError
+            If the name is not a plain file name.
+        """
+        if not name or Path(name).name != name:
+            raise ValueError(f"{name!r} is no plain file name")
+        path = self._folder / (name if name.lower().endswith(".png") else f"{name}.png")
+        with self._changed:
+            if self._closing:
+                raise ValueError("the recorder is closed")
+            if self._problem is not None:
+                self._dropped += 1
+                self._tell()
+            if self._queue and self._waiting_bytes + picture.nbytes > self._limit:
+                self._dropped += 1
+                return False
+            self._queue.append((path, picture))
+            self._waiting_bytes += picture.nbytes
+            self._changed.notify_all()
+            return True
+
+    def flush(self) -> None:
+        """Wait until all pictures are on the disk; InputError if one cannot be written."""
+        with self._changed:
+            self._changed.wait_for(lambda: not self._queue or self._problem is not None)
+            if self._problem is not None:
+                self._tell()
+
+    def close(self) -> None:
+        """Write what is waiting and end; what cannot be written even now is given up and counted as dropped.
+
+        Raises
+        ------
+        InputError
+            If a picture could not be written. The recorder is closed all the same.
+        """
+        with self._changed:
+            if self._closing:
+                return
+            self._closing = True
+            self._problem = None  # the last try
+            self._changed.notify_all()
+        self._thread.join()
+        if self._problem is not None:
+            raise self._problem
+
+    def _tell(self) -> None:
+        """Raise the problem once; the writing goes on."""
+        problem, self._problem = self._problem, None
+        self._changed.notify_all()
+        assert problem is not None
+        raise problem
+
+    def _run(self) -> None:
+        while True:
+            with self._changed:
+                self._changed.wait_for(lambda: self._problem is None and (self._queue or self._closing))
+                if not self._queue:
+                    return
+                path, picture = self._queue[0]
+            try:
+                self._put(path, picture)
+            except InputError as problem:
+                if self._gave_up(problem):
+                    return
+                continue
+            with self._changed:
+                self._queue.popleft()
+                self._waiting_bytes -= picture.nbytes
+                self._written += 1
+                self._changed.notify_all()
+
+    def _gave_up(self, problem: InputError) -> bool:
+        """Keep the problem for the next call; whether there will be none, since the recorder is being closed."""
+        with self._changed:
+            self._problem = problem
+            if self._closing:
+                self._dropped += len(self._queue)
+                self._queue.clear()
+            self._changed.notify_all()
+            return self._closing
