@@ -1,0 +1,36 @@
+"""Small pictures of recorded ones, for lists."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.acquire.folder import read_ahead
+from core.acquire.grey import Channel
+from core.errors import InputError
+from core.files.pictures import read_picture
+from core.pipeline.live_display import Display
+from core.progress import Progress, silent
+
+Thumbnail = NDArray[np.uint8]
+
+
+def thumbnails(
+    paths: Sequence[Path], channel: Channel | None = None, width_px: int = 120, progress: Progress = silent
+) -> tuple[Thumbnail | None, ...]:
+    """A small 8-bit picture (h, w ≤ `width_px`) of each of `paths`; None for one that cannot be read."""
+
+    def small(path: Path) -> Thumbnail | None:
+        try:
+            return Display(width_px).reduced(read_picture(path, channel))[0]
+        except InputError:
+            return None  # the step that measures it says why
+
+    made: list[Thumbnail | None] = []
+    for _, picture in read_ahead(paths, small):
+        made.append(picture)
+        progress("small pictures", len(made), len(paths))
+    return tuple(made)
