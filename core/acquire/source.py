@@ -6,7 +6,7 @@ of the source's own. A source that is unplugged raises :class:`Unplugged` once a
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Literal, Protocol
 
 import numpy as np
@@ -59,6 +59,11 @@ class SourceSettings:
             raise InputError(f"{self.gain_db:g} dB is not between -40 and 80 dB", where="gain")
         if self.rate_hz is not None and not 0 <= self.rate_hz <= 10_000:
             raise InputError(f"{self.rate_hz:g} Hz is not between 0 and 10 000 Hz", where="frame rate")
+
+    def updated(self, newer: SourceSettings) -> SourceSettings:
+        """These settings with what `newer` says instead."""
+        said = {name: value for name, value in asdict(newer).items() if value is not None}
+        return replace(self, **said)
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,23 +4,22 @@ from __future__ import annotations
 
 import zlib
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from core.acquire.grey import Channel, to_grey
 from core.errors import InputError
 from core.files.atomic import write_bytes
 
-Channel = Literal["red", "green", "blue"]
 Picture = NDArray[np.uint8] | NDArray[np.uint16]
 _Any = NDArray[Any]
 
 SUFFIXES = frozenset({".png", ".tif", ".tiff", ".bmp", ".jpg", ".jpeg", ".pgm"})
 """Endings (lower case) of the files that count as pictures."""
 
-_BGR: dict[str, int] = {"blue": 0, "green": 1, "red": 2}
 _PNG = b"\x89PNG\r\n\x1a\n"
 _QUICKLY = [cv2.IMWRITE_PNG_COMPRESSION, 1, cv2.IMWRITE_PNG_STRATEGY, cv2.IMWRITE_PNG_STRATEGY_RLE]
 
@@ -74,7 +73,7 @@ def decode_picture(data: bytes, path: Path, channel: Channel | None = None) -> P
         raise InputError("this is no readable picture", where=path, todo="use png, tif, bmp, jpg or pgm")
     if picture.dtype not in (np.uint8, np.uint16):
         raise InputError(f"the picture holds {picture.dtype} values", where=path, todo="save it with 8 or 16 bit")
-    return _grey(picture, channel)
+    return to_grey(picture, channel)
 
 
 def write_picture(path: Path, picture: Picture) -> None:
@@ -95,20 +94,6 @@ def write_picture(path: Path, picture: Picture) -> None:
     if not done:
         raise ValueError(f"{path.name} could not be encoded")
     write_bytes(path, data.tobytes(), sync=False)
-
-
-def _grey(picture: _Any, channel: Channel | None) -> Picture:
-    """One value per pixel of whatever the decoder gave."""
-    if picture.ndim == 2:
-        return picture
-    if picture.shape[2] == 1:
-        return picture[:, :, 0]
-    if picture.shape[2] == 2:  # grey with alpha
-        return np.ascontiguousarray(picture[:, :, 0])
-    if channel is not None:
-        return np.ascontiguousarray(picture[:, :, _BGR[channel]])
-    grey: _Any = cv2.cvtColor(picture[:, :, :3], cv2.COLOR_BGR2GRAY)
-    return grey
 
 
 def _damage(data: bytes) -> str:

@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 from pydantic import ValidationError
 
+from core.acquire.grey import Channel
 from core.errors import InputError
 from core.files.complaints import complaint
-from core.files.pictures import Channel
 from core.files.rig_tables import GaugeTable, RigTables, TargetTable
 from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid, Target
 from core.model.arrays import Array, frozen_array, set_field

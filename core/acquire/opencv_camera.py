@@ -1,0 +1,214 @@
+"""Cameras, network streams and video files through OpenCV."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections import deque
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import cv2
+import numpy as np
+
+from core.acquire.grey import Channel, to_grey
+from core.acquire.opencv_devices import Capture, capture_of, exposure_of, opencv_name
+from core.acquire.pace import Pace
+from core.acquire.source import Ended, Frame, Lasers, Picture, SourceSettings, Step, Unplugged
+from core.errors import InputError
+
+WAITING = 3
+"""Frames kept for a reader that is a little late; older ones are dropped and counted."""
+
+JOIN_S = 3.0
+FILE_RATE_HZ = 25.0
+
+
+class OpenCVSource:
+    """What OpenCV can capture from, behind :class:`core.acquire.source.FrameSource`.
+
+    A camera or stream is read on a thread, so that the newest frames are there whenever they are asked for. OpenCV does
+    not tell what a driver loses; `dropped` counts the frames that came and were not read in time. A video file is read
+    frame by frame at its own rate, loses nothing, and ends.
+
+    Parameters
+    ----------
+    address
+        Number of a camera, path of a video file, or network address; "" is camera 0.
+    channel
+        Which colour to take; without it, colour is reduced to grey.
+    capture
+        Opens it.
+    clock
+        Time in s that only runs forward.
+    """
+
+    def __init__(
+        self,
+        address: str = "",
+        channel: Channel | None = None,
+        *,
+        capture: Callable[[str], Capture] = capture_of,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        self.name = opencv_name(address)
+        self._address, self._channel, self._make, self._clock = address, channel, capture, clock
+        self._is_file = not address.isdigit() and Path(address).is_file()
+        self._wanted = SourceSettings()
+        self._capture: Capture | None = None
+        self._grabber: _Grabber | None = None
+        self._pace = Pace(FILE_RATE_HZ)
+        self._count = 0
+        self._origin = 0.0
+
+    def open(self) -> None:
+        """Open it; InputError says what to do when it cannot be opened."""
+        self.close()
+        capture = self._make(self._address)
+        if not capture.isOpened():
+            capture.release()
+            raise self._cannot_open()
+        self._capture, self._count, self._origin = capture, 0, self._clock()
+        self._pace = Pace(capture.get(cv2.CAP_PROP_FPS) or FILE_RATE_HZ)
+        try:
+            self._apply(self._wanted)
+        except InputError:
+            self.close()
+            raise
+        if not self._is_file:
+            self._grabber = _Grabber(capture, self._clock, self._origin)
+
+    def configure(self, settings: SourceSettings) -> None:
+        """Set exposure, gain (in the driver's own unit where it knows no dB) and rate, now or when it is opened."""
+        if self._capture is not None:
+            self._apply(settings)
+        self._wanted = self._wanted.updated(settings)
+
+    def prepare(self, step: Step) -> None:
+        """A camera sees what is before it."""
+
+    def lasers(self, lasers: Lasers) -> bool:
+        """A person must switch them."""
+        return False
+
+    def read(self, timeout_s: float) -> Frame | None:
+        """The next frame; Unplugged if there will be none, Ended at the end of a file."""
+        if self._is_file:
+            return self._read_file(timeout_s)
+        if self._grabber is None:
+            raise self._unplugged()
+        raw, index, time_s, dropped = self._grabber.take(timeout_s)
+        if raw is None:
+            if not self._grabber.lost:
+                return None
+            self.close()
+            raise self._unplugged()
+        return Frame(self._grey(raw), index, time_s, dropped)
+
+    def close(self) -> None:
+        """Stop reading and let go of it."""
+        if self._grabber is not None:
+            self._grabber.stop()
+        elif self._capture is not None:
+            self._capture.release()
+        self._grabber = self._capture = None
+
+    def _read_file(self, timeout_s: float) -> Frame | None:
+        if self._capture is None:
+            raise Ended
+        if not self._pace.wait(timeout_s):
+            return None
+        done, raw = self._capture.read()
+        if not done:
+            raise Ended
+        index, self._count = self._count, self._count + 1
+        return Frame(self._grey(raw), index, index / (self._pace.rate_hz or FILE_RATE_HZ), 0)
+
+    def _grey(self, raw: Any) -> Picture:
+        picture = to_grey(raw, self._channel)
+        if picture.dtype not in (np.uint8, np.uint16):
+            raise InputError(f"the pictures hold {picture.dtype} values", where=self.name, todo="set 8 or 16 bit")
+        return picture
+
+    def _apply(self, settings: SourceSettings) -> None:
+        if settings.rate_hz is not None and self._is_file:
+            self._pace.rate_hz = settings.rate_hz
+        elif settings.rate_hz:
+            self._set(cv2.CAP_PROP_FPS, settings.rate_hz, "frame rate")
+        if settings.exposure_ms is not None and not self._is_file:
+            manual, value = exposure_of(self._capture, settings.exposure_ms)
+            self._set(cv2.CAP_PROP_AUTO_EXPOSURE, manual, "exposure time")
+            self._set(cv2.CAP_PROP_EXPOSURE, value, "exposure time")
+        if settings.gain_db is not None and not self._is_file:
+            self._set(cv2.CAP_PROP_GAIN, settings.gain_db, "gain")
+
+    def _set(self, key: int, value: float, what: str) -> None:
+        assert self._capture is not None
+        if not self._capture.set(key, value):
+            raise InputError(
+                f"the camera does not let its {what} be set",
+                where=self.name,
+                todo="leave it as it is, or set it with the camera's own program",
+            )
+
+    def _cannot_open(self) -> InputError:
+        if self._is_file:
+            return InputError("this is no video that can be read", where=self._address)
+        todo = "see that it is plugged in, and close other programs that use it"
+        if "://" in self._address:
+            todo = "see that the address is right and the camera is on the network"
+        elif self._address and not self._address.isdigit():
+            return InputError("there is no such video file", where=self._address)
+        return InputError("the camera cannot be opened", where=self.name, todo=todo)
+
+    def _unplugged(self) -> Unplugged:
+        return Unplugged("the camera sends no pictures any more", where=self.name, todo="plug it in again")
+
+
+class _Grabber:
+    """Reads a capture on a thread, keeps the newest frames, and lets go of the capture at the end."""
+
+    def __init__(self, capture: Capture, clock: Callable[[], float], origin: float) -> None:
+        self._capture, self._clock, self._origin = capture, clock, origin
+        self._frames: deque[tuple[Any, int, float]] = deque()
+        self._changed = threading.Condition()
+        self._stopping = False
+        self._dropped = 0
+        self.lost = False
+        """Whether the capture gives no more frames."""
+        self._thread = threading.Thread(target=self._run, name="OpenCV camera", daemon=True)
+        self._thread.start()
+
+    def take(self, timeout_s: float) -> tuple[Any, int, float, int]:
+        """The oldest waiting frame with its number, its time and the frames dropped; None instead of it if none."""
+        with self._changed:
+            self._changed.wait_for(lambda: self._frames or self.lost, timeout_s)
+            if not self._frames:
+                return None, 0, 0.0, self._dropped
+            return *self._frames.popleft(), self._dropped
+
+    def stop(self) -> None:
+        """End the thread; a driver that does not return is left to let go of its camera by itself."""
+        with self._changed:
+            self._stopping = True
+        self._thread.join(JOIN_S)
+
+    def _run(self) -> None:
+        index = 0
+        try:
+            while not self._stopping:
+                done, raw = self._capture.read()
+                with self._changed:
+                    if not done:
+                        self.lost = True
+                        self._changed.notify_all()
+                        return
+                    if len(self._frames) == WAITING:
+                        self._frames.popleft()
+                        self._dropped += 1
+                    self._frames.append((raw, index, self._clock() - self._origin))
+                    self._changed.notify_all()
+                index += 1
+        finally:
+            self._capture.release()

@@ -1,0 +1,138 @@
+"""Recorded pictures played back as if a camera took them now."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from core.acquire.pace import Pace
+from core.acquire.source import Ended, Frame, Lasers, Picture, SourceSettings, Step, Unplugged
+from core.errors import InputError
+
+RATE_HZ = 10.0
+
+HOLDS: dict[Step, int] = {"camera": 8, "planes": 12, "scan": 1}
+"""For how many frames a picture of a recording is shown: in a recording of targets each one was held still."""
+
+Listing = Callable[[Step, Lasers], Sequence[Path]]
+"""The pictures of a step under given lasers, in order; empty if there are none."""
+
+
+class ReplaySource:
+    """A folder of pictures behind :class:`core.acquire.source.FrameSource`.
+
+    Pictures of the two targets are each shown for a while, as if held still; switching the fan in the middle shows
+    the same pose with the fan off. While the hand-held laser is off the reference is shown, as long as it takes.
+    No frame is lost, however late it is read. A damaged picture raises InputError in its turn; reading goes on after.
+
+    Parameters
+    ----------
+    name
+        What a person calls it.
+    folder
+        Where the pictures are; if it vanishes the source is unplugged.
+    listing, read
+        Which pictures there are, and how to read one.
+    holds
+        How many frames each picture is shown for, by step.
+    loops
+        Begin again at the end, instead of ending.
+    clock, sleep
+        Time in s that only runs forward, and how to wait.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        folder: Path,
+        listing: Listing,
+        read: Callable[[Path], Picture],
+        *,
+        holds: dict[Step, int] | None = None,
+        loops: bool = False,
+        clock: Callable[[], float] = time.monotonic,
+        sleep: Callable[[float], None] = time.sleep,
+    ) -> None:
+        self.name = name
+        self._folder, self._listing, self._read = folder, listing, read
+        self._holds = HOLDS if holds is None else holds
+        self._loops = loops
+        self._pace = Pace(RATE_HZ, clock, sleep)
+        self._step: Step = "camera"
+        self._lasers = Lasers(fan=False, hand=False)
+        self._paths: Sequence[Path] = ()
+        self._at = self._shown = self._count = 0
+        self._decoded: tuple[Path, Picture] | None = None
+
+    def open(self) -> None:
+        """See that the folder is there; frames are counted anew."""
+        if not self._folder.is_dir():
+            what = "this is a file, not a folder" if self._folder.exists() else "there is no such folder"
+            raise InputError(what, where=self._folder, todo="choose a folder of pictures")
+        self._count = 0
+        self._pace.restart()
+        self._list()
+
+    def configure(self, settings: SourceSettings) -> None:
+        """Set the rate (usual: 10 Hz; 0: as fast as it is read); there is nothing else to set."""
+        if settings.rate_hz is not None:
+            self._pace.rate_hz = settings.rate_hz
+
+    def prepare(self, step: Step) -> None:
+        """Go to the beginning of the pictures of a step."""
+        self._step = step
+        self._at = self._shown = 0
+        self._list()
+
+    def lasers(self, lasers: Lasers) -> bool:
+        """Show the pictures taken under these lasers; False if there are none: then all others are shown."""
+        swept = lasers.hand and not self._lasers.hand
+        self._lasers = lasers
+        if self._step == "scan" and swept:
+            self._at = 0
+        self._shown = 0
+        return self._list()
+
+    def read(self, timeout_s: float) -> Frame | None:
+        """The next frame; raises Ended after the last one, and InputError for a damaged one."""
+        if self._at >= len(self._paths):
+            if not (self._loops or self._rests) or not self._paths:
+                raise Ended
+            self._at = 0
+        if not self._pace.wait(timeout_s):
+            return None
+        path = self._paths[self._at]
+        picture = self._picture(path)
+        self._shown += 1
+        if self._shown >= self._holds.get(self._step, 1):
+            self._at, self._shown = self._at + 1, 0
+        frame = Frame(picture, self._count, self._count / (self._pace.rate_hz or RATE_HZ), 0)
+        self._count += 1
+        return frame
+
+    def close(self) -> None:
+        """Forget the picture read last."""
+        self._decoded = None
+
+    @property
+    def _rests(self) -> bool:
+        """Whether this is the still object without the hand-held laser, which nothing brings to an end."""
+        return self._step == "scan" and not self._lasers.hand
+
+    def _list(self) -> bool:
+        wanted = self._listing(self._step, self._lasers)
+        other = Lasers(fan=self._step != "camera", hand=self._step == "scan")
+        self._paths = wanted or self._listing(self._step, other)
+        return bool(wanted)
+
+    def _picture(self, path: Path) -> Picture:
+        if self._decoded is None or self._decoded[0] != path:
+            try:
+                self._decoded = path, self._read(path)
+            except InputError as damage:
+                if not self._folder.is_dir():
+                    raise Unplugged("the folder is not there any more", where=self._folder) from damage
+                self._at, self._shown = self._at + 1, 0
+                raise
+        return self._decoded[1].copy()

@@ -1,0 +1,44 @@
+"""Which pictures of a folder a replay shows: of a recording set the part that is being recorded, else all of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from core.acquire.source import Lasers, Step
+from core.files.pictures import is_picture
+
+_PARTS: tuple[Step, ...] = ("camera", "planes", "scan")
+
+
+@dataclass(frozen=True, slots=True)
+class ReplayPictures:
+    """The pictures in a folder by step and lasers, named as in a recording set.
+
+    `folder` is that of a recording set, or one that holds the pictures of one step.
+    """
+
+    folder: Path
+
+    @property
+    def is_set(self) -> bool:
+        """Whether the folder has parts named as in a recording set."""
+        return any((self.folder / part).is_dir() for part in _PARTS)
+
+    def __call__(self, step: Step, lasers: Lasers) -> tuple[Path, ...]:
+        """The pictures of a step taken under these lasers, in the order of their names; empty if there are none."""
+        pictures = self._all(self.folder / step if self.is_set else self.folder)
+        if step == "planes":
+            off = {path.stem.removesuffix("_off"): path for path in pictures if path.stem.endswith("_off")}
+            shown = [path for path in pictures if path not in off.values()]
+            if lasers.fan:
+                return tuple(shown)
+            return tuple(off[path.stem] for path in shown) if all(path.stem in off for path in shown) else ()
+        if step == "scan":
+            return tuple(path for path in pictures if (path.stem.lower() != "reference") == lasers.hand)
+        return pictures
+
+    def _all(self, folder: Path) -> tuple[Path, ...]:
+        if not folder.is_dir():
+            return ()
+        return tuple(sorted((path for path in folder.iterdir() if is_picture(path)), key=lambda path: path.name))
