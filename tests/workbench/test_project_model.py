@@ -1,0 +1,97 @@
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from core.errors import InputError
+from core.files.project import Project, new_project, read_project, recoverable
+from core.files.project_keys import finished
+from workbench.project_model import ProjectModel
+
+
+@pytest.fixture
+def model(qapp: Any, tmp_path: Path) -> ProjectModel:
+    model = ProjectModel()
+    model.create(tmp_path / "block", new_project("Block"))
+    return model
+
+
+def renamed(project: Project, name: str) -> Project:
+    return replace(project, info=replace(project.info, name=name))
+
+
+def test_an_edit_can_be_undone_and_done_again(model: ProjectModel) -> None:
+    seen: list[tuple[str, str]] = []
+    model.changed.connect(lambda before, after: seen.append((before.info.name, after.info.name)))
+    model.edit("rename", renamed(model.project, "Other"))
+    model.undo_stack.undo()
+    assert model.project.info.name == "Block"
+    model.undo_stack.redo()
+    assert model.project.info.name == "Other"
+    assert seen == [("Block", "Other"), ("Other", "Block"), ("Block", "Other")]
+    assert model.undo_stack.undoText() == "rename"
+
+
+def test_an_edit_that_changes_nothing_leaves_no_undo(model: ProjectModel) -> None:
+    model.edit("rename", renamed(model.project, "Block"))
+    assert not model.undo_stack.canUndo()
+    assert not model.is_modified
+
+
+def test_edits_of_one_thing_in_a_row_are_undone_together(model: ProjectModel) -> None:
+    for name in ("A", "AB", "ABC"):
+        model.edit("rename", renamed(model.project, name), "name")
+    model.undo_stack.undo()
+    assert model.project.info.name == "Block"
+
+
+def test_results_are_facts_and_survive_an_undo(model: ProjectModel) -> None:
+    model.edit("rename", renamed(model.project, "Other"))
+    model.record("camera", finished("camera", model.project, model.results))
+    model.undo_stack.undo()
+    assert "camera" in model.results
+
+
+def test_saving_keeps_project_and_results(model: ProjectModel) -> None:
+    model.edit("rename", renamed(model.project, "Other"))
+    model.record("camera", finished("camera", model.project, model.results))
+    assert model.is_modified
+    model.save()
+    assert not model.is_modified
+    assert model.folder is not None
+    stored = read_project(model.folder)
+    assert stored.project == model.project
+    assert set(stored.results) == {"camera"}
+
+
+def test_an_edit_is_on_disk_soon_without_saving(model: ProjectModel, qtbot: Any) -> None:
+    model.edit("rename", renamed(model.project, "Other"))
+    folder = model.folder
+    assert folder is not None
+    qtbot.waitUntil(lambda: recoverable(folder) is not None, timeout=3000)
+    again = ProjectModel()
+    again.open(folder, recover=True)
+    assert again.project.info.name == "Other"
+    assert again.is_modified
+    again.save()
+    assert recoverable(folder) is None
+
+
+def test_opening_without_recovery_forgets_the_autosave(model: ProjectModel) -> None:
+    model.edit("rename", renamed(model.project, "Other"))
+    model.autosave()
+    folder = model.folder
+    assert folder is not None
+    again = ProjectModel()
+    again.open(folder)
+    assert again.project.info.name == "Block"
+    assert recoverable(folder) is None
+
+
+def test_a_project_is_never_created_over_another(model: ProjectModel) -> None:
+    assert model.folder is not None
+    with pytest.raises(InputError, match="there is a project already"):
+        ProjectModel().create(model.folder, new_project("x"))
