@@ -74,6 +74,16 @@ Contrast = Annotated[
 ]
 
 
+Exclude = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--exclude",
+        metavar="NAME",
+        help="Leave this picture out: camera/view03.png, planes/pose02 or scan/frame0007.png; repeat for more.",
+    ),
+]
+
+
 class _Commands(TyperGroup):
     """The commands; Ctrl-C passes through as `Cancelled`, or Typer would leave with the code of "not proven"."""
 
@@ -122,6 +132,7 @@ def run(
     no_skew: NoSkew = False,
     k3: K3 = False,
     part: Part = "",
+    exclude: Exclude = None,
     json: Json = False,
 ) -> None:
     """Measure a recording set: calibrations, cloud, mesh, thickness, report."""
@@ -136,6 +147,7 @@ def run(
         stripe_width=stripe_width,
         contrast=contrast,
     )
+    options = measuring.leaving_out(options, folder, exclude)
     with bars() as progress:
         result = measuring.run_all(folder, out, options, progress)
     measuring.show_run(result, as_json=json)
@@ -143,23 +155,26 @@ def run(
 
 
 @app.command()
-def camera(folder: Set, out: Out, no_skew: NoSkew = False, k3: K3 = False, json: Json = False) -> None:
+def camera(
+    folder: Set, out: Out, no_skew: NoSkew = False, k3: K3 = False, exclude: Exclude = None, json: Json = False
+) -> None:
     """Calibrate the camera from SET/camera; writes camera.json."""
     from core.cli import measuring
 
-    options = measuring.options("network", 0.05, skew=not no_skew, k3=k3)
+    options = measuring.leaving_out(measuring.options("network", 0.05, skew=not no_skew, k3=k3), folder, exclude)
     with bars() as progress:
         shown = measuring.run_camera(folder, out, options, progress)
     shown.show(as_json=json)
 
 
 @app.command()
-def planes(folder: Set, out: Out, json: Json = False) -> None:
+def planes(folder: Set, out: Out, exclude: Exclude = None, json: Json = False) -> None:
     """Calibrate the fan's light planes from SET/planes, with camera.json in DIR; writes planes.json."""
     from core.cli import measuring
 
+    options = measuring.leaving_out(measuring.options("network", 0.05), folder, exclude)
     with bars() as progress:
-        shown = measuring.run_planes(folder, out, progress)
+        shown = measuring.run_planes(folder, out, options, progress)
     shown.show(as_json=json)
 
 
@@ -171,12 +186,14 @@ def scan(
     sigma_cut: SigmaCut = 0.05,
     stripe_width: StripeWidth = 0.0,
     contrast: Contrast = 0.0,
+    exclude: Exclude = None,
     json: Json = False,
 ) -> None:
     """Measure the surface from SET/scan, with the calibrations in DIR; writes cloud.ply and mesh.ply."""
     from core.cli import measuring
 
     options = measuring.options(method.value, sigma_cut, stripe_width=stripe_width, contrast=contrast)
+    options = measuring.leaving_out(options, folder, exclude)
     with bars() as progress:
         shown = measuring.run_scan(folder, out, options, progress)
     shown.show(as_json=json)

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, cast
 
 from core.calibrate.camera import CameraOptions
 from core.cli import output
 from core.errors import InputError
+from core.files.exclusion import excluded_names
 from core.files.recording_set import open_set
 from core.image.stripe import StripeSettings
 from core.inspect.results import GaugeResult
@@ -69,6 +70,11 @@ def options(
     return Options(cast(Method, method), sigma_cut, CameraOptions(skew=skew, k3=k3), part, stripe)
 
 
+def leaving_out(chosen: Options, folder: Path, names: Sequence[str] | None) -> Options:
+    """The options with the pictures `names` of the set left out; InputError if the set has no such picture."""
+    return replace(chosen, excluded=excluded_names(open_set(folder), names)) if names else chosen
+
+
 def exit_code(gauge: GaugeResult | None) -> int:
     """0, or 1 where a verdict was asked for and is not "conforming"."""
     return 0 if gauge is None or gauge.verdict in PROVEN else 1
@@ -102,10 +108,10 @@ def run_camera(folder: Path, out: Path, chosen: Options, progress: Progress) -> 
     return _shown(work, "camera", rows, values, "camera")
 
 
-def run_planes(folder: Path, out: Path, progress: Progress) -> Shown:
+def run_planes(folder: Path, out: Path, chosen: Options, progress: Progress) -> Shown:
     """Planes step."""
     work = _open(folder, out)
-    calibration = planes_step(work, progress=progress)
+    calibration = planes_step(work, chosen, progress)
     return _shown(work, "planes", output.fan_rows(calibration), output.fan_json(calibration), "planes")
 
 
