@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import map_coordinates
 
+from core.calibrate.pose_features import PoseFeatures
 from core.image.centreline import Centreline
 from core.image.noise import estimate_noise
 from core.image.stripes import StripeSettings, choose_settings, extract_centrelines
@@ -24,6 +25,8 @@ from core.image.target_view import TargetView
 from core.image.targets import Target, TargetNotFound, camera_shift, detect
 from core.model import Camera
 from core.model.arrays import Array
+
+__all__ = ["PlanePoseOptions", "PoseFeatures", "measure_plane_pose"]
 
 Picture = NDArray[Any]
 """(H, W) grey levels, uint8 or uint16."""
@@ -43,31 +46,6 @@ class PlanePoseOptions:
     """How a pair of pictures is read; `moved_px` is the movement of the target from which a pair is left out."""
 
     moved_px: float = MOVED_PX
-
-
-@dataclass(frozen=True, eq=False, slots=True)
-class PoseFeatures:
-    """What the pictures of one pose show.
-
-    Parameters
-    ----------
-    name
-        The pose's name, for messages.
-    view
-        The target's points; None if it was not found.
-    centrelines
-        All stripes in the picture, on the target or not.
-    reason
-        Why the pose cannot be used; empty if it can.
-    notes
-        Sentences for the technician.
-    """
-
-    name: str
-    view: TargetView | None
-    centrelines: tuple[Centreline, ...]
-    reason: str = ""
-    notes: tuple[str, ...] = ()
 
 
 def measure_plane_pose(

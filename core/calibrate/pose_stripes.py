@@ -3,27 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
-from core.calibrate.line_assignment import NOT_SEEN
 from core.calibrate.located_pose import locate, on_target
-from core.calibrate.plane_pose import PoseFeatures
+from core.calibrate.pose_features import PoseFeatures
+from core.calibrate.pose_stages import NOT_SEEN, NumberedStripe
 from core.calibrate.stripe_lines import StripeLine
 from core.model import Camera, Fan, LightPlane, Pose
 from core.model.arrays import Array
 
 TOO_FAR = 0.005
 """A stripe whose points are further (RMS) from a light plane than this share of their depth is not of that plane."""
-
-
-@dataclass(frozen=True, eq=False, slots=True)
-class NumberedStripe:
-    """One straight stripe: its points (N, 2) in pixels, and the fan line (from 0) that drew it or NOT_SEEN."""
-
-    uv: Array
-    line: int
 
 
 def numbered_stripes(features: PoseFeatures, camera: Camera, fan: Fan | None = None) -> tuple[NumberedStripe, ...]:

@@ -7,13 +7,11 @@ from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from core.errors import InputError
 from core.files.options import Options
 from core.files.pictures import Picture
 from core.files.recording_set import RecordingSet
-from core.image.centreline import Centreline
 from core.image.display import in_8_bit, white_level
 from core.image.ridge_picture import ridge_strength
 from core.image.stripe import StripeSettings
@@ -28,69 +26,11 @@ from core.scan.features import (
     choose_sweep_stripe,
     read_reference,
 )
-from core.scan.frame_preview import FramePreview
 from core.scan.preview import Preview, PreviewOptions
-
-Picture8 = NDArray[np.uint8]
-"""(H, W) grey levels for display."""
+from core.scan.stages import FrameStages, SettledScan
 
 STRIPE_AT = 160.0
 """Difference and ridge strength are shown so that a rather faint stripe has this grey level."""
-
-
-@dataclass(frozen=True, eq=False, slots=True)
-class FrameStages:
-    """What every stage makes of one frame.
-
-    Parameters
-    ----------
-    index, name
-        Of the frame, in the order of the recording.
-    picture
-        As it was recorded.
-    difference
-        Frame − reference, brightened alike for all frames; what is darker than the reference is black.
-    ridge
-        Steger's strength at the stripe's scale, brightened in the same way.
-    brighter
-        Grey levels of `difference` and `ridge` for one grey level of the picture.
-    sweep
-        The hand-held laser's centrelines.
-    fan
-        The fan's centrelines, and in `fan_line` the line (from 0) each of them belongs to; −1 where that is not known.
-    seen
-        Crossings, each good, weak or left out with the reason, as this frame gives them by itself; None without
-        calibrations.
-    shift_px
-        How far the fan's light is from where it is in the reference.
-    left_out
-        Whether this frame is left out by hand; its stages are shown all the same.
-    reason
-        Why there is no sweep; empty if there is.
-    """
-
-    index: int
-    name: str
-    picture: Picture8
-    difference: Picture8
-    ridge: Picture8
-    brighter: float
-    sweep: tuple[Centreline, ...]
-    fan: tuple[Centreline, ...]
-    fan_line: tuple[int, ...]
-    seen: FramePreview | None
-    shift_px: float
-    left_out: bool
-    reason: str
-
-
-@dataclass(frozen=True, slots=True)
-class SettledScan:
-    """What a finished measurement of the recording has settled: how stripes look, and the lines of the fan's pieces."""
-
-    sweep_stripe: StripeSettings | None
-    fan_stripe: StripeSettings
-    fan_line: tuple[int, ...]
 
 
 def frame_stages(

@@ -2,35 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
-from core.calibrate.plane_pose import PoseFeatures
-from core.calibrate.pose_stripes import NumberedStripe, numbered_stripes
+from core.calibrate.pose_features import PoseFeatures
+from core.calibrate.pose_stages import PoseStages
+from core.calibrate.pose_stripes import numbered_stripes
 from core.errors import InputError
 from core.files.recording_set import RecordingSet
 from core.image.display import in_8_bit, white_level
 from core.model import Camera, Fan
-from core.model.arrays import Array
-from core.pipeline.frame_stages import Picture8
 from core.progress import Progress, silent
-
-
-@dataclass(frozen=True, eq=False, slots=True)
-class PoseStages:
-    """The picture of a pose with the fan on, and what was found.
-
-    `corners` (N, 2) in pixels are the target's points, none if it was not found; `stripes` the straight stripes with
-    the fan line each is of; `reason` why the pose cannot be used, empty if it can.
-    """
-
-    name: str
-    picture: Picture8
-    corners: Array
-    stripes: tuple[NumberedStripe, ...]
-    reason: str
-    notes: tuple[str, ...]
 
 
 def pose_stages(

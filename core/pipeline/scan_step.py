@@ -26,11 +26,12 @@ from core.scan.features import (
     extract_features,
     read_reference,
 )
+from core.scan.frame_preview import FramePreview
 from core.scan.fusion import fuse
 from core.scan.mesh import build_mesh
 from core.scan.network import SILENCED
 from core.scan.normals import with_normals
-from core.scan.preview import FramePreview, Preview
+from core.scan.preview import Preview
 from core.scan.reconstruct import ReconstructOptions, reconstruct
 from core.scan.reference import quantile_reference, sample_indices
 from core.scan.results import FrameRecord, ScanResult

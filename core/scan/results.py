@@ -11,30 +11,9 @@ from core.model.arrays import Array
 from core.scan.cloud import Cloud
 from core.scan.crossings import CrossingTable
 from core.scan.fan_lines import FanLines
+from core.scan.frame_record import FrameRecord
 
-
-@dataclass(frozen=True, slots=True)
-class FrameRecord:
-    """What became of one frame.
-
-    `stripes` centrelines of `stripe_px` points in all; `fan_crossings` with the fan on `fan_lines_met` different lines
-    and `sweep_crossings` with other sweeps, of which `left_out` disagreed; `condition` of the fan crossings alone
-    (ratio of singular values); `sigma_mm` the median σ of its points. A frame that gave no points says why in `reason`.
-    """
-
-    index: int
-    name: str
-    used: bool
-    reason: str = ""
-    stripes: int = 0
-    stripe_px: int = 0
-    fan_crossings: int = 0
-    fan_lines_met: int = 0
-    sweep_crossings: int = 0
-    left_out: int = 0
-    condition: float = float("inf")
-    points: int = 0
-    sigma_mm: float = float("nan")
+__all__ = ["FrameRecord", "ScanResult"]
 
 
 @dataclass(frozen=True, eq=False, slots=True)
