@@ -9,20 +9,11 @@ from core.errors import InputError
 from core.files.atomic import write_bytes
 from core.files.rig import read_rig
 from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid, Target
+from core.image.targets.usual import USUAL, USUAL_MARKER
 from core.report.target_sheet import PAPER_MM, SheetPaper, sheet_layout, target_sheet
 from core.report.wording import target_in_words
 
-USUAL = {
-    "checkerboard": (17, 12, 10.0),
-    "charuco": (12, 9, 15.0),
-    "circle_grid": (13, 10, 14.0),
-    "black_square": (1, 1, 60.0),
-}
-"""Columns, rows and size in mm where they are not given: those of the simulated rig; all fit A4."""
-
 KINDS = tuple(USUAL)
-USUAL_MARKER = 0.75
-"""Side of a marker over that of its square, where none is given."""
 
 
 def described(
