@@ -1,10 +1,12 @@
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from core.errors import InputError
-from core.files.rig import read_rig
+from core.files.rig import GaugeSpec, Rig, default_rig, read_rig, rig_of, rig_tables, rig_to_toml
+from core.files.rig_tables import RigTables
 from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid
 
 GOOD = """
@@ -159,3 +161,78 @@ def test_a_table_given_as_a_number(tmp_path):
     assert "laser_fan is 3, not a table [laser_fan]" in complaint(
         tmp_path, "laser_fan = 3\n" + GOOD.replace("[laser_fan]\nlines = 3\nangle_deg = 5.0", "")
     )
+
+
+def written(tmp_path, rig):
+    (tmp_path / "rig.toml").write_text(rig_to_toml(rig), encoding="utf-8")
+    return read_rig(tmp_path / "rig.toml")
+
+
+POLYGONS = [[[0.5, 0.0], [10.0, 1 / 3], [10.0, 10.0]], [[20, 0], [30, 0], [30, 10], [20.5, 10]]]
+
+
+@pytest.mark.parametrize("target", [
+    Checkerboard(17, 12, 10.0), Checkerboard(9, 6, 1 / 3), Charuco(9, 7, 20, 15, "DICT_5X5_100"),
+    CircleGrid(7, 6, 37.5, asymmetric=True), CircleGrid(7, 7, 20.0), BlackSquare(60.0),
+])  # fmt: skip
+@pytest.mark.parametrize("gauge", [
+    None, GaugeSpec(), GaugeSpec(50.0, 0.2), GaugeSpec(None, None, *POLYGONS), GaugeSpec(0.1 + 0.2, 1e-5, *POLYGONS),
+])  # fmt: skip
+@pytest.mark.parametrize("channel", [None, "red"])
+def test_a_written_rig_reads_as_the_same_rig(tmp_path, target, gauge, channel):
+    camera_target = Checkerboard(5, 4, 3.0) if isinstance(target, BlackSquare) else target
+    rig = Rig(camera_target, target, 3, math.radians(5.0), gauge, channel)
+    assert written(tmp_path, rig) == rig
+    assert rig_of(RigTables.model_validate(rig_tables(rig)), tmp_path) == rig
+
+
+@pytest.mark.parametrize("degrees", [5.0, 0.1, 1 / 3, 44.999, 7.3, 2.5000001])
+def test_an_angle_in_degrees_comes_back_as_it_was_written(tmp_path, degrees):
+    rig = Rig(Checkerboard(5, 4, 3.0), BlackSquare(60.0), 2, math.radians(degrees))
+    assert written(tmp_path, rig) == rig
+    assert math.radians(rig_tables(rig)["laser_fan"]["angle_deg"]) == rig.angle
+
+
+def test_one_line_has_no_angle_and_keeps_one_it_was_given(tmp_path):
+    alone = Rig(Checkerboard(5, 4, 3.0), BlackSquare(60.0), 1, 0.0)
+    assert "angle_deg" not in rig_to_toml(alone)
+    assert written(tmp_path, alone) == alone
+    assert written(tmp_path, replace(alone, angle=math.radians(5.0))).angle == math.radians(5.0)
+
+
+def test_the_rig_of_the_design_is_written_as_the_design_has_it():
+    rig = replace(default_rig(), gauge=GaugeSpec(50.0, 0.2))
+    lines = [line for line in rig_to_toml(rig).splitlines() if line]
+    assert lines == GOOD.split("\n")[1:-1]
+
+
+def test_the_default_rig_is_the_papers(tmp_path):
+    assert default_rig() == read(tmp_path, GOOD.partition("[gauge]")[0])
+
+
+def test_a_channel_stands_before_the_tables():
+    assert rig_to_toml(replace(default_rig(), channel="red")).startswith('channel = "red"\n')
+
+
+def test_rigs_are_equal_if_their_polygons_are():
+    def rig(u):
+        return replace(default_rig(), gauge=GaugeSpec(50.0, 0.2, np.array([[u, 0], [1, 0], [1, 1.0]]), POLYGONS[1]))
+
+    assert rig(0) == rig(0)
+    assert hash(rig(0)) == hash(rig(0))
+    assert rig(0) != rig(0.25)
+    assert rig(0) != replace(rig(0), gauge=GaugeSpec(50.0, 0.2))
+    assert rig(0) != default_rig()
+    assert GaugeSpec(50.0, 0.2) != GaugeSpec(50.0, 0.1)
+    assert GaugeSpec() != "gauge"
+
+
+def test_a_polygon_belongs_to_its_rig_alone():
+    corners = np.array([[0, 0], [1, 0], [1, 1.0]])
+    spec = GaugeSpec(upper_polygon_px=corners, lower_polygon_px=corners)
+    corners[0, 0] = 7
+    assert spec.upper_polygon_px[0, 0] == 0
+    with pytest.raises(ValueError, match="read-only"):
+        spec.upper_polygon_px[0, 0] = 7
+    with pytest.raises(ValueError, match="upper_polygon_px has shape"):
+        GaugeSpec(upper_polygon_px=np.zeros(6))
