@@ -1,48 +1,131 @@
 """The 3D view: a point cloud, a mesh, planes and marks in millimetres, to look at, turn, measure on and choose from.
 
 Everything a page needs of 3D is a method or a signal of `SceneView`; pages know nothing of VTK.
+
+Inside, `Scene` holds what is shown and `Navigator` from where; a surface draws it (`scene_view_choice` says which),
+`ScenePace` decides when and how much, Qt writes labels and colour bar over it, and tools turn mouse and keys into
+motions and choices.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from PySide6.QtCore import Signal
-from PySide6.QtGui import QColor
-from PySide6.QtWidgets import QWidget
+from PySide6.QtCore import QBuffer, QEvent, QIODevice, QPointF, Signal
+from PySide6.QtGui import QCloseEvent, QColor, QImage, QPainter
+from PySide6.QtWidgets import QFileDialog, QVBoxLayout, QWidget
+
+from core.errors import InputError
+from core.files import atomic
+from core.model.arrays import Array
+from workbench.views import scene_view_choice as choice
+from workbench.views.scene_view_backing import Backing
+from workbench.views.scene_view_buttons import SceneButtons
+from workbench.views.scene_view_canvas import Canvas, Overlay
+from workbench.views.scene_view_chooser import Chooser
+from workbench.views.scene_view_cloud import SceneCloud
+from workbench.views.scene_view_colours import PLAIN, Colouring, Rgb, as_colours
+from workbench.views.scene_view_contents import Labels, Lines, Marks, Measure, Patches, Scene, as_mesh, as_points, each
+from workbench.views.scene_view_grid import camera_pyramid, ground_grid
+from workbench.views.scene_view_navigator import Navigator
+from workbench.views.scene_view_overlay import Look, bar_width, paint_marker, paint_overlay
+from workbench.views.scene_view_painter import PainterSurface
+from workbench.views.scene_view_picture_widget import image_pixels, pixels_image
+from workbench.views.scene_view_pieces import whole
+from workbench.views.scene_view_tools import Lasso, Navigate, Pick, Polygon
 
 ViewName = Literal["front", "back", "left", "right", "top", "bottom", "iso", "camera"]
 ColourLike = str | tuple[int, int, int] | QColor
 ColourMap = Literal["viridis", "plasma", "deviation"]
 
+PYRAMID, GRID = "#pyramid", "#grid"
+"""Names of what the view draws by itself."""
+
+HIGHLIGHT_WIDER = 1.5
+"""Highlighted points are wider than the cloud's by so many pixels."""
+
 
 def warm_up() -> None:
-    """Import the 3D libraries in the background; call it when the program is idle. Returns at once."""
+    """Import the 3D libraries in the background; call it in the GUI thread when the program is idle.
+
+    Returns at once. Views made earlier or later start as soon as the libraries are there.
+    """
+    choice.warm_up()
 
 
 class SceneView(QWidget):
     """A 3D scene with its tool bar, colour bar, axes and scale.
 
-    All coordinates are in mm, in the camera's frame unless `set_orientation` says which way is up.
+    All coordinates are in mm, in the camera's frame unless `set_orientation` says which way is up. Arrays are kept,
+    not copied: do not change them afterwards. Nothing of OpenGL is made before there is something to see in a view
+    that is seen.
     """
 
     notice = Signal(str)
-    """One sentence, once, when the embedded 3D view is not available and pictures are shown instead."""
+    """One sentence, once, when pictures are shown because there is no OpenGL for the window."""
 
     point_picked = Signal(int, object)
-    """Index into the cloud's points as given, and their coordinates (3,) in mm."""
+    """Number of the point among those given to `set_cloud` and `add_points`, and its coordinates (3,) in mm."""
 
     region_selected = Signal(object)
-    """Which points of the cloud as given lie in the drawn region: (N,) bool."""
+    """Which of the cloud's points, as given, lie inside the drawn region: (N,) bool."""
 
     drawing_cancelled = Signal()
-    """Picking or drawing was ended by Esc or by `stop_drawing`, without a result."""
+    """Picking or drawing was ended by Esc or `stop_drawing`, without a result."""
 
     def __init__(self, parent: QWidget | None = None, *, tools: bool = True) -> None:
         super().__init__(parent)
+        self._scene = Scene()
+        self._pyramid: Array | None = None
+        self._message = ""
+        self._axes = True
+        self._point_size = 2.0
+        self._canvas = Canvas(self)
+        self._navigator = Navigator(self._scene, self._size, self._margin, lambda: self._pyramid, self)
+        self._chooser = Chooser(self._scene, lambda: self._navigator.camera, self._size, self)
+        self._backing = Backing(self._scene, self._canvas, lambda: self._navigator.camera, self)
+        self._overlay = Overlay(self._canvas, Navigate(self), self._paint_overlay)
+        self._canvas.put_above(self._overlay)
+        self.setFocusProxy(self._overlay)
+        self._buttons = SceneButtons(self)
+        self._buttons.setVisible(tools)
+        rows = QVBoxLayout(self)
+        rows.setContentsMargins(0, 0, 0, 0)
+        rows.setSpacing(0)
+        rows.addWidget(self._buttons)
+        rows.addWidget(self._canvas, 1)
+        self._connect()
+        self._reserve_opengl()
+        self._show_message()
+
+    def _connect(self) -> None:
+        self._buttons.view_asked.connect(self.view)
+        self._buttons.fit_asked.connect(self.fit)
+        self._buttons.parallel_asked.connect(self._navigator.set_parallel)
+        self._buttons.grid_asked.connect(self._lay_grid)
+        self._buttons.save_asked.connect(self._ask_and_save)
+        self._canvas.shown.connect(self._on_shown)
+        self._canvas.resized.connect(self._navigator.resized)
+        self._navigator.moved.connect(self._on_moved)
+        self._chooser.picked.connect(self.point_picked)
+        self._chooser.selected.connect(self._on_selected)
+        self._overlay.cancelled.connect(self.stop_drawing)
+        self._backing.notice.connect(self.notice)
+        self._backing.presented.connect(self._overlay.update)
+        self._backing.waiting.connect(self._show_message)
+
+    def _reserve_opengl(self) -> None:
+        """A window that gets its first OpenGL widget while it is seen is made anew and flickers: let it have one."""
+        if choice.opengl_in_windows():
+            from PySide6.QtOpenGLWidgets import QOpenGLWidget
+
+            placeholder = QOpenGLWidget(self)
+            placeholder.setGeometry(0, 0, 1, 1)
+            placeholder.hide()
 
     # ---- what is shown
 
@@ -63,7 +146,7 @@ class SceneView(QWidget):
         Parameters
         ----------
         points
-            (N, 3) in mm; may be empty, to grow by `add_points`.
+            (N, 3) in mm; may be empty, to grow by `add_points`. Points that are not finite are not drawn.
         values, value_name, unit
             (N,) one number a point, coloured by the colour map; name and unit stand over the colour bar. NaN is grey.
         limits
@@ -74,10 +157,42 @@ class SceneView(QWidget):
             Instead of values: (N, 3) uint8, or one colour for all.
         keep_camera
             Leave the view as it is, except when nothing was shown before.
+
+        Raises
+        ------
+        ValueError
+            If the shapes do not match.
         """
+        colouring = Colouring(value_name, unit, limits, colour_map)
+        if colours is not None and values is None:
+            count = len(np.asarray(points).reshape(-1, 3))
+            one = isinstance(colours, str | tuple | QColor)
+            colouring = (
+                Colouring(plain_colour=_rgb(colours))  # type: ignore[arg-type]
+                if one
+                else Colouring(colours=as_colours(colours, count))  # type: ignore[arg-type]
+            )
+        self._chooser.stop()
+        self._chooser.marked = None
+        self._scene.cloud = SceneCloud(points, values, colouring)
+        self._changed(afresh=not keep_camera)
 
     def add_points(self, points: ArrayLike, values: ArrayLike | None = None) -> None:
-        """Let the cloud grow by `points` (M, 3); cheap, shown at most ten times a second."""
+        """Let the cloud grow by `points` (M, 3) in mm with `values` (M,) if it has values.
+
+        Cheap: only new points are sent to the graphics card, at most ten times a second. `set_cloud` with empty
+        arrays before says how the values are called and coloured.
+        """
+        if self._scene.cloud is None:
+            self.set_cloud(points, values=values)
+            return
+        self._scene.cloud.add(points, values)
+        if not self._scene.cloud_shown or self._scene.cloud.drawn == 0:
+            return
+        if self._navigator.follow() or self._backing.pace is None:
+            self._changed()
+        else:
+            self._backing.pace.grown()
 
     def set_mesh(
         self,
@@ -92,19 +207,36 @@ class SceneView(QWidget):
         colour: ColourLike | None = None,
         keep_camera: bool = True,
     ) -> None:
-        """Show a surface: vertices (V, 3) in mm, triangles (T, 3) of vertex numbers, values (V,)."""
+        """Show a surface: vertices (V, 3) in mm, triangles (T, 3) of vertex numbers, values (V,) as in `set_cloud`.
+
+        Raises
+        ------
+        ValueError
+            If the shapes do not match or a triangle names a vertex that is not there.
+        """
+        plain = _rgb(colour) if colour is not None else PLAIN
+        colouring = Colouring(value_name, unit, limits, colour_map, plain_colour=plain)
+        self._scene.mesh = as_mesh(points, triangles, values, colouring) if len(np.asarray(triangles)) else None
+        self._changed(afresh=not keep_camera)
 
     def show_cloud(self, shown: bool) -> None:
         """Show or hide the cloud."""
+        self._scene.cloud_shown = shown
+        self._changed()
 
     def show_mesh(self, shown: bool) -> None:
         """Show or hide the mesh."""
+        self._scene.mesh_shown = shown
+        self._changed()
 
     def set_highlight(self, name: str, points: ArrayLike, colour: ColourLike) -> None:
         """Mark points (N, 3) in one colour, drawn larger than the cloud's."""
+        self._put(name, Marks(as_points(points), _rgb(colour), self._point_size + HIGHLIGHT_WIDER))
 
     def remove_highlight(self, name: str) -> None:
         """Take a highlight away; none of that name is no error."""
+        self._scene.remove(name, Marks)
+        self._changed()
 
     def set_planes(
         self,
@@ -113,74 +245,333 @@ class SceneView(QWidget):
         colours: Sequence[ColourLike] | ColourLike,
         opacity: float = 0.25,
     ) -> None:
-        """Show transparent four-cornered patches, each (4, 3) in mm."""
+        """Show transparent four-cornered patches, each (4, 3) in mm; those that are not finite are left out."""
+        patches = [as_points(patch, "corners") for patch in corners]
+        shades = each(_rgbs(colours), len(patches))
+        kept = [k for k, patch in enumerate(patches) if np.isfinite(patch).all()]
+        self._put(name, Patches(tuple(patches[k] for k in kept), tuple(shades[k] for k in kept), opacity))
 
     def set_polylines(
         self, name: str, lines: Sequence[ArrayLike], colour: ColourLike | Sequence[ColourLike], width: float = 2.0
     ) -> None:
         """Show lines, each (N, 3) in mm; one colour for all or one each; `width` in pixels."""
+        given = [as_points(line, "lines") for line in lines]
+        self._put(name, Lines(tuple(given), each(_rgbs(colour), len(given)), width))
 
     def set_camera_frustum(self, corners: ArrayLike | None) -> None:
-        """Show where the camera is: (5, 3), its centre and the four corners of its picture; None takes it away."""
+        """Show where the camera is: (5, 3), its centre and the four corners of its picture; None takes it away.
+
+        See `scene_shapes.frustum`. The view "camera" then shows what the camera sees.
+        """
+        self._scene.remove(PYRAMID)
+        self._pyramid = None if corners is None else as_points(corners, "corners")
+        if self._pyramid is not None:
+            for item in camera_pyramid(self._pyramid, self.tr("camera")):
+                self._scene.put(PYRAMID, item)
+        self._changed()
 
     def set_labels(self, name: str, labels: Sequence[tuple[ArrayLike, str]], colour: ColourLike | None = None) -> None:
-        """Write texts at places in mm."""
+        """Write texts at places (3,) in mm."""
+        places = as_points([np.asarray(place, dtype=np.float64) for place, _ in labels], "places")
+        self._put(name, Labels(places, tuple(text for _, text in labels), None if colour is None else _rgb(colour)))
 
     def set_measure(self, name: str, a: ArrayLike, b: ArrayLike, text: str) -> None:
-        """Draw a dimension line from `a` to `b` with a text, computed by the caller."""
+        """Draw a dimension line from `a` to `b`, both (3,) in mm, with a text, computed by the caller."""
+        ends = as_points([np.asarray(a, dtype=np.float64), np.asarray(b, dtype=np.float64)], "ends")
+        self._put(name, Measure(ends, text))
 
     def set_axes(self, shown: bool) -> None:
         """Show or hide the axes' triad and the scale bar."""
+        self._axes = shown
+        self._overlay.update()
 
     def set_grid(self, shown: bool) -> None:
         """Show or hide a millimetre grid under the scene."""
+        self._buttons.grid.setChecked(shown)
 
     def set_point_size(self, pixels: float) -> None:
         """Diameter of the cloud's points on the screen."""
+        self._point_size = self._backing.point_size = pixels
+        self._backing.dress()
 
     def set_orientation(self, up: ArrayLike, north: ArrayLike) -> None:
-        """Say which way is up and which is away from the viewer in the front view, both (3,).
+        """Say which way is up and which is away from the viewer of the front view, both (3,).
 
         Until then up is towards the camera and north is up in the camera's picture.
+
+        Raises
+        ------
+        ValueError
+            If they are parallel or not finite.
         """
+        self._navigator.set_orientation(up, north)
+        self._changed()
 
     def remove(self, name: str) -> None:
         """Take away planes, lines, labels, measures or highlights of that name; none is no error."""
+        self._scene.remove(name)
+        self._changed()
 
     def clear(self, message: str = "") -> None:
         """Take everything away; a message stands in the empty view."""
+        self.stop_drawing()
+        self._chooser.stop()
+        self._chooser.marked = None
+        self._scene.clear()
+        self._pyramid = None
+        self._message = message
+        self._navigator.forget()
+        self._changed()
 
     # ---- from where it is seen
 
     def view(self, name: ViewName) -> None:
         """Look from a standard direction and fit."""
+        self._navigator.view(name)
 
     def fit(self) -> None:
         """Keep the direction, show everything."""
+        self._navigator.fit()
 
     def set_parallel(self, parallel: bool) -> None:
         """Parallel projection, in which lengths can be compared, or perspective."""
+        self._buttons.parallel.setChecked(parallel)
+
+    def screen_positions(self, points: ArrayLike) -> Array:
+        """Where points (N, 3) are in this view: (N, 2) in logical pixels of its canvas; NaN behind the viewer."""
+        return self._navigator.camera.project(as_points(points), self._size())[0]
 
     # ---- choosing
 
     def start_picking(self) -> None:
         """Every click on the cloud gives `point_picked` until Esc or `stop_drawing`; dragging still turns the view."""
+        self._start(Pick(self))
 
     def start_polygon(self) -> None:
         """Let the user click the corners of a region; a double click or Enter closes it, Esc cancels."""
+        self._start(Polygon(self))
 
     def start_lasso(self) -> None:
         """Let the user draw round a region with the button held down; Esc cancels."""
+        self._start(Lasso(self))
 
     def stop_drawing(self) -> None:
         """End picking or drawing without a result."""
+        if type(self._overlay.tool) is not Navigate:
+            self._overlay.set_tool(Navigate(self))
+            self._chooser.stop()
+            self._chooser.marked = None
+            self.drawing_cancelled.emit()
 
     # ---- pictures
 
     def picture(self) -> NDArray[np.uint8]:
-        """What is shown, whole, with colour bar and labels: (h, w, 3)."""
-        return np.zeros((self.height(), self.width(), 3), dtype=np.uint8)
+        """What is shown, whole, with colour bar and labels: (h, w, 3). Waits until everything is drawn."""
+        surface, pace = self._backing.surface, self._backing.pace
+        if surface is not None and pace is not None and surface.ready:
+            pace.finish_now()
+            pixels = surface.pixels()
+        else:
+            pixels = self._painted()
+        image = pixels_image(pixels).convertToFormat(QImage.Format.Format_RGB32)
+        painter = QPainter(image)
+        painter.scale(image.width() / self._size()[0], image.height() / self._size()[1])
+        self._paint_overlay(painter)
+        painter.end()
+        return image_pixels(image)
+
+    def save_picture(self, path: Path) -> None:
+        """Write the picture as PNG.
+
+        Raises
+        ------
+        InputError
+            If the file cannot be written.
+        """
+        buffer = QBuffer()
+        buffer.open(QIODevice.OpenModeFlag.WriteOnly)
+        pixels_image(self.picture()).save(buffer, "PNG")  # type: ignore[call-overload]
+        atomic.write_bytes(path, bytes(buffer.data().data()))
 
     def state(self) -> dict[str, Any]:
-        """How the scene is drawn, for messages and tests: kind of view, points in all, points drawn while moving."""
-        return {}
+        """How the scene is drawn, for messages and tests.
+
+        `kind` of surface ("none" before the first is made), `points` in the cloud, `drawn_moving` points and triangles
+        in the last quick picture, `complete` when everything is shown, `pass_ms` of the last passes.
+        """
+        pace, surface = self._backing.pace, self._backing.surface
+        return {
+            "kind": surface.kind if surface is not None else "none",
+            "points": self._scene.cloud.given if self._scene.cloud is not None else 0,
+            "drawn_moving": pace.moving_elements if pace is not None else 0,
+            "complete": pace is not None and pace.complete,
+            "pass_ms": list(pace.pass_ms) if pace is not None else [],
+        }
+
+    # ---- what tools do (`Hands`)
+
+    def orbit(self, dx: float, dy: float) -> None:
+        """Turn by a drag in pixels."""
+        self._navigator.orbit(dx, dy)
+
+    def pan(self, dx: float, dy: float) -> None:
+        """Move by a drag in pixels."""
+        self._navigator.pan(dx, dy)
+
+    def zoom(self, factor: float, at: QPointF | None = None) -> None:
+        """Nearer by a factor, towards a point of the screen or its middle."""
+        self._navigator.zoom(factor, at)
+
+    def pick(self, at: QPointF) -> None:
+        """Choose the point of the cloud under the cursor."""
+        self._chooser.pick(at)
+        self._overlay.update()
+
+    def centre_on(self, at: QPointF) -> None:
+        """Turn about the point under the cursor from now on."""
+        found = self._chooser.point_at(at)
+        if found is not None:
+            self._navigator.centre_on(found[1])
+
+    def choose_region(self, corners: list[QPointF]) -> None:
+        """Choose the points of the cloud inside an outline."""
+        self._chooser.choose_region(corners)
+        self._overlay.set_tool(Navigate(self))
+
+    def repaint_tool(self) -> None:
+        """Paint the tool again."""
+        self._overlay.update()
+
+    # ---- Qt
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() in (QEvent.Type.PaletteChange, QEvent.Type.StyleChange) and hasattr(self, "_buttons"):
+            self._buttons.dress()
+            self._backing.dress()
+            self._overlay.update()
+
+    def closeEvent(self, event: QCloseEvent) -> None:
+        self._chooser.stop()
+        self._backing.finish()
+        super().closeEvent(event)
+
+    # ---- inside
+
+    def _put(self, name: str, item: Marks | Patches | Lines | Labels | Measure) -> None:
+        self._scene.put(name, item)
+        self._changed()
+
+    def _changed(self, *, afresh: bool = False) -> None:
+        """Something else is to be seen."""
+        self._navigator.follow(afresh=afresh)
+        self._lay_grid()
+        self._show_message()
+        self._backing.ensure()
+        if self._backing.pace is not None:
+            self._backing.pace.changed()
+        self._overlay.update()
+
+    def _lay_grid(self) -> None:
+        shown = (GRID in {name for _, name in self._scene.items}), self._buttons.grid.isChecked()
+        self._scene.remove(GRID)
+        points = self._scene.to_fit() if shown[1] else np.empty((0, 3))
+        if len(points):
+            lines, step = ground_grid(points, self._navigator.orientation)
+            self._scene.put(GRID, lines)
+            self._scene.put(GRID, Labels(lines.lines[0][:1], (self.tr("grid {step} mm").format(step=f"{step:g}"),)))
+        if shown[0] != shown[1] and self._backing.pace is not None:
+            self._backing.pace.changed()
+            self._overlay.update()
+
+    def _on_shown(self) -> None:
+        self._navigator.resized()
+        self._backing.ensure()
+        if self._backing.pace is not None and not self._backing.pace.complete:
+            self._backing.pace.moved()
+
+    def _on_moved(self) -> None:
+        if self._backing.pace is not None:
+            self._backing.pace.moved()
+        self._overlay.update()
+
+    def _on_selected(self, inside: NDArray[np.bool_]) -> None:
+        self.region_selected.emit(inside)
+
+    def _start(self, tool: Navigate) -> None:
+        self.stop_drawing()
+        self._overlay.set_tool(tool)
+        self._overlay.setFocus()
+
+    def _show_message(self, waiting: bool = False) -> None:
+        message: str | None = None
+        if self._scene.empty:
+            message = self._message
+        elif waiting:
+            message = self.tr("Preparing the 3D view …")
+        self._overlay.show_message(message)
+
+    def _size(self) -> tuple[int, int]:
+        return max(self._canvas.width(), 2), max(self._canvas.height(), 2)
+
+    def _margin(self) -> tuple[int, int]:
+        return bar_width(self._scene.colouring, self.font()), 0
+
+    def _paint_overlay(self, painter: QPainter) -> None:
+        look, camera, size = Look.of(self._canvas.palette()), self._navigator.camera, self._size()
+        painter.setFont(self.font())
+        paint_overlay(painter, self._scene, camera, size, look, axes=self._axes)
+        if self._chooser.marked is not None:
+            x, y = camera.project(self._chooser.marked, size)[0][0]
+            if np.isfinite([x, y]).all():
+                paint_marker(painter, QPointF(float(x), float(y)), _place(self._chooser.marked), look)
+
+    def _painted(self) -> NDArray[np.uint8]:
+        """The picture of a view that nobody has seen yet."""
+        hidden = QWidget()
+        surface = PainterSurface(hidden, lambda: None)
+        surface.widget.resize(*self._size())
+        ground = Look.of(self._canvas.palette()).ground
+        surface.set_look((ground.red(), ground.green(), ground.blue()), self._point_size)
+        surface.draw(self._scene, self._navigator.camera, whole(self._scene), first=True, last=True)
+        return surface.pixels()
+
+    def _ask_and_save(self) -> None:
+        name, _ = QFileDialog.getSaveFileName(
+            self, self.tr("Save this picture"), "scene.png", self.tr("Pictures (*.png)")
+        )
+        if not name:
+            return
+        try:
+            self.save_picture(Path(name).with_suffix(".png"))
+        except InputError as error:
+            self.notice.emit(str(error))
+
+
+def _rgb(colour: ColourLike) -> Rgb:
+    """Any way of saying a colour, as three numbers.
+
+    Raises
+    ------
+    ValueError
+        If there is no such colour.
+    """
+    shade = QColor(*colour) if isinstance(colour, tuple) else QColor(colour)
+    if not shade.isValid():
+        raise ValueError(f"{colour!r} is no colour")
+    return shade.red(), shade.green(), shade.blue()
+
+
+def _rgbs(colours: ColourLike | Sequence[ColourLike]) -> list[Rgb]:
+    """One colour or several."""
+    if isinstance(colours, str | QColor):
+        return [_rgb(colours)]
+    if isinstance(colours, tuple) and len(colours) == 3 and all(isinstance(c, int) for c in colours):
+        return [_rgb(colours)]  # type: ignore[arg-type]
+    return [_rgb(colour) for colour in colours]  # type: ignore[arg-type]
+
+
+def _place(point: Array) -> str:
+    """Coordinates as they are read out."""
+    x, y, z = (f"{c:.3f}".replace("-", "−") for c in point)
+    return f"{x}   {y}   {z} mm"

@@ -1,0 +1,128 @@
+"""The small tool bar of the 3D view: standard views, fit, projection, grid, save."""
+
+from __future__ import annotations
+
+import qtawesome
+from PySide6.QtCore import QCoreApplication, QPointF, QSize, Qt, Signal
+from PySide6.QtGui import QAction, QColor, QIcon, QKeySequence, QPainter, QPalette, QPen, QPixmap, QPolygonF
+from PySide6.QtWidgets import QToolBar, QWidget
+
+ICON = 20
+
+_HEX = [
+    QPointF(10, 1.8),
+    QPointF(17.2, 5.9),
+    QPointF(17.2, 14.1),
+    QPointF(10, 18.2),
+    QPointF(2.8, 14.1),
+    QPointF(2.8, 5.9),
+]
+_MIDDLE, _HIDDEN = QPointF(10, 10), QPointF(10, 10)
+
+_FACES: dict[str, tuple[list[QPointF], bool]] = {
+    "top": ([_HEX[0], _HEX[1], _MIDDLE, _HEX[5]], False),
+    "front": ([_HEX[5], _MIDDLE, _HEX[3], _HEX[4]], False),
+    "right": ([_MIDDLE, _HEX[1], _HEX[2], _HEX[3]], False),
+    "bottom": ([_HEX[4], _HIDDEN, _HEX[2], _HEX[3]], True),
+    "back": ([_HEX[0], _HEX[1], _HEX[2], _HIDDEN], True),
+    "left": ([_HEX[5], _HEX[0], _HIDDEN, _HEX[4]], True),
+}
+"""Faces of a cube seen from the upper right front; the last three are seen through it."""
+
+
+class SceneButtons(QToolBar):
+    """Buttons and their keys; the keys work while the 3D view has the focus."""
+
+    view_asked = Signal(str)
+    fit_asked = Signal()
+    parallel_asked = Signal(bool)
+    grid_asked = Signal(bool)
+    save_asked = Signal()
+
+    def __init__(self, owner: QWidget) -> None:
+        super().__init__(owner)
+        self.setObjectName("sceneButtons")
+        self.setIconSize(QSize(ICON, ICON))
+        self.setMovable(False)
+        self._owner = owner
+        names = {
+            "front": (self.tr("Front view"), "1"),
+            "back": (self.tr("Back view"), "2"),
+            "left": (self.tr("View from the left"), "3"),
+            "right": (self.tr("View from the right"), "4"),
+            "top": (self.tr("View from above"), "5"),
+            "bottom": (self.tr("View from below"), "6"),
+            "iso": (self.tr("View from a corner"), "7"),
+            "camera": (self.tr("What the camera sees"), "8"),
+        }
+        self._actions: dict[str, QAction] = {}
+        for view, (text, key) in names.items():
+            self._add(view, text, key).triggered.connect(lambda _=False, view=view: self.view_asked.emit(view))
+        self.addSeparator()
+        self._add("fit", self.tr("Show everything"), "R").triggered.connect(self.fit_asked)
+        self.parallel = self._add(
+            "parallel", self.tr("Parallel projection: equal lengths look equal"), "P", checkable=True
+        )
+        self.parallel.toggled.connect(self.parallel_asked)
+        self.grid = self._add("grid", self.tr("Millimetre grid"), "G", checkable=True)
+        self.grid.toggled.connect(self.grid_asked)
+        self.addSeparator()
+        self._add("save", self.tr("Save this picture"), "Ctrl+Shift+S").triggered.connect(self.save_asked)
+        self.dress()
+
+    def action(self, name: str) -> QAction:
+        """One of the buttons' actions: a view's name, "fit", "parallel", "grid", "save"."""
+        return self._actions[name]
+
+    def dress(self) -> None:
+        """Make the icons follow the palette."""
+        role = QPalette.ColorRole
+        text, accent = self.palette().color(role.WindowText), self.palette().color(role.Highlight)
+        library = {
+            "iso": "mdi6.cube-outline",
+            "camera": "mdi6.camera-outline",
+            "fit": "mdi6.fit-to-screen-outline",
+            "parallel": "mdi6.rectangle-outline",
+            "grid": "mdi6.grid",
+            "save": "mdi6.content-save-outline",
+        }
+        for name, action in self._actions.items():
+            if name in _FACES:
+                action.setIcon(_cube_icon(name, text, accent, self.devicePixelRatioF()))
+            else:
+                action.setIcon(qtawesome.icon(library[name], color=text, color_on=accent))
+
+    def _add(self, name: str, text: str, key: str, *, checkable: bool = False) -> QAction:
+        action = QAction(text, self)
+        action.setCheckable(checkable)
+        action.setShortcut(QKeySequence(key))
+        action.setShortcutContext(Qt.ShortcutContext.WidgetWithChildrenShortcut)
+        shown = action.shortcut().toString(QKeySequence.SequenceFormat.NativeText)
+        action.setToolTip(QCoreApplication.translate("SceneButtons", "{what} ({key})").format(what=text, key=shown))
+        self.addAction(action)
+        self._owner.addAction(action)  # its keys work anywhere in the view
+        self._actions[name] = action
+        return action
+
+
+def _cube_icon(face: str, line: QColor, accent: QColor, ratio: float) -> QIcon:
+    """A cube with one face filled."""
+    pixmap = QPixmap(round(ICON * ratio), round(ICON * ratio))
+    pixmap.setDevicePixelRatio(ratio)
+    pixmap.fill(Qt.GlobalColor.transparent)
+    painter = QPainter(pixmap)
+    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+    corners, behind = _FACES[face]
+    filled = QColor(accent)
+    filled.setAlpha(150 if behind else 230)
+    painter.setPen(Qt.PenStyle.NoPen)
+    painter.setBrush(filled)
+    painter.drawPolygon(QPolygonF(corners))
+    painter.setBrush(Qt.BrushStyle.NoBrush)
+    painter.setPen(QPen(line, 1.1, Qt.PenStyle.SolidLine, Qt.PenCapStyle.RoundCap, Qt.PenJoinStyle.RoundJoin))
+    painter.drawPolygon(QPolygonF(_HEX))
+    spokes = (_HEX[0], _HEX[2], _HEX[4]) if behind else (_HEX[1], _HEX[3], _HEX[5])
+    for spoke in spokes:
+        painter.drawLine(_MIDDLE, spoke)
+    painter.end()
+    return QIcon(pixmap)

@@ -1,0 +1,91 @@
+"""Choosing points on the screen: the one nearest to a click, all inside a drawn outline. Numpy only."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from core.model.arrays import Array
+from workbench.views.scene_view_camera import SceneCamera
+
+REACH = 14.0
+"""A click takes a point no farther away than so many pixels."""
+
+SAME_SPOT = 3.0
+"""Of points as near to the click as the nearest and so many pixels, the one in front is taken."""
+
+BATCH = 250_000
+
+
+def nearest_point(
+    points: Array, camera: SceneCamera, size: tuple[int, int], at: tuple[float, float], reach: float = REACH
+) -> int | None:
+    """Which of `points` (N, 3) a click at `at` means: the nearest to it on the screen, unless others there hide it.
+
+    None when there is none within `reach` pixels.
+    """
+    found, spots, depths = [], [], []
+    for start in range(0, len(points), BATCH):
+        screen, depth = camera.project(points[start : start + BATCH], size)
+        with np.errstate(invalid="ignore"):
+            distance = np.hypot(screen[:, 0] - at[0], screen[:, 1] - at[1])
+            near = np.flatnonzero((distance <= reach) & (depth > 0))
+        found.append(near + start)
+        spots.append(distance[near])
+        depths.append(depth[near])
+    candidates = np.concatenate(found) if found else np.empty(0, dtype=np.int64)
+    if not len(candidates):
+        return None
+    spot, deep = np.concatenate(spots), np.concatenate(depths)
+    # What stands in front hides what is behind it: a face of a block hides the face below.
+    around = spot <= spot.min() + SAME_SPOT
+    thickness = 4 * SAME_SPOT / camera.pixels_per_mm(size)
+    front = around & (deep <= deep[around].min() + thickness)
+    chosen = np.flatnonzero(front)[np.argmin(spot[front])]
+    return int(candidates[chosen])
+
+
+class Outline:
+    """A closed outline (K, 2) drawn on the screen; one that crosses itself counts by the even-odd rule."""
+
+    def __init__(self, corners: ArrayLike) -> None:
+        self._corners = np.asarray(corners, dtype=np.float64).reshape(-1, 2)
+        self._low = np.floor(self._corners.min(axis=0)).astype(int) - 2
+        width, height = np.ceil(self._corners.max(axis=0)).astype(int) - self._low + 3
+        # Pixels far from the line are looked up in a mask; only spots on pixels that it touches are computed.
+        self._mask = np.zeros((height, width), dtype=np.uint8)
+        line = np.round((self._corners - self._low - 0.5) * 16).astype(np.int32)  # four bits of fraction
+        cv2.fillPoly(self._mask, [line], 1, shift=4)
+        cv2.polylines(self._mask, [line], isClosed=True, color=2, thickness=4, shift=4)
+
+    def contains(self, spots: Array) -> NDArray[np.bool_]:
+        """Which screen coordinates (N, 2) lie inside: (N,) bool."""
+        low, high = self._corners.min(axis=0), self._corners.max(axis=0)
+        with np.errstate(invalid="ignore"):
+            near = np.flatnonzero((spots >= low).all(axis=1) & (spots <= high).all(axis=1))
+        column, row = (np.floor(spots[near]).astype(int) - self._low).T
+        told = self._mask[row, column]
+        inside = np.zeros(len(spots), dtype=bool)
+        inside[near] = told == 1
+        doubtful = near[told == 2]
+        inside[doubtful] = _even_odd(spots[doubtful].astype(np.float64), self._corners)
+        return inside
+
+
+def points_inside(points: Array, camera: SceneCamera, size: tuple[int, int], outline: Outline) -> NDArray[np.bool_]:
+    """Which of `points` (N, 3) are seen inside an outline: (N,) bool. Points behind the viewer are not."""
+    screen, depth = camera.project(points, size)
+    return outline.contains(screen) & (depth > 0)
+
+
+def _even_odd(spots: Array, corners: Array) -> NDArray[np.bool_]:
+    """Count the edges to the left of each spot."""
+    inside = np.zeros(len(spots), dtype=bool)
+    x, y = spots.T
+    for (x0, y0), (x1, y1) in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+        if y0 == y1:
+            continue
+        crosses = (y0 > y) != (y1 > y)
+        inside ^= crosses & (x > x0 + (y - y0) * (x1 - x0) / (y1 - y0))
+    return inside

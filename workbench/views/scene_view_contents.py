@@ -1,0 +1,224 @@
+"""What is in the scene, as plain arrays: every way of drawing it reads this and nothing else."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from itertools import count
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from core.model.arrays import Array
+from workbench.views.scene_view_cloud import SceneCloud, finite_rows
+from workbench.views.scene_view_colours import Colouring, Rgb
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Marks:
+    """Points (N, 3) in one colour, `size` pixels wide."""
+
+    points: Array
+    colour: Rgb
+    size: float
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Patches:
+    """Transparent four-cornered patches, each (4, 3), with a colour each."""
+
+    corners: tuple[Array, ...]
+    colours: tuple[Rgb, ...]
+    opacity: float
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Lines:
+    """Lines, each (N, 3), with a colour each, `width` pixels wide."""
+
+    lines: tuple[Array, ...]
+    colours: tuple[Rgb, ...]
+    width: float
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Labels:
+    """Texts at places (N, 3); without a colour in that of the theme's text."""
+
+    places: Array
+    texts: tuple[str, ...]
+    colour: Rgb | None = None
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Measure:
+    """A dimension line from `ends`[0] to `ends`[1] with a text at its middle."""
+
+    ends: Array
+    text: str
+
+
+Item = Marks | Patches | Lines | Labels | Measure
+
+
+@dataclass(frozen=True, eq=False)
+class SurfaceMesh:
+    """A triangulated surface; `serial` tells meshes apart."""
+
+    vertices: Array
+    triangles: NDArray[np.int64]
+    values: Array | None
+    colouring: Colouring
+
+    serial: int = field(default_factory=count().__next__)
+
+    def colours(self, vertices: NDArray[np.int64]) -> NDArray[np.uint8]:
+        """Colours (n, 3) of some vertices."""
+        if self.values is not None:
+            return self.colouring.of(self.values[vertices])
+        return self.colouring.plain(vertices)
+
+    @cached_property
+    def corners(self) -> Array:
+        """Opposite corners (2, 3) of the box round it."""
+        return np.array([self.vertices.min(axis=0), self.vertices.max(axis=0)])
+
+
+@dataclass
+class Scene:
+    """Everything that is shown. Items are replaced, never changed: the same object is the same drawing."""
+
+    cloud: SceneCloud | None = None
+    cloud_shown: bool = True
+    mesh: SurfaceMesh | None = None
+    mesh_shown: bool = True
+    items: dict[tuple[type, str], Item] = field(default_factory=dict)
+
+    @property
+    def visible_cloud(self) -> SceneCloud | None:
+        """The cloud, if it is shown and has points."""
+        return self.cloud if self.cloud is not None and self.cloud_shown and self.cloud.drawn else None
+
+    @property
+    def visible_mesh(self) -> SurfaceMesh | None:
+        """The mesh, if it is shown."""
+        return self.mesh if self.mesh_shown else None
+
+    @property
+    def colouring(self) -> Colouring | None:
+        """Whose colour bar is shown: the cloud's, else the mesh's; None without values."""
+        for coloured in (self.visible_cloud, self.visible_mesh):
+            if coloured is not None and coloured.colouring.name and coloured.colouring.limits is not None:
+                return coloured.colouring
+        return None
+
+    def put(self, name: str, item: Item) -> None:
+        """Show an item instead of one of the same kind and name."""
+        self.items[type(item), name] = item
+
+    def remove(self, name: str, kind: type | None = None) -> None:
+        """Take away the items of a name, of one kind or of all."""
+        for key in [key for key in self.items if key[1] == name and kind in (None, key[0])]:
+            del self.items[key]
+
+    def of_kind(self, kind: type) -> list[Item]:
+        """All items of one kind."""
+        return [item for key, item in self.items.items() if key[0] is kind]
+
+    def clear(self) -> None:
+        """Take everything away."""
+        self.cloud = self.mesh = None
+        self.items = {}
+
+    @property
+    def empty(self) -> bool:
+        """Whether there is nothing to see."""
+        return self.visible_cloud is None and self.visible_mesh is None and not self.items
+
+    def to_fit(self) -> Array:
+        """Points (N, 3) that a fitted view shows: cloud and mesh with their marks, or else everything."""
+        parts = []
+        if self.visible_cloud is not None:
+            parts.append(self.visible_cloud.sample())
+        if self.visible_mesh is not None:
+            vertices = self.visible_mesh.vertices
+            parts.append(vertices[:: max(1, len(vertices) // 20_000)])
+        if not parts:
+            parts = [points for item in self.items.values() for points in _points(item)]
+        points = np.vstack(parts) if parts else np.empty((0, 3))
+        return points[finite_rows(points)]
+
+    def box(self) -> Array:
+        """The eight corners (8, 3) of a box round everything; (0, 3) when there is nothing."""
+        ends = [cloud.corners for cloud in [self.visible_cloud] if cloud is not None]
+        ends += [mesh.corners for mesh in [self.visible_mesh] if mesh is not None]
+        ends += [points for item in self.items.values() for points in _points(item) if len(points)]
+        if not ends or not np.isfinite(np.vstack(ends)).all(axis=1).any():
+            return np.empty((0, 3))
+        everything = np.vstack(ends)
+        low, high = np.nanmin(everything, axis=0), np.nanmax(everything, axis=0)
+        return np.array([[(low, high)[(k >> axis) & 1][axis] for axis in range(3)] for k in range(8)])
+
+
+def _points(item: Item) -> Iterator[Array]:
+    match item:
+        case Marks():
+            yield item.points
+        case Patches():
+            yield from item.corners
+        case Lines():
+            yield from item.lines
+        case Labels():
+            yield item.places
+        case Measure():
+            yield item.ends
+
+
+def as_points(points: ArrayLike, what: str = "points") -> Array:
+    """(N, 3) float64.
+
+    Raises
+    ------
+    ValueError
+        If the shape does not match; the message names `what`.
+    """
+    array = np.asarray(points, dtype=np.float64)
+    if array.size == 0:
+        return np.empty((0, 3))
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise ValueError(f"{what} have shape {array.shape}, not n × 3")
+    return array
+
+
+def as_mesh(points: ArrayLike, triangles: ArrayLike, values: ArrayLike | None, colouring: Colouring) -> SurfaceMesh:
+    """A mesh with checked arrays and known limits; vertices that are not finite lose their triangles.
+
+    Raises
+    ------
+    ValueError
+        If shapes or vertex numbers do not match.
+    """
+    vertices = as_points(points, "vertices")
+    corners = np.asarray(triangles, dtype=np.int64).reshape(-1, 3)
+    if len(corners) and (corners.min() < 0 or corners.max() >= len(vertices)):
+        raise ValueError("a triangle names a vertex that is not there")
+    if not np.isfinite(vertices.sum()):
+        finite = finite_rows(vertices)
+        corners = corners[finite[corners].all(axis=1)]
+        vertices = np.where(finite[:, None], vertices, np.nanmean(vertices, axis=0))
+    numbers = None if values is None else np.asarray(values, dtype=np.float64).ravel()
+    if numbers is not None:
+        if len(numbers) != len(vertices):
+            raise ValueError(f"{len(numbers)} values for {len(vertices)} vertices")
+        colouring = colouring.limited(numbers)
+    return SurfaceMesh(vertices, corners, numbers, colouring)
+
+
+def each(colours: Sequence[Rgb], count: int) -> tuple[Rgb, ...]:
+    """One colour for all, or one each."""
+    if len(colours) == 1:
+        return (colours[0],) * count
+    if len(colours) != count:
+        raise ValueError(f"{len(colours)} colours for {count} things")
+    return tuple(colours)

@@ -1,0 +1,136 @@
+"""Where the scene is looked at from, and how mouse, keys and buttons change it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+from PySide6.QtCore import QObject, QPointF, Signal
+
+from core.model.arrays import Array
+from workbench.views.scene_view_camera import CAMERA_FRAME, VIEW_ANGLE, Orientation, SceneCamera, from_origin
+from workbench.views.scene_view_contents import Scene
+
+GROWN = 1.15
+"""A scene that has grown by this factor is fitted again, as long as nobody has turned the view."""
+
+CLOSEST, FARTHEST = 0.01, 1e7
+"""Distances in mm between which one can zoom."""
+
+
+class Navigator(QObject):
+    """The camera of one view and its motions.
+
+    Parameters
+    ----------
+    size, margin
+        Give the size of the view in logical pixels, and what to leave free at the right and at the lower edge.
+    pyramid
+        Gives the corners (5, 3) of the measuring camera's pyramid, if it is known.
+    """
+
+    moved = Signal()
+
+    def __init__(
+        self,
+        scene: Scene,
+        size: Callable[[], tuple[int, int]],
+        margin: Callable[[], tuple[int, int]],
+        pyramid: Callable[[], Array | None],
+        parent: QObject,
+    ) -> None:
+        super().__init__(parent)
+        self._scene, self._size, self._margin, self._pyramid = scene, size, margin, pyramid
+        self.orientation = CAMERA_FRAME
+        self._name = "iso"
+        self._touched = False
+        self._extent = 0.0
+        self.camera = SceneCamera.looking(*CAMERA_FRAME.direction("iso"), np.zeros(3), 500.0)
+
+    def view(self, name: str) -> None:
+        """Look from a standard direction and fit."""
+        self._name, self._touched = name, False
+        points = self._scene.to_fit()
+        if name == "camera":
+            seen = from_origin(points, self._size(), self._pyramid())
+        else:
+            back, up = self.orientation.direction(name)
+            seen = SceneCamera.looking(back, up, self.camera.focal, self.camera.distance)
+            seen = replace(seen, view_angle=VIEW_ANGLE)
+        self.camera = replace(seen, parallel=self.camera.parallel)
+        if name == "camera" and not self.camera.parallel:
+            self._extent = _extent(points)
+            self.moved.emit()
+        else:
+            self.fit()
+
+    def fit(self) -> None:
+        """Keep the direction, show everything."""
+        self._touched = False
+        points = self._scene.to_fit()
+        self._extent = _extent(points)
+        self.camera = self.camera.fitted(points, self._size(), self._margin())
+        self.moved.emit()
+
+    def follow(self, *, afresh: bool = False) -> bool:
+        """Fit a scene that is new or has grown, unless somebody has turned the view. Whether the camera moved."""
+        extent = _extent(self._scene.to_fit())
+        if extent > 0 and (afresh or self._extent == 0 or (not self._touched and extent > GROWN * self._extent)):
+            self._fit_or_view()
+            return True
+        return False
+
+    def resized(self) -> None:
+        """Fit again to another size, unless somebody has turned the view."""
+        if not self._touched and self._extent > 0:
+            self._fit_or_view()
+
+    def forget(self) -> None:
+        """The scene is empty: what comes next is fitted."""
+        self._extent, self._touched = 0.0, False
+
+    def set_orientation(self, up: ArrayLike, north: ArrayLike) -> None:
+        """Another up and north; a standard view is taken again."""
+        self.orientation = Orientation.of(up, north)
+        if not self._touched:
+            self.view(self._name)
+
+    def set_parallel(self, parallel: bool) -> None:
+        """Parallel projection or perspective."""
+        self.camera = replace(self.camera, parallel=parallel)
+        self.moved.emit()
+
+    def orbit(self, dx: float, dy: float) -> None:
+        """Turn by a drag in pixels."""
+        self._move(self.camera.orbited(dx, dy, self.orientation.up))
+
+    def pan(self, dx: float, dy: float) -> None:
+        """Move by a drag in pixels."""
+        self._move(self.camera.panned(dx, dy, self._size()))
+
+    def zoom(self, factor: float, at: QPointF | None) -> None:
+        """Nearer by a factor, towards a point of the screen or its middle."""
+        width, height = self._size()
+        place = (at.x(), at.y()) if at is not None else (width / 2, height / 2)
+        factor = float(np.clip(factor, self.camera.distance / FARTHEST, self.camera.distance / CLOSEST))
+        self._move(self.camera.zoomed(factor, place, (width, height)))
+
+    def centre_on(self, point: Array) -> None:
+        """Bring a point (3,) to the middle; the view turns about it from now on."""
+        self._move(replace(self.camera, focal=np.asarray(point, dtype=np.float64)))
+
+    def _fit_or_view(self) -> None:
+        if self._touched:
+            self.fit()
+        else:
+            self.view(self._name)
+
+    def _move(self, camera: SceneCamera) -> None:
+        self.camera, self._touched = camera, True
+        self.moved.emit()
+
+
+def _extent(points: Array) -> float:
+    return float(np.linalg.norm(np.ptp(points, axis=0))) + 1e-9 if len(points) else 0.0

@@ -1,0 +1,262 @@
+"""What is written over the scene: labels, dimension lines, axes, scale, colour bar. Drawn by Qt, so it is always sharp.
+
+Every function paints in logical pixels; a picture for a file is painted with the same ones.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtGui import QColor, QFont, QFontMetricsF, QLinearGradient, QPainter, QPalette, QPen, QPolygonF
+
+from workbench.views.scene_view_camera import SceneCamera
+from workbench.views.scene_view_colours import Colouring, Rgb, nice_step, table, ticks
+from workbench.views.scene_view_contents import Labels, Measure, Scene
+
+MARGIN = 14.0
+BAR_WIDTH = 14.0
+AXES: tuple[tuple[str, Rgb, Rgb], ...] = (
+    ("X", (200, 45, 45), (255, 110, 105)),
+    ("Y", (30, 130, 60), (95, 205, 115)),
+    ("Z", (35, 95, 210), (105, 165, 255)),
+)
+"""Name, colour on a light ground, colour on a dark one."""
+
+
+@dataclass(frozen=True, slots=True)
+class Look:
+    """The theme's colours as the overlay uses them."""
+
+    ground: QColor
+    text: QColor
+    accent: QColor
+
+    @classmethod
+    def of(cls, palette: QPalette) -> Look:
+        """From a widget's palette."""
+        role = QPalette.ColorRole
+        return cls(palette.color(role.Window), palette.color(role.WindowText), palette.color(role.Highlight))
+
+    @property
+    def dark(self) -> bool:
+        """Whether the ground is dark."""
+        return self.ground.lightness() < 128
+
+    @property
+    def plate(self) -> QColor:
+        """Behind texts that stand on the scene."""
+        plate = QColor(self.ground)
+        plate.setAlpha(205)
+        return plate
+
+
+def paint_overlay(
+    painter: QPainter, scene: Scene, camera: SceneCamera, size: tuple[int, int], look: Look, *, axes: bool
+) -> None:
+    """Everything that belongs to the picture; what belongs to a tool is painted by the tool."""
+    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+    for item in scene.items.values():
+        if isinstance(item, Labels):
+            _paint_labels(painter, item, camera, size, look)
+        elif isinstance(item, Measure):
+            _paint_measure(painter, item, camera, size, look)
+    if axes:
+        _paint_triad(painter, camera, size, look)
+        _paint_scale(painter, camera, size, look)
+    if scene.colouring is not None:
+        _paint_bar(painter, scene.colouring, size, look)
+
+
+def bar_width(colouring: Colouring | None, font: QFont) -> int:
+    """Pixels at the right that the colour bar takes."""
+    if colouring is None:
+        return 0
+    metrics = QFontMetricsF(_small(font))
+    numbers = max(metrics.horizontalAdvance(text) for text in _ticks(colouring, 240)[1] or [""])
+    lines = _wrapped(colouring.title, metrics)
+    return round(max(BAR_WIDTH + 8 + numbers, *(metrics.horizontalAdvance(line) for line in lines)) + 2 * MARGIN)
+
+
+def text_plate(painter: QPainter, at: QPointF, text: str, look: Look, colour: QColor | None = None) -> QRectF:
+    """A text on a plate, its middle at `at`; the plate's rectangle."""
+    painter.setFont(_small(painter.font()))
+    box = painter.fontMetrics().boundingRect(0, 0, 1000, 1000, int(Qt.AlignmentFlag.AlignLeft), text)
+    plate = QRectF(0, 0, box.width() + 10, box.height() + 4)
+    plate.moveCenter(at)
+    painter.setPen(Qt.PenStyle.NoPen)
+    painter.setBrush(look.plate)
+    painter.drawRoundedRect(plate, 4, 4)
+    painter.setPen(colour or look.text)
+    painter.drawText(plate, int(Qt.AlignmentFlag.AlignCenter), text)
+    return plate
+
+
+def _small(font: QFont) -> QFont:
+    small = QFont(font)
+    small.setPixelSize(12)
+    return small
+
+
+def _paint_labels(painter: QPainter, labels: Labels, camera: SceneCamera, size: tuple[int, int], look: Look) -> None:
+    screen, depth = camera.project(labels.places, size)
+    colour = QColor(*labels.colour) if labels.colour is not None else None
+    for k in np.argsort(-depth):
+        if depth[k] > 0 and np.isfinite(screen[k]).all():
+            at = QPointF(float(screen[k, 0]), float(screen[k, 1]))
+            text_plate(painter, at - QPointF(0, 14), labels.texts[k], look, colour)
+            painter.setPen(Qt.PenStyle.NoPen)
+            painter.setBrush(colour or look.text)
+            painter.drawEllipse(at, 2.2, 2.2)
+
+
+def _paint_measure(painter: QPainter, measure: Measure, camera: SceneCamera, size: tuple[int, int], look: Look) -> None:
+    """A line with a cross stroke at each end, rimmed so that it shows on any cloud."""
+    screen, depth = camera.project(measure.ends, size)
+    if not (depth > 0).all():
+        return
+    a, b = (QPointF(float(x), float(y)) for x, y in screen)
+    along = screen[1] - screen[0]
+    length = float(np.hypot(*along)) or 1.0
+    across = QPointF(-along[1] / length * 6, along[0] / length * 6)
+    for pen in (QPen(look.ground, 4.5), QPen(look.accent, 2.0)):
+        painter.setPen(pen)
+        painter.drawLine(a, b)
+        painter.drawLine(a - across, a + across)
+        painter.drawLine(b - across, b + across)
+    text_plate(painter, (a + b) / 2, measure.text, look)
+
+
+def _paint_triad(painter: QPainter, camera: SceneCamera, size: tuple[int, int], look: Look) -> None:
+    """Directions of the axes, those that point away first."""
+    centre, length = QPointF(MARGIN + 30, size[1] - MARGIN - 30), 24.0
+    painter.setFont(_small(painter.font()))
+    right, up, back = camera.axes
+    for k in np.argsort(back):
+        name, on_light, on_dark = AXES[k]
+        colour = QColor(*(on_dark if look.dark else on_light))
+        if back[k] < -0.05:
+            colour.setAlpha(150)
+        direction = QPointF(float(right[k]), -float(up[k]))
+        tip = centre + direction * length
+        painter.setPen(QPen(colour, 2.4, Qt.PenStyle.SolidLine, Qt.PenCapStyle.RoundCap))
+        painter.drawLine(centre, tip)
+        place = QRectF(0, 0, 16, 16)
+        place.moveCenter(centre + direction * (length + 8) if abs(back[k]) < 0.97 else centre + QPointF(9, -9))
+        painter.drawText(place, int(Qt.AlignmentFlag.AlignCenter), name)
+
+
+def _paint_scale(painter: QPainter, camera: SceneCamera, size: tuple[int, int], look: Look) -> None:
+    """A bar of a round number of mm, at the depth the view turns about."""
+    scale = camera.pixels_per_mm(size)
+    if not np.isfinite(scale) or scale <= 0:
+        return
+    length_mm = nice_step(60 / scale)
+    length = length_mm * scale
+    left, y = MARGIN + 84.0, size[1] - MARGIN - 10.0
+    if left + length > size[0] - MARGIN:
+        return
+    for pen in (QPen(look.ground, 5), QPen(look.text, 1.6)):
+        painter.setPen(pen)
+        painter.drawPolyline(
+            [QPointF(left, y - 5), QPointF(left, y), QPointF(left + length, y), QPointF(left + length, y - 5)]
+        )
+    number = f"{length_mm:g}"
+    text_plate(
+        painter, QPointF(left + length / 2, y - 14), f"{number} mm" if camera.parallel else f"≈ {number} mm", look
+    )
+
+
+def _ticks(colouring: Colouring, height: float) -> tuple[list[float], list[str]]:
+    assert colouring.limits is not None
+    return ticks(*colouring.limits, at_most=max(int(height / 36), 2))
+
+
+def _wrapped(title: str, metrics: QFontMetricsF, width: float = 92.0) -> list[str]:
+    """The title in lines of at most `width`, unless a word is longer."""
+    lines: list[str] = []
+    for word in title.split():
+        if lines and metrics.horizontalAdvance(f"{lines[-1]} {word}") <= width:
+            lines[-1] += f" {word}"
+        else:
+            lines.append(word)
+    return lines or [""]
+
+
+def _paint_bar(painter: QPainter, colouring: Colouring, size: tuple[int, int], look: Look) -> None:
+    """The colour bar at the right edge, half as high as the view; points of arrows say that values lie beyond."""
+    assert colouring.limits is not None
+    font = _small(painter.font())
+    metrics = QFontMetricsF(font)
+    lines = _wrapped(colouring.title, metrics)
+    width = bar_width(colouring, font)
+    height = float(np.clip(size[1] * 0.5, 60, 300))
+    if size[1] < height + 60 or size[0] < 2.5 * width:
+        return
+    left, top = size[0] - width + MARGIN, (size[1] - height) / 2
+    low, high = colouring.limits
+    painter.setFont(font)
+    painter.setPen(look.text)
+    for k, line in enumerate(reversed(lines)):
+        painter.drawText(QPointF(left, top - 16 - k * metrics.height()), line)
+    bar = QRectF(left, top, BAR_WIDTH, height)
+    gradient = QLinearGradient(bar.bottomLeft(), bar.topLeft())
+    colours = table(colouring.colour_map)
+    for k in range(0, 256, 15):
+        gradient.setColorAt(k / 255, QColor(*(int(c) for c in colours[k])))
+    painter.setPen(Qt.PenStyle.NoPen)
+    for beyond, y, sign, colour in (
+        (colouring.clipped[1], bar.top(), -1, colours[-1]),
+        (colouring.clipped[0], bar.bottom(), 1, colours[0]),
+    ):
+        if beyond:
+            painter.setBrush(QColor(*(int(c) for c in colour)))
+            tip = QPointF(bar.center().x(), y + sign * 9)
+            painter.drawPolygon(QPolygonF([QPointF(bar.left(), y), QPointF(bar.right(), y), tip]))
+    painter.setBrush(gradient)
+    painter.drawRect(bar)
+    values, texts = _ticks(colouring, height)
+    for value, text in zip(values, texts, strict=True):
+        y = bar.bottom() - (value - low) / (high - low) * height
+        painter.setPen(QPen(look.text, 1))
+        painter.drawLine(QPointF(bar.right(), y), QPointF(bar.right() + 4, y))
+        painter.drawText(QPointF(bar.right() + 8, y + metrics.ascent() / 2 - 1), text)
+
+
+def paint_outline(painter: QPainter, corners: Sequence[QPointF], look: Look, *, closed: bool) -> None:
+    """The region that is being drawn."""
+    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+    inside = QColor(look.accent)
+    inside.setAlpha(45)
+    painter.setPen(Qt.PenStyle.NoPen)
+    painter.setBrush(inside)
+    painter.drawPolygon(QPolygonF(list(corners)))
+    painter.setBrush(Qt.BrushStyle.NoBrush)
+    draw: Callable[[QPolygonF], None] = painter.drawPolygon if closed else painter.drawPolyline
+    for pen in (QPen(look.ground, 4), QPen(look.accent, 2)):
+        painter.setPen(pen)
+        draw(QPolygonF(list(corners)))
+
+
+def paint_marker(painter: QPainter, at: QPointF, text: str, look: Look) -> None:
+    """A ring round a chosen point, with its coordinates."""
+    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+    painter.setBrush(Qt.BrushStyle.NoBrush)
+    for pen in (QPen(look.ground, 4.5), QPen(look.accent, 2.2)):
+        painter.setPen(pen)
+        painter.drawEllipse(at, 7, 7)
+    text_plate(painter, at - QPointF(0, 24), text, look)
+
+
+def paint_sentence(painter: QPainter, area: QRectF, text: str, look: Look) -> None:
+    """A sentence in the middle of an empty view."""
+    colour = QColor(look.text)
+    colour.setAlpha(170)
+    font = QFont(painter.font())
+    font.setPixelSize(14)
+    painter.setFont(font)
+    painter.setPen(colour)
+    flags = int(Qt.AlignmentFlag.AlignCenter) | int(Qt.TextFlag.TextWordWrap)
+    painter.drawText(area.adjusted(24, 24, -24, -24), flags, text)

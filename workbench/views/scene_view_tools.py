@@ -1,0 +1,241 @@
+"""What the mouse and the keys do in the 3D view: turn and move it, pick a point, draw a region.
+
+A tool gets the events of the overlay and tells the view through `Hands`; it paints what it is about to do.
+"""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from PySide6.QtCore import QCoreApplication, QPointF, Qt
+from PySide6.QtGui import QKeyEvent, QMouseEvent, QPainter, QWheelEvent
+
+from workbench.views.scene_view_overlay import Look, paint_outline
+
+CLICK = 4.0
+"""A press that moves less than so many pixels is a click."""
+
+CLOSE_TO = 10.0
+"""A click so near to the first corner closes a polygon."""
+
+ARROWS = {Qt.Key.Key_Left: (-30, 0), Qt.Key.Key_Right: (30, 0), Qt.Key.Key_Up: (0, -30), Qt.Key.Key_Down: (0, 30)}
+
+
+class Hands(Protocol):
+    """What a tool can do to the view."""
+
+    def orbit(self, dx: float, dy: float) -> None:
+        """Turn by a drag in pixels."""
+
+    def pan(self, dx: float, dy: float) -> None:
+        """Move by a drag in pixels."""
+
+    def zoom(self, factor: float, at: QPointF | None = None) -> None:
+        """Nearer by a factor, towards a point of the screen or its middle."""
+
+    def pick(self, at: QPointF) -> None:
+        """Choose the point of the cloud under the cursor."""
+
+    def centre_on(self, at: QPointF) -> None:
+        """Turn about the point under the cursor from now on."""
+
+    def choose_region(self, corners: list[QPointF]) -> None:
+        """Choose the points of the cloud inside an outline."""
+
+    def repaint_tool(self) -> None:
+        """Paint the tool again."""
+
+
+class Navigate:
+    """Left button turns; right button, or left with Shift, moves; wheel and middle button go nearer."""
+
+    cursor = Qt.CursorShape.ArrowCursor
+    hint = ""
+
+    def __init__(self, hands: Hands) -> None:
+        self.hands = hands
+        self._last: QPointF | None = None
+        self._start = QPointF()
+        self._button = Qt.MouseButton.NoButton
+        self._dragged = False
+
+    def press(self, event: QMouseEvent) -> None:
+        """A button goes down."""
+        self._last = self._start = event.position()
+        self._button, self._dragged = event.button(), False
+
+    def move(self, event: QMouseEvent) -> None:
+        """The mouse moves."""
+        if self._last is None:
+            return
+        at = event.position()
+        if not self._dragged and (at - self._start).manhattanLength() < CLICK:
+            return
+        self._dragged = True
+        step, self._last = at - self._last, at
+        shift = bool(event.modifiers() & Qt.KeyboardModifier.ShiftModifier)
+        if self._button == Qt.MouseButton.RightButton or (self._button == Qt.MouseButton.LeftButton and shift):
+            self.hands.pan(step.x(), step.y())
+        elif self._button == Qt.MouseButton.LeftButton:
+            self.hands.orbit(step.x(), step.y())
+        else:
+            self.hands.zoom(1.01 ** -step.y(), self._start)
+
+    def release(self, event: QMouseEvent) -> None:
+        """A button comes up."""
+        clicked = self._last is not None and not self._dragged and event.button() == Qt.MouseButton.LeftButton
+        self._last = None
+        if clicked:
+            self.click(event.position())
+
+    def click(self, at: QPointF) -> None:
+        """The left button was pressed without a drag."""
+
+    def double_click(self, event: QMouseEvent) -> None:
+        """Turn about what is there."""
+        self.hands.centre_on(event.position())
+
+    def wheel(self, event: QWheelEvent) -> None:
+        """Nearer or farther, towards the cursor."""
+        self.hands.zoom(1.0015 ** event.angleDelta().y(), event.position())
+
+    def key(self, event: QKeyEvent) -> bool:
+        """Whether a key was used."""
+        if event.key() in ARROWS:
+            dx, dy = ARROWS[Qt.Key(event.key())]
+            if event.modifiers() & Qt.KeyboardModifier.ShiftModifier:
+                self.hands.pan(dx, dy)
+            else:
+                self.hands.orbit(dx, dy)
+            return True
+        if event.key() in (Qt.Key.Key_Plus, Qt.Key.Key_Equal, Qt.Key.Key_Minus):
+            self.hands.zoom(0.8 if event.key() == Qt.Key.Key_Minus else 1.25)
+            return True
+        return False
+
+    def paint(self, painter: QPainter, look: Look) -> None:
+        """Paint what the tool is about to do."""
+
+
+class Pick(Navigate):
+    """As `Navigate`; a click chooses a point."""
+
+    cursor = Qt.CursorShape.CrossCursor
+
+    def __init__(self, hands: Hands) -> None:
+        super().__init__(hands)
+        self.hint = QCoreApplication.translate(
+            "SceneView", "Click a point of the cloud. Drag to turn the view, Esc ends."
+        )
+
+    def click(self, at: QPointF) -> None:
+        self.hands.pick(at)
+
+    def double_click(self, event: QMouseEvent) -> None:
+        """Two clicks on one point are one choice."""
+
+
+class Polygon(Navigate):
+    """Each click is a corner; a double click, Enter, or a click on the first corner closes the region."""
+
+    cursor = Qt.CursorShape.CrossCursor
+
+    def __init__(self, hands: Hands) -> None:
+        super().__init__(hands)
+        self.hint = QCoreApplication.translate(
+            "SceneView",
+            "Click the corners of the region. Double click closes it, Backspace takes one back, Esc cancels.",
+        )
+        self._corners: list[QPointF] = []
+        self._cursor = QPointF()
+
+    def press(self, event: QMouseEvent) -> None:
+        if not self._corners and event.button() != Qt.MouseButton.LeftButton:
+            super().press(event)  # the view can be turned until the first corner is there
+            return
+        if event.button() != Qt.MouseButton.LeftButton:
+            return
+        at = event.position()
+        if len(self._corners) >= 3 and (at - self._corners[0]).manhattanLength() < CLOSE_TO:
+            self._finish()
+            return
+        self._corners.append(at)
+        self._cursor = at
+        self.hands.repaint_tool()
+
+    def move(self, event: QMouseEvent) -> None:
+        super().move(event)
+        self._cursor = event.position()
+        if self._corners:
+            self.hands.repaint_tool()
+
+    def release(self, event: QMouseEvent) -> None:
+        self._last = None
+
+    def double_click(self, event: QMouseEvent) -> None:
+        if event.button() == Qt.MouseButton.LeftButton:
+            self._finish()
+
+    def wheel(self, event: QWheelEvent) -> None:
+        if not self._corners:
+            super().wheel(event)
+
+    def key(self, event: QKeyEvent) -> bool:
+        if event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter):
+            self._finish()
+            return True
+        if event.key() == Qt.Key.Key_Backspace:
+            self._corners = self._corners[:-1]
+            self.hands.repaint_tool()
+            return True
+        return super().key(event) if not self._corners else False
+
+    def paint(self, painter: QPainter, look: Look) -> None:
+        if self._corners:
+            paint_outline(painter, [*self._corners, self._cursor], look, closed=False)
+            painter.setBrush(look.accent)
+            for corner in self._corners:
+                painter.drawEllipse(corner, 3.5, 3.5)
+
+    def _finish(self) -> None:
+        corners, self._corners = self._corners, []
+        if len(corners) >= 3:
+            self.hands.choose_region(corners)
+        else:
+            self.hands.repaint_tool()
+
+
+class Lasso(Polygon):
+    """The outline follows the mouse while the button is down."""
+
+    def __init__(self, hands: Hands) -> None:
+        super().__init__(hands)
+        self.hint = QCoreApplication.translate(
+            "SceneView", "Draw round the region with the mouse button held down. Esc cancels."
+        )
+
+    def press(self, event: QMouseEvent) -> None:
+        if event.button() == Qt.MouseButton.LeftButton:
+            self._corners = [event.position()]
+        elif not self._corners:
+            super().press(event)
+
+    def move(self, event: QMouseEvent) -> None:
+        if not self._corners:
+            super().move(event)
+        elif (event.position() - self._corners[-1]).manhattanLength() >= 2:
+            self._corners.append(event.position())
+            self._cursor = event.position()
+            self.hands.repaint_tool()
+
+    def release(self, event: QMouseEvent) -> None:
+        self._last = None
+        if event.button() == Qt.MouseButton.LeftButton:
+            self._finish()
+
+    def double_click(self, event: QMouseEvent) -> None:
+        """Nothing: a lasso is closed by letting go."""
+
+    def paint(self, painter: QPainter, look: Look) -> None:
+        if self._corners:
+            paint_outline(painter, self._corners, look, closed=True)

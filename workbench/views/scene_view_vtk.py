@@ -1,0 +1,97 @@
+"""The scene in a window with OpenGL: VTK draws into a widget of Qt's (pyvistaqt), labels are drawn over it by Qt.
+
+The widget only ever shows the last finished picture; when a new one is drawn is decided by `scene_view_pace`. Mouse
+and keys never reach VTK: the overlay above takes them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+
+import numpy as np
+from numpy.typing import NDArray
+from PySide6.QtWidgets import QWidget
+from pyvistaqt import QtInteractor
+
+from workbench.views.scene_view_camera import SceneCamera
+from workbench.views.scene_view_colours import Rgb
+from workbench.views.scene_view_contents import Scene
+from workbench.views.scene_view_pieces import Key
+from workbench.views.scene_view_stage import Stage, read_pixels
+
+
+class _Interactor(QtInteractor):
+    """The widget, which renders only when it is told to."""
+
+    def __init__(self, parent: QWidget) -> None:
+        super().__init__(parent, auto_update=False, multi_samples=0)
+        self.setAcceptDrops(False)
+        self.iren.interactor.EnableRenderOff()
+        self.started = False
+        self.before_paint: Callable[[], None] | None = None
+        self._drawn_size = self.size()
+
+    def initializeGL(self) -> None:
+        """Set up, and render once: VTK must own a picture before the first one is shown."""
+        super().initializeGL()  # type: ignore[no-untyped-call]
+        self._RenderWindow.Render()
+        self.started = True
+
+    def paintGL(self) -> None:
+        """Show the last picture; a new size needs a new one first."""
+        if self.before_paint is not None and self._drawn_size != self.size():
+            self._drawn_size = self.size()
+            self.before_paint()
+        super().paintGL()  # type: ignore[no-untyped-call]
+
+
+class EmbeddedSurface:
+    """The scene in an OpenGL widget.
+
+    Parameters
+    ----------
+    parent
+        The widget it is put into.
+    draw_now
+        Called when it must draw before it is next seen, as after a change of size.
+    """
+
+    kind = "embedded"
+
+    def __init__(self, parent: QWidget, draw_now: Callable[[], None]) -> None:
+        self._interactor = _Interactor(parent)
+        self._interactor.before_paint = draw_now
+        window = self._interactor.GetRenderWindow()  # type: ignore[no-untyped-call]
+        for renderer in list(window.GetRenderers()):
+            window.RemoveRenderer(renderer)
+        self._stage = Stage(window)
+
+    @property
+    def widget(self) -> QWidget:
+        widget: QWidget = self._interactor
+        return widget
+
+    @property
+    def ready(self) -> bool:
+        return bool(self._interactor.started)
+
+    def set_look(self, background: Rgb, point_size: float) -> None:
+        self._stage.set_background(background)
+        self._stage.point_size = point_size
+
+    def is_made(self, scene: Scene, key: Key) -> bool:
+        return self._stage.is_made(scene, key)
+
+    def draw(self, scene: Scene, camera: SceneCamera, keys: Iterable[Key], *, first: bool, last: bool) -> None:
+        self._stage.pixel_ratio = self._interactor.devicePixelRatioF()
+        self._stage.draw(scene, camera, keys, first=first, last=last)
+
+    def pixels(self) -> NDArray[np.uint8]:
+        return read_pixels(self._stage.window)
+
+    def finish(self) -> None:
+        self._interactor.before_paint = None
+        self._stage.close()
+        self._interactor.close()
+        self._interactor.setParent(None)
+        self._interactor.deleteLater()
