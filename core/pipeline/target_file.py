@@ -1,0 +1,25 @@
+"""The PDF of a target to print."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from core.files.atomic import write_bytes
+from core.image.targets import Target
+from core.progress import Progress, silent
+from core.report.target_sheet import SheetPaper, target_sheet
+
+
+def write_target_sheet(
+    path: Path, target: Target, paper: SheetPaper = "A4", title: str = "", progress: Progress = silent
+) -> Path:
+    """Write `target` to scale on one page, and return where.
+
+    Raises
+    ------
+    InputError
+        If the target does not fit the paper, or nothing can be written there.
+    """
+    progress("drawing the target", 0, 1)
+    write_bytes(path, target_sheet(target, paper, title=title))
+    return path
