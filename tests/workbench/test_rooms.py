@@ -1,0 +1,63 @@
+"""What each room of the workbench may touch, beyond what the import linter can see."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+import workbench
+from workbench import jobs
+
+ROOT = Path(workbench.__file__).parent
+STEPS = ("project", "camera", "planes", "scan", "inspect", "report")
+NUMBERS = ("scipy", "cv2", "numba", "numpy.linalg", "numpy.random")
+
+
+def modules() -> list[Path]:
+    return sorted(ROOT.rglob("*.py"))
+
+
+def imported(path: Path) -> Iterator[str]:
+    """Names of all modules a file imports, those for types alone left out."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    for node in ast.walk(tree):
+        if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test):
+            node.body = []
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            yield node.module
+            yield from (f"{node.module}.{alias.name}" for alias in node.names)
+
+
+@pytest.mark.parametrize("path", modules(), ids=lambda path: path.relative_to(ROOT).as_posix())
+def test_a_module_touches_only_what_its_room_may(path: Path) -> None:
+    names, room = set(imported(path)), path.relative_to(ROOT).as_posix()
+    if not room.startswith("views/scene_view"):
+        assert not [n for n in names if n.split(".")[0] in ("pyvista", "pyvistaqt", "vtk", "vtkmodules")]
+    if path.stem.endswith("_presenter") or path.stem in ("presenter", "bench", "project_model", "tasks", "step_state"):
+        assert not [n for n in names if n.startswith(("PySide6.QtWidgets", "workbench.views"))], "no widgets here"
+    assert not [n for n in names if n.startswith(NUMBERS)], "numbers are made in core"
+    if room.startswith("pages/"):
+        mine = next((step for step in STEPS if path.stem.startswith(step)), None)
+        others = tuple(f"workbench.pages.{step}_" for step in STEPS if step != mine)
+        assert mine is None or not [n for n in names if n.startswith(others)], "pages never import each other"
+
+
+@pytest.mark.parametrize("name", [name for name in vars(jobs) if name.isupper() and name[0] != "_"])
+def test_every_job_is_a_function_that_exists(name: str) -> None:
+    assert callable(jobs.resolve(getattr(jobs, name)))
+
+
+def test_the_window_can_be_imported_without_the_3d_libraries() -> None:
+    import subprocess
+    import sys
+
+    heavy = "('pyvista', 'vtkmodules', 'matplotlib.pyplot')"
+    code = f"import sys, workbench.app; print([m for m in {heavy} if m in sys.modules])"
+    answer = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert answer.stdout.strip() == "[]"
