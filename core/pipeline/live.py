@@ -118,16 +118,27 @@ def run_live(
     except InputError as refused:
         return LiveEnded(request.folder, 0, 0, str(refused))
     desk = Desk(request, source, emit)
-    loop = _Loop(desk, _step(desk), commands, ready)
+    step = _step(desk)
+    loop = _Loop(desk, step, commands, ready)
     error = ""
     try:
         error = loop.run()
     finally:
         desk.worker.close()
         source.close()
+        error = _finished(step) or error
         if not any(folder.iterdir()):
             folder.rmdir()
     return LiveEnded(request.folder, desk.recorded, loop.dropped, error)
+
+
+def _finished(step: LiveStep) -> str:
+    """Have everything on the disk; the sentence of what could not be written, or ""."""
+    try:
+        step.finish()
+    except InputError as problem:
+        return str(problem)
+    return ""
 
 
 def _step(desk: Desk) -> LiveStep:
@@ -166,22 +177,16 @@ class _Loop:
 
     def run(self) -> str:
         """Until the end; the sentence of what ended it too early, or ""."""
-        error = ""
         try:
             self._open()
             self._step.begin()
             while not self._stopping:
                 self._turn()
         except Ended:
-            pass
+            return self._look_at_last()
         except InputError as problem:
-            error = str(problem)
-        try:
-            self._look_at_last()
-            self._step.finish()
-        except InputError as problem:
-            error = error or str(problem)
-        return error
+            return str(problem)
+        return ""
 
     def _turn(self) -> None:
         """One turn: commands, a frame, what was found, a picture for the window."""
@@ -284,13 +289,14 @@ class _Loop:
             self._desk.emit(LiveBack())
             return
 
-    def _look_at_last(self) -> None:
-        """When the source has ended, wait for the frame that is being looked at, and show it if the window is ready."""
-        if self._stopping:
-            return
+    def _look_at_last(self) -> str:
+        """The source has ended: wait for the frame that is being looked at, and show it if the window is ready."""
         deadline = time.monotonic() + LAST_LOOK_S
-        while self._desk.worker.busy and time.monotonic() < deadline:
-            self._fresh = self._step.poll() or self._fresh
-            time.sleep(WORKING_LISTEN_S)
-        if self._fresh is not None:
-            self._show()
+        try:
+            while self._desk.worker.busy and time.monotonic() < deadline:
+                self._fresh = self._step.poll() or self._fresh
+                time.sleep(WORKING_LISTEN_S)
+        except InputError as problem:
+            return str(problem)
+        self._show()
+        return ""

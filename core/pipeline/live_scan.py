@@ -36,6 +36,10 @@ class FrameStore(Protocol):
     def written(self) -> int:
         """How many are on the disk."""
 
+    @property
+    def dropped(self) -> int:
+        """How many were not taken, or given up."""
+
     def write(self, name: str, picture: Picture) -> bool:
         """Take a picture to be written; False if the disk is too slow."""
 
@@ -87,13 +91,7 @@ class LiveScan:
         if self._stage == "reference" and self._looking:
             self._try_reference(frame.picture)
         elif self._stage == "scanning":
-            name = f"frame{self._number:05d}"
-            if not self._store.write(name, frame.picture):
-                self._desk.lost += 1
-                return
-            self._desk.worker.start(self._previewer.look, self._number, name, frame)
-            self._number += 1
-            self._desk.recorded += 1
+            self._record(frame)
 
     def poll(self) -> Frame | None:
         """See what has become of the reference or the frame that was looked at."""
@@ -145,8 +143,28 @@ class LiveScan:
                 self._stage = "paused"
 
     def finish(self) -> None:
-        """Have all frames on the disk."""
-        self._store.close()
+        """Have all frames on the disk, and count what is there."""
+        try:
+            self._store.close()
+        finally:
+            self._desk.recorded, self._desk.lost = self._store.written, self._store.dropped
+
+    def _record(self, frame: Frame) -> None:
+        name = f"frame{self._number:05d}"
+        try:
+            taken = self._store.write(name, frame.picture)
+        except InputError as error:  # the disk is full: what waits for it is kept and tried again
+            self._desk.lost += 1
+            self._stage = "paused"
+            self._desk.ask(f"Recording is paused. {error} Then press Continue.", "Continue", Resume())
+            return
+        if not taken:
+            self._desk.lost += 1
+            self._desk.notice("The disk is too slow for all frames: some are lost. Choose a lower frame rate.")
+            return
+        self._desk.worker.start(self._previewer.look, self._number, name, frame)
+        self._number += 1
+        self._desk.recorded += 1
 
     def _ask_for_reference(self) -> None:
         self._desk.ask(

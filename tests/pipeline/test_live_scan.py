@@ -1,0 +1,300 @@
+import numpy as np
+import pytest
+
+from core.acquire.source import Lasers, SourceSettings
+from core.errors import InputError
+from core.files.pictures import read_picture
+from core.files.rig import Rig
+from core.image.targets import BlackSquare, Checkerboard
+from core.live.events import (
+    Configure,
+    LiveAnswered,
+    LiveAsk,
+    LiveBack,
+    LiveNotice,
+    LiveStarted,
+    LiveTaken,
+    LiveUnplugged,
+    LiveView,
+    Pause,
+    Resume,
+    Stop,
+    Switch,
+    TakeReference,
+)
+from core.pipeline import live, live_preview
+from core.pipeline.live_scan import STALE_FRAMES
+from core.simulate.recording import scan_of
+from core.simulate.scenario import Scenario
+from tests.pipeline.live_bench import ScriptedSource, Window, after, answer_to, record
+
+RIG = Rig(Checkerboard(17, 12, 10.0), BlackSquare(60.0), 3, np.radians(5.0))
+FRAMES = 16
+
+
+class Stage:
+    """A simulated scan at a small scale, rendered once."""
+
+    def __init__(self):
+        stage, sheets, _ = scan_of(Scenario(scale=0.25, frames=FRAMES))
+        self.camera, self.fan = stage.rig.camera, stage.rig.fan
+        self.reference = stage.reference()
+        self.frames = [stage.frame(index, sheet) for index, sheet in enumerate(sheets)]
+        self.dark = np.random.default_rng(0).normal(30, 2, self.reference.shape).astype(np.uint8)
+
+    def __call__(self, lasers: Lasers, number: int):
+        if not lasers.fan:
+            return self.dark
+        return self.frames[number % FRAMES] if lasers.hand else self.reference
+
+
+@pytest.fixture(scope="module")
+def stage():
+    return Stage()
+
+
+def scan(monkeypatch, folder, stage, source, window, **choices):
+    choices = {"camera": stage.camera, "fan": stage.fan, **choices}
+    return record(monkeypatch, source, window, "scan", RIG, folder / "scan", **choices)
+
+
+def swept(picture_of, frames, **how):
+    """A source that ends after so many frames with the hand-held laser on."""
+    return ScriptedSource(picture_of, frames, counts=lambda lasers: lasers.hand, **how)
+
+
+def names(folder):
+    return sorted(path.name for path in (folder / "scan").iterdir())
+
+
+def test_a_source_that_switches_lasers_itself_takes_the_reference_and_scans(monkeypatch, tmp_path, stage):
+    window = Window()
+    ended = scan(monkeypatch, tmp_path, stage, swept(stage, 20, pace_s=0.05), window)
+    assert ended.error == ""
+    assert window.all(LiveStarted)[0].image_size == (960, 687)
+    assert [taken.name for taken in window.all(LiveTaken)] == ["reference"]
+    assert not window.all(LiveAsk)
+    assert np.array_equal(read_picture(tmp_path / "scan" / "reference.png"), stage.reference)
+    assert names(tmp_path) == [f"frame{i:05d}.png" for i in range(ended.recorded)] + ["reference.png"]
+    assert ended.recorded >= 15
+    last = window.details[-1]
+    assert last.stage == "scanning"
+    assert len(last.fan_lines) == 3
+    assert last.cells.sum() > 20
+    assert 0 < last.share < 1
+    assert last.preview.name.startswith("frame")
+    assert any(len(detail.points) for detail in window.details)
+
+
+def test_frames_on_the_disk_are_the_source_s_bytes(monkeypatch, tmp_path, stage):
+    shown = []
+
+    def numbered(lasers, number):
+        picture = stage(lasers, number)
+        if lasers.hand:
+            shown.append(picture)
+        return picture
+
+    ended = scan(monkeypatch, tmp_path, stage, swept(numbered, 20), Window())
+    kept = [read_picture(tmp_path / "scan" / f"frame{i:05d}.png") for i in range(ended.recorded)]
+    assert len(kept) > 10
+    assert all(np.array_equal(a, b) for a, b in zip(kept[::-1], shown[::-1], strict=False))
+
+
+def test_recording_does_not_wait_for_a_slow_window_nor_for_the_preview(monkeypatch, tmp_path, stage):
+    window = Window(ready=False)
+    ended = scan(monkeypatch, tmp_path, stage, swept(stage, 120), window)
+    assert not window.all(LiveView)
+    assert ended.recorded == 120 - STALE_FRAMES
+    assert ended.dropped == 0
+
+
+def test_points_of_frames_that_were_not_shown_come_with_the_next_view(monkeypatch, tmp_path, stage):
+    calls = [0]
+
+    def now_and_then():
+        calls[0] += 1
+        return calls[0] % 40 == 0
+
+    window = Window(ready=now_and_then)
+    scan(monkeypatch, tmp_path, stage, swept(stage, 40, pace_s=0.04), window)
+    frames = np.unique(np.concatenate([detail.points.frame for detail in window.details]))
+    assert len(frames) > len(window.all(LiveView))
+
+
+def test_a_source_unplugged_in_the_middle_comes_back_and_nothing_is_lost(monkeypatch, tmp_path, stage):
+    window = Window()
+    source = swept(stage, 24, unplug_at={15}, away=2)
+    ended = scan(monkeypatch, tmp_path, stage, source, window)
+    assert "cable" in window.all(LiveUnplugged)[0].sentence
+    assert len(window.all(LiveBack)) == 1
+    assert ended.error == ""
+    assert names(tmp_path) == [f"frame{i:05d}.png" for i in range(ended.recorded)] + ["reference.png"]
+    assert source.lit == Lasers(fan=True, hand=True)
+
+
+def test_a_source_that_stays_away_can_be_given_up(monkeypatch, tmp_path, stage):
+    window = Window(answer_to(LiveUnplugged, Stop()))
+    ended = scan(monkeypatch, tmp_path, stage, swept(stage, 40, unplug_at={14}, away=10**6), window)
+    assert ended.recorded > 0
+    assert ended.error == ""
+    assert len(names(tmp_path)) == ended.recorded + 1
+
+
+def test_a_person_is_asked_to_switch_lasers_that_the_source_cannot(monkeypatch, tmp_path, stage):
+    source = swept(stage, 40, switches=False)
+
+    def hand(event):
+        """Do what is asked, then press the button."""
+        if isinstance(event, LiveAsk):
+            source.lit = Lasers(fan=True, hand=isinstance(event.answer, Resume))
+            return event.answer
+        return None
+
+    window = Window(hand)
+    ended = scan(monkeypatch, tmp_path, stage, source, window)
+    first, second = window.all(LiveAsk)
+    assert (first.button, first.answer) == ("Take the reference", TakeReference())
+    assert (second.button, second.answer) == ("Start", Resume())
+    assert len(window.all(LiveAnswered)) == 2
+    assert ended.recorded > 10
+    assert np.array_equal(read_picture(tmp_path / "scan" / "reference.png"), stage.reference)
+
+
+def test_a_reference_without_the_fan_is_refused_and_asked_for_again(monkeypatch, tmp_path, stage):
+    source = swept(stage, 30, switches=False)
+    asked = []
+
+    def hand(event):
+        if isinstance(event, LiveAsk):
+            asked.append(event)
+            source.lit = Lasers(fan=len(asked) > 1, hand=len(asked) > 2)
+            return event.answer
+        return None
+
+    window = Window(hand)
+    ended = scan(monkeypatch, tmp_path, stage, source, window)
+    assert any("no line of the fan" in notice.sentence for notice in window.all(LiveNotice))
+    assert len(asked) == 3
+    assert ended.recorded > 0
+
+
+def test_a_reference_is_not_taken_while_the_laser_is_swept(monkeypatch, tmp_path, stage):
+    source = ScriptedSource(lambda lasers, number: stage.frames[number % FRAMES], 12, pace_s=0.01)
+    window = Window()
+    ended = scan(monkeypatch, tmp_path, stage, source, window)
+    assert any("Something moves" in notice.sentence for notice in window.all(LiveNotice))
+    assert ended.recorded == 0
+    assert not (tmp_path / "scan").exists()
+
+
+def test_asked_twice_the_reference_is_taken_as_it_is(monkeypatch, tmp_path, stage):
+    source = ScriptedSource(lambda lasers, number: stage.frames[number % FRAMES], 80, pace_s=0.01)
+    window = Window(after(1, LiveNotice, TakeReference()))
+    scan(monkeypatch, tmp_path, stage, source, window)
+    assert [taken.name for taken in window.all(LiveTaken)] == ["reference"]
+
+
+def test_a_pause_records_nothing_and_shows_on(monkeypatch, tmp_path, stage):
+    scanning = [0]
+
+    def hand(event):
+        if isinstance(event, LiveView) and event.detail is not None and event.detail.stage == "scanning":
+            scanning[0] += 1
+            return Pause() if scanning[0] == 2 else None
+        return None
+
+    window = Window(hand)
+    ended = scan(monkeypatch, tmp_path, stage, swept(stage, 60, pace_s=0.01), window)
+    paused = [view for view in window.all(LiveView) if view.detail is not None and view.detail.stage == "paused"]
+    assert len(paused) > 5
+    assert len({view.recorded for view in paused}) == 1
+    assert ended.recorded == paused[-1].recorded
+
+
+def test_resume_goes_on_counting_names(monkeypatch, tmp_path, stage):
+    window = Window(after(8, LiveView, Pause()), after(12, LiveView, Resume()))
+    ended = scan(monkeypatch, tmp_path, stage, swept(stage, 60, pace_s=0.01), window)
+    assert names(tmp_path)[:-1] == [f"frame{i:05d}.png" for i in range(ended.recorded)]
+
+
+def test_stop_ends_at_once_with_everything_on_the_disk(monkeypatch, tmp_path, stage):
+    def hand(event):
+        return Stop() if isinstance(event, LiveView) and event.recorded >= 5 else None
+
+    ended = scan(monkeypatch, tmp_path, stage, swept(stage, 10**6, pace_s=0.005), Window(hand))
+    assert 5 <= ended.recorded < 20
+    assert len(names(tmp_path)) == ended.recorded + 1
+
+
+def test_without_calibrations_stripes_are_shown_but_no_points(monkeypatch, tmp_path, stage):
+    window = Window()
+    scan(monkeypatch, tmp_path, stage, swept(stage, 24, pace_s=0.03), window, camera=None, fan=None)
+    previews = [detail.preview for detail in window.details if detail.preview is not None]
+    assert any(len(preview.centrelines) for preview in previews)
+    assert not any(len(detail.points) for detail in window.details)
+
+
+def test_a_fault_in_the_preview_never_ends_the_recording(monkeypatch, tmp_path, stage):
+    def broken(*args):
+        raise ZeroDivisionError("boom")
+
+    monkeypatch.setattr(live_preview.ScanPreviewer, "_shown", broken)
+    window = Window()
+    ended = scan(monkeypatch, tmp_path, stage, swept(stage, 40), window)
+    assert any("boom" in notice.sentence for notice in window.all(LiveNotice))
+    assert ended.recorded > 20
+    assert ended.error == ""
+
+
+def test_a_full_disk_pauses_and_asks(monkeypatch, tmp_path, stage):
+    def full(path, picture):
+        raise InputError("cannot be written, because the disk is full", where=path)
+
+    recorder = live.Recorder
+    monkeypatch.setattr(live, "Recorder", lambda folder: recorder(folder, put=full))
+    window = Window()
+    ended = scan(monkeypatch, tmp_path, stage, swept(stage, 30, pace_s=0.01), window)
+    assert "disk is full" in window.all(LiveAsk)[0].sentence
+    assert "disk is full" in ended.error
+    assert ended.recorded == 0
+    assert ended.dropped > 0
+
+
+def test_settings_go_to_the_source_and_a_refusal_is_told(monkeypatch, tmp_path, stage):
+    wanted = SourceSettings(exposure_ms=5.0)
+    window = Window(
+        after(2, LiveView, Configure(wanted)),
+        after(3, LiveView, Configure(SourceSettings(gain_db=80.0))),
+        after(4, LiveView, Switch(Lasers(fan=False, hand=False))),
+    )
+    source = swept(stage, 30)
+    scan(monkeypatch, tmp_path, stage, source, window)
+    assert wanted in source.calls
+    assert any("no gain" in notice.sentence for notice in window.all(LiveNotice))
+    assert Lasers(fan=False, hand=False) in source.calls
+
+
+def test_a_source_that_cannot_be_opened_is_told_at_the_end(monkeypatch, tmp_path, stage):
+    source = ScriptedSource(stage)
+    source.missing = 1
+    ended = scan(monkeypatch, tmp_path, stage, source, Window())
+    assert "no such camera" in ended.error
+    assert not (tmp_path / "scan").exists()
+
+
+def test_a_folder_that_holds_something_is_not_touched(monkeypatch, tmp_path, stage):
+    (tmp_path / "scan").mkdir()
+    (tmp_path / "scan" / "reference.png").write_bytes(b"older")
+    ended = scan(monkeypatch, tmp_path, stage, ScriptedSource(stage), Window())
+    assert "something in the folder" in ended.error
+    assert (tmp_path / "scan" / "reference.png").read_bytes() == b"older"
+
+
+def test_pictures_for_the_window_are_reduced_by_a_whole_factor(monkeypatch, tmp_path, stage):
+    window = Window()
+    scan(monkeypatch, tmp_path, stage, ScriptedSource(stage, 12), window, display_px=400)
+    view = window.all(LiveView)[0]
+    assert view.scale == 3
+    assert view.picture.shape == (687 // 3, 320)
+    assert view.picture.dtype == np.uint8
