@@ -61,7 +61,7 @@ def complaint(path: Path, error: ValidationError, model: type[BaseModel]) -> Inp
     wanted = field.description if field is not None and field.description else _TYPES.get(first["type"], first["msg"])
     if first["type"] == "missing":
         return InputError(f"{name} is missing; it must be {wanted}", where=path)
-    whole = name.partition("[")[0]
+    whole = ".".join([*names[:-1], names[-1].partition("[")[0]]) if names else ""
     allowed = f"not {wanted}" if whole == name else f"but {whole} must be {wanted}"
     return InputError(f"{name} is {_shown(first['input'])}, {allowed}", where=path)
 

@@ -188,9 +188,10 @@ def _keep(folder: Path, path: Path) -> None:
     if newest and numbered[newest].read_bytes() == data:
         return  # kept by an attempt to save that failed afterwards
     time = datetime.fromtimestamp(path.stat().st_mtime).astimezone()
-    write_bytes(folder / f"project-{newest + 1:05d}-{time:%Y%m%d-%H%M%S}.json", data, sync=False)
-    for number in sorted(numbered)[: len(numbered) + 1 - KEPT]:
-        numbered[number].unlink(missing_ok=True)
+    copy = folder / f"project-{newest + 1:05d}-{time:%Y%m%d-%H%M%S}.json"
+    write_bytes(copy, data, sync=False)
+    for _, oldest in sorted({**numbered, newest + 1: copy}.items())[:-KEPT]:
+        oldest.unlink(missing_ok=True)
 
 
 def _numbered(folder: Path) -> dict[int, Path]:

@@ -76,7 +76,7 @@ def read_project_text(path: Path) -> ProjectFile:
         file and the field.
     """
     tables = read_json(path, todo=_TODO)
-    if not isinstance(tables, dict) or not isinstance(tables.get("schema_version"), int):
+    if not isinstance(tables, dict) or type(tables.get("schema_version")) is not int:  # true would count as 1
         raise InputError("this is no project: there is no schema version in it", where=path, todo=_TODO)
     schema = tables["schema_version"]
     if schema > SCHEMA:

@@ -1,0 +1,273 @@
+import dataclasses
+import json
+import math
+from dataclasses import fields, replace
+from datetime import UTC, datetime, timedelta, timezone
+
+import numpy as np
+import pytest
+
+from core.calibrate.camera import CameraOptions
+from core.errors import InputError
+from core.files import project_json
+from core.files.options import Options
+from core.files.project import (
+    Accepted,
+    Done,
+    Project,
+    ProjectFile,
+    ProjectInfo,
+    Repeat,
+    ReportChoices,
+    Sources,
+    new_project,
+    read_project,
+    write_project,
+)
+from core.files.project_json import SCHEMA, project_text
+from core.files.rig import GaugeSpec, Rig, default_rig, read_rig, rig_to_toml
+from core.image.stripe import StripeSettings
+from core.image.targets import Charuco, CircleGrid
+
+AT = datetime(2026, 1, 31, 12, 30, 15, 250_000, timezone(timedelta(hours=2)))
+POLYGON = np.array([[0, 0], [10.5, 0], [10, 1 / 3]])
+REPEAT = Repeat("recordings/scan-20260131-120000", 49.987, 0.024, 2.0, "abc-def", AT)
+
+
+def full_project():
+    """A project in which no field is as in a new one."""
+    return Project(
+        ProjectInfo("Block 50", "gauge", "S/N 7", "Ö. Ärzt", "ACME", "Lab 3", 20.5, 21, 'quotes " and\nlines — σ'),
+        Rig(Charuco(9, 7, 20, 15), CircleGrid(7, 6, 37.5), 2, math.radians(4.0), GaugeSpec(50, 0.2, POLYGON, POLYGON),
+            "green"),
+        Sources("/data/set/camera", "recordings/planes-1", "C:/pictures/scan"),
+        Options("three-crossings", 0.3, CameraOptions(False, frozenset({"p1", "k2"}), True, "all"), "my part",
+                StripeSettings(8.5, 120), frozenset({"camera/b.png", "planes/pose02", "scan/ä ö.png"}), False),
+        Accepted("0123456789ab", "ba9876543210"),
+        (REPEAT, replace(REPEAT, thickness_mm=50.001)),
+        ReportChoices(frozenset({"plots", "frames"}), "Letter"),
+    )  # fmt: skip
+
+
+def full_file():
+    results = {
+        "scan": Done("c0ffee", {"laser planes": "2", "camera calibration": "1"}, AT),
+        "camera": Done("beef", {}, AT.astimezone(UTC)),
+    }
+    return ProjectFile(full_project(), results, created=AT - timedelta(days=1), saved=AT)
+
+
+def written(folder, file):
+    write_project(folder, file)
+    return read_project(folder)
+
+
+def test_a_project_reads_back_as_it_was_written(tmp_path):
+    for file in (full_file(), ProjectFile(new_project("empty"))):
+        back = written(tmp_path / file.project.info.name, file)
+        assert back == file
+        assert hash(back.project) == hash(file.project)
+        assert back.project.rig == file.project.rig
+
+
+def leaves(value, path=()):
+    """Every field of nested dataclasses, as a path of names."""
+    for field in fields(value):
+        inner = getattr(value, field.name)
+        if dataclasses.is_dataclass(inner) and field.name not in ("camera_target", "plane_target"):
+            yield from leaves(inner, (*path, field.name))
+        else:
+            yield (*path, field.name)
+
+
+def swapped(to, source, path):
+    """`to` with one field taken from `source`."""
+    name, *rest = path
+    inner = getattr(source, name)
+    return replace(to, **{name: swapped(getattr(to, name), inner, rest) if rest else inner})
+
+
+ONE_BY_ONE = [path for path in leaves(full_project()) if path[:2] not in (("rig", "gauge"), ("options", "stripe"))]
+
+
+@pytest.mark.parametrize("path", ONE_BY_ONE, ids=".".join)
+def test_no_field_is_lost_on_disk_or_in_a_comparison(tmp_path, path):
+    plain = new_project("")
+    changed = swapped(plain, full_project(), path)
+    assert changed != plain
+    assert written(tmp_path, ProjectFile(changed)).project == changed
+
+
+def test_the_full_project_differs_from_a_new_one_in_every_field():
+    full, plain = full_project(), new_project("")
+    for path in ONE_BY_ONE:
+        assert swapped(plain, full, path) != plain, path
+
+
+def test_equal_projects_give_the_same_bytes(tmp_path):
+    one, other = full_file(), full_file()
+    turned = replace(other.project.options, excluded=frozenset(reversed(sorted(other.project.options.excluded))))
+    results = dict(reversed(other.results.items()))
+    results["scan"] = replace(results["scan"], rests_on=dict(reversed(results["scan"].rests_on.items())))
+    other = replace(other, project=replace(other.project, options=turned), results=results)
+    assert other == one
+    assert project_text(other, tmp_path) == project_text(one, tmp_path)
+
+
+def test_the_file_is_for_people_too(tmp_path):
+    text = project_text(full_file(), tmp_path)
+    tables = json.loads(text)
+    assert list(tables) == [
+        "schema_version", "version", "created", "saved", "info", "rig", "sources", "options", "accepted", "repeats",
+        "report", "results",
+    ]  # fmt: skip
+    assert tables["schema_version"] == SCHEMA
+    assert tables["options"]["excluded"] == ["camera/b.png", "planes/pose02", "scan/ä ö.png"]
+    assert '    "name": "Block 50",\n' in text
+    assert max(map(len, text.splitlines())) < 130
+
+
+def test_the_rig_stands_in_the_project_as_in_rig_toml(tmp_path):
+    import tomllib
+
+    tables = json.loads(project_text(full_file(), tmp_path))
+    assert tables["rig"] == tomllib.loads(rig_to_toml(full_project().rig))
+    (tmp_path / "rig.toml").write_text(rig_to_toml(full_project().rig))
+    assert read_rig(tmp_path / "rig.toml") == full_project().rig
+
+
+def test_a_time_without_zone_is_local(tmp_path):
+    naive = datetime(2026, 1, 31, 12, 0)
+    back = written(tmp_path, ProjectFile(new_project("x"), {"scan": Done("k", {}, naive)}))
+    assert back.results["scan"].at == naive.astimezone()
+
+
+def spoilt(tmp_path, change):
+    write_project(tmp_path, full_file())
+    path = tmp_path / "project.json"
+    tables = json.loads(path.read_text(encoding="utf-8"))
+    change(tables)
+    path.write_text(json.dumps(tables), encoding="utf-8")
+    with pytest.raises(InputError) as error:
+        read_project(tmp_path)
+    sentence = str(error.value)
+    assert sentence.startswith(f"{path}: ")
+    assert sentence.endswith(".")
+    assert "\n" not in sentence
+    return sentence
+
+
+@pytest.mark.parametrize(("keys", "value", "said"), [
+    (("info", "air_celsius"), "warm", 'info.air_celsius is "warm", not a temperature in °C, or null'),
+    (("info", "part_celsius"), -300, "info.part_celsius is -300, not a temperature"),
+    (("info", "name"), 7, "info.name is 7, not a text"),
+    (("info", "nmae"), "x", "info.nmae is an unknown key (did you mean name?)"),
+    (("notes",), "x", "notes is an unknown key"),
+    (("rig", "laser_fan", "lines"), 0, "rig.laser_fan.lines is 0, not a whole number from 1 to 20"),
+    (("rig", "camera_target", "kind"), "chess", 'rig.camera_target.kind is "chess"'),
+    (("rig", "camera_target", "dictionary"), "DICT_4X4_70", "rig.camera_target.dictionary is"),
+    (("rig", "gauge", "upper_polygon_px"), [[0, 0]], "rig.gauge.upper_polygon_px is [[0, 0]], not a list of three"),
+    (("rig", "gauge", "tolerance_mm"), None, "rig.gauge.tolerance_mm is missing; nominal_mm and"),
+    (("sources", "scan"), None, "sources.scan is null, not a text"),
+    (("options", "method"), "magic", 'options.method is "magic", not "network" or "three-crossings"'),
+    (("options", "sigma_cut_mm"), 0, "options.sigma_cut_mm is 0, not a length in mm above 0 and at most 10"),
+    (("options", "camera", "fixed"), ["k3"], "options.camera.fixed"),
+    (("options", "camera", "skew"), 1, "options.camera.skew is 1, not true or false"),
+    (("options", "stripe", "contrast"), -1, "options.stripe.contrast is -1, not a number of grey levels above 0"),
+    (("options", "excluded"), ["view.png"], "options.excluded[0]"),
+    (("accepted", "fan"), "../../x", 'accepted.fan is "../../x", not the id of a calibration'),
+    (("repeats", 0, "U_mm"), -1, "repeats[0].U_mm is -1, not a length in mm"),
+    (("repeats", 1, "measured_at"), "2026-01-31T12:00:00", "repeats[1].measured_at is"),
+    (("report", "paper"), "A3", 'report.paper is "A3", not "A4" or "Letter"'),
+    (("results", "scan", "at"), "yesterday", 'results.scan.at is "yesterday", not a date and time with its zone'),
+    (("results", "scan", "rests_on"), {"a": 1}, "results.scan.rests_on"),
+    (("schema_version",), 0, "schema_version is 0, not a whole number from 1 to"),
+    (("schema_version",), "1", "this is no project"),
+    (("schema_version",), True, "this is no project"),
+])  # fmt: skip
+def test_a_wrong_value_is_told_with_file_and_field(tmp_path, keys, value, said):
+    def change(tables):
+        *path, last = keys
+        for key in path:
+            tables = tables[key]
+        tables[last] = value
+
+    assert said in spoilt(tmp_path, change)
+
+
+@pytest.mark.parametrize("key", ["info", "rig"])
+def test_what_a_project_cannot_do_without_is_missed(tmp_path, key):
+    assert f"{key} is missing" in spoilt(tmp_path, lambda tables: tables.pop(key))
+
+
+def test_what_is_not_there_is_as_usual(tmp_path):
+    write_project(tmp_path, full_file())
+    path = tmp_path / "project.json"
+    tables = json.loads(path.read_text())
+    path.write_text(json.dumps({"schema_version": 1, "info": {"name": "x"}, "rig": tables["rig"]}))
+    assert read_project(tmp_path) == ProjectFile(replace(new_project("x"), rig=full_project().rig))
+
+
+def test_a_newer_project_is_refused_in_one_sentence_whatever_else_it_holds(tmp_path):
+    sentence = spoilt(tmp_path, lambda tables: tables.update(schema_version=SCHEMA + 1, colours="many"))
+    assert "written by a newer program" in sentence
+    assert "open it with a newer version" in sentence
+
+
+def test_an_older_project_is_brought_up_to_date_step_by_step(tmp_path, monkeypatch):
+    write_project(tmp_path, ProjectFile(new_project("x")))
+    path = tmp_path / "project.json"
+    tables = json.loads(path.read_text())
+    tables["info"]["title"] = tables["info"].pop("name")
+    path.write_text(json.dumps(tables))
+
+    def name_for_title(old):
+        info = {**old["info"], "name": old["info"]["title"] + "!"}
+        return {**old, "info": {key: value for key, value in info.items() if key != "title"}}
+
+    def shout(old):
+        return {**old, "info": {**old["info"], "name": old["info"]["name"].upper()}}
+
+    monkeypatch.setattr(project_json, "SCHEMA", SCHEMA + 2)
+    monkeypatch.setattr(project_json, "MIGRATIONS", {SCHEMA: name_for_title, SCHEMA + 1: shout})
+    assert read_project(tmp_path).project.info.name == "X!"
+
+
+@pytest.mark.parametrize(("data", "said"), [
+    (b"", "no valid JSON"),
+    (b'{"schema_version": 1, "info": {', "no valid JSON"),
+    (b"[1, 2]", "this is no project"),
+    (b"{}", "this is no project"),
+    (b'"\xff"', "cannot be read as UTF-8 text"),
+])  # fmt: skip
+def test_a_damaged_project_says_so(tmp_path, data, said):
+    (tmp_path / "project.json").write_bytes(data)
+    with pytest.raises(InputError, match=said):
+        read_project(tmp_path)
+
+
+def test_what_could_not_be_read_again_is_not_written(tmp_path):
+    good = ProjectFile(new_project("good"))
+    write_project(tmp_path, good)
+    wrong = [
+        replace(good.project, rig=replace(default_rig(), lines=99)),
+        replace(good.project, info=ProjectInfo(air_celsius=math.nan, part_celsius=-500.0)),
+        replace(good.project, repeats=(replace(REPEAT, thickness_mm=math.nan),)),
+    ]
+    for project in wrong:
+        with pytest.raises(InputError, match=r"project\.json"):
+            write_project(tmp_path, ProjectFile(project))
+    assert read_project(tmp_path) == good
+
+
+def test_projects_can_be_compared_and_sorted_out_by_sets():
+    assert full_project() == full_project()
+    assert len({full_project(), full_project(), new_project("a"), new_project("b")}) == 3
+    assert ProjectFile(full_project(), created=AT) == ProjectFile(full_project(), saved=AT)
+    assert ProjectFile(full_project()) != ProjectFile(full_project(), {"scan": Done("k", {}, AT)})
+
+
+def test_a_new_project_has_a_name_and_nothing_else():
+    project = new_project("Block")
+    assert project == replace(Project(), info=ProjectInfo("Block"))
+    assert project.rig == default_rig()
