@@ -15,11 +15,14 @@ from core.simulate.laser import Sheet
 from core.simulate.rig import Rig
 from core.simulate.sweep import HandCourse, SweepRange, hand_course
 
-PASS_S = 2.4
-"""Time of one pass of the laser over the object: about 70 mm a second."""
+PASS_S = 2.0
+"""Time of one pass of the laser over the object: about 80 mm a second."""
 
 TURN_S, CROSSING_S = 0.4, 1.3
 """Time to turn back at the end of a pass, and to take the laser round to the other side of the camera."""
+
+LIFT_MM = 90.0
+"""How far up in the picture the stripe is meanwhile: half way round it is parallel to the fan's lines."""
 
 PASSES = 32
 KNOTS = 12
@@ -78,7 +81,6 @@ class HandPath:
     def __init__(self, rig: Rig, reach: SweepRange, rng: np.random.Generator) -> None:
         self._rig = rig
         course = hand_course(reach, PASSES * KNOTS, rng)
-        times, self._period = _knot_times(course)
         held = np.column_stack(
             [
                 course.tilt - np.pi * (course.side < 0),  # the left side is half a turn from the right one
@@ -88,7 +90,9 @@ class HandPath:
                 course.aims,
             ]
         )
-        self._held = PchipInterpolator(np.append(times, self._period), np.concatenate([held, held[:1]]))
+        times, held = _with_turns(course, held)
+        self._period = float(times[-1])
+        self._held = PchipInterpolator(times, held)
 
     def sheet(self, time_s: float) -> Sheet:
         """The sheet of light at a time from the beginning of the first pass, in the camera frame."""
@@ -97,11 +101,17 @@ class HandPath:
         return course.sheets(self._rig)[0]
 
 
-def _knot_times(course: HandCourse) -> tuple[Array, float]:
-    """When (N,) the hand is at each of its instants, in s, and when it is back at the first."""
-    steps = np.full(len(course.number), PASS_S / (KNOTS - 1))
-    ends = np.append(np.diff(course.number) != 0, True)
-    crosses = course.side != np.roll(course.side, -1)
-    steps[ends] = np.where(crosses[ends], CROSSING_S, TURN_S)
-    when = np.cumsum(steps)
-    return np.concatenate([[0.0], when[:-1]]), float(when[-1])
+def _with_turns(course: HandCourse, held: Array) -> tuple[Array, Array]:
+    """When (M,) the hand is where (M, 7), with the ways from pass to pass put in; the last is the first again."""
+    times, rows = [0.0], [held[0]]
+    for k in range(len(held)):
+        after = (k + 1) % len(held)
+        if course.number[after] == course.number[k]:
+            times.append(times[-1] + PASS_S / (KNOTS - 1))
+        elif course.side[after] == course.side[k]:
+            times.append(times[-1] + TURN_S)
+        else:
+            rows.append((held[k] + held[after]) / 2 - [0, 0, 0, 0, 0, LIFT_MM, 0])
+            times += [times[-1] + CROSSING_S / 2, times[-1] + CROSSING_S]
+        rows.append(held[after])
+    return np.array(times), np.array(rows)
