@@ -15,7 +15,7 @@ from core.image.target_view import TargetView
 from core.model import Camera
 from core.model.arrays import Array
 
-__all__ = ["CaptureJudge", "CaptureLimits", "Verdict", "what_is_missing"]
+__all__ = ["CaptureJudge", "CaptureLimits", "Verdict", "moved_px", "what_is_missing"]
 
 COLUMNS = 16
 """Cells across the picture in the map of what the views cover."""
@@ -139,7 +139,7 @@ class CaptureJudge:
             return False
         limit = self._limits.still_px_s * max(self._image_size) / 1920
         return all(
-            _moved_px(view, moved) <= limit * max(after - before, 1e-3)
+            moved_px(view, moved) <= limit * max(after - before, 1e-3)
             for (before, view), (after, moved) in pairwise(recent)
         )
 
@@ -167,7 +167,7 @@ class CaptureJudge:
         return picture_cells(uv, self._image_size, COLUMNS, self._rows)
 
 
-def _moved_px(before: TargetView, after: TargetView) -> float:
+def moved_px(before: TargetView, after: TargetView) -> float:
     """Median movement in pixels of the points that both views show; infinite if there are none."""
     first, second = (
         np.round(view.points[:, 0] * 1e3) * 1e7 + np.round(view.points[:, 1] * 1e3) for view in (before, after)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from core.acquire.source import Frame, Lasers, Picture
-from core.calibrate.capture import CaptureJudge
+from core.calibrate.capture import CaptureJudge, moved_px
 from core.image.target_view import TargetView
 from core.live.events import Auto, Capture, Command, Discard, PlanesDetail
 from core.pipeline.live_camera import named
@@ -18,6 +18,11 @@ STALE_FRAMES = 2
 
 MOST_TRIES = 5
 """So many pictures with the fan off are tried before a pose is given up."""
+
+_ANOTHER_POSE_PX = 10.0
+"""A target that has moved so far since it was refused may be tried again."""
+
+_NO_LIGHT = "The fan's light is not seen on the target."
 
 _FAN_ON, _FAN_OFF = Lasers(fan=True, hand=False), Lasers(fan=False, hand=False)
 
@@ -47,6 +52,7 @@ class LivePlanes:
         self._look: PoseLook | None = None
         self._stage: Stage = "looking"
         self._pending: _Pending | None = None
+        self._refused: tuple[TargetView, str] | None = None
         self._skip = 0
         self._sentence = ""
         self._missing: tuple[str, ...] = ()
@@ -118,21 +124,29 @@ class LivePlanes:
 
     def _judged(self, look: PoseLook, judge: CaptureJudge) -> None:
         view, pose = look.pose.view, look.pose
-        why_not = "" if view is not None else as_sentence(pose.reason)
-        verdict = judge.judge(view, look.blur_px, look.frame.time_s, why_not)
+        verdict = judge.judge(view, look.blur_px, look.frame.time_s, "" if view else as_sentence(pose.reason))
         self._look, self._sentence = look, verdict.sentence
         if pose.centrelines and self._settings is None:
             self._settings = settings_of(pose)
-        if view is not None and not pose.centrelines:
-            why_not = self._sentence = "The fan's light is not seen on the target."
-        by_itself = verdict.take and self._auto and not why_not
-        if view is not None and not why_not and (self._capture or by_itself):
+        doubt = "" if view is None or not verdict.take else self._doubt(look, view)
+        self._sentence = doubt or self._sentence
+        if view is not None and pose.centrelines and (self._capture or (verdict.take and self._auto and not doubt)):
             self._begin_pair(look.frame, view)
         elif self._capture:
-            self._desk.notice(f"Nothing was taken. {why_not}")
-        elif verdict.take and not why_not:
+            self._desk.notice(f"Nothing was taken. {_NO_LIGHT if view is not None else self._sentence}")
+        elif verdict.take and not doubt:
             self._sentence = "Press Capture to take this pose."
         self._capture = False
+
+    def _doubt(self, look: PoseLook, view: TargetView) -> str:
+        """Why a good view of the target is not taken by itself, or ""."""
+        if not look.pose.centrelines:
+            return _NO_LIGHT
+        if self._camera is not None and len(look.stripes) > self._lines:
+            return f"More stripes are seen than the fan's {self._lines}: is it on? Press Capture to take the pose."
+        if self._refused is not None and moved_px(self._refused[0], view) < _ANOTHER_POSE_PX:
+            return self._refused[1]
+        return ""
 
     def _begin_pair(self, frame: Frame, view: TargetView) -> None:
         """The picture with the fan on is taken; now the one with the fan off, if there is to be one."""
@@ -162,7 +176,8 @@ class LivePlanes:
             return
         name = self._name()
         if reason:
-            self._desk.notice(f"The pose was not taken: {reason}.")
+            self._refused = (pending.view, f"The pose was not taken: {reason}.")
+            self._desk.notice(self._refused[1])
         else:
             self._desk.write(name, pending.on.picture)
             if off is not None:

@@ -213,8 +213,19 @@ def test_a_pause_records_nothing_and_shows_on(monkeypatch, tmp_path, stage):
 
 
 def test_resume_goes_on_counting_names(monkeypatch, tmp_path, stage):
-    window = Window(after(8, LiveView, Pause()), after(12, LiveView, Resume()))
-    ended = scan(monkeypatch, tmp_path, stage, swept(stage, 60, pace_s=0.01), window)
+    paused = []
+
+    def hand(event):
+        if not isinstance(event, LiveView) or event.detail is None:
+            return None
+        if event.detail.stage == "paused":
+            paused.append(event.recorded)
+            return Resume() if len(paused) == 3 else None
+        return Pause() if event.recorded > 4 and not paused else None
+
+    ended = scan(monkeypatch, tmp_path, stage, swept(stage, 60, pace_s=0.01), Window(hand))
+    assert len(paused) >= 3
+    assert ended.recorded > paused[-1]
     assert names(tmp_path)[:-1] == [f"frame{i:05d}.png" for i in range(ended.recorded)]
 
 

@@ -1,0 +1,63 @@
+"""One small project, done from the first step to the last; copy it before changing it."""
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import pytest
+
+from core.calibrate.pose_features import PoseFeatures
+from core.calibrate.results import CameraCalibration, FanCalibration
+from core.calibrate.seen_views import SeenViews
+from core.files.project import Accepted, Project, project_from_set
+from core.files.project_results import ScanSummary
+from core.pipeline.project_steps import (
+    accept_camera,
+    accept_fan,
+    find_poses,
+    find_views,
+    make_report,
+    measure_scan,
+    solve_poses,
+    solve_views,
+)
+from core.scan.frame_preview import FramePreview
+
+
+@dataclass(frozen=True, eq=False)
+class DoneProject:
+    """A project and what each of its steps gave."""
+
+    folder: Path
+    project: Project
+    seen: SeenViews
+    camera: CameraCalibration
+    poses: tuple[PoseFeatures, ...]
+    fan: FanCalibration
+    summary: ScanSummary
+    watched: tuple[FramePreview, ...]
+    told: tuple[str, ...]
+
+    def with_options(self, **changes) -> Project:
+        return replace(self.project, options=replace(self.project.options, **changes))
+
+
+@pytest.fixture(scope="session")
+def done(simulated, tmp_path_factory) -> DoneProject:
+    folder = tmp_path_factory.mktemp("project") / "block"
+    folder.mkdir()
+    project = project_from_set(simulated, "block")
+    project = replace(project, options=replace(project.options, sigma_cut_mm=0.3))
+    told, watched = [], []
+
+    def progress(step, done, total):
+        told.append(step)
+
+    seen = find_views(folder, project, progress)
+    camera = solve_views(folder, project, seen, progress)
+    project = replace(project, accepted=Accepted(accept_camera(folder, project, camera)))
+    poses = find_poses(folder, project, progress)
+    fan = solve_poses(folder, project, poses, progress)
+    project = replace(project, accepted=replace(project.accepted, fan=accept_fan(folder, project, fan, poses)))
+    summary = measure_scan(folder, project, progress, watched.append)
+    make_report(folder, project, progress)
+    return DoneProject(folder, project, seen, camera, poses, fan, summary, tuple(watched), tuple(told))

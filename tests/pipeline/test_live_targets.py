@@ -1,0 +1,235 @@
+import numpy as np
+import pytest
+
+from core.acquire.source import Lasers
+from core.files.pictures import read_picture
+from core.files.rig import Rig
+from core.image.targets import BlackSquare, Checkerboard
+from core.live.events import (
+    Auto,
+    Capture,
+    Discard,
+    LiveAnswered,
+    LiveAsk,
+    LiveNotice,
+    LiveStarted,
+    LiveTaken,
+    LiveView,
+    Stop,
+)
+from core.simulate.calibration import CalibrationPictures
+from core.simulate.rays import ray_map
+from core.simulate.recording import scenario_rig
+from core.simulate.scenario import Scenario
+from tests.pipeline.live_bench import ScriptedSource, Window, after, answer_to, record
+
+RIG = Rig(Checkerboard(17, 12, 10.0), BlackSquare(60.0), 3, np.radians(5.0))
+SCENARIO = Scenario(scale=0.25, camera_views=4, plane_poses=3)
+
+
+class Plates:
+    """Views of the camera's target, and poses of the plane target with the fan on and off."""
+
+    def __init__(self):
+        rig = scenario_rig(SCENARIO)
+        self.camera = rig.camera
+        pictures = CalibrationPictures(SCENARIO, rig, ray_map(rig.camera))
+        self.views = [next(iter(pictures.render(name)))[1] for name in pictures.camera_poses]
+        self.poses = [[picture for _, picture in pictures.render(name)] for name in pictures.plane_poses]
+        self.nothing = np.random.default_rng(0).normal(60, 2, self.views[0].shape).astype(np.uint8)
+
+
+@pytest.fixture(scope="module")
+def plates():
+    return Plates()
+
+
+class OneAfterAnother:
+    """Shows the next picture when the one before has been taken, or has been shown long enough."""
+
+    def __init__(self, pictures, longest=1000):
+        self.pictures, self.at, self.since, self.longest = pictures, 0, 0, longest
+
+    def __call__(self, lasers, number):
+        self.since += 1
+        if self.since > self.longest:
+            self.next()
+        shown = self.pictures[min(self.at, len(self.pictures) - 1)]
+        return shown if isinstance(shown, np.ndarray) else shown[0 if lasers.fan else 1]
+
+    def next(self):
+        self.at, self.since = self.at + 1, 0
+
+
+def views_taken(monkeypatch, folder, plates, window, pictures, step="camera", frames=400, **choices):
+    source = ScriptedSource(pictures, frames, pace_s=0.01, **{k: choices.pop(k) for k in ("switches",) if k in choices})
+    return record(monkeypatch, source, window, step, RIG, folder / step, **choices)
+
+
+def advance(pictures):
+    """A rule: the next picture comes when one was taken; stop after the last."""
+
+    def rule(event):
+        if isinstance(event, LiveTaken):
+            pictures.next()
+            if pictures.at >= len(pictures.pictures):
+                return Stop()
+        return None
+
+    return rule
+
+
+def test_views_that_add_something_are_taken_by_themselves(monkeypatch, tmp_path, plates):
+    pictures = OneAfterAnother(plates.views)
+    window = Window(advance(pictures))
+    ended = views_taken(monkeypatch, tmp_path, plates, window, pictures)
+    assert ended.recorded == 4
+    assert [taken.name for taken in window.all(LiveTaken)] == ["view00", "view01", "view02", "view03"]
+    assert all(taken.thumbnail.shape[1] <= 240 for taken in window.all(LiveTaken))
+    for index, view in enumerate(plates.views):
+        assert np.array_equal(read_picture(tmp_path / "camera" / f"view{index:02d}.png"), view)
+    seen = [detail for detail in window.details if detail.uv is not None]
+    assert seen[-1].uv.shape == (17 * 12, 2)
+    assert seen[-1].views >= 3
+    assert seen[-1].cells.any()
+    assert seen[0].missing == ("Record at least 10 views; there is none.",)
+
+
+def test_the_same_view_is_taken_once(monkeypatch, tmp_path, plates):
+    window = Window()
+    ended = views_taken(monkeypatch, tmp_path, plates, window, OneAfterAnother(plates.views[:1]), frames=120)
+    assert ended.recorded == 1
+    assert "Turn the board: this tilt is already there." in {detail.sentence for detail in window.details}
+
+
+def test_by_hand_a_view_is_taken_when_told_even_if_it_adds_nothing(monkeypatch, tmp_path, plates):
+    pressed = []
+
+    def hand(event):
+        sentence = event.detail.sentence if isinstance(event, LiveView) and event.detail is not None else ""
+        for wanted in ("Press Capture to take this view.", "Turn the board: this tilt is already there."):
+            if sentence == wanted and wanted not in pressed:
+                pressed.append(wanted)
+                return Capture()
+        return None
+
+    window = Window(hand, after(2, LiveTaken, Stop()))
+    pictures = OneAfterAnother(plates.views[:1])
+    ended = views_taken(monkeypatch, tmp_path, plates, window, pictures, frames=1000, auto=False)
+    assert ended.recorded == 2
+    assert len(pressed) == 2
+
+
+def test_auto_can_be_switched_off_and_on(monkeypatch, tmp_path, plates):
+    def hand(event):
+        sentence = event.detail.sentence if isinstance(event, LiveView) and event.detail is not None else ""
+        return Auto(True) if sentence.startswith("Press Capture") else None
+
+    window = Window(hand, answer_to(LiveStarted, Auto(False)), answer_to(LiveTaken, Stop()))
+    pictures = OneAfterAnother(plates.views[:1])
+    ended = views_taken(monkeypatch, tmp_path, plates, window, pictures, frames=1000)
+    assert ended.recorded == 1
+    assert any(not detail.auto for detail in window.details)
+
+
+def test_capture_without_a_target_says_why(monkeypatch, tmp_path, plates):
+    window = Window(after(3, LiveView, Capture()))
+    ended = views_taken(monkeypatch, tmp_path, plates, window, OneAfterAnother([plates.nothing]), frames=60)
+    assert ended.recorded == 0
+    assert "No checkerboard is seen in the picture." in window.all(LiveNotice)[-1].sentence
+
+
+def test_a_discarded_view_is_put_aside_and_may_be_taken_again(monkeypatch, tmp_path, plates):
+    window = Window(after(1, LiveTaken, Discard("view00")))
+    ended = views_taken(monkeypatch, tmp_path, plates, window, OneAfterAnother(plates.views[:1]), frames=150)
+    assert ended.recorded == 1
+    assert (tmp_path / "camera" / "discarded" / "view00.png").exists()
+    assert [path.name for path in (tmp_path / "camera").glob("*.png")] == ["view01.png"]
+
+
+def test_poses_are_taken_with_the_fan_on_and_off(monkeypatch, tmp_path, plates):
+    pictures = OneAfterAnother(plates.poses)
+    window = Window(advance(pictures))
+    ended = views_taken(monkeypatch, tmp_path, plates, window, pictures, "planes", camera=plates.camera)
+    assert ended.recorded == 3
+    assert sorted(path.name for path in (tmp_path / "planes").iterdir()) == [
+        f"pose0{i}{end}.png" for i in range(3) for end in ("", "_off")
+    ]
+    for index, (on, off) in enumerate(plates.poses):
+        assert np.array_equal(read_picture(tmp_path / "planes" / f"pose0{index}.png"), on)
+        assert np.array_equal(read_picture(tmp_path / "planes" / f"pose0{index}_off.png"), off)
+    seen = [detail for detail in window.details if detail.uv is not None and len(detail.stripes)]
+    assert seen[-1].line == (0, 1, 2)
+    assert len(seen[-1].stripes) == 3
+
+
+def test_a_pose_whose_target_moved_between_the_pictures_is_not_kept(monkeypatch, tmp_path, plates):
+    moved = [plates.poses[0][0], np.roll(plates.poses[0][1], 3, axis=1)]
+    window = Window()
+    ended = views_taken(
+        monkeypatch, tmp_path, plates, window, OneAfterAnother([moved]), "planes", frames=120, camera=plates.camera
+    )
+    assert ended.recorded == 0
+    assert any("moved by" in notice.sentence for notice in window.all(LiveNotice))
+
+
+def test_a_person_switches_the_fan_off_when_the_source_cannot(monkeypatch, tmp_path, plates):
+    lit = [True]
+
+    def hand(event):
+        if isinstance(event, LiveAsk):
+            lit[0] = False
+            return event.answer
+        return None
+
+    window = Window(hand, answer_to(LiveTaken, Stop()))
+    on, off = plates.poses[0]
+    ended = views_taken(
+        monkeypatch,
+        tmp_path,
+        plates,
+        window,
+        lambda lasers, number: on if lit[0] else off,
+        "planes",
+        switches=False,
+        camera=plates.camera,
+    )
+    assert ended.recorded == 1
+    assert window.all(LiveAsk)[0].button == "Continue"
+    assert len(window.all(LiveAnswered)) == 1
+    assert np.array_equal(read_picture(tmp_path / "planes" / "pose00_off.png"), off)
+
+
+def test_poses_can_be_taken_without_a_second_picture(monkeypatch, tmp_path, plates):
+    window = Window(answer_to(LiveTaken, Stop()))
+    ended = views_taken(
+        monkeypatch,
+        tmp_path,
+        plates,
+        window,
+        OneAfterAnother(plates.poses[:1]),
+        "planes",
+        camera=plates.camera,
+        pairs=False,
+    )
+    assert ended.recorded == 1
+    assert [path.name for path in (tmp_path / "planes").iterdir()] == ["pose00.png"]
+
+
+def test_a_plate_without_the_fan_s_light_is_not_taken(monkeypatch, tmp_path, plates):
+    window = Window()
+    off = plates.poses[0][1]
+    ended = views_taken(
+        monkeypatch, tmp_path, plates, window, OneAfterAnother([off]), "planes", frames=200, camera=plates.camera
+    )
+    assert ended.recorded == 0
+    assert any("is it on?" in detail.sentence for detail in window.details)
+
+
+def test_a_pose_that_was_refused_is_not_tried_over_and_over(monkeypatch, tmp_path, plates):
+    moved = [plates.poses[0][0], np.roll(plates.poses[0][1], 3, axis=1)]
+    window = Window()
+    source = ScriptedSource(OneAfterAnother([moved]), 200, pace_s=0.01)
+    record(monkeypatch, source, window, "planes", RIG, tmp_path / "planes", camera=plates.camera)
+    assert sum(call == Lasers(fan=False, hand=False) for call in source.calls) == 1
+    assert any("moved by" in detail.sentence for detail in window.details)
