@@ -1,0 +1,200 @@
+import errno
+import json
+import math
+import os
+from dataclasses import replace
+from datetime import UTC, datetime
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from core.calibrate.plane_pose import PoseFeatures
+from core.errors import InputError
+from core.files.calibration_store import (
+    history,
+    keep_camera,
+    keep_fan,
+    put_in_place,
+    read_stored_camera,
+    read_stored_fan,
+    read_stored_poses,
+)
+from core.files.camera_file import camera_id, read_camera, write_camera
+from core.files.fan_file import fan_id, read_fan, write_fan
+from core.files.options import Options
+from core.files.poses_file import read_poses
+from core.files.project import Accepted
+from core.image.target_view import TargetView
+from core.model import Camera, Fan, LightPlane
+
+POSES = (
+    PoseFeatures("p1", TargetView(np.eye(3), np.ones((3, 2)), np.ones(3), "p1"), ()),
+    PoseFeatures("p2", None, (), "there is no target"),
+)
+
+
+@pytest.fixture
+def other_camera(camera):
+    other = camera.camera
+    return replace(camera, camera=Camera(other.image_size, other.matrix * np.array([1.001, 1, 1]), other.distortion))
+
+
+@pytest.fixture
+def other_fan(fan):
+    return replace(fan, fan=Fan(tuple(LightPlane(plane.pi * 1.01) for plane in fan.fan.planes)), rms_mm=(1.0, 2.0, 3.0))
+
+
+def names_in(folder):
+    return sorted(path.name for path in folder.iterdir())
+
+
+def test_a_kept_camera_comes_back_by_its_id(tmp_path, camera):
+    kept = keep_camera(tmp_path, camera, Options())
+    assert kept == camera_id(camera.camera)
+    assert camera_id(read_stored_camera(tmp_path, kept).camera) == kept
+    write_camera(tmp_path / "camera.json", camera)
+    assert (tmp_path / "calibrations" / f"camera-{kept}.json").read_bytes() == (tmp_path / "camera.json").read_bytes()
+
+
+def test_a_kept_fan_comes_back_by_its_id_with_its_poses(tmp_path, camera, fan):
+    kept = keep_fan(tmp_path, fan, camera.camera, POSES)
+    assert kept == fan_id(fan.fan)
+    assert fan_id(read_stored_fan(tmp_path, kept, camera.camera).fan) == kept
+    back = read_stored_poses(tmp_path, kept)
+    assert [(pose.name, pose.reason) for pose in back] == [("p1", ""), ("p2", "there is no target")]
+    assert np.array_equal(back[0].view.points, np.eye(3))
+    write_fan(tmp_path / "planes.json", fan, camera.camera)
+    assert (tmp_path / "calibrations" / f"planes-{kept}.json").read_bytes() == (tmp_path / "planes.json").read_bytes()
+
+
+def test_the_history_tells_what_was_kept_the_newest_first(tmp_path, camera, other_camera, fan):
+    assert history(tmp_path) == ()
+    begun = datetime.now(UTC)
+    one = keep_camera(tmp_path, camera, Options())
+    lines = keep_fan(tmp_path, fan, camera.camera, POSES, {"constrained": "never"})
+    other = keep_camera(tmp_path, replace(other_camera, cross_validation_mm=0.02), Options(excluded={"camera/b.png"}))
+    newest, middle, oldest = history(tmp_path)
+    assert [(entry.kind, entry.id) for entry in (newest, middle, oldest)] == [
+        ("camera", other), ("fan", lines), ("camera", one),
+    ]  # fmt: skip
+    assert begun <= oldest.kept_at <= middle.kept_at <= newest.kept_at <= datetime.now(UTC)
+    assert (oldest.used, oldest.total, oldest.rms_px, oldest.rms_mm, oldest.camera_id) == (1, 2, 0.11, (), "")
+    assert math.isnan(oldest.expected_error_mm)
+    assert newest.expected_error_mm == 0.02
+    assert newest.settings["excluded"] == ["camera/b.png"]
+    assert "excluded" not in oldest.settings
+    assert (middle.used, middle.total, middle.rms_mm, middle.camera_id) == (1, 1, (0.01, 0.02, 0.03), one)
+    assert math.isnan(middle.rms_px)
+    assert middle.settings == {"constrained": "never"}
+
+
+def test_what_is_kept_again_becomes_the_newest(tmp_path, camera, other_camera):
+    one = keep_camera(tmp_path, camera, Options())
+    other = keep_camera(tmp_path, other_camera, Options())
+    assert one != other
+    assert keep_camera(tmp_path, camera, Options()) == one
+    assert [entry.id for entry in history(tmp_path)] == [one, other]
+
+
+def test_a_calibration_that_was_taken_away_is_not_in_the_history(tmp_path, camera):
+    kept = keep_camera(tmp_path, camera, Options())
+    (tmp_path / "calibrations" / f"camera-{kept}.json").unlink()
+    assert history(tmp_path) == ()
+    with pytest.raises(InputError, match=f"the calibration {kept} is not in the project; calibrate again"):
+        read_stored_camera(tmp_path, kept)
+    with pytest.raises(InputError, match="the calibration nothing is not in the project"):
+        read_stored_fan(tmp_path, "nothing", camera.camera)
+    with pytest.raises(InputError, match="the calibration nothing is not in the project"):
+        read_stored_poses(tmp_path, "nothing")
+
+
+def test_a_calibration_half_kept_is_none(tmp_path, camera, monkeypatch):
+    before = Path.replace
+
+    def full(path, target):
+        if target.name.endswith(".kept.json"):
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        return before(path, target)
+
+    monkeypatch.setattr(Path, "replace", full)
+    with pytest.raises(InputError, match="the disk is full"):
+        keep_camera(tmp_path, camera, Options())
+    assert history(tmp_path) == ()
+
+
+def test_a_damaged_entry_is_named(tmp_path, camera):
+    kept = keep_camera(tmp_path, camera, Options())
+    about = tmp_path / "calibrations" / f"camera-{kept}.kept.json"
+    tables = json.loads(about.read_text())
+    about.write_text(json.dumps({**tables, "kept_at": "long ago"}))
+    with pytest.raises(InputError, match=r'kept\.json: kept_at is "long ago", not a date and time'):
+        history(tmp_path)
+    about.write_text("{")
+    with pytest.raises(InputError, match=r"kept\.json: this is no valid JSON"):
+        history(tmp_path)
+
+
+def test_a_calibration_changed_by_hand_is_refused(tmp_path, camera, fan):
+    kept, lines = keep_camera(tmp_path, camera, Options()), keep_fan(tmp_path, fan, camera.camera, POSES)
+    for name, key in ((f"camera-{kept}.json", "matrix"), (f"planes-{lines}.json", "planes")):
+        path = tmp_path / "calibrations" / name
+        tables = json.loads(path.read_text())
+        if key == "matrix":
+            tables["matrix"][0][0] += 1
+        else:
+            tables["planes"] = tables["planes"][::-1]
+        path.write_text(json.dumps(tables))
+    with pytest.raises(InputError, match="the file holds the calibration"):
+        read_stored_camera(tmp_path, kept)
+    with pytest.raises(InputError, match="the file holds the calibration"):
+        read_stored_fan(tmp_path, lines, camera.camera)
+
+
+def test_the_accepted_ones_are_put_in_place_byte_by_byte(tmp_path, camera, other_camera, fan, other_fan):
+    results = tmp_path / "results"
+    one = Accepted(keep_camera(tmp_path, camera, Options()), keep_fan(tmp_path, fan, camera.camera, POSES))
+    other = Accepted(
+        keep_camera(tmp_path, other_camera, Options()), keep_fan(tmp_path, other_fan, other_camera.camera, POSES[:1])
+    )
+    for accepted, calibration, lines in ((one, camera, fan), (other, other_camera, other_fan), (one, camera, fan)):
+        put_in_place(tmp_path, accepted, results)
+        assert names_in(results) == ["camera.json", "planes.json", "planes.npz"]
+        found = read_camera(results / "camera.json").camera
+        assert camera_id(found) == camera_id(calibration.camera)
+        assert read_fan(results / "planes.json", found).rms_mm == lines.rms_mm
+        assert len(read_poses(results / "planes.npz", accepted.fan)) == (2 if accepted is one else 1)
+    stored = tmp_path / "calibrations"
+    assert (results / "camera.json").read_bytes() == (stored / f"camera-{one.camera}.json").read_bytes()
+    assert (results / "planes.json").read_bytes() == (stored / f"planes-{one.fan}.json").read_bytes()
+    assert (results / "planes.npz").read_bytes() == (stored / f"planes-{one.fan}.npz").read_bytes()
+
+
+def test_what_is_in_place_already_is_left_alone(tmp_path, camera, fan):
+    accepted = Accepted(keep_camera(tmp_path, camera, Options()), keep_fan(tmp_path, fan, camera.camera, POSES))
+    put_in_place(tmp_path, accepted, tmp_path / "results")
+    before = {path: path.stat().st_ino for path in (tmp_path / "results").iterdir()}
+    put_in_place(tmp_path, accepted, tmp_path / "results")
+    assert {path: path.stat().st_ino for path in (tmp_path / "results").iterdir()} == before
+    (tmp_path / "results" / "planes.json").write_text("{}")
+    put_in_place(tmp_path, accepted, tmp_path / "results")
+    changed = {path.name for path in (tmp_path / "results").iterdir() if path.stat().st_ino != before[path]}
+    assert changed == {"planes.json"}
+
+
+def test_nothing_is_put_in_place_unless_both_are_accepted_and_belong_together(
+    tmp_path, camera, other_camera, fan, other_fan
+):
+    one = keep_camera(tmp_path, camera, Options())
+    other = keep_camera(tmp_path, other_camera, Options())
+    lines = keep_fan(tmp_path, fan, camera.camera, POSES)
+    results = tmp_path / "results"
+    for accepted, said in (
+        (Accepted("", lines), "no calibration of the camera is accepted yet"),
+        (Accepted(one, ""), "no calibration of the laser planes is accepted yet"),
+        (Accepted(other, lines), "the camera was calibrated again"),
+        (Accepted(one, fan_id(other_fan.fan)), "is not in the project"),
+    ):
+        with pytest.raises(InputError, match=said):
+            put_in_place(tmp_path, accepted, results)
+    assert not results.exists()

@@ -1,0 +1,48 @@
+import pytest
+
+from core.calibrate.camera import CameraOptions
+from core.errors import InputError
+from core.files.options import METHODS, Options
+from core.pipeline.options import Options as OptionsOfThePipeline
+
+
+def test_the_pipeline_and_the_project_have_the_same_options():
+    assert OptionsOfThePipeline is Options
+
+
+def test_usual_options_say_in_run_json_what_they_always_said():
+    assert Options().camera_settings == {"skew": True, "k3": False, "fixed": [], "outliers": "gross"}
+    assert Options().scan_settings == {"method": "network", "sigma_cut_mm": 0.05, "stripe": "automatic"}
+    assert Options().excluded_settings("planes") == {}
+
+
+def test_what_is_left_out_is_recorded_with_its_own_step():
+    names = {"scan/b.png", "scan/a.png", "camera/v.png", "planes/p"}
+    options = Options(camera=CameraOptions(k3=True), excluded=frozenset(names))
+    assert options.camera_settings["excluded"] == ("camera/v.png",)
+    assert options.scan_settings["excluded"] == ("scan/a.png", "scan/b.png")
+    assert options.excluded_settings("planes") == {"excluded": ("planes/p",)}
+
+
+def test_options_can_be_compared():
+    assert Options() == Options(excluded=frozenset())
+    assert hash(Options()) == hash(Options())
+    assert len({Options(), Options(constrain_fan=False), Options(excluded=frozenset({"camera/a"}))}) == 3
+
+
+def test_absurd_options_are_refused():
+    assert METHODS == ("network", "three-crossings")
+    with pytest.raises(InputError, match="method: 'magic' is not network or three-crossings"):
+        Options("magic")
+    with pytest.raises(InputError, match="sigma-cut: 11 is not above 0 and at most 10 mm"):
+        Options(sigma_cut_mm=11)
+
+
+def test_a_project_loads_without_compilers_and_windows():
+    """A window opens at once only if what it needs at first is light."""
+    import subprocess
+    import sys
+
+    program = "import sys, core.files.project; print(*{'numba', 'PySide6', 'matplotlib'} & set(sys.modules))"
+    said = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert said.stdout.split() == []
