@@ -63,6 +63,10 @@ class StoredCalibration:
         The camera a fan rests on.
     settings
         What the calibration was told, as in run.json.
+    inputs
+        SHA-256 in hex of the pictures it was made from, by their names within the set.
+    notes
+        Sentences on single pictures that the calibration itself does not hold.
     """
 
     kind: Kind
@@ -75,6 +79,8 @@ class StoredCalibration:
     rms_mm: tuple[float, ...] = ()
     camera_id: str = ""
     settings: Mapping[str, Any] = field(default_factory=dict, hash=False)
+    inputs: Mapping[str, str] = field(default_factory=dict, hash=False)
+    notes: tuple[str, ...] = ()
 
 
 class _KeptFile(ResultFile):
@@ -88,10 +94,16 @@ class _KeptFile(ResultFile):
     rms_mm: list[Finite | None] = Field(default_factory=list, description="a list of lengths in mm")
     camera_id: str = ""
     settings: dict[str, Any] = Field(default_factory=dict)
+    inputs: dict[str, str] = Field(default_factory=dict)
+    notes: list[str] = Field(default_factory=list)
 
 
-def keep_camera(project_folder: Path, calibration: CameraCalibration, options: Options) -> str:
+def keep_camera(
+    project_folder: Path, calibration: CameraCalibration, options: Options, inputs: Mapping[str, str] | None = None
+) -> str:
     """Put a camera's calibration into the history; one that is there already becomes the newest. Returns its id.
+
+    `inputs` are the hashes of the pictures it was made from.
 
     Raises
     ------
@@ -106,6 +118,7 @@ def keep_camera(project_folder: Path, calibration: CameraCalibration, options: O
         "rms_px": calibration.rms_px,
         "expected_error_mm": calibration.cross_validation_mm,
         "settings": options.camera_settings,
+        "inputs": inputs or {},
     }
     _write_about(folder, "camera", id_, about)
     return id_
@@ -117,6 +130,7 @@ def keep_fan(
     camera: Camera,
     poses: Sequence[PoseFeatures],
     settings: Mapping[str, Any] | None = None,
+    inputs: Mapping[str, str] | None = None,
 ) -> str:
     """Put a fan's calibration into the history, with what its poses showed, and the camera it rests on.
 
@@ -137,6 +151,8 @@ def keep_fan(
         "rms_mm": calibration.rms_mm,
         "camera_id": camera_id(camera),
         "settings": settings or {},
+        "inputs": inputs or {},
+        "notes": [note for pose in poses for note in pose.notes],
     }
     _write_about(folder, "fan", id_, about)
     return id_
@@ -154,6 +170,12 @@ def history(project_folder: Path) -> tuple[StoredCalibration, ...]:
     entries = [_read_about(path) for path in sorted(folder.glob(f"*{_KEPT}"))] if folder.is_dir() else []
     there = [entry for entry in entries if _path(folder, entry.kind, entry.id).exists()]
     return tuple(sorted(there, key=lambda entry: entry.kept_at, reverse=True))
+
+
+def read_stored(project_folder: Path, kind: Kind, id_: str) -> StoredCalibration | None:
+    """One calibration of the history in short; None if nothing is known of it, InputError if that is damaged."""
+    path = _path(project_folder / FOLDER, kind, id_).with_suffix(_KEPT)
+    return _read_about(path) if path.exists() else None
 
 
 def read_stored_camera(project_folder: Path, id_: str) -> CameraCalibration:
@@ -245,6 +267,8 @@ def _read_about(path: Path) -> StoredCalibration:
         rms_mm=tuple(number(rms) for rms in file.rms_mm),
         camera_id=file.camera_id,
         settings=file.settings,
+        inputs=file.inputs,
+        notes=tuple(file.notes),
     )
 
 

@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from core.calibrate.fan import FanOptions, fit_fan, same_model
+from core.errors import InputError
 from core.files.fan_file import fan_id
 from core.files.gauge_file import read_gauge, write_gauge
 from core.files.ply import read_cloud
@@ -68,6 +69,17 @@ def gauge_step(work: Workspace, progress: Progress = silent) -> GaugeResult:
         work.clear(("gauge", "faces"))  # two files: better none than one of each measurement
         write_gauge(work.path("gauge"), gauge, calibration.id)
     return read_gauge(work.path("gauge"), cloud)
+
+
+def gauge_if_possible(work: Workspace, progress: Progress = silent) -> tuple[GaugeResult | None, str]:
+    """As `gauge_step`, but a part without two parallel faces is no error: then a sentence says why."""
+    try:
+        return gauge_step(work, progress), ""
+    except InputError as error:
+        sentence = f"No thickness was measured: {error}"
+        with work.step("gauge") as log:
+            log.notes.append(sentence)
+        return None, sentence
 
 
 def _regions(spec: GaugeSpec) -> tuple[Array, Array] | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import numpy as np
@@ -35,8 +35,10 @@ METHOD_IN_WORDS = {
 _SAME_POINT_PX = 0.01
 
 
-def report_step(work: Workspace, progress: Progress = silent) -> Path:
-    """Put the results in the folder into report.pdf.
+def report_step(
+    work: Workspace, progress: Progress = silent, said: Callable[[ReportContent], ReportContent] | None = None
+) -> Path:
+    """Put the results in the folder into report.pdf; `said` adds what people say to what was measured.
 
     Raises
     ------
@@ -44,6 +46,7 @@ def report_step(work: Workspace, progress: Progress = silent) -> Path:
         If a result is missing, damaged, or was measured with another calibration.
     """
     with work.step("report", measures=False):
+        progress("report", 0, 1)
         calibration = work.calibration()
         cloud_file = read_cloud(work.path("cloud"))
         check_calibration(work.path("cloud"), cloud_file.calibration_id, calibration)
@@ -68,6 +71,7 @@ def report_step(work: Workspace, progress: Progress = silent) -> Path:
             version=__version__,
             timestamp=record.measured_at,
         )
+        content = said(content) if said else content
         write_bytes(work.path("report"), build_report(content, progress))
     return work.path("report")
 

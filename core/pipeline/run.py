@@ -6,11 +6,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from core.calibrate.results import CameraCalibration, FanCalibration
-from core.errors import InputError
 from core.files.recording_set import open_set, require_camera, require_planes, require_scan
 from core.inspect.results import GaugeResult
 from core.pipeline.camera_step import camera_step
-from core.pipeline.gauge_step import gauge_step
+from core.pipeline.gauge_step import gauge_if_possible, gauge_step
 from core.pipeline.options import Options
 from core.pipeline.planes_step import planes_step
 from core.pipeline.report_step import report_step
@@ -67,7 +66,9 @@ def run(set_folder: Path, out_folder: Path, options: Options | None = None, prog
     camera = camera_step(work, options, progress)
     fan = planes_step(work, options, progress)
     measured = scan_step(work, options, progress)
-    gauge = _gauge(work, progress)
+    # a part without two parallel faces is no error when rig.toml does not ask for a thickness
+    asked = found.rig.gauge is not None
+    gauge = gauge_step(work, progress) if asked else gauge_if_possible(work, progress)[0]
     report_step(work, progress)
     return RunResult(
         camera=camera,
@@ -79,15 +80,3 @@ def run(set_folder: Path, out_folder: Path, options: Options | None = None, prog
         notes=work.record().all_notes,
         files=work.written(),
     )
-
-
-def _gauge(work: Workspace, progress: Progress) -> GaugeResult | None:
-    """The thickness; a part without two parallel faces is no error when rig.toml does not ask for a thickness."""
-    if work.found.rig.gauge is not None:
-        return gauge_step(work, progress)
-    try:
-        return gauge_step(work, progress)
-    except InputError as error:
-        with work.step("gauge") as log:
-            log.notes.append(f"No thickness was measured: {error}")
-        return None

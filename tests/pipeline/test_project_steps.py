@@ -278,9 +278,8 @@ def test_a_fan_need_not_be_a_pencil(done, tmp_path):
 def test_killed_in_the_middle_of_replacing_leaves_no_mixture(done, tmp_path, monkeypatch):
     folder = copy_of(done.folder, tmp_path / "project")
     old = contents(results_folder(folder))
-    new = contents(results_folder(copy_of(done.folder, tmp_path / "other")))
     project = done.with_options(excluded=frozenset({"scan/frame0000.png"}))
-    measure_scan(tmp_path / "other", project)
+    measure_scan(copy_of(done.folder, tmp_path / "other"), project)
     new = contents(results_folder(tmp_path / "other"))
     monkeypatch.setattr(shutil, "rmtree", lambda *_, **__: None)
     real, moves = type(folder).replace, []
