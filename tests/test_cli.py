@@ -134,6 +134,35 @@ def test_a_scan_without_reference_makes_one_of_its_frames(simulated, measured, t
     assert "There is no scan/reference.png" in said.out
 
 
+def first_name(folder, part):
+    return f"{part}/{min(path.name for path in (folder / part).iterdir() if path.stem != 'reference')}"
+
+
+def test_pictures_are_left_out_by_name(simulated, measured, tmp_path):
+    out = copy_of(measured, tmp_path / "out")
+    view, frame = first_name(simulated, "camera"), first_name(simulated, "scan")
+    pose = first_name(simulated, "planes").partition(".")[0].removesuffix("_off")
+    for step, name in (("camera", view), ("planes", pose), ("scan", frame)):
+        said = trisect(step, simulated, "--out", out, "--exclude", name, *(CUT if step == "scan" else ()))
+        assert said.code == 0, said.err
+        assert json.loads((out / "run.json").read_text())["settings"][step]["excluded"] == [name]
+    run, reason = json.loads((out / "run.json").read_text()), "left out by hand"
+    views, poses = (json.loads((out / name).read_text()) for name in ("camera.json", "planes.json"))
+    for name, rows in ((view, views["views"]), (pose.partition("/")[2], poses["poses"]), (frame, run["frames"])):
+        found = {row["name"]: (row["used"], row["reason"]) for row in rows}
+        assert found[name] == (False, reason)
+        assert [row for row in found.values() if row[1] == reason] == [(False, reason)]
+
+
+def test_a_picture_that_is_not_there_cannot_be_left_out_and_no_result_is_touched(simulated, measured, tmp_path):
+    out = copy_of(measured, tmp_path / "out")
+    view = first_name(simulated, "camera")
+    said = trisect("run", simulated, "--out", out, "--exclude", view, "--exclude", view.replace("camera", "camra"))
+    assert said.code == 2
+    assert f"the nearest is {view}" in said.sentence
+    assert digests(out) == digests(measured)
+
+
 def test_a_table_for_people_and_no_progress_in_a_pipe(simulated, measured, tmp_path):
     said = trisect("camera", simulated, "--out", copy_of(measured, tmp_path / "out"))
     assert said.code == 0
