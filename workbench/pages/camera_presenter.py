@@ -1,11 +1,373 @@
-"""Decisions of the camera page."""
+"""Decisions of the camera page: pictures, target, which views count, accept or reject."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
+from enum import StrEnum
+from pathlib import Path
+from typing import Any
+
+from PySide6.QtCore import Signal
+
+from core.calibrate.results import LEFT_OUT, ViewQuality
+from core.files.camera_file import camera_id
+from core.files.project import Project
+from core.files.project_keys import finished
+from core.live.events import LiveEnded, LiveTaken
+from core.model import Camera, Fan
+from core.model.arrays import Array
+from workbench import jobs
+from workbench.bench import Bench
+from workbench.pages.camera_history import CameraHistory
+from workbench.pages.camera_work import CameraWork
+from workbench.pages.live_presenter import LivePresenter
 from workbench.pages.presenter import StepPresenter
+from workbench.pages.sources import folder_of, put_source
+from workbench.pages.target_values import changed_target, values_of
+from workbench.step_state import State
+
+PART = "camera/"
+
+
+class Stage(StrEnum):
+    """How far the camera's calibration is."""
+
+    NONE = "none"
+    EMPTY = "empty"
+    FOUND = "found"
+    LIVE = "live"
+    SEARCHING = "searching"
+    SOLVING = "solving"
+    FAILED = "failed"
+    SOLVED = "solved"
+    REJECTED = "rejected"
+    ACCEPTED = "accepted"
+    OUTDATED = "outdated"
 
 
 class CameraPresenter(StepPresenter):
-    """Decisions of the camera page."""
+    """The camera: its pictures found, solved and judged; what is accepted."""
 
     step = "camera"
+
+    picture_ready = Signal(str, object)
+    """Name of a view and its picture."""
+
+    target_refused = Signal(str, str)
+    """Field of the target and why it cannot be so."""
+
+    def __init__(self, bench: Bench) -> None:
+        super().__init__(bench)
+        self.live = LivePresenter(bench, "camera", self)
+        self.work = CameraWork(bench, self)
+        self.history = CameraHistory(bench, self)
+        self.current = ""
+        self.threshold: float | None = None
+        self._rejected: set[str] = set()
+        self._accepting = False
+        self._read = ""
+        self.live.calibration = self._known_camera
+        self.live_views: list[tuple[str, Any]] = []
+        self.live.changed.connect(self.changed)
+        self.live.started.connect(lambda _: self.live_views.clear())
+        self.live.taken.connect(self._live_taken)
+        self.live.ended.connect(self._live_ended)
+        self.work.changed.connect(self._work_changed)
+        self.history.changed.connect(self.changed)
+
+    # ---- state
+
+    @property
+    def stage(self) -> Stage:
+        """How far the calibration is."""
+        work, accepted = self.work, self.project.accepted.camera
+        if self.live.running:
+            return Stage.LIVE
+        if work.searching:
+            return Stage.SEARCHING
+        if work.seen is not None and work.solving:
+            return Stage.SOLVING
+        if accepted and self.candidate in ("", accepted):
+            if self.candidate == accepted or self.state.state is State.DONE:
+                return Stage.ACCEPTED
+            return Stage.OUTDATED
+        if self.candidate:
+            return Stage.REJECTED if self.candidate in self._rejected else Stage.SOLVED
+        if work.problem:
+            return Stage.FAILED
+        if not self.project.sources.camera:
+            return Stage.NONE
+        return Stage.EMPTY if work.pictures == () else Stage.FOUND
+
+    @property
+    def candidate(self) -> str:
+        """The id of the calibration that is shown, or ""."""
+        calibration = self.work.calibration
+        return camera_id(calibration.camera) if calibration is not None else ""
+
+    def blocker(self) -> str:
+        return {
+            Stage.NONE: self.tr("Record or choose pictures of the camera's target first."),
+            Stage.EMPTY: self.tr("Choose a folder that holds pictures of the camera's target."),
+            Stage.FOUND: self.tr("Calibrate the camera from its pictures first."),
+            Stage.LIVE: self.tr("Stop the live source when there are enough views."),
+            Stage.SEARCHING: self.tr("The pictures are being searched for the target."),
+            Stage.SOLVING: self.tr("The camera is being solved."),
+            Stage.FAILED: self.tr("The camera could not be calibrated; record more views or check the target."),
+            Stage.SOLVED: self.tr("Accept a camera calibration first."),
+            Stage.REJECTED: self.tr("The calibration was rejected; accept a better one first."),
+            Stage.ACCEPTED: "",
+            Stage.OUTDATED: self.tr("The accepted camera calibration is out of date; calibrate again."),
+        }[self.stage]
+
+    def busy(self) -> str:
+        return self.live.busy()
+
+    @property
+    def can_search(self) -> str:
+        """Why the target cannot be looked for now, or ""."""
+        if not self.project.sources.camera:
+            return self.tr("Choose or record pictures first.")
+        if self.live.running:
+            return self.tr("Stop the live source first.")
+        if self.work.searching:
+            return self.tr("The pictures are being searched.")
+        return ""
+
+    @property
+    def can_accept(self) -> str:
+        """Why nothing can be accepted now, or ""."""
+        if self.work.calibration is None or self.work.solving or self._accepting:
+            return self.tr("There is no calibration yet.")
+        if self.candidate == self.project.accepted.camera:
+            return self.tr("This calibration is accepted already.")
+        return ""
+
+    @property
+    def can_reject(self) -> str:
+        """Why nothing can be rejected now, or ""."""
+        if not self.candidate or self.work.solving:
+            return self.tr("There is no calibration yet.")
+        if self.candidate in self._rejected and self.candidate != self.project.accepted.camera:
+            return self.tr("This calibration is rejected already.")
+        return ""
+
+    # ---- pictures and target
+
+    @property
+    def folder(self) -> Path | None:
+        """The folder of the pictures."""
+        return folder_of(self.model, "camera")
+
+    def use_folder(self, folder: Path) -> None:
+        """Take the pictures of a folder, and look for the target in them."""
+        self.live.stop()
+        put_source(self.model, "camera", folder, self.tr("choose the camera's pictures"))
+        self.work.search()
+
+    def target_values(self) -> dict[str, Any]:
+        """The target as the fields of a form."""
+        return values_of(self.project.rig.camera_target)
+
+    def set_target(self, field: str, value: Any) -> None:
+        """Change the target; undoable. What cannot be is refused with a sentence."""
+        rig = self.project.rig
+        try:
+            target = changed_target(rig.camera_target, field, value)
+        except ValueError as error:
+            self.target_refused.emit(field, str(error))
+            return
+        self.target_refused.emit(field, "")
+        after = replace(self.project, rig=replace(rig, camera_target=target))
+        self.model.edit(self.tr("change the camera's target"), after, f"camera target {field}")
+
+    def print_target(self, path: Path, paper: str) -> None:
+        """Write the target to scale as a PDF."""
+        self.bench.glance(
+            jobs.TARGET_SHEET,
+            path,
+            self.project.rig.camera_target,
+            paper,
+            self.project.info.name,
+            label=self.tr("Drawing the target"),
+            on_done=lambda done: self.bench.notices.info(
+                self.tr("The target was written to {0}. Print it at 100 % and measure its rulers.").format(done)
+            ),
+        )
+
+    # ---- views
+
+    def views(self) -> tuple[ViewQuality, ...]:
+        """The views as the calibration shown judges them."""
+        return self.work.calibration.views if self.work.calibration is not None else ()
+
+    def set_used(self, names: Sequence[str], used: bool) -> None:
+        """Let views count, or leave them out; undoable. While they are taken live, put them aside."""
+        if self.live.running:
+            if not used:
+                self._put_aside(names)
+            return
+        excluded = self.project.options.excluded
+        after = excluded - set(names) if used else excluded | set(names)
+        what = short(names[0]) if len(names) == 1 else self.tr("{0} views").format(len(names))
+        label = self.tr("let {0} count") if used else self.tr("leave out {0}")
+        self._exclude(after, label.format(what))
+
+    def set_threshold(self, limit: float) -> None:
+        """Leave out the views above a limit in px, and let those count that only the last limit left out."""
+        before, self.threshold = self.threshold, limit
+        judged = {view.view.name: view.rms_px for view in self.views() if view.used or view.reason == LEFT_OUT}
+        above = {name for name, rms in judged.items() if rms > limit}
+        freed = {name for name, rms in judged.items() if before is not None and before < rms <= limit}
+        excluded = (self.project.options.excluded | above) - freed
+        self._exclude(excluded, self.tr("leave out views above {0} px").format(f"{limit:.2f}"), "camera threshold")
+        self.changed.emit()
+
+    def choose_view(self, name: str) -> None:
+        """Show this view."""
+        if name != self.current:
+            self.current = name
+            self._read_picture()
+            self.changed.emit()
+
+    def quality_of(self, name: str) -> ViewQuality | None:
+        """A view as the calibration shown judges it."""
+        return next((view for view in self.views() if view.view.name == name), None)
+
+    def corners_of(self, name: str) -> Array | None:
+        """Where the target's corners (N, 2) were found in a view; None if they were not, or nobody has looked."""
+        if self.work.seen is None:
+            return None
+        return next((view.uv for view in self.work.seen.found if view.name == name), None)
+
+    def read_again(self) -> None:
+        """The picture of the current view is wanted again."""
+        self._read = ""
+        self._read_picture()
+
+    # ---- accept and reject
+
+    def accept(self) -> None:
+        """Measure with the calibration that is shown, from now on; undoable."""
+        folder, calibration, project = self.model.folder, self.work.calibration, self.project
+        if folder is None or calibration is None or self.can_accept:
+            return
+        self._accepting = True
+
+        def kept(id_: str) -> None:
+            self._accepting = False
+            if folder != self.model.folder:
+                return
+            now = self.project
+            after = replace(now, accepted=replace(now.accepted, camera=id_))
+            self.model.edit(self.tr("accept the camera calibration"), after)
+            self._rejected.discard(id_)
+            made_from = replace(project, accepted=after.accepted)
+            self.model.record("camera", finished("camera", made_from, self.model.results))
+            self.history.refresh()
+
+        def failed(_: Any) -> None:
+            self._accepting = False
+            self.changed.emit()
+
+        self.bench.glance(
+            jobs.ACCEPT_CAMERA,
+            folder,
+            project,
+            calibration,
+            label=self.tr("Keeping the calibration"),
+            on_done=kept,
+            on_failed=failed,
+        )
+
+    def reject(self) -> None:
+        """Do not measure with the calibration that is shown; undoable where it was accepted."""
+        if self.can_reject:
+            return
+        self._rejected.add(self.candidate)
+        if self.candidate == self.project.accepted.camera:
+            after = replace(self.project, accepted=replace(self.project.accepted, camera=""))
+            self.model.edit(self.tr("reject the camera calibration"), after)
+        self.changed.emit()
+
+    # ---- keys
+
+    def do_run(self) -> None:
+        if not self.can_search:
+            self.work.search()
+
+    def do_accept(self) -> None:
+        self.accept()
+
+    def do_live(self) -> None:
+        self.live.toggle()
+
+    def do_capture(self) -> None:
+        self.live.capture()
+
+    # ---- what happens elsewhere
+
+    def opened(self) -> None:
+        self.current, self.threshold, self._read = "", None, ""
+        self._rejected.clear()
+        self.work.opened()
+        self.history.forget()
+        self.history.refresh()
+
+    def project_changed(self, before: Project, after: Project) -> None:
+        if before.sources.camera != after.sources.camera:
+            self.current, self.threshold, self._read = "", None, ""
+        self.work.follow()
+
+    def stop(self) -> None:
+        self.live.finish()
+
+    def _exclude(self, excluded: frozenset[str], label: str, merge_key: str = "") -> None:
+        options = replace(self.project.options, excluded=frozenset(excluded))
+        self.model.edit(label, replace(self.project, options=options), merge_key)
+
+    def _known_camera(self) -> tuple[Camera | None, Fan | None]:
+        calibration = self.work.calibration
+        return (calibration.camera if calibration is not None else None), None
+
+    def _live_taken(self, taken: LiveTaken) -> None:
+        self.live_views.append((f"{PART}{taken.name}", taken.thumbnail))
+
+    def _put_aside(self, names: Sequence[str]) -> None:
+        for name in names:
+            self.live.discard(short(name))
+        self.live_views = [view for view in self.live_views if view[0] not in names]
+        self.changed.emit()
+
+    def _live_ended(self, ended: LiveEnded) -> None:
+        if ended.recorded and self.folder == ended.folder:
+            self.work.search()
+
+    def _work_changed(self) -> None:
+        self.history.shown_is(self.work.calibration)
+        names = [f"{PART}{path.name}" for path in self.work.pictures or ()]
+        if self.current not in names:
+            self.current = names[0] if names else ""
+        self._read_picture()
+        self.changed.emit()
+
+    def _read_picture(self) -> None:
+        name, folder = self.current, self.folder
+        if not name or folder is None or self._read == name:
+            return
+        self._read = name
+        self.bench.glance(
+            jobs.READ_PICTURE,
+            folder / short(name),
+            self.project.rig.channel,
+            label=self.tr("Reading a picture"),
+            on_done=lambda picture: self.picture_ready.emit(name, picture) if name == self.current else None,
+            offers={},
+            replace_waiting=True,
+        )
+
+
+def short(name: str) -> str:
+    """The name of a picture within its folder."""
+    return name.removeprefix(PART)

@@ -11,6 +11,9 @@ from core.image.targets.usual import USUAL, USUAL_MARKER
 DICTIONARIES = tuple(f"DICT_{side}X{side}_{count}" for side in (4, 5, 6, 7) for count in (50, 100, 250, 1000))
 """Markers a ChArUco board may have, by OpenCV's names."""
 
+PAPERS = ("A4", "A3", "A2", "Letter", "Tabloid")
+"""What a target can be printed on (core.report.target_sheet.PAPER_MM)."""
+
 
 def values_of(target: Target) -> dict[str, Any]:
     """The fields of a target; what it does not have is not among them."""
