@@ -36,12 +36,13 @@ from core.pipeline.camera_step import see_views, solve_camera
 from core.pipeline.gauge_step import gauge_if_possible, gauge_step
 from core.pipeline.planes_step import measure_poses, planes_settings, solve_planes
 from core.pipeline.project_results import load_results
-from core.pipeline.report_step import report_step
+from core.pipeline.report_step import report_content, report_step
 from core.pipeline.scan_step import scan_step
 from core.pipeline.staging import staged
 from core.pipeline.workspace import FILES, Workspace
 from core.progress import Progress, silent
 from core.report.content import SECTIONS, RepeatLine, ReportContent
+from core.report.pdf import build_report
 from core.scan.frame_preview import FramePreview
 
 __all__ = [
@@ -56,6 +57,7 @@ __all__ = [
     "measure_gauge",
     "measure_scan",
     "project_set",
+    "report_bytes",
     "results_folder",
     "solve_poses",
     "solve_views",
@@ -229,6 +231,12 @@ def make_report(folder: Path, project: Project, progress: Progress = silent) -> 
         If there is no scan among the results.
     """
     return report_step(_work(folder, project), progress, lambda content: _with_words(content, project))
+
+
+def report_bytes(folder: Path, project: Project, progress: Progress = silent) -> bytes:
+    """The report as `make_report` would write it, as the bytes of a PDF; nothing is written."""
+    content = report_content(_work(folder, project), progress, lambda content: _with_words(content, project))
+    return build_report(content, progress)
 
 
 def _part(project: Project) -> str:

@@ -34,10 +34,11 @@ METHOD_IN_WORDS = {
 }
 _SAME_POINT_PX = 0.01
 
+Said = Callable[[ReportContent], ReportContent]
+"""Adds what people say to what was measured."""
 
-def report_step(
-    work: Workspace, progress: Progress = silent, said: Callable[[ReportContent], ReportContent] | None = None
-) -> Path:
+
+def report_step(work: Workspace, progress: Progress = silent, said: Said | None = None) -> Path:
     """Put the results in the folder into report.pdf; `said` adds what people say to what was measured.
 
     Raises
@@ -46,34 +47,38 @@ def report_step(
         If a result is missing, damaged, or was measured with another calibration.
     """
     with work.step("report", measures=False):
-        progress("report", 0, 1)
-        calibration = work.calibration()
-        cloud_file = read_cloud(work.path("cloud"))
-        check_calibration(work.path("cloud"), cloud_file.calibration_id, calibration)
-        scan = read_scan(work.path("scan"))
-        check_calibration(work.path("scan"), scan.calibration_id, calibration)
-        record = work.record()
-        gauge = read_gauge(work.path("gauge"), cloud_file.cloud) if work.path("gauge").exists() else None
-        content = ReportContent(
-            part=work.part or record.part,
-            rig=_rig_in_words(work.found.rig, calibration.camera.camera.image_size),
-            camera=calibration.camera,
-            fan=calibration.fan,
-            cloud=cloud_file.cloud,
-            mesh=read_mesh(work.path("mesh")),
-            gauge=gauge,
-            overlay=_overlay(work.found, scan, cloud_file.cloud),
-            frames=record.frames,
-            hashes=record.inputs,
-            settings=_settings_in_words(record),
-            notes=record.all_notes,
-            method=METHOD_IN_WORDS.get(str(record.settings.get("scan", {}).get("method")), ""),
-            version=__version__,
-            timestamp=record.measured_at,
-        )
-        content = said(content) if said else content
-        write_bytes(work.path("report"), build_report(content, progress))
+        write_bytes(work.path("report"), build_report(report_content(work, progress, said), progress))
     return work.path("report")
+
+
+def report_content(work: Workspace, progress: Progress = silent, said: Said | None = None) -> ReportContent:
+    """What the report says; InputError as `report_step`."""
+    progress("report", 0, 1)
+    calibration = work.calibration()
+    cloud_file = read_cloud(work.path("cloud"))
+    check_calibration(work.path("cloud"), cloud_file.calibration_id, calibration)
+    scan = read_scan(work.path("scan"))
+    check_calibration(work.path("scan"), scan.calibration_id, calibration)
+    record = work.record()
+    gauge = read_gauge(work.path("gauge"), cloud_file.cloud) if work.path("gauge").exists() else None
+    content = ReportContent(
+        part=work.part or record.part,
+        rig=_rig_in_words(work.found.rig, calibration.camera.camera.image_size),
+        camera=calibration.camera,
+        fan=calibration.fan,
+        cloud=cloud_file.cloud,
+        mesh=read_mesh(work.path("mesh")),
+        gauge=gauge,
+        overlay=_overlay(work.found, scan, cloud_file.cloud),
+        frames=record.frames,
+        hashes=record.inputs,
+        settings=_settings_in_words(record),
+        notes=record.all_notes,
+        method=METHOD_IN_WORDS.get(str(record.settings.get("scan", {}).get("method")), ""),
+        version=__version__,
+        timestamp=record.measured_at,
+    )
+    return said(content) if said else content
 
 
 def _rig_in_words(rig: Rig, image_size: tuple[int, int]) -> Mapping[str, str]:

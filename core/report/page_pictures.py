@@ -25,7 +25,7 @@ def page_pictures(pdf: bytes, width_px: int = 900, progress: Progress = silent) 
         drawn = []
         for page in steps(document, progress, "pages", len(document)):
             picture = page.render(scale=width_px / page.get_width(), rev_byteorder=True).to_numpy()
-            drawn.append(np.ascontiguousarray(picture[:, :, :3]))
+            drawn.append(np.array(picture[:, :, :3]))  # the bitmap's memory goes with the page
         return tuple(drawn)
     finally:
         document.close()
