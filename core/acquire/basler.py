@@ -63,6 +63,7 @@ class BaslerSource:
         self._camera: Any = None
         self._bits = 8
         self._index = self._dropped = 0
+        self._block: int | None = None
         self._origin = 0.0
 
     def open(self) -> None:
@@ -79,7 +80,7 @@ class BaslerSource:
             self._bits = _depth(camera, self.name)
             self._apply(camera, self._wanted)
             camera.OutputQueueSize.SetValue(QUEUE)
-            self._index = self._dropped = 0
+            self._index, self._dropped, self._block = 0, 0, None
             self._origin = self._clock()
             camera.StartGrabbing(pylon.GrabStrategy_LatestImages)
         except pylon.GenericException as problem:
@@ -114,6 +115,8 @@ class BaslerSource:
             if not result.IsValid():
                 if self._camera.IsCameraDeviceRemoved():
                     raise self._gone("it was pulled out")
+                if not self._camera.IsGrabbing():
+                    raise self._gone("its driver has stopped")
                 return None
             return self._frame(result)
         except pylon.GenericException as problem:
@@ -128,16 +131,21 @@ class BaslerSource:
     def _frame(self, result: Any) -> Frame | None:
         """The picture of a grab result, or None if the connection lost a part of it."""
         try:
-            skipped = int(result.GetNumberOfSkippedImages())
+            lost = max(int(result.GetNumberOfSkippedImages()), self._gap(int(result.GetBlockID())))
             whole = bool(result.GrabSucceeded())
-            self._dropped += skipped + (not whole)
-            index = self._index + skipped
+            self._dropped += lost + (not whole)
+            index = self._index + lost
             self._index = index + 1
             if not whole:
                 return None
             return Frame(_full_range(result.GetArray(), self._bits), index, self._clock() - self._origin, self._dropped)
         finally:
             result.Release()
+
+    def _gap(self, block: int) -> int:
+        """How many of the camera's own numbers are missing before `block`; 0 where it does not count."""
+        last, self._block = self._block, block
+        return 0 if last is None else max(0, block - last - 1)
 
     def _find(self, pylon: Any) -> Any:
         devices = _devices(pylon)
