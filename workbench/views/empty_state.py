@@ -5,7 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QLabel, QPushButton, QSizePolicy, QVBoxLayout, QWidget
+from PySide6.QtGui import QResizeEvent
+from PySide6.QtWidgets import QLabel, QPushButton, QVBoxLayout, QWidget
+
+_WIDEST = 440
 
 
 class EmptyState(QWidget):
@@ -18,14 +21,12 @@ class EmptyState(QWidget):
         self._label.setObjectName("muted")
         self._label.setWordWrap(True)
         self._label.setAlignment(Qt.AlignmentFlag.AlignCenter)
-        self._label.setMaximumWidth(420)
-        self._label.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Minimum)
         self.button = QPushButton()
         self.button.clicked.connect(self._pressed)
-        column = QVBoxLayout(self)
+        self._column = column = QVBoxLayout(self)
         column.setSpacing(12)
         column.addStretch(1)
-        column.addWidget(self._label, 0, Qt.AlignmentFlag.AlignHCenter)
+        column.addWidget(self._label)
         column.addWidget(self.button, 0, Qt.AlignmentFlag.AlignHCenter)
         column.addStretch(1)
 
@@ -40,6 +41,11 @@ class EmptyState(QWidget):
     def message(self) -> str:
         """The sentence."""
         return self._label.text()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        side = max(12, (event.size().width() - _WIDEST) // 2)
+        self._column.setContentsMargins(side, 8, side, 8)
+        super().resizeEvent(event)
 
     def _pressed(self) -> None:
         if self._on_button is not None:

@@ -1,19 +1,52 @@
-"""Forms of settings."""
+"""Forms of settings: label, editor, one line of help each."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QWidget
+from PySide6.QtCore import QEvent, Qt, Signal
+from PySide6.QtWidgets import QGridLayout, QLabel, QSizePolicy, QWidget
+
+from workbench.theme import shades
+from workbench.views.dressing import dress
+from workbench.views.form_editors import (
+    CheckEditor,
+    ChoiceEditor,
+    Editor,
+    MultilineEditor,
+    NumberEditor,
+    TextEditor,
+)
+
+_EDITOR_WIDTH = 132
 
 
 class SettingsForm(QWidget):
-    """Settings with label, editor, and one line of help each."""
+    """Settings one below the other. `edited` tells key and value when an editor is left or Enter is pressed."""
 
     edited = Signal(str, object)
 
-    def add_section(self, title: str) -> None: ...
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._editors: dict[str, Editor] = {}
+        self._helps: dict[str, tuple[QLabel, str]] = {}
+        self._tips: dict[str, str] = {}
+        self._complaints: dict[str, str] = {}
+        self._grid = QGridLayout(self)
+        self._grid.setContentsMargins(0, 0, 0, 0)
+        self._grid.setHorizontalSpacing(10)
+        self._grid.setVerticalSpacing(1)
+        self._grid.setColumnStretch(0, 1)
+
+    # ---- making it
+
+    def add_section(self, title: str) -> None:
+        """A heading over the settings that follow."""
+        heading = QLabel(title)
+        heading.setObjectName("heading")
+        heading.setContentsMargins(0, 8 if self._editors else 0, 0, 2)
+        self._grid.addWidget(heading, self._grid.rowCount(), 0, 1, 2)
+
     def add_number(
         self,
         key: str,
@@ -27,18 +60,106 @@ class SettingsForm(QWidget):
         step: float = 1.0,
         none_text: str | None = None,
         tip: str = "",
-    ) -> None: ...
-    def add_text(self, key: str, label: str, help: str = "", *, placeholder: str = "", tip: str = "") -> None: ...
-    def add_multiline(self, key: str, label: str, help: str = "", *, lines: int = 4, tip: str = "") -> None: ...
+    ) -> None:
+        """A number; whole, and told as int, if it has no decimals. With `none_text` it may be left empty: None."""
+        editor = NumberEditor(minimum, maximum, decimals, step, unit, none_text)
+        editor.setMinimumWidth(_EDITOR_WIDTH)
+        self._add(key, label, editor, help, tip)
+
+    def add_text(self, key: str, label: str, help: str = "", *, placeholder: str = "", tip: str = "") -> None:
+        """One line of text."""
+        self._add(key, label, TextEditor(placeholder), help, tip, wide=True)
+
+    def add_multiline(self, key: str, label: str, help: str = "", *, lines: int = 4, tip: str = "") -> None:
+        """Several lines of text."""
+        self._add(key, label, MultilineEditor(lines), help, tip, wide=True)
+
     def add_choice(
         self, key: str, label: str, choices: Sequence[tuple[object, str]], help: str = "", *, tip: str = ""
-    ) -> None: ...
-    def add_check(self, key: str, label: str, help: str = "", *, tip: str = "") -> None: ...
-    def values(self) -> dict[str, object]:
-        return {}
+    ) -> None:
+        """One of several (value, text)."""
+        editor = ChoiceEditor(list(choices))
+        editor.setMinimumWidth(_EDITOR_WIDTH)
+        self._add(key, label, editor, help, tip)
 
-    def set_values(self, values: Mapping[str, object]) -> None: ...
-    def set_editable(self, key: str, editable: bool, why: str = "") -> None: ...
-    def set_complaint(self, key: str, sentence: str) -> None: ...
+    def add_check(self, key: str, label: str, help: str = "", *, tip: str = "") -> None:
+        """Yes or no."""
+        self._add(key, "", CheckEditor(label), help, tip, wide=True)
+
+    # ---- using it
+
+    def values(self) -> dict[str, object]:
+        """The values as they stand, by key."""
+        return {key: editor.content() for key, editor in self._editors.items()}
+
+    def set_values(self, values: Mapping[str, object]) -> None:
+        """Show values without emitting; keys the form does not have are passed over.
+
+        An editor in which the user is typing is left alone unless its value is to be another than it was.
+        """
+        for key, editor in self._editors.items():
+            if key in values:
+                editor.set_content(values[key])
+
+    def set_editable(self, key: str, editable: bool, why: str = "") -> None:
+        """Enable or disable a setting; the tooltip then says why."""
+        self._editors[key].setEnabled(editable)
+        self._editors[key].setToolTip(self._tips[key] if editable or not why else why)
+
+    def set_complaint(self, key: str, sentence: str) -> None:
+        """Say in place of the help what is wrong with a value; "" brings the help back."""
+        if self._complaints.get(key, "") != sentence:
+            self._complaints[key] = sentence
+            self._show_help(key)
+
     def editor(self, key: str) -> QWidget:
-        raise KeyError(key)
+        """The editor of a setting.
+
+        Raises
+        ------
+        KeyError
+            If there is no such setting.
+        """
+        return self._editors[key]
+
+    def help_of(self, key: str) -> str:
+        """What stands under a setting: its help, or the complaint."""
+        return self._helps[key][0].text()
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "_grid"):
+            for key in self._helps:
+                self._show_help(key)
+
+    def _add(self, key: str, label: str, editor: Editor, help: str, tip: str, *, wide: bool = False) -> None:
+        self._editors[key], self._tips[key] = editor, tip or help
+        editor.setToolTip(tip or help)
+        editor.setAccessibleDescription(help)
+        editor.committed.connect(lambda: self.edited.emit(key, editor.content()))
+        row = self._grid.rowCount()
+        if label:
+            name = QLabel(label)
+            name.setBuddy(editor)
+            name.setToolTip(tip or help)
+            name.setWordWrap(True)
+            editor.setAccessibleName(label)
+            self._grid.addWidget(name, row, 0, 1, 2 if wide else 1)
+        if wide:
+            self._grid.addWidget(editor, row + 1, 0, 1, 2)
+        else:
+            editor.setSizePolicy(QSizePolicy.Policy.Minimum, QSizePolicy.Policy.Fixed)
+            self._grid.addWidget(editor, row, 1)
+        said = QLabel()
+        said.setWordWrap(True)
+        said.setContentsMargins(0, 0, 0, 7)
+        said.setAlignment(Qt.AlignmentFlag.AlignTop | Qt.AlignmentFlag.AlignLeft)
+        self._grid.addWidget(said, row + 2, 0, 1, 2)
+        self._helps[key] = said, help
+        self._show_help(key)
+
+    def _show_help(self, key: str) -> None:
+        label, help = self._helps[key]
+        complaint, s = self._complaints.get(key, ""), shades()
+        label.setText(complaint or help)
+        dress(label, f"font-size: 11px; color: {s.bad if complaint else s.muted};")

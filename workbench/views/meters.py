@@ -2,15 +2,29 @@
 
 from __future__ import annotations
 
+import math
+import time
 from collections.abc import Sequence
+from itertools import pairwise
 
-from PySide6.QtWidgets import QFrame, QWidget
+from PySide6.QtCore import QEvent, QPointF, QRectF, QSize, Qt, QTimer
+from PySide6.QtGui import QColor, QHideEvent, QPainter, QPaintEvent, QPolygonF
+from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QSizePolicy, QWidget
 
+from workbench.theme import icon, shades
 from workbench.views.colours import Level
+from workbench.views.dressing import dress
+from workbench.views.plot_base import tinted
+
+STAYS_MS = 1000
+"""Shortest time a hint stays."""
+
+_BAR = 8
+_NEEDLE = 5
 
 
 class Meter(QWidget):
-    """A horizontal gauge with zones and a needle."""
+    """A horizontal gauge: zones of good and bad, a needle, the value as text. The zone is named in words as well."""
 
     def __init__(
         self,
@@ -21,14 +35,154 @@ class Meter(QWidget):
         logarithmic: bool = False,
         parent: QWidget | None = None,
     ) -> None:
-        """`zones`: (upper end, level), rising; the last upper end is the end of the scale."""
+        """`zones` are (upper end, level), rising; the last upper end is the end of the scale.
+
+        Raises
+        ------
+        ValueError
+            If the zones do not rise from the minimum, or a logarithmic scale does not begin above 0.
+        """
         super().__init__(parent)
+        ends = [minimum, *(end for end, _ in zones)]
+        if not zones or any(b <= a for a, b in pairwise(ends)) or (logarithmic and minimum <= 0):
+            raise ValueError(f"no scale: {minimum}, {zones}")
+        self._title, self._zones, self._minimum, self._logarithmic = title, tuple(zones), minimum, logarithmic
+        self._value: float | None = None
+        self._text = ""
+        self.setAccessibleName(title)
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
 
     def set_value(self, value: float | None, text: str = "") -> None:
-        """Place the needle; `text` is the value with its unit; None: unknown."""
+        """Place the needle; `text` is the value with its unit. None or NaN: not known, no needle."""
+        if value is not None and math.isnan(value):
+            value = None
+        if (value, text) != (self._value, self._text):
+            self._value, self._text = value, text
+            self.setAccessibleDescription(self.said)
+            self.update()
+
+    @property
+    def level(self) -> Level:
+        """The zone the needle is in."""
+        if self._value is None:
+            return ""
+        return next((level for end, level in self._zones if self._value <= end), self._zones[-1][1])
+
+    @property
+    def said(self) -> str:
+        """The value and its zone in words."""
+        words = {"": "", "good": self.tr("good"), "warn": self.tr("fair"), "bad": self.tr("poor")}
+        return " · ".join(part for part in (self._text or "–", words[self.level]) if part)
+
+    def share(self, value: float) -> float:
+        """Where a value is on the scale, 0 … 1; values beyond the ends are at the ends."""
+        low, high = self._minimum, self._zones[-1][0]
+        value = min(max(value, low), high)
+        if self._logarithmic:
+            return math.log(value / low) / math.log(high / low)
+        return (value - low) / (high - low)
+
+    def sizeHint(self) -> QSize:
+        return QSize(220, self.fontMetrics().height() + _BAR + _NEEDLE + 10)
+
+    def minimumSizeHint(self) -> QSize:
+        return QSize(140, self.sizeHint().height())
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() in (QEvent.Type.PaletteChange, QEvent.Type.FontChange):
+            self.updateGeometry()
+            self.update()
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        painter, s = QPainter(self), shades()
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        line = self.fontMetrics().height()
+        words = QRectF(0, 1, self.width(), line + 1)
+        painter.setPen(QColor(s.muted))
+        painter.drawText(words, int(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter), self._title)
+        level = self.level
+        painter.setPen(QColor(getattr(s, level) if level else s.text))
+        painter.drawText(words, int(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter), self.said)
+        bar = QRectF(_NEEDLE, line + 5, self.width() - 2 * _NEEDLE, _BAR)
+        self._draw_zones(painter, bar)
+        if self._value is not None:
+            x = bar.left() + self.share(self._value) * bar.width()
+            top, bottom = bar.top() - 2, bar.bottom() + 3
+            painter.setPen(QColor(s.panel))
+            painter.setBrush(QColor(s.text))
+            painter.drawRect(QRectF(x - 1.5, top, 3, _BAR + 4))
+            tip = [QPointF(x, bottom - 3), QPointF(x - _NEEDLE, bottom + 4), QPointF(x + _NEEDLE, bottom + 4)]
+            painter.drawPolygon(QPolygonF(tip))
+        painter.end()
+
+    def _draw_zones(self, painter: QPainter, bar: QRectF) -> None:
+        s, start, current = shades(), self._minimum, self.level
+        painter.setPen(Qt.PenStyle.NoPen)
+        for end, level in self._zones:
+            left, right = (bar.left() + self.share(x) * bar.width() for x in (start, end))
+            painter.setBrush(tinted(getattr(s, level) if level else s.muted, 220 if level == current else 90))
+            painter.drawRect(QRectF(left, bar.top(), right - left - (1 if end < self._zones[-1][0] else 0), _BAR))
+            start = end
 
 
 class HintBar(QFrame):
-    """What to do now, calmly: a sentence stays for at least a second."""
+    """What to do now. A sentence stays for at least a second, so nothing flickers; an empty list stays calm too."""
 
-    def set_hints(self, hints: Sequence[str]) -> None: ...
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._shown: tuple[str, ...] = ()
+        self._wanted: tuple[str, ...] = ()
+        self._since = -math.inf
+        self._sign, self._label = QLabel(), QLabel()
+        self._label.setWordWrap(True)
+        self._label.setAccessibleName(self.tr("Hint"))
+        row = QHBoxLayout(self)
+        row.setContentsMargins(10, 6, 10, 6)
+        row.setSpacing(8)
+        row.addWidget(self._sign, 0, Qt.AlignmentFlag.AlignTop)
+        row.addWidget(self._label, 1)
+        self._clock = QTimer(self)
+        self._clock.setSingleShot(True)
+        self._clock.timeout.connect(self._show)
+        self._dress()
+
+    def set_hints(self, hints: Sequence[str]) -> None:
+        """The sentences that hold now, the most important first."""
+        self._wanted = tuple(hints)
+        if self._wanted == self._shown:
+            self._clock.stop()
+            return
+        left = STAYS_MS - 1000 * (time.monotonic() - self._since)
+        if left <= 0 or not self._shown:
+            self._clock.stop()
+            self._show()
+        elif not self._clock.isActive():
+            self._clock.start(math.ceil(left))
+
+    @property
+    def text(self) -> str:
+        """What is shown now."""
+        return self._label.text()
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "_clock"):
+            self._dress()
+
+    def hideEvent(self, event: QHideEvent) -> None:
+        self._clock.stop()
+        super().hideEvent(event)
+
+    def _show(self) -> None:
+        if self._wanted != self._shown:
+            self._shown, self._since = self._wanted, time.monotonic()
+            self._label.setText("   ".join(self._shown))
+            self._dress()
+
+    def _dress(self) -> None:
+        s = shades()
+        colour = "accent" if self._shown else "muted"
+        symbol = "mdi6.lightbulb-on-outline" if self._shown else "mdi6.lightbulb-outline"
+        self._sign.setPixmap(icon(symbol, colour=colour).pixmap(QSize(18, 18)))
+        dress(self, f"HintBar {{ background: {s.panel}; border: 1px solid {s.line}; border-radius: 5px; }}")

@@ -1,25 +1,159 @@
-"""Results in two columns, and the verdict."""
+"""Results in two columns, and the verdict in one banner."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from typing import Literal
 
-from PySide6.QtWidgets import QFrame, QWidget
+from PySide6.QtCore import QEvent, QSize, Qt
+from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
+from workbench.theme import icon, shades
 from workbench.views.colours import Level
+from workbench.views.dressing import dress
+
+LEVEL_ICONS: dict[Level, tuple[str, str]] = {
+    "good": ("mdi6.check-circle-outline", "good"),
+    "warn": ("mdi6.alert-outline", "warn"),
+    "bad": ("mdi6.close-octagon-outline", "bad"),
+}
+"""Icon and colour of each level; the shapes differ as well."""
+
+VerdictKind = Literal["", "conforming", "not conforming", "not proven"]
+
+_VERDICT_ICONS: dict[str, tuple[str, str]] = {
+    "": ("mdi6.minus-circle-outline", "muted"),
+    "conforming": ("mdi6.check-decagram", "good"),
+    "not conforming": ("mdi6.close-octagon", "bad"),
+    "not proven": ("mdi6.help-rhombus-outline", "warn"),
+}
+
+ValueRow = tuple[str, str, str, Level]
+"""Label, text with unit, tip, level."""
 
 
 class ValueRows(QWidget):
-    """Label and value with unit, two columns."""
+    """Label at the left, value with unit at the right, and an icon where a value is good or not."""
 
-    def set_rows(self, rows: Sequence[tuple[str, str, str, Level]]) -> None:
-        """(label, text with unit, tip, level) each."""
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._rows: tuple[ValueRow, ...] = ()
+        self._labels: list[tuple[QLabel, QLabel, QLabel]] = []
+        self._grid = QGridLayout(self)
+        self._grid.setContentsMargins(0, 0, 0, 0)
+        self._grid.setHorizontalSpacing(8)
+        self._grid.setVerticalSpacing(3)
+        self._grid.setColumnStretch(0, 1)
+
+    def set_rows(self, rows: Sequence[ValueRow]) -> None:
+        """(label, text with unit, tip, level) each, from the top."""
+        self._rows = tuple(rows)
+        while len(self._labels) < len(self._rows):
+            self._add_row()
+        for place, labels in enumerate(self._labels):
+            for label in labels:
+                label.setVisible(place < len(self._rows))
+        self._show()
+
+    def text_of(self, label: str) -> str:
+        """The value shown beside a label, "" if there is none."""
+        return next((text for name, text, _, _ in self._rows if name == label), "")
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "_grid"):
+            self._show()
+
+    def _add_row(self) -> None:
+        name, value, sign = QLabel(), QLabel(), QLabel()
+        name.setObjectName("muted")
+        name.setWordWrap(True)
+        value.setAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
+        value.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
+        sign.setFixedWidth(16)
+        place = len(self._labels)
+        for column, label in enumerate((name, value, sign)):
+            self._grid.addWidget(label, place, column)
+        self._labels.append((name, value, sign))
+
+    def _show(self) -> None:
+        words = {
+            "": "",
+            "good": self.tr("good"),
+            "warn": self.tr("look at this"),
+            "bad": self.tr("not good enough"),
+        }
+        for (label, text, tip, level), (name, value, sign) in zip(self._rows, self._labels, strict=False):
+            for shown, wanted in ((name, label), (value, text)):
+                if shown.text() != wanted:
+                    shown.setText(wanted)
+            said = ": ".join(part for part in (words[level], tip) if part)
+            for part in (name, value, sign):
+                part.setToolTip(said)
+            value.setAccessibleName(label)
+            value.setAccessibleDescription(said)
+            if level:
+                symbol, colour = LEVEL_ICONS[level]
+                sign.setPixmap(icon(symbol, colour=colour).pixmap(QSize(15, 15)))
+                dress(value, f"color: {getattr(shades(), colour)}; font-weight: 600;")
+            else:
+                sign.clear()
+                dress(value, "")
 
 
 class Verdict(QFrame):
-    """Whether the part conforms, in one banner."""
+    """Whether the part conforms: an icon, one word, one sentence."""
 
-    def set_verdict(
-        self, kind: Literal["", "conforming", "not conforming", "not proven"], detail: str = ""
-    ) -> None: ...
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._kind: VerdictKind = ""
+        self._sign, self._word, self._detail = QLabel(), QLabel(), QLabel()
+        self._detail.setWordWrap(True)
+        self._detail.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
+        words = QVBoxLayout()
+        words.setSpacing(1)
+        words.addWidget(self._word)
+        words.addWidget(self._detail)
+        row = QHBoxLayout(self)
+        row.setContentsMargins(12, 8, 12, 8)
+        row.setSpacing(10)
+        row.addWidget(self._sign, 0, Qt.AlignmentFlag.AlignTop)
+        row.addLayout(words, 1)
+        self.set_verdict("")
+
+    def set_verdict(self, kind: VerdictKind, detail: str = "") -> None:
+        """Show a verdict; "" is none: no tolerance, or nothing measured yet."""
+        self._kind = kind
+        self._detail.setText(detail)
+        self._detail.setVisible(bool(detail))
+        self._show()
+
+    @property
+    def text(self) -> str:
+        """The word shown."""
+        return self._word.text()
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "_kind"):
+            self._show()
+
+    def _show(self) -> None:
+        symbol, colour = _VERDICT_ICONS[self._kind]
+        words = {
+            "": self.tr("No verdict"),
+            "conforming": self.tr("Conforming"),
+            "not conforming": self.tr("Not conforming"),
+            "not proven": self.tr("Not proven"),
+        }
+        s = shades()
+        edge = getattr(s, colour)
+        self._sign.setPixmap(icon(symbol, colour=colour).pixmap(QSize(28, 28)))
+        self._word.setText(words[self._kind])
+        dress(self._word, f"color: {edge}; font-size: 16px; font-weight: 600;")
+        self.setAccessibleName(words[self._kind])
+        dress(
+            self,
+            f"Verdict {{ background: {s.panel}; border: 1px solid {s.line}; border-left: 4px solid {edge};"
+            " border-radius: 4px; }",
+        )

@@ -1,0 +1,222 @@
+"""The editors of a form: each tells its value once it is meant, not at every key, and leaves the wheel alone."""
+
+from __future__ import annotations
+
+import math
+
+from PySide6.QtCore import QLocale, Qt, QTimer, Signal
+from PySide6.QtGui import QFocusEvent, QHideEvent, QValidator, QWheelEvent
+from PySide6.QtWidgets import QCheckBox, QComboBox, QDoubleSpinBox, QLineEdit, QPlainTextEdit
+
+_STEPPING_MS = 400
+
+
+class NumberEditor(QDoubleSpinBox):
+    """A number with its unit; with `none_text` it may be empty, which reads as that text and gives None."""
+
+    committed = Signal()
+
+    def __init__(
+        self, minimum: float, maximum: float, decimals: int, step: float, unit: str, none_text: str | None
+    ) -> None:
+        super().__init__()
+        self._none_text = none_text
+        self._whole = decimals == 0
+        self._told: float | None = None
+        self.setLocale(QLocale.c())
+        self.setDecimals(decimals)
+        # the value below the smallest stands for none
+        self.setRange(minimum if none_text is None else minimum - max(step, 10.0**-decimals), maximum)
+        self.setSingleStep(step)
+        self.setSuffix(f" {unit}" if unit else "")
+        if none_text is not None:
+            self.setSpecialValueText(none_text)
+        self._least = minimum
+        self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+        self.setKeyboardTracking(False)
+        self.setAlignment(Qt.AlignmentFlag.AlignRight)
+        self._stepping = QTimer(self)
+        self._stepping.setSingleShot(True)
+        self._stepping.setInterval(_STEPPING_MS)
+        self._stepping.timeout.connect(self._tell)
+        self.editingFinished.connect(self._tell)
+        self._told = self.content()
+
+    def content(self) -> float | int | None:
+        """The number; None for none."""
+        if self._none_text is not None and self.value() < self._least - 1e-12 * max(1.0, abs(self._least)):
+            return None
+        return round(self.value()) if self._whole else self.value()
+
+    def set_content(self, value: object) -> None:
+        """Show a number without telling."""
+        if value == self._told and (self.hasFocus() or self._stepping.isActive()):
+            return  # it may be half typed
+        self._stepping.stop()
+        number = self.minimum() if value is None else float(value)  # type: ignore[arg-type]
+        self.setValue(self.minimum() if math.isnan(number) else number)
+        self._told = self.content()
+
+    def stepBy(self, steps: int) -> None:
+        super().stepBy(steps)
+        self._stepping.start()
+
+    def validate(self, text: str, position: int) -> tuple[QValidator.State, str, int]:
+        if self._none_text is not None and self._typed(text) in ("", self._none_text):
+            return QValidator.State.Acceptable, text, position
+        state, _, _ = super().validate(text.replace(",", "."), position)
+        return state, text, position
+
+    def valueFromText(self, text: str) -> float:
+        if self._none_text is not None and self._typed(text) in ("", self._none_text):
+            return self.minimum()
+        return super().valueFromText(text.replace(",", "."))
+
+    def fixup(self, text: str) -> str:
+        return super().fixup(text.replace(",", "."))
+
+    def wheelEvent(self, event: QWheelEvent) -> None:
+        if self.hasFocus():
+            super().wheelEvent(event)
+        else:
+            event.ignore()
+
+    def hideEvent(self, event: QHideEvent) -> None:
+        if self._stepping.isActive():
+            self._tell()
+        super().hideEvent(event)
+
+    def _typed(self, text: str) -> str:
+        return text.removesuffix(self.suffix()).strip()
+
+    def _tell(self) -> None:
+        self._stepping.stop()
+        if self.content() != self._told:
+            self._told = self.content()
+            self.committed.emit()
+
+
+class TextEditor(QLineEdit):
+    """One line of text."""
+
+    committed = Signal()
+
+    def __init__(self, placeholder: str = "") -> None:
+        super().__init__()
+        self._told = ""
+        self.setPlaceholderText(placeholder)
+        self.editingFinished.connect(self._tell)
+
+    def content(self) -> str:
+        """The text."""
+        return self.text()
+
+    def set_content(self, value: object) -> None:
+        """Show a text without telling; where it begins is what shows."""
+        if value == self._told and self.hasFocus():
+            return  # it may be half typed
+        self._told = str(value)
+        if self.text() != self._told:
+            self.setText(self._told)
+            self.setCursorPosition(0)
+
+    def _tell(self) -> None:
+        if self.text() != self._told:
+            self._told = self.text()
+            self.committed.emit()
+
+
+class MultilineEditor(QPlainTextEdit):
+    """Several lines of text; told when the focus leaves. Tab goes on to the next editor."""
+
+    committed = Signal()
+
+    def __init__(self, lines: int) -> None:
+        super().__init__()
+        self._told = ""
+        self.setTabChangesFocus(True)
+        margins = (
+            self.contentsMargins().top() + self.contentsMargins().bottom() + 2 * int(self.document().documentMargin())
+        )
+        self.setFixedHeight(lines * self.fontMetrics().lineSpacing() + margins + 8)
+
+    def content(self) -> str:
+        """The text."""
+        return self.toPlainText()
+
+    def set_content(self, value: object) -> None:
+        """Show a text without telling."""
+        if value == self._told and self.hasFocus():
+            return  # it may be half typed
+        self._told = str(value)
+        if self.toPlainText() != self._told:
+            self.setPlainText(self._told)
+
+    def focusOutEvent(self, event: QFocusEvent) -> None:
+        super().focusOutEvent(event)
+        if event.reason() != Qt.FocusReason.PopupFocusReason:
+            self.tell()
+
+    def tell(self) -> None:
+        """Tell the text if it has changed."""
+        if self.toPlainText() != self._told:
+            self._told = self.toPlainText()
+            self.committed.emit()
+
+
+class ChoiceEditor(QComboBox):
+    """One of several."""
+
+    committed = Signal()
+
+    def __init__(self, choices: list[tuple[object, str]]) -> None:
+        super().__init__()
+        self._values = [value for value, _ in choices]
+        self.addItems([text for _, text in choices])
+        self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+        self.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
+        self.setMinimumContentsLength(8)
+        self.activated.connect(lambda _: self._tell())
+        self._told: object = self.content()
+
+    def content(self) -> object:
+        """The value chosen."""
+        return self._values[self.currentIndex()] if self._values else None
+
+    def set_content(self, value: object) -> None:
+        """Show a choice without telling; a value that is none of them chooses nothing else."""
+        if value in self._values:
+            self.setCurrentIndex(self._values.index(value))
+        self._told = self.content()
+
+    def wheelEvent(self, event: QWheelEvent) -> None:
+        if self.hasFocus():
+            super().wheelEvent(event)
+        else:
+            event.ignore()
+
+    def _tell(self) -> None:
+        if self.content() != self._told:
+            self._told = self.content()
+            self.committed.emit()
+
+
+class CheckEditor(QCheckBox):
+    """Yes or no."""
+
+    committed = Signal()
+
+    def __init__(self, text: str) -> None:
+        super().__init__(text)
+        self.clicked.connect(lambda _: self.committed.emit())
+
+    def content(self) -> bool:
+        """Whether it is checked."""
+        return self.isChecked()
+
+    def set_content(self, value: object) -> None:
+        """Show yes or no without telling."""
+        self.setChecked(bool(value))
+
+
+Editor = NumberEditor | TextEditor | MultilineEditor | ChoiceEditor | CheckEditor

@@ -1,0 +1,275 @@
+"""Curves, repeats of a measurement, and how values are spread."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import pyqtgraph as pg
+from numpy.typing import ArrayLike, NDArray
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QWidget
+
+from workbench.theme import shades
+from workbench.views.colours import FAN, ColourLike, to_colour
+from workbench.views.plot_base import Plot, small_font, tinted, written
+
+_DASH = Qt.PenStyle.DashLine
+_MOST_BINS = 60
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class _Runs:
+    values: NDArray[np.float64]
+    U: NDArray[np.float64]
+    labels: tuple[str, ...]
+    mean: float | None
+    nominal: float | None
+    tolerance: float | None
+    unit: str
+    k: float
+
+
+class RunChart(Plot):
+    """Repeats of one measurement in order, each with its expanded uncertainty, and what they are compared with."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        self._runs: _Runs | None = None
+        super().__init__(parent, least_height=180)
+
+    def set_runs(
+        self,
+        values: ArrayLike,
+        U: ArrayLike,
+        *,
+        labels: Sequence[str] | None = None,
+        mean: float | None = None,
+        nominal: float | None = None,
+        tolerance: float | None = None,
+        unit: str = "mm",
+        k: float = 2.0,
+    ) -> None:
+        """Values (N,) with their U (N,); `tolerance` is the half width about `nominal`, `labels` name the scans."""
+        measured = np.asarray(values, dtype=np.float64).reshape(-1)
+        names = tuple(labels) if labels is not None else tuple(str(i) for i in range(1, len(measured) + 1))
+        if not len(measured):
+            self.clear(self._empty.message)
+            return
+        spread = np.asarray(U, dtype=np.float64).reshape(-1)
+        self._runs = _Runs(measured, spread, names, mean, nominal, tolerance, unit, k)
+        self._redraw()
+
+    def clear(self, message: str = "") -> None:
+        self._runs = None
+        super().clear(message)
+
+    def _has_data(self) -> bool:
+        return self._runs is not None
+
+    def _draw(self) -> None:
+        runs, s = self._runs, shades()
+        assert runs is not None
+        count = len(runs.values)
+        self._set_axis("bottom", self.tr("scan"))
+        self._set_axis("left", self.tr("thickness, U (k = {k:g})").format(k=runs.k), runs.unit)
+        every = max(1, count // 12)
+        self._item.getAxis("bottom").setTicks([[(i + 1, str(i + 1)) for i in range(0, count, every)]])
+        at = np.arange(1, count + 1)
+        lines = self._reference_lines(runs)
+        reach = [*(runs.values - np.nan_to_num(runs.U)), *(runs.values + np.nan_to_num(runs.U))]
+        reach += [y for y, *_ in lines]
+        low, high = min(reach), max(reach)
+        margin = 0.12 * (high - low) or 0.01
+        end = count + 0.6 + 0.3 * count
+        self._box.setRange(xRange=(0.4, end), yRange=(low - margin, high + margin), padding=0)
+        for y, text, colour, style in lines:
+            self._item.addItem(pg.InfiniteLine(y, angle=0, pen=pg.mkPen(colour, width=1.2, style=style)))
+            below = text == self.tr("lower limit") or (runs.mean == y and y < (runs.nominal or y))
+            below = below or (runs.nominal == y and y <= (runs.mean or -np.inf))
+            words = self._words(f"{text} {written(y, (high - low) / 200)} {runs.unit}", colour, (1, 0 if below else 1))
+            words.setPos(end, y)
+            self._item.addItem(words, ignoreBounds=True)
+        bars = pg.ErrorBarItem(x=at, y=runs.values, height=2 * runs.U, beam=0.18, pen=pg.mkPen(s.accent, width=1.3))
+        self._item.addItem(bars)
+        self._item.addItem(pg.ScatterPlotItem(at, runs.values, size=8, pen=None, brush=s.accent))
+
+    def _reference_lines(self, runs: _Runs) -> list[tuple[float, str, str, Qt.PenStyle]]:
+        s = shades()
+        lines: list[tuple[float, str, str, Qt.PenStyle]] = []
+        if runs.nominal is not None and runs.tolerance is not None:
+            lines.append((runs.nominal + runs.tolerance, self.tr("upper limit"), s.bad, _DASH))
+            lines.append((runs.nominal - runs.tolerance, self.tr("lower limit"), s.bad, _DASH))
+        if runs.nominal is not None:
+            lines.append((runs.nominal, self.tr("nominal"), s.muted, Qt.PenStyle.SolidLine))
+        if runs.mean is not None:
+            lines.append((runs.mean, self.tr("mean"), s.text, Qt.PenStyle.DotLine))
+        return lines
+
+    def _tip(self, x: float, y: float) -> str:
+        runs, place = self._runs, round(x) - 1
+        if runs is None or not 0 <= place < len(runs.values):
+            return ""
+        value, U = (written(float(part[place]), 1e-4) for part in (runs.values, runs.U))
+        return f"{runs.labels[place]}: {value} ± {U} {runs.unit} (k = {runs.k:g})"
+
+
+class Histogram(Plot):
+    """How values are spread, with limits."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        self._values = np.zeros(0)
+        self._limits: tuple[tuple[float, str], ...] = ()
+        self._label, self._unit = "", ""
+        self._bins: int | None = None
+        super().__init__(parent)
+
+    def set_values(
+        self,
+        values: ArrayLike,
+        *,
+        label: str,
+        unit: str,
+        bins: int | None = None,
+        limits: Sequence[tuple[float, str]] = (),
+    ) -> None:
+        """Values (N,), NaN left out; `limits` are (value, text) of lines across."""
+        all_values = np.asarray(values, dtype=np.float64).reshape(-1)
+        self._values = all_values[np.isfinite(all_values)]
+        self._label, self._unit, self._bins, self._limits = label, unit, bins, tuple(limits)
+        if not len(self._values):
+            self.clear(self._empty.message)
+        self._redraw()
+
+    def clear(self, message: str = "") -> None:
+        self._values = np.zeros(0)
+        super().clear(message)
+
+    def _has_data(self) -> bool:
+        return len(self._values) > 0
+
+    def _draw(self) -> None:
+        s = shades()
+        bins = self._bins or min(_MOST_BINS, max(8, round(2 * len(self._values) ** (1 / 3))))
+        counts, edges = np.histogram(self._values, bins=bins)
+        self._set_axis("bottom", self._label, self._unit)
+        self._set_axis("left", self.tr("count"))
+        middles, width = 0.5 * (edges[1:] + edges[:-1]), float(edges[1] - edges[0])
+        self._counts, self._edges = counts, edges
+        pen = pg.mkPen(s.panel, width=1)
+        self._item.addItem(
+            pg.BarGraphItem(x=middles, height=counts, width=width, brush=pg.mkBrush(tinted(s.accent, 220)), pen=pen)
+        )
+        reach = [edges[0], edges[-1], *(value for value, _ in self._limits)]
+        top = 1.15 * float(counts.max())
+        self._box.setRange(xRange=(min(reach), max(reach)), yRange=(0, top), padding=0.02)
+        for value, text in self._limits:
+            self._item.addItem(pg.InfiniteLine(value, angle=90, pen=pg.mkPen(s.bad, width=1.2, style=_DASH)))
+            right = value > 0.5 * (min(reach) + max(reach))
+            words = self._words(text, s.bad, (1 if right else 0, 0))
+            words.setPos(value, top)
+            self._item.addItem(words, ignoreBounds=True)
+
+    def _tip(self, x: float, y: float) -> str:
+        place = int(np.searchsorted(self._edges, x)) - 1
+        if not 0 <= place < len(self._counts):
+            return ""
+        step = float(self._edges[1] - self._edges[0]) / 10
+        low, high = (written(float(edge), step) for edge in self._edges[place : place + 2])
+        return self.tr("{low} to {high} {unit}: {count}").format(
+            low=low, high=high, unit=self._unit, count=int(self._counts[place])
+        )
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class _Curve:
+    x: NDArray[np.float64]
+    y: NDArray[np.float64]
+    colour: ColourLike
+    title: str
+    points: bool
+
+
+class LineChart(Plot):
+    """Curves over one axis, with limits."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        self._curves: dict[str, _Curve] = {}
+        self._lines: dict[str, tuple[float, str]] = {}
+        self._names = ("", "", "", "")
+        super().__init__(parent)
+        self._legend = self._item.addLegend(offset=(-8, 6), labelTextSize="11px", verSpacing=-4)
+        self._legend.hide()
+
+    def set_axes(self, x_label: str, x_unit: str, y_label: str, y_unit: str) -> None:
+        """Name both axes and their units."""
+        self._names = (x_label, x_unit, y_label, y_unit)
+        self._redraw()
+
+    def set_curve(
+        self, name: str, x: ArrayLike, y: ArrayLike, *, colour: ColourLike = "", title: str = "", points: bool = False
+    ) -> None:
+        """A curve, instead of the one of that name; NaN leaves a gap. `title` stands in the legend."""
+        across, up = (np.asarray(values, dtype=np.float64).reshape(-1) for values in (x, y))
+        self._curves[name] = _Curve(across, up, colour, title, points)
+        self._redraw()
+
+    def remove_curve(self, name: str) -> None:
+        """Take a curve away; none of that name is no error."""
+        self._curves.pop(name, None)
+        self._redraw()
+
+    def set_limit(self, name: str, y: float | None, text: str = "") -> None:
+        """A line across at a value; None takes it away."""
+        if y is None:
+            self._lines.pop(name, None)
+        else:
+            self._lines[name] = (y, text)
+        self._redraw()
+
+    def clear(self, message: str = "") -> None:
+        self._curves, self._lines = {}, {}
+        super().clear(message)
+
+    def _has_data(self) -> bool:
+        return any(len(curve.x) for curve in self._curves.values())
+
+    def _draw(self) -> None:
+        s = shades()
+        self._set_axis("bottom", *self._names[:2])
+        self._set_axis("left", *self._names[2:])
+        self._legend.clear()
+        self._legend.setLabelTextColor(s.text)
+        colours = (s.accent, *FAN[1:], s.good)
+        for number, curve in enumerate(self._curves.values()):
+            colour = to_colour(curve.colour or colours[number % len(colours)])
+            item = pg.PlotDataItem(
+                curve.x,
+                curve.y,
+                pen=None if curve.points else pg.mkPen(colour, width=1.8),
+                symbol="o" if curve.points else None,
+                symbolSize=6,
+                symbolPen=None,
+                symbolBrush=colour,
+                connect="finite",
+            )
+            self._item.addItem(item)
+            if curve.title:
+                self._legend.addItem(item, curve.title)
+        self._legend.setVisible(any(curve.title for curve in self._curves.values()))
+        self._set_range()
+        for y, text in self._lines.values():
+            self._item.addItem(pg.InfiniteLine(y, angle=0, pen=pg.mkPen(s.bad, width=1.2, style=_DASH)))
+            words = self._words(text, s.bad, (1, 1))
+            words.setFont(small_font())
+            words.setPos(self._box.viewRange()[0][1], y)
+            self._item.addItem(words, ignoreBounds=True)
+
+    def _set_range(self) -> None:
+        x = np.concatenate([curve.x for curve in self._curves.values()])
+        y = np.concatenate([*(curve.y for curve in self._curves.values()), [y for y, _ in self._lines.values()]])
+        x, y = x[np.isfinite(x)], y[np.isfinite(y)]
+        if len(x) and len(y):
+            margin = 0.08 * float(y.max() - y.min()) or 0.05 * abs(float(y.max())) or 1.0
+            across = (float(x.min()), float(x.max()))
+            self._box.setRange(xRange=across, yRange=(float(y.min()) - margin, float(y.max()) + margin), padding=0.01)
