@@ -1,0 +1,148 @@
+"""What is seen of one frame and of one pose."""
+
+import pickle
+from collections import Counter
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from core.calibrate.pose_stages import NOT_SEEN
+from core.errors import Cancelled, InputError
+from core.files.project import Accepted
+from core.files.recording_set import open_set
+from core.files.scan_file import read_scan
+from core.pipeline.frame_stages import frame_stages
+from core.pipeline.project_looks import recall_poses, show_frame, show_pose
+from core.pipeline.project_steps import results_folder
+from tests.simulated import copy_of
+
+pytestmark = pytest.mark.xdist_group("small simulated set")
+
+
+def frame(number):
+    return f"scan/frame{number:04d}.png"
+
+
+def test_a_frame_shows_the_centrelines_and_lines_that_were_measured(done):
+    scan = read_scan(results_folder(done.folder) / "scan.npz")
+    for number in (0, 7, 15):
+        stages = show_frame(done.folder, done.project, frame(number))
+        measured = scan.features.frames[number]
+        assert (stages.index, stages.name) == (number, measured.name)
+        assert [len(piece) for piece in stages.sweep] == [len(piece) for piece in measured.centrelines]
+        assert stages.fan_line == scan.fan_line
+        assert len(stages.fan) == len(scan.fan_line)
+
+
+def test_every_crossing_of_a_frame_is_good_weak_or_left_out_with_a_sentence(done):
+    seen = show_frame(done.folder, done.project, frame(5)).seen
+    assert len(seen.crossing_uv) == len(seen.crossing_status) == len(seen.crossing_reason) > 0
+    assert set(seen.crossing_status) <= {0, 1, 2}
+    assert all(reason.endswith(".") for reason in seen.crossing_reason)
+    assert seen.crossing_with_fan.all()
+
+
+def test_difference_and_ridge_are_bright_on_the_sweep_and_dark_on_the_fan(done):
+    stages = show_frame(done.folder, done.project, frame(5))
+    assert stages.picture.dtype == stages.difference.dtype == stages.ridge.dtype == np.uint8
+    assert stages.picture.shape == stages.difference.shape == stages.ridge.shape
+    sweep = np.concatenate([piece.uv for piece in stages.sweep]).round().astype(int)
+    fan = np.concatenate([piece.uv for piece in stages.fan]).round().astype(int)
+    apart = np.abs(fan[:, None] - sweep[None]).max(axis=2).min(axis=1) > 12
+    for picture in (stages.difference, stages.ridge):
+        on_sweep, on_fan = picture[tuple(sweep.T[::-1])], picture[tuple(fan[apart].T[::-1])]
+        assert np.median(on_sweep) > 80
+        assert np.median(on_fan) < 20
+
+
+def test_without_calibrations_stripes_are_shown_without_numbers(done):
+    stages = show_frame(done.folder, replace(done.project, accepted=Accepted()), frame(5))
+    assert stages.seen is None
+    assert stages.sweep
+
+
+def test_before_anything_is_measured_a_frame_can_be_looked_at(simulated):
+    stages = frame_stages(open_set(simulated), frame(5))
+    assert set(stages.fan_line) == {-1}
+    assert stages.sweep
+    assert stages.reason == ""
+
+
+def test_a_recording_without_reference_can_be_looked_at(simulated, tmp_path):
+    folder = copy_of(simulated, tmp_path / "set")
+    (folder / "scan" / "reference.png").unlink()
+    assert frame_stages(open_set(folder), frame(5)).sweep
+
+
+def test_a_frame_left_out_is_shown_all_the_same(done):
+    stages = show_frame(done.folder, done.with_options(excluded=frozenset({frame(5)})), frame(5))
+    assert stages.left_out
+    assert stages.sweep
+
+
+def test_what_all_frames_share_is_looked_at_once(done):
+    told = Counter()
+
+    def progress(step, done, total):
+        told[step] += 1
+
+    project = done.with_options(stripe=None, excluded=frozenset({"scan/frame0019.png"}))
+    found = open_set_of(done)
+    for number in range(4):
+        frame_stages(found, frame(number), options=replace(project.options, sigma_cut_mm=0.2), progress=progress)
+    before = dict(told)
+    frame_stages(found, frame(6), options=project.options, progress=progress)
+    assert told == before
+
+
+def test_the_first_look_can_be_cancelled_and_begins_anew(done):
+    found = open_set_of(done)
+    options = replace(done.project.options, excluded=frozenset({frame(0), frame(1)}))
+
+    def stop(step, done, total):
+        raise Cancelled
+
+    with pytest.raises(Cancelled):
+        frame_stages(found, frame(5), options=options, progress=stop)
+    assert frame_stages(found, frame(5), options=options).sweep
+
+
+def test_an_unknown_frame_is_named(done):
+    with pytest.raises(InputError, match=r"frame0999\.png.*no such frame"):
+        show_frame(done.folder, done.project, "scan/frame0999.png")
+
+
+def test_a_pose_shows_its_corners_and_the_number_of_every_stripe(done):
+    for pose in done.poses:
+        stages = show_pose(done.folder, done.project, pose, done.fan.fan)
+        assert stages.picture.dtype == np.uint8
+        assert len(stages.corners) == 4
+        assert sorted(stripe.line for stripe in stages.stripes if stripe.line != NOT_SEEN) == [0, 1, 2]
+        by_line = {stripe.line: stripe.uv[:, 1].mean() for stripe in stages.stripes}
+        assert by_line[0] < by_line[1] < by_line[2]
+
+
+def test_without_a_fan_stripes_have_no_numbers(done):
+    stages = show_pose(done.folder, done.project, done.poses[0])
+    assert {stripe.line for stripe in stages.stripes} == {NOT_SEEN}
+
+
+def test_an_accepted_fan_comes_back_with_all_its_points(done):
+    poses, fan = recall_poses(done.folder, done.project)
+    assert [pose.name for pose in poses] == [pose.name for pose in done.poses]
+    assert np.array_equal(fan.fan.pis, done.fan.fan.pis)
+    assert sum(len(points) for pose in fan.poses for points in pose.points) > 1000
+
+
+def test_looks_can_be_pickled(done):
+    stages = show_frame(done.folder, done.project, frame(5))
+    assert len(pickle.loads(pickle.dumps(stages)).sweep) == len(stages.sweep)
+    pose = show_pose(done.folder, done.project, done.poses[0], done.fan.fan)
+    assert len(pickle.loads(pickle.dumps(pose)).stripes) == len(pose.stripes)
+
+
+def open_set_of(done):
+    from core.pipeline.project_steps import project_set
+
+    return project_set(done.folder, done.project)
