@@ -6,7 +6,6 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-
 Pixels = NDArray[np.float64] | NDArray[np.float32]
 
 CELLS_ACROSS = 96

@@ -70,6 +70,12 @@ class CrossingTable:
         b = np.where(self.with_fan, -1, number[np.maximum(self.b, 0)])
         return replace(self, a=number[self.a], b=b)
 
+    def swapped(self) -> CrossingTable:
+        """The same crossings with a called b and b called a."""
+        pairs = ("tangent", "sigma", "piece", "along")
+        turned = {f"{name}_{to}": getattr(self, f"{name}_{of}") for name in pairs for to, of in ("ab", "ba")}
+        return replace(self, a=self.b, b=self.a, **turned)
+
     def followed_by(self, *others: CrossingTable) -> CrossingTable:
         """The rows of this table and then of the `others`."""
         names = [f.name for f in fields(self) if f.name != "half_length_px"]

@@ -46,7 +46,10 @@ class FramePreview:
         Why there are no points; empty if there are.
     renewed
         Not None: all points so far, this frame's and the fan's own included, located anew; they replace all that was
-        given before.
+        given before. So with the first frame.
+    fan_lines
+        Not None: the fan's centrelines by line number, thinned for display, as far as settled; with the first frame,
+        and again whenever a number has changed.
     """
 
     index: int
@@ -66,6 +69,7 @@ class FramePreview:
     hints: tuple[str, ...]
     reason: str
     renewed: PreviewCloud | None = None
+    fan_lines: tuple[tuple[Centreline, ...], ...] | None = None
 
 
 def empty_preview(index: int, name: str, reason: str) -> FramePreview:

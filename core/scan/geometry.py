@@ -12,6 +12,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from core.model import Camera
 from core.model.arrays import Array
@@ -30,6 +31,14 @@ class CrossingRays:
         """The rays of all `crossings` as `camera` sees them."""
         rays = camera.rays(crossings.uv)
         return cls(rays, camera.ray_jacobian(rays))
+
+    def select(self, keep: NDArray[np.bool_] | NDArray[np.int64]) -> CrossingRays:
+        """The rows that `keep` selects."""
+        return CrossingRays(self.rays[keep], self.jacobians[keep])
+
+    def followed_by(self, other: CrossingRays) -> CrossingRays:
+        """These rows and then those of `other`."""
+        return CrossingRays(np.concatenate([self.rays, other.rays]), np.concatenate([self.jacobians, other.jacobians]))
 
 
 def inverse_depth_gradient(pi_difference: Array, jacobians: Array) -> Array:

@@ -65,28 +65,62 @@ def locate_one(crossings: CrossingTable, geometry: CrossingRays, known: KnownPla
     """
     if len(crossings) < 3:
         raise ValueError(f"{len(crossings)} crossings cannot determine a plane")
-    rays = geometry.rays
-    observed = np.einsum("mi,mi->m", rays, known.pis)
-    shared = _shared(rays, known)
-    typical = float(np.median(np.linalg.norm(known.pis[:, :2], axis=1)))
-    typical *= float(np.sqrt(np.abs(np.linalg.det(geometry.jacobians)).mean()))
-    sigma_a = np.maximum(crossings.sigma_a, SIGMA_FLOOR_PX)
-    sigma_b = np.maximum(crossings.sigma_b, SIGMA_FLOOR_PX)
-    own = typical**2 * (sigma_a**2 + sigma_b**2)
-    weights, pi = np.ones(len(rays)), np.zeros(3)
+    equations = _Equations(crossings, geometry, known)
+    own, weights = equations.variances(None), np.ones(len(crossings))
     for step in range(ROUNDS):
-        weight = np.linalg.inv(shared + np.diag(own / np.maximum(weights, _LEAST_WEIGHT)))
-        information = rays.T @ weight @ rays + np.eye(3) / PRIOR_SD**2
-        covariance = np.linalg.inv(information)
-        pi = covariance @ (rays.T @ (weight @ observed))
-        gradient = inverse_depth_gradient(pi - known.pis, geometry.jacobians)
-        gain_a, gain_b = noise_gains(crossings, floored(gradient, GRADIENT_FLOOR * typical))
-        own = (gain_a * sigma_a) ** 2 + (gain_b * sigma_b) ** 2
-        residuals = (observed - rays @ pi) / np.sqrt(own + np.diag(shared))
+        pi, covariance = equations.solve(own / np.maximum(weights, _LEAST_WEIGHT))
+        own = equations.variances(pi)
+        residuals = equations.residuals(pi, own)
         if step < ROUNDS - 1:
             weights = _weights(residuals, reject=step >= _REJECT_FROM - 1)
-    used = (known.sweep < 0) & (weights > _LEAST_WEIGHT)
-    return OneSweep(pi, np.asarray(covariance, dtype=np.float64), weights, residuals, plane_condition(rays[used]))
+    return OneSweep(pi, covariance, weights, residuals, _condition(geometry, known, weights))
+
+
+def judge_plane(
+    pi: Array, covariance: Array, crossings: CrossingTable, geometry: CrossingRays, known: KnownPlanes
+) -> OneSweep:
+    """A plane found otherwise, by the network, with how it agrees with the sweep's `crossings`."""
+    equations = _Equations(crossings, geometry, known)
+    residuals = equations.residuals(pi, equations.variances(pi))
+    weights = _weights(residuals, reject=True)
+    return OneSweep(pi, covariance, weights, residuals, _condition(geometry, known, weights))
+
+
+class _Equations:
+    """π·r = π_b·r at M crossings, with what makes them uncertain."""
+
+    def __init__(self, crossings: CrossingTable, geometry: CrossingRays, known: KnownPlanes) -> None:
+        self._crossings, self._jacobians, self._pis = crossings, geometry.jacobians, known.pis
+        self._rays = geometry.rays
+        self._observed = np.einsum("mi,mi->m", geometry.rays, known.pis)
+        self._shared = _shared(geometry.rays, known)
+        typical = float(np.median(np.linalg.norm(known.pis[:, :2], axis=1)))
+        self._typical = typical * float(np.sqrt(np.abs(np.linalg.det(geometry.jacobians)).mean()))
+        self._sigma_a = np.maximum(crossings.sigma_a, SIGMA_FLOOR_PX)
+        self._sigma_b = np.maximum(crossings.sigma_b, SIGMA_FLOOR_PX)
+
+    def variances(self, pi: Array | None) -> Array:
+        """Variance (M,) in 1/mm² from the centrelines' noise; without a plane yet, the rig's geometry stands for it."""
+        if pi is None:
+            return np.asarray(self._typical**2 * (self._sigma_a**2 + self._sigma_b**2))
+        gradient = inverse_depth_gradient(pi - self._pis, self._jacobians)
+        gain_a, gain_b = noise_gains(self._crossings, floored(gradient, GRADIENT_FLOOR * self._typical))
+        return np.asarray((gain_a * self._sigma_a) ** 2 + (gain_b * self._sigma_b) ** 2)
+
+    def solve(self, variances: Array) -> tuple[Array, Array]:
+        """π (3,) and its covariance (3, 3)."""
+        weight = np.linalg.inv(self._shared + np.diag(variances))
+        information = self._rays.T @ weight @ self._rays + np.eye(3) / PRIOR_SD**2
+        covariance = np.asarray(np.linalg.inv(information), dtype=np.float64)
+        return covariance @ (self._rays.T @ (weight @ self._observed)), covariance
+
+    def residuals(self, pi: Array, variances: Array) -> Array:
+        """Observed − adjusted (M,) in standard deviations."""
+        return np.asarray((self._observed - self._rays @ pi) / np.sqrt(variances + np.diag(self._shared)))
+
+
+def _condition(geometry: CrossingRays, known: KnownPlanes, weights: Array) -> float:
+    return plane_condition(geometry.rays[(known.sweep < 0) & (weights > _LEAST_WEIGHT)])
 
 
 def _shared(rays: Array, known: KnownPlanes) -> Array:

@@ -8,7 +8,7 @@ when more is known.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -61,6 +61,7 @@ class Preview:
         self._stripes: dict[int, StripeRays] = {}
         self._before: Sequence[Centreline] = ()
         self._speed_before = float("nan")
+        self._told: tuple[int, ...] | None = None
         self._limits = _depth_limits(self._fan_clouds())
 
     @property
@@ -84,7 +85,7 @@ class Preview:
         """What `features` show; frames in the order of time."""
         if not features.centrelines:
             self._before, self._speed_before = (), float("nan")
-            return empty_preview(features.index, features.name, features.reason)
+            return self._with_news(empty_preview(features.index, features.name, features.reason), renewed=False)
         sweep, renewed = self._tracker.add(features.index, features.centrelines)
         thin = tuple(piece.select(slice(None, None, self._options.thin)) for piece in features.centrelines)
         stripe = self._stripes[features.index] = StripeRays.of(features.index, thin, self._camera)
@@ -98,7 +99,7 @@ class Preview:
         speed = movement_px(features.centrelines, self._before)
         lasting = min(speed, self._speed_before)  # one jump, as from the end of a pass to the next, is no haste
         self._before, self._speed_before = features.centrelines, speed
-        return FramePreview(
+        preview = FramePreview(
             features.index,
             features.name,
             thin,
@@ -115,8 +116,16 @@ class Preview:
             np.asarray(points.uv, dtype=np.float64),
             self._hints(stripe, lines_met, sigma, lasting),
             "" if len(points) else _why_no_points(marks, located=plane is not None),
-            self.cloud() if renewed else None,
         )
+        return self._with_news(preview, renewed=renewed)
+
+    def _with_news(self, preview: FramePreview, *, renewed: bool) -> FramePreview:
+        """The preview with the whole cloud and the fan's lines, if they are new."""
+        line = self._tracker.lines.line
+        changed, self._told = line != self._told, line
+        if not (renewed or changed):
+            return preview
+        return replace(preview, renewed=self.cloud(), fan_lines=self.fan_lines if changed else None)
 
     def _met(self, sweep: TrackedSweep) -> tuple[int, float]:
         """How many lines of the fan the sweep crosses, and the condition of those crossings."""

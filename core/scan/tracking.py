@@ -3,13 +3,13 @@
 The anchors are spread over the sweeps so far and adjusted together as a small network, anew each time there are a
 third more sweeps. Every other sweep is located by its crossings with the fan and with them (`core.scan.one_sweep`). So
 the work for a frame does not grow with the length of the scan. When the anchors have been adjusted, all sweeps before
-are located anew by them.
+are located anew, also by the anchors that came after them.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,7 +32,7 @@ from core.scan.fan_lines import UNASSIGNED, FanLines, possible_fan_lines
 from core.scan.geometry import CrossingRays
 from core.scan.locate import LocatedSweeps, choose_numbering, locate_together, numbered
 from core.scan.movement import movement_px
-from core.scan.one_sweep import KnownPlanes, OneSweep, locate_one
+from core.scan.one_sweep import KnownPlanes, OneSweep, judge_plane, locate_one
 
 FIRST_ADJUSTMENT = 4
 GROWTH = 4 / 3
@@ -44,7 +44,7 @@ SURE_AFTER = 3
 
 @dataclass(frozen=True, eq=False, slots=True)
 class TrackedSweep:
-    """A sweep, its crossings with the fan (b = −1) and with anchors (b their frame), and its plane if it is known.
+    """A sweep, its crossings with the fan (b = −1) and with anchors before and after it (b their frame), and its plane.
 
     `used` (M,) are the rows of `crossings` that `plane` rests on; `left_out` the meetings that gave no crossing, each
     with about where in pixels, and why.
@@ -79,7 +79,7 @@ class SweepTracker:
         self._numberings = (lines,) if lines else possible_fan_lines(fan_pieces, camera, fan)
         self.lines: FanLines = self._numberings[0]
         self._chosen_alike = SURE_AFTER if lines else 0
-        self._sweeps: list[TrackedSweep] = []
+        self._sweeps: dict[int, TrackedSweep] = {}
         self._anchors: dict[int, ShadedLines] = {}
         self._last_anchor: Sequence[Centreline] = ()
         self._most_anchors, self._stride_px = most_anchors, stride_px
@@ -98,9 +98,9 @@ class SweepTracker:
         sweep = TrackedSweep(
             frame, table, CrossingRays.of(table, self._camera), search.left_out, None, np.zeros(0, np.int64)
         )
-        sweep = self._located(sweep)
-        self._sweeps.append(sweep)
+        self._sweeps[frame] = sweep = self._located(sweep)
         if len(rows) and self._is_new(pieces):
+            self._tell_earlier_anchors(sweep)
             self._anchors[frame] = lines
             self._last_anchor = pieces
             self._thin_out()
@@ -108,14 +108,26 @@ class SweepTracker:
             return sweep, False
         self._due = round(GROWTH * len(self._sweeps))
         renewed = self._adjust()
-        return self._sweeps[-1], renewed
+        return self._sweeps[frame], renewed
 
     def sweeps(self) -> Iterator[TrackedSweep]:
         """All sweeps so far, in the order they came."""
-        return iter(self._sweeps)
+        return iter(self._sweeps.values())
 
     def _is_new(self, pieces: Sequence[Centreline]) -> bool:
         return not self._last_anchor or not movement_px(pieces, self._last_anchor) < self._stride_px
+
+    def _tell_earlier_anchors(self, sweep: TrackedSweep) -> None:
+        """A new anchor: those it crosses keep the crossings too, for when they are anchors no more."""
+        table = sweep.crossings
+        for anchor in np.unique(table.b[~table.with_fan]).tolist():
+            rows = table.b == anchor
+            earlier = self._sweeps[anchor]
+            self._sweeps[anchor] = replace(
+                earlier,
+                crossings=earlier.crossings.followed_by(table.select(rows).swapped()),
+                geometry=earlier.geometry.followed_by(sweep.geometry.select(rows)),
+            )
 
     def _thin_out(self) -> None:
         """Keep every second anchor when there are too many, and from now on take them twice as far apart."""
@@ -137,27 +149,30 @@ class SweepTracker:
         if not np.any(table.with_fan):
             return False
         self._adjusted = locate_together(table, line, self._camera, self._fan)
-        self._sweeps = [self._located(sweep) for sweep in self._sweeps]
+        self._sweeps = {frame: self._located(sweep) for frame, sweep in self._sweeps.items()}
         return True
 
     def _among_anchors(self) -> CrossingTable | None:
-        """The crossings of the anchors with the fan and with each other."""
+        """The crossings of the anchors with the fan and with each other, each once."""
         anchors = np.array(list(self._anchors), dtype=np.int64)
-        tables = [
-            sweep.crossings.select(sweep.crossings.with_fan | np.isin(sweep.crossings.b, anchors))
-            for sweep in self._sweeps
-            if sweep.frame in self._anchors
-        ]
+        tables = []
+        for frame in self._anchors:
+            table = self._sweeps[frame].crossings
+            tables.append(table.select(table.with_fan | ((table.b < frame) & np.isin(table.b, anchors))))
         return tables[0].followed_by(*tables[1:]) if tables else None
 
     def _located(self, sweep: TrackedSweep) -> TrackedSweep:
         """The sweep with its plane from what is known now."""
         known, used = self._known(sweep.crossings)
-        if len(used) < 3:
-            return TrackedSweep(sweep.frame, sweep.crossings, sweep.geometry, sweep.left_out, None, used)
-        geometry = CrossingRays(sweep.geometry.rays[used], sweep.geometry.jacobians[used])
-        plane = locate_one(sweep.crossings.select(used), geometry, known)
-        return TrackedSweep(sweep.frame, sweep.crossings, sweep.geometry, sweep.left_out, plane, used)
+        crossings, geometry = sweep.crossings.select(used), sweep.geometry.select(used)
+        adjusted = self._adjusted
+        if adjusted is not None and sweep.frame in adjusted.frames:
+            place = int(np.searchsorted(adjusted.frames, sweep.frame))
+            block = slice(3 * place, 3 * place + 3)
+            covariance = adjusted.covariance[block, block]
+            plane = judge_plane(adjusted.pis[place], covariance, crossings, geometry, known)
+            return replace(sweep, plane=plane, used=used)
+        return replace(sweep, plane=locate_one(crossings, geometry, known) if len(used) >= 3 else None, used=used)
 
     def _known(self, table: CrossingTable) -> tuple[KnownPlanes, NDArray[np.int64]]:
         """The planes that crossings are with, and the rows of those crossings of which it is known."""

@@ -1,0 +1,212 @@
+import pickle
+
+import numpy as np
+import pytest
+
+from core.model import LightPlane
+from core.scan.coverage_map import CoverageMap
+from core.scan.crossing_marks import GOOD, LEFT_OUT, WEAK
+from core.scan.features import FrameFeatures, FrameReader, choose_sweep_stripe, extract_features, read_reference
+from core.scan.hints import HandState, HintLimits, hints_for
+from core.scan.movement import movement_px
+from core.scan.preview import Preview
+from core.scan.reconstruct import ReconstructOptions, reconstruct
+from core.simulate.recording import scan_of
+from core.simulate.scenario import Scenario
+
+
+class Scan:
+    """A simulated scan at a quarter of the pixels, read frame by frame."""
+
+    def __init__(self, thing: str, frames: int = 36):
+        stage, sheets, _ = scan_of(Scenario(object=thing, scale=0.25, frames=frames))
+        self.camera, self.fan = stage.rig.camera, stage.rig.fan
+        self.planes: list[LightPlane] = [sheet.plane for sheet in sheets]
+        self.pictures = [(f"frame{i:04d}.png", stage.frame(i, sheet)) for i, sheet in enumerate(sheets)]
+        self.picture = stage.reference()
+        self.reference = read_reference(self.picture)
+        reader = FrameReader(self.reference, choose_sweep_stripe(self.pictures[:4], self.reference))
+        self.features = [reader((i, frame)) for i, frame in enumerate(self.pictures)]
+        self.preview = Preview(self.reference, self.camera, self.fan)
+        self.frames = [self.preview(features) for features in self.features]
+
+    def depth_errors(self, index: int) -> np.ndarray:
+        frame = self.frames[index]
+        return frame.points[:, 2] - self.planes[index].depths(self.camera.rays(frame.point_uv))
+
+
+@pytest.fixture(scope="module")
+def block():
+    return Scan("block")
+
+
+@pytest.fixture(scope="module")
+def flat():
+    return Scan("plane", 24)
+
+
+def test_points_are_true_within_their_sigma(block):
+    errors = np.concatenate([block.depth_errors(i) for i in range(18, 36)])
+    sigma = np.concatenate([frame.point_sigma for frame in block.frames[18:]])
+    assert len(errors) > 1000
+    assert np.median(np.abs(errors)) < 0.3
+    assert np.median(np.abs(errors) / sigma) < 1.5
+
+
+def test_later_sweeps_are_better_located_than_by_the_fan_alone(flat):
+    first = [np.median(sigma) for frame in flat.frames[:6] for sigma in frame.sigma_mm]
+    last = [np.median(sigma) for frame in flat.frames[18:] for sigma in frame.sigma_mm]
+    assert np.median(last) < 0.2 * np.median(first)
+
+
+def test_on_a_flat_face_the_first_pass_is_told_to_tilt(flat):
+    assert all("Tilt the laser more." in frame.hints for frame in flat.frames[1:4])
+    assert all(frame.condition > 1e3 for frame in flat.frames[1:4])
+
+
+def test_each_point_shown_is_better_than_the_cut(block):
+    shown = np.concatenate([frame.point_sigma for frame in block.frames])
+    assert shown.max() <= 1.0
+
+
+def test_sigma_is_given_for_every_point_of_the_stripe(block):
+    for frame in block.frames:
+        assert [len(sigma) for sigma in frame.sigma_mm] == [len(piece) for piece in frame.centrelines]
+
+
+def test_every_crossing_has_a_status_and_a_sentence(block):
+    for frame in block.frames:
+        count = len(frame.crossing_uv)
+        assert len(frame.crossing_status) == len(frame.crossing_reason) == len(frame.crossing_with_fan) == count
+        assert set(frame.crossing_status) <= {GOOD, WEAK, LEFT_OUT}
+        assert all(reason.endswith(".") and reason[0].isupper() for reason in frame.crossing_reason)
+    good = [r for f in block.frames for s, r in zip(f.crossing_status, f.crossing_reason, strict=True) if s == GOOD]
+    assert any("line 2 of the fan at" in reason for reason in good)
+
+
+def test_frames_without_points_say_why(block):
+    assert all(bool(frame.reason) != bool(len(frame.points)) for frame in block.frames)
+    assert any("crossings" in frame.reason or "crosses no line" in frame.reason for frame in block.frames)
+
+
+def test_the_fan_s_lines_get_the_numbers_of_the_finished_scan(block):
+    features = extract_features(block.picture, block.pictures, len(block.pictures))
+    finished = reconstruct(features, block.camera, block.fan, ReconstructOptions(sigma_cut_mm=1.0))
+    by_line = [
+        sum(len(piece) for piece, k in zip(features.fan, finished.fan_lines.line, strict=True) if k == line)
+        for line in range(3)
+    ]
+    previewed = [3 * sum(len(piece) for piece in line) for line in block.preview.fan_lines]
+    assert np.allclose(previewed, by_line, rtol=0.02)
+
+
+def test_the_first_frame_brings_the_fan_and_later_ones_renew_the_cloud(block):
+    first, *others = block.frames
+    assert first.fan_lines is not None
+    assert np.all(first.renewed.frame <= first.index)
+    assert np.any(first.renewed.frame == -1)
+    renewed = [frame for frame in others if frame.renewed is not None]
+    assert 3 <= len(renewed) <= 12
+    for frame in renewed:
+        assert frame.renewed.frame.max() <= frame.index
+    assert len(renewed[-1].renewed) > 5 * len(renewed[0].renewed)
+
+
+def test_a_renewed_cloud_has_more_points_and_knows_them_better(flat):
+    cloud = flat.preview.cloud()
+    early = (cloud.frame >= 0) & (cloud.frame < 6)
+    then = np.concatenate([frame.point_sigma for frame in flat.frames[:6]])
+    assert np.count_nonzero(early) > len(then)
+    assert np.median(cloud.sigma[early]) < 0.5 * np.median(then)
+    rays = flat.camera.rays(cloud.uv[early])
+    true = np.array([flat.planes[k].depths(ray[None])[0] for k, ray in zip(cloud.frame[early], rays, strict=True)])
+    assert np.median(np.abs(cloud.points[early, 2] - true) / cloud.sigma[early]) < 1.5
+
+
+def test_what_is_shown_can_be_sent_to_another_process(block):
+    again = pickle.loads(pickle.dumps(block.frames[-1]))
+    assert np.array_equal(again.points, block.frames[-1].points)
+    assert np.array_equal(again.centrelines[0].uv, block.frames[-1].centrelines[0].uv)
+
+
+def test_a_frame_without_a_stripe_passes_its_reason_on(block):
+    preview = Preview(block.reference, block.camera, block.fan)
+    frame = preview(FrameFeatures(0, "frame0000.png", (), "no stripe of the hand-held laser"))
+    assert frame.reason == "no stripe of the hand-held laser"
+    assert len(frame.points) == 0
+    assert np.isnan(frame.speed_px)
+
+
+def test_a_laser_at_rest_does_not_wear_the_preview_out(block):
+    preview = Preview(block.reference, block.camera, block.fan)
+    still = block.features[3]
+    for index in range(60):
+        preview(FrameFeatures(index, still.name, still.centrelines))
+    assert len(preview._tracker._anchors) == 1
+
+
+def test_a_long_scan_keeps_few_anchors(block):
+    preview = Preview(block.reference, block.camera, block.fan)
+    index = 0
+    for _ in range(4):
+        for features in block.features:
+            preview(FrameFeatures(index, features.name, features.centrelines, features.reason))
+            index += 1
+    assert len(preview._tracker._anchors) <= 40
+    assert {0, 1, 2} >= {status for frame in block.frames for status in frame.crossing_status}
+
+
+def test_movement_is_measured_across_the_stripe(block):
+    lines = block.features[20].centrelines
+    assert movement_px(lines, lines) == pytest.approx(0, abs=0.6)
+    piece = max(lines, key=len)
+    moved = type(piece)(
+        piece.uv + 12 * piece.normal.mean(axis=0),
+        piece.normal,
+        piece.width,
+        piece.strength,
+        piece.sigma,
+        piece.saturated,
+    )
+    assert movement_px([moved], [piece]) == pytest.approx(12, rel=0.1)
+    assert np.isnan(movement_px([], lines))
+
+
+WELL = HandState(3, 3, 0.05, 20.0, 1920, 90.0, 255.0, 0.0)
+
+
+def changed(**values) -> HandState:
+    return HandState(**{name: values.get(name, getattr(WELL, name)) for name in WELL.__slots__})
+
+
+@pytest.mark.parametrize(
+    ("state", "word"),
+    [
+        (changed(strength=8.0), "Brighter"),
+        (changed(saturated=0.6), "Darker"),
+        (changed(speed_px=200.0), "Slower"),
+        (changed(lines_met=1, sigma_mm=float("nan")), "Cross more of the fan"),
+        (changed(sigma_mm=0.8), "Tilt the laser more"),
+    ],
+)
+def test_each_fault_of_the_hand_has_its_hint(state, word):
+    assert any(word in hint for hint in hints_for(state, HintLimits()))
+
+
+def test_there_are_two_hints_at_most_and_none_when_all_is_well():
+    assert hints_for(WELL, HintLimits()) == ()
+    assert len(hints_for(changed(strength=5.0, speed_px=300.0, sigma_mm=2.0), HintLimits())) == 2
+
+
+def test_coverage_counts_cells_of_what_was_lit():
+    area = CoverageMap((1920, 1374))
+    assert area.share == 0
+    u, v = np.meshgrid(np.arange(400, 800, 5.0), np.arange(400, 800, 5.0))
+    grid = np.column_stack([u.ravel(), v.ravel()])
+    area.add_lit(grid)
+    assert area.share == 0
+    area.add(grid[grid[:, 0] < 600])
+    assert area.share == pytest.approx(0.5, abs=0.05)
+    assert area.cells.shape == (69, 96)
+    area.add(np.array([[-3.0, 5000.0]]))  # out of the picture: the nearest cell
+    assert area.cells[-1, 0]
