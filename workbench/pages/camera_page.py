@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from PySide6.QtCore import QEvent
 from PySide6.QtWidgets import QTabWidget, QVBoxLayout, QWidget
 
 from workbench.pages import camera_words as words
@@ -48,7 +49,7 @@ class CameraPage(StepPage):
         self.add_to_side(self.stage)
         self.live_panel = LivePanel(presenter.live)
         self.source = SourceChooser(self.live_panel, what=self.tr("Folder with pictures of the camera's target"))
-        self.add_panel(self.tr("Pictures"), self.source)
+        self.pictures_fold = self.add_panel(self.tr("Pictures"), self.source)
         self.target = TargetPanel(presenter)
         self.target_fold = self.add_panel(self.tr("Target"), self.target)
         self.views = ViewList()
@@ -59,6 +60,7 @@ class CameraPage(StepPage):
         self.result_fold = self.add_panel(self.tr("Result"), self._result())
         self._rows: Any = None
         self._bars: Any = None
+        self._folded = ""
         self._connect()
 
     def refresh(self) -> None:
@@ -70,9 +72,11 @@ class CameraPage(StepPage):
         count = len(p.work.pictures) if p.work.pictures is not None else None
         detail = self.tr("{0} pictures").format(count) if count is not None and p.folder is not None else ""
         self.source.set_folder(p.folder, detail)
+        self.live_panel.set_primary(stage in (Stage.NONE, Stage.EMPTY))
         if stage is Stage.LIVE:
             self.source.set_mode("live")
             self.tabs.setCurrentWidget(self.picture)
+        self._fold(stage)
         self._show_views()
         calibration = p.work.calibration
         self.quality.set_rows(words.quality_rows(calibration, p.work.judgement))
@@ -93,18 +97,31 @@ class CameraPage(StepPage):
         self.bars.threshold_changed.connect(p.set_threshold)
         p.model.opened.connect(self._opened)
 
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "_folded"):
+            self._changed()
+
     def _opened(self) -> None:
-        p = self.presenter
+        self._folded = ""
         self.tabs.setCurrentIndex(0)
-        self.source.set_mode("folder" if p.project.sources.camera else "live")
-        if p.project.sources.camera:
-            self.target_fold.collapse(animate=False)
-        else:
-            self.target_fold.expand(animate=False)
+        self.source.set_mode("folder" if self.presenter.project.sources.camera else "live")
+
+    def _fold(self, stage: Stage) -> None:
+        """Once there is a result, it takes the room of what it was made from; the user may unfold that again."""
+        wanted = "result" if self.presenter.work.calibration is not None and stage is not Stage.LIVE else "pictures"
+        if wanted != self._folded:
+            self._folded = wanted
+            for fold in (self.pictures_fold, self.target_fold):
+                if wanted == "result":
+                    fold.collapse(animate=False)
+                else:
+                    fold.expand(animate=False)
 
     def _refresh_tab(self) -> None:
         tab: Any = self.tabs.currentWidget()
         tab.refresh()
+        self._show_bars()
 
     def _show_views(self) -> None:
         rows = self._view_rows()
@@ -115,16 +132,22 @@ class CameraPage(StepPage):
             self.views.set_rows(rows)
         if self.presenter.current and self.views.current() != self.presenter.current:
             self.views.set_current(self.presenter.current)
-        views = [] if self.presenter.live.running else self.presenter.views()
+
+    def _show_bars(self) -> None:
+        """The error of each view, below what it is about."""
+        about = self.tabs.currentWidget() in (self.picture, self.coverage, self.residuals)
+        views = self.presenter.views() if about and not self.presenter.live.running else ()
         bars = [
             Bar(view.view.name, known(view.rms_px), view.used, words.view_sentence(short(view.view.name), view))
             for view in views
         ]
         self.bars.setVisible(bool(bars))
-        state = (bars, self.presenter.threshold)
-        if bars and state != self._bars:
-            self._bars = state
-            self.bars.set_bars(bars, label=self.tr("RMS"), unit="px", threshold=self.presenter.threshold)
+        threshold = self.presenter.threshold
+        if threshold is None:  # a little above all, ready to be pulled down
+            threshold = 1.15 * max((bar.value or 0.0 for bar in bars if bar.used), default=0.0)
+        if bars and (bars, threshold) != self._bars:
+            self._bars = bars, threshold
+            self.bars.set_bars(bars, label=self.tr("RMS"), unit="px", threshold=threshold)
         self.bars.set_current(self.presenter.current)
 
     def _view_rows(self) -> list[ListRow]:

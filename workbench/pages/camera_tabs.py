@@ -257,21 +257,12 @@ class HistoryTab(QWidget):
         self._presenter = presenter
         self.table, self.changes = DataTable(), DataTable()
         self.table.set_headers(
-            [
-                (self.tr("Kept"), self.tr("When it was accepted")),
-                (self.tr("RMS (px)"), self.tr("RMS of the reprojection")),
-                (self.tr("Views"), self.tr("Views that count, and all there were")),
-                (self.tr("Id"), self.tr("Name of these very parameters; files made with them carry it")),
-                ("", self.tr("Whether it is in use")),
-            ]
+            [(self.tr("Kept"), ""), (self.tr("RMS"), "px"), (self.tr("Views"), ""), (self.tr("Id"), ""), ("", "")]
         )
         self.changes.set_headers(
             [
-                (self.tr("Parameter"), ""),
-                (self.tr("Chosen"), self.tr("In the calibration chosen above")),
-                (self.tr("Shown"), self.tr("In the calibration this page shows")),
-                (self.tr("Change"), self.tr("Shown − chosen; ▲: more than three standard deviations")),
-                (self.tr("sd"), self.tr("Standard deviation to expect of the change")),
+                (title, "")
+                for title in (self.tr("Parameter"), self.tr("Chosen"), self.tr("Shown"), self.tr("Change"), "sd")
             ]
         )
         self.restore, self.words = QPushButton(self.tr("Restore")), muted()
@@ -311,7 +302,9 @@ class HistoryTab(QWidget):
             why = self.tr("This calibration is in use.")
         else:
             why = ""
-        self.words.setText(why or self.tr("The chosen calibration against the one shown."))
+        self.words.setText(
+            why or self.tr("Change: shown − chosen. ▲: more than three of its standard deviations (sd).")
+        )
         self.restore.setEnabled(not why)
         self.restore.setToolTip(why or self.tr("Measure with the chosen calibration again"))
 

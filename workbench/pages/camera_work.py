@@ -58,7 +58,7 @@ class CameraWork(QObject):
         self._solved: OrderedDict[Key, tuple[CameraCalibration | None, str]] = OrderedDict()
         self._found_key: Key = ()
         self._solve_key: Key = ()
-        self._listed = ""
+        self._listed = self._thumbnails_of = ""
 
     @property
     def searching(self) -> bool:
@@ -201,7 +201,9 @@ class CameraWork(QObject):
         wanted = f"{stored}|{project.rig.channel}"
         if wanted == self._listed:
             return
-        self._listed, self.pictures, self.thumbnails = wanted, None, {}
+        if wanted != self._thumbnails_of:
+            self.pictures, self.thumbnails = None, {}
+        self._listed = self._thumbnails_of = wanted
         if folder is None:
             self.pictures = ()
             return

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from PySide6.QtCore import QCoreApplication
+from PySide6.QtCore import QCoreApplication, QEvent
 from PySide6.QtWidgets import (
     QCheckBox,
     QComboBox,
@@ -28,10 +28,10 @@ from workbench.views.live_fields import DeviceField, NumberField
 class LivePanel(QWidget):
     """Which source, its settings, start, pause, take, auto; and how many pictures there are.
 
-    `live` is the page's LivePresenter. `primary` makes Start the page's one primary button.
+    `live` is the page's LivePresenter.
     """
 
-    def __init__(self, live: Any, *, primary: bool = False, parent: QWidget | None = None) -> None:
+    def __init__(self, live: Any, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.live = live
         self.kind, self.device = QComboBox(), DeviceField()
@@ -41,7 +41,6 @@ class LivePanel(QWidget):
         self.start, self.pause, self.take = QPushButton(), QPushButton(), QPushButton()
         self.auto = QCheckBox(self.tr("Take pictures automatically"))
         self.state, self.counts = QLabel(), QLabel()
-        self.start.setProperty("primary", primary)
         self._dress()
         self._lay_out()
         self._connect()
@@ -64,7 +63,9 @@ class LivePanel(QWidget):
             self._form.setRowVisible(field, settings.can(name))
             field.show_value(getattr(settings.values, name))
         self.start.setText(self.tr("Stop") if running else self.tr("Start live"))
-        self.start.setIcon(icon("mdi6.stop" if running else "mdi6.play"))
+        self.start.setIcon(
+            icon("mdi6.stop" if running else "mdi6.play", colour="on_accent" if self.start.property("primary") else "")
+        )
         self.start.setEnabled(not live.stopping)
         self.start.setToolTip(
             self.tr("Finish; what is recorded is kept (Ctrl+L)")
@@ -73,6 +74,7 @@ class LivePanel(QWidget):
         )
         self.pause.setText(self.tr("Resume") if live.paused else self.tr("Pause"))
         self.pause.setIcon(icon("mdi6.record" if live.paused else "mdi6.pause"))
+        self.take.setIcon(icon("mdi6.camera-iris"))
         why_not = "" if going else self.tr("Start the live source first.")
         for button, does in (
             (self.pause, self.tr("Record nothing for a while")),
@@ -85,6 +87,14 @@ class LivePanel(QWidget):
         self.auto.blockSignals(False)
         self.show_counts()
 
+    def set_primary(self, primary: bool) -> None:
+        """Whether Start is the page's one primary button now."""
+        if self.start.property("primary") != primary:
+            self.start.setProperty("primary", primary)
+            self.start.style().unpolish(self.start)
+            self.start.style().polish(self.start)
+            self.refresh()
+
     def show_counts(self) -> None:
         """Show the state and the numbers of pictures."""
         self.state.setText(self.live.state_text())
@@ -93,6 +103,11 @@ class LivePanel(QWidget):
     def showEvent(self, event: Any) -> None:
         super().showEvent(event)
         self.refresh()
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "_form"):
+            self.refresh()
 
     def _dress(self) -> None:
         self.kind.setToolTip(self.tr("What delivers the pictures"))
@@ -106,7 +121,6 @@ class LivePanel(QWidget):
             field.setAccessibleName(name)
             field.setToolTip(tip)
         self.take.setText(self.tr("Take picture"))
-        self.take.setIcon(icon("mdi6.camera-iris"))
         self.auto.setToolTip(self.tr("Takes a picture when it is still, sharp, and unlike those taken before"))
         self.auto.setVisible(self.live.step != "scan")
         self.take.setVisible(self.live.step != "scan")

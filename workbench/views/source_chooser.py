@@ -7,7 +7,16 @@ from typing import Any
 
 from PySide6.QtCore import QEvent, Qt, Signal
 from PySide6.QtGui import QDragEnterEvent, QDropEvent
-from PySide6.QtWidgets import QButtonGroup, QHBoxLayout, QLabel, QPushButton, QStackedWidget, QVBoxLayout, QWidget
+from PySide6.QtWidgets import (
+    QButtonGroup,
+    QHBoxLayout,
+    QLabel,
+    QPushButton,
+    QSizePolicy,
+    QStackedWidget,
+    QVBoxLayout,
+    QWidget,
+)
 
 from workbench.theme import icon
 from workbench.views import ask
@@ -53,6 +62,7 @@ class SourceChooser(QWidget):
         self.browse.clicked.connect(lambda: self.choose())
         self.recorded.setChecked(True)
         self.accept_drops_on(self)
+        self._fit()
         self._dress()
 
     @property
@@ -110,7 +120,6 @@ class SourceChooser(QWidget):
         column.addWidget(self.path)
         column.addWidget(self.detail)
         column.addWidget(self.browse)
-        column.addStretch(1)
         return part
 
     def _dress(self) -> None:
@@ -118,9 +127,21 @@ class SourceChooser(QWidget):
         self.live.setIcon(icon("mdi6.video-outline"))
         self.browse.setIcon(icon("mdi6.folder-open-outline"))
 
+    def _fit(self) -> None:
+        """Only what is shown takes room."""
+        for place in range(self._stack.count()):
+            part = self._stack.widget(place)
+            assert part is not None
+            shown = place == self._stack.currentIndex()
+            policy = QSizePolicy.Policy.Preferred if shown else QSizePolicy.Policy.Ignored
+            part.setSizePolicy(QSizePolicy.Policy.Preferred, policy)
+        self._stack.adjustSize()
+        self.updateGeometry()
+
     def _toggled(self, place: int, on: bool) -> None:
         if on:
             self._stack.setCurrentIndex(place)
+            self._fit()
             self.mode_changed.emit(self.mode)
 
 
