@@ -106,9 +106,14 @@ QPushButton[primary="true"] {{ background: {s.accent}; color: {s.on_accent}; bor
     font-weight: 600; }}
 QPushButton[primary="true"]:disabled {{ background: {s.window}; color: {s.muted}; border-color: {s.line}; }}
 QPushButton:checked {{ border-color: {s.accent}; color: {s.accent}; }}
-QLineEdit, QPlainTextEdit, QAbstractSpinBox, QComboBox {{ padding: 3px 5px; border: 1px solid {s.line};
+QLineEdit, QPlainTextEdit {{ padding: 3px 5px; border: 1px solid {s.line};
     border-radius: 4px; background: {s.panel}; selection-background-color: {s.accent}; }}
-QLineEdit:focus, QPlainTextEdit:focus, QAbstractSpinBox:focus, QComboBox:focus {{ border-color: {s.accent}; }}
+QLineEdit:focus, QPlainTextEdit:focus {{ border-color: {s.accent}; }}
+QAbstractSpinBox, QComboBox {{ min-height: 20px; }}
+QHeaderView::section {{ background: {s.window}; color: {s.muted}; border: none; border-bottom: 1px solid {s.line};
+    padding: 4px 7px; }}
+QTableView {{ border: 1px solid {s.line}; }}
+DataTable QTableView::item {{ padding: 0 7px; }}
 QProgressBar {{ border: 1px solid {s.line}; border-radius: 3px; text-align: center; height: 14px; }}
 QProgressBar::chunk {{ background: {s.accent}; border-radius: 2px; }}
 QSplitter::handle {{ background: {s.line}; }}
