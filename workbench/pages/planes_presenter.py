@@ -1,11 +1,396 @@
-"""Decisions of the planes page."""
+"""Decisions of the laser planes page: pictures, plate, which poses count, the fan's constraint, accept or reject."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
+from enum import StrEnum
+from pathlib import Path
+from typing import Any
+
+from PySide6.QtCore import Signal
+
+from core.calibrate.pose_features import PoseFeatures
+from core.calibrate.results import PlanePose
+from core.files.fan_file import fan_id
+from core.files.project import Project
+from core.files.project_keys import finished
+from core.live.events import LiveEnded, LiveTaken
+from core.model import Camera, Fan
+from workbench import jobs
+from workbench.bench import Bench
+from workbench.pages.live_presenter import LivePresenter
+from workbench.pages.planes_work import PlanesWork
 from workbench.pages.presenter import StepPresenter
+from workbench.pages.sources import folder_of, put_source
+from workbench.pages.target_values import changed_target, values_of
+from workbench.step_state import State
+
+PART = "planes/"
+
+
+class Stage(StrEnum):
+    """How far the calibration of the laser planes is."""
+
+    NO_CAMERA = "no camera"
+    NONE = "none"
+    EMPTY = "empty"
+    FOUND = "found"
+    LIVE = "live"
+    MEASURING = "measuring"
+    SOLVING = "solving"
+    FAILED = "failed"
+    SOLVED = "solved"
+    REJECTED = "rejected"
+    ACCEPTED = "accepted"
+    OUTDATED = "outdated"
 
 
 class PlanesPresenter(StepPresenter):
-    """Decisions of the planes page."""
+    """The fan: poses measured, planes solved and judged; what is accepted."""
 
     step = "planes"
+
+    pose_ready = Signal(object)
+    """PoseStages of the current pose."""
+
+    target_refused = Signal(str, str)
+    """Field of the target and why it cannot be so."""
+
+    def __init__(self, bench: Bench) -> None:
+        super().__init__(bench)
+        self.live = LivePresenter(bench, "planes", self)
+        self.work = PlanesWork(bench, self)
+        self.history: tuple[Any, ...] = ()
+        self.camera: Camera | None = None
+        self.current = ""
+        self.live_views: list[tuple[str, Any]] = []
+        self._rejected: set[str] = set()
+        self._accepting = False
+        self._read: tuple[str, Any] = ("", None)
+        self._camera_id = ""
+        self.live.calibration = self._known
+        self.live.changed.connect(self.changed)
+        self.live.started.connect(lambda _: self.live_views.clear())
+        self.live.taken.connect(self._live_taken)
+        self.live.ended.connect(self._live_ended)
+        self.work.changed.connect(self._work_changed)
+
+    # ---- state
+
+    @property
+    def stage(self) -> Stage:
+        """How far the calibration is."""
+        work, accepted = self.work, self.project.accepted.fan
+        if self.live.running:
+            return Stage.LIVE
+        if work.measuring:
+            return Stage.MEASURING
+        if work.poses is not None and work.solving:
+            return Stage.SOLVING
+        if accepted and self.candidate in ("", accepted):
+            if self.state.state is State.DONE or (self.candidate == accepted and self.state.state is State.READY):
+                return Stage.ACCEPTED
+            return Stage.OUTDATED
+        if self.candidate:
+            return Stage.REJECTED if self.candidate in self._rejected else Stage.SOLVED
+        if not self.project.accepted.camera:
+            return Stage.NO_CAMERA
+        if work.problem:
+            return Stage.FAILED
+        if not self.project.sources.planes:
+            return Stage.NONE
+        return Stage.EMPTY if work.pictures == () else Stage.FOUND
+
+    @property
+    def candidate(self) -> str:
+        """The id of the calibration that is shown, or ""."""
+        return fan_id(self.work.calibration.fan) if self.work.calibration is not None else ""
+
+    def blocker(self) -> str:
+        return {
+            Stage.NO_CAMERA: self.tr("Accept a camera calibration first."),
+            Stage.NONE: self.tr("Record or choose pictures of the plate under the laser first."),
+            Stage.EMPTY: self.tr("Choose a folder that holds pictures of the plate under the laser."),
+            Stage.FOUND: self.tr("Calibrate the laser planes from their pictures first."),
+            Stage.LIVE: self.tr("Stop the live source when there are enough poses."),
+            Stage.MEASURING: self.tr("The pictures are being measured."),
+            Stage.SOLVING: self.tr("The laser planes are being solved."),
+            Stage.FAILED: self.tr("The laser planes could not be calibrated; record more poses or check the plate."),
+            Stage.SOLVED: self.tr("Accept the laser planes first."),
+            Stage.REJECTED: self.tr("The laser planes were rejected; accept better ones first."),
+            Stage.ACCEPTED: "",
+            Stage.OUTDATED: self.tr("The accepted laser planes are out of date; calibrate again."),
+        }[self.stage]
+
+    def busy(self) -> str:
+        return self.live.busy()
+
+    @property
+    def can_measure(self) -> str:
+        """Why the pictures cannot be measured now, or ""."""
+        if not self.project.accepted.camera:
+            return self.tr("Accept a camera calibration first.")
+        if not self.project.sources.planes:
+            return self.tr("Choose or record pictures first.")
+        if self.live.running:
+            return self.tr("Stop the live source first.")
+        if self.work.measuring:
+            return self.tr("The pictures are being measured.")
+        return ""
+
+    @property
+    def can_accept(self) -> str:
+        """Why nothing can be accepted now, or ""."""
+        if self.work.calibration is None or self.work.solving or self._accepting:
+            return self.tr("There is no calibration yet.")
+        if self.candidate == self.project.accepted.fan and self.state.state is State.DONE:
+            return self.tr("These laser planes are accepted already.")
+        return ""
+
+    @property
+    def can_reject(self) -> str:
+        """Why nothing can be rejected now, or ""."""
+        if not self.candidate or self.work.solving:
+            return self.tr("There is no calibration yet.")
+        if self.candidate in self._rejected and self.candidate != self.project.accepted.fan:
+            return self.tr("This calibration is rejected already.")
+        return ""
+
+    # ---- pictures, plate, laser
+
+    @property
+    def folder(self) -> Path | None:
+        """The folder of the pictures."""
+        return folder_of(self.model, "planes")
+
+    def use_folder(self, folder: Path) -> None:
+        """Take the pictures of a folder, and measure them."""
+        self.live.stop()
+        put_source(self.model, "planes", folder, self.tr("choose the laser planes' pictures"))
+        self.work.measure()
+
+    def target_values(self) -> dict[str, Any]:
+        """The plate as the fields of a form."""
+        return values_of(self.project.rig.plane_target)
+
+    def set_target(self, field: str, value: Any) -> None:
+        """Change the plate; undoable. What cannot be is refused with a sentence."""
+        rig = self.project.rig
+        try:
+            target = changed_target(rig.plane_target, field, value)
+        except ValueError as error:
+            self.target_refused.emit(field, str(error))
+            return
+        self.target_refused.emit(field, "")
+        after = replace(self.project, rig=replace(rig, plane_target=target))
+        self.model.edit(self.tr("change the plate"), after, f"plane target {field}")
+
+    def print_target(self, path: Path, paper: str) -> None:
+        """Write the plate's target to scale as a PDF."""
+        self.bench.glance(
+            jobs.TARGET_SHEET,
+            path,
+            self.project.rig.plane_target,
+            paper,
+            self.project.info.name,
+            label=self.tr("Drawing the target"),
+            on_done=lambda done: self.bench.notices.info(
+                self.tr("The target was written to {0}. Print it at 100 % and measure its rulers.").format(done)
+            ),
+        )
+
+    def set_laser(self, field: str, value: Any) -> None:
+        """Change "lines", "angle" (rad) or "constrain"; undoable."""
+        project = self.project
+        if field == "constrain":
+            after = replace(project, options=replace(project.options, constrain_fan=bool(value)))
+        else:
+            after = replace(project, rig=replace(project.rig, **{field: value}))
+        self.model.edit(self.tr("change the laser"), after, f"laser {field}")
+
+    # ---- poses
+
+    def poses(self) -> tuple[PlanePose, ...]:
+        """The poses as the calibration shown judges them."""
+        return self.work.calibration.poses if self.work.calibration is not None else ()
+
+    def set_used(self, names: Sequence[str], used: bool) -> None:
+        """Let poses count, or leave them out; undoable. While they are taken live, put them aside."""
+        if self.live.running:
+            if not used:
+                for name in names:
+                    self.live.discard(name)
+                self.live_views = [view for view in self.live_views if view[0] not in names]
+                self.changed.emit()
+            return
+        stored = {PART + name for name in names}
+        excluded = self.project.options.excluded
+        after = excluded - stored if used else excluded | stored
+        what = names[0] if len(names) == 1 else self.tr("{0} poses").format(len(names))
+        label = self.tr("let {0} count") if used else self.tr("leave out {0}")
+        options = replace(self.project.options, excluded=frozenset(after))
+        self.model.edit(label.format(what), replace(self.project, options=options))
+
+    def choose_pose(self, name: str) -> None:
+        """Show this pose."""
+        if name != self.current:
+            self.current = name
+            self._look()
+            self.changed.emit()
+
+    def pose_of(self, name: str) -> PlanePose | None:
+        """A pose as the calibration shown judges it."""
+        return next((pose for pose in self.poses() if pose.name == name), None)
+
+    def features_of(self, name: str) -> PoseFeatures | None:
+        """What the pictures of a pose show; None if nobody has looked."""
+        return next((pose for pose in self.work.poses or () if pose.name == name), None)
+
+    def look_again(self) -> None:
+        """The picture of the current pose is wanted again."""
+        self._read = ("", None)
+        self._look()
+
+    # ---- accept and reject
+
+    def accept(self) -> None:
+        """Measure with the planes that are shown, from now on; undoable."""
+        folder, calibration, poses, project = self.model.folder, self.work.calibration, self.work.poses, self.project
+        if folder is None or calibration is None or poses is None or self.can_accept:
+            return
+        self._accepting = True
+
+        def kept(id_: str) -> None:
+            self._accepting = False
+            if folder != self.model.folder:
+                return
+            after = replace(self.project, accepted=replace(self.project.accepted, fan=id_))
+            self.model.edit(self.tr("accept the laser planes"), after)
+            self._rejected.discard(id_)
+            made_from = replace(project, accepted=after.accepted)
+            self.model.record("planes", finished("planes", made_from, self.model.results))
+            self._read_history()
+
+        def failed(_: Any) -> None:
+            self._accepting = False
+            self.changed.emit()
+
+        self.bench.glance(
+            jobs.ACCEPT_FAN, folder, project, calibration, poses, label=self.tr("Keeping the laser planes"),
+            on_done=kept, on_failed=failed,
+        )  # fmt: skip
+
+    def reject(self) -> None:
+        """Do not measure with the planes that are shown; undoable where they were accepted."""
+        if self.can_reject:
+            return
+        self._rejected.add(self.candidate)
+        if self.candidate == self.project.accepted.fan:
+            after = replace(self.project, accepted=replace(self.project.accepted, fan=""))
+            self.model.edit(self.tr("reject the laser planes"), after)
+        self.changed.emit()
+
+    def restore(self, id_: str) -> None:
+        """Accept planes of the history again; undoable."""
+        if id_ and id_ != self.project.accepted.fan:
+            after = replace(self.project, accepted=replace(self.project.accepted, fan=id_))
+            self.model.edit(self.tr("restore laser planes"), after)
+            self.model.record("planes", finished("planes", self.project, self.model.results))
+
+    # ---- keys
+
+    def do_run(self) -> None:
+        if not self.can_measure:
+            self.work.measure()
+
+    def do_accept(self) -> None:
+        self.accept()
+
+    def do_live(self) -> None:
+        self.live.toggle()
+
+    def do_capture(self) -> None:
+        self.live.capture()
+
+    # ---- what happens elsewhere
+
+    def opened(self) -> None:
+        self.current, self._read, self.history = "", ("", None), ()
+        self._rejected.clear()
+        self._follow_camera()
+        self.work.opened()
+        self._read_history()
+
+    def project_changed(self, before: Project, after: Project) -> None:
+        if before.sources.planes != after.sources.planes:
+            self.current, self._read = "", ("", None)
+        self._follow_camera()
+        self.work.follow()
+
+    def stop(self) -> None:
+        self.live.finish()
+
+    def _follow_camera(self) -> None:
+        """Read the accepted camera, which live pictures and the 3D view want."""
+        folder, id_ = self.model.folder, self.project.accepted.camera
+        if folder is None or not id_:
+            self.camera, self._camera_id = None, ""
+            return
+        if id_ == self._camera_id:
+            return
+        self._camera_id = id_
+
+        def read(calibration: Any) -> None:
+            if id_ == self._camera_id:
+                self.camera = calibration.camera
+                self.changed.emit()
+
+        self.bench.glance(jobs.READ_CAMERA, folder, id_, label=self.tr("Reading the camera"), on_done=read, offers={})
+
+    def _read_history(self) -> None:
+        folder = self.model.folder
+        if folder is None:
+            return
+
+        def read(entries: tuple[Any, ...]) -> None:
+            if folder == self.model.folder:
+                self.history = tuple(entry for entry in entries if entry.kind == "fan")
+                self.changed.emit()
+
+        self.bench.glance(jobs.HISTORY, folder, label=self.tr("Reading the history"), on_done=read, offers={})
+
+    def _known(self) -> tuple[Camera | None, Fan | None]:
+        return self.camera, self.work.calibration.fan if self.work.calibration is not None else None
+
+    def _live_taken(self, taken: LiveTaken) -> None:
+        self.live_views.append((taken.name, taken.thumbnail))
+
+    def _live_ended(self, ended: LiveEnded) -> None:
+        if ended.recorded and self.folder == ended.folder:
+            self.work.measure()
+
+    def _work_changed(self) -> None:
+        names = [pose.name for pose in self.work.poses or ()] or [path.stem for path in self.work.pictures or ()]
+        if self.current not in names:
+            self.current = names[0] if names else ""
+        self._look()
+        self.changed.emit()
+
+    def _look(self) -> None:
+        """Have the current pose's picture read, with the numbers its stripes have in the calibration shown."""
+        name, folder, features = self.current, self.model.folder, self.features_of(self.current)
+        calibration = self.work.calibration
+        if not name or folder is None or features is None or self._read == (name, calibration):
+            return
+        self._read = (name, calibration)
+        self.bench.glance(
+            jobs.SHOW_POSE,
+            folder,
+            self.project,
+            features,
+            calibration.fan if calibration is not None else None,
+            label=self.tr("Reading a pose"),
+            on_done=lambda stages: self.pose_ready.emit(stages) if stages.name == self.current else None,
+            replace_waiting=True,
+        )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from core.model import Camera, LightPlane
+from core.model import Camera, LightPlane, Pose
 from core.model.arrays import Array
 
 
@@ -19,24 +19,34 @@ def frustum(camera: Camera, depth_mm: float) -> Array:
 
 
 def plane_patch(plane: LightPlane, camera: Camera, depths_mm: tuple[float, float]) -> Array:
-    """The part of a light plane that the camera sees between two depths: corners (4, 3) in mm.
+    """A light plane between two depths, as long as the camera's picture is high or wide: corners (4, 3) in mm.
 
-    The plane meets each depth in a straight line; it is cut at the sides of the pyramid the line crosses.
-    A plane that the camera does not see between these depths gives NaN.
+    At each depth the plane is a straight line. It is cut where it leaves the picture at the ends it runs towards, and
+    not where it leaves it sideways, so there always are four corners.
+
+    Raises
+    ------
+    ValueError
+        If the plane lies across the camera's axis: it has no depths to be cut at.
     """
-    near, far = (_chord(plane, frustum(camera, depth)[1:], depth) for depth in depths_mm)
-    patch: Array = np.array([near[0], near[1], far[1], far[0]])
+    a, b, c = plane.pi
+    along = 1 if abs(a) >= abs(b) else 0  # the line runs along y when the plane's normal points along x
+    if max(abs(a), abs(b)) < 1e-6 * abs(c):
+        raise ValueError("the plane lies across the camera's axis")
+    patch = np.empty((4, 3))
+    for k, depth in enumerate(depths_mm):
+        corners = frustum(camera, depth)[1:, along]
+        ends = np.array([corners.min(), corners.max()])
+        sideways = (1 - c * depth - plane.pi[along] * ends) / plane.pi[1 - along]
+        rows = slice(2 * k, 2 * k + 2)
+        patch[rows, along], patch[rows, 1 - along], patch[rows, 2] = ends, sideways, depth
+    patch[2:] = patch[[3, 2]]
     return patch
 
 
-def _chord(plane: LightPlane, corners: Array, depth: float) -> Array:
-    """Ends (2, 3) of the line in which the plane meets the rectangle `corners` (4, 3) at one depth."""
-    signed = plane.distances(corners)
-    ends = []
-    for i in range(4):
-        a, b = signed[i], signed[(i + 1) % 4]
-        if (a < 0) != (b < 0):
-            ends.append(corners[i] + (corners[(i + 1) % 4] - corners[i]) * (a / (a - b)))
-    if len(ends) != 2:
-        return np.full((2, 3), np.nan)
-    return np.array(sorted(ends, key=lambda end: (end[1], end[0])))
+def target_outline(pose: Pose, points: Array) -> Array:
+    """The rectangle around a target's points (N, 3), where `pose` puts it before the camera: (5, 3) in mm, closed."""
+    (left, top), (right, bottom) = points[:, :2].min(axis=0), points[:, :2].max(axis=0)
+    corners = np.array([[left, top], [right, top], [right, bottom], [left, bottom], [left, top]])
+    outline: Array = np.column_stack([corners, np.zeros(5)]) @ pose.rotation.T + pose.translation
+    return outline

@@ -1,0 +1,116 @@
+"""The form of a calibration target, and how to print it. Shared by the pages that have one."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, Protocol
+
+from PySide6.QtCore import QCoreApplication, Qt, SignalInstance
+from PySide6.QtWidgets import QComboBox, QHBoxLayout, QPushButton, QVBoxLayout, QWidget
+
+from workbench.pages.target_values import DICTIONARIES, PAPERS
+from workbench.theme import icon
+from workbench.views import ask
+from workbench.views.forms import SettingsForm
+
+
+class HasTarget(Protocol):
+    """What the panel needs of a presenter."""
+
+    target_refused: SignalInstance
+    """Field of the target and why it cannot be so; an empty sentence if it can."""
+
+    def target_values(self) -> dict[str, Any]: ...
+    def set_target(self, field: str, value: Any) -> None: ...
+    def print_target(self, path: Path, paper: str) -> None: ...
+
+
+class TargetPanel(QWidget):
+    """What the camera is shown. `kinds` are those offered, in the order of the list."""
+
+    def __init__(self, presenter: HasTarget, kinds: tuple[str, ...], parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._presenter, self._kinds = presenter, kinds
+        self._kind = ""
+        self._holder = QVBoxLayout()
+        self._holder.setContentsMargins(0, 0, 0, 0)
+        self.form = SettingsForm()
+        self._holder.addWidget(self.form)
+        self.paper, self.print = QComboBox(), QPushButton(self.tr("Printable PDF …"))
+        for paper in PAPERS:
+            self.paper.addItem(paper, paper)
+        self.paper.setCurrentText("A4")
+        self.paper.setToolTip(self.tr("Paper the target is printed on"))
+        self.paper.setAccessibleName(self.tr("Paper"))
+        self.print.setToolTip(self.tr("Write this target to scale as a PDF, with rulers to check the print"))
+        self.print.clicked.connect(lambda: self._print())
+        row = QHBoxLayout()
+        row.addWidget(self.paper)
+        row.addWidget(self.print, 1)
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.addLayout(self._holder)
+        column.addLayout(row)
+        presenter.target_refused.connect(lambda field, why: self.form.set_complaint(field, why))
+
+    def refresh(self) -> None:
+        """Show the target."""
+        self.print.setIcon(icon("mdi6.printer-outline"))
+        values = self._presenter.target_values()
+        if values["kind"] != self._kind:
+            self._build(values["kind"])
+        self.form.set_values(values)
+
+    def _build(self, kind: str) -> None:
+        """The fields of another kind of target."""
+        self._kind = kind
+        old, self.form = self.form, SettingsForm()
+        self._holder.replaceWidget(old, self.form)
+        old.hide()
+        old.deleteLater()
+        form = self.form
+        kinds = [(name, kind_in_words(name)) for name in self._kinds]
+        form.add_choice("kind", self.tr("Kind"), kinds, self.tr("What is printed on the target."))
+        if kind != "black_square":
+            self._add_counts(form, kind)
+        length = {"circle_grid": self.tr("Pitch"), "black_square": self.tr("Side")}.get(kind, self.tr("Square"))
+        form.add_number(
+            "size_mm", length, "mm", self.tr("Measure it on the print: all lengths rest on it."),
+            minimum=0.1, maximum=5000, decimals=3, step=0.1,
+        )  # fmt: skip
+        if kind == "charuco":
+            form.add_number("marker_mm", self.tr("Marker"), "mm", minimum=0.1, maximum=5000, decimals=3, step=0.1)
+            names = [(name, name.removeprefix("DICT_").replace("_", ", ")) for name in DICTIONARIES]
+            form.add_choice(
+                "dictionary", self.tr("Markers"), names, self.tr("Size of a marker, and how many there are.")
+            )
+        if kind == "circle_grid":
+            form.add_check("asymmetric", self.tr("Every second row moved"))
+        form.edited.connect(self._presenter.set_target, Qt.ConnectionType.QueuedConnection)
+        QWidget.setTabOrder(form, self.paper)
+
+    def _add_counts(self, form: SettingsForm, kind: str) -> None:
+        counted = {
+            "checkerboard": self.tr("Inner corners, where four squares meet."),
+            "charuco": self.tr("Squares, black and white ones."),
+            "circle_grid": self.tr("Circles."),
+        }[kind]
+        form.add_number("columns", self.tr("Columns"), "", counted, minimum=3, maximum=500)
+        form.add_number("rows", self.tr("Rows"), "", minimum=3, maximum=500)
+
+    def _print(self) -> None:
+        start = Path.home() / f"{self._kind}-target.pdf"
+        path = ask.choose_file_to_save(self, self.tr("Write the target as a PDF"), start, self.tr("PDF (*.pdf)"))
+        if path is not None:
+            path = path if path.suffix.lower() == ".pdf" else path.with_name(f"{path.name}.pdf")
+            self._presenter.print_target(path, str(self.paper.currentData()))
+
+
+def kind_in_words(kind: str) -> str:
+    """A kind of target as it is called on screen."""
+    return {
+        "checkerboard": QCoreApplication.translate("TargetPanel", "Checkerboard"),
+        "charuco": QCoreApplication.translate("TargetPanel", "ChArUco board"),
+        "circle_grid": QCoreApplication.translate("TargetPanel", "Circle grid"),
+        "black_square": QCoreApplication.translate("TargetPanel", "Black square"),
+    }[kind]

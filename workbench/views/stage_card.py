@@ -1,0 +1,62 @@
+"""How far a step is, what to do next, and the buttons for it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
+
+from workbench.theme import icon
+
+
+@dataclass(frozen=True, slots=True)
+class CardButton:
+    """A button of the card: `why_not` (a sentence, or "") greys it, `tip` says what it does."""
+
+    key: str
+    text: str
+    symbol: str
+    do: Callable[[], object]
+
+
+class StageCard(QFrame):
+    """A title, a sentence, and buttons of which one may be the primary."""
+
+    def __init__(self, buttons: Sequence[CardButton], parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName("card")
+        self.title, self.words = QLabel(), QLabel()
+        self.title.setObjectName("heading")
+        self.words.setObjectName("muted")
+        for label in (self.title, self.words):
+            label.setWordWrap(True)
+        row = QHBoxLayout()
+        row.setSpacing(6)
+        self.buttons: dict[str, QPushButton] = {}
+        self._symbols = {button.key: button.symbol for button in buttons}
+        for entry in buttons:
+            button = QPushButton(entry.text)
+            button.setIconSize(button.iconSize() * 0.9)
+            button.clicked.connect(lambda _=False, do=entry.do: do())
+            row.addWidget(button, 1)
+            self.buttons[entry.key] = button
+        column = QVBoxLayout(self)
+        column.setContentsMargins(10, 8, 10, 10)
+        column.addWidget(self.title)
+        column.addWidget(self.words)
+        column.addLayout(row)
+
+    def show_stage(self, title: str, words: str, tips: Mapping[str, tuple[str, str]], primary: str = "") -> None:
+        """Say how far it is; `tips` has for each button why it cannot be pressed ("" if it can) and what it does."""
+        self.title.setText(title)
+        self.words.setText(words)
+        for key, (why_not, tip) in tips.items():
+            button, main = self.buttons[key], key == primary
+            button.setEnabled(not why_not)
+            button.setToolTip(why_not or tip)
+            button.setIcon(icon(self._symbols[key], colour="on_accent" if main and not why_not else ""))
+            if button.property("primary") != main:
+                button.setProperty("primary", main)
+                button.style().unpolish(button)
+                button.style().polish(button)
