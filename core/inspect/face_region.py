@@ -88,3 +88,32 @@ def inside_polygon(uv: Array, corners: Array) -> NDArray[np.bool_]:
         if v0 != v1:
             inside ^= spans & (uv[:, 0] < u0 + (u1 - u0) * (uv[:, 1] - v0) / (v1 - v0))
     return inside
+
+
+def on_face(points: Array, used: Array, normal: Array, distance: float) -> NDArray[np.bool_]:
+    """Which of `points` (N, 3) lie on a face: within its thickness of noise, and no farther aside than a gap.
+
+    Parameters
+    ----------
+    used
+        (M, 3) the points the face rests on.
+    normal, distance
+        Its plane normal·X = distance.
+    """
+    on = np.zeros(len(points), dtype=np.bool_)
+    if len(used) < 3:
+        return on
+    near = np.abs(points @ normal - distance) <= 1.5 * float(np.abs(used @ normal - distance).max())
+    axes = np.linalg.svd(normal[None, :])[2][1:]
+    flat, mine = points[near] @ axes.T, used @ axes.T
+    low, high = mine.min(axis=0) - LARGEST_GAP_MM, mine.max(axis=0) + LARGEST_GAP_MM
+    cell = max(CELL_MM, float((high - low).max()) / MOST_CELLS)
+    empty = np.ones((np.ceil((high - low) / cell).astype(np.int64) + 1)[::-1], dtype=np.uint8)
+    column, row = np.floor((mine - low) / cell).astype(np.int64).T
+    empty[row, column] = 0
+    away = cv2.distanceTransform(empty, cv2.DIST_L2, cv2.DIST_MASK_PRECISE) * cell
+    within = np.all((flat >= low) & (flat < high), axis=1)
+    column, row = np.floor((flat[within] - low) / cell).astype(np.int64).T
+    chosen = np.flatnonzero(near)[within]
+    on[chosen[away[row, column] <= SMALLEST_GAP_MM / 2]] = True
+    return on

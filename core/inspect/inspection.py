@@ -1,0 +1,146 @@
+"""A scan as it is looked at: points in the order of their σ, each with all it can be coloured by. Light to import."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.inspect.results import GaugeResult
+from core.model.arrays import Array
+
+Values = NDArray[np.float32]
+
+HEIGHT, DEPTH = "height", "depth"
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Relief:
+    """The surface as a picture: grey levels (rows, columns) of cells of `cell_px` × `cell_px` camera pixels."""
+
+    picture: NDArray[np.uint8]
+    cell_px: float
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class ShownMesh:
+    """The mesh of a scan; triangles in the order of the largest σ of their corners.
+
+    Parameters
+    ----------
+    vertices
+        (V, 3) in mm, camera frame.
+    sigma, height, deviation
+        (V,) as in `InspectionView`.
+    triangles
+        (T, 3) indices into the vertices.
+    triangle_sigma
+        (T,) ascending.
+    """
+
+    vertices: Array
+    sigma: Values
+    height: Values
+    deviation: Values
+    triangles: NDArray[np.int64]
+    triangle_sigma: Values
+
+    def up_to(self, sigma_mm: float) -> int:
+        """How many of the first triangles have no corner with a larger σ."""
+        return int(np.searchsorted(self.triangle_sigma, np.float32(sigma_mm), side="right"))
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class InspectionView:
+    """Everything the window shows of a scan and its thickness, ready to be drawn.
+
+    Points come in the order of their σ, so that those up to some σ are the first ones and no array need be copied.
+
+    Parameters
+    ----------
+    points
+        (N, 3) in mm, camera frame.
+    number
+        (N,) index of each in the cloud.
+    uv
+        (N, 2) pixel each was seen at.
+    sigma
+        (N,) standard uncertainty of the depth in mm, ascending.
+    height
+        (N,) mm over the lower face's plane, towards the camera; without a thickness, the depth.
+    height_is
+        HEIGHT or DEPTH.
+    deviation
+        (N,) mm from the plane of the face it was used for, towards the camera; NaN for points not used.
+    frame
+        (N,) index into `frames`; −1 for points that the fan measured itself.
+    frames
+        Names of the frames, as "scan/frame0007.png".
+    ranges
+        By name of a value ("sigma", "height", "deviation", "frame"): the ends of its colour bar.
+    mesh
+        The surface; None if there is none.
+    gauge
+        The thickness; its faces' indices are into the points above, ascending. None if none was measured.
+    outlines
+        Outlines (n, 2) in pixels of the upper and the lower face's points; None without a thickness.
+    used_uv
+        Pixels (≤ 6000, 2) of a sample of the points used on the upper and on the lower face.
+    relief
+        The surface as a picture.
+    image_size
+        (width, height) of the camera's picture in pixels.
+    pictures
+        Names of the recorded pictures, the reference first.
+    shown
+        Which of them shows most.
+    notes
+        Sentences for the technician, of the measurement.
+    problems
+        Why a result that is there is not shown: whole sentences.
+    calibration_id
+        Names the calibrations the scan was measured with.
+    """
+
+    points: Array
+    number: NDArray[np.int32]
+    uv: NDArray[np.float32]
+    sigma: Values
+    height: Values
+    height_is: str
+    deviation: Values
+    frame: NDArray[np.int32]
+    frames: tuple[str, ...]
+    ranges: Mapping[str, tuple[float, float]]
+    mesh: ShownMesh | None
+    gauge: GaugeResult | None
+    outlines: tuple[Array, Array] | None
+    used_uv: tuple[Array, Array] | None
+    relief: Relief
+    image_size: tuple[int, int]
+    pictures: tuple[str, ...] = ()
+    shown: str = ""
+    notes: tuple[str, ...] = ()
+    problems: tuple[str, ...] = field(default=())
+    calibration_id: str = ""
+
+    def __len__(self) -> int:
+        return len(self.points)
+
+    def up_to(self, sigma_mm: float) -> int:
+        """How many of the first points have no larger σ."""
+        return int(np.searchsorted(self.sigma, np.float32(sigma_mm), side="right"))
+
+    def used_up_to(self, count: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Indices of the points used on the upper and on the lower face, among the first `count` points."""
+        if self.gauge is None:
+            return np.empty(0, dtype=np.int64), np.empty(0, dtype=np.int64)
+        upper, lower = self.gauge.upper.indices, self.gauge.lower.indices
+        return upper[: np.searchsorted(upper, count)], lower[: np.searchsorted(lower, count)]
+
+    def frame_name(self, point: int) -> str:
+        """The frame a point was measured in; nothing for one the fan measured itself."""
+        frame = int(self.frame[point])
+        return self.frames[frame] if 0 <= frame < len(self.frames) else ""

@@ -1,0 +1,130 @@
+"""The outline of measured points in the picture: a polygon that can be kept, drawn and dragged."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from core.errors import InputError
+from core.inspect.face_region import inside_polygon
+from core.inspect.faces import FEWEST_POINTS, find_planes
+from core.model.arrays import Array
+from core.scan.cloud import Cloud
+
+CELLS_ACROSS = 400
+"""The points are laid out in about so many cells along their longer side."""
+SMALLEST_CELL_PX = 1.0
+GAP_SHARE = 6.0
+"""Gaps up to this many times the median distance of a place to the nearest point are closed: those between stripes."""
+SLACK = 0.008
+"""Corners are left out as long as the outline stays this near to the points, as a share of their longer side."""
+MOST_CORNERS = 24
+OPENED_SHARE = 0.85
+"""Single stripes that stick out are cut off as long as so much of the area stays."""
+
+
+def face_outline(cloud: Cloud, chosen: NDArray[np.int64]) -> Array:
+    """The outline in pixels of the largest plane face among the `chosen` points.
+
+    What was chosen on the screen usually holds points behind the face as well; they are on other planes.
+
+    Parameters
+    ----------
+    cloud
+        The measured points, with normals.
+    chosen
+        Indices of points of the cloud.
+
+    Returns
+    -------
+    Array
+        (n, 2) corners, 3 ≤ n ≤ 24, going round once; holes in the face are filled.
+
+    Raises
+    ------
+    InputError
+        If there is no plane face among them.
+    """
+    part = cloud.select(np.asarray(chosen, dtype=np.int64))
+    planes = find_planes(part, margin_mm=0.0, most=1) if len(part) >= FEWEST_POINTS else []
+    if not planes or len(planes[0].region.indices) < FEWEST_POINTS:
+        raise InputError(
+            f"there is no plane face among the {len(part)} chosen points",
+            where="region",
+            todo="draw round a larger part of one face",
+        )
+    return outline_px(part.uv[planes[0].region.indices])
+
+
+def outline_px(uv: ArrayLike) -> Array:
+    """The outline of places in the picture: as tight as the gaps between stripes allow, simplified to few corners.
+
+    Parameters
+    ----------
+    uv
+        (N, 2) pixels, N ≥ 3, not all on one line.
+
+    Returns
+    -------
+    Array
+        (n, 2) corners, 3 ≤ n ≤ 24, of the largest connected part; holes are filled.
+
+    Raises
+    ------
+    InputError
+        If the places lie on one line.
+    """
+    places = np.asarray(uv, dtype=np.float64)
+    low, size = places.min(axis=0), np.ptp(places, axis=0)
+    cell = max(SMALLEST_CELL_PX, float(size.max()) / CELLS_ACROSS)
+    if len(places) < 3 or _on_one_line(places, cell):
+        raise InputError("the chosen points lie on one line", where="region", todo="draw round more of the face")
+    contour = _largest_contour(_covered(np.floor((places - low) / cell).astype(np.int64)))
+    slack = SLACK * float(size.max()) / cell
+    corners = _simplified(contour, slack)
+    while len(corners) > MOST_CORNERS:
+        slack *= 1.3
+        corners = _simplified(contour, slack)
+    outline = (corners + 0.5) * cell + low
+    if len(outline) >= 3 and inside_polygon(places, outline).any():
+        return outline
+    hull = np.asarray(cv2.convexHull(places.astype(np.float32)), dtype=np.float64).reshape(-1, 2)
+    coarser: Array = hull[:: -(-len(hull) // MOST_CORNERS)]
+    return coarser
+
+
+def _on_one_line(places: Array, cell: float) -> bool:
+    """Whether the places are nowhere wider than one cell."""
+    centred = places - places.mean(axis=0)
+    across = np.linalg.svd(centred[:: max(1, len(centred) // 10_000)], full_matrices=False)[2][1]
+    return bool(np.ptp(centred @ across) < cell)
+
+
+def _covered(cells: NDArray[np.int64]) -> NDArray[np.uint8]:
+    """The cells with points, gaps between stripes closed; a rim as wide as the gaps round it."""
+    column, row = cells.T
+    bare = np.ones((int(row.max()) + 1, int(column.max()) + 1), dtype=np.uint8)
+    bare[row, column] = 0
+    gap = 1 + GAP_SHARE * float(np.median(cv2.distanceTransform(bare, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)))
+    pad = int(np.ceil(gap)) + 2
+    padded = np.pad(bare, pad, constant_values=1)
+    grown = (cv2.distanceTransform(padded, cv2.DIST_L2, cv2.DIST_MASK_PRECISE) <= gap).astype(np.uint8)
+    deep = cv2.distanceTransform(grown, cv2.DIST_L2, cv2.DIST_MASK_PRECISE) > gap
+    kept: NDArray[np.uint8] = (deep | (padded == 0)).astype(np.uint8)
+    side = 2 * max(1, round(gap / 2)) + 1
+    disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (side, side))
+    opened = np.asarray(cv2.morphologyEx(kept, cv2.MORPH_OPEN, disc), dtype=np.uint8)
+    whole = opened if opened.sum() >= OPENED_SHARE * kept.sum() else kept
+    return whole[pad:-pad, pad:-pad]
+
+
+def _largest_contour(covered: NDArray[np.uint8]) -> NDArray[np.int32]:
+    contours, _ = cv2.findContours(covered, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_SIMPLE)
+    largest = max(contours, key=cv2.contourArea)
+    return np.asarray(largest, dtype=np.int32)
+
+
+def _simplified(contour: NDArray[np.int32], slack: float) -> Array:
+    """Corners (n, 2) of a closed line that stays within `slack` of the contour."""
+    return np.asarray(cv2.approxPolyDP(contour, slack, closed=True), dtype=np.float64).reshape(-1, 2)
