@@ -81,6 +81,8 @@ class DataTable(QWidget):
         ValueError
             If a row has not as many texts as there are columns.
         """
+        if wrong := next((row for row in rows if len(row) != len(self._titles)), None):
+            raise ValueError(f"{len(self._titles)} columns, but a row of {len(wrong)}")
         kept, scrolled = self.table.currentRow(), self.table.verticalScrollBar().value()
         self.table.blockSignals(True)
         self.table.setRowCount(len(rows))

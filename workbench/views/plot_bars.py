@@ -167,7 +167,7 @@ class BarsWithThreshold(Plot):
         bar = self._bar_at(x)
         if bar is None:
             return ""
-        value = self.tr("no value") if bar.value is None else f"{written(bar.value, self._height / 1000)} {self._unit}"
+        value = self.tr("no value") if bar.value is None else f"{written(bar.value, self._height / 400)} {self._unit}"
         return "\n".join(part for part in (f"{bar.name}: {value}", bar.tip) if part)
 
     def _clicked(self, event: Any) -> None:
