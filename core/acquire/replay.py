@@ -12,7 +12,7 @@ from core.errors import InputError
 
 RATE_HZ = 10.0
 
-HOLDS: dict[Step, int] = {"camera": 8, "planes": 12, "scan": 1}
+HOLDS: dict[Step, int] = {"camera": 12, "planes": 25, "scan": 1}
 """For how many frames a picture of a recording is shown: in a recording of targets each one was held still."""
 
 Listing = Callable[[Step, Lasers], Sequence[Path]]
@@ -88,9 +88,12 @@ class ReplaySource:
     def lasers(self, lasers: Lasers) -> bool:
         """Show the pictures taken under these lasers; False if there are none: then all others are shown."""
         swept = lasers.hand and not self._lasers.hand
+        darkened = self._lasers.fan and not lasers.fan
         self._lasers = lasers
         if self._step == "scan" and swept:
             self._at = 0
+        if self._step == "planes" and darkened and self._shown == 0:
+            self._at = max(0, self._at - 1)  # the pose that was seen last
         self._shown = 0
         return self._list()
 

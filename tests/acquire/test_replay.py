@@ -105,7 +105,7 @@ def test_as_fast_as_read_never_waits(tmp_path):
 def test_views_of_a_recording_are_held_for_a_while(recorded):
     source, _ = replay(recorded)
     source.prepare("camera")
-    assert levels(source, 16) == [10] * 8 + [11] * 8
+    assert levels(source, 24) == [10] * 12 + [11] * 12
     with pytest.raises(Ended):
         source.read(1)
 
@@ -118,7 +118,19 @@ def test_switching_the_fan_shows_the_same_pose_with_and_without_it(recorded):
     assert source.lasers(DARK) is True
     assert levels(source, 3) == [120] * 3
     source.lasers(FAN)
-    assert levels(source, 14) == [20] * 12 + [21] * 2
+    assert levels(source, 27) == [20] * 25 + [21] * 2
+
+
+def test_poses_shown_once_each_come_with_and_without_the_fan_in_turn(recorded):
+    source, _ = replay(recorded / "planes")
+    source.prepare("planes")
+    shown = []
+    for _ in range(2):
+        source.lasers(FAN)
+        shown += levels(source, 1)
+        source.lasers(DARK)
+        shown += levels(source, 1)
+    assert shown == [20, 120, 21, 121]
 
 
 def test_the_reference_is_shown_until_the_hand_begins(recorded):
