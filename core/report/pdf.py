@@ -14,7 +14,7 @@ from reportlab.lib.units import mm
 from reportlab.lib.utils import ImageReader
 from reportlab.platypus import BaseDocTemplate, Frame, PageTemplate
 
-from core.progress import Progress, silent
+from core.progress import Progress, Told, silent
 from core.report import figures, plots
 from core.report.content import Paper, ReportContent
 from core.report.layout import Limits
@@ -60,16 +60,20 @@ def build_report(content: ReportContent, progress: Progress = silent) -> bytes:
         If `progress` asks to stop.
     """
     prepare_reportlab()
-    step, drawings = "report", _drawings(content)
+    progress = told = Told(progress)
+    step, drawings = "report", _drawings(content, told.again)
     total = len(drawings) + 2
     pictures = {}
     for done, (name, draw) in enumerate(drawings.items()):
         progress(step, done, total)
-        pictures[name] = _image(draw(), photo=name == "frame")
+        figure = draw()
+        progress(step, done, total)
+        pictures[name] = _image(figure, photo=name == "frame")
     progress(step, total - 2, total)
     most_pages = MOST_PAGES + (len(content.repeats) > 0 or len(content.remarks) > LONG_REMARKS)
     shorter = _page_room(content.paper) / _page_room("A4")
     for step_limits in LIMITS:
+        progress(step, total - 2, total)
         limits = replace(step_limits, picture_scale=step_limits.picture_scale * shorter)
         pages, _ = _typeset(content, pictures, limits, 0)
         if pages <= most_pages:
@@ -85,14 +89,16 @@ def _page_room(paper: Paper) -> float:
     return float(PAGE_SIZES[paper][1] - HEAD - FOOT)
 
 
-def _drawings(content: ReportContent) -> dict[str, Callable[[], Figure]]:
+def _drawings(content: ReportContent, progress: Progress) -> dict[str, Callable[[], Figure]]:
     """What is to be drawn, by name."""
     width = TEXT_WIDTH / mm
     gauge, overlay = content.gauge, content.overlay
     drawings: dict[str, Callable[[], Figure]] = {}
     if len(content.cloud) or len(content.mesh.triangles):
         plane = gauge.lower.plane if gauge else None
-        drawings["surface"] = lambda: plots.surface_figure(content.mesh, content.cloud, plane, width, SURFACE_MM)
+        drawings["surface"] = lambda: plots.surface_figure(
+            content.mesh, content.cloud, plane, width, SURFACE_MM, progress
+        )
     if overlay is not None:
         drawings["frame"] = lambda: overlay_figure(overlay, width, OVERLAY_MM)
     if gauge is not None:

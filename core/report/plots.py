@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from core.inspect.results import Face, GaugeResult
 from core.model import LightPlane
 from core.model.arrays import Array
+from core.progress import Progress, silent
 from core.report.figures import (
     DPI,
     MM_PER_INCH,
@@ -38,7 +39,14 @@ HEIGHT_MAP = LinearSegmentedColormap.from_list("height", ["#D3DEE2", "#7FAEBD", 
 """From pale to the accent: the shading shows the form, the colour the height."""
 
 
-def surface_figure(mesh: Mesh, cloud: Cloud, plane: LightPlane | None, width_mm: float, height_mm: float) -> Figure:
+def surface_figure(
+    mesh: Mesh,
+    cloud: Cloud,
+    plane: LightPlane | None,
+    width_mm: float,
+    height_mm: float,
+    progress: Progress = silent,
+) -> Figure:
     """The surface, shaded and coloured by height above `plane` (None: towards the camera), with its dimensions."""
     with plot_style():
         figure = new_figure(width_mm, height_mm)
@@ -47,7 +55,7 @@ def surface_figure(mesh: Mesh, cloud: Cloud, plane: LightPlane | None, width_mm:
         ground = Ground.of(plane, points)
         aspect = (width_mm - bar_mm) / height_mm
         width_px = round((width_mm - bar_mm) / MM_PER_INCH * DPI)
-        seen = surface_picture(mesh, cloud, ground, 2 * width_px, aspect)
+        seen = surface_picture(mesh, cloud, ground, 2 * width_px, aspect, progress)
         heights = ground.local(points)[:, 2]
         low, high = (float(value) for value in np.quantile(heights, [0.002, 0.998]))
         colors = color_scale(HEIGHT_MAP, low, high if high > low else low + 1e-6)

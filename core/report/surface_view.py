@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from core.model import LightPlane
 from core.model.arrays import Array
+from core.progress import Progress, silent
 from core.scan.cloud import Cloud
 from core.scan.surface import Mesh
 
@@ -71,7 +72,9 @@ class SurfacePicture:
     extent: tuple[float, float, float, float]
 
 
-def surface_picture(mesh: Mesh, cloud: Cloud, ground: Ground, width_px: int, aspect: float) -> SurfacePicture:
+def surface_picture(
+    mesh: Mesh, cloud: Cloud, ground: Ground, width_px: int, aspect: float, progress: Progress = silent
+) -> SurfacePicture:
     """Draw the mesh, or the cloud's points where the mesh has no triangles.
 
     Parameters
@@ -97,13 +100,17 @@ def surface_picture(mesh: Mesh, cloud: Cloud, ground: Ground, width_px: int, asp
     corners = np.column_stack([column, row, seen[:, 2], local[:, 2], _lambert(np.asarray(normals), ground)])
     layers = np.full((3, rows, width_px), np.nan)
     layers[0] = -np.inf
+    progress("surface", 0, 2)
     if solid:
         _fill_triangles(corners, mesh.triangles, layers)
     else:
         # squares that just close the gaps of points spread evenly over half the picture
         reach = int(np.clip(0.35 * np.sqrt(rows * width_px / len(corners)), 1, 6))
         _splat_points(corners, reach, layers)
-    return SurfacePicture(layers[1], layers[2] * _edges(layers[0], scale), extent)
+    progress("surface", 1, 2)
+    shade = layers[2] * _edges(layers[0], scale)
+    progress("surface", 2, 2)
+    return SurfacePicture(layers[1], shade, extent)
 
 
 def _extent(seen: Array, aspect: float) -> tuple[float, float, float, float]:
