@@ -85,6 +85,9 @@ PATIENCE_S = 0.25
 LAST_LOOK_S = 5.0
 """How long the last frame of a source that has ended may take to be looked at."""
 
+MOST_DAMAGED = 20
+"""So many damaged frames in a row end the recording."""
+
 _RATE_OVER_S = 2.0
 
 
@@ -168,7 +171,7 @@ class _Loop:
         self._shown_index = -1
         self._shown_s = 0.0
         self._times: deque[float] = deque()
-        self._dropped_before = self._dropped_now = 0
+        self._dropped_before = self._dropped_now = self._damaged = 0
 
     @property
     def dropped(self) -> int:
@@ -179,6 +182,7 @@ class _Loop:
         """Until the end; the sentence of what ended it too early, or ""."""
         try:
             self._open()
+            self._source.prepare(self._desk.request.step)
             self._step.begin()
             while not self._stopping:
                 self._turn()
@@ -194,7 +198,7 @@ class _Loop:
             self._obey()
             if self._stopping:
                 return
-            frame = self._source.read(WORKING_LISTEN_S if self._desk.worker.busy else LISTEN_S)
+            frame = self._read()
             if frame is not None:
                 self._take_in(frame)
             self._fresh = self._step.poll() or self._fresh
@@ -205,7 +209,22 @@ class _Loop:
     def _open(self) -> None:
         self._source.configure(self._settings)
         self._source.open()
-        self._source.prepare(self._desk.request.step)
+
+    def _read(self) -> Frame | None:
+        """The next frame; one that is damaged is told and left out, unless all are."""
+        try:
+            frame = self._source.read(WORKING_LISTEN_S if self._desk.worker.busy else LISTEN_S)
+        except Unplugged:
+            raise
+        except InputError as damage:
+            self._damaged += 1
+            if self._damaged >= MOST_DAMAGED:
+                raise
+            self._desk.notice(str(damage))
+            return None
+        if frame is not None:
+            self._damaged = 0
+        return frame
 
     def _take_in(self, frame: Frame) -> None:
         if not self._started:

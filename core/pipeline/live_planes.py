@@ -9,15 +9,13 @@ from core.acquire.source import Frame, Lasers, Picture
 from core.calibrate.capture import CaptureJudge, moved_px
 from core.image.target_view import TargetView
 from core.live.events import Auto, Capture, Command, Discard, PlanesDetail
+from core.model.arrays import Array
 from core.pipeline.live_camera import named
 from core.pipeline.live_desk import Desk, as_sentence
 from core.pipeline.live_pose import MeasuredPair, PoseLook, look_at_pose, measure_pair, settings_of
 
-STALE_FRAMES = 2
-"""So many frames after the fan was switched may still have been exposed before."""
-
 MOST_TRIES = 5
-"""So many pictures with the fan off are tried before a pose is given up."""
+"""So many pictures with the fan off are tried: the first may still have been exposed with the fan on."""
 
 _ANOTHER_POSE_PX = 10.0
 """A target that has moved so far since it was refused may be tried again."""
@@ -53,7 +51,7 @@ class LivePlanes:
         self._stage: Stage = "looking"
         self._pending: _Pending | None = None
         self._refused: tuple[TargetView, str] | None = None
-        self._skip = 0
+        self._seen_at: Array | None = None
         self._sentence = ""
         self._missing: tuple[str, ...] = ()
         self._number = 0
@@ -62,7 +60,6 @@ class LivePlanes:
         """The fan on."""
         if not self._desk.switch(_FAN_ON if self._stage != "second picture" else _FAN_OFF):
             self._desk.notice("Switch the three-line laser on, and the hand-held laser off.")
-        self._skip = STALE_FRAMES
 
     def frame(self, frame: Frame) -> None:
         """Look at the pose, or take the picture with the fan off."""
@@ -70,10 +67,9 @@ class LivePlanes:
             height, width = frame.picture.shape
             self._judge = CaptureJudge((width, height), self._camera)
             self._missing = self._judge.missing()
-        if self._skip > 0:
-            self._skip -= 1
-        elif self._stage == "looking":
-            self._desk.worker.start(look_at_pose, frame, self._target, self._camera, self._settings, self._lines)
+        if self._stage == "looking":
+            known = self._target, self._camera, self._settings, self._lines
+            self._desk.worker.start(look_at_pose, frame, *known, self._seen_at)
         elif self._stage == "second picture" and self._pending is not None:
             self._measure(self._pending, frame.picture)
 
@@ -109,7 +105,7 @@ class LivePlanes:
         match command:
             case Capture() if self._stage == "asking":
                 self._desk.answered()
-                self._stage, self._skip = "second picture", STALE_FRAMES
+                self._stage = "second picture"
             case Capture():
                 self._capture = True
             case Auto(on):
@@ -126,6 +122,7 @@ class LivePlanes:
         view, pose = look.pose.view, look.pose
         verdict = judge.judge(view, look.blur_px, look.frame.time_s, "" if view else as_sentence(pose.reason))
         self._look, self._sentence = look, verdict.sentence
+        self._seen_at = None if view is None else view.uv
         if pose.centrelines and self._settings is None:
             self._settings = settings_of(pose)
         doubt = "" if view is None or not verdict.take else self._doubt(look, view)
@@ -156,7 +153,7 @@ class LivePlanes:
             self._measure(self._pending, None)
             return
         if self._desk.switch(_FAN_OFF):
-            self._stage, self._skip = "second picture", STALE_FRAMES
+            self._stage = "second picture"
             return
         self._stage = "asking"
         self._desk.ask(
@@ -190,7 +187,6 @@ class LivePlanes:
         self._pending, self._stage = None, "looking"
         if off is not None and not self._desk.switch(_FAN_ON):
             self._desk.notice("Switch the three-line laser on again, and hold the target another way.")
-        self._skip = STALE_FRAMES
 
     def _name(self) -> str:
         return f"pose{self._number:02d}"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -19,6 +19,9 @@ NUMBERING_UNCLEAR = -1
 
 _THIN = 3  # points of a stripe for display
 
+_ROOM, _LEAST_ROOM_PX = 0.6, 60.0
+"""How far around the target's last place it is looked for, as a share of its size, and at least."""
+
 
 @dataclass(frozen=True, eq=False, slots=True)
 class PoseLook:
@@ -32,14 +35,50 @@ class PoseLook:
 
 
 def look_at_pose(
-    frame: Frame, target: Target, camera: Camera | None, settings: StripeSettings | None, lines: int
+    frame: Frame,
+    target: Target,
+    camera: Camera | None,
+    settings: StripeSettings | None,
+    lines: int,
+    around: Array | None = None,
 ) -> PoseLook:
-    """Find the target and the stripes on it in one frame."""
-    pose = measure_plane_pose("", frame.picture, None, target, camera, settings)
+    """Find the target and the stripes on it in one frame; first `around` (N, 2), where it was seen last, in pixels."""
+    pose = None if around is None else _pose_around(around, frame.picture, target, camera, settings)
+    if pose is None:
+        pose = measure_plane_pose("", frame.picture, None, target, camera, settings)
     if pose.view is None:
         return PoseLook(frame, pose, float("nan"), (), ())
     stripes, line = _numbered_stripes(pose, camera, lines)
     return PoseLook(frame, pose, edge_blur_px(frame.picture, pose.view.uv), stripes, line)
+
+
+def _pose_around(
+    around: Array, picture: Picture, target: Target, camera: Camera | None, settings: StripeSettings | None
+) -> PoseFeatures | None:
+    """The pose in the part of the picture around points (N, 2), in pixels of the whole; None if it is not there."""
+    low, high = around.min(axis=0), around.max(axis=0)
+    reach = np.maximum(_ROOM * (high - low), _LEAST_ROOM_PX)
+    u0, v0 = (int(value) for value in np.maximum(low - reach, 0))
+    part = np.ascontiguousarray(picture[v0 : int(high[1] + reach[1]) + 1, u0 : int(high[0] + reach[0]) + 1])
+    origin = np.array([u0, v0], dtype=np.float64)
+    pose = measure_plane_pose(
+        "", part, None, target, None if camera is None else _part_of(camera, part, origin), settings
+    )
+    view = pose.view
+    if view is None:
+        return None
+    return replace(
+        pose,
+        view=replace(view, uv=view.uv + origin),
+        centrelines=tuple(replace(piece, uv=piece.uv + origin) for piece in pose.centrelines),
+    )
+
+
+def _part_of(camera: Camera, part: Picture, origin: Array) -> Camera:
+    """The camera that sees only a part of the picture, whose first pixel is at `origin` (2,)."""
+    matrix = camera.matrix.copy()
+    matrix[:2, 2] -= origin
+    return Camera((part.shape[1], part.shape[0]), matrix, camera.distortion)
 
 
 @dataclass(frozen=True, eq=False, slots=True)

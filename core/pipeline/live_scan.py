@@ -13,13 +13,10 @@ from core.live.events import Command, Pause, Resume, ScanDetail, ScanStage, Take
 from core.pipeline.live_desk import Desk
 from core.pipeline.live_preview import PreviewedFrame, PreviewFailed, ScanPreviewer
 from core.scan.coverage_map import CoverageMap
-from core.scan.frame_preview import FramePreview
+from core.scan.frame_preview import FramePreview, cloud_of
 from core.scan.preview_cloud import PreviewCloud
 
 REFERENCE = "reference"
-
-STALE_FRAMES = 2
-"""So many frames after a laser was switched may still have been exposed before."""
 
 STILL_SHARE = 2e-4
 """Two pictures of a scene at rest differ in no larger share of their pixels."""
@@ -57,7 +54,6 @@ class LiveScan:
         self._self_switching = False
         self._looking = self._forced = False
         self._before: Picture | None = None
-        self._skip = 0
         self._number = 0
         self._preview: FramePreview | None = None
         self._coverage: CoverageMap | None = None
@@ -72,7 +68,7 @@ class LiveScan:
     def begin(self) -> None:
         """The lasers as they must be now; the reference, if there is none yet."""
         self._self_switching = self._desk.switch(_FAN_ALONE if self._stage == "reference" else _BOTH)
-        self._skip, self._before = STALE_FRAMES, None
+        self._before = None
         if self._stage != "reference":
             return
         if self._self_switching:
@@ -85,9 +81,6 @@ class LiveScan:
         if self._coverage is None:
             height, width = frame.picture.shape
             self._coverage = CoverageMap((width, height))
-        if self._skip > 0:
-            self._skip -= 1
-            return
         if self._stage == "reference" and self._looking:
             self._try_reference(frame.picture)
         elif self._stage == "scanning":
@@ -197,7 +190,7 @@ class LiveScan:
         if self._coverage is not None:
             self._coverage.add(fan.uv)
         if self._self_switching and self._desk.switch(_BOTH):
-            self._stage, self._skip = "scanning", STALE_FRAMES
+            self._stage = "scanning"
             return
         self._stage = "ready"
         self._desk.lasers = _BOTH
@@ -222,20 +215,10 @@ class LiveScan:
         if renewed is not None:
             self._new, self._renewed = [renewed], True
         elif len(preview.points):
-            self._new.append(_cloud_of(preview))
+            self._new.append(cloud_of(preview))
         if self._coverage is not None:
             self._coverage.add(preview.point_uv if renewed is None else renewed.uv)
         self._preview = replace(preview, renewed=None)
-
-
-def _cloud_of(preview: FramePreview) -> PreviewCloud:
-    return PreviewCloud(
-        preview.points.astype(np.float32),
-        preview.point_sigma.astype(np.float32),
-        preview.point_intensity.astype(np.float32),
-        preview.point_uv.astype(np.float32),
-        np.full(len(preview.points), preview.index, np.int32),
-    )
 
 
 def _alike(before: Picture, after: Picture) -> bool:

@@ -23,7 +23,6 @@ from core.live.events import (
     TakeReference,
 )
 from core.pipeline import live, live_preview
-from core.pipeline.live_scan import STALE_FRAMES
 from core.simulate.recording import scan_of
 from core.simulate.scenario import Scenario
 from tests.pipeline.live_bench import ScriptedSource, Window, after, answer_to, record
@@ -105,7 +104,7 @@ def test_recording_does_not_wait_for_a_slow_window_nor_for_the_preview(monkeypat
     window = Window(ready=False)
     ended = scan(monkeypatch, tmp_path, stage, swept(stage, 120), window)
     assert not window.all(LiveView)
-    assert ended.recorded == 120 - STALE_FRAMES
+    assert ended.recorded == 120
     assert ended.dropped == 0
 
 
@@ -131,6 +130,34 @@ def test_a_source_unplugged_in_the_middle_comes_back_and_nothing_is_lost(monkeyp
     assert ended.error == ""
     assert names(tmp_path) == [f"frame{i:05d}.png" for i in range(ended.recorded)] + ["reference.png"]
     assert source.lit == Lasers(fan=True, hand=True)
+
+
+def test_a_damaged_frame_is_told_and_left_out(monkeypatch, tmp_path, stage):
+    source = swept(stage, 20)
+    read, told = source.read, []
+
+    def damaged(timeout_s):
+        if source.counted == 10 and not told:
+            told.append(True)
+            raise InputError("the picture is damaged", where="frame0010.png")
+        return read(timeout_s)
+
+    source.read = damaged
+    window = Window()
+    ended = scan(monkeypatch, tmp_path, stage, source, window)
+    assert any("damaged" in notice.sentence for notice in window.all(LiveNotice))
+    assert (ended.recorded, ended.error) == (20, "")
+
+
+def test_a_source_that_gives_nothing_but_damage_ends_with_the_reason(monkeypatch, tmp_path, stage):
+    source = swept(stage, 20)
+
+    def damaged(timeout_s):
+        raise InputError("the picture is damaged", where="frame0010.png")
+
+    source.read = damaged
+    ended = scan(monkeypatch, tmp_path, stage, source, Window())
+    assert "damaged" in ended.error
 
 
 def test_a_source_that_stays_away_can_be_given_up(monkeypatch, tmp_path, stage):
