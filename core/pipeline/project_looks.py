@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 
+import numpy as np
+
 from core.calibrate.pose_features import PoseFeatures
 from core.calibrate.pose_stages import PoseStages
 from core.calibrate.results import FanCalibration
@@ -14,14 +16,19 @@ from core.errors import InputError
 from core.files.calibration_store import read_stored_fan, read_stored_poses
 from core.files.pictures import read_bytes
 from core.files.project_data import Project
+from core.files.project_results import ProjectResults
 from core.files.run_file import read_run
 from core.files.scan_file import read_scan
-from core.model import Fan
+from core.model import Camera, Fan
 from core.pipeline.frame_stages import frame_stages
 from core.pipeline.pose_stages import pose_stages
+from core.pipeline.project_results import load_results
 from core.pipeline.project_steps import accepted_camera, project_set, results_folder, solve_poses
+from core.pipeline.scan_step import left_out_sentences
 from core.pipeline.workspace import FILES
 from core.progress import Progress, silent
+from core.scan.coverage_map import CoverageMap
+from core.scan.scan_look import ScanLook, reasons_counted
 from core.scan.stages import FrameStages, SettledScan
 
 
@@ -37,10 +44,54 @@ def show_frame(folder: Path, project: Project, name: str, progress: Progress = s
         As `frame_stages`, or if an accepted calibration is damaged.
     """
     found = project_set(folder, project)
-    camera = accepted_camera(folder, project) if project.accepted.camera else None
-    fan = read_stored_fan(folder, project.accepted.fan, camera).fan if camera and project.accepted.fan else None
+    camera, fan = accepted_calibration(folder, project)
     settled = _settled(results_folder(folder), found.path_of(name), name, project)
     return frame_stages(found, name, camera, fan, project.options, progress, settled)
+
+
+def accepted_calibration(
+    folder: Path, project: Project, progress: Progress = silent
+) -> tuple[Camera | None, Fan | None]:
+    """The accepted camera and fan, as far as there are any; InputError if one is damaged or they are not a pair."""
+    camera = accepted_camera(folder, project) if project.accepted.camera else None
+    fan = read_stored_fan(folder, project.accepted.fan, camera).fan if camera and project.accepted.fan else None
+    return camera, fan
+
+
+def show_scan(folder: Path, progress: Progress = silent) -> ScanLook:
+    """The scan among the results of the project in `folder`; without points if there is none that can be read."""
+    results = load_results(folder, progress)
+    cloud = results.cloud
+    said = left_out_sentences(results.frames)
+    coverage, features = None, None
+    if cloud is not None:
+        features = read_scan(results.files["scan"]).features
+        coverage = CoverageMap(features.image_size)
+        for frame in features.frames:
+            for piece in frame.centrelines:
+                coverage.add_lit(piece.uv)
+        coverage.add(cloud.uv)
+    nothing = np.zeros(0, np.float32)
+    sigma = nothing if cloud is None else cloud.sigma.astype(np.float32)
+    half, most = np.quantile(sigma, (0.5, 0.95)) if len(sigma) else (np.nan, np.nan)
+    return ScanLook(
+        points=np.zeros((0, 3), np.float32) if cloud is None else cloud.points.astype(np.float32),
+        sigma=sigma,
+        uv=np.zeros((0, 2), np.float32) if cloud is None else cloud.uv.astype(np.float32),
+        frame=np.zeros(0, np.int32) if cloud is None else cloud.frame.astype(np.int32),
+        triangles=0 if results.mesh is None else len(results.mesh.triangles),
+        frames=results.frames,
+        frames_used=sum(frame.used for frame in results.frames),
+        median_sigma_mm=float(half),
+        sigma_95_mm=float(most),
+        left_out=reasons_counted(results.frames),
+        cells=np.zeros((1, 1), np.bool_) if coverage is None else coverage.cells,
+        lit=np.zeros((1, 1), np.bool_) if coverage is None else coverage.lit,
+        share=0.0 if coverage is None else coverage.share,
+        stripe=None if features is None else features.sweep_stripe,
+        notes=tuple(note for note in _scan_notes(results) if note not in said),
+        problems=results.problems,
+    )
 
 
 def show_pose(
@@ -86,6 +137,13 @@ class _Version:
     def of(cls, path: Path) -> _Version:
         about = path.stat()
         return cls(path, about.st_mtime_ns, about.st_size)
+
+
+def _scan_notes(results: ProjectResults) -> tuple[str, ...]:
+    """What the measurement of the scan says, without what was said of the calibrations."""
+    if results.cloud is None or "run" not in results.files:
+        return ()
+    return tuple(read_run(results.files["run"]).notes.get("scan", ()))
 
 
 def _settled(results: Path, picture: Path, name: str, project: Project) -> SettledScan | None:

@@ -84,7 +84,7 @@ def scan_step(
         scan = reconstruct(features, camera, fan, solving, progress)
         scan = replace(scan, cloud=with_normals(scan.cloud, progress=progress))
         log.frames.extend(scan.frames)
-        log.notes.extend(_left_out(scan.frames))
+        log.notes.extend(left_out_sentences(scan.frames))
         log.notes.extend(scan.notes)
         surface = with_normals(fuse(scan.cloud, camera.image_size, progress=progress), progress=progress)
         mesh = build_mesh(surface, progress=progress)
@@ -164,7 +164,7 @@ def reference_picture(
     return quantile_reference(pictures), [note]
 
 
-def _left_out(frames: tuple[FrameRecord, ...]) -> list[str]:
+def left_out_sentences(frames: tuple[FrameRecord, ...]) -> list[str]:
     """One sentence for every reason why frames gave no points."""
     reasons: dict[str, list[str]] = {}
     for frame in frames:

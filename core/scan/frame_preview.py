@@ -72,6 +72,17 @@ class FramePreview:
     fan_lines: tuple[tuple[Centreline, ...], ...] | None = None
 
 
+def cloud_of(preview: FramePreview) -> PreviewCloud:
+    """The points of this frame alone."""
+    return PreviewCloud(
+        preview.points.astype(np.float32),
+        preview.point_sigma.astype(np.float32),
+        preview.point_intensity.astype(np.float32),
+        preview.point_uv.astype(np.float32),
+        np.full(len(preview.points), preview.index, np.int32),
+    )
+
+
 def empty_preview(index: int, name: str, reason: str) -> FramePreview:
     """A frame that shows no stripe, and why."""
     none, empty = np.zeros(0), np.zeros((0, 2))

@@ -1,0 +1,64 @@
+"""Measuring a recording, and being told of every frame what a live scan would tell."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+from core.files.project_data import Project
+from core.files.project_results import ScanSummary
+from core.image.centreline import Centreline
+from core.live.events import ScanDetail
+from core.pipeline.project_steps import accepted_camera, measure_scan
+from core.progress import Progress, silent
+from core.scan.coverage_map import CoverageMap
+from core.scan.frame_preview import FramePreview, cloud_of
+
+Watch = Callable[[ScanDetail], None]
+
+
+def measure_watched(
+    folder: Path, project: Project, progress: Progress = silent, watch: Watch | None = None
+) -> ScanSummary:
+    """Measure as `measure_scan`; `watch` is told of each frame in the order of the recording, on this thread.
+
+    Raises
+    ------
+    InputError
+        As `measure_scan`.
+    """
+    if watch is None:
+        return measure_scan(folder, project, progress)
+    return measure_scan(folder, project, progress, Watched(accepted_camera(folder, project).image_size, watch))
+
+
+class Watched:
+    """Puts together what the frames show, one after another, and tells `watch` of it."""
+
+    def __init__(self, image_size: tuple[int, int], watch: Watch) -> None:
+        self._watch, self._coverage = watch, CoverageMap(image_size)
+        self._fan_lines: tuple[tuple[Centreline, ...], ...] = ()
+
+    def __call__(self, preview: FramePreview) -> None:
+        """The next frame."""
+        coverage, renewed = self._coverage, preview.renewed
+        points = cloud_of(preview) if renewed is None else renewed
+        if preview.fan_lines is not None:
+            self._fan_lines = preview.fan_lines
+        for piece in preview.centrelines:
+            coverage.add_lit(piece.uv)
+        coverage.add(points.uv)
+        self._watch(
+            ScanDetail(
+                index=preview.index,
+                stage="scanning",
+                preview=replace(preview, renewed=None, fan_lines=None),
+                fan_lines=self._fan_lines,
+                cells=coverage.cells.copy(),
+                lit=coverage.lit.copy(),
+                share=coverage.share,
+                points=points,
+                renewed=renewed is not None,
+            )
+        )
