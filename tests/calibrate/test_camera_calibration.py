@@ -8,7 +8,7 @@ import pytest
 
 from core.calibrate.camera import CameraOptions, calibrate_camera, principal_deviations
 from core.calibrate.reprojection import linearise, moved, parameters_of
-from core.calibrate.results import CAMERA_PARAMETERS, CameraCalibration
+from core.calibrate.results import CAMERA_PARAMETERS, LEFT_OUT, CameraCalibration
 from core.errors import Cancelled, InputError
 from core.image.target_view import TargetView
 from core.model import Camera, Pose
@@ -199,6 +199,26 @@ def test_a_bad_view_is_left_out_with_its_reason_and_does_no_harm(how, words):
     assert calibration.ranked[-1].view is views[5]
     assert np.abs(errors_in_sd(calibration)).max() < 4
     assert calibration.rms_px < 0.05
+
+
+def test_views_left_out_by_hand_change_nothing_but_their_own_residuals_are_known():
+    views = synthetic_views(8)
+    views[5], views[9] = spoilt(views[5], "shuffled"), changed(views[9], views[9].uv + 3.0)
+    names = {views[i].name for i in (2, 5, 9)}
+    with_them = calibrate_camera(views, SIZE, excluded=names)
+    without = calibrate_camera([view for view in views if view.name not in names], SIZE)
+    assert np.array_equal(parameters_of(with_them.camera), parameters_of(without.camera))
+    assert np.array_equal(with_them.covariance, without.covariance)
+    assert with_them.rms_px == without.rms_px
+    assert [quality.view for quality in with_them.views] == views
+    good, shuffled, moved_aside = (with_them.views[i] for i in (2, 5, 9))
+    assert (good.used, good.reason) == (False, LEFT_OUT)
+    assert good.rms_px < 2 * without.rms_px
+    assert np.isnan(shuffled.residuals).all()
+    assert shuffled.reason.startswith(LEFT_OUT)
+    assert "pattern" in shuffled.reason
+    assert moved_aside.rms_px < 1  # the pose takes up a shift
+    assert with_them.notes[0] == ("3 of 14 views are left out by hand: view02.png, view05.png, view09.png.")
 
 
 @pytest.mark.parametrize("outliers", ["gross", "all"])

@@ -6,6 +6,7 @@ import pytest
 from core.calibrate.fan import FanOptions, fan_deviations, fit_fan, same_model
 from core.calibrate.pencil import Pencil, pencil_near, plane_distances
 from core.calibrate.plane_pose import PoseFeatures
+from core.calibrate.results import LEFT_OUT
 from core.errors import InputError
 from core.image.target_view import TargetView
 from core.model import Pose
@@ -160,6 +161,23 @@ def test_repeated_fits_keep_the_model_that_was_chosen():
     assert same_model(options, axis).constrained == "axis"
     again = fit_fan(features(WHERE, Noise(), 8, pis=wider), CAMERA, same_model(options, axis))
     assert (again.fan.pis == axis.fan.pis).all()
+
+
+def test_planes_left_free_by_hand_stay_free_in_repeated_fits():
+    options = replace(THREE, constrained="auto")
+    free = fit_fan(features(WHERE, Noise(), 2), CAMERA, replace(options, constrained="never"))
+    assert free.constraint_suits
+    assert same_model(options, free).constrained == "never"
+
+
+def test_a_pose_left_out_by_hand_is_located_but_has_no_part():
+    seen = features(WHERE, Noise(), 2)
+    without = fit_fan(seen, CAMERA, THREE, excluded={seen[1].name})
+    assert (without.poses[1].used, without.poses[1].reason) == (False, LEFT_OUT)
+    assert without.poses[1].pose.translation[2] > 100
+    rest = fit_fan([pose for i, pose in enumerate(seen) if i != 1], CAMERA, THREE)
+    assert (without.fan.pis == rest.fan.pis).all()
+    assert any(f"{seen[1].name} ({LEFT_OUT})" in note for note in without.notes)
 
 
 def test_more_lines_than_promised_is_noted():
