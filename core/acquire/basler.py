@@ -2,36 +2,16 @@
 
 from __future__ import annotations
 
-import importlib
 import time
 from collections.abc import Callable
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
-from core.acquire.source import Frame, Lasers, Picture, SourceSettings, Step, Unplugged
+from core.acquire.basler_driver import choose, depth, devices, full_range, let_go, pylon_module, said, writable_node
+from core.acquire.source import Frame, Lasers, SourceSettings, Step, Unplugged
 from core.errors import InputError
-
-MODULE = "pypylon"
-INSTALL = "Basler cameras need pypylon: install it with pip install 'trisect[basler]'."
 
 QUEUE = 4
 """Frames kept for a reader that is a little late; the driver counts those it drops."""
-
-_BITS = {"Mono8": 8, "Mono10": 10, "Mono12": 12, "Mono16": 16}
-
-
-def list_cameras() -> list[tuple[str, str, str]]:
-    """Serial number, name and kind of connection of each Basler camera that is plugged in.
-
-    Raises
-    ------
-    InputError
-        If pypylon is not installed, or its drivers cannot look.
-    """
-    pylon = _pylon()
-    return [(one.GetSerialNumber(), one.GetFriendlyName(), one.GetDeviceClass()) for one in _devices(pylon)]
 
 
 class BaslerSource:
@@ -69,7 +49,7 @@ class BaslerSource:
     def open(self) -> None:
         """Find the camera, open it and let it run."""
         self.close()
-        pylon = _pylon()
+        pylon = pylon_module()
         device = self._find(pylon)
         camera = None
         try:
@@ -77,18 +57,18 @@ class BaslerSource:
             camera.Open()
             if self._setup is not None:
                 self._setup(camera)
-            self._bits = _depth(camera, self.name)
+            self._bits = depth(camera, self.name)
             self._apply(camera, self._wanted)
             camera.OutputQueueSize.SetValue(QUEUE)
             self._index, self._dropped, self._block = 0, 0, None
             self._origin = self._clock()
             camera.StartGrabbing(pylon.GrabStrategy_LatestImages)
         except pylon.GenericException as problem:
-            _let_go(pylon, camera)
+            let_go(pylon, camera)
             todo = "see that no other program uses it, then try again"
-            raise InputError(f"the camera cannot be opened ({_said(problem)})", where=self.name, todo=todo) from problem
+            raise InputError(f"the camera cannot be opened ({said(problem)})", where=self.name, todo=todo) from problem
         except BaseException:
-            _let_go(pylon, camera)
+            let_go(pylon, camera)
             raise
         self._camera = camera
 
@@ -109,7 +89,7 @@ class BaslerSource:
         """The next frame, None if there is none within the time; Unplugged when the camera is gone."""
         if self._camera is None:
             raise self._unplugged("it is not open")
-        pylon = _pylon()
+        pylon = pylon_module()
         try:
             result = self._camera.RetrieveResult(round(1000 * timeout_s), pylon.TimeoutHandling_Return)
             if not result.IsValid():
@@ -120,13 +100,13 @@ class BaslerSource:
                 return None
             return self._frame(result)
         except pylon.GenericException as problem:
-            raise self._gone(_said(problem)) from problem
+            raise self._gone(said(problem)) from problem
 
     def close(self) -> None:
         """Stop the camera and let go of it."""
         camera, self._camera = self._camera, None
         if camera is not None:
-            _let_go(_pylon(), camera)
+            let_go(pylon_module(), camera)
 
     def _frame(self, result: Any) -> Frame | None:
         """The picture of a grab result, or None if the connection lost a part of it."""
@@ -138,7 +118,7 @@ class BaslerSource:
             self._index = index + 1
             if not whole:
                 return None
-            return Frame(_full_range(result.GetArray(), self._bits), index, self._clock() - self._origin, self._dropped)
+            return Frame(full_range(result.GetArray(), self._bits), index, self._clock() - self._origin, self._dropped)
         finally:
             result.Release()
 
@@ -148,8 +128,7 @@ class BaslerSource:
         return 0 if last is None else max(0, block - last - 1)
 
     def _find(self, pylon: Any) -> Any:
-        devices = _devices(pylon)
-        for device in devices:
+        for device in devices(pylon):
             if self._serial in ("", device.GetSerialNumber()):
                 self.name = device.GetFriendlyName()
                 return device
@@ -159,14 +138,14 @@ class BaslerSource:
 
     def _apply(self, camera: Any, settings: SourceSettings) -> None:
         if settings.exposure_ms is not None:
-            _choose(camera, "ExposureAuto", "Off")
+            choose(camera, "ExposureAuto", "Off")
             names = ("ExposureTime", "ExposureTimeAbs")
             self._set(camera, names, 1000 * settings.exposure_ms, "exposure time", 1000, "ms")
         if settings.gain_db is not None:
-            _choose(camera, "GainAuto", "Off")
+            choose(camera, "GainAuto", "Off")
             self._set(camera, ("Gain",), settings.gain_db, "gain", 1, "dB")
         if settings.rate_hz:
-            enable = _node(camera, "AcquisitionFrameRateEnable")
+            enable = writable_node(camera, "AcquisitionFrameRateEnable")
             if enable is not None:
                 enable.SetValue(True)
             names = ("AcquisitionFrameRate", "AcquisitionFrameRateAbs")
@@ -174,7 +153,7 @@ class BaslerSource:
 
     def _set(self, camera: Any, names: tuple[str, ...], value: float, what: str, scale: float, unit: str) -> None:
         """Set the first of the nodes `names` that the camera has; messages give `value` / `scale` in `unit`."""
-        nodes = (_node(camera, name) for name in names)
+        nodes = (writable_node(camera, name) for name in names)
         node = next((one for one in nodes if one is not None), None)
         if node is None:
             raise InputError(f"the camera does not let its {what} be set", where=self.name, todo="leave it as it is")
@@ -192,68 +171,3 @@ class BaslerSource:
 
     def _unplugged(self, why: str) -> Unplugged:
         return Unplugged(f"the camera sends no pictures any more ({why})", where=self.name, todo="plug it in again")
-
-
-def _pylon() -> Any:
-    try:
-        return importlib.import_module(f"{MODULE}.pylon")
-    except ImportError as missing:
-        raise InputError(INSTALL.removesuffix(".")) from missing
-
-
-def _devices(pylon: Any) -> list[Any]:
-    try:
-        return list(pylon.TlFactory.GetInstance().EnumerateDevices())
-    except pylon.GenericException as problem:
-        raise InputError(f"the drivers cannot look for cameras ({_said(problem)})", where="Basler") from problem
-
-
-def _node(camera: Any, name: str) -> Any:
-    """A camera's node that can be written to, or None."""
-    genicam = importlib.import_module(f"{MODULE}.genicam")
-    try:
-        node = camera.GetNodeMap().GetNode(name)
-        return node if node is not None and genicam.IsWritable(node) else None
-    except genicam.GenericException:
-        return None
-
-
-def _choose(camera: Any, name: str, value: str) -> None:
-    """Set an enumeration, where the camera has it and this entry of it."""
-    node = _node(camera, name)
-    if node is not None and value in node.GetSymbolics():
-        node.SetValue(value)
-
-
-def _depth(camera: Any, name: str) -> int:
-    """Bits of the camera's grey levels; its pixel format is made grey first."""
-    node = camera.GetNodeMap().GetNode("PixelFormat")
-    if node.GetValue() not in _BITS:
-        _choose(camera, "PixelFormat", "Mono8")
-    if node.GetValue() not in _BITS:
-        raise InputError(f"the camera gives {node.GetValue()} and no grey levels", where=name, todo="set it to Mono8")
-    return _BITS[node.GetValue()]
-
-
-def _full_range(grey: NDArray[Any], bits: int) -> Picture:
-    """Grey levels as they came with 8 or 16 bit; 10 and 12 bit spread over 16, white to white."""
-    if bits in (8, 16):
-        return np.array(grey)
-    wide = grey.astype(np.uint16)
-    spread: Picture = (wide << np.uint16(16 - bits)) | (wide >> np.uint16(2 * bits - 16))
-    return spread
-
-
-def _let_go(pylon: Any, camera: Any) -> None:
-    if camera is None:
-        return
-    try:
-        camera.StopGrabbing()
-        camera.Close()
-    except pylon.GenericException:
-        camera.DetachDevice()  # it is gone already
-
-
-def _said(problem: Exception) -> str:
-    """The first sentence of what a driver says, without where in its source it was said."""
-    return str(problem).split(" : ")[0].strip().removesuffix(".")

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from core.acquire import basler
+from core.acquire import basler_driver
 from core.acquire.basler import BaslerSource
 from core.acquire.opencv_camera import OpenCVSource
 from core.acquire.opencv_devices import list_cameras, opencv_name
@@ -167,7 +167,7 @@ def _list_opencv() -> tuple[SourceInfo, ...]:
 def _list_basler() -> tuple[SourceInfo, ...]:
     return tuple(
         SourceInfo(SourceChoice("basler", serial), name, connection)
-        for serial, name, connection in basler.list_cameras()
+        for serial, name, connection in basler_driver.list_cameras()
     )
 
 
@@ -195,8 +195,8 @@ SOURCES: Mapping[str, SourceKind] = {
         "An industrial camera of Basler, by its serial number.",
         _make_basler,
         _list_basler,
-        needs=basler.MODULE,
-        install=basler.INSTALL,
+        needs=basler_driver.MODULE,
+        install=basler_driver.INSTALL,
     ),
 }
 """Kinds of live sources by name, the usual one first."""

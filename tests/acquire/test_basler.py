@@ -8,8 +8,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from core.acquire import basler
-from core.acquire.basler import BaslerSource, list_cameras
+from core.acquire.basler import BaslerSource
+from core.acquire.basler_driver import full_range, list_cameras
 from core.acquire.source import Lasers, SourceSettings, Unplugged
 from core.errors import InputError
 from core.files.pictures import write_picture
@@ -101,7 +101,7 @@ def test_deeper_pictures_fill_16_bits(pylon, pixel_format, bits):
 
 
 def test_twelve_bits_are_spread_over_sixteen_white_to_white():
-    spread = basler._full_range(np.array([[0, 1, 2048, 4095]], np.uint16), 12)
+    spread = full_range(np.array([[0, 1, 2048, 4095]], np.uint16), 12)
     assert spread.tolist() == [[0, 16, 32776, 65535]]
     assert spread.dtype == np.uint16
 
