@@ -8,14 +8,16 @@ import numpy as np
 import pyqtgraph as pg
 from numpy.typing import ArrayLike
 from PySide6.QtCore import QEvent, QPoint, QPointF, QRectF, Qt
-from PySide6.QtGui import QContextMenuEvent, QGuiApplication, QIcon, QKeyEvent
+from PySide6.QtGui import QContextMenuEvent, QFocusEvent, QGuiApplication, QKeyEvent, QPaintEvent
 from PySide6.QtWidgets import QFileDialog, QLabel, QMenu, QVBoxLayout, QWidget
 
 from workbench.theme import is_dark
 from workbench.views.drawing import ARROWS, DrawingTool
+from workbench.views.dressing import draw_focus
 from workbench.views.empty_state import EmptyState
-from workbench.views.image_tools import Legend, ToneMenu, ToolStrip, key_pixmap
+from workbench.views.image_tools import ToneMenu, ToolStrip
 from workbench.views.layer_stack import LayerStack
+from workbench.views.legend import LayersMenu, Legend
 from workbench.views.picture_box import ZOOM_STEP, PictureBox
 from workbench.views.picture_item import PictureItem
 
@@ -38,7 +40,7 @@ class ImageFrame(QWidget):
         self._canvas.setContextMenuPolicy(Qt.ContextMenuPolicy.NoContextMenu)
         self._box.addItem(self._picture, ignoreBounds=True)
         self._layers, self._drawing = LayerStack(self._box, self), DrawingTool(self._box, self)
-        self._legend, self._legend_wanted = Legend(self._canvas), True
+        self._legend = Legend(self._canvas)
         self._hint = QLabel(self._canvas)
         self._hint.setStyleSheet(
             "background: rgba(12, 16, 20, 200); color: #F4F6F8; border-radius: 4px; padding: 5px 9px;"
@@ -46,11 +48,11 @@ class ImageFrame(QWidget):
         self._hint.hide()
         self._empty = EmptyState(self._canvas)
         self._strip, self._tone = ToolStrip(), ToneMenu(self)
-        self._layers_menu = QMenu(self)
+        self._layers_menu = LayersMenu(self._layers, self)
         self._fitted = True
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
+        column.setContentsMargins(1, 1, 1, 1)
         column.setSpacing(0)
         column.addWidget(self._canvas, 1)
         column.addWidget(self._strip)
@@ -156,7 +158,7 @@ class ImageFrame(QWidget):
 
     def set_legend_visible(self, visible: bool) -> None:
         """Show or hide the key of colours and symbols."""
-        self._legend_wanted = visible
+        self._layers_menu.legend_shown = visible
         self._show_legend()
 
     @property
@@ -203,6 +205,17 @@ class ImageFrame(QWidget):
                 event.accept()
         return super().event(event)
 
+    def focusInEvent(self, event: QFocusEvent) -> None:
+        super().focusInEvent(event)
+        self.update()
+
+    def focusOutEvent(self, event: QFocusEvent) -> None:
+        super().focusOutEvent(event)
+        self.update()
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        draw_focus(self)
+
     def changeEvent(self, event: QEvent) -> None:
         super().changeEvent(event)
         if event.type() == QEvent.Type.PaletteChange and hasattr(self, "_strip"):
@@ -235,7 +248,7 @@ class ImageFrame(QWidget):
         self._strip.one.clicked.connect(self.one_to_one)
         self._strip.tone.setMenu(self._tone)
         self._strip.layers.setMenu(self._layers_menu)
-        self._layers_menu.aboutToShow.connect(self._fill_layers_menu)
+        self._layers_menu.legend_wanted.connect(self.set_legend_visible)
 
     def _unfit(self) -> None:
         self._fitted = False
@@ -260,7 +273,7 @@ class ImageFrame(QWidget):
     def _show_legend(self) -> None:
         entries = self._layers.legend()
         self._legend.set_entries(entries)
-        self._legend.setVisible(bool(entries) and self._legend_wanted)
+        self._legend.setVisible(bool(entries) and self._layers_menu.legend_shown)
 
     def _show_hint(self, drawing: bool) -> None:
         if drawing:
@@ -272,21 +285,6 @@ class ImageFrame(QWidget):
         self._hint.setVisible(drawing)
         self._canvas.viewport().setCursor(Qt.CursorShape.CrossCursor if drawing else Qt.CursorShape.ArrowCursor)
         self._arrange()
-
-    def _fill_layers_menu(self) -> None:
-        self._layers_menu.clear()
-        for name in self._layers:
-            layer = self._layers[name]
-            sign = QIcon(key_pixmap(*layer.key, self.devicePixelRatioF()))
-            action = self._layers_menu.addAction(sign, layer.title or name)
-            action.setCheckable(True)
-            action.setChecked(self._layers.is_visible(name))
-            action.toggled.connect(lambda on, name=name: self._layers.set_visible(name, on))
-        self._layers_menu.addSeparator()
-        legend = self._layers_menu.addAction(self.tr("Legend"))
-        legend.setCheckable(True)
-        legend.setChecked(self._legend_wanted)
-        legend.toggled.connect(self.set_legend_visible)
 
     def _save(self) -> None:
         path, _ = QFileDialog.getSaveFileName(

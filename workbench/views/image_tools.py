@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 from PySide6.QtCore import QEvent, QSize, Qt, Signal
-from PySide6.QtGui import QFontDatabase, QPainter, QPen, QPixmap
+from PySide6.QtGui import QFontDatabase
 from PySide6.QtWidgets import (
     QFrame,
     QGridLayout,
@@ -20,8 +18,6 @@ from PySide6.QtWidgets import (
 )
 
 from workbench.theme import icon
-from workbench.views.colours import ColourLike, KeySign, sigma_table, to_colour, to_rgba
-from workbench.views.symbols import symbol_pixmap
 
 _STEPS = 20
 """Slider steps for a factor of two."""
@@ -139,66 +135,3 @@ class ToneMenu(QMenu):
         self._gain_text.setText(f"× {gain:.2f}")
         self._gamma_text.setText(f"γ {gamma:.2f}")
         self.changed.emit(gain, gamma)
-
-
-class Legend(QFrame):
-    """A key of symbols and colours over a corner of the picture; the mouse goes through it."""
-
-    def __init__(self, parent: QWidget) -> None:
-        super().__init__(parent)
-        self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
-        self.setStyleSheet(
-            "Legend { background: rgba(12, 16, 20, 175); border-radius: 4px; } QLabel { color: #F4F6F8; }"
-        )
-        self._grid = QGridLayout(self)
-        self._grid.setContentsMargins(8, 5, 10, 5)
-        self._grid.setHorizontalSpacing(6)
-        self._grid.setVerticalSpacing(1)
-        self._entries: list[tuple[str, KeySign, tuple[int, int, int, int]]] = []
-        self.hide()
-
-    def set_entries(self, entries: Sequence[tuple[str, KeySign, ColourLike]]) -> None:
-        """Title, sign and colour of each; nothing is rebuilt when nothing has changed."""
-        wanted = [(title, sign, to_rgba(colour)) for title, sign, colour in entries]
-        if wanted == self._entries:
-            return
-        self._entries = wanted
-        while (item := self._grid.takeAt(0)) is not None:
-            if (widget := item.widget()) is not None:
-                widget.hide()
-                widget.deleteLater()
-        for row, (title, sign, rgba) in enumerate(wanted):
-            key = QLabel()
-            key.setPixmap(key_pixmap(sign, rgba, self.devicePixelRatioF()))
-            self._grid.addWidget(key, row, 0)
-            self._grid.addWidget(QLabel(title), row, 1)
-        self._grid.activate()
-        self.adjustSize()
-
-    @property
-    def titles(self) -> list[str]:
-        """What it lists."""
-        return [title for title, _, _ in self._entries]
-
-
-def key_pixmap(sign: KeySign, colour: ColourLike, ratio: float) -> QPixmap:
-    """A sign for a legend or a menu."""
-    rgba = to_rgba(colour)
-    pixmap = QPixmap(round(18 * ratio), round(14 * ratio))
-    pixmap.setDevicePixelRatio(ratio)
-    pixmap.fill(Qt.GlobalColor.transparent)
-    painter = QPainter(pixmap)
-    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-    if sign == "line":
-        painter.setPen(QPen(to_colour(rgba), 2.4))
-        painter.drawLine(1, 7, 17, 7)
-    elif sign == "scale":
-        for x, shade in enumerate(sigma_table()[::16], start=1):
-            painter.fillRect(x, 5, 1, 4, to_colour((int(shade[0]), int(shade[1]), int(shade[2]))))
-    else:
-        symbol = QPixmap(symbol_pixmap(sign, rgba, 9, ratio))
-        symbol.setDevicePixelRatio(ratio)
-        side = symbol.width() / ratio
-        painter.drawPixmap(round(9 - side / 2), round(7 - side / 2), symbol)
-    painter.end()
-    return pixmap

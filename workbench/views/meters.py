@@ -129,8 +129,10 @@ class Meter(QWidget):
 class HintBar(QFrame):
     """What to do now. A sentence stays for at least a second, so nothing flickers; an empty list stays calm too."""
 
-    def __init__(self, parent: QWidget | None = None) -> None:
+    def __init__(self, idle: str = "", parent: QWidget | None = None) -> None:
+        """`idle` is shown, muted, while there is no hint."""
         super().__init__(parent)
+        self._idle = idle
         self._shown: tuple[str, ...] = ()
         self._wanted: tuple[str, ...] = ()
         self._since = -math.inf
@@ -177,11 +179,12 @@ class HintBar(QFrame):
     def _show(self) -> None:
         if self._wanted != self._shown:
             self._shown, self._since = self._wanted, time.monotonic()
-            self._label.setText("   ".join(self._shown))
             self._dress()
 
     def _dress(self) -> None:
         s = shades()
+        self._label.setText("   ".join(self._shown) or self._idle)
+        dress(self._label, "" if self._shown else f"color: {s.muted};")
         colour = "accent" if self._shown else "muted"
         symbol = "mdi6.lightbulb-on-outline" if self._shown else "mdi6.lightbulb-outline"
         self._sign.setPixmap(icon(symbol, colour=colour).pixmap(QSize(18, 18)))

@@ -8,10 +8,11 @@ from typing import Any
 
 import pyqtgraph as pg
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtGui import QKeyEvent
+from PySide6.QtGui import QFocusEvent, QKeyEvent, QPaintEvent
 from PySide6.QtWidgets import QWidget
 
 from workbench.theme import shades
+from workbench.views.dressing import draw_focus
 from workbench.views.plot_base import Plot, tinted, written
 
 _HEADROOM = 1.18
@@ -54,6 +55,7 @@ class BarsWithThreshold(Plot):
         self._height = 1.0
         super().__init__(parent)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+        self._column.setContentsMargins(1, 1, 1, 1)
         self._canvas.scene().sigMouseClicked.connect(self._clicked)
 
     def set_bars(self, bars: Sequence[Bar], *, label: str, unit: str, threshold: float | None = None) -> None:
@@ -94,6 +96,17 @@ class BarsWithThreshold(Plot):
             self.bar_clicked.emit(names[place])
         else:
             super().keyPressEvent(event)
+
+    def focusInEvent(self, event: QFocusEvent) -> None:
+        super().focusInEvent(event)
+        self.update()
+
+    def focusOutEvent(self, event: QFocusEvent) -> None:
+        super().focusOutEvent(event)
+        self.update()
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        draw_focus(self)
 
     def _has_data(self) -> bool:
         return bool(self._bars)

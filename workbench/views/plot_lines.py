@@ -1,0 +1,110 @@
+"""Curves over one axis."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import pyqtgraph as pg
+from numpy.typing import ArrayLike, NDArray
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QWidget
+
+from workbench.theme import shades
+from workbench.views.colours import FAN, ColourLike, to_colour
+from workbench.views.plot_base import Plot
+
+_DASH = Qt.PenStyle.DashLine
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class _Curve:
+    x: NDArray[np.float64]
+    y: NDArray[np.float64]
+    colour: ColourLike
+    title: str
+    points: bool
+
+
+class LineChart(Plot):
+    """Curves over one axis, with limits."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        self._curves: dict[str, _Curve] = {}
+        self._lines: dict[str, tuple[float, str]] = {}
+        self._names = ("", "", "", "")
+        super().__init__(parent)
+        self._legend = self._item.addLegend(offset=(-8, 6), labelTextSize="11px", verSpacing=-4)
+        self._legend.hide()
+
+    def set_axes(self, x_label: str, x_unit: str, y_label: str, y_unit: str) -> None:
+        """Name both axes and their units."""
+        self._names = (x_label, x_unit, y_label, y_unit)
+        self._redraw()
+
+    def set_curve(
+        self, name: str, x: ArrayLike, y: ArrayLike, *, colour: ColourLike = "", title: str = "", points: bool = False
+    ) -> None:
+        """A curve, instead of the one of that name; NaN leaves a gap. `title` stands in the legend."""
+        across, up = (np.asarray(values, dtype=np.float64).reshape(-1) for values in (x, y))
+        self._curves[name] = _Curve(across, up, colour, title, points)
+        self._redraw()
+
+    def remove_curve(self, name: str) -> None:
+        """Take a curve away; none of that name is no error."""
+        self._curves.pop(name, None)
+        self._redraw()
+
+    def set_limit(self, name: str, y: float | None, text: str = "") -> None:
+        """A line across at a value; None takes it away."""
+        if y is None:
+            self._lines.pop(name, None)
+        else:
+            self._lines[name] = (y, text)
+        self._redraw()
+
+    def clear(self, message: str = "") -> None:
+        self._curves, self._lines = {}, {}
+        super().clear(message)
+
+    def _has_data(self) -> bool:
+        return any(len(curve.x) for curve in self._curves.values())
+
+    def _draw(self) -> None:
+        s = shades()
+        self._set_axis("bottom", *self._names[:2])
+        self._set_axis("left", *self._names[2:])
+        self._legend.clear()
+        self._legend.setLabelTextColor(s.text)
+        colours = (s.accent, *FAN[1:], s.good)
+        for number, curve in enumerate(self._curves.values()):
+            colour = to_colour(curve.colour or colours[number % len(colours)])
+            item = pg.PlotDataItem(
+                curve.x,
+                curve.y,
+                pen=None if curve.points else pg.mkPen(colour, width=1.8),
+                symbol="o" if curve.points else None,
+                symbolSize=6,
+                symbolPen=None,
+                symbolBrush=colour,
+                connect="finite",
+            )
+            self._item.addItem(item)
+            if curve.title:
+                self._legend.addItem(item, curve.title)
+        self._legend.setVisible(any(curve.title for curve in self._curves.values()))
+        self._set_range()
+        for y, text in self._lines.values():
+            self._item.addItem(pg.InfiniteLine(y, angle=0, pen=pg.mkPen(s.bad, width=1.2, style=_DASH)))
+            words = self._words(text, s.bad, (1, 1))
+            words.setPos(self._box.viewRange()[0][1], y)
+            self._item.addItem(words, ignoreBounds=True)
+
+    def _set_range(self) -> None:
+        x = np.concatenate([curve.x for curve in self._curves.values()])
+        y = np.concatenate([*(curve.y for curve in self._curves.values()), [y for y, _ in self._lines.values()]])
+        x, y = x[np.isfinite(x)], y[np.isfinite(y)]
+        if len(x) and len(y):
+            margin = 0.08 * float(y.max() - y.min()) or 0.05 * abs(float(y.max())) or 1.0
+            across = (float(x.min()), float(x.max()))
+            self._box.setRange(xRange=across, yRange=(float(y.min()) - margin, float(y.max()) + margin), padding=0.01)
