@@ -9,10 +9,12 @@ from PySide6.QtCore import QEvent
 from PySide6.QtWidgets import QTabWidget, QVBoxLayout, QWidget
 
 from workbench.pages import camera_words as words
-from workbench.pages.camera_panels import StagePanel, TargetPanel
+from workbench.pages.camera_panels import TARGETS, CameraCard
+from workbench.pages.camera_picture import PictureTab
 from workbench.pages.camera_presenter import CameraPresenter, Stage, short
-from workbench.pages.camera_tabs import CoverageTab, ExpectedTab, HistoryTab, PictureTab, ResidualTab
+from workbench.pages.camera_tabs import CoverageTab, ExpectedTab, HistoryTab, ResidualTab
 from workbench.pages.step_page import StepPage, heading, muted
+from workbench.pages.target_panel import TargetPanel
 from workbench.views.live_panel import LivePanel, LiveStrip
 from workbench.views.plots import Bar, BarsWithThreshold
 from workbench.views.source_chooser import SourceChooser
@@ -28,7 +30,7 @@ class CameraPage(StepPage):
     def __init__(self, presenter: CameraPresenter, parent: QWidget | None = None) -> None:
         super().__init__(presenter, parent)
         self.strip, self.tabs, self.bars = LiveStrip(presenter.live), QTabWidget(), BarsWithThreshold()
-        self.picture, self.coverage = PictureTab(presenter), CoverageTab(presenter)
+        self.picture, self.coverage = PictureTab(presenter, lambda: self.source.choose()), CoverageTab(presenter)
         self.residuals, self.expected = ResidualTab(presenter), ExpectedTab(presenter)
         self.history = HistoryTab(presenter)
         for tab, title, tip in (
@@ -45,12 +47,12 @@ class CameraPage(StepPage):
         self.centre.addWidget(self.tabs, 1)
         self.centre.addWidget(self.bars)
 
-        self.stage = StagePanel(presenter)
+        self.stage = CameraCard(presenter)
         self.add_to_side(self.stage)
         self.live_panel = LivePanel(presenter.live)
         self.source = SourceChooser(self.live_panel, what=self.tr("Folder with pictures of the camera's target"))
         self.pictures_fold = self.add_panel(self.tr("Pictures"), self.source)
-        self.target = TargetPanel(presenter)
+        self.target = TargetPanel(presenter.target, TARGETS)
         self.target_fold = self.add_panel(self.tr("Target"), self.target)
         self.views = ViewList()
         self.views.set_headers(self.tr("View"), self.tr("RMS (px)"))
@@ -109,14 +111,16 @@ class CameraPage(StepPage):
 
     def _fold(self, stage: Stage) -> None:
         """Once there is a result, it takes the room of what it was made from; the user may unfold that again."""
-        wanted = "result" if self.presenter.work.calibration is not None and stage is not Stage.LIVE else "pictures"
-        if wanted != self._folded:
-            self._folded = wanted
-            for fold in (self.pictures_fold, self.target_fold):
-                if wanted == "result":
-                    fold.collapse(animate=False)
-                else:
-                    fold.expand(animate=False)
+        live, solved = stage is Stage.LIVE, self.presenter.work.calibration is not None
+        wanted = "live" if live else "result" if solved else "pictures"
+        if wanted == self._folded:
+            return
+        self._folded = wanted
+        for fold, opened in ((self.pictures_fold, wanted != "result"), (self.target_fold, wanted == "pictures")):
+            if opened:
+                fold.expand(animate=False)
+            else:
+                fold.collapse(animate=False)
 
     def _refresh_tab(self) -> None:
         tab: Any = self.tabs.currentWidget()

@@ -15,7 +15,6 @@ from core.files.camera_file import camera_id
 from core.files.project import Project
 from core.files.project_keys import finished
 from core.live.events import LiveEnded, LiveTaken
-from core.model import Camera, Fan
 from core.model.arrays import Array
 from workbench import jobs
 from workbench.bench import Bench
@@ -24,7 +23,7 @@ from workbench.pages.camera_work import CameraWork
 from workbench.pages.live_presenter import LivePresenter
 from workbench.pages.presenter import StepPresenter
 from workbench.pages.sources import folder_of, put_source
-from workbench.pages.target_values import changed_target, values_of
+from workbench.pages.target_choice import TargetChoice
 from workbench.step_state import State
 
 PART = "camera/"
@@ -54,20 +53,17 @@ class CameraPresenter(StepPresenter):
     picture_ready = Signal(str, object)
     """Name of a view and its picture."""
 
-    target_refused = Signal(str, str)
-    """Field of the target and why it cannot be so."""
-
     def __init__(self, bench: Bench) -> None:
         super().__init__(bench)
         self.live = LivePresenter(bench, "camera", self)
         self.work = CameraWork(bench, self)
         self.history = CameraHistory(bench, self)
+        self.target = TargetChoice(bench, "camera_target", self.tr("change the camera's target"), self)
         self.current = ""
         self.threshold: float | None = None
         self._rejected: set[str] = set()
         self._accepting = False
         self._read = ""
-        self.live.calibration = self._known_camera
         self.live_views: list[tuple[str, Any]] = []
         self.live.changed.connect(self.changed)
         self.live.started.connect(lambda _: self.live_views.clear())
@@ -153,7 +149,7 @@ class CameraPresenter(StepPresenter):
             return self.tr("This calibration is rejected already.")
         return ""
 
-    # ---- pictures and target
+    # ---- pictures
 
     @property
     def folder(self) -> Path | None:
@@ -165,36 +161,6 @@ class CameraPresenter(StepPresenter):
         self.live.stop()
         put_source(self.model, "camera", folder, self.tr("choose the camera's pictures"))
         self.work.search()
-
-    def target_values(self) -> dict[str, Any]:
-        """The target as the fields of a form."""
-        return values_of(self.project.rig.camera_target)
-
-    def set_target(self, field: str, value: Any) -> None:
-        """Change the target; undoable. What cannot be is refused with a sentence."""
-        rig = self.project.rig
-        try:
-            target = changed_target(rig.camera_target, field, value)
-        except ValueError as error:
-            self.target_refused.emit(field, str(error))
-            return
-        self.target_refused.emit(field, "")
-        after = replace(self.project, rig=replace(rig, camera_target=target))
-        self.model.edit(self.tr("change the camera's target"), after, f"camera target {field}")
-
-    def print_target(self, path: Path, paper: str) -> None:
-        """Write the target to scale as a PDF."""
-        self.bench.glance(
-            jobs.TARGET_SHEET,
-            path,
-            self.project.rig.camera_target,
-            paper,
-            self.project.info.name,
-            label=self.tr("Drawing the target"),
-            on_done=lambda done: self.bench.notices.info(
-                self.tr("The target was written to {0}. Print it at 100 % and measure its rulers.").format(done)
-            ),
-        )
 
     # ---- views
 
@@ -326,10 +292,6 @@ class CameraPresenter(StepPresenter):
     def _exclude(self, excluded: frozenset[str], label: str, merge_key: str = "") -> None:
         options = replace(self.project.options, excluded=frozenset(excluded))
         self.model.edit(label, replace(self.project, options=options), merge_key)
-
-    def _known_camera(self) -> tuple[Camera | None, Fan | None]:
-        calibration = self.work.calibration
-        return (calibration.camera if calibration is not None else None), None
 
     def _live_taken(self, taken: LiveTaken) -> None:
         self.live_views.append((f"{PART}{taken.name}", taken.thumbnail))

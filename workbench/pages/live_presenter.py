@@ -156,8 +156,13 @@ class LivePresenter(QObject):
         parts = [self._recorded_text()]
         if self.rate_hz > 0:
             parts.append(self.tr("{0} frames/s").format(f"{self.rate_hz:.0f}"))
-        parts.append(self.tr("{0} lost").format(self.dropped))
+        if self.step == "scan":
+            parts.append(self.tr("{0} lost").format(self.dropped))
         return " · ".join(parts)
+
+    def warm_up(self) -> None:
+        """A source will soon be wanted: have the process for it ready."""
+        self.bench.live.warm_up()
 
     def start(self, *, stop_other: bool = False) -> None:
         """Open the source and go; if another page's recording runs, ask first (`other_running`)."""
@@ -326,7 +331,7 @@ class LivePresenter(QObject):
         self._deadline.stop()
         if ended.error:
             self.bench.notices.error(ended.error)
-        elif ended.dropped:
+        elif ended.dropped and self.step == "scan":
             self.bench.notices.warning(
                 self.tr("{0} pictures were lost on the way; choose a lower rate.").format(ended.dropped)
             )
