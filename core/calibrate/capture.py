@@ -10,7 +10,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.calibrate.coverage import picture_cells
-from core.calibrate.missing import ViewGeometry, missing_from, stand_in_camera, view_geometry, what_is_missing
+from core.calibrate.missing import (
+    CAMERA_VIEWS,
+    Series,
+    ViewGeometry,
+    missing_from,
+    stand_in_camera,
+    view_geometry,
+    what_is_missing,
+)
 from core.image.target_view import TargetView
 from core.model import Camera
 from core.model.arrays import Array
@@ -47,7 +55,7 @@ class CaptureLimits:
     still_s: float = 0.2
     still_px_s: float = 8.0
     blur_px: float = 2.5
-    blurred: float = 1.5
+    blurred: float = 1.8
     turned: float = float(np.deg2rad(10.0))
     nearer: float = 1.2
 
@@ -67,8 +75,13 @@ class CaptureJudge:
     """
 
     def __init__(
-        self, image_size: tuple[int, int], camera: Camera | None = None, limits: CaptureLimits | None = None
+        self,
+        image_size: tuple[int, int],
+        camera: Camera | None = None,
+        limits: CaptureLimits | None = None,
+        series: Series = CAMERA_VIEWS,
     ) -> None:
+        self._series = series
         self._image_size, self._limits = image_size, limits or CaptureLimits()
         self._camera = camera or stand_in_camera(image_size)
         self._rows = max(1, round(COLUMNS * image_size[1] / image_size[0]))
@@ -125,7 +138,7 @@ class CaptureJudge:
 
     def missing(self) -> tuple[str, ...]:
         """What the views taken so far lack, in words."""
-        return missing_from(self.views, [geometry for _, geometry in self._taken], self._image_size)
+        return missing_from(self.views, [geometry for _, geometry in self._taken], self._image_size, self._series)
 
     def _just_taken(self, time_s: float) -> str:
         return "Taken." if 0 <= time_s - self._taken_at < _SHOWN_FOR_S else ""
@@ -153,15 +166,15 @@ class CaptureJudge:
                 continue
             here = True
             if geometry is None or seen is None:
-                return "Move the board: this place is already taken."
+                return f"Move the {self._series.thing}: this place is already taken."
             turned = geometry.angle_to(seen) >= self._limits.turned
             nearer = abs(np.log(geometry.distance / seen.distance)) >= np.log(self._limits.nearer)
             if not turned and not nearer:
-                return "Turn the board: this tilt is already there."
+                return f"Turn the {self._series.thing}: this tilt is already there."
         if here or geometry is None or not np.all(self.cells[cells]):
             return ""
         alike = any(seen is not None and geometry.angle_to(seen) < self._limits.turned for _, seen in self._taken)
-        return "Turn or move the board: this tilt and place are already there." if alike else ""
+        return f"Turn or move the {self._series.thing}: this tilt and place are already there." if alike else ""
 
     def _cells(self, uv: Array) -> NDArray[np.bool_]:
         return picture_cells(uv, self._image_size, COLUMNS, self._rows)

@@ -13,7 +13,6 @@ from core.image.targets import TargetNotFound, estimate_pose
 from core.model import Camera, Pose
 from core.model.arrays import Array
 
-ENOUGH_VIEWS = 10
 GOOD_TILT = float(np.deg2rad(30.0))
 GOOD_SECOND_TILT = float(np.deg2rad(12.0))
 """Range of tilts about the axis they are smallest about."""
@@ -34,6 +33,20 @@ _PLACES = {
     "bottom": "bottom",
     "lower right": "lower right corner",
 }
+
+
+@dataclass(frozen=True, slots=True)
+class Series:
+    """What is being recorded: a `thing` shown in `enough` many `pictures`, which should reach `everywhere` or not."""
+
+    thing: str
+    pictures: str
+    enough: int
+    everywhere: bool
+
+
+CAMERA_VIEWS = Series("board", "views", 10, everywhere=True)
+PLANE_POSES = Series("target", "poses", 8, everywhere=False)
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -81,38 +94,43 @@ def what_is_missing(
 
 
 def missing_from(
-    views: Sequence[TargetView], geometries: Sequence[ViewGeometry | None], image_size: tuple[int, int]
+    views: Sequence[TargetView],
+    geometries: Sequence[ViewGeometry | None],
+    image_size: tuple[int, int],
+    series: Series = CAMERA_VIEWS,
 ) -> tuple[str, ...]:
     """The same, with what is known already of how the target stands in each view."""
     if not views:
-        return (f"Record at least {ENOUGH_VIEWS} views; there is none.",)
+        return (f"Record at least {series.enough} {series.pictures}; there is none.",)
     sentences: list[str] = []
-    if len(views) < ENOUGH_VIEWS:
+    if len(views) < series.enough:
         there = f"there is {len(views)}" if len(views) == 1 else f"there are {len(views)}"
-        sentences.append(f"Record at least {ENOUGH_VIEWS} views; {there}.")
-    empty = empty_regions(np.concatenate([view.uv for view in views]), image_size)
+        sentences.append(f"Record at least {series.enough} {series.pictures}; {there}.")
+    empty = empty_regions(np.concatenate([view.uv for view in views]), image_size) if series.everywhere else []
     if empty:
         sentences.append(f"No view reaches the {_listed([_PLACES[name] for name in empty])} of the picture.")
     known = [geometry for geometry in geometries if geometry is not None]
     if len(known) > 1:
-        sentences += _on_tilts(known)
+        sentences += _on_tilts(known, series)
     return tuple(sentences[:MOST_SENTENCES])
 
 
-def _on_tilts(geometries: Sequence[ViewGeometry]) -> list[str]:
+def _on_tilts(geometries: Sequence[ViewGeometry], series: Series) -> list[str]:
     largest = tilt_range([geometry.pose for geometry in geometries])
     sentences = []
     if largest < GOOD_TILT:
         sentences.append(
-            f"Tilt the board more: the largest angle between two views is {np.rad2deg(largest):.0f}°, "
-            f"{np.rad2deg(GOOD_TILT):.0f}° is good."
+            f"Tilt the {series.thing} more: the largest angle between two {series.pictures} is "
+            f"{np.rad2deg(largest):.0f}°, {np.rad2deg(GOOD_TILT):.0f}° is good."
         )
     elif _second_tilt(geometries) < GOOD_SECOND_TILT:
-        sentences.append("Tilt the board the other way too: all views are tilted about the same axis.")
+        sentences.append(
+            f"Tilt the {series.thing} the other way too: all {series.pictures} are tilted about the same axis."
+        )
     distances = [geometry.distance for geometry in geometries]
     if max(distances) < GOOD_DISTANCES * min(distances):
         sentences.append(
-            f"Hold the board nearer and farther: the distances of all views are within "
+            f"Hold the {series.thing} nearer and farther: the distances of all {series.pictures} are within "
             f"{100 * (max(distances) / min(distances) - 1):.0f} %, {100 * (GOOD_DISTANCES - 1):.0f} % is good."
         )
     return sentences

@@ -7,6 +7,7 @@ from typing import Literal
 
 from core.acquire.source import Frame, Lasers, Picture
 from core.calibrate.capture import CaptureJudge, moved_px
+from core.calibrate.missing import PLANE_POSES
 from core.image.target_view import TargetView
 from core.live.events import Auto, Capture, Command, Discard, PlanesDetail
 from core.model.arrays import Array
@@ -65,7 +66,7 @@ class LivePlanes:
         """Look at the pose, or take the picture with the fan off."""
         if self._judge is None:
             height, width = frame.picture.shape
-            self._judge = CaptureJudge((width, height), self._camera)
+            self._judge = CaptureJudge((width, height), self._camera, series=PLANE_POSES)
             self._missing = self._judge.missing()
         if self._stage == "looking":
             known = self._target, self._camera, self._settings, self._lines
