@@ -52,7 +52,7 @@ class PictureTab(QWidget):
         """Show what the presenter says now."""
         live = self._presenter.live
         self.hints.setVisible(live.running)
-        self.line.setVisible(not live.running)
+        self.line.setVisible(not live.running and bool(self._presenter.current))
         self.factor.setVisible(not live.running and self._presenter.work.calibration is not None)
         if live.running:
             if self._name != "live" and not live.live:

@@ -146,7 +146,7 @@ class Plot(QWidget):
         self._canvas.setBackground(s.panel)
         for side in ("left", "bottom"):
             axis = self._item.getAxis(side)
-            axis.enableAutoSIPrefix(False)
+            axis.autoSIPrefix, axis.autoSIPrefixScale = False, 1.0  # enableAutoSIPrefix(False) scales once more
             axis.setPen(pg.mkPen(s.line, width=1))
             axis.setTextPen(pg.mkPen(s.muted))
             axis.setTickFont(small_font())
