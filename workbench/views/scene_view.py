@@ -29,7 +29,18 @@ from workbench.views.scene_view_canvas import Canvas, Overlay
 from workbench.views.scene_view_chooser import Chooser
 from workbench.views.scene_view_cloud import SceneCloud
 from workbench.views.scene_view_colours import PLAIN, Colouring, Rgb, as_colours
-from workbench.views.scene_view_contents import Labels, Lines, Marks, Measure, Patches, Scene, as_mesh, as_points, each
+from workbench.views.scene_view_contents import (
+    GRID,
+    Labels,
+    Lines,
+    Marks,
+    Measure,
+    Patches,
+    Scene,
+    as_mesh,
+    as_points,
+    each,
+)
 from workbench.views.scene_view_grid import camera_pyramid, ground_grid
 from workbench.views.scene_view_navigator import Navigator
 from workbench.views.scene_view_overlay import Look, bar_width, paint_marker, paint_overlay
@@ -42,8 +53,8 @@ ViewName = Literal["front", "back", "left", "right", "top", "bottom", "iso", "ca
 ColourLike = str | tuple[int, int, int] | QColor
 ColourMap = Literal["viridis", "plasma", "deviation"]
 
-PYRAMID, GRID = "#pyramid", "#grid"
-"""Names of what the view draws by itself."""
+PYRAMID = "#pyramid"
+"""Name of the lines that show the camera."""
 
 HIGHLIGHT_WIDER = 1.5
 """Highlighted points are wider than the cloud's by so many pixels."""
@@ -83,6 +94,7 @@ class SceneView(QWidget):
         self._pyramid: Array | None = None
         self._message = ""
         self._axes = True
+        self._grid_mm = 0.0
         self._point_size = 2.0
         self._canvas = Canvas(self)
         self._navigator = Navigator(self._scene, self._size, self._margin, lambda: self._pyramid, self)
@@ -106,9 +118,10 @@ class SceneView(QWidget):
         self._buttons.view_asked.connect(self.view)
         self._buttons.fit_asked.connect(self.fit)
         self._buttons.parallel_asked.connect(self._navigator.set_parallel)
-        self._buttons.grid_asked.connect(self._lay_grid)
+        self._buttons.grid_asked.connect(self._toggle_grid)
         self._buttons.save_asked.connect(self._ask_and_save)
         self._canvas.shown.connect(self._on_shown)
+        self._canvas.hidden.connect(self._on_hidden)
         self._canvas.resized.connect(self._navigator.resized)
         self._navigator.moved.connect(self._on_moved)
         self._chooser.picked.connect(self.point_picked)
@@ -368,7 +381,7 @@ class SceneView(QWidget):
     def picture(self) -> NDArray[np.uint8]:
         """What is shown, whole, with colour bar and labels: (h, w, 3). Waits until everything is drawn."""
         surface, pace = self._backing.surface, self._backing.pace
-        if surface is not None and pace is not None and surface.ready:
+        if surface is not None and pace is not None and surface.ready and surface.widget.isVisible():
             pace.finish_now()
             pixels = surface.pixels()
         else:
@@ -464,31 +477,39 @@ class SceneView(QWidget):
 
     def _changed(self, *, afresh: bool = False) -> None:
         """Something else is to be seen."""
-        self._navigator.follow(afresh=afresh)
         self._lay_grid()
+        self._navigator.follow(afresh=afresh)
         self._show_message()
         self._backing.ensure()
         if self._backing.pace is not None:
             self._backing.pace.changed()
         self._overlay.update()
 
-    def _lay_grid(self) -> None:
-        shown = (GRID in {name for _, name in self._scene.items}), self._buttons.grid.isChecked()
-        self._scene.remove(GRID)
-        points = self._scene.to_fit() if shown[1] else np.empty((0, 3))
-        if len(points):
-            lines, step = ground_grid(points, self._navigator.orientation)
-            self._scene.put(GRID, lines)
-            self._scene.put(GRID, Labels(lines.lines[0][:1], (self.tr("grid {step} mm").format(step=f"{step:g}"),)))
-        if shown[0] != shown[1] and self._backing.pace is not None:
+    def _toggle_grid(self) -> None:
+        self._lay_grid()
+        self._navigator.resized()
+        if self._backing.pace is not None:
             self._backing.pace.changed()
-            self._overlay.update()
+        self._overlay.update()
+
+    def _lay_grid(self) -> None:
+        """Lay the grid under what there is now."""
+        self._scene.remove(GRID)
+        self._grid_mm = 0.0
+        points = self._scene.to_fit() if self._buttons.grid.isChecked() else np.empty((0, 3))
+        if len(points):
+            lines, self._grid_mm = ground_grid(points, self._navigator.orientation)
+            self._scene.put(GRID, lines)
 
     def _on_shown(self) -> None:
         self._navigator.resized()
         self._backing.ensure()
         if self._backing.pace is not None and not self._backing.pace.complete:
             self._backing.pace.moved()
+
+    def _on_hidden(self) -> None:
+        self._chooser.stop()
+        self._backing.rest()
 
     def _on_moved(self) -> None:
         if self._backing.pace is not None:
@@ -518,9 +539,9 @@ class SceneView(QWidget):
         return bar_width(self._scene.colouring, self.font()), 0
 
     def _paint_overlay(self, painter: QPainter) -> None:
-        look, camera, size = Look.of(self._canvas.palette()), self._navigator.camera, self._size()
+        look, camera, size = Look.of(self.palette()), self._navigator.camera, self._size()
         painter.setFont(self.font())
-        paint_overlay(painter, self._scene, camera, size, look, axes=self._axes)
+        paint_overlay(painter, self._scene, camera, size, look, axes=self._axes, grid_mm=self._grid_mm)
         if self._chooser.marked is not None:
             x, y = camera.project(self._chooser.marked, size)[0][0]
             if np.isfinite([x, y]).all():
@@ -531,9 +552,9 @@ class SceneView(QWidget):
         hidden = QWidget()
         surface = PainterSurface(hidden, lambda: None)
         surface.widget.resize(*self._size())
-        ground = Look.of(self._canvas.palette()).ground
+        ground = Look.of(self.palette()).ground
         surface.set_look((ground.red(), ground.green(), ground.blue()), self._point_size)
-        surface.draw(self._scene, self._navigator.camera, whole(self._scene), first=True, last=True)
+        surface.draw(self._scene, self._navigator.camera, whole(self._scene), first=True, last=True, smooth=True)
         return surface.pixels()
 
     def _ask_and_save(self) -> None:

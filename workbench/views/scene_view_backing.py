@@ -14,7 +14,7 @@ from workbench.views.scene_view_camera import SceneCamera
 from workbench.views.scene_view_canvas import Canvas
 from workbench.views.scene_view_contents import Scene
 from workbench.views.scene_view_overlay import Look
-from workbench.views.scene_view_pace import ScenePace
+from workbench.views.scene_view_pace import ScenePace, single_shot
 from workbench.views.scene_view_painter import PainterSurface
 from workbench.views.scene_view_surface import SceneSurface
 
@@ -31,11 +31,12 @@ class Backing(QObject):
 
     def __init__(self, scene: Scene, canvas: Canvas, camera: Callable[[], SceneCamera], parent: QWidget) -> None:
         super().__init__(parent)
-        self._scene, self._canvas, self._camera = scene, canvas, camera
+        self._scene, self._canvas, self._camera, self._owner = scene, canvas, camera, parent
         self.point_size = 2.0
         self.surface: SceneSurface | None = None
         self.pace: ScenePace | None = None
         self._told = False
+        self._begin, self._reveal = single_shot(self, 0, self._start), single_shot(self, 0, self._show)
         app = QCoreApplication.instance()
         if app is not None:
             app.aboutToQuit.connect(self.finish)
@@ -52,23 +53,41 @@ class Backing(QObject):
             self.waiting.emit(True)
             return
         self.waiting.emit(False)
+        self._begin.start()
+
+    def _start(self) -> None:
+        """Make the surface now, and show it in the next round of the event loop: both take their time."""
+        kind = choice.known()
+        if kind is None or self.surface is not None or self._scene.empty:
+            return
         self.surface = self._make(kind)
         self.pace = ScenePace(self._scene, self.surface, self._camera, self)
         self.pace.presented.connect(self.presented)
-        self._canvas.put_below(self.surface.widget)
-        self.dress()
-        self.pace.changed()
+        self._reveal.start()
+
+    def _show(self) -> None:
+        if self.surface is not None:
+            self._canvas.put_below(self.surface.widget)
+            self.dress()
 
     def dress(self) -> None:
         """Take the colours of the theme and draw again."""
         if self.surface is None or self.pace is None:
             return
-        ground = Look.of(self._canvas.palette()).ground
+        ground = Look.of(self._owner.palette()).ground
         self.surface.set_look((ground.red(), ground.green(), ground.blue()), self.point_size)
         self.pace.moved()
 
+    def rest(self) -> None:
+        """Do nothing until it is seen again."""
+        self._begin.stop()
+        if self.pace is not None:
+            self.pace.stop()
+
     def finish(self) -> None:
         """Take the surface away; nothing is left running."""
+        self._begin.stop()
+        self._reveal.stop()
         if self.pace is not None:
             self.pace.stop()
             self.pace.deleteLater()

@@ -4,8 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from PySide6.QtCore import QEvent, QPointF, QRectF, Qt, Signal
-from PySide6.QtGui import QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QResizeEvent, QWheelEvent
+from PySide6.QtCore import QPointF, QRectF, Qt, Signal
+from PySide6.QtGui import (
+    QHideEvent,
+    QKeyEvent,
+    QMouseEvent,
+    QPainter,
+    QPaintEvent,
+    QResizeEvent,
+    QShowEvent,
+    QWheelEvent,
+)
 from PySide6.QtWidgets import QWidget
 
 from workbench.views.scene_view_overlay import Look, paint_sentence, text_plate
@@ -82,6 +91,7 @@ class Canvas(QWidget):
     """Keeps what draws the scene and the overlay as large as itself."""
 
     shown = Signal()
+    hidden = Signal()
     resized = Signal()
 
     def __init__(self, parent: QWidget) -> None:
@@ -104,13 +114,17 @@ class Canvas(QWidget):
         widget.show()
 
     def take(self, widget: QWidget) -> None:
-        """Let go of a layer."""
-        self._layers.remove(widget)
+        """Let go of a layer, if it is one."""
+        if widget in self._layers:
+            self._layers.remove(widget)
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         for widget in self._layers:
             widget.setGeometry(self.rect())
         self.resized.emit()
 
-    def showEvent(self, event: QEvent) -> None:
+    def showEvent(self, event: QShowEvent) -> None:
         self.shown.emit()
+
+    def hideEvent(self, event: QHideEvent) -> None:
+        self.hidden.emit()

@@ -13,6 +13,7 @@ program is idle or by the first view that is shown. The answer holds for the lif
 
 from __future__ import annotations
 
+import gc
 import importlib
 import logging
 import os
@@ -84,13 +85,15 @@ def warm_up() -> None:
     if known() is not None or _Choice.thread is not None:
         return
     teller, embedded = herald(), opengl_in_windows()
-    _Choice.thread = threading.Thread(target=_find_out, args=(embedded, teller), name="3D libraries")
+    _Choice.thread = threading.Thread(target=_find_out, args=(embedded, teller), name="pyvista import")
     _Choice.thread.start()
 
 
 def _find_out(embedded: bool, teller: Herald) -> None:
     """On its own thread. Imports only; no object of VTK's is touched."""
     kind: SurfaceKind = "painter"
+    collecting = gc.isenabled()
+    gc.disable()  # so many new objects make collections of 100 ms, which would stop the window
     try:
         if embedded:
             importlib.import_module("workbench.views.scene_view_vtk")
@@ -100,6 +103,9 @@ def _find_out(embedded: bool, teller: Herald) -> None:
             kind = "pictures"
     except Exception:  # noqa: BLE001  whatever is wrong with the libraries, the program goes on without them
         _log.exception("the 3D libraries cannot be imported; pictures of the scene are painted without them")
+    finally:
+        if collecting:
+            gc.enable()
     _Choice.kind, _Choice.thread = kind, None
     try:
         teller.arrived.emit()

@@ -81,9 +81,10 @@ class SceneCloud:
 
     def sample(self, at_most: int = 20_000) -> Array:
         """A fair sample (n, 3) of the points."""
-        chunks = range(min(self.chunks, -(-at_most // CHUNK)))
-        indices = np.concatenate([self.indices(k) for k in chunks]) if chunks else np.empty(0, dtype=np.int64)
-        some: Array = self._points[indices[:at_most]]
+        chunks = self.spread(8) if self.drawn else []
+        each = at_most // max(len(chunks), 1)
+        parts = [self.indices(k)[-each:] for k in chunks]  # the ends: in the last chunk those are the newest
+        some: Array = self._points[np.concatenate(parts)] if parts else np.empty((0, 3))
         return some
 
     def spread(self, chunks: int) -> list[int]:

@@ -14,6 +14,9 @@ from core.model.arrays import Array
 from workbench.views.scene_view_cloud import SceneCloud, finite_rows
 from workbench.views.scene_view_colours import Colouring, Rgb
 
+GRID = "#grid"
+"""Name of the lines of the grid, which is seen whole."""
+
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Marks:
@@ -127,8 +130,9 @@ class Scene:
         return [item for key, item in self.items.items() if key[0] is kind]
 
     def clear(self) -> None:
-        """Take everything away."""
+        """Take everything away; what comes next is shown."""
         self.cloud = self.mesh = None
+        self.cloud_shown = self.mesh_shown = True
         self.items = {}
 
     @property
@@ -144,7 +148,9 @@ class Scene:
         if self.visible_mesh is not None:
             vertices = self.visible_mesh.vertices
             parts.append(vertices[:: max(1, len(vertices) // 20_000)])
-        if not parts:
+        if parts:
+            parts += [line for name, item in self.items.items() if name[1] == GRID for line in _points(item)]
+        else:
             parts = [points for item in self.items.values() for points in _points(item)]
         points = np.vstack(parts) if parts else np.empty((0, 3))
         return points[finite_rows(points)]

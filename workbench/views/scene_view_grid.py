@@ -19,8 +19,8 @@ def ground_grid(points: Array, orientation: Orientation) -> tuple[Lines, float]:
     local = points @ axes.T
     low, high = local.min(axis=0), local.max(axis=0)
     step = nice_step(max(float((high - low)[:2].max()), 1e-6) / 12)
-    first, last = np.floor(low[:2] / step), np.ceil(high[:2] / step)
     floor = low[2] - 0.02 * max(float((high - low).max()), step)
+    first, last = np.floor(low[:2] / step), np.ceil(high[:2] / step)
     lines = []
     for axis in (0, 1):
         for k in np.arange(first[axis], last[axis] + 1):

@@ -16,6 +16,9 @@ from workbench.views.scene_view_contents import Scene
 GROWN = 1.15
 """A scene that has grown by this factor is fitted again, as long as nobody has turned the view."""
 
+ROOM, OUTSIDE = 1.12, 0.01
+"""How much farther away a growing scene is looked at from, and which part of it may be out of sight."""
+
 CLOSEST, FARTHEST = 0.01, 1e7
 """Distances in mm between which one can zoom."""
 
@@ -76,11 +79,21 @@ class Navigator(QObject):
 
     def follow(self, *, afresh: bool = False) -> bool:
         """Fit a scene that is new or has grown, unless somebody has turned the view. Whether the camera moved."""
-        extent = _extent(self._scene.to_fit())
-        if extent > 0 and (afresh or self._extent == 0 or (not self._touched and extent > GROWN * self._extent)):
-            self._fit_or_view()
+        points = self._scene.to_fit()
+        extent = _extent(points)
+        if extent == 0:
+            return False
+        outgrown = not self._touched and (extent > GROWN * self._extent or self._leaves_view(points))
+        if afresh or self._extent == 0 or outgrown:
+            # One that is growing gets room, or it would have to be fitted again and again.
+            self._fit_or_view(1.0 if afresh or self._extent == 0 else ROOM)
             return True
         return False
+
+    def _leaves_view(self, points: Array) -> bool:
+        """Whether some of the points (N, 3) are outside."""
+        screen, _ = self.camera.project(points, self._size())
+        return bool(((screen < 0) | (screen > np.array(self._size()))).any(axis=1).mean() > OUTSIDE)
 
     def resized(self) -> None:
         """Fit again to another size, unless somebody has turned the view."""
@@ -88,8 +101,8 @@ class Navigator(QObject):
             self._fit_or_view()
 
     def forget(self) -> None:
-        """The scene is empty: what comes next is fitted."""
-        self._extent, self._touched = 0.0, False
+        """The scene is empty: what comes next is fitted, seen from a corner."""
+        self._extent, self._touched, self._name = 0.0, False, "iso"
 
     def set_orientation(self, up: ArrayLike, north: ArrayLike) -> None:
         """Another up and north; a standard view is taken again."""
@@ -121,11 +134,13 @@ class Navigator(QObject):
         """Bring a point (3,) to the middle; the view turns about it from now on."""
         self._move(replace(self.camera, focal=np.asarray(point, dtype=np.float64)))
 
-    def _fit_or_view(self) -> None:
+    def _fit_or_view(self, room: float = 1.0) -> None:
         if self._touched:
             self.fit()
         else:
             self.view(self._name)
+        if room > 1 and self._name != "camera":
+            self.camera = replace(self.camera, distance=self.camera.distance * room)
 
     def _move(self, camera: SceneCamera) -> None:
         self.camera, self._touched = camera, True

@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtCore import QCoreApplication, QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFont, QFontMetricsF, QLinearGradient, QPainter, QPalette, QPen, QPolygonF
 
 from workbench.views.scene_view_camera import SceneCamera
@@ -54,7 +54,14 @@ class Look:
 
 
 def paint_overlay(
-    painter: QPainter, scene: Scene, camera: SceneCamera, size: tuple[int, int], look: Look, *, axes: bool
+    painter: QPainter,
+    scene: Scene,
+    camera: SceneCamera,
+    size: tuple[int, int],
+    look: Look,
+    *,
+    axes: bool,
+    grid_mm: float,
 ) -> None:
     """Everything that belongs to the picture; what belongs to a tool is painted by the tool."""
     painter.setRenderHint(QPainter.RenderHint.Antialiasing)
@@ -65,7 +72,7 @@ def paint_overlay(
             _paint_measure(painter, item, camera, size, look)
     if axes:
         _paint_triad(painter, camera, size, look)
-        _paint_scale(painter, camera, size, look)
+        _paint_scale(painter, camera, size, look, grid_mm)
     if scene.colouring is not None:
         _paint_bar(painter, scene.colouring, size, look)
 
@@ -121,7 +128,7 @@ def _paint_measure(painter: QPainter, measure: Measure, camera: SceneCamera, siz
     along = screen[1] - screen[0]
     length = float(np.hypot(*along)) or 1.0
     across = QPointF(-along[1] / length * 6, along[0] / length * 6)
-    for pen in (QPen(look.ground, 4.5), QPen(look.accent, 2.0)):
+    for pen in (QPen(look.ground, 5), QPen(look.text, 2.0)):
         painter.setPen(pen)
         painter.drawLine(a, b)
         painter.drawLine(a - across, a + across)
@@ -148,7 +155,7 @@ def _paint_triad(painter: QPainter, camera: SceneCamera, size: tuple[int, int], 
         painter.drawText(place, int(Qt.AlignmentFlag.AlignCenter), name)
 
 
-def _paint_scale(painter: QPainter, camera: SceneCamera, size: tuple[int, int], look: Look) -> None:
+def _paint_scale(painter: QPainter, camera: SceneCamera, size: tuple[int, int], look: Look, grid_mm: float) -> None:
     """A bar of a round number of mm, at the depth the view turns about."""
     scale = camera.pixels_per_mm(size)
     if not np.isfinite(scale) or scale <= 0:
@@ -163,10 +170,11 @@ def _paint_scale(painter: QPainter, camera: SceneCamera, size: tuple[int, int], 
         painter.drawPolyline(
             [QPointF(left, y - 5), QPointF(left, y), QPointF(left + length, y), QPointF(left + length, y - 5)]
         )
-    number = f"{length_mm:g}"
-    text_plate(
-        painter, QPointF(left + length / 2, y - 14), f"{number} mm" if camera.parallel else f"≈ {number} mm", look
-    )
+    number = f"{length_mm:g} mm"
+    text_plate(painter, QPointF(left + length / 2, y - 14), number if camera.parallel else f"≈ {number}", look)
+    if grid_mm:
+        grid = QCoreApplication.translate("SceneView", "grid {step} mm").format(step=f"{grid_mm:g}")
+        text_plate(painter, QPointF(left + length + 60, y - 5), grid, look)
 
 
 def _ticks(colouring: Colouring, height: float) -> tuple[list[float], list[str]]:
@@ -244,9 +252,12 @@ def paint_marker(painter: QPainter, at: QPointF, text: str, look: Look) -> None:
     """A ring round a chosen point, with its coordinates."""
     painter.setRenderHint(QPainter.RenderHint.Antialiasing)
     painter.setBrush(Qt.BrushStyle.NoBrush)
-    for pen in (QPen(look.ground, 4.5), QPen(look.accent, 2.2)):
+    for pen in (QPen(look.ground, 6), QPen(look.text, 2.4)):
         painter.setPen(pen)
-        painter.drawEllipse(at, 7, 7)
+        painter.drawEllipse(at, 8, 8)
+    painter.setPen(QPen(look.ground, 1))
+    painter.setBrush(look.accent)
+    painter.drawEllipse(at, 3, 3)
     text_plate(painter, at - QPointF(0, 24), text, look)
 
 

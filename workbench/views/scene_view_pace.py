@@ -2,7 +2,8 @@
 
 Nothing here takes longer than a fraction of a frame. While the camera moves, a fair part of the points is drawn, as
 many as the computer has shown to manage in `BUDGET_MS`. When nothing has moved for `STILL_MS`, everything is drawn,
-in passes of the same size, and shown when it is complete. A growing cloud is drawn over what is there.
+in passes of the same size, and shown with smooth edges when it is complete. A growing cloud is drawn over what is
+there. Nothing is drawn while nobody sees it.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from collections.abc import Callable
 from PySide6.QtCore import QObject, QTimer, Signal
 
 from workbench.views.scene_view_camera import SceneCamera
-from workbench.views.scene_view_contents import Patches, Scene
+from workbench.views.scene_view_contents import Lines, Patches, Scene
 from workbench.views.scene_view_pieces import Key, Version, elements, fair_part, version, whole
 from workbench.views.scene_view_surface import SceneSurface
 
@@ -45,8 +46,8 @@ class ScenePace(QObject):
         super().__init__(parent)
         self._scene, self._surface, self._camera = scene, surface, camera
         self._allowance = float(FIRST)
-        self._soon, self._still = self._timer(0, self.draw_now), self._timer(STILL_MS, self._start_whole)
-        self._next, self._growth = self._timer(0, self._step), self._timer(GROW_MS, self._grow)
+        self._soon, self._still = single_shot(self, 0, self.draw_now), single_shot(self, STILL_MS, self._start_whole)
+        self._next, self._growth = single_shot(self, 0, self._step), single_shot(self, GROW_MS, self._grow)
         self._left: list[Key] = []
         self._first = self._again = False
         self._drawn: dict[Key, Version | None] = {}
@@ -61,9 +62,10 @@ class ScenePace(QObject):
 
     def moved(self) -> None:
         """The camera moved: show something very soon."""
+        self._complete = False
         self._stop_whole()
         self._still.stop()
-        if not self._soon.isActive():
+        if self._can_draw() and not self._soon.isActive():
             self._soon.start()
 
     def changed(self) -> None:
@@ -80,23 +82,20 @@ class ScenePace(QObject):
 
     def grown(self) -> None:
         """The cloud grew: show the new points, some time soon."""
-        if not self._growth.isActive():
+        if self._can_draw() and not self._growth.isActive():
             self._growth.start()
 
     def draw_now(self) -> None:
-        """Draw as much as there is time for, and the rest when it is still."""
+        """Draw as much as there is time for, and everything, with smooth edges, when it is still."""
         if not self._can_draw():
             return
         self._soon.stop()
         self._stop_whole()
         keys = self._affordable(fair_part(self._scene, int(self._allowance)))
-        fresh = any(not self._surface.is_made(self._scene, key) for key in keys)
         self.moving_elements = sum(elements(self._scene, key) for key in keys)
-        took = self._draw(keys, first=True, last=True)
+        self._draw(keys, first=True, last=True)
         self._complete = set(keys) == set(whole(self._scene))
-        if not fresh:
-            self._learn(took, self.moving_elements)
-        if not self._complete:
+        if not self._complete or self._has_edges():
             self._still.start()
         self.presented.emit()
 
@@ -112,7 +111,7 @@ class ScenePace(QObject):
         self._next.stop()
 
     def stop(self) -> None:
-        """Draw no more."""
+        """Draw no more, until something moves or changes."""
         for timer in (self._soon, self._still, self._next, self._growth):
             timer.stop()
         self._left, self._first = [], False
@@ -129,14 +128,11 @@ class ScenePace(QObject):
         if not self._can_draw() or not (self._left or self._first):
             self._stop_whole()
             return
-        batch, size = [], 0
-        while self._left and size < self._allowance:
-            batch.append(self._left[0])
-            size += elements(self._scene, self._left.pop(0)) if version(self._scene, batch[-1]) is not None else 0
-        affordable = self._affordable([key for key in batch if version(self._scene, key) is not None])
-        self._left = [key for key in batch if key not in affordable and version(self._scene, key)] + self._left
+        batch = self._next_batch()
+        solid = all(key.kind != "cloud" for key in batch)
         last = not self._left
-        self._draw(affordable, first=self._first, last=last)
+        smooth = solid and self._has_edges() and (last or self._left[0].kind == "cloud")
+        self._draw(batch, first=self._first, last=last, smooth=smooth)
         self._first = False
         if not last:
             self._next.start()
@@ -147,6 +143,29 @@ class ScenePace(QObject):
             self._start_whole()
         elif self._stale():
             self.grown()
+
+    def _next_batch(self) -> list[Key]:
+        """Take from what is left as much as there is time for, and never cloud and mesh together.
+
+        Lines go with the mesh, or alone before the cloud: their edges are smoothed, a cloud's points are not.
+        """
+        self._left = [key for key in self._left if version(self._scene, key) is not None]
+        if self._first and self._has_edges() and self._left and self._left[0].kind == "cloud":
+            return []
+        batch: list[Key] = []
+        size = fresh = 0
+        for key in self._left:
+            new = not self._surface.is_made(self._scene, key)
+            if batch and (size >= self._allowance or fresh + new > FRESH or key.kind != batch[0].kind):
+                break
+            batch.append(key)
+            size += elements(self._scene, key)
+            fresh += new
+        self._left = self._left[len(batch) :]
+        return batch
+
+    def _has_edges(self) -> bool:
+        return self._scene.visible_mesh is not None or bool(self._scene.of_kind(Lines))
 
     def _stop_whole(self) -> None:
         self._next.stop()
@@ -182,16 +201,18 @@ class ScenePace(QObject):
         dropped = set(fresh[FRESH:])
         return [key for key in keys if key not in dropped]
 
-    def _draw(self, keys: list[Key], *, first: bool, last: bool) -> float:
-        """Draw a pass; milliseconds it took."""
+    def _draw(self, keys: list[Key], *, first: bool, last: bool, smooth: bool = False) -> None:
+        """Draw a pass, and learn from the time it took."""
         if first:
             self._drawn = {}
+        fresh = any(not self._surface.is_made(self._scene, key) for key in keys)
         start = time.perf_counter()
-        self._surface.draw(self._scene, self._camera(), keys, first=first, last=last)
+        self._surface.draw(self._scene, self._camera(), keys, first=first, last=last, smooth=smooth)
         took = (time.perf_counter() - start) * 1e3
         self._drawn.update({key: version(self._scene, key) for key in keys})
         self.pass_ms = [*self.pass_ms[-199:], took]
-        return took
+        if not fresh:
+            self._learn(took, sum(elements(self._scene, key) for key in keys))
 
     def _learn(self, took: float, count: int) -> None:
         """Draw more or less next time, if that is what took the time."""
@@ -200,14 +221,17 @@ class ScenePace(QObject):
             self._allowance = min(max(self._allowance * factor, FEWEST), MOST)
 
     def _can_draw(self) -> bool:
-        return self._surface.ready and self._surface.widget.width() > 1 and self._surface.widget.height() > 1
+        widget = self._surface.widget
+        return self._surface.ready and widget.isVisible() and widget.width() > 1 and widget.height() > 1
 
-    def _timer(self, interval: int, slot: Callable[[], None]) -> QTimer:
-        timer = QTimer(self)
-        timer.setSingleShot(True)
-        timer.setInterval(interval)
-        timer.timeout.connect(slot)
-        return timer
+
+def single_shot(owner: QObject, interval_ms: int, slot: Callable[[], None]) -> QTimer:
+    """A timer of `owner` that calls once for each start."""
+    timer = QTimer(owner)
+    timer.setSingleShot(True)
+    timer.setInterval(interval_ms)
+    timer.timeout.connect(slot)
+    return timer
 
 
 def _same(drawn: Version | None, current: Version | None) -> bool:

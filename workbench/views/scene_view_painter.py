@@ -53,16 +53,15 @@ class PainterSurface:
     def is_made(self, scene: Scene, key: Key) -> bool:
         return key in self._pieces and self._pieces[key][0] == version(scene, key)
 
-    def draw(self, scene: Scene, camera: SceneCamera, keys: Iterable[Key], *, first: bool, last: bool) -> None:
+    def draw(
+        self, scene: Scene, camera: SceneCamera, keys: Iterable[Key], *, first: bool, last: bool, smooth: bool
+    ) -> None:
         ratio = self._widget.devicePixelRatioF()
         if first:
             self._canvas = _Canvas(self._widget.device_size, self._background)
             self._pieces = {key: held for key, held in self._pieces.items() if self.is_made(scene, key)}
             for item in scene.items.values():
-                if isinstance(item, Marks):
-                    colours = np.tile(np.array(item.colour, dtype=np.uint8), (len(item.points), 1))
-                    self._canvas.splat(camera, item.points, colours, item.size * ratio, nearer=1e-3)
-                elif isinstance(item, Lines):
+                if isinstance(item, Lines):
                     self._canvas.draw_lines(camera, item, ratio)
         for key in keys:
             if not self.is_made(scene, key):
@@ -73,6 +72,10 @@ class PainterSurface:
             else:
                 self._canvas.draw_mesh(camera, piece)
         if last:
+            for item in scene.items.values():
+                if isinstance(item, Marks):
+                    colours = np.tile(np.array(item.colour, dtype=np.uint8), (len(item.points), 1))
+                    self._canvas.splat(camera, item.points, colours, item.size * ratio, nearer=1e-3)
             self._widget.show_pixels(_with_patches(self._canvas, camera, scene))
 
     def pixels(self) -> NDArray[np.uint8]:

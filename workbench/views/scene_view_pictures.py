@@ -12,6 +12,7 @@ from PySide6.QtWidgets import QWidget
 from workbench.views.scene_view_camera import SceneCamera
 from workbench.views.scene_view_colours import Rgb
 from workbench.views.scene_view_contents import Scene
+from workbench.views.scene_view_messages import route_messages
 from workbench.views.scene_view_picture_widget import PictureWidget
 from workbench.views.scene_view_pieces import Key
 from workbench.views.scene_view_stage import Stage, read_pixels
@@ -24,6 +25,7 @@ class PicturesSurface:
 
     def __init__(self, parent: QWidget, draw_now: Callable[[], None]) -> None:
         self._widget = PictureWidget(parent, draw_now)
+        route_messages()
         self._plotter = pyvista.Plotter(off_screen=True)
         window = self._plotter.render_window
         assert window is not None
@@ -46,11 +48,13 @@ class PicturesSurface:
     def is_made(self, scene: Scene, key: Key) -> bool:
         return self._stage.is_made(scene, key)
 
-    def draw(self, scene: Scene, camera: SceneCamera, keys: Iterable[Key], *, first: bool, last: bool) -> None:
+    def draw(
+        self, scene: Scene, camera: SceneCamera, keys: Iterable[Key], *, first: bool, last: bool, smooth: bool
+    ) -> None:
         if first:
             self._stage.pixel_ratio = self._widget.devicePixelRatioF()
             self._stage.window.SetSize(*self._widget.device_size)
-        self._stage.draw(scene, camera, keys, first=first, last=last)
+        self._stage.draw(scene, camera, keys, first=first, last=last, smooth=smooth)
         if last:
             self._widget.show_pixels(read_pixels(self._stage.window))
 

@@ -52,8 +52,10 @@ class Stage:
         """Whether a piece is there as it is in the scene."""
         return key in self._pieces and self._pieces[key][0] == version(scene, key)
 
-    def draw(self, scene: Scene, camera: SceneCamera, keys: Iterable[Key], *, first: bool, last: bool) -> None:
-        """One pass: some pieces of cloud and mesh; with the first marks and lines, with the last all transparent."""
+    def draw(
+        self, scene: Scene, camera: SceneCamera, keys: Iterable[Key], *, first: bool, last: bool, smooth: bool
+    ) -> None:
+        """One pass: some pieces of cloud and mesh; with the first lines, with the last marks and all transparent."""
         if first:
             self._sync(scene)
         shown = set(keys)
@@ -66,9 +68,10 @@ class Stage:
                 actor.GetProperty().SetPointSize(self.point_size * self.pixel_ratio)
         for item, item_actor in self._items.values():
             if item_actor is not None:
-                item_actor.SetVisibility(last if isinstance(item, Patches) else first)
+                item_actor.SetVisibility(first if isinstance(item, Lines) else last)
         self.renderer.SetPreserveColorBuffer(not first)
         self.renderer.SetPreserveDepthBuffer(not first)
+        self.renderer.SetUseFXAA(smooth)
         self._aim(camera, scene)
         self.window.SetSwapBuffers(last)
         self.window.Render()
@@ -225,7 +228,7 @@ def _light(actor: vtkActor) -> None:
     looks = actor.GetProperty()
     looks.LightingOn()
     looks.SetInterpolationToGouraud()
-    looks.SetAmbient(0.25)
+    looks.SetAmbient(0.3)
     looks.SetDiffuse(0.8)
 
 

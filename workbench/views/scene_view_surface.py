@@ -35,7 +35,9 @@ class SceneSurface(Protocol):
     def is_made(self, scene: Scene, key: Key) -> bool:
         """Whether a piece can be drawn at once, without being gathered first."""
 
-    def draw(self, scene: Scene, camera: SceneCamera, keys: Iterable[Key], *, first: bool, last: bool) -> None:
+    def draw(
+        self, scene: Scene, camera: SceneCamera, keys: Iterable[Key], *, first: bool, last: bool, smooth: bool
+    ) -> None:
         """Draw one pass and wait for it.
 
         Parameters
@@ -43,9 +45,11 @@ class SceneSurface(Protocol):
         keys
             Pieces of cloud and mesh to draw.
         first
-            Start a new picture, with marks and lines; else draw over what is there.
+            Start a new picture, with lines; else draw over what is there.
         last
-            Finish it with all that is transparent, and show it.
+            Finish it with marks and all that is transparent, and show it.
+        smooth
+            Smooth the edges of what is there after this pass, if that can be done. Not for points: small ones fade.
         """
 
     def pixels(self) -> NDArray[np.uint8]:

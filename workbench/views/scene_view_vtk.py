@@ -9,6 +9,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 
 import numpy as np
+import vtkmodules.vtkInteractionWidgets
+import vtkmodules.vtkViewsContext2D  # noqa: F401  both: or pyvista imports them in the GUI thread, which takes 100 ms
 from numpy.typing import NDArray
 from PySide6.QtWidgets import QWidget
 from pyvistaqt import QtInteractor
@@ -16,6 +18,7 @@ from pyvistaqt import QtInteractor
 from workbench.views.scene_view_camera import SceneCamera
 from workbench.views.scene_view_colours import Rgb
 from workbench.views.scene_view_contents import Scene
+from workbench.views.scene_view_messages import route_messages
 from workbench.views.scene_view_pieces import Key
 from workbench.views.scene_view_stage import Stage, read_pixels
 
@@ -59,6 +62,7 @@ class EmbeddedSurface:
     kind = "embedded"
 
     def __init__(self, parent: QWidget, draw_now: Callable[[], None]) -> None:
+        route_messages()
         self._interactor = _Interactor(parent)
         self._interactor.before_paint = draw_now
         window = self._interactor.GetRenderWindow()  # type: ignore[no-untyped-call]
@@ -82,9 +86,11 @@ class EmbeddedSurface:
     def is_made(self, scene: Scene, key: Key) -> bool:
         return self._stage.is_made(scene, key)
 
-    def draw(self, scene: Scene, camera: SceneCamera, keys: Iterable[Key], *, first: bool, last: bool) -> None:
+    def draw(
+        self, scene: Scene, camera: SceneCamera, keys: Iterable[Key], *, first: bool, last: bool, smooth: bool
+    ) -> None:
         self._stage.pixel_ratio = self._interactor.devicePixelRatioF()
-        self._stage.draw(scene, camera, keys, first=first, last=last)
+        self._stage.draw(scene, camera, keys, first=first, last=last, smooth=smooth)
 
     def pixels(self) -> NDArray[np.uint8]:
         return read_pixels(self._stage.window)

@@ -1,0 +1,518 @@
+"""The 3D view behaves the same whatever draws it: OpenGL in the window, rendered pictures, or numpy."""
+
+from __future__ import annotations
+
+import logging
+import os
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+from PySide6.QtCore import QEvent, QPoint, QPointF, Qt
+from PySide6.QtGui import QColor, QMouseEvent, QPalette
+from PySide6.QtWidgets import QApplication, QFileDialog, QMainWindow, QWidget
+
+from core.errors import InputError
+from tests.workbench.views.test_scene_view_numbers import crossing_number
+from tests.workbench.watchdog import Watchdog
+from workbench.views import scene_view_choice as choice
+from workbench.views.scene_view import SceneView
+
+RED, LEFT = "#ff0000", Qt.MouseButton.LeftButton
+RNG = np.random.default_rng(3)
+FLAT = np.column_stack([*(RNG.random((2, 4000)) * 100 - 50), np.full(4000, 500.0)])
+SPARSE = np.array([[x, y, 500.0] for y in (-30, -10, 10, 30) for x in (-40, -20, 0, 20, 40)])
+
+
+ON_SCREEN = bool(os.environ.get("DISPLAY")) and os.environ.get("QT_QPA_PLATFORM", "xcb") == "xcb"
+
+
+@pytest.fixture(scope="session")
+def pictures_work() -> bool:
+    return choice._pictures_can_be_rendered()
+
+
+@pytest.fixture(params=["embedded" if ON_SCREEN else "pictures", "painter"])
+def kind(request, qapp, monkeypatch) -> str:
+    """One way of drawing: without a screen there are pictures, with one there is OpenGL in the window."""
+    if request.param == "embedded" and not choice.opengl_in_windows():
+        pytest.skip("no OpenGL in windows here")
+    if request.param == "pictures" and not request.getfixturevalue("pictures_work"):
+        pytest.skip("no off-screen rendering here")
+    monkeypatch.setattr(choice._Choice, "kind", request.param)
+    return request.param
+
+
+@pytest.fixture
+def view(kind, qtbot) -> Iterator[SceneView]:
+    made = SceneView()
+    qtbot.addWidget(made)
+    made.resize(700, 520)
+    made.set_axes(False)
+    made.show()
+    qtbot.waitExposed(made)
+    made.activateWindow()
+    qtbot.waitUntil(made.isActiveWindow)
+    yield made
+    made.close()
+
+
+def complete(view: SceneView, qtbot) -> None:
+    qtbot.waitUntil(lambda: view.state()["complete"], timeout=20_000)
+
+
+def ground(view: SceneView) -> np.ndarray:
+    colour = view.palette().color(QPalette.ColorRole.Window)
+    return np.array([colour.red(), colour.green(), colour.blue()])
+
+
+def count(picture: np.ndarray, colour: str, tolerance: int = 40) -> int:
+    """How many pixels have about this colour."""
+    wanted = QColor(colour)
+    return int(
+        (np.abs(picture.astype(int) - [wanted.red(), wanted.green(), wanted.blue()]).max(axis=2) < tolerance).sum()
+    )
+
+
+def click(view: SceneView, qtbot, at, button=LEFT) -> None:
+    qtbot.mouseClick(view.focusProxy(), button, pos=QPoint(*(int(c) for c in at)))
+
+
+def drag(view: SceneView, qtbot, places, button=LEFT) -> None:
+    canvas = view.focusProxy()
+    points = [QPoint(*(int(c) for c in place)) for place in places]
+    qtbot.mousePress(canvas, button, pos=points[0])
+    for point in points[1:]:
+        where = QPointF(point)  # QTest sends moves without buttons; the real ones have them
+        event = QMouseEvent(
+            QEvent.Type.MouseMove,
+            where,
+            canvas.mapToGlobal(where),
+            Qt.MouseButton.NoButton,
+            button,
+            Qt.KeyboardModifier(0),
+        )
+        QApplication.sendEvent(canvas, event)
+    qtbot.mouseRelease(canvas, button, pos=points[-1])
+
+
+# ---- what is shown
+
+
+def test_nothing_is_made_before_there_is_something_to_see(view, qtbot):
+    qtbot.wait(20)
+    assert view.state()["kind"] == "none"
+
+
+def test_an_empty_view_says_why_it_is_empty(view, qtbot):
+    blank = view.grab().toImage()
+    view.clear("No cloud yet: scan a part first.")
+    qtbot.wait(20)
+    assert view.grab().toImage() != blank
+
+
+def test_a_cloud_is_shown_whole_from_above_where_it_is(view, kind, qtbot):
+    view.set_cloud(FLAT, colours=RED)
+    view.view("top")
+    complete(view, qtbot)
+    assert view.state()["kind"] == kind
+    picture = view.picture()
+    assert picture.dtype == np.uint8 and count(picture, RED) > 5000
+    screen = view.screen_positions(FLAT).astype(int)
+    hit = picture[screen[:, 1], screen[:, 0]]
+    assert (hit[:, 0] > 180).mean() > 0.97
+
+
+def test_the_first_cloud_is_fitted_and_the_next_keeps_the_view(view, qtbot):
+    view.set_cloud(FLAT)
+    before = view.screen_positions(SPARSE)
+    assert (before > 0).all() and (before < [700, 520]).all()
+    view.set_cloud(FLAT / 3 + [0, 0, 333])
+    assert_allclose(view.screen_positions(SPARSE), before)
+    view.set_cloud(FLAT / 3 + [0, 0, 333], keep_camera=False)
+    assert np.abs(view.screen_positions(SPARSE) - before).max() > 50
+
+
+def test_values_have_a_colour_bar_with_name_and_unit_and_colours_of_ones_own_have_none(view, qtbot):
+    view.set_cloud(FLAT, colours=RED)
+    complete(view, qtbot)
+    plain = view.picture()[:, -110:]
+    view.set_cloud(FLAT, values=FLAT[:, 0], value_name="height", unit="mm")
+    complete(view, qtbot)
+    bar = view.picture()[:, -110:]
+    inked = [(np.abs(part.astype(int) - ground(view)).max(axis=2) > 60).sum() for part in (plain, bar)]
+    assert inked[1] > inked[0] + 1500
+
+
+def test_a_growing_cloud_shows_its_new_points(view, qtbot):
+    view.set_cloud(np.empty((0, 3)), values=np.empty(0), value_name="σ", unit="mm", limits=(0, 1))
+    for k in range(0, len(FLAT), 500):
+        view.add_points(FLAT[k : k + 500], np.ones(500))
+        qtbot.wait(5)
+    complete(view, qtbot)
+    view.view("top")
+    complete(view, qtbot)
+    assert view.state()["points"] == len(FLAT)
+    assert count(view.picture(), "#fde725") > 5000
+
+
+def test_points_added_beyond_the_view_are_brought_into_it_until_somebody_turns_it(view, qtbot):
+    view.set_cloud(FLAT / 5 + [0, 0, 400])
+    view.add_points(FLAT)
+    assert ((view.screen_positions(FLAT) > 0) & (view.screen_positions(FLAT) < [700, 520])).all()
+    view.orbit(5, 5)
+    turned = view.screen_positions(SPARSE)
+    view.add_points(FLAT * [9, 9, 1])
+    assert_allclose(view.screen_positions(SPARSE), turned)
+
+
+def test_highlights_planes_and_lines_come_and_go(view, qtbot):
+    view.set_cloud(FLAT, colours="#808080")
+    view.view("top")
+    square = np.array([[-20, -20, 480.0], [20, -20, 480], [20, 20, 480], [-20, 20, 480]])
+    view.set_highlight("upper", FLAT[:2000], RED)
+    complete(view, qtbot)
+    assert count(view.picture(), RED) > 2000
+    view.remove_highlight("upper")
+    view.remove_highlight("upper")
+    view.set_polylines("pose", [np.vstack([square, square[:1]])], "#00ff00", 3)
+    complete(view, qtbot)
+    picture = view.picture()
+    assert count(picture, RED) == 0 and count(picture, "#00ff00") > 300
+    view.remove("pose")
+    view.set_planes("fan", [square, np.full((4, 3), np.nan)], ["#0000ff", RED], opacity=0.5)
+    complete(view, qtbot)
+    picture = view.picture()
+    assert count(picture, "#00ff00") == 0 and count(picture, "#4040c0", 30) > 1000
+    view.remove("fan")
+    complete(view, qtbot)
+    assert count(view.picture(), "#4040c0", 30) == 0
+
+
+def test_cloud_and_mesh_can_be_hidden(view, qtbot):
+    corners = np.array([[-50, -50, 500.0], [50, -50, 500], [50, 50, 500], [-50, 50, 500]])
+    view.set_mesh(corners, [[0, 1, 2], [0, 2, 3]], colour="#00ff00")
+    view.view("top")
+    complete(view, qtbot)
+    green = lambda: int((view.picture()[:, :, 1].astype(int) - view.picture()[:, :, 0] > 60).sum())  # noqa: E731
+    assert green() > 50_000
+    view.show_mesh(False)
+    assert green() == 0
+    view.set_cloud(FLAT, colours=RED)
+    complete(view, qtbot)
+    assert count(view.picture(), RED) > 1000
+    view.show_cloud(False)
+    assert count(view.picture(), RED) == 0
+
+
+def test_labels_and_measures_are_written_over_the_scene(view, qtbot):
+    view.set_cloud(SPARSE, colours="#808080")
+    complete(view, qtbot)
+    before = view.picture()
+    view.set_measure("thickness", SPARSE[0], SPARSE[4], "50.012 mm")
+    view.set_labels("faces", [(SPARSE[10], "upper face")])
+    complete(view, qtbot)
+    assert (view.picture() != before).any(axis=2).sum() > 500
+    view.remove("thickness")
+    view.remove("faces")
+    complete(view, qtbot)
+    assert_array_equal(view.picture(), before)
+
+
+def test_the_ground_follows_the_theme_at_once(view, qtbot, theme):
+    view.set_cloud(SPARSE, colours=RED)
+    for name, dark in (("dark", True), ("light", False)):
+        theme(name)
+        complete(view, qtbot)
+        corner = view.picture()[2:10, 2:10].reshape(-1, 3)
+        assert (corner.mean() < 80) == dark
+        assert_allclose(corner, np.broadcast_to(ground(view), corner.shape), atol=3)
+
+
+def test_the_grid_lies_under_the_scene(view, qtbot):
+    view.set_cloud(FLAT, colours=RED)
+    complete(view, qtbot)
+    before = view.picture()
+    view.set_grid(True)
+    complete(view, qtbot)
+    assert (view.picture() != before).any(axis=2).sum() > 1000
+    view.set_grid(False)
+    complete(view, qtbot)
+    assert_array_equal(view.picture(), before)
+
+
+def test_wrong_shapes_are_refused_and_leave_what_was_shown(view):
+    view.set_cloud(FLAT)
+    with pytest.raises(ValueError, match="values"):
+        view.set_cloud(FLAT, values=[1, 2])
+    with pytest.raises(ValueError, match="shape"):
+        view.set_highlight("x", np.zeros((3, 2)), RED)
+    with pytest.raises(ValueError, match="colour"):
+        view.set_highlight("x", FLAT, "no colour at all")
+    assert view.state()["points"] == len(FLAT)
+
+
+# ---- from where
+
+
+def test_keys_choose_the_standard_views(view, qtbot):
+    view.set_cloud(FLAT)
+    view.view("iso")
+    seen = set()
+    for key in "12345678":
+        qtbot.keyClick(view.focusProxy(), key)
+        seen.add(tuple(np.round(view.screen_positions(SPARSE).ravel()).tolist()))
+    assert len(seen) >= 7  # what the camera sees is nearly the view from above
+    view.zoom(5)
+    qtbot.keyClick(view.focusProxy(), "r")
+    fitted = view.screen_positions(SPARSE)
+    assert (fitted > 0).all() and (fitted < [700, 520]).all()
+
+
+def test_in_parallel_projection_equal_lengths_look_equal(view, qtbot):
+    view.set_cloud(np.vstack([FLAT, FLAT - [0, 0, 90]]))
+    view.view("top")
+    near_far = np.array([[0, 0, 410.0], [10, 0, 410], [0, 0, 500], [10, 0, 500]])
+    a, b, c, d = view.screen_positions(near_far)
+    assert np.hypot(*(b - a)) > 1.05 * np.hypot(*(d - c))
+    view.set_parallel(True)
+    a, b, c, d = view.screen_positions(near_far)
+    assert_allclose(b - a, d - c, atol=1e-3)
+
+
+def test_the_mouse_turns_moves_and_zooms(view, qtbot):
+    view.set_cloud(FLAT)
+    places = [view.screen_positions(SPARSE)]
+    drag(view, qtbot, [(300, 200), (340, 210), (380, 220)])
+    places.append(view.screen_positions(SPARSE))
+    drag(view, qtbot, [(300, 200), (340, 200)], Qt.MouseButton.RightButton)
+    places.append(view.screen_positions(SPARSE))
+    assert np.abs(places[1] - places[0]).max() > 20
+    assert_allclose((places[2] - places[1]).mean(axis=0), [40, 0], atol=8)
+
+
+def test_another_orientation_turns_the_standard_views(view, qtbot):
+    view.set_cloud(FLAT)
+    view.view("front")
+    edge_on = np.ptp(view.screen_positions(FLAT)[:, 1])
+    view.set_orientation(up=(0, -1, 0), north=(0, 0, 1))
+    assert np.ptp(view.screen_positions(FLAT)[:, 1]) > 5 * edge_on + 20
+
+
+# ---- choosing
+
+
+def test_a_click_picks_the_point_of_the_cloud_it_was_given(view, qtbot):
+    view.set_cloud(SPARSE)
+    view.view("top")
+    view.start_picking()
+    with qtbot.waitSignal(view.point_picked) as picked:
+        click(view, qtbot, view.screen_positions(SPARSE)[7] + [3, -2])
+    assert picked.args[0] == 7
+    assert_array_equal(picked.args[1], SPARSE[7])
+    with qtbot.assertNotEmitted(view.point_picked):
+        click(view, qtbot, (3, 3))
+
+
+def test_added_points_are_picked_by_their_number_in_the_whole_cloud(view, qtbot):
+    view.set_cloud(SPARSE[:10])
+    view.add_points(SPARSE[10:])
+    view.view("top")
+    view.start_picking()
+    with qtbot.waitSignal(view.point_picked) as picked:
+        click(view, qtbot, view.screen_positions(SPARSE)[13])
+    assert picked.args[0] == 13
+
+
+def test_turning_the_view_while_picking_picks_nothing(view, qtbot):
+    view.set_cloud(SPARSE)
+    view.view("top")
+    view.start_picking()
+    at = view.screen_positions(SPARSE)[7]
+    with qtbot.assertNotEmitted(view.point_picked):
+        drag(view, qtbot, [at, at + 20, at + 40])
+    assert np.abs(view.screen_positions(SPARSE)[7] - at).max() > 1
+
+
+@pytest.mark.parametrize("closing", ["double click", "enter", "first corner"])
+def test_a_polygon_chooses_the_points_inside(view, qtbot, closing):
+    points = FLAT.copy()
+    points[[5, 6]] = np.nan
+    view.set_cloud(points)
+    view.view("top")
+    corners = np.array([(200, 150), (500, 170), (480, 400), (220, 380)])
+    view.start_polygon()
+    for corner in corners:
+        click(view, qtbot, corner)
+    with qtbot.waitSignal(view.region_selected) as selected:
+        if closing == "double click":
+            qtbot.mouseDClick(view.focusProxy(), LEFT, pos=QPoint(220, 380))
+        elif closing == "enter":
+            qtbot.keyClick(view.focusProxy(), Qt.Key.Key_Return)
+        else:
+            click(view, qtbot, corners[0])
+    inside = selected.args[0]
+    assert inside.shape == (len(points),) and inside.dtype == bool and not inside[5]
+    wanted = crossing_number(np.nan_to_num(view.screen_positions(points), nan=-1), corners.astype(float))
+    assert (inside != wanted).mean() < 0.002 and inside.sum() > 100
+
+
+def test_a_lasso_chooses_the_points_inside(view, qtbot):
+    view.set_cloud(FLAT)
+    view.view("top")
+    angles = np.linspace(0, 2 * np.pi, 60)
+    outline = np.column_stack([340 + 120 * np.cos(angles), 260 + 90 * np.sin(angles)]).astype(int)
+    view.start_lasso()
+    with qtbot.waitSignal(view.region_selected) as selected:
+        drag(view, qtbot, outline)
+    wanted = crossing_number(view.screen_positions(FLAT), outline.astype(float))
+    assert (selected.args[0] != wanted).mean() < 0.01 and wanted.sum() > 100
+
+
+def test_a_hidden_cloud_is_not_chosen_from(view, qtbot):
+    view.set_cloud(FLAT)
+    view.view("top")
+    view.show_cloud(False)
+    view.start_polygon()
+    for corner in ((200, 150), (500, 170), (480, 400)):
+        click(view, qtbot, corner)
+    with qtbot.waitSignal(view.region_selected) as selected:
+        qtbot.keyClick(view.focusProxy(), Qt.Key.Key_Return)
+    assert selected.args[0].shape == (len(FLAT),) and not selected.args[0].any()
+
+
+@pytest.mark.parametrize("start", ["start_picking", "start_polygon", "start_lasso"])
+def test_escape_ends_choosing_without_a_result(view, qtbot, start):
+    view.set_cloud(FLAT)
+    getattr(view, start)()
+    with qtbot.assertNotEmitted(view.region_selected), qtbot.waitSignal(view.drawing_cancelled):
+        qtbot.keyClick(view.focusProxy(), Qt.Key.Key_Escape)
+    with qtbot.assertNotEmitted(view.drawing_cancelled, wait=20):
+        qtbot.keyClick(view.focusProxy(), Qt.Key.Key_Escape)
+
+
+# ---- large clouds
+
+
+def test_a_large_cloud_is_thinned_in_motion_and_whole_when_still(view, qtbot):
+    large = np.column_stack([*(RNG.random((2, 600_000)) * 100 - 50), np.full(600_000, 500.0)])
+    view.set_cloud(large, values=large[:, 0], value_name="x", unit="mm")
+    complete(view, qtbot)
+    for _ in range(12):  # it learns how much it can draw
+        view.orbit(4, 0)
+        qtbot.wait(1)
+    with Watchdog() as watchdog:
+        for _ in range(10):
+            view.orbit(4, 1)
+            qtbot.wait(5)
+        moving = view.state()["drawn_moving"]
+        complete(view, qtbot)
+    assert moving <= 600_000
+    assert watchdog.longest_ms < 50
+    if max(view.state()["pass_ms"]) > 22:
+        assert moving < 600_000
+
+
+def test_nothing_is_drawn_while_nobody_sees_it(view, qtbot):
+    view.set_cloud(FLAT)
+    complete(view, qtbot)
+    view.hide()
+    drawn = len(view.state()["pass_ms"])
+    view.set_highlight("a", FLAT[:100], RED)
+    view.orbit(10, 10)
+    qtbot.wait(300)
+    assert len(view.state()["pass_ms"]) == drawn
+    view.show()
+    complete(view, qtbot)
+    assert len(view.state()["pass_ms"]) > drawn
+
+
+# ---- pictures
+
+
+def test_a_view_that_was_never_seen_has_a_picture(kind, qtbot):
+    unseen = SceneView()
+    qtbot.addWidget(unseen)
+    unseen.resize(400, 300)
+    unseen.set_cloud(FLAT, colours=RED)
+    assert count(unseen.picture(), RED) > 1000
+
+
+def test_the_picture_is_saved(view, qtbot, tmp_path, monkeypatch):
+    view.set_cloud(FLAT, colours=RED)
+    monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_: (str(tmp_path / "scene"), ""))
+    qtbot.keyClick(view.focusProxy(), "s", Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.ShiftModifier)
+    assert (tmp_path / "scene.png").read_bytes().startswith(b"\x89PNG")
+    with pytest.raises(InputError):
+        view.save_picture(tmp_path / "scene.png" / "no" / "folder.png")
+
+
+# ---- beginning and end
+
+
+def test_a_sentence_is_said_once_when_there_is_no_opengl(view, kind, qtbot):
+    said = []
+    view.notice.connect(said.append)
+    view.set_cloud(FLAT)
+    complete(view, qtbot)
+    view.close()
+    view.show()
+    complete(view, qtbot)
+    assert len(said) == (0 if kind == "embedded" else 1)
+
+
+def test_it_closes_with_its_window_in_the_middle_of_drawing(kind, qtbot, caplog):
+    window, page = QMainWindow(), QWidget()
+    inside = SceneView(page)
+    inside.resize(500, 400)
+    window.setCentralWidget(page)
+    qtbot.addWidget(window)
+    window.resize(600, 500)
+    window.show()
+    qtbot.waitExposed(window)
+    with caplog.at_level(logging.WARNING):
+        inside.set_cloud(RNG.random((300_000, 3)) * 100)
+        qtbot.waitUntil(lambda: bool(inside.state()["pass_ms"]), timeout=20_000)
+        window.close()
+        window.deleteLater()
+        qtbot.wait(50)
+    assert not caplog.records
+
+
+def test_the_libraries_come_while_the_view_waits(qapp, qtbot, monkeypatch, pictures_work):
+    monkeypatch.setattr(choice._Choice, "kind", None)
+    view = SceneView()
+    qtbot.addWidget(view)
+    view.show()
+    view.set_cloud(FLAT)
+    complete(view, qtbot)
+    assert view.state()["kind"] == choice.known() != "none"
+    view.close()
+
+
+def test_libraries_that_cannot_be_imported_leave_the_painter(qapp, qtbot, monkeypatch, caplog):
+    def broken(name):
+        raise ImportError(name)
+
+    monkeypatch.setattr(choice._Choice, "kind", None)
+    monkeypatch.setattr(choice, "_pictures_can_be_rendered", lambda: True)
+    monkeypatch.setattr(choice.importlib, "import_module", broken)
+    with qtbot.waitSignal(choice.herald().arrived):
+        choice.warm_up()
+    assert choice.known() == "painter"
+    assert "cannot be imported" in caplog.text
+
+
+def test_a_driver_that_crashes_is_found_out_in_another_process(monkeypatch, caplog):
+    monkeypatch.setattr(choice.sys, "executable", "/bin/false")
+    assert not choice._pictures_can_be_rendered()
+    assert "does not work" in caplog.text
+
+
+def test_the_environment_can_forbid_opengl(qapp, monkeypatch):
+    monkeypatch.setattr(choice._Choice, "kind", None)
+    monkeypatch.setenv(choice.VARIABLE, "1")
+    assert not choice.opengl_in_windows() and choice.known() is None
+    monkeypatch.setenv(choice.VARIABLE, "painter")
+    assert choice.known() == "painter"
