@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from PySide6.QtCore import Qt, Signal
-from PySide6.QtGui import QIcon, QPainter, QPen, QPixmap
+import numpy as np
+from PySide6.QtCore import QRectF, Qt, Signal
+from PySide6.QtGui import QColor, QIcon, QLinearGradient, QPainter, QPen, QPixmap
 from PySide6.QtWidgets import QFrame, QGridLayout, QLabel, QMenu, QWidget
 
 from workbench.views.colours import ColourLike, KeySign, sigma_table, to_colour, to_rgba
@@ -66,8 +67,10 @@ def key_pixmap(sign: KeySign, colour: ColourLike, ratio: float) -> QPixmap:
         painter.setPen(QPen(to_colour(rgba), 2.4))
         painter.drawLine(1, 7, 17, 7)
     elif sign == "scale":
-        for x, shade in enumerate(sigma_table()[::16], start=1):
-            painter.fillRect(x, 5, 1, 4, to_colour((int(shade[0]), int(shade[1]), int(shade[2]))))
+        scale = QLinearGradient(1, 0, 17, 0)
+        for place, shade in zip(np.linspace(0, 1, 6), sigma_table()[::51], strict=True):
+            scale.setColorAt(place, QColor(int(shade[0]), int(shade[1]), int(shade[2])))
+        painter.fillRect(QRectF(1, 5.5, 16, 3), scale)
     else:
         symbol = QPixmap(symbol_pixmap(sign, rgba, 9, ratio))
         symbol.setDevicePixelRatio(ratio)

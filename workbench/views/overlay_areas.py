@@ -47,7 +47,7 @@ class CellsLayer(Layer):
             return
         painter.setRenderHint(QPainter.RenderHint.SmoothPixmapTransform, False)
         painter.drawImage(extent, self._image)
-        painter.setPen(cosmetic((*to_rgba(self._colour)[:3], 45), 1.0))
+        painter.setPen(cosmetic((*to_rgba(self._colour)[:3], 45), 1.0, widget))
         columns, rows = self._image.width(), self._image.height()
         for x in np.linspace(extent.left(), extent.right(), columns + 1):
             painter.drawLine(QPointF(x, extent.top()), QPointF(x, extent.bottom()))

@@ -135,7 +135,7 @@ class LinesLayer(Layer):
     def paint(self, painter: QPainter, option: QStyleOptionGraphicsItem, widget: QWidget | None = None) -> None:
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         for rgba, lines in self._batches:
-            painter.setPen(cosmetic(rgba, self._width))
+            painter.setPen(cosmetic(rgba, self._width, widget))
             painter.drawLines(*lines.drawargs())
         if self._labels:
             transform = painter.worldTransform()
@@ -162,7 +162,7 @@ class VectorsLayer(Layer):
 
     def paint(self, painter: QPainter, option: QStyleOptionGraphicsItem, widget: QWidget | None = None) -> None:
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        painter.setPen(cosmetic(to_rgba(self._colour), 1.4))
+        painter.setPen(cosmetic(to_rgba(self._colour), 1.4, widget))
         painter.drawLines(*self._lines.drawargs())
 
 
@@ -178,9 +178,9 @@ def on_screen(transform: QTransform, uv: Points) -> Points:
     return mapped
 
 
-def cosmetic(rgba: tuple[int, int, int, int], width: float) -> QPen:
-    """A pen as wide on the screen whatever the zoom."""
-    pen = QPen(to_colour(rgba), width)
+def cosmetic(rgba: tuple[int, int, int, int], width: float, widget: QWidget | None) -> QPen:
+    """A pen as wide on the screen whatever the zoom. Qt counts its width in the screen's own pixels."""
+    pen = QPen(to_colour(rgba), width * (1.0 if widget is None else widget.devicePixelRatioF()))
     pen.setCosmetic(True)
     return pen
 

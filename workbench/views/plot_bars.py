@@ -136,7 +136,7 @@ class BarsWithThreshold(Plot):
             colour = s.muted if not bar.used else AMBER if over else s.accent
             brushes.append(pg.mkBrush(tinted(colour, 235) if bar.used else None))
             pens.append(
-                pg.mkPen(s.text if bar.name == self._current else colour, width=2 if bar.name == self._current else 1)
+                self._pen(s.text if bar.name == self._current else colour, 2 if bar.name == self._current else 1)
             )
         heights = [bar.value or 0.0 for bar in self._bars]
         self._graph.setOpts(x=range(len(self._bars)), height=heights, brushes=brushes, pens=pens)
@@ -148,8 +148,8 @@ class BarsWithThreshold(Plot):
             angle=0,
             movable=True,
             bounds=(0, self._height),
-            pen=pg.mkPen(s.bad, width=1.5, style=Qt.PenStyle.DashLine),
-            hoverPen=pg.mkPen(s.bad, width=3),
+            pen=self._pen(s.bad, 1.5, Qt.PenStyle.DashLine),
+            hoverPen=self._pen(s.bad, 3),
             label="",
             labelOpts={"position": 0.98, "anchors": [(1, 1), (1, 1)], "color": s.bad, "fill": tinted(s.panel, 215)},
         )

@@ -6,7 +6,7 @@ from typing import Any
 
 import pyqtgraph as pg
 from PySide6.QtCore import QEvent, QPointF, Qt
-from PySide6.QtGui import QColor, QContextMenuEvent, QCursor, QFont, QGuiApplication, QResizeEvent, QWheelEvent
+from PySide6.QtGui import QColor, QContextMenuEvent, QCursor, QFont, QGuiApplication, QPen, QResizeEvent, QWheelEvent
 from PySide6.QtWidgets import QFileDialog, QMenu, QToolTip, QVBoxLayout, QWidget
 
 from workbench.theme import shades
@@ -131,6 +131,11 @@ class Plot(QWidget):
         axis = self._item.getAxis("bottom")
         axis.setStyle(tickLength=0, showValues=False)
         axis.setHeight(8)
+
+    def _pen(self, colour: str | QColor, width: float, style: Qt.PenStyle = Qt.PenStyle.SolidLine) -> QPen:
+        """A pen of so many pixels, whatever the axes; finer screens have smaller pixels."""
+        pen: QPen = pg.mkPen(colour, width=width * self.devicePixelRatioF(), style=style)
+        return pen
 
     def _words(self, text: str, colour: str = "", anchor: tuple[float, float] = (0.0, 1.0)) -> Any:
         """A text to be placed in the plot."""

@@ -82,7 +82,7 @@ class LineChart(Plot):
             item = pg.PlotDataItem(
                 curve.x,
                 curve.y,
-                pen=None if curve.points else pg.mkPen(colour, width=1.8),
+                pen=None if curve.points else self._pen(colour, 1.8),
                 symbol="o" if curve.points else None,
                 symbolSize=6,
                 symbolPen=None,
@@ -95,7 +95,7 @@ class LineChart(Plot):
         self._legend.setVisible(any(curve.title for curve in self._curves.values()))
         self._set_range()
         for y, text in self._lines.values():
-            self._item.addItem(pg.InfiniteLine(y, angle=0, pen=pg.mkPen(s.bad, width=1.2, style=_DASH)))
+            self._item.addItem(pg.InfiniteLine(y, angle=0, pen=self._pen(s.bad, 1.2, _DASH)))
             words = self._words(text, s.bad, (1, 1))
             words.setPos(self._box.viewRange()[0][1], y)
             self._item.addItem(words, ignoreBounds=True)

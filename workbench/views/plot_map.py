@@ -86,7 +86,7 @@ class HeatMap(Plot):
         item.setRect(extent)
         self._item.addItem(item, ignoreBounds=True)
         frame = QGraphicsRectItem(extent)
-        frame.setPen(pg.mkPen(s.line, width=1))
+        frame.setPen(self._pen(s.line, 1))
         self._item.addItem(frame, ignoreBounds=True)
         self._box.setRange(extent, padding=0.02)
         title = f"{self._label} [{self._unit}]" if self._unit else self._label

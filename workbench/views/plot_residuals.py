@@ -105,7 +105,7 @@ class ResidualPlot(Plot):
         self._set_axis("bottom", "u", "px")
         self._set_axis("left", "v", "px")
         frame = QGraphicsRectItem(QRectF(-0.5, -0.5, width, height))
-        frame.setPen(pg.mkPen(s.line, width=1))
+        frame.setPen(self._pen(s.line, 1))
         self._item.addItem(frame, ignoreBounds=True)
         for which, colour in ((self._counted, s.accent), (~self._counted, s.bad)):
             start, along = self._uv[which], factor * self._residuals[which]
@@ -121,7 +121,7 @@ class ResidualPlot(Plot):
         tip, side = start + along, np.column_stack([-along[:, 1], along[:, 0]])
         barbs = [tip - 0.28 * along + turn * 0.14 * side for turn in (-1, 1)]
         ends = np.stack([start, tip, tip, barbs[0], tip, barbs[1]], axis=1).reshape(-1, 2)
-        pen = pg.mkPen(colour, width=1.3)
+        pen = self._pen(colour, 1.3)
         self._item.addItem(pg.PlotCurveItem(ends[:, 0], ends[:, 1], connect="pairs", pen=pen), ignoreBounds=True)
 
     def _draw_scatter(self) -> None:
@@ -135,10 +135,10 @@ class ResidualPlot(Plot):
             self._item.addItem(marks)
         reach = 1.1 * max(float(np.abs(self._residuals).max()), self._rms or 0.0, 1e-9)
         for ends in (([-reach, reach], [0, 0]), ([0, 0], [-reach, reach])):
-            self._item.addItem(pg.PlotCurveItem(*ends, pen=pg.mkPen(s.line, width=1)), ignoreBounds=True)
+            self._item.addItem(pg.PlotCurveItem(*ends, pen=self._pen(s.line, 1)), ignoreBounds=True)
         if self._rms is not None:
             circle = QGraphicsEllipseItem(QRectF(-self._rms, -self._rms, 2 * self._rms, 2 * self._rms))
-            circle.setPen(pg.mkPen(s.text, width=1.5))
+            circle.setPen(self._pen(s.text, 1.5))
             self._item.addItem(circle, ignoreBounds=True)
             words = self._words(f"RMS {written(self._rms, reach / 100)} {self._unit}", s.text, (0, 0))
             words.setPos(-reach, -reach)

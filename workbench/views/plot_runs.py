@@ -9,6 +9,7 @@ import numpy as np
 import pyqtgraph as pg
 from numpy.typing import ArrayLike, NDArray
 from PySide6.QtCore import Qt
+from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QWidget
 
 from workbench.theme import shades
@@ -16,6 +17,8 @@ from workbench.views.plot_base import Plot, tinted, written
 
 _DASH = Qt.PenStyle.DashLine
 _MOST_BINS = 60
+_WORDS = 128
+"""Screen pixels at the right of a run chart for what its lines mean."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -63,6 +66,10 @@ class RunChart(Plot):
         self._runs = None
         super().clear(message)
 
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self._redraw()
+
     def _has_data(self) -> bool:
         return self._runs is not None
 
@@ -80,16 +87,17 @@ class RunChart(Plot):
         reach += [y for y, *_ in lines]
         low, high = min(reach), max(reach)
         margin = 0.12 * (high - low) or 0.01
-        end = count + 0.6 + 0.3 * count
+        width = max(self._box.width() - _WORDS, _WORDS)
+        end = (count + 0.6) * (1 + _WORDS / width)
         self._box.setRange(xRange=(0.4, end), yRange=(low - margin, high + margin), padding=0)
         for y, text, colour, style in lines:
-            self._item.addItem(pg.InfiniteLine(y, angle=0, pen=pg.mkPen(colour, width=1.2, style=style)))
+            self._item.addItem(pg.InfiniteLine(y, angle=0, pen=self._pen(colour, 1.2, style)))
             below = text == self.tr("lower limit") or (runs.mean == y and y < (runs.nominal or y))
             below = below or (runs.nominal == y and y <= (runs.mean or -np.inf))
             words = self._words(f"{text} {written(y, (high - low) / 200)} {runs.unit}", colour, (1, 0 if below else 1))
             words.setPos(end, y)
             self._item.addItem(words, ignoreBounds=True)
-        bars = pg.ErrorBarItem(x=at, y=runs.values, height=2 * runs.U, beam=0.18, pen=pg.mkPen(s.accent, width=1.3))
+        bars = pg.ErrorBarItem(x=at, y=runs.values, height=2 * runs.U, beam=0.18, pen=self._pen(s.accent, 1.3))
         self._item.addItem(bars)
         self._item.addItem(pg.ScatterPlotItem(at, runs.values, size=8, pen=None, brush=s.accent))
 
@@ -155,7 +163,7 @@ class Histogram(Plot):
         self._set_axis("left", self.tr("count"))
         middles, width = 0.5 * (edges[1:] + edges[:-1]), float(edges[1] - edges[0])
         self._counts, self._edges = counts, edges
-        pen = pg.mkPen(s.panel, width=1)
+        pen = self._pen(s.panel, 1)
         self._item.addItem(
             pg.BarGraphItem(x=middles, height=counts, width=width, brush=pg.mkBrush(tinted(s.accent, 220)), pen=pen)
         )
@@ -163,7 +171,7 @@ class Histogram(Plot):
         top = 1.15 * float(counts.max())
         self._box.setRange(xRange=(min(reach), max(reach)), yRange=(0, top), padding=0.02)
         for value, text in self._limits:
-            self._item.addItem(pg.InfiniteLine(value, angle=90, pen=pg.mkPen(s.bad, width=1.2, style=_DASH)))
+            self._item.addItem(pg.InfiniteLine(value, angle=90, pen=self._pen(s.bad, 1.2, _DASH)))
             right = value > 0.5 * (min(reach) + max(reach))
             words = self._words(text, s.bad, (1 if right else 0, 0))
             words.setPos(value, top)

@@ -48,10 +48,10 @@ class ViewList(QWidget):
     """Rows with a check box each; Space checks or unchecks all chosen rows. Headers sort, a third click as given."""
 
     toggled = Signal(str, bool)
-    """Name and whether it is to be used; once for each row."""
+    """Name and whether it is to be used; once for each row. Connect this or `toggled_together`, not both."""
 
     toggled_together = Signal(object, bool)
-    """All names (tuple) that one click or key changed, and whether they are to be used; after `toggled`."""
+    """All names (tuple) that one click or key changed, and whether they are to be used: one edit to be undone."""
 
     current_changed = Signal(str)
     """Name of the row gone to, "" for none."""

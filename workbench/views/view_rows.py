@@ -44,6 +44,7 @@ class RowsModel(QAbstractTableModel):
         super().__init__(parent)
         self._given: tuple[ListRow, ...] = ()
         self._rows: list[ListRow] = []
+        self._places: dict[str, int] = {}
         self._headers = ("", "")
         self._sorted_by, self._order = -1, Qt.SortOrder.AscendingOrder
         self._pixmaps: dict[str, tuple[object, QPixmap]] = {}
@@ -77,14 +78,14 @@ class RowsModel(QAbstractTableModel):
 
     def set_used(self, row: int, used: bool) -> None:
         """Check or uncheck a row."""
-        old, new = self._rows[row], replace(self._rows[row], used=used)
+        new = replace(self._rows[row], used=used)
         self._rows[row] = new
-        self._given = tuple(new if given is old else given for given in self._given)
+        self._given = tuple(new if given.name == new.name else given for given in self._given)
         self.dataChanged.emit(self.index(row, 0), self.index(row, 1))
 
     def row_of(self, name: str) -> int:
         """Where a row stands, −1 if it is not there."""
-        return next((i for i, row in enumerate(self._rows) if row.name == name), -1)
+        return self._places.get(name, -1)
 
     def rowCount(self, parent: _Index = QModelIndex()) -> int:  # noqa: B008
         return 0 if parent.isValid() else len(self._rows)
@@ -129,6 +130,7 @@ class RowsModel(QAbstractTableModel):
         self.layoutChanged.emit()
 
     def _in_order(self) -> list[ListRow]:
+        """The rows given as they are to stand; from now on `row_of` tells these places."""
         rows = list(self._given)
         downwards = self._order == Qt.SortOrder.DescendingOrder
         if self._sorted_by == 0:
@@ -138,6 +140,7 @@ class RowsModel(QAbstractTableModel):
             known_names = {row.name for row in known}
             known.sort(key=lambda row: row.value or 0.0, reverse=downwards)
             rows = known + [row for row in rows if row.name not in known_names]
+        self._places = {row.name: place for place, row in enumerate(rows)}
         return rows
 
     def _pixmap(self, row: ListRow) -> QPixmap | None:
