@@ -9,7 +9,6 @@ import numpy as np
 import pyqtgraph as pg
 from numpy.typing import ArrayLike, NDArray
 from PySide6.QtCore import Qt
-from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QWidget
 
 from workbench.theme import shades
@@ -38,7 +37,9 @@ class RunChart(Plot):
 
     def __init__(self, parent: QWidget | None = None) -> None:
         self._runs: _Runs | None = None
+        self._drawn_width = 0.0
         super().__init__(parent, least_height=180)
+        self._box.sigResized.connect(self._fit_words)
 
     def set_runs(
         self,
@@ -66,10 +67,6 @@ class RunChart(Plot):
         self._runs = None
         super().clear(message)
 
-    def resizeEvent(self, event: QResizeEvent) -> None:
-        super().resizeEvent(event)
-        self._redraw()
-
     def _has_data(self) -> bool:
         return self._runs is not None
 
@@ -87,8 +84,8 @@ class RunChart(Plot):
         reach += [y for y, *_ in lines]
         low, high = min(reach), max(reach)
         margin = 0.12 * (high - low) or 0.01
-        width = max(self._box.width() - _WORDS, _WORDS)
-        end = (count + 0.6) * (1 + _WORDS / width)
+        self._drawn_width = self._box.width()
+        end = (count + 0.6) * (1 + _WORDS / max(self._drawn_width - _WORDS, _WORDS))
         self._box.setRange(xRange=(0.4, end), yRange=(low - margin, high + margin), padding=0)
         for y, text, colour, style in lines:
             self._item.addItem(pg.InfiniteLine(y, angle=0, pen=self._pen(colour, 1.2, style)))
@@ -100,6 +97,10 @@ class RunChart(Plot):
         bars = pg.ErrorBarItem(x=at, y=runs.values, height=2 * runs.U, beam=0.18, pen=self._pen(s.accent, 1.3))
         self._item.addItem(bars)
         self._item.addItem(pg.ScatterPlotItem(at, runs.values, size=8, pen=None, brush=s.accent))
+
+    def _fit_words(self) -> None:
+        if abs(self._box.width() - self._drawn_width) > 4:
+            self._redraw()
 
     def _reference_lines(self, runs: _Runs) -> list[tuple[float, str, str, Qt.PenStyle]]:
         s = shades()
