@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 from PySide6.QtCore import QRectF, Qt, Signal
-from PySide6.QtGui import QColor, QIcon, QLinearGradient, QPainter, QPen, QPixmap
+from PySide6.QtGui import QColor, QLinearGradient, QPainter, QPen, QPixmap
 from PySide6.QtWidgets import QFrame, QGridLayout, QLabel, QMenu, QWidget
 
 from workbench.views.colours import ColourLike, KeySign, sigma_table, to_colour, to_rgba
@@ -56,7 +56,7 @@ class Legend(QFrame):
 
 
 def key_pixmap(sign: KeySign, colour: ColourLike, ratio: float) -> QPixmap:
-    """A sign for a legend or a menu."""
+    """A sign for a legend."""
     rgba = to_rgba(colour)
     pixmap = QPixmap(round(18 * ratio), round(14 * ratio))
     pixmap.setDevicePixelRatio(ratio)
@@ -81,7 +81,7 @@ def key_pixmap(sign: KeySign, colour: ColourLike, ratio: float) -> QPixmap:
 
 
 class LayersMenu(QMenu):
-    """One entry a layer, checked while it is shown, and one for the legend."""
+    """One entry a layer with a title, checked while it is shown, and one for the legend."""
 
     legend_wanted = Signal(bool)
 
@@ -91,11 +91,12 @@ class LayersMenu(QMenu):
         self.aboutToShow.connect(self.fill)
 
     def fill(self) -> None:
-        """List the layers there are."""
+        """List the layers that have a title."""
         self.clear()
         for name in self._layers:
-            layer = self._layers[name]
-            action = self.addAction(QIcon(key_pixmap(*layer.key, self.devicePixelRatioF())), layer.title or name)
+            if not self._layers[name].title:
+                continue
+            action = self.addAction(self._layers[name].title)
             action.setCheckable(True)
             action.setChecked(self._layers.is_visible(name))
             action.toggled.connect(lambda on, name=name: self._layers.set_visible(name, on))

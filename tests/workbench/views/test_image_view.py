@@ -209,6 +209,18 @@ def test_layers_are_replaced_hidden_and_listed(view):
     assert view.layer_names() == ()
 
 
+def test_the_menu_hides_and_shows_layers_with_a_title(view):
+    view.set_points("corners", [(10, 10)], colour="red", title="Corners")
+    view.set_text("names", [(10, 10, "pose 1")])
+    menu = view._layers_menu
+    menu.fill()
+    assert [action.text() for action in menu.actions() if action.text()] == ["Corners", "Legend"]
+    menu.actions()[0].setChecked(False)
+    assert not view.is_layer_visible("corners")
+    menu.actions()[-1].setChecked(False)
+    assert view.legend_titles == []
+
+
 def test_points_may_have_a_colour_each(view):
     colours = np.array([[255, 0, 0], [0, 255, 0]], dtype=np.uint8)
     view.set_points("p", [(100, 100), (200, 100)], colour=colours, symbol=".", size=12)
