@@ -13,7 +13,8 @@ from workbench.views.colours import COVERED, REGION, RESIDUAL, ColourLike, Symbo
 from workbench.views.image_frame import ImageFrame
 from workbench.views.labels import TEXT
 from workbench.views.overlay_areas import CellsLayer, Grip, PolygonLayer, TextLayer
-from workbench.views.overlays import LinesLayer, PointsLayer, VectorsLayer
+from workbench.views.overlay_lines import LinesLayer, VectorsLayer
+from workbench.views.overlays import PointsLayer
 
 
 class ImageView(ImageFrame):
