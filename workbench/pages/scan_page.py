@@ -1,9 +1,182 @@
-"""The scan page."""
+"""The scan page: the picture and the growing cloud in the middle; recording, frames, settings, result at the side."""
 
 from __future__ import annotations
 
+import math
+from typing import Any
+
+from PySide6.QtCore import QEvent, Qt
+from PySide6.QtGui import QKeySequence, QShortcut
+from PySide6.QtWidgets import QWidget
+
+from core.live.events import LiveView, ScanDetail
+from workbench.pages import scan_words as words
+from workbench.pages.scan_bar import FrameBar
+from workbench.pages.scan_cloud import ScanCloud
+from workbench.pages.scan_panels import ResultPanel, RunningPanel, ScanCard, SettingsPanel
+from workbench.pages.scan_picture import ScanPicture, View
+from workbench.pages.scan_presenter import ScanPresenter, Stage
+from workbench.pages.scan_work import short
 from workbench.pages.step_page import StepPage
+from workbench.views.live_panel import LivePanel, LiveStrip
+from workbench.views.side_by_side import SideBySide
+from workbench.views.source_chooser import SourceChooser
+from workbench.views.tables import ListRow, ViewList
 
 
 class ScanPage(StepPage):
-    """The scan page."""
+    """Record, measure, look through the frames, measure again."""
+
+    presenter: ScanPresenter
+
+    def __init__(self, presenter: ScanPresenter, parent: QWidget | None = None) -> None:
+        super().__init__(presenter, parent)
+        self.strip, self.views = LiveStrip(presenter.live), SideBySide()
+        self.picture = ScanPicture(presenter, lambda: self.source.choose())
+        self.cloud = ScanCloud(presenter)
+        self.views.add_view(self.tr("Picture"), self.picture)
+        self.views.add_view(self.tr("Points"), self.cloud)
+        self.running, self.bar = RunningPanel(), FrameBar(presenter)
+        self.centre.addWidget(self.strip)
+        self.centre.addWidget(self.views, 1)
+        self.centre.addWidget(self.running)
+        self.centre.addWidget(self.bar)
+
+        self.stage = ScanCard(presenter)
+        self.add_to_side(self.stage)
+        self.live_panel = LivePanel(presenter.live)
+        self.source = SourceChooser(self.live_panel, what=self.tr("Folder with the frames of a scan"))
+        self.source_fold = self.add_panel(self.tr("Recording"), self.source)
+        self.result = ResultPanel(presenter)
+        self.result_fold = self.add_panel(self.tr("Result"), self.result)
+        self.frames = ViewList()
+        self.frames.set_headers(self.tr("Frame"), self.tr("Median σ (mm)"))
+        self.frames.setMinimumHeight(240)
+        self.frames_fold = self.add_panel(self.tr("Frames"), self.frames)
+        self.settings = SettingsPanel(presenter)
+        self.settings_fold = self.add_panel(self.tr("Settings"), self.settings, collapsed=True)
+        self._rows: Any = None
+        self._folded = ""
+        self._connect()
+
+    def refresh(self) -> None:
+        p, stage = self.presenter, self.presenter.stage
+        live, busy = stage is Stage.LIVE, stage in (Stage.LIVE, Stage.MEASURING)
+        self.stage.refresh()
+        self.source.set_folder(p.folder, self._folder_words())
+        self.live_panel.set_primary(stage in (Stage.NONE, Stage.EMPTY))
+        if live:
+            self.source.set_mode("live")
+        self._fold(stage)
+        self.running.setVisible(busy)
+        self.bar.setVisible(p.scrubbing)
+        if p.scrubbing:
+            self.bar.refresh()
+        self.settings.refresh()
+        self.settings.setEnabled(not live)
+        self.result.refresh()
+        self.result_fold.setVisible(p.work.look is not None and not busy)
+        self.frames_fold.setVisible(bool(p.work.names) and not live)
+        self._show_frames()
+        self.picture.refresh()
+        self.cloud.refresh()
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "_folded"):
+            self._changed()
+
+    def closeEvent(self, event: Any) -> None:
+        self.cloud.scene.close()
+        super().closeEvent(event)
+
+    def _connect(self) -> None:
+        p = self.presenter
+        self.source.folder_chosen.connect(p.use_folder)
+        self.source.accept_drops_on(self.picture.image)
+        self.frames.toggled_together.connect(lambda names, used: p.set_used(list(names), used))
+        self.frames.current_changed.connect(lambda name: p.scrub.choose(name))
+        self.bar.view_chosen.connect(self.picture.show_view)
+        self.bar.choose(View.CROSSINGS)
+        p.live.started.connect(lambda _: self._begin())
+        p.live.view.connect(self._show_live)
+        p.work.started.connect(self._begin)
+        p.work.detail.connect(self.cloud.grow)
+        p.work.frame_seen.connect(self._show_measured)
+        p.model.opened.connect(self._opened)
+        self.cloud.scene.notice.connect(p.bench.notices.info)
+        for key, by in ((Qt.Key.Key_Left, -1), (Qt.Key.Key_Right, 1)):
+            shortcut = QShortcut(QKeySequence(key), self)
+            shortcut.setContext(Qt.ShortcutContext.WidgetWithChildrenShortcut)
+            shortcut.activated.connect(lambda by=by: self._step(by))
+
+    def _opened(self) -> None:
+        self._folded = ""
+        self._rows = None
+        self.views.show_alone(None)
+        self.source.set_mode("folder" if self.presenter.project.sources.scan else "live")
+
+    def _begin(self) -> None:
+        self.running.show_detail(None, 0.0)
+        self.cloud.begin()
+
+    def _step(self, by: int) -> None:
+        if self.presenter.scrubbing:
+            self.presenter.scrub.step(by)
+
+    def _show_live(self, view: LiveView) -> None:
+        try:
+            if self.presenter.live.running:
+                self.picture.show_live(view)
+                self.cloud.show_live(view)
+                detail = view.detail if isinstance(view.detail, ScanDetail) else None
+                self.running.show_detail(detail, view.picture.shape[1] * view.scale)
+                self.live_panel.show_counts()
+        finally:
+            self.presenter.live.shown()
+
+    def _show_measured(self, detail: ScanDetail, picture: Any) -> None:
+        try:
+            if self.presenter.work.measuring:
+                self.picture.show_measured(detail, picture)
+                self.running.show_detail(detail, picture.shape[1])
+        finally:
+            self.presenter.work.shown()
+
+    def _folder_words(self) -> str:
+        work = self.presenter.work
+        if self.presenter.folder is None or work.frames is None:
+            return ""
+        reference = self.tr("with a reference") if work.reference is not None else self.tr("without a reference")
+        return self.tr("{0} frames, {1}").format(len(work.frames), reference)
+
+    def _fold(self, stage: Stage) -> None:
+        """Once there is a result, it takes the room of what it was made from; the user may unfold that again."""
+        wanted = "live" if stage is Stage.LIVE else "result" if self.presenter.work.look is not None else "recording"
+        if wanted == self._folded:
+            return
+        self._folded = wanted
+        if wanted == "result":
+            self.source_fold.collapse(animate=False)
+            self.result_fold.expand(animate=False)
+        else:
+            self.source_fold.expand(animate=False)
+
+    def _show_frames(self) -> None:
+        p = self.presenter
+        records, previews = p.work.records(), p.work.previews
+        rows = []
+        for name in p.work.names:
+            record, preview = records.get(name), previews.get(name) if p.work.measuring else None
+            if p.work.measuring:
+                record = None
+            sigma = record.sigma_mm if record is not None and not math.isnan(record.sigma_mm) else None
+            text = words.mm(sigma) if sigma is not None else ""
+            said = words.frame_line(record, preview)
+            rows.append(ListRow(name, sigma, text, not p.is_left_out(name), said, None, short(name)))
+        shown = [(row.name, row.text, row.used, row.reason) for row in rows]
+        if shown != self._rows:
+            self._rows = shown
+            self.frames.set_rows(rows)
+        if p.scrub.current and self.frames.current() != p.scrub.current:
+            self.frames.set_current(p.scrub.current)

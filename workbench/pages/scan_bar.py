@@ -1,0 +1,128 @@
+"""Going through the frames: slider, stages, and what is said of the frame."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QEvent, QSize, Qt, Signal
+from PySide6.QtWidgets import (
+    QButtonGroup,
+    QCheckBox,
+    QHBoxLayout,
+    QPushButton,
+    QSlider,
+    QToolButton,
+    QVBoxLayout,
+    QWidget,
+)
+
+from workbench.pages import scan_words as words
+from workbench.pages.scan_picture import View
+from workbench.pages.scan_presenter import ScanPresenter
+from workbench.pages.scan_work import short
+from workbench.pages.step_page import muted
+from workbench.theme import icon
+
+
+class FrameBar(QWidget):
+    """Which frame is looked at, in which stage, and whether it counts."""
+
+    view_chosen = Signal(object)
+    """View."""
+
+    def __init__(self, presenter: ScanPresenter, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._presenter = presenter
+        self.back, self.on = QToolButton(), QToolButton()
+        self.slider, self.used, self.said = QSlider(Qt.Orientation.Horizontal), QCheckBox(self.tr("use it")), muted()
+        self.stages: dict[View, QPushButton] = {}
+        self._group = QButtonGroup(self)
+        self._lay_out()
+        self._dress()
+        self.slider.valueChanged.connect(presenter.scrub.go_to)
+        self.back.clicked.connect(lambda: presenter.scrub.step(-1))
+        self.on.clicked.connect(lambda: presenter.scrub.step(1))
+        self.used.clicked.connect(lambda on: presenter.set_used([presenter.scrub.current], on))
+
+    def refresh(self) -> None:
+        """Show which frame it is."""
+        p = self._presenter
+        names, scrub = p.work.names, p.scrub
+        self.slider.blockSignals(True)
+        self.slider.setRange(0, max(len(names) - 1, 0))
+        self.slider.setPageStep(max(len(names) // 10, 1))
+        self.slider.setValue(max(scrub.index, 0))
+        self.slider.blockSignals(False)
+        self.back.setEnabled(scrub.index > 0)
+        self.on.setEnabled(scrub.index < len(names) - 1)
+        self.used.setChecked(not p.is_left_out(scrub.current))
+        if scrub.current:
+            stages = scrub.stages if scrub.up_to_date else None
+            record = p.record_of(scrub.current)
+            self.said.setText(words.frame_sentence(scrub.index, len(names), short(scrub.current), record, stages))
+        measured = p.record_of(scrub.current) is not None
+        points = self.stages[View.POINTS]
+        points.setEnabled(measured)
+        points.setToolTip(self._tips()[View.POINTS] if measured else self.tr("Measure the scan first."))
+
+    def choose(self, view: View) -> None:
+        """Show a stage as chosen."""
+        self.stages[view].setChecked(True)
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "_group"):
+            self._dress()
+
+    def _lay_out(self) -> None:
+        titles = {
+            View.RECORDED: self.tr("Recorded"),
+            View.DIFFERENCE: self.tr("Difference"),
+            View.RIDGE: self.tr("Ridge strength"),
+            View.CENTRELINES: self.tr("Centrelines"),
+            View.CROSSINGS: self.tr("Crossings"),
+            View.POINTS: self.tr("Points"),
+        }
+        row = QHBoxLayout()
+        row.setSpacing(0)
+        for view, title in titles.items():
+            button = QPushButton(title)
+            button.setCheckable(True)
+            button.setToolTip(self._tips()[view])
+            button.clicked.connect(lambda _=False, view=view: self.view_chosen.emit(view))
+            self._group.addButton(button)
+            self.stages[view] = button
+            row.addWidget(button, 1)
+        for tool, tip in ((self.back, self.tr("The frame before (←)")), (self.on, self.tr("The next frame (→)"))):
+            tool.setAutoRaise(True)
+            tool.setAutoRepeat(True)
+            tool.setIconSize(QSize(18, 18))
+            tool.setToolTip(tip)
+            tool.setAccessibleName(tip)
+        self.slider.setAccessibleName(self.tr("Frame"))
+        self.slider.setToolTip(self.tr("Go through the frames (← and →)"))
+        self.used.setToolTip(
+            self.tr("Whether this frame counts; take the tick away to leave it out, then measure again")
+        )
+        along = QHBoxLayout()
+        along.setSpacing(4)
+        for widget, stretch in ((self.back, 0), (self.slider, 1), (self.on, 0), (self.used, 0)):
+            along.addWidget(widget, stretch)
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 4, 0, 0)
+        column.setSpacing(4)
+        column.addLayout(row)
+        column.addLayout(along)
+        column.addWidget(self.said)
+
+    def _tips(self) -> dict[View, str]:
+        return {
+            View.RECORDED: self.tr("The picture as it was recorded"),
+            View.DIFFERENCE: self.tr("The picture without the reference, brightened: the hand-held laser alone"),
+            View.RIDGE: self.tr("How much each place looks like a stripe (Steger's strength), brightened"),
+            View.CENTRELINES: self.tr("The centrelines found: the fan's by number, and the sweep's"),
+            View.CROSSINGS: self.tr("Where sweep and fan cross: good, weak or left out; hover for the reason"),
+            View.POINTS: self.tr("The measured points of this frame, coloured by σ"),
+        }
+
+    def _dress(self) -> None:
+        self.back.setIcon(icon("mdi6.chevron-left"))
+        self.on.setIcon(icon("mdi6.chevron-right"))

@@ -1,0 +1,85 @@
+"""The 3D view of the scan page: the cloud as it grows, and the measured one."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from PySide6.QtWidgets import QVBoxLayout, QWidget
+
+from core.live.events import LiveView, ScanDetail
+from workbench.pages.scan_overlays import PREVIEW_SIGMA_MM
+from workbench.pages.scan_presenter import ScanPresenter, Stage
+from workbench.views.scene_view import SceneView
+
+_NOTHING = np.zeros((0, 3), np.float32), np.zeros(0, np.float32)
+
+
+class ScanCloud(QWidget):
+    """Points coloured by σ: the preview while something runs, else the result."""
+
+    def __init__(self, presenter: ScanPresenter, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._presenter = presenter
+        self._look: Any = None
+        self._growing = False
+        self._limit = 0.0
+        self.scene = SceneView()
+        self.scene.setAccessibleName(self.tr("Measured points in 3D"))
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.addWidget(self.scene)
+        self.scene.clear(self._message())
+
+    def refresh(self) -> None:
+        """Show what the presenter says now."""
+        p = self._presenter
+        if p.stage in (Stage.LIVE, Stage.MEASURING):
+            return
+        look, limit = p.work.look, p.project.options.sigma_cut_mm
+        if look is None or not len(look):
+            if self._look is not None or self._growing or not self._said(self._message()):
+                self._look, self._growing = None, False
+                self.scene.clear(self._message())
+            return
+        if look is self._look and not self._growing:
+            return
+        self._look, self._growing = look, False
+        self.scene.set_cloud(
+            look.points, values=look.sigma, value_name="σ", unit="mm", limits=(0.0, limit), keep_camera=True
+        )
+
+    def begin(self) -> None:
+        """Something new is recorded or measured: its points will come."""
+        self._look = None
+        self.scene.clear(self._message())
+        self._grow_anew()
+
+    def show_live(self, view: LiveView) -> None:
+        """What a picture of the live source brings."""
+        if isinstance(view.detail, ScanDetail):
+            self.grow(view.detail)
+
+    def grow(self, detail: ScanDetail) -> None:
+        """Points of a frame, or all points anew."""
+        if detail.renewed:
+            self._grow_anew()
+        if len(detail.points):
+            self.scene.add_points(detail.points.points, detail.points.sigma)
+
+    def _grow_anew(self) -> None:
+        self._growing = True
+        points, sigma = _NOTHING
+        self.scene.set_cloud(points, values=sigma, value_name="σ", unit="mm", limits=(0.0, PREVIEW_SIGMA_MM))
+
+    def _said(self, message: str) -> bool:
+        said, self._last = getattr(self, "_last", None), message
+        return said == message
+
+    def _message(self) -> str:
+        p = self._presenter
+        if p.live.running or p.work.measuring:
+            return self.tr("The points will grow here.")
+        if p.stage is Stage.NONE:
+            return self.tr("The measured points will be here.")
+        return p.cannot_measure or self.tr("Press Measure: the points will grow here.")

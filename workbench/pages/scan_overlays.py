@@ -1,0 +1,109 @@
+"""What is drawn over a picture of a scan: stripes, crossings, points, coverage."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from PySide6.QtCore import QCoreApplication
+
+from core.image.centreline import Centreline
+from core.scan.frame_preview import FramePreview
+from core.scan.hints import HintLimits
+from workbench.views.colours import (
+    COVERED,
+    CROSSING_GOOD,
+    CROSSING_LEFT_OUT,
+    CROSSING_WEAK,
+    EXCLUDED,
+    SWEEP,
+    fan_colour,
+    sigma_colours,
+)
+from workbench.views.image_view import ImageView
+
+PREVIEW_SIGMA_MM = HintLimits().sigma_mm
+"""σ at the end of the scale while a scan runs: beyond it better crossings are asked for."""
+
+LIT = "#FFB000"
+"""Cells with light that has given no points yet."""
+
+_SHADES = 16
+_UNKNOWN = -1
+_CROSSINGS = ("good", "weak", "left out")
+
+
+def show_fan(image: ImageView, lines: Sequence[Sequence[Centreline]], *, numbered: bool = True) -> None:
+    """The fan's centrelines, one layer for each line; without numbers all as one."""
+    names = []
+    for place, pieces in enumerate(lines, start=1):
+        if not pieces:
+            continue
+        names.append(f"fan {place}")
+        title = _tr("fan, line {0}").format(place) if numbered else _tr("fan")
+        image.set_lines(names[-1], [piece.uv for piece in pieces], colour=fan_colour(place), width=1.6, title=title)
+    _remove_others(image, "fan ", names)
+
+
+def show_fan_pieces(image: ImageView, pieces: Sequence[Centreline], line: Sequence[int]) -> None:
+    """The fan's centrelines with the line (from 0) each of them belongs to; −1 where that is not known."""
+    count = max(line, default=_UNKNOWN) + 1
+    show_fan(image, [[piece for piece, of in zip(pieces, line, strict=True) if of == k] for k in range(count)])
+    unknown = [piece.uv for piece, of in zip(pieces, line, strict=True) if of == _UNKNOWN]
+    if unknown:
+        image.set_lines("fan ?", unknown, colour=EXCLUDED, width=1.4, title=_tr("fan, line not known"))
+
+
+def show_sweep(
+    image: ImageView, pieces: Sequence[Centreline], sigma: Sequence[ArrayLike] = (), limit_mm: float = PREVIEW_SIGMA_MM
+) -> None:
+    """The hand-held laser's centrelines, coloured by σ where it is given."""
+    lines = [piece.uv for piece in pieces]
+    if len(sigma) == len(lines):
+        title = _tr("sweep: σ 0 … {0} mm, else grey").format(f"{limit_mm:g}")
+        image.set_lines("sweep", lines, values=sigma, limits=(0.0, limit_mm), width=2.4, title=title)
+    else:
+        image.set_lines("sweep", lines, colour=SWEEP, width=1.6, title=_tr("sweep"))
+
+
+def show_crossings(image: ImageView, preview: FramePreview | None) -> None:
+    """Crossings as marks: green circle, amber triangle, red cross; the reason on hover."""
+    titles = (_tr("crossing, good"), _tr("crossing, weak"), _tr("crossing, left out"))
+    for status, (name, mark, title) in enumerate(
+        zip(_CROSSINGS, (CROSSING_GOOD, CROSSING_WEAK, CROSSING_LEFT_OUT), titles, strict=True)
+    ):
+        if preview is None:
+            image.remove_layer(name)
+            continue
+        chosen = np.flatnonzero(preview.crossing_status == status)
+        tips = [preview.crossing_reason[place] for place in chosen]
+        uv = preview.crossing_uv[chosen]
+        image.set_points(name, uv, colour=mark.colour, symbol=mark.symbol, size=11, tips=tips, title=title)
+
+
+def show_points(image: ImageView, uv: ArrayLike | None, sigma: ArrayLike | None, limit_mm: float) -> None:
+    """The measured points of a frame, coloured by σ."""
+    if uv is None or sigma is None:
+        image.remove_layer("points")
+        return
+    # a few colours only: each is drawn at one go
+    steps = np.round(np.asarray(sigma, dtype=np.float64) * (_SHADES / limit_mm)) * (limit_mm / _SHADES)
+    title = _tr("points: σ 0 … {0} mm").format(f"{limit_mm:g}")
+    image.set_points("points", uv, colour=sigma_colours(steps, limit_mm), symbol=".", size=5, title=title)
+
+
+def show_coverage(image: ImageView, cells: NDArray[np.bool_], lit: NDArray[np.bool_]) -> None:
+    """Cells with points, and cells with light but no points yet."""
+    image.set_cells("covered", cells, COVERED, title=_tr("covered with points"))
+    image.set_cells("lit", lit & ~cells, LIT, title=_tr("lit, no points yet"))
+
+
+def _remove_others(image: ImageView, start: str, keep: Sequence[str]) -> None:
+    for name in image.layer_names():
+        if name.startswith(start) and name not in keep:
+            image.remove_layer(name)
+
+
+def _tr(text: str) -> str:
+    return QCoreApplication.translate("Scan", text)

@@ -1,0 +1,220 @@
+"""Panels of the scan page: how far it is, how it is measured, what came of it, and how a running scan does."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QGridLayout, QLabel, QVBoxLayout, QWidget
+
+from core.live.events import ScanDetail
+from core.scan.hints import HintLimits
+from workbench.pages import scan_words as words
+from workbench.pages.scan_presenter import ScanPresenter, Stage
+from workbench.pages.step_page import heading, muted
+from workbench.views.forms import SettingsForm
+from workbench.views.meters import HintBar, Meter
+from workbench.views.stage_card import CardButton, StageCard
+from workbench.views.value_rows import ValueRows
+
+FAST = HintLimits().speed_share
+"""Share of the picture's width that the stripe may move from frame to frame."""
+
+
+class ScanCard(StageCard):
+    """The stage; the next thing to do is the primary button."""
+
+    def __init__(self, presenter: ScanPresenter, parent: QWidget | None = None) -> None:
+        self._presenter = p = presenter
+        super().__init__(
+            [
+                CardButton("run", p.tr("Measure"), "mdi6.play", p.do_run),
+                CardButton("cancel", p.tr("Cancel"), "mdi6.stop", p.cancel),
+            ],
+            parent,
+        )
+
+    def refresh(self) -> None:
+        """Show the stage."""
+        p, stage = self._presenter, self._presenter.stage
+        measuring = stage is Stage.MEASURING
+        self.buttons["run"].setText(
+            self.tr("Measure again") if stage in (Stage.MEASURED, Stage.OUTDATED) else self.tr("Measure")
+        )
+        self.show_stage(
+            *self._words(stage),
+            {
+                "run": (p.cannot_measure, self.tr("Measure the surface and the thickness from the recording (Ctrl+R)")),
+                "cancel": (
+                    "" if measuring else self.tr("Nothing is being measured."),
+                    self.tr("Stop measuring; the recording and the result before are kept"),
+                ),
+            },
+            "cancel" if measuring else "run" if stage in (Stage.RECORDED, Stage.FAILED, Stage.OUTDATED) else "",
+        )
+
+    def _words(self, stage: Stage) -> tuple[str, str]:
+        p = self._presenter
+        match stage:
+            case Stage.NONE:
+                return self.tr("No recording yet"), self.tr(
+                    "Sweep the part with a live source, or choose the folder of a recording."
+                )
+            case Stage.LISTING:
+                return self.tr("Listing the frames …"), ""
+            case Stage.EMPTY:
+                return self.tr("No frames there"), p.work.no_frames or self.tr(
+                    "The folder holds no frames; choose another one."
+                )
+            case Stage.LIVE:
+                return self._live_words()
+            case Stage.RECORDED:
+                title = self.tr("{0} frames, not measured yet").format(len(p.work.names))
+                return title, p.cannot_measure or self.tr("Press Measure; no setting is needed.")
+            case Stage.MEASURING if p.work.by_itself:
+                return self.tr("Measuring the recording …"), self.tr(
+                    "It began by itself and needs no setting. Cancel keeps the recording."
+                )
+            case Stage.MEASURING:
+                return self.tr("Measuring …"), self.tr("Cancel keeps the recording and the result before.")
+            case Stage.FAILED:
+                return self.tr("Not measured"), p.work.problem
+            case Stage.MEASURED:
+                return self.tr("Measured"), p.state.sentence
+            case Stage.OUTDATED:
+                return self.tr("Measured, but out of date"), self.tr("{0} Measure again.").format(p.state.sentence)
+
+    def _live_words(self) -> tuple[str, str]:
+        tips = {
+            "reference": self.tr("Only the three-line laser is on; nothing moves."),
+            "ready": self.tr("The reference is taken. Switch the hand-held laser on and press Start."),
+            "scanning": self.tr("Sweep the line slowly over the part, at different tilts, so that it crosses the fan. "
+                                "Stop when enough is covered; then it is measured."),
+            "paused": self.tr("Nothing is recorded now; Resume goes on."),
+        }  # fmt: skip
+        titles = {
+            "reference": self.tr("Taking the reference"),
+            "ready": self.tr("Ready to scan"),
+            "scanning": self.tr("Scanning"),
+            "paused": self.tr("Paused"),
+        }
+        stage = self._presenter.live_stage
+        return titles.get(stage, self._presenter.live.state_text()), tips.get(stage, "")
+
+
+class SettingsPanel(QWidget):
+    """How the scan is measured."""
+
+    def __init__(self, presenter: ScanPresenter, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._presenter = presenter
+        self.form = form = SettingsForm()
+        methods = [("network", self.tr("Network")), ("three-crossings", self.tr("Three crossings a frame"))]
+        form.add_choice(
+            "method", self.tr("Method"), methods,
+            self.tr("Network: all frames adjusted together, the most accurate. Three crossings: each frame by itself."),
+        )  # fmt: skip
+        form.add_number(
+            "sigma_cut_mm", self.tr("Largest σ"), "mm",
+            self.tr("Points with a larger standard uncertainty of depth are left out."),
+            minimum=0.001, maximum=10.0, decimals=3, step=0.01,
+        )  # fmt: skip
+        form.add_check(
+            "automatic", self.tr("Stripe found automatically"),
+            self.tr("Width and contrast of the stripes are taken from the pictures, for each laser."),
+        )  # fmt: skip
+        form.add_number(
+            "width_px", self.tr("Stripe width"), "px",
+            self.tr("From where the light rises out of the background to where it is gone."),
+            minimum=1.0, maximum=200.0, decimals=1, step=0.5,
+        )  # fmt: skip
+        form.add_number(
+            "contrast", self.tr("Stripe contrast"), self.tr("grey levels"),
+            self.tr("Height above the background where the stripe is rather faint."),
+            minimum=1.0, maximum=65535.0, decimals=0, step=5.0,
+        )  # fmt: skip
+        form.edited.connect(presenter.set_setting, Qt.ConnectionType.QueuedConnection)
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.addWidget(form)
+
+    def refresh(self) -> None:
+        """Show the settings."""
+        values = self._presenter.settings()
+        self.form.set_values(values)
+        why = self.tr("Found automatically; take away the tick above to give it.")
+        for key in ("width_px", "contrast"):
+            self.form.set_editable(key, not values["automatic"], why)
+
+
+class ResultPanel(QWidget):
+    """How good the measured scan is, why frames gave no points, and what else is to be said."""
+
+    def __init__(self, presenter: ScanPresenter, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._presenter = presenter
+        self.quality, self.reasons, self.notes = ValueRows(), ValueRows(), muted()
+        self._why = heading(self.tr("Frames without points"))
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        for widget in (self.quality, self._why, self.reasons, self.notes):
+            column.addWidget(widget)
+
+    def refresh(self) -> None:
+        """Show the result."""
+        work = self._presenter.work
+        look = work.look
+        self.quality.set_rows(words.quality_rows(look))
+        reasons = words.reason_rows(look)
+        self.reasons.set_rows(reasons)
+        for widget in (self._why, self.reasons):
+            widget.setVisible(bool(reasons))
+        said = [*look.notes, *look.problems] if look is not None else []
+        if work.no_gauge:
+            said.append(self.tr("No thickness: {0}").format(work.no_gauge))
+        self.notes.setText("\n".join(said))
+        self.notes.setVisible(bool(said))
+
+
+class RunningPanel(QWidget):
+    """How the hand does while a scan runs: gauges, coverage, hints."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.condition = Meter(
+            self.tr("Condition of the crossings"),
+            [(500.0, "good"), (20_000.0, "warn"), (1e6, "bad")],
+            minimum=10.0,
+            logarithmic=True,
+        )
+        self.condition.setToolTip(
+            self.tr("How near to one straight line this frame's crossings with the fan are: small is good. "
+                    "Tilt the laser, or cross the fan at another height.")
+        )  # fmt: skip
+        self.speed = Meter(self.tr("Speed"), [(0.6 * FAST, "good"), (FAST, "warn"), (2 * FAST, "bad")])
+        self.speed.setToolTip(self.tr("How far the stripe moves from one frame to the next"))
+        self.covered, self.hints = QLabel(), HintBar()
+        self.covered.setToolTip(self.tr("Share of the picture between all laser light in which there are points"))
+        grid = QGridLayout(self)
+        grid.setContentsMargins(0, 4, 0, 0)
+        grid.setHorizontalSpacing(18)
+        grid.addWidget(self.condition, 0, 0)
+        grid.addWidget(self.speed, 0, 1)
+        grid.addWidget(self.covered, 0, 2, Qt.AlignmentFlag.AlignBottom)
+        grid.addWidget(self.hints, 1, 0, 1, 3)
+        grid.setColumnStretch(0, 2)
+        grid.setColumnStretch(1, 2)
+
+    def show_detail(self, detail: ScanDetail | None, width_px: float) -> None:
+        """What a frame shows; its picture is `width_px` wide."""
+        preview = detail.preview if detail is not None and detail.stage == "scanning" else None
+        self.covered.setText(words.covered_sentence(detail))
+        self.hints.set_hints(preview.hints if preview is not None else ())
+        if preview is None or not preview.centrelines:
+            self.condition.set_value(None)
+            self.speed.set_value(None)
+            return
+        self.condition.set_value(preview.condition, words.condition_text(preview.condition))
+        speed: Any = None if math.isnan(preview.speed_px) or not width_px else preview.speed_px / width_px
+        self.speed.set_value(speed, words.speed_text(preview.speed_px))

@@ -1,0 +1,125 @@
+"""The picture of the scan page: a frame as it comes, or one frame in one of its stages."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from enum import StrEnum
+from typing import Any
+
+from PySide6.QtWidgets import QVBoxLayout, QWidget
+
+from core.live.events import LiveView, ScanDetail
+from workbench.pages import scan_overlays as overlays
+from workbench.pages.scan_presenter import ScanPresenter
+from workbench.views.image_view import ImageView
+
+
+class View(StrEnum):
+    """The stages of a frame, in the order they come about."""
+
+    RECORDED = "recorded"
+    DIFFERENCE = "difference"
+    RIDGE = "ridge"
+    CENTRELINES = "centrelines"
+    CROSSINGS = "crossings"
+    POINTS = "points"
+
+
+class ScanPicture(QWidget):
+    """Draws whatever is to be seen now: live, of a recording that is measured, or of one frame."""
+
+    def __init__(
+        self, presenter: ScanPresenter, choose_folder: Callable[[], None], parent: QWidget | None = None
+    ) -> None:
+        super().__init__(parent)
+        self._presenter, self._choose_folder = presenter, choose_folder
+        self._shown: Any = None
+        self.image, self.wanted = ImageView(), View.CROSSINGS
+        self.image.setAccessibleName(self.tr("Picture of the scan"))
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.addWidget(self.image)
+        self._empty()
+
+    def refresh(self) -> None:
+        """Show what the presenter says now."""
+        p = self._presenter
+        if p.live.running:
+            if self._shown != "live" and not p.live.live:
+                self._clear(p.live.state_text())
+        elif p.scrubbing:
+            self._show_frame()
+        elif not p.work.measuring:
+            self._empty()
+
+    def show_view(self, view: View) -> None:
+        """Show the frame in another stage."""
+        self.wanted = view
+        self._shown = None
+        self.refresh()
+
+    def show_live(self, view: LiveView) -> None:
+        """A picture of the live source."""
+        self._begin("live")
+        self.image.set_picture(view.picture, scale=view.scale)
+        if isinstance(view.detail, ScanDetail):
+            self._show_detail(view.detail)
+
+    def show_measured(self, detail: ScanDetail, picture: Any) -> None:
+        """A frame of the recording that is being measured."""
+        self._begin("measured")
+        self.image.set_picture(picture)
+        self._show_detail(detail)
+
+    def _show_detail(self, detail: ScanDetail) -> None:
+        calibrated, preview = self._presenter.calibrated, detail.preview
+        overlays.show_coverage(self.image, detail.cells, detail.lit)
+        overlays.show_fan(self.image, detail.fan_lines, numbered=calibrated)
+        pieces = preview.centrelines if preview is not None and detail.stage == "scanning" else ()
+        overlays.show_sweep(
+            self.image, pieces, preview.sigma_mm if preview is not None and calibrated and pieces else ()
+        )
+        if calibrated and preview is not None:
+            overlays.show_crossings(self.image, preview)
+
+    def _show_frame(self) -> None:
+        scrub = self._presenter.scrub
+        stages, points = scrub.stages, self._presenter.points_of_frame()
+        if stages is None:
+            self._clear(scrub.problem or self.tr("The frame is being looked at …"))
+            return
+        wanted = (stages, self.wanted, points[0] is not None)
+        if self._shown == wanted:
+            return
+        self._begin("frame")
+        self._shown = wanted
+        shown = {View.DIFFERENCE: stages.difference, View.RIDGE: stages.ridge}
+        self.image.set_picture(shown.get(self.wanted, stages.picture))
+        place = list(View).index(self.wanted)
+        self.image.clear_layers()
+        if place >= list(View).index(View.CENTRELINES):
+            overlays.show_fan_pieces(self.image, stages.fan, stages.fan_line)
+            overlays.show_sweep(self.image, stages.sweep)
+        if self.wanted is View.CROSSINGS:
+            overlays.show_crossings(self.image, stages.seen)
+        if self.wanted is View.POINTS:
+            overlays.show_points(self.image, *points, self._presenter.project.options.sigma_cut_mm)
+
+    def _begin(self, kind: str) -> None:
+        """Layers of another kind of picture are no longer true."""
+        before = self._shown if isinstance(self._shown, str) else "frame"
+        if before != kind:
+            self.image.clear_layers()
+        self._shown = kind
+
+    def _empty(self) -> None:
+        self._clear(
+            self.tr("Record a scan with a live source, or choose the folder of a recording (or drop one here)."),
+            self.tr("Choose folder …"),
+            self._choose_folder,
+        )
+
+    def _clear(self, message: str, button: str = "", do: Callable[[], None] | None = None) -> None:
+        self._shown = None
+        if self.image.has_picture or self.image.empty_state.message != message:
+            self.image.clear(message, button, do)

@@ -1,0 +1,108 @@
+"""Going through the frames of a recording: which one is looked at, and what every stage makes of it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from PySide6.QtCore import QObject, Signal
+
+from core.scan.stages import FrameStages
+from workbench import jobs
+from workbench.bench import Bench
+from workbench.pages.scan_work import ScanWork
+
+
+class FrameScrub(QObject):
+    """One frame of the recording and its stages.
+
+    Frames are looked at only while somebody wants to see them (`active`); while they are gone through fast, those in
+    between are passed over. `stages` stand until those of the next frame are there: `current` may be ahead of them.
+    """
+
+    changed = Signal()
+
+    def __init__(self, bench: Bench, work: ScanWork, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self._bench, self._model, self._work = bench, bench.model, work
+        self._active = False
+        self.forget()
+
+    def forget(self) -> None:
+        """Another recording."""
+        self.current, self.problem = "", ""
+        self.stages: FrameStages | None = None
+        self._wanted: tuple[Any, ...] = ()
+
+    @property
+    def index(self) -> int:
+        """The place of the current frame; −1 if there is none."""
+        names = self._work.names
+        return names.index(self.current) if self.current in names else -1
+
+    @property
+    def up_to_date(self) -> bool:
+        """Whether the stages are those of the current frame."""
+        return self.stages is not None and self.stages.name == self.current
+
+    def set_active(self, active: bool) -> None:
+        """Whether frames are to be seen now."""
+        self._active = active
+        self.follow()
+
+    def choose(self, name: str) -> None:
+        """Look at this frame."""
+        if name in self._work.names and name != self.current:
+            self.current = name
+            self.follow()
+            self.changed.emit()
+
+    def go_to(self, index: int) -> None:
+        """Look at the frame at this place."""
+        names = self._work.names
+        if names:
+            self.choose(names[min(max(index, 0), len(names) - 1)])
+
+    def step(self, by: int) -> None:
+        """Look at the next frame but so many."""
+        self.go_to(self.index + by)
+
+    def follow(self) -> None:
+        """The frames or what they are looked at with may be others."""
+        names = self._work.names
+        if self.current not in names:
+            self.forget()
+            self.current = names[len(names) // 2] if names else ""
+        wanted = self._key()
+        if not self._active or not self.current or wanted == self._wanted:
+            return
+        self._wanted = wanted
+        self._bench.quick.run(
+            jobs.SHOW_FRAME,
+            self._model.folder,
+            self._model.project,
+            self.current,
+            label=self.tr("Looking at a frame"),
+            on_done=lambda stages: self._seen(wanted, stages, ""),
+            on_failed=lambda problem: self._seen(wanted, None, str(problem)),
+            replace_waiting=True,
+        )
+
+    def _seen(self, wanted: tuple[Any, ...], stages: FrameStages | None, problem: str) -> None:
+        if wanted[1:] == self._wanted[1:]:  # of this recording; also those passed on the way are shown
+            self.stages, self.problem = stages, problem if wanted == self._wanted else ""
+            self.changed.emit()
+
+    def _key(self) -> tuple[Any, ...]:
+        """What the stages rest on, the frame first."""
+        project, done = self._model.project, self._model.results.get("scan")
+        options = project.options
+        return (
+            self.current,
+            self._model.folder,
+            project.sources.scan,
+            project.rig.channel,
+            project.accepted,
+            options.stripe,
+            options.excluded_in("scan"),
+            done.key if done is not None else "",
+        )

@@ -1,0 +1,97 @@
+"""Two or more views side by side, each under its title; any of them can have all the room."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QEvent, QSize, Qt, Signal
+from PySide6.QtGui import QMouseEvent
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QSplitter, QToolButton, QVBoxLayout, QWidget
+
+from workbench.theme import icon
+
+
+class PaneTitle(QWidget):
+    """The line over a view: its title, what the page adds, and the button that gives it all the room."""
+
+    wanted = Signal()
+    """All the room is wanted, or given back: the button, or a double click."""
+
+    def __init__(self, title: str, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.label, self.button = QLabel(title), QToolButton()
+        self.label.setObjectName("heading")
+        self.button.setAutoRaise(True)
+        self.button.setIconSize(QSize(16, 16))
+        self.button.clicked.connect(self.wanted)
+        self._row = QHBoxLayout(self)
+        self._row.setContentsMargins(2, 0, 0, 0)
+        self._row.setSpacing(6)
+        self._row.addWidget(self.label)
+        self._row.addStretch(1)
+        self._row.addWidget(self.button)
+        self.show_maximised(maximised=False)
+
+    def add(self, widget: QWidget) -> None:
+        """A page's own widget beside the button."""
+        self._row.insertWidget(self._row.count() - 1, widget)
+
+    def show_maximised(self, *, maximised: bool) -> None:
+        """Say what the button would do now."""
+        tip = (
+            self.tr("Show both views again (or double-click the title)")
+            if maximised
+            else self.tr("Give this view all the room (or double-click the title)")
+        )
+        self.button.setToolTip(tip)
+        self.button.setAccessibleName(f"{self.label.text()}: {tip}")
+        self.button.setProperty("symbol", "mdi6.arrow-collapse" if maximised else "mdi6.arrow-expand")
+        self._dress()
+
+    def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
+        if event.button() == Qt.MouseButton.LeftButton:
+            self.wanted.emit()
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "_row"):
+            self._dress()
+
+    def _dress(self) -> None:
+        self.button.setIcon(icon(str(self.button.property("symbol"))))
+
+
+class SideBySide(QSplitter):
+    """Views with titles in a row; a double click on a title, or its button, shows that one alone, or all again."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(Qt.Orientation.Horizontal, parent)
+        self.setChildrenCollapsible(False)
+        self.setHandleWidth(7)
+        self._panes: list[tuple[PaneTitle, QWidget]] = []
+        self._alone: int | None = None
+
+    def add_view(self, title: str, view: QWidget) -> PaneTitle:
+        """Put a view at the right end."""
+        head, pane = PaneTitle(title), QWidget()
+        column = QVBoxLayout(pane)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(3)
+        column.addWidget(head)
+        column.addWidget(view, 1)
+        place = len(self._panes)
+        self._panes.append((head, pane))
+        self.addWidget(pane)
+        self.setStretchFactor(place, 1)
+        head.wanted.connect(lambda: self.show_alone(None if self._alone == place else place))
+        return head
+
+    @property
+    def alone(self) -> int | None:
+        """Which view has all the room, or None."""
+        return self._alone
+
+    def show_alone(self, place: int | None) -> None:
+        """Give the view at this place all the room; None shows all."""
+        self._alone = place
+        for index, (head, pane) in enumerate(self._panes):
+            pane.setVisible(place is None or index == place)
+            head.show_maximised(maximised=index == place)
