@@ -99,6 +99,7 @@ class LiveSettings(QObject):
             on_done=found,
             on_failed=failed,
             on_cancelled=lambda: failed(None),
+            offers={},
             replace_waiting=True,
         )
         self.devices_changed.emit()

@@ -64,6 +64,7 @@ class SourceChooser(QWidget):
         self.accept_drops_on(self)
         self._fit()
         self._dress()
+        self.set_folder(None)
 
     @property
     def mode(self) -> str:

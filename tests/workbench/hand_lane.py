@@ -1,0 +1,110 @@
+"""Lanes without processes: jobs run in this one, or wait for the test to say how they end."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from PySide6.QtCore import QObject, QTimer, Signal
+
+from core.errors import InputError
+from workbench.jobs import Job, resolve
+from workbench.tasks import Task
+
+
+class HandLane(QObject):
+    """Runs jobs a moment later, one after another. `answers` replaces functions; `held` are those that wait."""
+
+    task_started = Signal(object)
+    task_ended = Signal(object)
+
+    def __init__(self, name: str) -> None:
+        super().__init__()
+        self.name = name
+        self.answers: dict[Job, Callable[..., Any]] = {}
+        self.held: set[Job] = set()
+        self.waiting: list[tuple[Task, Job, tuple[Any, ...], dict[str, str]]] = []
+        self.ran: list[Job] = []
+        self.sent: list[Any] = []
+        self.warmed = False
+
+    @property
+    def current(self) -> Task | None:
+        return self.waiting[0][0] if self.waiting else None
+
+    @property
+    def busy(self) -> bool:
+        return bool(self.waiting)
+
+    def warm_up(self) -> None:
+        self.warmed = True
+
+    def close(self) -> None:
+        self.waiting.clear()
+
+    def run(
+        self,
+        job: Job,
+        *args: Any,
+        label: str,
+        on_done: Callable[[Any], None],
+        on_failed: Callable[[Any], None] | None = None,
+        on_cancelled: Callable[[], None] | None = None,
+        offers: dict[str, str] | None = None,
+        replace_waiting: bool = False,
+    ) -> Task:
+        task = Task(self, len(self.ran), label)
+        task.done.connect(on_done)
+        if on_failed:
+            task.failed.connect(on_failed)
+        if on_cancelled:
+            task.cancelled.connect(on_cancelled)
+        if replace_waiting:
+            for old in [entry for entry in self.waiting[1:] if entry[0].label == label]:
+                self.waiting.remove(old)
+                old[0].cancelled.emit()
+        self.waiting.append((task, job, args, {"progress": "progress"} if offers is None else offers))
+        self.task_started.emit(task)
+        QTimer.singleShot(0, self._work)
+        return task
+
+    def cancel(self, task: Task) -> None:
+        self._end(task, lambda: task.cancelled.emit())
+
+    def post(self, task: Task, message: tuple[str, Any]) -> None:
+        self.sent.append(message[1] if message[0] == "command" else message[0])
+
+    def finish(self, result: Any) -> None:
+        """The job that waits is done."""
+        task = self.waiting[0][0]
+        self._end(task, lambda: task.done.emit(result))
+
+    def fail(self, problem: Any) -> None:
+        """The job that waits has failed."""
+        task = self.waiting[0][0]
+        self._end(task, lambda: task.failed.emit(problem))
+
+    def _work(self) -> None:
+        if not self.waiting or self.waiting[0][1] in self.held:
+            return
+        task, job, args, offers = self.waiting[0]
+        self.ran.append(job)
+        offered = {"progress": lambda step, done, total: None}
+        try:
+            keywords = {name: offered[what] for name, what in offers.items() if what in offered}
+            answer = self.answers[job](*args) if job in self.answers else resolve(job)(*args, **keywords)
+        except InputError as error:
+            problem = error
+            self._end(task, lambda: task.failed.emit(problem))
+        else:
+            self._end(task, lambda: task.done.emit(answer))
+
+    def _end(self, task: Task, tell: Callable[[], None]) -> None:
+        entry = next((entry for entry in self.waiting if entry[0] is task), None)
+        if entry is None:
+            return
+        self.waiting.remove(entry)
+        tell()
+        task.ended.emit()
+        self.task_ended.emit(task)
+        QTimer.singleShot(0, self._work)

@@ -1,0 +1,67 @@
+"""A bench whose jobs run in this process, and a project with views that need not be looked for."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import cast
+
+import numpy as np
+import pytest
+from PySide6.QtWidgets import QApplication
+
+from core.calibrate.seen_views import SeenView, SeenViews
+from core.errors import InputError
+from core.files.pictures import write_picture
+from core.files.project import Project, new_project
+from tests.calibrate.camera_views import TRUTH, synthetic_views
+from tests.workbench.hand_lane import HandLane
+from workbench import jobs
+from workbench.bench import Bench
+from workbench.notices import Notices
+from workbench.project_model import ProjectModel
+from workbench.settings import AppSettings
+from workbench.tasks import Lane
+
+VIEWS = 9
+
+
+@pytest.fixture
+def hand_bench(qapp: QApplication, tmp_path: Path) -> Iterator[Bench]:
+    """Jobs run in this process, a moment later; those of the live lane wait for the test."""
+    settings = AppSettings(tmp_path / "settings.ini")
+    settings.projects_folder = tmp_path / "projects"
+    lanes = [HandLane(name) for name in ("measuring", "quick", "live")]
+    lanes[2].held = {jobs.RUN_LIVE}
+    measuring, quick, live = (cast(Lane, lane) for lane in lanes)
+    yield Bench(ProjectModel(), Notices(), settings, measuring, quick, live)
+
+
+@pytest.fixture(scope="session")
+def views_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Small pictures that stand for views of the target."""
+    folder: Path = tmp_path_factory.mktemp("views") / "camera"
+    folder.mkdir()
+    for number in range(VIEWS):
+        write_picture(folder / f"view{number:02d}.png", np.full((12, 16), 20 * number, np.uint8))
+    return folder
+
+
+def seen(folder: Path, project: Project) -> SeenViews:
+    """What finding the target in those pictures would give; one picture shows none, one view is poor."""
+    if "circle" in type(project.rig.camera_target).__name__.lower():
+        raise InputError("the camera target was found in none of 9 pictures", todo="check the target")
+    views = [replace(view, name=f"camera/{view.name}") for view in synthetic_views(1, VIEWS - 1)]
+    rng = np.random.default_rng(5)
+    views[3] = replace(views[3], uv=views[3].uv + rng.normal(0, 0.06, views[3].uv.shape))
+    lost = SeenView(f"camera/view{VIEWS - 1:02d}.png", None, "no checkerboard", TRUTH.image_size)
+    return SeenViews((*(SeenView(view.name, view, "", TRUTH.image_size) for view in views), lost), str(folder))
+
+
+@pytest.fixture
+def camera_bench(hand_bench: Bench, tmp_path: Path) -> Bench:
+    """An open project without pictures; the target is found at once in whatever it is given."""
+    cast(HandLane, hand_bench.measuring).answers[jobs.FIND_VIEWS] = seen
+    hand_bench.model.create(tmp_path / "project", new_project("block"))
+    return hand_bench

@@ -1,0 +1,252 @@
+"""Decisions of the camera page."""
+
+from dataclasses import replace
+
+import pytest
+
+from core.files.project import Sources
+from workbench import jobs
+from workbench.pages.camera_presenter import CameraPresenter, Stage
+from workbench.step_state import State
+
+
+@pytest.fixture
+def presenter(camera_bench):
+    made = CameraPresenter(camera_bench)
+    made.opened()
+    return made
+
+
+@pytest.fixture
+def solved(presenter, views_folder, qtbot):
+    presenter.use_folder(views_folder)
+    qtbot.waitUntil(lambda: presenter.work.judgement is not None)
+    return presenter
+
+
+@pytest.fixture
+def accepted(solved, qtbot):
+    solved.accept()
+    qtbot.waitUntil(lambda: solved.project.accepted.camera != "")
+    return solved
+
+
+def settled(qtbot, presenter):
+    qtbot.waitUntil(lambda: not presenter.work.solving and not presenter.bench.quick.busy)
+
+
+def test_without_pictures_it_asks_for_some(presenter):
+    assert presenter.stage is Stage.NONE
+    assert presenter.blocker() == "Record or choose pictures of the camera's target first."
+    assert presenter.can_search and presenter.can_accept and presenter.can_reject
+
+
+def test_a_folder_without_pictures_is_told(presenter, tmp_path, qtbot):
+    empty = tmp_path / "empty"
+    empty.mkdir()
+    presenter.model.edit("x", replace(presenter.project, sources=Sources(camera=str(empty))))
+    qtbot.waitUntil(lambda: presenter.work.pictures == ())
+    assert presenter.stage is Stage.EMPTY
+    assert "holds pictures" in presenter.blocker()
+
+
+def test_pictures_of_a_project_are_listed_but_not_searched_by_themselves(presenter, views_folder, qtbot):
+    presenter.model.edit("x", replace(presenter.project, sources=Sources(camera=str(views_folder))))
+    qtbot.waitUntil(lambda: len(presenter.work.thumbnails) == 9)
+    assert presenter.stage is Stage.FOUND
+    assert presenter.blocker() == "Calibrate the camera from its pictures first."
+    assert presenter.work.seen is None
+
+
+def test_a_chosen_folder_is_searched_and_solved(presenter, views_folder, qtbot):
+    presenter.use_folder(views_folder)
+    assert presenter.stage is Stage.SEARCHING
+    assert "being searched" in presenter.blocker()
+    qtbot.waitUntil(lambda: presenter.stage is Stage.SOLVED)
+    assert presenter.blocker() == "Accept a camera calibration first."
+    assert presenter.work.calibration.rms_px < 0.1
+    assert [view.used for view in presenter.views()].count(False) == 1
+
+
+def test_choosing_a_folder_is_undone_and_its_search_is_not_lost(solved, qtbot):
+    solved.model.undo_stack.undo()
+    assert solved.stage is Stage.NONE
+    ran = list(solved.bench.measuring.ran)
+    solved.model.undo_stack.redo()
+    settled(qtbot, solved)
+    assert solved.stage is Stage.SOLVED
+    assert solved.bench.measuring.ran == ran
+
+
+def test_what_cannot_be_calibrated_says_why(presenter, views_folder, qtbot):
+    presenter.target.set_target("kind", "circle_grid")
+    presenter.use_folder(views_folder)
+    qtbot.waitUntil(lambda: not presenter.work.searching)
+    assert presenter.stage is Stage.FAILED
+    assert "found in none" in presenter.work.problem
+    assert "could not be calibrated" in presenter.blocker()
+    assert any("found in none" in notice.text for notice in presenter.bench.notices.all)
+
+
+def test_a_view_left_out_is_solved_without_at_once_and_undone_from_memory(solved, qtbot):
+    before = solved.work.calibration
+    solved.set_used(["camera/view03.png"], False)
+    assert solved.work.solving
+    settled(qtbot, solved)
+    after = solved.work.calibration
+    assert after.rms_px < before.rms_px
+    assert solved.quality_of("camera/view03.png").reason == "left out by hand"
+    assert solved.model.undo_stack.undoText() == "leave out view03.png"
+    solved.model.undo_stack.undo()
+    assert solved.work.calibration is before and not solved.work.solving
+    solved.model.undo_stack.redo()
+    assert solved.work.calibration is after
+
+
+def test_too_few_views_left_are_told_and_undone(solved, qtbot):
+    solved.set_used([view.view.name for view in solved.views()][:-2], False)
+    settled(qtbot, solved)
+    assert solved.stage is Stage.FAILED
+    assert "are not left out by hand" in solved.work.problem
+    solved.model.undo_stack.undo()
+    assert solved.stage is Stage.SOLVED
+
+
+def test_the_threshold_leaves_out_what_is_above_as_one_edit(solved, qtbot):
+    edits = solved.model.undo_stack.count()
+    solved.set_threshold(0.06)
+    settled(qtbot, solved)
+    assert solved.project.options.excluded == {"camera/view03.png"}
+    solved.set_threshold(0.001)
+    settled(qtbot, solved)
+    assert len(solved.project.options.excluded) == 8
+    solved.set_threshold(0.06)
+    assert solved.model.undo_stack.count() == edits + 1
+    solved.model.undo_stack.undo()
+    assert not solved.project.options.excluded
+
+
+def test_raising_the_threshold_lets_in_only_what_it_had_left_out(solved, qtbot):
+    solved.set_used(["camera/view00.png"], False)
+    settled(qtbot, solved)
+    solved.set_threshold(0.06)
+    settled(qtbot, solved)
+    solved.set_threshold(1.0)
+    assert solved.project.options.excluded == {"camera/view00.png"}
+
+
+def test_accepting_keeps_records_and_opens_the_way(accepted):
+    assert accepted.stage is Stage.ACCEPTED
+    assert accepted.blocker() == ""
+    assert accepted.state.state is State.DONE
+    assert accepted.can_accept == "This calibration is accepted already."
+    assert (accepted.model.folder / "calibrations" / f"camera-{accepted.candidate}.json").exists()
+
+
+def test_accepting_is_undone_and_the_result_stays_a_fact(accepted):
+    accepted.model.undo_stack.undo()
+    assert accepted.project.accepted.camera == ""
+    assert accepted.stage is Stage.SOLVED
+    assert "camera" in accepted.model.results
+
+
+def test_a_change_after_accepting_wants_to_be_accepted_again(accepted, qtbot):
+    accepted.set_used(["camera/view03.png"], False)
+    settled(qtbot, accepted)
+    assert accepted.stage is Stage.SOLVED
+    assert accepted.blocker() == "Accept a camera calibration first."
+    assert "left-out views" in accepted.state.sentence
+    accepted.accept()
+    qtbot.waitUntil(lambda: accepted.stage is Stage.ACCEPTED)
+    assert accepted.state.state is State.DONE
+
+
+def test_other_pictures_make_the_accepted_calibration_out_of_date(accepted, tmp_path):
+    other = tmp_path / "other"
+    other.mkdir()
+    accepted.model.edit("x", replace(accepted.project, sources=Sources(camera=str(other))))
+    assert accepted.stage is Stage.OUTDATED
+    assert "out of date" in accepted.blocker()
+
+
+def test_rejecting_what_is_not_accepted_stops_the_way(solved):
+    solved.reject()
+    assert solved.stage is Stage.REJECTED
+    assert "was rejected" in solved.blocker()
+    assert solved.can_reject and not solved.can_accept
+
+
+def test_rejecting_what_was_accepted_is_undone(accepted):
+    accepted.reject()
+    assert accepted.project.accepted.camera == ""
+    assert accepted.stage is Stage.REJECTED
+    accepted.model.undo_stack.undo()
+    assert accepted.stage is Stage.ACCEPTED
+
+
+def test_the_target_is_changed_with_usual_sizes_and_undone(presenter):
+    presenter.target.set_target("kind", "charuco")
+    assert presenter.target.target_values() == {
+        "kind": "charuco", "columns": 12, "rows": 9, "size_mm": 15.0, "marker_mm": 11.25, "dictionary": "DICT_4X4_50",
+    }  # fmt: skip
+    presenter.model.undo_stack.undo()
+    assert presenter.target.target_values()["kind"] == "checkerboard"
+
+
+def test_a_target_that_cannot_be_is_refused_with_a_sentence(presenter, qtbot):
+    presenter.target.set_target("kind", "charuco")
+    with qtbot.waitSignal(presenter.target.target_refused) as refused:
+        presenter.target.set_target("marker_mm", 20.0)
+    assert refused.args[0] == "marker_mm" and "smaller" in refused.args[1]
+    assert presenter.target.target_values()["marker_mm"] == 11.25
+
+
+def test_another_target_must_be_searched_again_and_undo_needs_no_search(solved, qtbot):
+    solved.target.set_target("columns", 16)
+    assert solved.stage is Stage.FOUND
+    solved.model.undo_stack.undo()
+    settled(qtbot, solved)
+    assert solved.stage is Stage.SOLVED
+
+
+def test_the_target_is_written_to_scale(presenter, tmp_path, qtbot):
+    path = tmp_path / "target.pdf"
+    presenter.target.print_target(path, "A4")
+    qtbot.waitUntil(path.exists, timeout=20000)
+    assert path.read_bytes().startswith(b"%PDF")
+
+
+def test_a_kept_calibration_is_compared_and_restored(accepted, qtbot):
+    first = accepted.candidate
+    accepted.set_used(["camera/view03.png"], False)
+    settled(qtbot, accepted)
+    accepted.accept()
+    qtbot.waitUntil(lambda: len(accepted.history.entries) == 2)
+    accepted.history.choose(first)
+    qtbot.waitUntil(lambda: accepted.history.changes is not None)
+    assert accepted.history.changes.views == (8, 7)
+    second = accepted.project.accepted.camera
+    accepted.history.restore()
+    assert accepted.project.accepted.camera == first
+    accepted.model.undo_stack.undo()
+    assert accepted.project.accepted.camera == second
+
+
+def test_reopening_shows_the_accepted_calibration_and_solves_it_without_searching(accepted, qtbot):
+    candidate, folder = accepted.candidate, accepted.model.folder
+    accepted.model.save()
+    accepted.bench.measuring.ran.clear()
+    accepted.model.open(folder)
+    qtbot.waitUntil(lambda: accepted.work.calibration is not None)
+    assert accepted.candidate == candidate
+    assert accepted.stage is Stage.ACCEPTED
+    accepted.set_used(["camera/view03.png"], False)
+    settled(qtbot, accepted)
+    assert accepted.candidate != candidate
+    assert jobs.FIND_VIEWS not in accepted.bench.measuring.ran
+
+
+def test_closing_the_project_forgets_everything(accepted):
+    accepted.model.close()
+    assert accepted.work.calibration is None
+    assert accepted.history.entries == ()

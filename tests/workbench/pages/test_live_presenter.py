@@ -1,0 +1,269 @@
+"""Live recordings as the pages steer them."""
+
+from datetime import datetime
+from typing import cast
+
+import numpy as np
+import pytest
+from PySide6.QtCore import QTimer
+
+from core.acquire.source import Lasers, SourceInfo
+from core.live.events import (
+    Auto,
+    Capture,
+    Configure,
+    Discard,
+    LiveAnswered,
+    LiveAsk,
+    LiveBack,
+    LiveEnded,
+    LiveStarted,
+    LiveTaken,
+    LiveUnplugged,
+    LiveView,
+    Pause,
+    Resume,
+    Stop,
+    Switch,
+    TakeReference,
+)
+from tests.workbench.hand_lane import HandLane
+from workbench import jobs
+from workbench.pages.live_presenter import LivePresenter
+from workbench.worker import Failure
+
+
+@pytest.fixture
+def lane(camera_bench):
+    return cast(HandLane, camera_bench.live)
+
+
+@pytest.fixture
+def live(camera_bench):
+    return LivePresenter(camera_bench, "camera")
+
+
+@pytest.fixture
+def running(live, lane):
+    live.start()
+    lane.current.event.emit(LiveStarted("Camera 1", (640, 480)))
+    return live
+
+
+def request_of(lane):
+    return lane.waiting[0][2][0]
+
+
+def view(recorded=3, dropped=0):
+    return LiveView(np.zeros((48, 64), np.uint8), 10, 7, 12.0, recorded, dropped, None)
+
+
+def test_a_recording_gets_a_new_folder_of_its_own_in_the_project(live, lane):
+    live.start()
+    request = request_of(lane)
+    assert request.folder.parent == live.model.folder / "recordings"
+    assert request.folder.name.startswith(f"camera-{datetime.now():%Y%m%d-}")
+    assert not request.folder.exists()
+    assert request.step == "camera" and request.auto
+    assert request.source.kind == "simulated"
+
+
+def test_nothing_starts_without_a_project(live, lane):
+    live.model.close()
+    live.start()
+    assert not live.running
+
+
+def test_the_state_is_told_in_words(live, lane):
+    assert live.state_text() == "The live source is off."
+    live.start()
+    assert live.state_text() == "Opening the source …" and not live.live
+    lane.current.event.emit(LiveStarted("Camera 1", (640, 480)))
+    assert live.state_text() == "Live: Camera 1" and live.live
+    live.pause(True)
+    assert live.state_text() == "Paused: Camera 1"
+    live.stop()
+    assert live.state_text() == "Stopping …" and not live.live
+
+
+def test_commands_go_to_the_source(running, lane):
+    running.capture()
+    running.set_auto(False)
+    running.pause(True)
+    running.pause(True)
+    running.pause(False)
+    running.lasers(Lasers(fan=True, hand=False))
+    running.take_reference()
+    running.discard("view02")
+    sent = [type(command) for command in lane.sent]
+    assert sent == [Capture, Auto, Pause, Resume, Switch, TakeReference, Discard]
+
+
+def test_nothing_is_taken_before_the_source_is_open(live, lane):
+    live.start()
+    live.capture()
+    live.pause(True)
+    assert lane.sent == []
+
+
+def test_a_view_is_passed_on_and_answered_once(running, lane, qtbot):
+    with qtbot.waitSignal(running.view):
+        lane.current.view.emit(view(recorded=3))
+    assert running.counts_text() == "3 views taken · 12 frames/s"
+    assert lane.sent == []
+    running.shown()
+    assert lane.sent == ["shown"]
+
+
+def test_a_scan_says_how_many_frames_were_lost(camera_bench, lane):
+    scan = LivePresenter(camera_bench, "scan")
+    scan.start()
+    lane.current.view.emit(view(recorded=40, dropped=2))
+    assert scan.counts_text() == "40 frames recorded · 12 frames/s · 2 lost"
+    assert not scan.auto
+
+
+def test_what_is_asked_is_answered_with_its_own_command(running, lane, qtbot):
+    with qtbot.waitSignal(running.asked) as asked:
+        lane.current.event.emit(LiveAsk("Switch the laser on.", "Continue", TakeReference()))
+    assert asked.args == ["Switch the laser on.", "Continue"]
+    running.answer()
+    assert lane.sent == [TakeReference()]
+    with qtbot.waitSignal(running.asked) as asked:
+        lane.current.event.emit(LiveAnswered())
+    assert asked.args == ["", ""] and running.question == ("", "")
+
+
+def test_an_unplugged_source_is_told_once_and_so_is_its_return(running, lane, qtbot):
+    with qtbot.waitSignal(running.unplugged):
+        lane.current.event.emit(LiveUnplugged("Camera 1 is gone."))
+    assert running.gone and running.state_text() == "Camera 1 is unplugged."
+    with qtbot.waitSignal(running.back):
+        lane.current.event.emit(LiveBack())
+    assert not running.gone
+    texts = [notice.text for notice in running.bench.notices.all]
+    assert texts == ["Camera 1 is gone.", "Camera 1 is back; the recording goes on."]
+
+
+def test_a_finished_recording_becomes_the_source_and_that_is_undone(running, lane, qtbot):
+    folder = request_of(lane).folder
+    folder.mkdir(parents=True)
+    running.stop()
+    assert lane.sent == [Stop()]
+    with qtbot.waitSignal(running.ended):
+        lane.finish(LiveEnded(folder, 12, 0))
+    assert running.model.project.sources.camera == f"recordings/{folder.name}"
+    assert running.model.undo_stack.undoText() == "record views of the target"
+    running.model.undo_stack.undo()
+    assert running.model.project.sources.camera == ""
+
+
+def test_a_new_recording_lets_in_what_was_left_out_of_the_last_one(running, lane):
+    from dataclasses import replace
+
+    project = running.model.project
+    options = replace(project.options, excluded=frozenset({"camera/view01.png", "scan/frame0001.png"}))
+    running.model.edit("x", replace(project, options=options))
+    lane.finish(LiveEnded(request_of(lane).folder, 5, 0))
+    assert running.model.project.options.excluded == {"scan/frame0001.png"}
+
+
+def test_a_recording_without_pictures_changes_nothing(running, lane):
+    lane.finish(LiveEnded(request_of(lane).folder, 0, 0))
+    assert running.model.project.sources.camera == ""
+    assert not running.model.undo_stack.canUndo()
+
+
+def test_why_a_recording_ended_by_itself_is_told(running, lane):
+    lane.finish(LiveEnded(request_of(lane).folder, 4, 0, "The disk is full."))
+    assert running.bench.notices.all[-1].text == "The disk is full."
+    assert running.model.project.sources.camera
+
+
+def test_what_was_recorded_is_kept_when_the_process_dies(running, lane, qtbot):
+    lane.current.view.emit(view(recorded=6))
+    with qtbot.waitSignal(running.ended) as ended:
+        lane.fail(Failure("ProcessEnded", "the measuring process ended unexpectedly", ""))
+    assert ended.args[0].recorded == 6
+    assert running.model.project.sources.camera
+    assert "ended unexpectedly" in running.bench.notices.all[-1].text
+    assert not running.running
+
+
+def test_a_source_that_does_not_stop_is_ended(running, lane, qtbot, monkeypatch):
+    running._deadline.setInterval(10)
+    lane.current.view.emit(view(recorded=2))
+    running.stop()
+    qtbot.waitUntil(lambda: not running.running)
+    assert running.model.project.sources.camera
+
+
+def test_another_pages_recording_is_stopped_only_after_asking(running, lane, camera_bench, qtbot):
+    scan = LivePresenter(camera_bench, "scan")
+    with qtbot.waitSignal(scan.other_running) as question:
+        scan.start()
+    assert "Another page is recording" in question.args[0]
+    assert not scan.running and lane.sent == []
+    scan.start(stop_other=True)
+    assert lane.sent == [Stop()]
+    lane.finish(LiveEnded(request_of(lane).folder, 3, 0))
+    assert not running.running and scan.running
+    assert request_of(lane).step == "scan"
+
+
+def test_leaving_the_project_ends_the_recording_and_keeps_it_in_the_project(running, lane):
+    folder = request_of(lane).folder
+    QTimer.singleShot(20, lambda: lane.finish(LiveEnded(folder, 8, 0)))
+    running.model.leaving.emit()
+    assert not running.running
+    assert running.model.project.sources.camera == f"recordings/{folder.name}"
+
+
+def test_a_recording_of_another_project_does_not_change_this_one(running, lane, tmp_path):
+    from core.files.project import new_project
+
+    running.model.create(tmp_path / "second", new_project("second"))
+    assert running.stopping
+    lane.finish(LiveEnded(request_of(lane).folder, 8, 0))
+    assert running.model.project.sources.camera == ""
+
+
+def test_settings_are_each_kinds_own_and_outlive_the_program(live, camera_bench):
+    live.settings.set_kind("opencv")
+    live.settings.set_id("1")
+    live.settings.set_value("exposure_ms", 12.5)
+    live.settings.set_kind("replay")
+    assert live.settings.choice.id == "" and live.settings.values.exposure_ms is None
+    again = LivePresenter(camera_bench, "camera")
+    again.settings.set_kind("opencv")
+    assert again.settings.choice.id == "1"
+    assert again.settings.values.exposure_ms == 12.5
+    assert LivePresenter(camera_bench, "scan").settings.values.exposure_ms is None
+
+
+def test_settings_reach_a_running_source(running, lane):
+    running.settings.set_kind("opencv")
+    lane.sent.clear()
+    running.settings.set_value("gain_db", 6.0)
+    assert isinstance(lane.sent[0], Configure) and lane.sent[0].settings.gain_db == 6.0
+
+
+def test_devices_are_listed_in_the_quick_lane(live, camera_bench, qtbot):
+    choices = []
+
+    def listed(kind):
+        choices.append(kind)
+        return (SourceInfo(live.settings.choice, "Camera 1"),)
+
+    cast(HandLane, camera_bench.quick).answers[jobs.LIST_SOURCES] = listed
+    live.settings.set_kind("opencv")
+    live.settings.look_for_devices()
+    assert live.settings.looking
+    qtbot.waitUntil(lambda: not live.settings.looking)
+    assert choices == ["opencv"] and live.settings.devices[0].name == "Camera 1"
+
+
+def test_pictures_taken_are_passed_on(running, lane, qtbot):
+    with qtbot.waitSignal(running.taken) as taken:
+        lane.current.event.emit(LiveTaken("view00", np.zeros((4, 4), np.uint8)))
+    assert taken.args[0].name == "view00"
