@@ -58,8 +58,10 @@ class LivePlanes:
         self._number = 0
 
     def begin(self) -> None:
-        """The fan on."""
-        if not self._desk.switch(_FAN_ON if self._stage != "second picture" else _FAN_OFF):
+        """The fan on; a pose that was not finished when the source was unplugged is given up."""
+        self._desk.answered()
+        self._pending, self._stage = None, "looking"
+        if not self._desk.switch(_FAN_ON):
             self._desk.notice("Switch the three-line laser on, and the hand-held laser off.")
 
     def frame(self, frame: Frame) -> None:

@@ -9,7 +9,15 @@ from core.files.options import Options
 from core.image.centreline import Centreline
 from core.image.stripe import StripeSettings
 from core.model import Camera, Fan
-from core.scan.features import FeatureOptions, FrameReader, ReferenceFeatures, choose_sweep_stripe, read_reference
+from core.scan.features import (
+    NO_STRIPE,
+    FeatureOptions,
+    FrameFeatures,
+    FrameReader,
+    ReferenceFeatures,
+    choose_sweep_stripe,
+    read_reference,
+)
 from core.scan.frame_preview import FramePreview, empty_preview
 from core.scan.preview import Preview
 from core.scan.preview_cloud import PreviewCloud
@@ -86,18 +94,19 @@ class ScanPreviewer:
             )
 
     def _shown(self, reference: ReferenceFeatures, index: int, name: str, picture: Picture) -> FramePreview:
-        features = FrameReader(reference, self._stripe(reference, picture))((index, (name, picture)))
+        features = self._features(reference, index, name, picture)
         if self._preview is not None:
             return self._preview(features)
         return replace(empty_preview(index, name, features.reason), centrelines=features.centrelines)
 
-    def _stripe(self, reference: ReferenceFeatures, picture: Picture) -> StripeSettings | None:
-        """Width and contrast as given, or as the first frames show them."""
-        if self._options.stripe is not None:
-            return self._options.stripe
-        if len(self._seen) < SETTINGS_FROM:
-            found = choose_sweep_stripe([("", picture)], reference)
-            if found is None:
-                return None
-            self._seen.append(found)
-        return sorted(self._seen, key=lambda stripe: stripe.contrast)[len(self._seen) // 2]
+    def _features(self, reference: ReferenceFeatures, index: int, name: str, picture: Picture) -> FrameFeatures:
+        stripe, frame = self._options.stripe, (name, picture)
+        if stripe is None and len(self._seen) < SETTINGS_FROM:
+            blind = FrameReader(reference, None)((index, frame))
+            if blind.reason != NO_STRIPE:  # moved, dark: nothing to be learned of the stripe
+                return blind
+            found = choose_sweep_stripe([frame], reference)
+            self._seen += [] if found is None else [found]
+        if stripe is None and self._seen:
+            stripe = sorted(self._seen, key=lambda seen: seen.contrast)[len(self._seen) // 2]
+        return FrameReader(reference, stripe)((index, frame))

@@ -13,6 +13,7 @@ from core.live.events import Command, Pause, Resume, ScanDetail, ScanStage, Take
 from core.pipeline.live_desk import Desk
 from core.pipeline.live_preview import PreviewedFrame, PreviewFailed, ScanPreviewer
 from core.scan.coverage_map import CoverageMap
+from core.scan.features import LOST, MOVED
 from core.scan.frame_preview import FramePreview, cloud_of
 from core.scan.preview_cloud import PreviewCloud
 
@@ -22,6 +23,9 @@ STILL_SHARE = 2e-4
 """Two pictures of a scene at rest differ in no larger share of their pixels."""
 STILL_LEVELS = 0.12
 """A pixel differs if it does by more than this share of the largest grey level."""
+
+MOVED_FRAMES = 5
+"""After so many frames in a row that do not suit the reference it is said."""
 
 _FAN_ALONE, _BOTH = Lasers(fan=True, hand=False), Lasers(fan=True, hand=True)
 
@@ -57,6 +61,7 @@ class LiveScan:
         self._number = 0
         self._preview: FramePreview | None = None
         self._coverage: CoverageMap | None = None
+        self._moved = 0
         self._new: list[PreviewCloud] = []
         self._renewed = False
 
@@ -207,6 +212,11 @@ class LiveScan:
 
     def _add(self, preview: FramePreview) -> None:
         """Keep what the frame adds until it is shown."""
+        self._moved = self._moved + 1 if preview.reason in (MOVED, LOST) else 0
+        if self._moved == MOVED_FRAMES:
+            self._desk.notice(
+                f"{preview.reason[:1].upper()}{preview.reason[1:]}. These frames give no points: stop, and scan again."
+            )
         self._preview = preview
         if self._coverage is not None:
             for piece in preview.centrelines:

@@ -28,6 +28,7 @@ from core.threads import ordered_map
 
 MOVED = "object or camera moved during the scan: the fan's light lies elsewhere than in the reference"
 LOST = "the fan's light is gone: object or camera moved far during the scan, or the three-line laser was off"
+NO_STRIPE = "no stripe of the hand-held laser"
 
 LIGHT_SHARE, LIGHT_FLOOR = 0.2, 0.02
 """A change of the background counts as one of the room's light from this share of it, and of the full scale, on."""
@@ -206,10 +207,10 @@ class FrameReader:
         if check.shift_px > self.move_limit_px:
             return FrameFeatures(index, name, (), MOVED, check.shift_px, light)
         if self.stripe is None:
-            return FrameFeatures(index, name, (), "no stripe of the hand-held laser", check.shift_px, light)
+            return FrameFeatures(index, name, (), NO_STRIPE, check.shift_px, light)
         saturated = picture >= full_scale
         pieces = extract_centrelines(difference, self.stripe, noise=self.reference.noise, saturated=saturated)
-        reason = "" if pieces else "no stripe of the hand-held laser"
+        reason = "" if pieces else NO_STRIPE
         return FrameFeatures(index, name, pieces, reason, check.shift_px, light)
 
 

@@ -35,7 +35,8 @@ class FramePreview:
     condition
         Of the crossings with the fan: ratio of singular values, infinite when they are collinear or too few.
     speed_px
-        How far the stripe has moved since the frame before, in pixels; NaN if not known.
+        How far the stripe moves from frame to frame, in pixels: since the last frame looked at, by their number; NaN
+        if not known.
     points, point_sigma, point_intensity
         (P, 3) in mm in the camera frame, (P,) in mm, (P,) in grey levels: the points worth showing.
     point_uv

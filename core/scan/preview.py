@@ -30,10 +30,15 @@ from core.scan.tracking import SweepTracker, TrackedSweep
 
 @dataclass(frozen=True, slots=True)
 class PreviewOptions:
-    """How a preview is made: points up to `sigma_cut_mm` are shown, every `thin`-th of a stripe."""
+    """How a preview is made.
+
+    Points up to `sigma_cut_mm` are shown, every `thin`-th of a stripe; of a long scan fewer, so that the whole cloud
+    has not many more than `most_points`.
+    """
 
     sigma_cut_mm: float = 1.0
     thin: int = 3
+    most_points: int = 600_000
     window: CrossingWindow = field(default_factory=CrossingWindow)
     hints: HintLimits = field(default_factory=HintLimits)
 
@@ -60,6 +65,7 @@ class Preview:
         self._fan_rays = [StripeRays.of(-1, [piece], camera) for piece in self._thin_fan]
         self._stripes: dict[int, StripeRays] = {}
         self._before: Sequence[Centreline] = ()
+        self._before_index = -1
         self._speed_before = float("nan")
         self._told: tuple[int, ...] | None = None
         self._limits = _depth_limits(self._fan_clouds())
@@ -72,6 +78,8 @@ class Preview:
 
     def cloud(self) -> PreviewCloud:
         """All points so far, the fan's own first."""
+        if sum(map(len, self._stripes.values())) > self._options.most_points:
+            self._stripes = {frame: stripe.thinned() for frame, stripe in self._stripes.items()}
         clouds = self._fan_clouds()
         self._limits = _depth_limits(clouds)
         for sweep in self._tracker.sweeps():
@@ -96,9 +104,9 @@ class Preview:
         points = stripe.cloud(depth, sigma, shown)
         marks = mark_crossings(sweep, self._tracker.lines)
         lines_met, condition = self._met(sweep)
-        speed = movement_px(features.centrelines, self._before)
+        speed = movement_px(features.centrelines, self._before) / max(1, features.index - self._before_index)
         lasting = min(speed, self._speed_before)  # one jump, as from the end of a pass to the next, is no haste
-        self._before, self._speed_before = features.centrelines, speed
+        self._before, self._before_index, self._speed_before = features.centrelines, features.index, speed
         preview = FramePreview(
             features.index,
             features.name,

@@ -64,6 +64,16 @@ class StripeRays:
         across = np.einsum("nij,nj->ni", camera.ray_jacobian(rays), normal) * sigma[:, None]
         return cls(frame, uv, rays, across, strength, ~saturated & np.isfinite(rays).all(axis=1))
 
+    def thinned(self) -> StripeRays:
+        """Every second point."""
+        half = slice(None, None, 2)
+        return StripeRays(
+            self.frame, self.uv[half], self.rays[half], self.across[half], self.intensity[half], self.usable[half]
+        )
+
+    def __len__(self) -> int:
+        return len(self.rays)
+
     def depth(self, pi: Array, covariance: Array) -> tuple[Array, Array]:
         """Depth (N,) in mm on the plane `pi` (3,) with `covariance` (3, 3), and its σ; NaN where there is none."""
         inverse = self.rays @ pi

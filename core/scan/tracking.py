@@ -38,6 +38,9 @@ FIRST_ADJUSTMENT = 4
 GROWTH = 4 / 3
 """The anchors are adjusted again when there are so many times as many sweeps as the last time."""
 
+MOST_RENEWED = 1500
+"""With more sweeps than this those before are not located anew: by then they are known well, and it takes long."""
+
 SURE_AFTER = 3
 """A numbering of the fan's lines that has been chosen so often in a row is kept."""
 
@@ -149,6 +152,8 @@ class SweepTracker:
         if not np.any(table.with_fan):
             return False
         self._adjusted = locate_together(table, line, self._camera, self._fan)
+        if len(self._sweeps) > MOST_RENEWED:
+            return False
         self._sweeps = {frame: self._located(sweep) for frame, sweep in self._sweeps.items()}
         return True
 

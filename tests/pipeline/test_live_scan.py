@@ -285,6 +285,15 @@ def test_a_fault_in_the_preview_never_ends_the_recording(monkeypatch, tmp_path, 
     assert ended.error == ""
 
 
+def test_a_thing_that_was_moved_is_told_while_there_is_time(monkeypatch, tmp_path, stage):
+    def moved(lasers, number):
+        return np.roll(stage(lasers, number), 2, axis=0) if lasers.hand else stage(lasers, number)
+
+    window = Window()
+    scan(monkeypatch, tmp_path, stage, swept(moved, 30, pace_s=0.03), window)
+    assert any("during the scan" in notice.sentence for notice in window.all(LiveNotice))
+
+
 def test_a_full_disk_pauses_and_asks(monkeypatch, tmp_path, stage):
     def full(path, picture):
         raise InputError("cannot be written, because the disk is full", where=path)

@@ -9,7 +9,7 @@ from core.scan.crossing_marks import GOOD, LEFT_OUT, WEAK
 from core.scan.features import FrameFeatures, FrameReader, choose_sweep_stripe, extract_features, read_reference
 from core.scan.hints import HandState, HintLimits, hints_for
 from core.scan.movement import movement_px
-from core.scan.preview import Preview
+from core.scan.preview import Preview, PreviewOptions
 from core.scan.reconstruct import ReconstructOptions, reconstruct
 from core.simulate.recording import scan_of
 from core.simulate.scenario import Scenario
@@ -210,3 +210,21 @@ def test_coverage_counts_cells_of_what_was_lit():
     assert area.cells.shape == (69, 96)
     area.add(np.array([[-3.0, 5000.0]]))  # out of the picture: the nearest cell
     assert area.cells[-1, 0]
+
+
+def test_speed_is_per_frame_even_when_frames_were_not_looked_at(block):
+    preview = Preview(block.reference, block.camera, block.fan)
+    speeds = [
+        preview(FrameFeatures(index, block.features[k].name, block.features[k].centrelines)).speed_px
+        for index, k in ((0, 1), (1, 2), (5, 3))
+    ]
+    assert np.isnan(speeds[0])
+    assert speeds[2] < 0.5 * speeds[1]
+
+
+def test_a_cloud_that_grows_too_large_is_thinned(block):
+    preview = Preview(block.reference, block.camera, block.fan, PreviewOptions(most_points=1500))
+    for features in block.features:
+        preview(features)
+    assert len(preview.cloud()) < 3500
+    assert len(block.preview.cloud()) > 4000
