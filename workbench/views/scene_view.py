@@ -9,14 +9,13 @@ motions and choices.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from PySide6.QtCore import QBuffer, QEvent, QIODevice, QPointF, Signal
-from PySide6.QtGui import QCloseEvent, QColor, QImage, QPainter
+from PySide6.QtGui import QCloseEvent, QImage, QPainter
 from PySide6.QtWidgets import QFileDialog, QVBoxLayout, QWidget
 
 from core.errors import InputError
@@ -27,37 +26,19 @@ from workbench.views.scene_view_backing import Backing
 from workbench.views.scene_view_buttons import SceneButtons
 from workbench.views.scene_view_canvas import Canvas, Overlay
 from workbench.views.scene_view_chooser import Chooser
-from workbench.views.scene_view_cloud import SceneCloud
-from workbench.views.scene_view_colours import PLAIN, Colouring, Rgb, as_colours
-from workbench.views.scene_view_contents import (
-    GRID,
-    Labels,
-    Lines,
-    Marks,
-    Measure,
-    Patches,
-    Scene,
-    as_mesh,
-    as_points,
-    each,
-)
-from workbench.views.scene_view_grid import camera_pyramid, ground_grid
+from workbench.views.scene_view_contents import GRID, Scene, as_points
+from workbench.views.scene_view_grid import ground_grid
 from workbench.views.scene_view_navigator import Navigator
 from workbench.views.scene_view_overlay import Look, bar_width, paint_marker, paint_overlay
 from workbench.views.scene_view_painter import PainterSurface
 from workbench.views.scene_view_picture_widget import image_pixels, pixels_image
 from workbench.views.scene_view_pieces import whole
+from workbench.views.scene_view_shown import ColourLike, ColourMap, SceneShown
 from workbench.views.scene_view_tools import Lasso, Navigate, Pick, Polygon
 
+__all__ = ["ColourLike", "ColourMap", "SceneView", "ViewName", "warm_up"]
+
 ViewName = Literal["front", "back", "left", "right", "top", "bottom", "iso", "camera"]
-ColourLike = str | tuple[int, int, int] | QColor
-ColourMap = Literal["viridis", "plasma", "deviation"]
-
-PYRAMID = "#pyramid"
-"""Name of the lines that show the camera."""
-
-HIGHLIGHT_WIDER = 1.5
-"""Highlighted points are wider than the cloud's by so many pixels."""
 
 
 def warm_up() -> None:
@@ -68,7 +49,7 @@ def warm_up() -> None:
     choice.warm_up()
 
 
-class SceneView(QWidget):
+class SceneView(SceneShown):
     """A 3D scene with its tool bar, colour bar, axes and scale.
 
     All coordinates are in mm, in the camera's frame unless `set_orientation` says which way is up. Arrays are kept,
@@ -102,6 +83,7 @@ class SceneView(QWidget):
         self._backing = Backing(self._scene, self._canvas, lambda: self._navigator.camera, self)
         self._overlay = Overlay(self._canvas, Navigate(self), self._paint_overlay)
         self._canvas.put_above(self._overlay)
+        self._overlay.setAccessibleName(self.tr("3D view"))
         self.setFocusProxy(self._overlay)
         self._buttons = SceneButtons(self)
         self._buttons.setVisible(tools)
@@ -124,6 +106,7 @@ class SceneView(QWidget):
         self._canvas.hidden.connect(self._on_hidden)
         self._canvas.resized.connect(self._navigator.resized)
         self._navigator.moved.connect(self._on_moved)
+        self._chooser.picked.connect(self.repaint_tool)
         self._chooser.picked.connect(self.point_picked)
         self._chooser.selected.connect(self._on_selected)
         self._overlay.cancelled.connect(self.stop_drawing)
@@ -139,202 +122,6 @@ class SceneView(QWidget):
             placeholder = QOpenGLWidget(self)
             placeholder.setGeometry(0, 0, 1, 1)
             placeholder.hide()
-
-    # ---- what is shown
-
-    def set_cloud(
-        self,
-        points: ArrayLike,
-        *,
-        values: ArrayLike | None = None,
-        value_name: str = "",
-        unit: str = "",
-        limits: tuple[float, float] | None = None,
-        colour_map: ColourMap = "viridis",
-        colours: ArrayLike | ColourLike | None = None,
-        keep_camera: bool = True,
-    ) -> None:
-        """Show a cloud instead of the one before.
-
-        Parameters
-        ----------
-        points
-            (N, 3) in mm; may be empty, to grow by `add_points`. Points that are not finite are not drawn.
-        values, value_name, unit
-            (N,) one number a point, coloured by the colour map; name and unit stand over the colour bar. NaN is grey.
-        limits
-            Values at the ends of the colour bar; without them 1 % and 99 % of the values.
-        colour_map
-            "viridis" and "plasma" run from low to high, "deviation" is blue below, red above the middle.
-        colours
-            Instead of values: (N, 3) uint8, or one colour for all.
-        keep_camera
-            Leave the view as it is, except when nothing was shown before.
-
-        Raises
-        ------
-        ValueError
-            If the shapes do not match.
-        """
-        colouring = Colouring(value_name, unit, limits, colour_map)
-        if colours is not None and values is None:
-            count = len(np.asarray(points).reshape(-1, 3))
-            one = isinstance(colours, str | tuple | QColor)
-            colouring = (
-                Colouring(plain_colour=_rgb(colours))  # type: ignore[arg-type]
-                if one
-                else Colouring(colours=as_colours(colours, count))  # type: ignore[arg-type]
-            )
-        self._chooser.stop()
-        self._chooser.marked = None
-        self._scene.cloud = SceneCloud(points, values, colouring)
-        self._changed(afresh=not keep_camera)
-
-    def add_points(self, points: ArrayLike, values: ArrayLike | None = None) -> None:
-        """Let the cloud grow by `points` (M, 3) in mm with `values` (M,) if it has values.
-
-        Cheap: only new points are sent to the graphics card, at most ten times a second. `set_cloud` with empty
-        arrays before says how the values are called and coloured.
-        """
-        if self._scene.cloud is None:
-            self.set_cloud(points, values=values)
-            return
-        self._scene.cloud.add(points, values)
-        if not self._scene.cloud_shown or self._scene.cloud.drawn == 0:
-            return
-        if self._navigator.follow() or self._backing.pace is None:
-            self._changed()
-        else:
-            self._backing.pace.grown()
-
-    def set_mesh(
-        self,
-        points: ArrayLike,
-        triangles: ArrayLike,
-        *,
-        values: ArrayLike | None = None,
-        value_name: str = "",
-        unit: str = "",
-        limits: tuple[float, float] | None = None,
-        colour_map: ColourMap = "viridis",
-        colour: ColourLike | None = None,
-        keep_camera: bool = True,
-    ) -> None:
-        """Show a surface: vertices (V, 3) in mm, triangles (T, 3) of vertex numbers, values (V,) as in `set_cloud`.
-
-        Raises
-        ------
-        ValueError
-            If the shapes do not match or a triangle names a vertex that is not there.
-        """
-        plain = _rgb(colour) if colour is not None else PLAIN
-        colouring = Colouring(value_name, unit, limits, colour_map, plain_colour=plain)
-        self._scene.mesh = as_mesh(points, triangles, values, colouring) if len(np.asarray(triangles)) else None
-        self._changed(afresh=not keep_camera)
-
-    def show_cloud(self, shown: bool) -> None:
-        """Show or hide the cloud."""
-        self._scene.cloud_shown = shown
-        self._changed()
-
-    def show_mesh(self, shown: bool) -> None:
-        """Show or hide the mesh."""
-        self._scene.mesh_shown = shown
-        self._changed()
-
-    def set_highlight(self, name: str, points: ArrayLike, colour: ColourLike) -> None:
-        """Mark points (N, 3) in one colour, drawn larger than the cloud's."""
-        self._put(name, Marks(as_points(points), _rgb(colour), self._point_size + HIGHLIGHT_WIDER))
-
-    def remove_highlight(self, name: str) -> None:
-        """Take a highlight away; none of that name is no error."""
-        self._scene.remove(name, Marks)
-        self._changed()
-
-    def set_planes(
-        self,
-        name: str,
-        corners: Sequence[ArrayLike],
-        colours: Sequence[ColourLike] | ColourLike,
-        opacity: float = 0.25,
-    ) -> None:
-        """Show transparent four-cornered patches, each (4, 3) in mm; those that are not finite are left out."""
-        patches = [as_points(patch, "corners") for patch in corners]
-        shades = each(_rgbs(colours), len(patches))
-        kept = [k for k, patch in enumerate(patches) if np.isfinite(patch).all()]
-        self._put(name, Patches(tuple(patches[k] for k in kept), tuple(shades[k] for k in kept), opacity))
-
-    def set_polylines(
-        self, name: str, lines: Sequence[ArrayLike], colour: ColourLike | Sequence[ColourLike], width: float = 2.0
-    ) -> None:
-        """Show lines, each (N, 3) in mm; one colour for all or one each; `width` in pixels."""
-        given = [as_points(line, "lines") for line in lines]
-        self._put(name, Lines(tuple(given), each(_rgbs(colour), len(given)), width))
-
-    def set_camera_frustum(self, corners: ArrayLike | None) -> None:
-        """Show where the camera is: (5, 3), its centre and the four corners of its picture; None takes it away.
-
-        See `scene_shapes.frustum`. The view "camera" then shows what the camera sees.
-        """
-        self._scene.remove(PYRAMID)
-        self._pyramid = None if corners is None else as_points(corners, "corners")
-        if self._pyramid is not None:
-            for item in camera_pyramid(self._pyramid, self.tr("camera")):
-                self._scene.put(PYRAMID, item)
-        self._changed()
-
-    def set_labels(self, name: str, labels: Sequence[tuple[ArrayLike, str]], colour: ColourLike | None = None) -> None:
-        """Write texts at places (3,) in mm."""
-        places = as_points([np.asarray(place, dtype=np.float64) for place, _ in labels], "places")
-        self._put(name, Labels(places, tuple(text for _, text in labels), None if colour is None else _rgb(colour)))
-
-    def set_measure(self, name: str, a: ArrayLike, b: ArrayLike, text: str) -> None:
-        """Draw a dimension line from `a` to `b`, both (3,) in mm, with a text, computed by the caller."""
-        ends = as_points([np.asarray(a, dtype=np.float64), np.asarray(b, dtype=np.float64)], "ends")
-        self._put(name, Measure(ends, text))
-
-    def set_axes(self, shown: bool) -> None:
-        """Show or hide the axes' triad and the scale bar."""
-        self._axes = shown
-        self._overlay.update()
-
-    def set_grid(self, shown: bool) -> None:
-        """Show or hide a millimetre grid under the scene."""
-        self._buttons.grid.setChecked(shown)
-
-    def set_point_size(self, pixels: float) -> None:
-        """Diameter of the cloud's points on the screen."""
-        self._point_size = self._backing.point_size = pixels
-        self._backing.dress()
-
-    def set_orientation(self, up: ArrayLike, north: ArrayLike) -> None:
-        """Say which way is up and which is away from the viewer of the front view, both (3,).
-
-        Until then up is towards the camera and north is up in the camera's picture.
-
-        Raises
-        ------
-        ValueError
-            If they are parallel or not finite.
-        """
-        self._navigator.set_orientation(up, north)
-        self._changed()
-
-    def remove(self, name: str) -> None:
-        """Take away planes, lines, labels, measures or highlights of that name; none is no error."""
-        self._scene.remove(name)
-        self._changed()
-
-    def clear(self, message: str = "") -> None:
-        """Take everything away; a message stands in the empty view."""
-        self.stop_drawing()
-        self._chooser.stop()
-        self._chooser.marked = None
-        self._scene.clear()
-        self._pyramid = None
-        self._message = message
-        self._navigator.forget()
-        self._changed()
 
     # ---- from where it is seen
 
@@ -438,13 +225,10 @@ class SceneView(QWidget):
     def pick(self, at: QPointF) -> None:
         """Choose the point of the cloud under the cursor."""
         self._chooser.pick(at)
-        self._overlay.update()
 
     def centre_on(self, at: QPointF) -> None:
         """Turn about the point under the cursor from now on."""
-        found = self._chooser.point_at(at)
-        if found is not None:
-            self._navigator.centre_on(found[1])
+        self._chooser.find(at, lambda _, point: self._navigator.centre_on(point))
 
     def choose_region(self, corners: list[QPointF]) -> None:
         """Choose the points of the cloud inside an outline."""
@@ -470,10 +254,6 @@ class SceneView(QWidget):
         super().closeEvent(event)
 
     # ---- inside
-
-    def _put(self, name: str, item: Marks | Patches | Lines | Labels | Measure) -> None:
-        self._scene.put(name, item)
-        self._changed()
 
     def _changed(self, *, afresh: bool = False) -> None:
         """Something else is to be seen."""
@@ -567,29 +347,6 @@ class SceneView(QWidget):
             self.save_picture(Path(name).with_suffix(".png"))
         except InputError as error:
             self.notice.emit(str(error))
-
-
-def _rgb(colour: ColourLike) -> Rgb:
-    """Any way of saying a colour, as three numbers.
-
-    Raises
-    ------
-    ValueError
-        If there is no such colour.
-    """
-    shade = QColor(*colour) if isinstance(colour, tuple) else QColor(colour)
-    if not shade.isValid():
-        raise ValueError(f"{colour!r} is no colour")
-    return shade.red(), shade.green(), shade.blue()
-
-
-def _rgbs(colours: ColourLike | Sequence[ColourLike]) -> list[Rgb]:
-    """One colour or several."""
-    if isinstance(colours, str | QColor):
-        return [_rgb(colours)]
-    if isinstance(colours, tuple) and len(colours) == 3 and all(isinstance(c, int) for c in colours):
-        return [_rgb(colours)]  # type: ignore[arg-type]
-    return [_rgb(colour) for colour in colours]  # type: ignore[arg-type]
 
 
 def _place(point: Array) -> str:

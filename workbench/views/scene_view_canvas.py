@@ -61,6 +61,10 @@ class Overlay(QWidget):
             self._tool.paint(painter, look)
             if self._tool.hint:
                 text_plate(painter, QPointF(self.width() / 2, 18), self._tool.hint, look)
+        if self.hasFocus():
+            painter.setBrush(Qt.BrushStyle.NoBrush)
+            painter.setPen(look.accent)
+            painter.drawRect(self.rect().adjusted(0, 0, -1, -1))
         painter.end()
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
@@ -79,6 +83,12 @@ class Overlay(QWidget):
     def wheelEvent(self, event: QWheelEvent) -> None:
         self._tool.wheel(event)
         event.accept()
+
+    def focusInEvent(self, event: QFocusEvent) -> None:
+        self.update()
+
+    def focusOutEvent(self, event: QFocusEvent) -> None:
+        self.update()
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
         if event.key() == Qt.Key.Key_Escape and type(self._tool) is not Navigate:

@@ -16,34 +16,46 @@ SAME_SPOT = 3.0
 """Of points as near to the click as the nearest and so many pixels, the one in front is taken."""
 
 BATCH = 250_000
+"""So many points are looked at in one go: some milliseconds."""
 
 
-def nearest_point(
-    points: Array, camera: SceneCamera, size: tuple[int, int], at: tuple[float, float], reach: float = REACH
-) -> int | None:
-    """Which of `points` (N, 3) a click at `at` means: the nearest to it on the screen, unless others there hide it.
+class Nearest:
+    """Looks for the point that a click at `at` means: the nearest to it on the screen, unless others there hide it."""
 
-    None when there is none within `reach` pixels.
-    """
-    found, spots, depths = [], [], []
-    for start in range(0, len(points), BATCH):
-        screen, depth = camera.project(points[start : start + BATCH], size)
+    def __init__(
+        self, camera: SceneCamera, size: tuple[int, int], at: tuple[float, float], reach: float = REACH
+    ) -> None:
+        self._camera, self._size, self._at, self._reach = camera, size, at, reach
+        self._found: list[tuple[NDArray[np.int64], Array, Array]] = []
+
+    def look(self, points: Array, start: int) -> None:
+        """Look at points (N, 3) that are numbered from `start`."""
+        screen, depth = self._camera.project(points, self._size)
         with np.errstate(invalid="ignore"):
-            distance = np.hypot(screen[:, 0] - at[0], screen[:, 1] - at[1])
-            near = np.flatnonzero((distance <= reach) & (depth > 0))
-        found.append(near + start)
-        spots.append(distance[near])
-        depths.append(depth[near])
-    candidates = np.concatenate(found) if found else np.empty(0, dtype=np.int64)
-    if not len(candidates):
-        return None
-    spot, deep = np.concatenate(spots), np.concatenate(depths)
-    # What stands in front hides what is behind it: a face of a block hides the face below.
-    around = spot <= spot.min() + SAME_SPOT
-    thickness = 4 * SAME_SPOT / camera.pixels_per_mm(size)
-    front = around & (deep <= deep[around].min() + thickness)
-    chosen = np.flatnonzero(front)[np.argmin(spot[front])]
-    return int(candidates[chosen])
+            dx, dy = screen[:, 0] - self._at[0], screen[:, 1] - self._at[1]
+            near = np.flatnonzero((dx * dx + dy * dy <= self._reach**2) & (depth > 0))
+        self._found.append((near + start, np.hypot(dx[near], dy[near]), depth[near]))
+
+    @property
+    def number(self) -> int | None:
+        """The number of the point; None when there is none within reach."""
+        if not self._found:
+            return None
+        numbers, spot, deep = (np.concatenate(parts) for parts in zip(*self._found, strict=True))
+        if not len(numbers):
+            return None
+        # What stands in front hides what is behind it: a face of a block hides the face below.
+        around = spot <= spot.min() + SAME_SPOT
+        thickness = 4 * SAME_SPOT / self._camera.pixels_per_mm(self._size)
+        front = around & (deep <= deep[around].min() + thickness)
+        return int(numbers[np.flatnonzero(front)[np.argmin(spot[front])]])
+
+
+def nearest_point(points: Array, camera: SceneCamera, size: tuple[int, int], at: tuple[float, float]) -> int | None:
+    """Which of `points` (N, 3) a click at `at` means; None when there is none within reach."""
+    nearest = Nearest(camera, size, at)
+    nearest.look(points, 0)
+    return nearest.number
 
 
 class Outline:
