@@ -22,6 +22,8 @@ Grip = int | Literal["whole"]
 _REACH = 9.0
 _HANDLE = 4.5
 _TINT = 70
+_NARROWEST = 12
+"""Cells narrower than so many screen pixels are shown without the lines between them."""
 
 
 class CellsLayer(Layer):
@@ -47,8 +49,10 @@ class CellsLayer(Layer):
             return
         painter.setRenderHint(QPainter.RenderHint.SmoothPixmapTransform, False)
         painter.drawImage(extent, self._image)
-        painter.setPen(cosmetic((*to_rgba(self._colour)[:3], 45), 1.0, widget))
         columns, rows = self._image.width(), self._image.height()
+        if abs(painter.worldTransform().m11()) * extent.width() < _NARROWEST * columns:
+            return  # a grid so fine would hide the picture
+        painter.setPen(cosmetic((*to_rgba(self._colour)[:3], 45), 1.0, widget))
         for x in np.linspace(extent.left(), extent.right(), columns + 1):
             painter.drawLine(QPointF(x, extent.top()), QPointF(x, extent.bottom()))
         for y in np.linspace(extent.top(), extent.bottom(), rows + 1):

@@ -9,6 +9,10 @@ from PySide6.QtWidgets import QHBoxLayout, QLabel, QSplitter, QToolButton, QVBox
 from workbench.theme import icon
 
 
+NARROWEST = 160
+"""No view is made narrower than so many pixels."""
+
+
 class PaneTitle(QWidget):
     """The line over a view: its title, what the page adds, and the button that gives it all the room."""
 
@@ -81,6 +85,8 @@ class SideBySide(QSplitter):
         self._panes.append((head, pane))
         self.addWidget(pane)
         self.setStretchFactor(place, 1)
+        pane.setMinimumWidth(NARROWEST)
+        self.setSizes([10_000] * len(self._panes))  # alike
         head.wanted.connect(lambda: self.show_alone(None if self._alone == place else place))
         return head
 
