@@ -17,12 +17,12 @@ class LiveSession(QObject):
     """One live recording.
 
     `view` brings the pictures, already decoded for display, never more than can be shown; whoever shows one calls
-    `shown`. `event` brings everything else (core.pipeline.live: LiveStarted, LiveTaken, LiveAsk, LiveNotice,
+    `shown`. `told` brings everything else (core.pipeline.live: LiveStarted, LiveTaken, LiveAsk, LiveNotice,
     LiveUnplugged, LiveBack). `ended` brings LiveEnded, or what went wrong; what was recorded is kept in either case.
     """
 
     view = Signal(object)
-    event = Signal(object)
+    told = Signal(object)
     ended = Signal(object)
     failed = Signal(object)
 
@@ -50,7 +50,7 @@ class LiveSession(QObject):
             offers={"channel": "channel"},
         )
         task.view.connect(self.view)
-        task.event.connect(self.event)
+        task.told.connect(self.told)
 
     def send(self, command: Any) -> None:
         """Give the loop a command (core.pipeline.live: Capture, Auto, Switch, Pause, Resume, Stop, …)."""

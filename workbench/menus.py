@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QCoreApplication, QUrl
@@ -77,7 +78,7 @@ class Menus:
         self._add(step, "next", w.tr("&Next"), lambda: w.go(1))
         for number, entry in enumerate(STEPS, start=1):
             title = QCoreApplication.translate("Steps", entry.title)
-            action = self._add(step, f"step {entry.name}", title, lambda name=entry.name: w.go_to(name))
+            action = self._add(step, f"step {entry.name}", title, partial(w.go_to, entry.name))
             action.setShortcut(QKeySequence(f"Ctrl+{number}"))
 
         view = bar.addMenu(w.tr("&View"))

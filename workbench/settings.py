@@ -26,7 +26,7 @@ class AppSettings(QObject):
     def recent(self) -> list[Path]:
         """Projects opened last, the newest first; those that are gone are left out."""
         stored = self._store.value("recent", [])
-        paths = [stored] if isinstance(stored, str) else list(stored or [])
+        paths = [stored] if isinstance(stored, str) else stored if isinstance(stored, list) else []
         return [path for path in map(Path, paths) if (path / "project.json").exists()]
 
     def remember(self, project: Path) -> None:

@@ -29,7 +29,7 @@ class Task(QObject):
     """One job on its way; exactly one of `done`, `failed`, `cancelled` comes at last, then `ended`."""
 
     progressed = Signal(str, int, int)
-    event = Signal(object)
+    told = Signal(object)
     view = Signal(object)
     done = Signal(object)
     failed = Signal(object)
@@ -219,7 +219,7 @@ class Lane(QObject):
         if kind == "progress":
             task.progressed.emit(*value)
         elif kind in ("event", "view"):
-            (task.event if kind == "event" else task.view).emit(value)
+            (task.told if kind == "event" else task.view).emit(value)
         else:
             self._finish(task, kind, value)
 

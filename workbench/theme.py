@@ -59,7 +59,7 @@ def apply_theme(app: QApplication, name: str) -> None:
 def icon(name: str, *, colour: str = "") -> QIcon:
     """An icon by its qtawesome name, in the text colour of the theme or in `colour` (a field of Shades)."""
     shade = shades()
-    return qtawesome.icon(name, color=getattr(shade, colour or "text"), color_disabled=shade.line)
+    return QIcon(qtawesome.icon(name, color=getattr(shade, colour or "text"), color_disabled=shade.line))
 
 
 def _palette(s: Shades) -> QPalette:

@@ -127,7 +127,7 @@ def test_a_waiting_job_can_be_cancelled_before_it_begins(qtbot: Any, lane: Lane)
 def test_events_arrive_while_the_job_runs_and_before_its_result(qtbot: Any, lane: Lane) -> None:
     answers = Answers()
     task = answers.run(lane, "watched", 5, offers={"progress": "progress", "watch": "watch"})
-    task.event.connect(lambda value: answers.got.append(("event", value)))
+    task.told.connect(lambda value: answers.got.append(("event", value)))
     finish(qtbot, lane)
     assert answers.got == [*(("event", i) for i in range(5)), ("done", 5)]
 

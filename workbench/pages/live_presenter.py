@@ -39,10 +39,11 @@ from core.live.events import (
     TakeReference,
 )
 from core.model import Camera, Fan
+from workbench import jobs
 from workbench.bench import Bench
 from workbench.live import LiveSession
 from workbench.pages.live_settings import LiveSettings
-from workbench.pages.sources import put_source
+from workbench.pages.sources import folder_of, put_source
 from workbench.tasks import details, sentence
 
 STOP_WITHIN_MS = 5000
@@ -101,9 +102,10 @@ class LivePresenter(QObject):
         self.settings.changed.connect(self._configure)
         self.calibration: Callable[[], tuple[Camera | None, Fan | None]] = lambda: (None, None)
         self.pairs = True
+        self.adding = False
         self._auto = step != "scan"
         self._session = LiveSession(bench.live, self)
-        self._session.event.connect(self._on_event)
+        self._session.told.connect(self._on_event)
         self._session.view.connect(self._on_view)
         self._session.ended.connect(self._on_ended)
         self._session.failed.connect(self._on_failed)
@@ -160,9 +162,21 @@ class LivePresenter(QObject):
             parts.append(self.tr("{0} lost").format(self.dropped))
         return " · ".join(parts)
 
-    def warm_up(self) -> None:
-        """A source will soon be wanted: have the process for it ready."""
+    @property
+    def can_add(self) -> bool:
+        """Whether there are pictures that new ones can be added to."""
+        return self.step != "scan" and folder_of(self.model, self.step) is not None
+
+    def set_adding(self, on: bool) -> None:
+        """Add the pictures of the next recording to those in use, instead of replacing them."""
+        self.adding = on
+        self.changed.emit()
+
+    def get_ready(self) -> None:
+        """A source will soon be wanted: have the process for it ready, and know the simulated scenes."""
         self.bench.live.warm_up()
+        if self.settings.kind == "simulated" and not self.settings.devices and not self.settings.looking:
+            self.settings.look_for_devices()
 
     def start(self, *, stop_other: bool = False) -> None:
         """Open the source and go; if another page's recording runs, ask first (`other_running`)."""
@@ -339,13 +353,33 @@ class LivePresenter(QObject):
         project, self.stopping, self.paused, self.gone = self._project_folder, False, False, False
         if asked is not None:
             self.asked.emit("", "")
-        if ended.recorded and project is not None and project == self.model.folder:
-            label = {
-                "camera": self.tr("record views of the target"),
-                "planes": self.tr("record poses of the plate"),
-                "scan": self.tr("record a scan"),
-            }[self.step]
-            put_source(self.model, self.step, ended.folder, label)
+        if not ended.recorded or project is None or project != self.model.folder:
+            self._tell_ended(ended)
+        elif self.adding and (before := folder_of(self.model, self.step)) is not None:
+            self.bench.glance(
+                jobs.ADD_RECORDING,
+                before,
+                ended.folder,
+                label=self.tr("Adding the pictures that were there"),
+                on_done=lambda _: self._take(ended, keep_left_out=True),
+                on_failed=lambda _: self._take(ended),
+                on_cancelled=lambda: self._take(ended),
+            )
+        else:
+            self._take(ended)
+
+    def _take(self, ended: LiveEnded, *, keep_left_out: bool = False) -> None:
+        """The recording becomes the step's source."""
+        label = {
+            "camera": self.tr("record views of the target"),
+            "planes": self.tr("record poses of the plate"),
+            "scan": self.tr("record a scan"),
+        }[self.step]
+        put_source(self.model, self.step, ended.folder, label, keep_left_out=keep_left_out)
+        self._tell_ended(ended)
+
+    def _tell_ended(self, ended: LiveEnded) -> None:
+        self.adding = False
         self.ended.emit(ended)
         self.changed.emit()
 

@@ -59,6 +59,7 @@ class ScanWork(QObject):
         self.task: Task | None = None
         self.by_itself = False
         self.previews: dict[str, FramePreview] = {}
+        self.seen_last = ""
         self._problem = ("", "")
         self._listed = self._calibrated = self._looked = ""
         self._latest: ScanDetail | None = None
@@ -111,6 +112,7 @@ class ScanWork(QObject):
         if folder is None or self.measuring:
             return
         self.by_itself, self.previews, self._latest, self._problem = by_itself, {}, None, ("", "")
+        self.seen_last = ""
         self.task = task = self._bench.measure(
             jobs.WATCH_SCAN,
             folder,
@@ -121,7 +123,7 @@ class ScanWork(QObject):
             on_cancelled=lambda: self._not_measured(task, project, ""),
             offers={"progress": "progress", "watch": "watch"},
         )
-        task.event.connect(lambda detail: self._told(task, detail))
+        task.told.connect(lambda detail: self._told(task, detail))
         self.started.emit()
         self.changed.emit()
 
@@ -142,7 +144,7 @@ class ScanWork(QObject):
         if task is not self.task:
             return
         if detail.preview is not None:
-            self.previews[detail.preview.name] = detail.preview
+            self.previews[detail.preview.name], self.seen_last = detail.preview, detail.preview.name
         self._latest = detail
         self.detail.emit(detail)
         if not self._reading:

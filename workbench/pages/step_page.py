@@ -44,8 +44,9 @@ class StepPage(QWidget):
         """A titled panel at the side that can be folded away."""
         panel = QCollapsible(title)
         panel.setDuration(0)
-        panel.layout().setContentsMargins(0, 0, 0, 0)
-        panel.content().layout().setContentsMargins(4, 2, 2, 4)
+        for layout, margins in ((panel.layout(), (0, 0, 0, 0)), (panel.content().layout(), (4, 2, 2, 4))):
+            if layout is not None:
+                layout.setContentsMargins(*margins)
         panel.setExpandedIcon(icon("mdi6.chevron-down", colour="muted"))
         panel.setCollapsedIcon(icon("mdi6.chevron-right", colour="muted"))
         panel.addWidget(widget)

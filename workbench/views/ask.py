@@ -32,7 +32,7 @@ def ask(parent: QWidget | None, title: str, text: str, answers: Sequence[str]) -
     box.setEscapeButton(buttons[-1])
     box.exec()
     clicked = box.clickedButton()
-    return buttons.index(clicked) if clicked in buttons else last  # type: ignore[arg-type]
+    return buttons.index(clicked) if clicked in buttons else last
 
 
 def choose_folder(parent: QWidget | None, title: str, start: Path) -> Path | None:

@@ -46,7 +46,7 @@ def live(camera_bench):
 @pytest.fixture
 def running(live, lane):
     live.start()
-    lane.current.event.emit(LiveStarted("Camera 1", (640, 480)))
+    lane.current.told.emit(LiveStarted("Camera 1", (640, 480)))
     return live
 
 
@@ -78,7 +78,7 @@ def test_the_state_is_told_in_words(live, lane):
     assert live.state_text() == "The live source is off."
     live.start()
     assert live.state_text() == "Opening the source …" and not live.live
-    lane.current.event.emit(LiveStarted("Camera 1", (640, 480)))
+    lane.current.told.emit(LiveStarted("Camera 1", (640, 480)))
     assert live.state_text() == "Live: Camera 1" and live.live
     live.pause(True)
     assert live.state_text() == "Paused: Camera 1"
@@ -125,21 +125,21 @@ def test_a_scan_says_how_many_frames_were_lost(camera_bench, lane):
 
 def test_what_is_asked_is_answered_with_its_own_command(running, lane, qtbot):
     with qtbot.waitSignal(running.asked) as asked:
-        lane.current.event.emit(LiveAsk("Switch the laser on.", "Continue", TakeReference()))
+        lane.current.told.emit(LiveAsk("Switch the laser on.", "Continue", TakeReference()))
     assert asked.args == ["Switch the laser on.", "Continue"]
     running.answer()
     assert lane.sent == [TakeReference()]
     with qtbot.waitSignal(running.asked) as asked:
-        lane.current.event.emit(LiveAnswered())
+        lane.current.told.emit(LiveAnswered())
     assert asked.args == ["", ""] and running.question == ("", "")
 
 
 def test_an_unplugged_source_is_told_once_and_so_is_its_return(running, lane, qtbot):
     with qtbot.waitSignal(running.unplugged):
-        lane.current.event.emit(LiveUnplugged("Camera 1 is gone."))
+        lane.current.told.emit(LiveUnplugged("Camera 1 is gone."))
     assert running.gone and running.state_text() == "Camera 1 is unplugged."
     with qtbot.waitSignal(running.back):
-        lane.current.event.emit(LiveBack())
+        lane.current.told.emit(LiveBack())
     assert not running.gone
     texts = [notice.text for notice in running.bench.notices.all]
     assert texts == ["Camera 1 is gone.", "Camera 1 is back; the recording goes on."]
@@ -265,5 +265,5 @@ def test_devices_are_listed_in_the_quick_lane(live, camera_bench, qtbot):
 
 def test_pictures_taken_are_passed_on(running, lane, qtbot):
     with qtbot.waitSignal(running.taken) as taken:
-        lane.current.event.emit(LiveTaken("view00", np.zeros((4, 4), np.uint8)))
+        lane.current.told.emit(LiveTaken("view00", np.zeros((4, 4), np.uint8)))
     assert taken.args[0].name == "view00"

@@ -48,7 +48,7 @@ def panel(live, qtbot):
 
 
 def open_source(lane):
-    lane.current.event.emit(LiveStarted("Camera 1", (640, 480)))
+    lane.current.told.emit(LiveStarted("Camera 1", (640, 480)))
 
 
 def test_start_becomes_stop(panel, live, lane, qtbot):
@@ -163,7 +163,7 @@ def test_the_strip_asks_and_its_button_answers(live, lane, qtbot):
     assert strip.isHidden()
     live.start()
     open_source(lane)
-    lane.current.event.emit(LiveAsk("Switch the three-line laser on.", "Continue", TakeReference()))
+    lane.current.told.emit(LiveAsk("Switch the three-line laser on.", "Continue", TakeReference()))
     assert not strip.isHidden() and strip.question.text() == "Switch the three-line laser on."
     assert strip.answer.text() == "Continue"
     strip.show()
@@ -176,7 +176,7 @@ def test_the_strip_says_that_the_source_is_unplugged(live, lane, qtbot):
     qtbot.addWidget(strip)
     live.start()
     open_source(lane)
-    lane.current.event.emit(LiveUnplugged("gone"))
+    lane.current.told.emit(LiveUnplugged("gone"))
     assert not strip.isHidden() and "is unplugged" in strip.gone.text()
 
 
