@@ -288,6 +288,13 @@ class LiveBack:
 
 
 @dataclass(frozen=True, slots=True)
+class LiveSaving:
+    """It is being stopped, and so many frames still wait for the disk. Comes several times a second until all are."""
+
+    waiting: int
+
+
+@dataclass(frozen=True, slots=True)
 class LiveEnded:
     """It is over: where the pictures are, how many, how many were lost; `error` is a sentence if it ended by itself."""
 
@@ -298,5 +305,14 @@ class LiveEnded:
 
 
 LiveEvent = (
-    LiveStarted | LiveView | LiveTaken | LiveAsk | LiveAnswered | LiveNotice | LiveUnplugged | LiveBack | LiveEnded
+    LiveStarted
+    | LiveView
+    | LiveTaken
+    | LiveAsk
+    | LiveAnswered
+    | LiveNotice
+    | LiveUnplugged
+    | LiveBack
+    | LiveSaving
+    | LiveEnded
 )

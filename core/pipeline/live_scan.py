@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from dataclasses import replace
 from typing import Protocol
 
@@ -9,7 +10,7 @@ import numpy as np
 
 from core.acquire.source import Frame, Lasers, Picture
 from core.errors import InputError
-from core.live.events import Command, Pause, Resume, ScanDetail, ScanStage, TakeReference
+from core.live.events import Command, LiveSaving, Pause, Resume, ScanDetail, ScanStage, TakeReference
 from core.pipeline.live_desk import Desk
 from core.pipeline.live_preview import PreviewedFrame, PreviewFailed, ScanPreviewer
 from core.scan.coverage_map import CoverageMap
@@ -27,6 +28,10 @@ STILL_LEVELS = 0.12
 MOVED_FRAMES = 5
 """After so many frames in a row that do not suit the reference it is said."""
 
+SAY_EVERY_S = 0.2
+STUCK_S = 2.0
+"""A disk that has not taken a frame for so long when all is to be saved is given one last try."""
+
 _FAN_ALONE, _BOTH = Lasers(fan=True, hand=False), Lasers(fan=True, hand=True)
 
 
@@ -40,6 +45,10 @@ class FrameStore(Protocol):
     @property
     def dropped(self) -> int:
         """How many were not taken, or given up."""
+
+    @property
+    def waiting(self) -> int:
+        """How many are taken but not yet on the disk."""
 
     def write(self, name: str, picture: Picture) -> bool:
         """Take a picture to be written; False if the disk is too slow."""
@@ -141,7 +150,13 @@ class LiveScan:
                 self._stage = "paused"
 
     def finish(self) -> None:
-        """Have all frames on the disk, and count what is there."""
+        """Have all frames on the disk, say how many still wait, and count what is there."""
+        waiting, since = self._store.waiting, time.monotonic()
+        while waiting and time.monotonic() - since < STUCK_S:
+            self._desk.emit(LiveSaving(waiting))
+            time.sleep(SAY_EVERY_S)
+            if self._store.waiting < waiting:
+                waiting, since = self._store.waiting, time.monotonic()
         try:
             self._store.close()
         finally:

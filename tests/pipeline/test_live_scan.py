@@ -1,9 +1,11 @@
+import time
+
 import numpy as np
 import pytest
 
 from core.acquire.source import Lasers, SourceSettings
 from core.errors import InputError
-from core.files.pictures import read_picture
+from core.files.pictures import read_picture, write_picture
 from core.files.rig import Rig
 from core.image.targets import BlackSquare, Checkerboard
 from core.live.events import (
@@ -12,6 +14,7 @@ from core.live.events import (
     LiveAsk,
     LiveBack,
     LiveNotice,
+    LiveSaving,
     LiveStarted,
     LiveTaken,
     LiveUnplugged,
@@ -306,6 +309,21 @@ def test_a_full_disk_pauses_and_asks(monkeypatch, tmp_path, stage):
     assert "disk is full" in ended.error
     assert ended.recorded == 0
     assert ended.dropped > 0
+
+
+def test_frames_that_wait_for_a_slow_disk_are_saved_before_the_end(monkeypatch, tmp_path, stage):
+    def slowly(path, picture):
+        time.sleep(0.05)
+        write_picture(path, picture)
+
+    recorder = live.Recorder
+    monkeypatch.setattr(live, "Recorder", lambda folder: recorder(folder, put=slowly))
+    window = Window()
+    ended = scan(monkeypatch, tmp_path, stage, swept(stage, 40), window)
+    saving = [event.waiting for event in window.all(LiveSaving)]
+    assert len(saving) > 2
+    assert saving == sorted(saving, reverse=True)
+    assert ended.recorded == len(names(tmp_path)) - 1 == 40
 
 
 def test_settings_go_to_the_source_and_a_refusal_is_told(monkeypatch, tmp_path, stage):
