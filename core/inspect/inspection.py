@@ -14,6 +14,7 @@ from core.model.arrays import Array
 Values = NDArray[np.float32]
 
 HEIGHT, DEPTH = "height", "depth"
+NO_FACE, UPPER, LOWER = 0, 1, 2
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -74,8 +75,10 @@ class InspectionView:
         HEIGHT or DEPTH.
     deviation
         (N,) mm from the plane of the face it was used for, towards the camera; NaN for points not used.
+    face
+        (N,) UPPER, LOWER or NO_FACE: which face a point was used for.
     frame
-        (N,) index into `frames`; −1 for points that the fan measured itself.
+        (N,) number of the frame, from 1; NaN for points that the fan measured itself.
     frames
         Names of the frames, as "scan/frame0007.png".
     ranges
@@ -111,7 +114,8 @@ class InspectionView:
     height: Values
     height_is: str
     deviation: Values
-    frame: NDArray[np.int32]
+    face: NDArray[np.int8]
+    frame: Values
     frames: tuple[str, ...]
     ranges: Mapping[str, tuple[float, float]]
     mesh: ShownMesh | None
@@ -142,5 +146,5 @@ class InspectionView:
 
     def frame_name(self, point: int) -> str:
         """The frame a point was measured in; nothing for one the fan measured itself."""
-        frame = int(self.frame[point])
-        return self.frames[frame] if 0 <= frame < len(self.frames) else ""
+        number = float(self.frame[point])
+        return self.frames[int(number) - 1] if 1 <= number <= len(self.frames) else ""

@@ -88,7 +88,7 @@ def outline_px(uv: ArrayLike) -> Array:
         corners = _simplified(contour, slack)
     outline = (corners + 0.5) * cell + low
     if len(outline) >= 3 and inside_polygon(places, outline).any():
-        return outline
+        return np.asarray(outline)
     hull = np.asarray(cv2.convexHull(places.astype(np.float32)), dtype=np.float64).reshape(-1, 2)
     coarser: Array = hull[:: -(-len(hull) // MOST_CORNERS)]
     return coarser

@@ -14,7 +14,7 @@ from core.files.ply import read_cloud
 from core.files.project_data import Project
 from core.files.project_results import ProjectResults
 from core.inspect.face_region import on_face
-from core.inspect.inspection import DEPTH, HEIGHT, InspectionView, ShownMesh
+from core.inspect.inspection import DEPTH, HEIGHT, LOWER, NO_FACE, UPPER, InspectionView, ShownMesh
 from core.inspect.outline import face_outline, outline_px
 from core.inspect.relief import relief
 from core.inspect.results import Face, GaugeResult
@@ -72,7 +72,8 @@ def inspection_view(folder: Path, project: Project, progress: Progress = silent)
         height=height.astype(np.float32),
         height_is=HEIGHT if gauge is not None else DEPTH,
         deviation=deviation.astype(np.float32),
-        frame=shown.frame.astype(np.int32),
+        face=_face_of(gauge, len(cloud))[order],
+        frame=np.where(shown.frame >= 0, shown.frame + 1.0, np.nan).astype(np.float32),
         frames=_names(results),
         ranges=_ranges(shown, height, deviation),
         mesh=mesh,
@@ -120,6 +121,14 @@ def _deviation(gauge: GaugeResult | None, count: int) -> Array:
     for face in _faces(gauge):
         deviation[face.indices] = face.residuals
     return deviation
+
+
+def _face_of(gauge: GaugeResult | None, count: int) -> NDArray[np.int8]:
+    """(N,) which face a point was used for."""
+    face = np.full(count, NO_FACE, dtype=np.int8)
+    if gauge is not None:
+        face[gauge.upper.indices], face[gauge.lower.indices] = UPPER, LOWER
+    return face
 
 
 def _shown_mesh(mesh: Mesh, gauge: GaugeResult | None, cloud: Cloud) -> ShownMesh | None:

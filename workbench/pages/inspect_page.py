@@ -1,9 +1,127 @@
-"""The inspect page."""
+"""The inspect page: the surface in 3D, its picture and the repeats in the middle; thickness and points at the side."""
 
 from __future__ import annotations
 
+from typing import Any
+
+from PySide6.QtCore import QEvent
+from PySide6.QtWidgets import QTabWidget, QWidget
+
+from workbench.pages import inspect_words as words
+from workbench.pages.inspect_panels import FacesPanel, PicksPanel, ResultPanel
+from workbench.pages.inspect_picture import PictureTab
+from workbench.pages.inspect_presenter import InspectPresenter, Stage
+from workbench.pages.inspect_series import RepeatsTab
+from workbench.pages.inspect_surface import SurfaceTab
 from workbench.pages.step_page import StepPage
+from workbench.views.stage_card import CardButton, StageCard
 
 
 class InspectPage(StepPage):
-    """The inspect page."""
+    """Look, measure, judge."""
+
+    presenter: InspectPresenter
+
+    def __init__(self, presenter: InspectPresenter, parent: QWidget | None = None) -> None:
+        super().__init__(presenter, parent)
+        self.tabs = QTabWidget()
+        self.surface, self.picture, self.series = SurfaceTab(presenter), PictureTab(presenter), RepeatsTab(presenter)
+        for tab, title, tip in (
+            (self.surface, self.tr("Surface"), self.tr("The measured points and the mesh in 3D")),
+            (self.picture, self.tr("Picture"), self.tr("The two faces in the camera's picture; draw regions here")),
+            (self.series, self.tr("Repeats"), self.tr("The thickness over several scans of the part")),
+        ):
+            self.tabs.setTabToolTip(self.tabs.addTab(tab, title), tip)
+        self.centre.addWidget(self.tabs, 1)
+        self.card = StageCard(
+            [
+                CardButton("measure", self.tr("Measure"), "mdi6.ruler-square", presenter.do_run),
+                CardButton("repeat", self.tr("Add to repeats"), "mdi6.playlist-plus", self._add_repeat),
+            ]
+        )
+        self.add_to_side(self.card)
+        self.result = ResultPanel(presenter)
+        self.result_fold = self.add_panel(self.tr("Result"), self.result)
+        self.faces = FacesPanel(presenter)
+        self.add_panel(self.tr("What is measured"), self.faces)
+        self.picks = PicksPanel(presenter)
+        self.add_panel(self.tr("Points and distances"), self.picks)
+        self.tabs.currentChanged.connect(self._tab_changed)
+        self.faces.draw.connect(self._draw)
+        self.picks.pick.connect(self._pick)
+        self.surface.notice.connect(presenter.bench.notices.warning)
+        presenter.model.opened.connect(lambda: self.tabs.setCurrentIndex(0))
+
+    def refresh(self) -> None:
+        p = self.presenter
+        self._show_stage(p.stage)
+        self.result_fold.setVisible(p.gauge is not None)
+        for panel in (self.result, self.faces, self.picks):
+            panel.refresh()
+        count = len(p.repeats.all)
+        self.tabs.setTabText(2, self.tr("Repeats ({0})").format(count) if count else self.tr("Repeats"))
+        self._refresh_tab()
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "picks"):
+            self._changed()
+
+    def _refresh_tab(self) -> None:
+        tab: Any = self.tabs.currentWidget()
+        tab.refresh()
+
+    def _tab_changed(self) -> None:
+        if self.tabs.currentWidget() is not self.surface:
+            self.presenter.picks.stop()
+        self._refresh_tab()
+
+    def _add_repeat(self) -> None:
+        self.presenter.repeats.add()
+        self.tabs.setCurrentWidget(self.series)
+
+    def _draw(self, face: str, kind: Any) -> None:
+        if self.tabs.currentWidget() is self.series:
+            self.tabs.setCurrentWidget(self.picture)
+        tab: Any = self.tabs.currentWidget()
+        tab.start_region(face, kind)
+
+    def _pick(self, mode: Any) -> None:
+        if mode:
+            self.tabs.setCurrentWidget(self.surface)
+        self.presenter.picks.start(mode)
+
+    def _show_stage(self, stage: Stage) -> None:
+        p = self.presenter
+        title, sentence = self._words()[stage]
+        why_not = p.repeats.can_add
+        self.card.buttons["measure"].setText(
+            self.tr("Measure again") if p.gauge is not None else self.tr("Measure thickness")
+        )
+        fresh = stage is Stage.MEASURED
+        self.card.show_stage(
+            title,
+            sentence,
+            {
+                "measure": (p.can_measure, self.tr("Measure the thickness of the two faces (Ctrl+R)")),
+                "repeat": (why_not, self.tr("Add this scan's thickness to the series of repeats")),
+            },
+            "" if fresh else "measure",
+        )
+
+    def _words(self) -> dict[Stage, tuple[str, str]]:
+        p = self.presenter
+        value = words.thickness(p.gauge) if p.gauge is not None else ""
+        return {
+            Stage.NO_SCAN: (self.tr("Nothing to inspect yet"), self.tr("Scan the part first, then come back.")),
+            Stage.READING: (self.tr("Reading the scan …"), self.tr("The surface is being prepared.")),
+            Stage.UNREADABLE: (self.tr("The scan cannot be shown"), p.problem),
+            Stage.MEASURING: (
+                self.tr("Measuring the thickness …"),
+                self.tr("The faces are fitted, and the calibrations' share of the uncertainty is worked out."),
+            ),
+            Stage.UNMEASURED: (self.tr("No thickness yet"), p.warning()),
+            Stage.FAILED: (self.tr("No thickness was measured"), p.problem_of_measuring),
+            Stage.MEASURED: (value, p.state.sentence),
+            Stage.OUTDATED: (self.tr("{0}, out of date").format(value), f"{p.state.sentence} {p.warning()}"),
+        }

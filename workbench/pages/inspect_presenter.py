@@ -1,11 +1,331 @@
-"""Decisions of the inspect page."""
+"""Decisions of the inspect page: which scan is shown, when its thickness is measured, what may come next."""
 
 from __future__ import annotations
 
+from dataclasses import replace
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+from PySide6.QtCore import Signal
+
+from core.files.project import Project, source_folder
+from core.files.project_keys import finished
+from workbench import jobs
+from workbench.bench import Bench
+from workbench.pages.inspect_faces import InspectFaces
+from workbench.pages.inspect_picks import InspectPicks
+from workbench.pages.inspect_repeats import InspectRepeats
 from workbench.pages.presenter import StepPresenter
+from workbench.step_state import State
+from workbench.tasks import Task, sentence
+
+if TYPE_CHECKING:
+    from core.inspect.inspection import InspectionView
+    from core.inspect.results import GaugeResult
+
+RELIEF = "relief"
+"""The name of the picture that is made of the surface itself."""
+
+MOST_SENT = 100_000
+"""So many of the chosen points are enough for an outline."""
+
+
+class Stage(StrEnum):
+    """How far the inspection is."""
+
+    NO_SCAN = "no scan"
+    READING = "reading"
+    UNREADABLE = "unreadable"
+    MEASURING = "measuring"
+    UNMEASURED = "unmeasured"
+    FAILED = "failed"
+    MEASURED = "measured"
+    OUTDATED = "outdated"
 
 
 class InspectPresenter(StepPresenter):
-    """Decisions of the inspect page."""
+    """The scan as it lies among the results, its thickness, and everything one does with the two."""
 
     step = "inspect"
+
+    view_changed = Signal()
+    """Another scan or another thickness is shown, or none."""
+
+    picture_ready = Signal(str, object)
+    """Name of a recorded picture, and the picture."""
+
+    def __init__(self, bench: Bench) -> None:
+        super().__init__(bench)
+        self.view: InspectionView | None = None
+        self.problem = ""
+        self.clip_mm: float | None = None
+        self.picture = RELIEF
+        self.outlining = ""
+        self._reading: Task | None = None
+        self._measuring: Task | None = None
+        self._unmeasurable = ""
+        self._shown: tuple[object, ...] = ()
+        self._asked: tuple[object, ...] = ()
+        self._visible = False
+        self.faces = InspectFaces(self)
+        self.picks = InspectPicks(self)
+        self.repeats = InspectRepeats(self)
+        self.faces.changed.connect(self.changed)
+        self.picks.changed.connect(self.changed)
+        self.model.results_changed.connect(self._look)
+
+    # ---- state
+
+    @property
+    def stage(self) -> Stage:
+        """How far the inspection is."""
+        if self._measuring is not None:
+            return Stage.MEASURING
+        if "scan" not in self.model.results:
+            return Stage.NO_SCAN
+        if self.view is None:
+            return Stage.UNREADABLE if self.problem else Stage.READING
+        if self._unmeasurable:
+            return Stage.FAILED
+        if self.view.gauge is None:
+            return Stage.UNMEASURED
+        return Stage.MEASURED if self.state.state is State.DONE else Stage.OUTDATED
+
+    @property
+    def gauge(self) -> GaugeResult | None:
+        """The thickness that is shown."""
+        return self.view.gauge if self.view is not None else None
+
+    @property
+    def recording(self) -> str:
+        """The recording the scan was measured from, as the project names it."""
+        done = self.model.results.get("scan")
+        return done.rests_on.get("recording", "") if done is not None else ""
+
+    def blocker(self) -> str:
+        return self.tr("Scan the part first.") if "scan" not in self.model.results else ""
+
+    def warning(self) -> str:
+        """What the report will lack if one goes on now, or ""."""
+        return {
+            Stage.UNMEASURED: self.tr("Measure the thickness, or go on without one: then the report has none."),
+            Stage.FAILED: self.tr("Without a thickness the report shows the surface only."),
+            Stage.OUTDATED: self.tr("Measure again, or the report prints the thickness as it was."),
+        }.get(self.stage, "")
+
+    @property
+    def problem_of_measuring(self) -> str:
+        """Why the last attempt gave no thickness, or ""."""
+        return self._unmeasurable
+
+    @property
+    def can_measure(self) -> str:
+        """Why the thickness cannot be measured now, or ""."""
+        if "scan" not in self.model.results:
+            return self.tr("Scan the part first.")
+        if self._measuring is not None:
+            return self.tr("The thickness is being measured.")
+        return self.faces.missing()
+
+    # ---- measuring
+
+    def do_run(self) -> None:
+        """Measure the thickness of the scan among the results."""
+        folder, project = self.model.folder, self.project
+        if folder is None or self.can_measure:
+            return
+        self._unmeasurable = ""
+
+        def done(_: Any) -> None:
+            if folder == self.model.folder:
+                self.model.record("inspect", finished("inspect", project, self.model.results))
+                self._look()
+
+        def failed(problem: Any) -> None:
+            if folder == self.model.folder:
+                self._unmeasurable = sentence(problem)
+
+        self._measuring = self.bench.measure(
+            jobs.MEASURE_GAUGE,
+            folder,
+            self._as_scanned(),
+            label=self.tr("Measuring the thickness"),
+            on_done=done,
+            on_failed=failed,
+        )
+        self._measuring.ended.connect(self._measured)
+        self.changed.emit()
+
+    def _measured(self) -> None:
+        self._measuring = None
+        self.changed.emit()
+
+    # ---- what is shown
+
+    def points_shown(self) -> int:
+        """How many of the points are shown."""
+        if self.view is None:
+            return 0
+        return len(self.view) if self.clip_mm is None else self.view.up_to(self.clip_mm)
+
+    def triangles_shown(self) -> int:
+        """How many of the mesh's triangles are shown."""
+        mesh = self.view.mesh if self.view is not None else None
+        if mesh is None:
+            return 0
+        return len(mesh.triangles) if self.clip_mm is None else mesh.up_to(self.clip_mm)
+
+    def clip(self, sigma_mm: float | None) -> None:
+        """Show the points with no larger σ; None: all. Nothing that is measured changes."""
+        if sigma_mm != self.clip_mm:
+            self.clip_mm = sigma_mm
+            self.changed.emit()
+
+    def choose_picture(self, name: str) -> None:
+        """Show this picture: RELIEF, or the name of a recorded one."""
+        if name == self.picture:
+            return
+        self.picture = name
+        self.read_picture()
+        self.changed.emit()
+
+    def read_picture(self) -> None:
+        """Read the recorded picture that is shown, if it is one; `picture_ready` brings it."""
+        name, folder = self.picture, self.model.folder
+        if name == RELIEF or folder is None:
+            return
+        scans = source_folder(folder, self.recording)
+        if scans is None:
+            return
+        self.bench.glance(
+            jobs.READ_PICTURE,
+            scans / Path(name).name,
+            self.project.rig.channel,
+            label=self.tr("Reading a picture"),
+            on_done=lambda picture: self.picture_ready.emit(name, picture) if name == self.picture else None,
+            on_failed=lambda _: self.choose_picture(RELIEF),
+            offers={},
+            replace_waiting=True,
+        )
+
+    # ---- regions chosen in 3D
+
+    def outline(self, face: str, chosen: NDArray[np.bool_]) -> None:
+        """Make the chosen ones of the points shown the region of a face: the outline of the plane they hold."""
+        folder, view = self.model.folder, self.view
+        if folder is None or view is None:
+            return
+        numbers = view.number[: len(chosen)][chosen]
+        if not len(numbers):
+            self.bench.notices.warning(self.tr("There are no points in that region."))
+            return
+        self.outlining = face
+
+        def done(outline: Any) -> None:
+            if view is self.view:
+                self.faces.set_region(face, outline)
+
+        task = self.bench.glance(
+            jobs.OUTLINE_SELECTED,
+            folder,
+            numbers[:: -(-len(numbers) // MOST_SENT)],
+            label=self.tr("Outlining the chosen points"),
+            on_done=done,
+        )
+        task.ended.connect(self._outlined)
+        self.changed.emit()
+
+    def _outlined(self) -> None:
+        self.outlining = ""
+        self.changed.emit()
+
+    # ---- what happens elsewhere
+
+    def opened(self) -> None:
+        self._forget()
+        self._look()
+
+    def entered(self) -> None:
+        self._visible = True
+        self._look()
+
+    def left(self) -> None:
+        self._visible = False
+        self.picks.stop()
+
+    def project_changed(self, before: Project, after: Project) -> None:
+        if before.rig.gauge != after.rig.gauge:
+            self._unmeasurable = ""
+        self.faces.follow(before.rig.gauge, after.rig.gauge)
+
+    def read_again(self) -> None:
+        """Read the scan once more."""
+        self._asked = ()
+        self.problem = ""
+        self._look()
+        self.changed.emit()
+
+    def _look(self) -> None:
+        """Read the scan if the page is seen and another one is there."""
+        results = self.model.results
+        wanted = tuple(
+            (done.key, done.at) for done in (results.get("scan"), results.get("inspect")) if done is not None
+        )
+        if "scan" not in results or not self.model.is_open:
+            if self.view is not None or self._asked:
+                self._forget()
+                self.changed.emit()
+            return
+        if not self._visible or wanted == self._asked:
+            return
+        self._asked, self.problem = wanted, ""
+        folder = self.model.folder
+        assert folder is not None
+
+        def done(view: Any) -> None:
+            if wanted == self._asked and folder == self.model.folder:
+                self._take(view, wanted)
+
+        def failed(problem: Any) -> None:
+            if wanted == self._asked and folder == self.model.folder:
+                self.problem, self.view = sentence(problem), None
+                self.view_changed.emit()
+                self.changed.emit()
+
+        self._reading = self.bench.glance(
+            jobs.INSPECTION_VIEW,
+            folder,
+            self._as_scanned(),
+            label=self.tr("Reading the scan"),
+            on_done=done,
+            on_failed=failed,
+            replace_waiting=True,
+        )
+
+    def _take(self, view: InspectionView, wanted: tuple[object, ...]) -> None:
+        """Show another scan, or the same one with another thickness."""
+        scan_before, self._shown = self._shown[:1], wanted
+        self.view = view
+        if scan_before != wanted[:1]:
+            self.picks.clear()
+            self.clip_mm, self._unmeasurable = None, ""
+        if self.picture not in (RELIEF, *view.pictures):
+            self.picture = RELIEF
+        self.read_picture()
+        self.view_changed.emit()
+        self.changed.emit()
+
+    def _as_scanned(self) -> Project:
+        """The project with the recording that the scan among the results was measured from."""
+        return replace(self.project, sources=replace(self.project.sources, scan=self.recording))
+
+    def _forget(self) -> None:
+        self.view, self.problem, self._unmeasurable = None, "", ""
+        self._shown = self._asked = ()
+        self.clip_mm, self.picture, self.outlining = None, RELIEF, ""
+        self.picks.clear()
+        self.faces.forget()
+        self.view_changed.emit()

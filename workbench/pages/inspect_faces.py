@@ -1,0 +1,175 @@
+"""What the thickness should be, and which faces are measured: both undoable, both kept in the project's rig."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+from PySide6.QtCore import QObject, Signal
+
+from core.files.rig import GaugeSpec
+from core.model.arrays import Array
+
+if TYPE_CHECKING:
+    from workbench.pages.inspect_presenter import InspectPresenter
+
+FACES = ("upper", "lower")
+NUMBERS = ("nominal_mm", "tolerance_mm")
+
+
+class InspectFaces(QObject):
+    """Nominal value and tolerance go together, and so do the two regions.
+
+    What has been entered of a pair whose other half is missing is kept here, and put into the project with it.
+    """
+
+    changed = Signal()
+
+    def __init__(self, owner: InspectPresenter) -> None:
+        super().__init__(owner)
+        self._owner = owner
+        self._numbers: dict[str, float | None] = {}
+        self._regions: dict[str, Array] = {}
+
+    @property
+    def spec(self) -> GaugeSpec:
+        """What the project says."""
+        return self._owner.project.rig.gauge or GaugeSpec()
+
+    # ---- nominal value and tolerance
+
+    def values(self) -> dict[str, float | None]:
+        """Nominal value and tolerance in mm as they stand in the form."""
+        return {key: getattr(self.spec, key) for key in NUMBERS} | self._numbers
+
+    def complaint(self, key: str) -> str:
+        """What is missing beside a number that was entered, or ""."""
+        values = self.values()
+        other = values["tolerance_mm" if key == "nominal_mm" else "nominal_mm"]
+        if values[key] is not None or other is None:
+            return ""
+        if key == "tolerance_mm":
+            return self.tr("Enter the tolerance too, or clear the nominal value: they go together.")
+        return self.tr("Enter the nominal value too, or clear the tolerance: they go together.")
+
+    def set_number(self, key: str, value: Any) -> None:
+        """Change the nominal value or the tolerance; undoable as soon as both are there, or neither."""
+        values = self.values() | {key: None if value is None else float(value)}
+        if (values["nominal_mm"] is None) != (values["tolerance_mm"] is None):
+            self._numbers = values
+            self.changed.emit()
+            return
+        self._numbers = {}
+        if values["nominal_mm"] is None:
+            label = self.tr("measure without a nominal value")
+        else:
+            label = self.tr("change the nominal thickness") if key == "nominal_mm" else self.tr("change the tolerance")
+        self._put(replace(self.spec, **values), label, f"gauge {key}")
+        self.changed.emit()
+
+    # ---- faces
+
+    @property
+    def own(self) -> bool:
+        """Whether the faces are measured in regions of one's own."""
+        return self.spec.upper_polygon_px is not None
+
+    def region(self, face: str) -> Array | None:
+        """The region (n, 2) in pixels of a face, "upper" or "lower"; None: it is found automatically."""
+        drawn: Array | None = getattr(self.spec, f"{face}_polygon_px")
+        return self._regions.get(face, drawn)
+
+    def set_region(self, face: str, corners: ArrayLike) -> None:
+        """Measure a face within a polygon (n, 2) in pixels; undoable.
+
+        The other face keeps its region. Without one it gets the outline of the points that were used on it; where
+        nothing was measured yet, the region waits for the other one.
+        """
+        polygon = np.round(np.asarray(corners, dtype=np.float64), 1)
+        if polygon.ndim != 2 or len(polygon) < 3:
+            return
+        other = FACES[1 - FACES.index(face)]
+        beside = self.region(other)
+        beside = self._found(other) if beside is None else beside
+        if beside is None:
+            self._regions = {face: polygon}
+            self.changed.emit()
+            return
+        had = self.own
+        self._regions = {}
+        words = {
+            "upper": self.tr("change the upper face") if had else self.tr("draw the upper face"),
+            "lower": self.tr("change the lower face") if had else self.tr("draw the lower face"),
+        }
+        self._put_regions({face: polygon, other: beside}, words[face])
+
+    def exchange(self) -> None:
+        """Let the upper region be the lower one and the other way round; undoable."""
+        upper, lower = self.spec.upper_polygon_px, self.spec.lower_polygon_px
+        if upper is not None and lower is not None:
+            self._put_regions({"upper": lower, "lower": upper}, self.tr("exchange the faces"))
+
+    def take_found(self) -> None:
+        """Make the outlines of the faces that were found regions of one's own, to be changed; undoable."""
+        found = {face: self._found(face) for face in FACES}
+        if all(outline is not None for outline in found.values()):
+            self._put_regions(found, self.tr("take the faces found as regions"))
+
+    def find_automatically(self) -> None:
+        """Let the faces be found again; undoable."""
+        self._regions = {}
+        self._put_regions(dict.fromkeys(FACES), self.tr("find the faces automatically"))
+        self.changed.emit()
+
+    @property
+    def can_take_found(self) -> str:
+        """Why there are no outlines to begin with, or ""."""
+        if self.own:
+            return self.tr("The faces are regions of your own already: drag their corners in the picture.")
+        if self._found("upper") is None:
+            return self.tr("Measure the thickness first, so that there are faces to begin with.")
+        return ""
+
+    @property
+    def can_find(self) -> str:
+        """Why there is nothing to go back to, or ""."""
+        if self.own or self._regions:
+            return ""
+        return self.tr("The faces are found automatically already.")
+
+    def missing(self) -> str:
+        """What keeps the thickness from being measured, or ""."""
+        if "upper" in self._regions:
+            return self.tr("Draw the lower face too, or let the faces be found automatically.")
+        if "lower" in self._regions:
+            return self.tr("Draw the upper face too, or let the faces be found automatically.")
+        return ""
+
+    # ---- what happens elsewhere
+
+    def follow(self, before: GaugeSpec | None, after: GaugeSpec | None) -> None:
+        """The project changed: what was half entered counts no more where the project says something else now."""
+        was, now = before or GaugeSpec(), after or GaugeSpec()
+        if any(getattr(was, key) != getattr(now, key) for key in NUMBERS):
+            self._numbers = {}
+        if replace(was, nominal_mm=None, tolerance_mm=None) != replace(now, nominal_mm=None, tolerance_mm=None):
+            self._regions = {}
+
+    def forget(self) -> None:
+        """Another project is open."""
+        self._numbers, self._regions = {}, {}
+
+    def _found(self, face: str) -> Array | None:
+        view = self._owner.view
+        return None if view is None or view.outlines is None else view.outlines[FACES.index(face)]
+
+    def _put_regions(self, regions: dict[str, Array | None], label: str) -> None:
+        spec = replace(self.spec, upper_polygon_px=regions["upper"], lower_polygon_px=regions["lower"])
+        self._put(spec, label, "")
+
+    def _put(self, spec: GaugeSpec, label: str, merge_key: str) -> None:
+        project = self._owner.project
+        gauge = None if spec == GaugeSpec() else spec
+        self._owner.model.edit(label, replace(project, rig=replace(project.rig, gauge=gauge)), merge_key)

@@ -1,0 +1,286 @@
+"""Panels at the side of the inspect page: what is measured and where, the result, picked points."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QEvent, QSize, Qt, Signal
+from PySide6.QtWidgets import (
+    QGridLayout,
+    QHBoxLayout,
+    QLabel,
+    QListWidget,
+    QListWidgetItem,
+    QPushButton,
+    QToolButton,
+    QVBoxLayout,
+    QWidget,
+)
+
+from core.report.wording import verdict_sentence
+from workbench.pages import inspect_words as words
+from workbench.pages.inspect_faces import FACES, NUMBERS
+from workbench.pages.inspect_picks import Mode, Pick
+from workbench.pages.inspect_presenter import InspectPresenter, Stage
+from workbench.pages.step_page import heading, muted
+from workbench.theme import icon
+from workbench.views.colours import FACE_LOWER, FACE_UPPER
+from workbench.views.forms import SettingsForm
+from workbench.views.value_rows import ValueRows, Verdict
+
+
+class FacesPanel(QWidget):
+    """Nominal value and tolerance; which faces, and the tools to draw them."""
+
+    draw = Signal(str, str)
+    """Face and kind of tool: a region is to be drawn."""
+
+    def __init__(self, presenter: InspectPresenter, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._presenter = presenter
+        self.form = SettingsForm()
+        none = self.tr("none")
+        self.form.add_number(
+            "nominal_mm", self.tr("Nominal thickness"), "mm", self.tr("What the part should be; empty: no verdict."),
+            minimum=0.001, maximum=5000, decimals=4, step=1.0, none_text=none,
+        )  # fmt: skip
+        self.form.add_number(
+            "tolerance_mm", self.tr("Tolerance ±"), "mm", self.tr("Largest permitted deviation, to either side."),
+            minimum=0.0001, maximum=5000, decimals=4, step=0.01, none_text=none,
+        )  # fmt: skip
+        self.form.edited.connect(presenter.faces.set_number)
+        self.states = {face: QLabel() for face in FACES}
+        self.tools: dict[tuple[str, str], QToolButton] = {}
+        self.words, self.own, self.automatic = muted(), QPushButton(), QPushButton()
+        self.own.setText(self.tr("Edit the faces found"))
+        self.automatic.setText(self.tr("Find automatically"))
+        self.exchange = QToolButton()
+        self.own.clicked.connect(lambda: presenter.faces.take_found())
+        self.automatic.clicked.connect(lambda: presenter.faces.find_automatically())
+        self.exchange.clicked.connect(lambda: presenter.faces.exchange())
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(4)
+        column.addWidget(self.form)
+        column.addWidget(heading(self.tr("Faces")))
+        column.addLayout(self._rows())
+        column.addWidget(self.words)
+        row = QHBoxLayout()
+        row.addWidget(self.own, 1)
+        row.addWidget(self.automatic, 1)
+        row.addWidget(self.exchange)
+        column.addLayout(row)
+        self._dress()
+
+    def refresh(self) -> None:
+        """Show what the presenter says now."""
+        faces = self._presenter.faces
+        self.form.set_values(faces.values())
+        for key in NUMBERS:
+            self.form.set_complaint(key, faces.complaint(key))
+        names = {"upper": self.tr("Upper"), "lower": self.tr("Lower")}
+        for face, label in self.states.items():
+            region = faces.region(face)
+            if face == self._presenter.outlining:
+                state = self.tr("being outlined …")
+            elif region is None:
+                state = self.tr("found automatically")
+            else:
+                state = self.tr("own region, {0} corners").format(len(region))
+            colour = FACE_UPPER if face == "upper" else FACE_LOWER
+            label.setText(f"<span style='color:{colour}'>■</span> {names[face]}: {state}")
+        why_not = "" if self._presenter.view is not None else self.tr("There is no surface to draw on yet.")
+        for (face, kind), button in self.tools.items():
+            button.setEnabled(not why_not)
+            button.setToolTip(why_not or self._tip(face, kind))
+        self.words.setText(faces.missing())
+        self.words.setVisible(bool(faces.missing()))
+        self._enable(
+            self.own, faces.can_take_found, self.tr("Make the outlines of the faces found regions you can change")
+        )
+        self._enable(
+            self.automatic,
+            faces.can_find,
+            self.tr("Remove the regions: the two largest parallel faces are looked for again"),
+        )
+        self._enable(
+            self.exchange,
+            "" if faces.own else self.tr("The faces are found automatically: there is nothing to exchange."),
+            self.tr("Exchange the upper and the lower region"),
+        )
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "exchange"):
+            self._dress()
+
+    def _rows(self) -> QGridLayout:
+        grid = QGridLayout()
+        grid.setContentsMargins(0, 0, 0, 0)
+        grid.setSpacing(4)
+        grid.setColumnStretch(0, 1)
+        for row, (face, label) in enumerate(self.states.items()):
+            label.setTextFormat(Qt.TextFormat.RichText)
+            grid.addWidget(label, row, 0)
+            for column, kind in enumerate(("polygon", "lasso"), start=1):
+                button = QToolButton()
+                button.setAutoRaise(True)
+                button.setIconSize(QSize(20, 20))
+                button.setAccessibleName(self._tip(face, kind).partition(".")[0])
+                button.clicked.connect(lambda _=False, face=face, kind=kind: self.draw.emit(face, kind))
+                self.tools[face, kind] = button
+                grid.addWidget(button, row, column)
+        return grid
+
+    def _tip(self, face: str, kind: str) -> str:
+        first = {
+            ("upper", "polygon"): self.tr("Draw the upper face corner by corner."),
+            ("lower", "polygon"): self.tr("Draw the lower face corner by corner."),
+            ("upper", "lasso"): self.tr("Draw round the upper face with the button held down."),
+            ("lower", "lasso"): self.tr("Draw round the lower face with the button held down."),
+        }[face, kind]
+        return self.tr(
+            "{0} In the picture the region is what you draw; in 3D it becomes the outline, in the picture, of the "
+            "largest plane among the points inside. A region may reach over the face's edge."
+        ).format(first)
+
+    def _enable(self, button: QPushButton | QToolButton, why_not: str, tip: str) -> None:
+        button.setEnabled(not why_not)
+        button.setToolTip(why_not or tip)
+
+    def _dress(self) -> None:
+        for (_, kind), button in self.tools.items():
+            button.setIcon(icon("mdi6.vector-polygon" if kind == "polygon" else "mdi6.lasso"))
+        self.own.setIcon(icon("mdi6.vector-square-edit"))
+        self.automatic.setIcon(icon("mdi6.auto-fix"))
+        self.exchange.setIcon(icon("mdi6.swap-vertical"))
+        self.exchange.setAccessibleName(self.tr("Exchange the upper and the lower region"))
+
+
+class ResultPanel(QWidget):
+    """The thickness with all that belongs to it."""
+
+    def __init__(self, presenter: InspectPresenter, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._presenter = presenter
+        self._shown: object = None
+        self.verdict, self.rows, self.rule = Verdict(), ValueRows(), muted()
+        self.budget, self.notes = ValueRows(), muted()
+        self.budget_title, self.notes_title = heading(self.tr("Uncertainty budget")), heading(self.tr("Notes"))
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(6)
+        for widget in (
+            self.verdict, self.rows, self.rule, self.budget_title, self.budget, self.notes_title, self.notes,
+        ):  # fmt: skip
+            column.addWidget(widget)
+
+    def refresh(self) -> None:
+        """Show what the presenter says now."""
+        gauge, outdated = self._presenter.gauge, self._presenter.stage is Stage.OUTDATED
+        if gauge is None or (id(gauge), outdated) == self._shown:
+            return
+        self._shown = (id(gauge), outdated)
+        kind = gauge.verdict if gauge.verdict in ("conforming", "not conforming", "not proven") else ""
+        sentence = verdict_sentence(gauge)
+        if outdated:
+            sentence = self.tr("This was before the changes: measure again. {0}").format(sentence)
+        self.verdict.set_verdict(kind, sentence)  # type: ignore[arg-type]
+        self.rows.set_rows(words.result_rows(gauge))
+        self.rule.setText(self.tr("Rule: {0}.").format(gauge.rule))
+        self.budget.set_rows(words.budget_rows(gauge))
+        self.notes.setText("\n".join(gauge.notes))
+        for widget in (self.notes, self.notes_title):
+            widget.setVisible(bool(gauge.notes))
+
+
+class PicksPanel(QWidget):
+    """Tools to pick points and distances, and the list of them."""
+
+    pick = Signal(str)
+    """Points ("point") or distances ("distance") are to be picked; "": no more."""
+
+    def __init__(self, presenter: InspectPresenter, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._presenter = presenter
+        self._names: list[str] = []
+        self.tools: dict[Mode, QPushButton] = {"point": QPushButton(), "distance": QPushButton()}
+        self.tools["point"].setText(self.tr("Pick points"))
+        self.tools["distance"].setText(self.tr("Measure distance"))
+        self.list, self.remove, self.clear = QListWidget(), QPushButton(), QPushButton()
+        self.list.setAccessibleName(self.tr("Picked points and distances"))
+        self.list.setWordWrap(True)
+        self.list.setMinimumHeight(130)
+        self.remove.setText(self.tr("Remove"))
+        self.clear.setText(self.tr("Remove all"))
+        above, below = QHBoxLayout(), QHBoxLayout()
+        for mode, button in self.tools.items():
+            button.setCheckable(True)
+            button.clicked.connect(lambda on, mode=mode: self.pick.emit(mode if on else ""))
+            above.addWidget(button, 1)
+        below.addWidget(self.remove, 1)
+        below.addWidget(self.clear, 1)
+        self.help = muted(
+            self.tr(
+                "± of a point is the standard uncertainty (sd) of its depth, u of a distance the two points' share. "
+                "The calibrations' share is not in them. Points and distances are not kept with the project."
+            )
+        )
+        self.help.setObjectName("help")
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.addLayout(above)
+        column.addWidget(self.list)
+        column.addLayout(below)
+        column.addWidget(self.help)
+        self.remove.clicked.connect(self._remove)
+        self.clear.clicked.connect(lambda: presenter.picks.clear())
+        self.list.currentRowChanged.connect(lambda _: self._show_buttons())
+        self._dress()
+
+    def refresh(self) -> None:
+        """Show what the presenter says now."""
+        picks, ready = self._presenter.picks, self._presenter.view is not None
+        tips: dict[Mode, str] = {
+            "point": self.tr("Click points in 3D: x, y, z in mm in the camera's frame, with frame and pixel"),
+            "distance": self.tr("Click two points in 3D: their distance in mm with its standard uncertainty"),
+        }
+        for mode, button in self.tools.items():
+            button.setChecked(picks.mode == mode)
+            button.setEnabled(ready)
+            button.setToolTip(tips[mode] if ready else self.tr("There is no surface to pick on yet."))
+        names = [item.name for item in picks.items]
+        if names != self._names:
+            self._names = names
+            self.list.clear()
+            for item in picks.items:
+                lines = words.pick_lines(item) if isinstance(item, Pick) else words.span_lines(item)
+                self.list.addItem(QListWidgetItem("\n".join(lines)))
+            self.list.setCurrentRow(len(names) - 1)
+        self._show_buttons()
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "help"):
+            self._dress()
+
+    def _show_buttons(self) -> None:
+        chosen = 0 <= self.list.currentRow() < len(self._names)
+        for button, possible, tip in (
+            (self.remove, chosen, self.tr("Take the chosen one off the list")),
+            (self.clear, bool(self._names), self.tr("Take all points and distances off the list")),
+        ):
+            button.setEnabled(possible)
+            button.setToolTip(tip if possible else self.tr("Nothing is picked yet."))
+
+    def _remove(self) -> None:
+        row = self.list.currentRow()
+        if 0 <= row < len(self._names):
+            self._presenter.picks.remove(self._names[row])
+
+    def _dress(self) -> None:
+        for button, symbol in (
+            (self.tools["point"], "mdi6.crosshairs-gps"),
+            (self.tools["distance"], "mdi6.ruler"),
+            (self.remove, "mdi6.playlist-remove"),
+            (self.clear, "mdi6.close"),
+        ):
+            button.setIcon(icon(symbol))

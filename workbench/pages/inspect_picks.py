@@ -1,0 +1,112 @@
+"""Points picked in 3D and distances between them: marks on what is shown, nothing of the project."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+from PySide6.QtCore import QObject, Signal
+
+from core.inspect.distance import PointDistance, point_distance
+from core.model.arrays import Array
+
+if TYPE_CHECKING:
+    from workbench.pages.inspect_presenter import InspectPresenter
+
+Mode = Literal["", "point", "distance"]
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Pick:
+    """One measured point: place (3,) in mm, σ of its depth in mm, the frame and pixel it was seen at."""
+
+    name: str
+    point: int
+    place: Array
+    sigma_mm: float
+    frame: str
+    uv: tuple[float, float]
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Span:
+    """The distance of two picked points."""
+
+    name: str
+    a: Pick
+    b: Pick
+    result: PointDistance
+
+
+class InspectPicks(QObject):
+    """The list of picked points and distances."""
+
+    changed = Signal()
+
+    def __init__(self, owner: InspectPresenter) -> None:
+        super().__init__(owner)
+        self._owner = owner
+        self.mode: Mode = ""
+        self.first: Pick | None = None
+        self.items: list[Pick | Span] = []
+        self._numbers = {"P": 0, "D": 0}
+
+    def start(self, mode: Mode) -> None:
+        """From now on a click in 3D picks a point, or an end of a distance; "" ends it."""
+        if mode != self.mode:
+            self.mode, self.first = mode, None
+            self.changed.emit()
+
+    def stop(self) -> None:
+        """End picking."""
+        self.start("")
+
+    def pick(self, point: int) -> None:
+        """A point of the view was clicked."""
+        view = self._owner.view
+        if view is None or not self.mode or not 0 <= point < len(view):
+            return
+        if self.mode == "point":
+            self.items.append(self._picked(point, self._next("P")))
+        elif self.first is None:
+            self.first = self._picked(point, "")
+        elif self.first.point == point:
+            return  # a double click
+        else:
+            a, b = self.first, self._picked(point, "")
+            result = point_distance(a.place, b.place, a.sigma_mm, b.sigma_mm)
+            self.items.append(Span(self._next("D"), a, b, result))
+            self.first = None
+        self.changed.emit()
+
+    def remove(self, name: str) -> None:
+        """Take a point or a distance off the list."""
+        self.items = [item for item in self.items if item.name != name]
+        self.changed.emit()
+
+    def clear(self) -> None:
+        """Take all off the list."""
+        if self.items or self.first is not None or self.mode:
+            self.items, self.first, self.mode = [], None, ""
+            self._numbers = {"P": 0, "D": 0}
+            self.changed.emit()
+
+    def hint(self) -> str:
+        """What the next click does."""
+        if self.mode == "point":
+            return self.tr("Click points of the surface; each is added to the list.")
+        if self.mode == "distance":
+            if self.first is None:
+                return self.tr("Click the first end of the distance.")
+            return self.tr("Click the second end of the distance.")
+        return ""
+
+    def _picked(self, point: int, name: str) -> Pick:
+        view = self._owner.view
+        assert view is not None
+        u, v = (float(value) for value in view.uv[point])
+        return Pick(name, point, view.points[point], float(view.sigma[point]), view.frame_name(point), (u, v))
+
+    def _next(self, letter: str) -> str:
+        self._numbers[letter] += 1
+        return f"{letter}{self._numbers[letter]}"

@@ -1,0 +1,130 @@
+"""The picture with the two faces on it: the surface as the camera sees it, the reference, or a frame."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Literal
+
+from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLabel, QVBoxLayout, QWidget
+
+from workbench.pages.inspect_faces import FACES
+from workbench.pages.inspect_presenter import RELIEF, InspectPresenter, Stage
+from workbench.pages.step_page import muted
+from workbench.views.colours import FACE_LOWER, FACE_UPPER
+from workbench.views.image_view import ImageView
+
+if TYPE_CHECKING:
+    from core.inspect.inspection import InspectionView
+
+COLOURS = {"upper": FACE_UPPER, "lower": FACE_LOWER}
+
+
+class PictureTab(QWidget):
+    """A picture; regions are drawn and dragged on it."""
+
+    def __init__(self, presenter: InspectPresenter, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._presenter = presenter
+        self._shown: tuple[object, ...] = ()
+        self._laid: tuple[object, ...] = ()
+        self.image, self.pictures, self.line = ImageView(), QComboBox(), muted()
+        self.pictures.setAccessibleName(self.tr("Picture"))
+        self.pictures.setToolTip(self.tr("The surface as the camera sees it, or a picture of the recording"))
+        self.pictures.setMinimumContentsLength(22)
+        label = QLabel(self.tr("Picture"))
+        label.setBuddy(self.pictures)
+        bar = QHBoxLayout()
+        bar.addWidget(label)
+        bar.addWidget(self.pictures)
+        bar.addWidget(self.line, 1)
+        column = QVBoxLayout(self)
+        column.setContentsMargins(6, 6, 6, 4)
+        column.setSpacing(4)
+        column.addLayout(bar)
+        column.addWidget(self.image, 1)
+        self.pictures.activated.connect(lambda _: presenter.choose_picture(str(self.pictures.currentData())))
+        self.image.polygon_drawn.connect(presenter.faces.set_region)
+        self.image.polygon_edited.connect(presenter.faces.set_region)
+        presenter.picture_ready.connect(self._show_picture)
+
+    def refresh(self) -> None:
+        """Show what the presenter says now."""
+        p, view = self._presenter, self._presenter.view
+        self.pictures.setEnabled(view is not None)
+        if view is None:
+            self._clear()
+            return
+        self._list_pictures(view)
+        if p.picture == RELIEF and self._shown != (id(view), RELIEF):
+            self._shown = (id(view), RELIEF)
+            self.image.set_picture(view.relief.picture, scale=view.relief.cell_px)
+        self._lay_faces(view)
+        self.line.setText(self._words())
+
+    def start_region(self, face: str, kind: Literal["polygon", "lasso"]) -> None:
+        """Let the user draw a face."""
+        if kind == "polygon":
+            self.image.start_polygon(face)
+        else:
+            self.image.start_lasso(face)
+
+    def _show_picture(self, name: str, picture: Any) -> None:
+        view = self._presenter.view
+        if view is None or self._shown == (id(view), name):
+            return
+        self._shown = (id(view), name)
+        self.image.set_picture(picture)
+
+    def _clear(self) -> None:
+        p = self._presenter
+        if p.stage is Stage.NO_SCAN:
+            message = self.tr("There is no scan yet. Scan the part, then mark its faces here.")
+        else:
+            message = p.problem or self.tr("Reading the scan …")
+        self._shown = self._laid = ()
+        self.image.clear(message)
+        self.line.setText("")
+
+    def _list_pictures(self, view: InspectionView) -> None:
+        names = [RELIEF, *view.pictures]
+        if [self.pictures.itemData(row) for row in range(self.pictures.count())] != names:
+            self.pictures.clear()
+            self.pictures.addItem(self.tr("the measured surface"), RELIEF)
+            for name in view.pictures:
+                text = name.rpartition("/")[2]
+                self.pictures.addItem(self.tr("{0} (shows most)").format(text) if name == view.shown else text, name)
+        self.pictures.setCurrentIndex(names.index(self._presenter.picture))
+
+    def _lay_faces(self, view: InspectionView) -> None:
+        """The regions, or the outlines of the faces found, and the points used; laid anew only if they changed."""
+        faces = self._presenter.faces
+        regions = {face: faces.region(face) for face in FACES}
+        laid = (id(view), *(None if region is None else region.tobytes() for region in regions.values()))
+        if laid == self._laid:
+            return
+        self._laid = laid
+        for place, face in enumerate(FACES):
+            region = regions[face]
+            found = view.outlines[place] if view.outlines is not None and not faces.own else None
+            if region is not None:
+                title = self.tr("upper face, own region") if face == "upper" else self.tr("lower face, own region")
+                self.image.set_polygon(face, region, editable=True, colour=COLOURS[face], title=title)
+            elif found is not None:
+                title = self.tr("upper face, found") if face == "upper" else self.tr("lower face, found")
+                self.image.set_polygon(face, found, colour=COLOURS[face], title=title)
+            else:
+                self.image.remove_layer(face)
+            if view.used_uv is None:
+                self.image.remove_layer(f"used {face}")
+            else:
+                title = self.tr("points used, upper") if face == "upper" else self.tr("points used, lower")
+                self.image.set_points(
+                    f"used {face}", view.used_uv[place], colour=COLOURS[face], symbol=".", size=2, title=title
+                )
+
+    def _words(self) -> str:
+        faces = self._presenter.faces
+        if faces.missing():
+            return faces.missing()
+        if faces.own:
+            return self.tr("Drag a corner of a region, or its middle to move it.")
+        return ""

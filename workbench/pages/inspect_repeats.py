@@ -1,0 +1,81 @@
+"""Repeats: the thickness of several scans of one part, each an independent measurement."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject
+
+from core.files.project import Repeat
+from core.inspect.study import RepeatStatistics, repeat_statistics
+from workbench.step_state import State
+
+if TYPE_CHECKING:
+    from workbench.pages.inspect_presenter import InspectPresenter
+
+
+class InspectRepeats(QObject):
+    """The series of repeats in the project; every change is undoable."""
+
+    def __init__(self, owner: InspectPresenter) -> None:
+        super().__init__(owner)
+        self._owner = owner
+
+    @property
+    def all(self) -> tuple[Repeat, ...]:
+        """The repeats in the order they were added."""
+        return self._owner.project.repeats
+
+    @property
+    def can_add(self) -> str:
+        """Why the thickness shown cannot be added, or ""."""
+        owner = self._owner
+        if owner.gauge is None:
+            return self.tr("Measure the thickness first.")
+        if owner.state.state is not State.DONE:
+            return self.tr("The thickness is out of date: measure it again first.")
+        if any(repeat.scan == owner.recording for repeat in self.all):
+            return self.tr(
+                "This scan is among the repeats already. A repeat is another scan of the part: measuring the same "
+                "pictures again says nothing about how well the measurement repeats."
+            )
+        return ""
+
+    def add(self) -> None:
+        """Add the thickness of this scan to the series; undoable. The same scan twice is refused with a sentence."""
+        why_not = self.can_add
+        gauge, view, scan = self._owner.gauge, self._owner.view, self._owner.model.results.get("scan")
+        if why_not or gauge is None or view is None or scan is None:
+            self._owner.bench.notices.warning(why_not or self.tr("Measure the thickness first."))
+            return
+        repeat = Repeat(
+            scan=self._owner.recording,
+            thickness_mm=gauge.thickness_mm,
+            U_mm=gauge.U_mm,
+            k=gauge.k,
+            calibration_id=view.calibration_id,
+            measured_at=scan.at,
+        )
+        self._put((*self.all, repeat), self.tr("add a repeat"))
+
+    def remove(self, rows: Sequence[int]) -> None:
+        """Take repeats out of the series; undoable."""
+        kept = tuple(repeat for row, repeat in enumerate(self.all) if row not in set(rows))
+        count = len(self.all) - len(kept)
+        label = self.tr("remove a repeat") if count == 1 else self.tr("remove {0} repeats").format(count)
+        self._put(kept, label)
+
+    def statistics(self) -> RepeatStatistics | None:
+        """What they say together; None if there are none."""
+        if not self.all:
+            return None
+        return repeat_statistics([repeat.thickness_mm for repeat in self.all], self._owner.faces.spec.nominal_mm)
+
+    def calibrations(self) -> int:
+        """With how many different calibrations they were measured."""
+        return len({repeat.calibration_id for repeat in self.all})
+
+    def _put(self, repeats: tuple[Repeat, ...], label: str) -> None:
+        self._owner.model.edit(label, replace(self._owner.project, repeats=repeats))

@@ -1,0 +1,143 @@
+"""The series of repeats: table, statistics, run chart."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QEvent, Qt
+from PySide6.QtGui import QGuiApplication
+from PySide6.QtWidgets import QHBoxLayout, QPushButton, QSplitter, QVBoxLayout, QWidget
+
+from workbench.pages import inspect_words as words
+from workbench.pages.inspect_presenter import InspectPresenter
+from workbench.pages.step_page import muted
+from workbench.theme import icon
+from workbench.views.plots import RunChart
+from workbench.views.tables import DataTable
+from workbench.views.value_rows import ValueRows
+
+
+class RepeatsTab(QWidget):
+    """All repeats of the project and what they say together."""
+
+    def __init__(self, presenter: InspectPresenter, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._presenter = presenter
+        self._shown: object = None
+        self.table, self.chart, self.rows, self.words = DataTable(), RunChart(), ValueRows(), muted()
+        self.table.set_headers(
+            [
+                (self.tr("Scan"), ""),
+                (self.tr("Thickness"), "mm"),
+                (self.tr("U (k = 2)"), "mm"),
+                (self.tr("Calibration"), ""),
+                (self.tr("Scanned"), ""),
+            ]
+        )
+        self.add, self.remove, self.copy = QPushButton(), QPushButton(), QPushButton()
+        self.add.setText(self.tr("Add this scan"))
+        self.remove.setText(self.tr("Remove"))
+        self.copy.setText(self.tr("Copy all"))
+        self.add.clicked.connect(lambda: presenter.repeats.add())
+        self.remove.clicked.connect(lambda: presenter.repeats.remove([self.table.current_row()]))
+        self.copy.clicked.connect(self._copy)
+        self.table.current_row_changed.connect(lambda _: self._show_buttons())
+        buttons = QHBoxLayout()
+        for button in (self.add, self.remove, self.copy):
+            buttons.addWidget(button)
+        buttons.addStretch(1)
+        above = QWidget()
+        column = QVBoxLayout(above)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.addWidget(self.words)
+        column.addWidget(self.table, 1)
+        column.addLayout(buttons)
+        below = QWidget()
+        row = QHBoxLayout(below)
+        row.setContentsMargins(0, 6, 0, 0)
+        row.setSpacing(14)
+        row.addWidget(self.chart, 1)
+        row.addWidget(self.rows, 0, Qt.AlignmentFlag.AlignTop)
+        self.rows.setMinimumWidth(230)
+        split = QSplitter(Qt.Orientation.Vertical)
+        split.addWidget(above)
+        split.addWidget(below)
+        split.setSizes([300, 320])
+        split.setChildrenCollapsible(False)
+        outer = QVBoxLayout(self)
+        outer.setContentsMargins(6, 6, 6, 4)
+        outer.addWidget(split)
+        self._dress()
+
+    def refresh(self) -> None:
+        """Show what the presenter says now."""
+        p, repeats = self._presenter, self._presenter.repeats
+        spec = p.faces.spec
+        wanted = (repeats.all, spec.nominal_mm, spec.tolerance_mm)
+        self._show_buttons()
+        self.words.setText(self._sentence())
+        if wanted == self._shown:
+            return
+        self._shown = wanted
+        self.table.set_rows([words.repeat_row(repeat) for repeat in repeats.all], [r.scan for r in repeats.all])
+        statistics = repeats.statistics()
+        if statistics is None:
+            self.rows.set_rows([])
+            self.chart.clear(self.tr("Two scans or more of the same part show how well the measurement repeats."))
+            return
+        self.rows.set_rows(words.statistics_rows(statistics, spec.nominal_mm))
+        self.chart.set_runs(
+            [repeat.thickness_mm for repeat in repeats.all],
+            [repeat.U_mm for repeat in repeats.all],
+            labels=[words.scan_name(repeat.scan) for repeat in repeats.all],
+            mean=statistics.mean_mm,
+            nominal=spec.nominal_mm,
+            tolerance=spec.tolerance_mm,
+            k=repeats.all[-1].k,
+        )
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "copy"):
+            self._dress()
+
+    def _show_buttons(self) -> None:
+        repeats = self._presenter.repeats
+        why_not = repeats.can_add
+        self.add.setEnabled(not why_not)
+        self.add.setToolTip(why_not or self.tr("Add the thickness of this scan to the series"))
+        chosen = 0 <= self.table.current_row() < len(repeats.all)
+        self.remove.setEnabled(chosen)
+        self.remove.setToolTip(
+            self.tr("Take the chosen repeat out of the series")
+            if chosen
+            else self.tr("Choose a repeat in the table first.")
+        )
+        self.copy.setEnabled(bool(repeats.all))
+        self.copy.setToolTip(
+            self.tr("Copy the whole series with its statistics, tabs between the columns")
+            if repeats.all
+            else self.tr("There are no repeats yet.")
+        )
+
+    def _sentence(self) -> str:
+        repeats = self._presenter.repeats
+        if not repeats.all:
+            return self.tr(
+                "No repeats yet: measure a scan, add it here, then scan the part again. Each scan counts once."
+            )
+        if repeats.calibrations() > 1:
+            return self.tr(
+                "Measured with {0} different calibrations: their differences are part of the scatter."
+            ).format(repeats.calibrations())
+        return ""
+
+    def _copy(self) -> None:
+        repeats = self._presenter.repeats
+        QGuiApplication.clipboard().setText(words.repeats_tsv(repeats.all, repeats.statistics()))
+
+    def _dress(self) -> None:
+        for button, symbol in (
+            (self.add, "mdi6.playlist-plus"),
+            (self.remove, "mdi6.playlist-remove"),
+            (self.copy, "mdi6.content-copy"),
+        ):
+            button.setIcon(icon(symbol))

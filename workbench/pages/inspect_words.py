@@ -1,0 +1,176 @@
+"""Results of the inspect page in words and numbers with units, rounded by their uncertainty."""
+
+from __future__ import annotations
+
+import math
+from pathlib import PurePosixPath
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QCoreApplication
+
+from core.files.project import Repeat
+from core.inspect.study import RepeatStatistics
+from core.report.wording import decimals_of, fixed, grouped, with_uncertainty
+from workbench.pages.inspect_picks import Pick, Span
+from workbench.views.colours import Level
+
+if TYPE_CHECKING:
+    from core.inspect.results import GaugeResult
+
+Row = tuple[str, str, str, Level]
+"""Label, text with unit, tip, level."""
+
+
+def thickness(gauge: GaugeResult) -> str:
+    """'50.008 mm ± 0.027 mm'."""
+    value, expanded = with_uncertainty(gauge.thickness_mm, gauge.U_mm)
+    return f"{value} mm ± {expanded} mm"
+
+
+def result_rows(gauge: GaugeResult) -> list[Row]:
+    """The thickness and all that is said of the faces."""
+    decimals = max(decimals_of(gauge.U_mm), 0)
+    value, expanded = with_uncertainty(gauge.thickness_mm, gauge.U_mm)
+    rows: list[Row] = [
+        (_tr("Thickness"), f"{value} mm", _tr("Distance of the two parallel planes fitted to both faces"), ""),
+        (
+            _tr("U (k = {0})").format(f"{gauge.k:g}"),
+            f"± {expanded} mm",
+            _tr("Expanded uncertainty: k times the standard uncertainty u"),
+            "",
+        ),
+    ]
+    if gauge.deviation_mm is not None:
+        nominal = _tr("Measured thickness less the nominal value of {0} mm").format(f"{gauge.nominal_mm:g}")
+        rows.append((_tr("Deviation"), f"{fixed(gauge.deviation_mm, decimals, signed=True)} mm", nominal, ""))
+    flatness = _tr("Spread that holds 95 % of the points used about their plane, the points' noise included")
+    upper, lower = gauge.points_used
+    return [
+        *rows,
+        (_tr("Flatness, upper face"), f"{fixed(gauge.upper.flatness_mm, 3)} mm", flatness, ""),
+        (_tr("Flatness, lower face"), f"{fixed(gauge.lower.flatness_mm, 3)} mm", flatness, ""),
+        (
+            _tr("Parallelism"),
+            f"{fixed(math.degrees(gauge.parallelism), 3)}°",
+            _tr("Angle between the two faces when each is fitted by itself"),
+            "",
+        ),
+        (_tr("Points used, upper face"), grouped(upper), _tr("Points the upper plane rests on"), ""),
+        (_tr("Points used, lower face"), grouped(lower), _tr("Points the lower plane rests on"), ""),
+    ]
+
+
+def budget_rows(gauge: GaugeResult) -> list[Row]:
+    """Each contribution to the uncertainty, and all together."""
+    decimals = max(decimals_of(gauge.u_mm) + 1, 0)
+    rows: list[Row] = [
+        (_first_up(row.source), f"{fixed(row.u_mm, decimals)} mm", _tr("Standard uncertainty (k = 1)"), "")
+        for row in gauge.budget
+    ]
+    together = _tr("Root of the sum of squares of all rows (k = 1)")
+    return [*rows, (_tr("u, all together"), f"{fixed(gauge.u_mm, decimals)} mm", together, "")]
+
+
+def statistics_rows(statistics: RepeatStatistics, nominal_mm: float | None) -> list[Row]:
+    """Mean, error, RMSE, STD and largest error of the repeats."""
+    unknown = _tr("needs a nominal value")
+
+    def mm(value: float | None, *, signed: bool = False) -> str:
+        return unknown if value is None else f"{fixed(value, 4, signed=signed)} mm"
+
+    std = f"{fixed(statistics.std_mm, 4)} mm" if statistics.n > 1 else _tr("needs two repeats")
+    rows: list[Row] = [
+        (_tr("Repeats"), str(statistics.n), _tr("Scans in the series"), ""),
+        (_tr("Mean"), f"{fixed(statistics.mean_mm, 4)} mm", _tr("Mean of all repeats"), ""),
+        (
+            _tr("Error of the mean"),
+            mm(statistics.error_mm, signed=True),
+            _tr("Mean less the nominal value")
+            if nominal_mm is None
+            else _tr("Mean less the nominal value of {0} mm").format(f"{nominal_mm:g}"),
+            "",
+        ),
+        (_tr("RMSE"), mm(statistics.rmse_mm), _tr("Root mean square of the single errors"), ""),
+        (_tr("STD"), std, _tr("Standard deviation of one repeat about the mean (over n − 1)"), ""),
+        (_tr("Largest error"), mm(statistics.largest_error_mm), _tr("Largest magnitude of a single error"), ""),
+    ]
+    return rows
+
+
+def repeat_row(repeat: Repeat) -> tuple[str, str, str, str, str]:
+    """Scan, thickness, U, calibration, time."""
+    value, expanded = with_uncertainty(repeat.thickness_mm, repeat.U_mm)
+    time = repeat.measured_at.astimezone().strftime("%Y-%m-%d %H:%M")
+    return scan_name(repeat.scan), value, f"± {expanded}", repeat.calibration_id, time
+
+
+def repeats_tsv(repeats: tuple[Repeat, ...], statistics: RepeatStatistics | None) -> str:
+    """The series as text with tabs, all digits kept, for a spreadsheet."""
+    lines = [["scan", "thickness [mm]", "U [mm]", "k", "calibration", "measured at"]]
+    lines += [
+        [
+            repeat.scan,
+            f"{repeat.thickness_mm:.6f}",
+            f"{repeat.U_mm:.6f}",
+            f"{repeat.k:g}",
+            repeat.calibration_id,
+            repeat.measured_at.isoformat(timespec="seconds"),
+        ]
+        for repeat in repeats
+    ]
+    if statistics is not None:
+        named = (
+            ("mean [mm]", statistics.mean_mm),
+            ("error of the mean [mm]", statistics.error_mm),
+            ("RMSE [mm]", statistics.rmse_mm),
+            ("STD [mm]", statistics.std_mm),
+            ("largest error [mm]", statistics.largest_error_mm),
+        )
+        lines += [[]] + [[name, f"{value:.6f}"] for name, value in named if value is not None and not math.isnan(value)]
+    return "\n".join("\t".join(line) for line in lines) + "\n"
+
+
+def scan_name(stored: str) -> str:
+    """How a recording is called: its folder, with the one above where that alone says nothing."""
+    path = PurePosixPath(stored)
+    return f"{path.parent.name}/{path.name}" if path.name == "scan" and path.parent.name else path.name
+
+
+def pick_lines(pick: Pick) -> tuple[str, str]:
+    """Where a picked point is, and where it was seen."""
+    decimals = max(decimals_of(pick.sigma_mm), 0)
+    x, y, z = (fixed(float(value), decimals) for value in pick.place)
+    place = _tr("{name}   x {x}   y {y}   z {z} mm ± {sigma} mm (sd)").format(
+        name=pick.name, x=x, y=y, z=z, sigma=fixed(pick.sigma_mm, decimals)
+    )
+    u, v = pick.uv
+    frame = PurePosixPath(pick.frame).name or _tr("fan, no frame")
+    return place, _tr("{frame}, u {u} v {v} px").format(frame=frame, u=fixed(u, 1), v=fixed(v, 1))
+
+
+def span_lines(span: Span) -> tuple[str, str]:
+    """A distance with its standard uncertainty, and its ends."""
+    text = _tr("{name}   {value} mm, u = {u} mm").format(name=span.name, **_span(span))
+    ends = []
+    for pick in (span.a, span.b):
+        x, y, z = (fixed(float(value), 2) for value in pick.place)
+        ends.append(f"({x}, {y}, {z})")
+    return text, _tr("from {0} to {1} mm").format(*ends)
+
+
+def span_label(span: Span) -> str:
+    """What stands at the dimension line."""
+    return _tr("{name}: {value} mm (u = {u} mm)").format(name=span.name, **_span(span))
+
+
+def _span(span: Span) -> dict[str, str]:
+    value, u = with_uncertainty(span.result.distance_mm, span.result.u_mm)
+    return {"value": value, "u": u}
+
+
+def _first_up(text: str) -> str:
+    return text[:1].upper() + text[1:]
+
+
+def _tr(text: str) -> str:
+    return QCoreApplication.translate("Inspect", text)
