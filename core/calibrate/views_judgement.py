@@ -24,12 +24,13 @@ class ViewsJudgement:
     """What views are worth together.
 
     `cells` (rows, COLUMNS) are True where the views that count cover the picture; `missing` are at most four sentences
-    on what to record next. `expected` and `residuals` are None where there is no calibration.
+    on what to record next. `expected` is at the nearest corner's depth, in the middle and at the farthest one's; it is
+    empty, and `residuals` is None, where there is no calibration.
     """
 
     cells: NDArray[np.bool_]
     missing: tuple[str, ...]
-    expected: ExpectedError | None
+    expected: tuple[ExpectedError, ...]
     residuals: ResidualField | None
 
 
@@ -51,6 +52,13 @@ def judge_views(
     return ViewsJudgement(
         picture_cells(np.concatenate([np.zeros((0, 2)), *(view.uv for view in views)]), size, COLUMNS, rows),
         what_is_missing(views, size, camera),
-        None if calibration is None else expected_error(calibration),
+        () if calibration is None else _over_the_volume(calibration),
         None if calibration is None else residual_field(calibration),
     )
+
+
+def _over_the_volume(calibration: CameraCalibration) -> tuple[ExpectedError, ...]:
+    used = [quality for quality in calibration.views if quality.used]
+    depths = np.concatenate([quality.pose.apply(quality.view.points[quality.counted])[:, 2] for quality in used])
+    near, far = float(depths.min()), float(depths.max())
+    return tuple(expected_error(calibration, depth) for depth in (near, (near + far) / 2, far))

@@ -36,8 +36,10 @@ def test_a_lost_view_stays_lost_when_seen_again(calibration):
 def test_views_are_judged_with_and_without_a_calibration(calibration):
     seen = seen_again(calibration, "somewhere")
     alone, solved = judge_views(seen), judge_views(seen, (), calibration)
-    assert alone.expected is None and alone.residuals is None
-    assert solved.expected.median_mm > 0
+    assert alone.expected == () and alone.residuals is None
+    near, middle, far = solved.expected
+    assert near.depth_mm < middle.depth_mm < far.depth_mm
+    assert 0 < near.median_mm < far.median_mm
     assert np.array_equal(alone.cells, solved.cells)
     assert alone.cells.shape[1] == 16 and alone.cells.any()
 

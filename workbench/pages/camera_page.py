@@ -75,9 +75,6 @@ class CameraPage(StepPage):
         detail = self.tr("{0} pictures").format(count) if count is not None and p.folder is not None else ""
         self.source.set_folder(p.folder, detail)
         self.live_panel.set_primary(stage in (Stage.NONE, Stage.EMPTY))
-        if stage is Stage.LIVE:
-            self.source.set_mode("live")
-            self.tabs.setCurrentWidget(self.picture)
         self._fold(stage)
         self._show_views()
         calibration = p.work.calibration
@@ -116,6 +113,9 @@ class CameraPage(StepPage):
         if wanted == self._folded:
             return
         self._folded = wanted
+        if live:
+            self.source.set_mode("live")
+            self.tabs.setCurrentWidget(self.picture)
         for fold, opened in ((self.pictures_fold, wanted != "result"), (self.target_fold, wanted == "pictures")):
             if opened:
                 fold.expand(animate=False)

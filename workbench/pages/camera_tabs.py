@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QHBoxLayout, QPushButton, QSplitter, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QComboBox, QHBoxLayout, QPushButton, QSplitter, QVBoxLayout, QWidget
 
 from workbench.pages import camera_words as words
 from workbench.pages.camera_presenter import CameraPresenter
@@ -97,24 +97,35 @@ class ExpectedTab(QWidget):
         super().__init__(parent)
         self._presenter = presenter
         self._drawn: Any = None
-        self.map, self.words = HeatMap(), muted()
+        self.map, self.words, self.at_depth = HeatMap(), muted(), QComboBox()
+        for title in (self.tr("nearest"), self.tr("middle"), self.tr("farthest")):
+            self.at_depth.addItem(title)
+        self.at_depth.setCurrentIndex(1)
+        self.at_depth.setToolTip(self.tr("Depth in the work volume: from the nearest to the farthest corner seen"))
+        self.at_depth.setAccessibleName(self.tr("Depth"))
+        self.at_depth.currentIndexChanged.connect(lambda _: self.refresh())
+        row = QHBoxLayout()
+        row.addWidget(self.words, 1)
+        row.addWidget(self.at_depth)
         column = QVBoxLayout(self)
         column.setContentsMargins(6, 6, 6, 6)
-        column.addWidget(self.words)
+        column.addLayout(row)
         column.addWidget(self.map, 1)
         self.refresh()
 
     def refresh(self) -> None:
         """Show what the presenter says now."""
         work = self._presenter.work
-        expected = work.judgement.expected if work.judgement is not None else None
-        self.map.setVisible(expected is not None)
-        if expected is None or work.calibration is None:
+        depths = work.judgement.expected if work.judgement is not None else ()
+        self.map.setVisible(bool(depths))
+        self.at_depth.setVisible(bool(depths))
+        if not depths or work.calibration is None:
             self.words.setText(self.tr("Once the camera is solved, this shows how far off it may see a point, in mm."))
             return
-        self.words.setText(words.expected_sentence(work.judgement))
-        if work.judgement is not self._drawn:
-            self._drawn = work.judgement
+        expected = depths[self.at_depth.currentIndex()]
+        self.words.setText(words.expected_sentence(expected))
+        if expected is not self._drawn:
+            self._drawn = expected
             self.map.set_map(
                 expected.error_mm,
                 size=work.calibration.camera.image_size,

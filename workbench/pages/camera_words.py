@@ -8,6 +8,7 @@ from typing import Any
 from PySide6.QtCore import QCoreApplication
 
 from core.calibrate.camera_changes import CameraChanges, parameter_values
+from core.calibrate.expected_error import ExpectedError
 from core.calibrate.results import CAMERA_PARAMETERS, CameraCalibration, ViewQuality
 from core.calibrate.views_judgement import ViewsJudgement
 from workbench.views.colours import Level
@@ -45,8 +46,8 @@ def quality_rows(calibration: CameraCalibration | None, judgement: ViewsJudgemen
     if not math.isnan(calibration.cross_validation_mm):
         tip = _tr("RMS distance between what cameras from the odd and from the even views see, over the work volume")
         rows.append((_tr("Halves differ"), mm(calibration.cross_validation_mm), tip, ""))
-    expected = judgement.expected if judgement is not None else None
-    if expected is not None:
+    if judgement is not None and judgement.expected:
+        expected = judgement.expected[1]
         tip = _tr("Standard uncertainty (k = 1) of where a point lies, from the camera alone, at depth {0}").format(
             mm(expected.depth_mm, 0)
         )
@@ -122,14 +123,11 @@ def view_sentence(name: str, quality: ViewQuality | None) -> str:
     return _tr("{0}: {1}; RMS {2}").format(name, quality.reason, px(quality.rms_px))
 
 
-def expected_sentence(judgement: ViewsJudgement | None) -> str:
+def expected_sentence(expected: ExpectedError) -> str:
     """What the map of expected errors shows."""
-    expected = judgement.expected if judgement is not None else None
-    if expected is None:
-        return ""
     return _tr(
         "Standard uncertainty (k = 1) of where a point at depth {0} is seen, from the camera's calibration alone: "
-        "{1} in the middle of the range, {2} at worst. Outside the corners the camera is extrapolated."
+        "{1} over half of the picture, {2} at worst. Where no corner was seen, the camera is extrapolated."
     ).format(mm(expected.depth_mm, 0), mm(expected.median_mm), mm(expected.worst_mm))
 
 

@@ -28,6 +28,7 @@ from core.live.events import (
     LiveEvent,
     LiveNotice,
     LiveRequest,
+    LiveSaving,
     LiveStarted,
     LiveTaken,
     LiveUnplugged,
@@ -271,11 +272,15 @@ class LivePresenter(QObject):
         self.ended.connect(loop.quit)
         limit = QTimer(loop)
         limit.setSingleShot(True)
+        limit.setInterval(1000)
         limit.timeout.connect(loop.quit)
-        limit.start(STOP_WITHIN_MS + 1000)
+        self._deadline.timeout.connect(limit.start)
         self.stop()
+        if not self._deadline.isActive():
+            limit.start(STOP_WITHIN_MS)
         loop.exec()
         limit.stop()
+        self._deadline.timeout.disconnect(limit.start)
         self.ended.disconnect(loop.quit)
 
     def _request(self, project: Path) -> LiveRequest:
@@ -331,6 +336,8 @@ class LivePresenter(QObject):
             case LiveNotice():
                 self.notice.emit(event.sentence)
                 self.bench.notices.info(event.sentence)
+            case LiveSaving() if self.stopping:
+                self._deadline.start()  # it is not hanging: frames still go to the disk
             case LiveUnplugged():
                 self.gone = True
                 self.bench.notices.warning(event.sentence)

@@ -63,7 +63,7 @@ class LiveSettings(QObject):
         """Choose the kind of source; its last device and settings come back."""
         if kind != self.kind:
             self._bench.settings.keep_text("live/kind", kind)
-            self.devices = ()
+            self.devices, self.looking = (), False
             self.devices_changed.emit()
             self.changed.emit()
 
@@ -84,10 +84,9 @@ class LiveSettings(QObject):
         kind, self.looking = self.kind, True
 
         def found(devices: Any) -> None:
-            self.looking = False
             if kind == self.kind:
-                self.devices = tuple(devices)
-            self.devices_changed.emit()
+                self.devices, self.looking = tuple(devices), False
+                self.devices_changed.emit()
 
         def failed(_: Any) -> None:
             found(())

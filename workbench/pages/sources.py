@@ -16,13 +16,16 @@ def folder_of(model: ProjectModel, step: Step) -> Path | None:
     return source_folder(model.folder, stored) if stored and model.folder is not None else None
 
 
-def put_source(model: ProjectModel, step: Step, folder: Path, label: str) -> None:
-    """Make `folder` the source of a step's pictures; undoable. What was left out by hand of the last one is let in."""
+def put_source(model: ProjectModel, step: Step, folder: Path, label: str, *, keep_left_out: bool = False) -> None:
+    """Make `folder` the source of a step's pictures; undoable.
+
+    What was left out by hand of the last one is let in, unless the pictures are the same and some more.
+    """
     if model.folder is None:
         return
     project = model.project
     sources = replace(project.sources, **{step: stored_source(model.folder, folder)})
     if sources == project.sources:
         return
-    kept = frozenset(name for name in project.options.excluded if not name.startswith(f"{step}/"))
+    kept = frozenset(name for name in project.options.excluded if keep_left_out or not name.startswith(f"{step}/"))
     model.edit(label, replace(project, sources=sources, options=replace(project.options, excluded=kept)))

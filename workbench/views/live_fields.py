@@ -84,7 +84,6 @@ class DeviceField(QWidget):
             else self.tr("Look for cameras of this kind")
         )
         self.button.setAccessibleName(self.button.toolTip())
-        self.button.setVisible(kind != "simulated")
 
     def _typed(self) -> None:
         text = self.box.currentText().strip()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from PySide6.QtCore import QCoreApplication, QEvent, QTimer
+from PySide6.QtCore import QCoreApplication, QEvent, Qt, QTimer
 from PySide6.QtWidgets import (
     QCheckBox,
     QComboBox,
@@ -40,6 +40,7 @@ class LivePanel(QWidget):
         self.rate = NumberField(self.tr("as it is"), " /s", 0.1, 1000.0, 1)
         self.start, self.pause, self.take = QPushButton(), QPushButton(), QPushButton()
         self.auto = QCheckBox(self.tr("Take pictures automatically"))
+        self.add = QCheckBox(self.tr("Add to the pictures that are there"))
         self.state, self.counts = QLabel(), QLabel()
         self._dress()
         self._lay_out()
@@ -85,6 +86,8 @@ class LivePanel(QWidget):
         self.auto.blockSignals(True)
         self.auto.setChecked(live.auto)
         self.auto.blockSignals(False)
+        self.add.setVisible(live.can_add)
+        self.add.setChecked(live.adding)
         self.show_counts()
 
     def set_primary(self, primary: bool) -> None:
@@ -103,7 +106,7 @@ class LivePanel(QWidget):
     def showEvent(self, event: Any) -> None:
         super().showEvent(event)
         self.refresh()
-        QTimer.singleShot(0, self.live.warm_up)
+        QTimer.singleShot(0, self.live.get_ready)
 
     def changeEvent(self, event: QEvent) -> None:
         super().changeEvent(event)
@@ -123,6 +126,7 @@ class LivePanel(QWidget):
             field.setToolTip(tip)
         self.take.setText(self.tr("Take picture"))
         self.auto.setToolTip(self.tr("Takes a picture when it is still, sharp, and unlike those taken before"))
+        self.add.setToolTip(self.tr("Keep the pictures in use and add the new ones; else the new ones replace them"))
         self.auto.setVisible(self.live.step != "scan")
         self.take.setVisible(self.live.step != "scan")
         self.state.setObjectName("heading")
@@ -155,12 +159,13 @@ class LivePanel(QWidget):
         column.addLayout(self._form)
         column.addLayout(buttons)
         column.addWidget(self.auto)
+        column.addWidget(self.add)
         column.addWidget(self.state)
         column.addWidget(self.counts)
 
     def _connect(self) -> None:
         live, settings = self.live, self.live.settings
-        self.kind.activated.connect(lambda _: settings.set_kind(self.kind.currentData()))
+        self.kind.activated.connect(lambda _: self._choose_kind())
         self.device.chosen.connect(settings.set_id)
         self.device.look.connect(settings.look_for_devices)
         for name, field in self._numbers().items():
@@ -169,19 +174,37 @@ class LivePanel(QWidget):
         self.pause.clicked.connect(lambda: live.pause(not live.paused))
         self.take.clicked.connect(lambda: live.capture())
         self.auto.toggled.connect(live.set_auto)
+        self.add.clicked.connect(lambda on: live.set_adding(on))
         live.changed.connect(self.refresh)
         live.view.connect(lambda _: self.show_counts())
         live.other_running.connect(self._ask_to_stop_other)
         settings.devices_changed.connect(self.refresh)
 
     def _fill_kinds(self) -> None:
-        for kind, title in (
-            ("simulated", self.tr("Simulated rig")),
-            ("opencv", self.tr("USB or network camera (OpenCV)")),
-            ("basler", self.tr("Basler camera (pypylon)")),
-            ("replay", self.tr("Recorded folder, replayed")),
+        for kind, title, tip in (
+            (
+                "simulated",
+                self.tr("Simulated rig"),
+                self.tr("A camera and lasers that exist only in this program, moved by hand in real time"),
+            ),
+            (
+                "opencv",
+                self.tr("Camera or video"),
+                self.tr("A camera of this computer, a network camera, or a video file"),
+            ),
+            ("basler", self.tr("Basler camera"), self.tr("An industrial camera of Basler; needs pypylon")),
+            (
+                "replay",
+                self.tr("Folder of pictures"),
+                self.tr("Recorded pictures, one after the other, as if a camera took them now"),
+            ),
         ):
             self.kind.addItem(title, kind)
+            self.kind.setItemData(self.kind.count() - 1, tip, Qt.ItemDataRole.ToolTipRole)
+
+    def _choose_kind(self) -> None:
+        self.live.settings.set_kind(self.kind.currentData())
+        self.live.settings.look_for_devices()
 
     def _numbers(self) -> dict[str, NumberField]:
         return {"exposure_ms": self.exposure, "gain_db": self.gain, "rate_hz": self.rate}
@@ -250,7 +273,7 @@ def _card(label: QLabel, button: QPushButton | None, symbol: str = "mdi6.hand-po
 def _device_words(kind: str) -> tuple[str, str]:
     """What the device field of this kind is called, and its tooltip."""
     return {
-        "simulated": (_tr("Scene"), _tr("Empty: the rig of the sample; else the path of a scenario (TOML)")),
+        "simulated": (_tr("Scene"), _tr("What lies before the simulated rig; or the path of a scenario (TOML)")),
         "opencv": (_tr("Device"), _tr("Number of the camera (0, 1, …) or its address (rtsp://…, http://…)")),
         "basler": (_tr("Device"), _tr("Serial number of the camera; empty: the first one found")),
         "replay": (_tr("Folder"), _tr("The folder of pictures to replay")),

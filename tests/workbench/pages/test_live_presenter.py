@@ -1,5 +1,6 @@
 """Live recordings as the pages steer them."""
 
+from dataclasses import replace
 from datetime import datetime
 from typing import cast
 
@@ -159,8 +160,6 @@ def test_a_finished_recording_becomes_the_source_and_that_is_undone(running, lan
 
 
 def test_a_new_recording_lets_in_what_was_left_out_of_the_last_one(running, lane):
-    from dataclasses import replace
-
     project = running.model.project
     options = replace(project.options, excluded=frozenset({"camera/view01.png", "scan/frame0001.png"}))
     running.model.edit("x", replace(project, options=options))
@@ -267,3 +266,41 @@ def test_pictures_taken_are_passed_on(running, lane, qtbot):
     with qtbot.waitSignal(running.taken) as taken:
         lane.current.told.emit(LiveTaken("view00", np.zeros((4, 4), np.uint8)))
     assert taken.args[0].name == "view00"
+
+
+def test_new_views_are_added_to_those_that_are_there(running, lane, camera_bench, qtbot):
+    first = request_of(lane).folder
+    first.mkdir(parents=True)
+    (first / "view00.png").write_text("first")
+    lane.finish(LiveEnded(first, 1, 0))
+    assert running.can_add
+    project = running.model.project
+    options = replace(project.options, excluded=frozenset({"camera/view00.png"}))
+    running.model.edit("x", replace(project, options=options))
+    running.set_adding(True)
+    running.start()
+    second = request_of(lane).folder
+    second.mkdir(parents=True)
+    (second / "view00.png").write_text("second")
+    with qtbot.waitSignal(running.ended):
+        lane.finish(LiveEnded(second, 1, 0))
+    assert running.model.project.sources.camera == f"recordings/{second.name}"
+    assert {path.name: path.read_text() for path in second.iterdir()} == {
+        "view00.png": "first",
+        "view01.png": "second",
+    }
+    assert running.model.project.options.excluded == {"camera/view00.png"}
+    assert not running.adding
+
+
+def test_a_scan_is_never_added_to_another(camera_bench):
+    assert not LivePresenter(camera_bench, "scan").can_add
+
+
+def test_recordings_of_one_second_have_folders_of_their_own(live, lane):
+    live.start()
+    first = request_of(lane).folder
+    first.mkdir(parents=True)
+    lane.finish(LiveEnded(first, 0, 0))
+    live.start()
+    assert request_of(lane).folder != first

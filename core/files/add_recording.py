@@ -1,0 +1,75 @@
+"""Two recordings of one thing become one: the pictures that were there, and the new ones."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+from pathlib import Path
+
+from core.files.atomic import cannot_write
+from core.files.set_listing import pictures_in
+from core.progress import Progress, silent
+
+_OFF = "_off"
+
+
+def add_recording(before: Path, recorded: Path, progress: Progress = silent) -> Path:
+    """Put the pictures of `before` into the folder `recorded` as well, and return that folder.
+
+    Those of `before` keep their names, so that what was left out by hand stays so; new ones of the same name get the
+    next free number, the two of a pair the same one. `before` is left as it is: its files are linked where the disk
+    can, else copied.
+
+    Raises
+    ------
+    InputError
+        If a folder cannot be read or written.
+    """
+    old = pictures_in(before)
+    taken = {_pose(path) for path in old}
+    try:
+        new = _renamed(pictures_in(recorded), taken)
+        for path, name in new.items():
+            path.rename(path.with_name(name))
+        for number, path in enumerate(old, start=1):
+            _link(path, recorded / path.name)
+            progress("adding pictures", number, len(old))
+    except OSError as error:
+        raise cannot_write(recorded, error) from error
+    return recorded
+
+
+def _pose(path: Path) -> str:
+    """The name without ending that the two pictures of a pair share."""
+    return path.stem.removesuffix(_OFF)
+
+
+def _renamed(new: tuple[Path, ...], taken: set[str]) -> dict[Path, str]:
+    """New names of those pictures whose names are taken."""
+    poses = {_pose(path) for path in new}
+    used, names = taken | poses, dict[str, str]()
+    for pose in sorted(poses & taken):
+        names[pose] = _free(pose, used)
+        used.add(names[pose])
+    return {
+        path: f"{names[_pose(path)]}{_OFF if path.stem.endswith(_OFF) else ''}{path.suffix}"
+        for path in new
+        if _pose(path) in names
+    }
+
+
+def _free(name: str, used: set[str]) -> str:
+    """The name with the next number that is free."""
+    found = re.fullmatch(r"(.*?)(\d+)", name)
+    stem, number, width = (found[1], int(found[2]), len(found[2])) if found else (f"{name}-", 1, 1)
+    while (candidate := f"{stem}{number:0{width}d}") in used:
+        number += 1
+    return candidate
+
+
+def _link(source: Path, target: Path) -> None:
+    try:
+        os.link(source, target)
+    except OSError:  # another disk, or one that knows no links
+        shutil.copy2(source, target)
