@@ -19,6 +19,7 @@ from workbench.main_window import MainWindow
 from workbench.notices import log_to_file
 from workbench.settings import THEMES
 from workbench.theme import apply_theme
+from workbench.views import scene_view
 
 
 class Application(QApplication):
@@ -79,6 +80,7 @@ def _after_start(window: MainWindow, path: Path | None) -> None:
         window.doors.open_dropped(path)
     window.bench.measuring.warm_up()
     window.bench.quick.warm_up()
+    scene_view.warm_up()
 
 
 if __name__ == "__main__":

@@ -18,6 +18,9 @@ from workbench.views.scene_view_pace import ScenePace, single_shot
 from workbench.views.scene_view_painter import PainterSurface
 from workbench.views.scene_view_surface import SceneSurface
 
+DOUBT_MS = 5000
+"""An OpenGL view that has shown nothing for so long never will."""
+
 _log = logging.getLogger(__name__)
 
 
@@ -37,6 +40,8 @@ class Backing(QObject):
         self.pace: ScenePace | None = None
         self._told = False
         self._begin, self._reveal = single_shot(self, 0, self._start), single_shot(self, 0, self._show)
+        self._doubt = single_shot(self, DOUBT_MS, self._give_up)
+        self.presented.connect(self._doubt.stop)
         app = QCoreApplication.instance()
         if app is not None:
             app.aboutToQuit.connect(self.finish)
@@ -69,6 +74,16 @@ class Backing(QObject):
         if self.surface is not None:
             self._canvas.put_below(self.surface.widget)
             self.dress()
+            self._doubt.start()
+
+    def _give_up(self) -> None:
+        """A driver that promised OpenGL and shows nothing is not asked again."""
+        if self.surface is None or self.surface.ready or not self._canvas.isVisible():
+            return
+        _log.warning("the 3D view shows nothing as %s", self.surface.kind)
+        self.finish()
+        choice.forget_opengl()
+        self.ensure()
 
     def dress(self) -> None:
         """Take the colours of the theme and draw again."""
@@ -81,13 +96,14 @@ class Backing(QObject):
     def rest(self) -> None:
         """Do nothing until it is seen again."""
         self._begin.stop()
+        self._doubt.stop()
         if self.pace is not None:
             self.pace.stop()
 
     def finish(self) -> None:
         """Take the surface away; nothing is left running."""
-        self._begin.stop()
-        self._reveal.stop()
+        for timer in (self._begin, self._reveal, self._doubt):
+            timer.stop()
         if self.pace is not None:
             self.pace.stop()
             self.pace.deleteLater()

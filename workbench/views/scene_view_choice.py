@@ -5,7 +5,7 @@
 2. Qt can make an OpenGL 3.2 context for its windows (tried once, in this process; Qt refuses politely where VTK would
    abort): VTK is embedded. Qt's platforms without a screen are not asked.
 3. Another process renders a small picture off screen with VTK: if it comes back well, pictures are rendered.
-4. Else numpy paints.
+4. Else numpy paints. So it does if 2 turns out to show nothing after all.
 
 Step 3 and the import of the libraries take a second or two; they run on a thread, started by `warm_up` when the
 program is idle or by the first view that is shown. The answer holds for the life of the program.
@@ -78,6 +78,11 @@ def opengl_in_windows() -> bool:
     if _Choice.opengl is None:
         _Choice.opengl = QGuiApplication.platformName() in WITH_WINDOWS and _context_can_be_made()
     return _Choice.opengl
+
+
+def forget_opengl() -> None:
+    """OpenGL was promised and does not work: paint from now on."""
+    _Choice.opengl, _Choice.kind = False, "painter"
 
 
 def warm_up() -> None:

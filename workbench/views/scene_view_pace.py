@@ -72,7 +72,7 @@ class ScenePace(QObject):
         """The scene changed: show it soon."""
         total = sum(elements(self._scene, key) for key in whole(self._scene))
         if self._allowance < total <= SOON_ENOUGH * self._allowance and not self._soon.isActive():
-            if self._next.isActive():
+            if self._next.isActive() and not self._first:
                 self._again = True  # finish that picture first: a scene that changes all the time is seen, too
             else:
                 self._still.stop()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 import os
 from collections.abc import Iterator
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -16,8 +17,10 @@ from PySide6.QtWidgets import QApplication, QFileDialog, QMainWindow, QWidget
 from core.errors import InputError
 from tests.workbench.views.test_scene_view_numbers import crossing_number
 from tests.workbench.watchdog import Watchdog
+from workbench.views import scene_view_backing
 from workbench.views import scene_view_choice as choice
 from workbench.views.scene_view import SceneView
+from workbench.views.scene_view_painter import PainterSurface
 
 RED, LEFT = "#ff0000", Qt.MouseButton.LeftButton
 RNG = np.random.default_rng(3)
@@ -502,6 +505,27 @@ def test_libraries_that_cannot_be_imported_leave_the_painter(qapp, qtbot, monkey
         choice.warm_up()
     assert choice.known() == "painter"
     assert "cannot be imported" in caplog.text
+
+
+def test_opengl_that_shows_nothing_is_given_up(qapp, qtbot, monkeypatch):
+    def nothing(parent, draw_now):
+        dead = PainterSurface(parent, lambda: None)
+        monkeypatch.setattr(type(dead), "ready", property(lambda self: self is not dead))
+        return dead
+
+    monkeypatch.setattr(choice._Choice, "kind", "embedded")
+    monkeypatch.setattr(choice._Choice, "opengl", choice._Choice.opengl)  # put back afterwards
+    monkeypatch.setattr(scene_view_backing, "DOUBT_MS", 50)
+    monkeypatch.setattr(
+        scene_view_backing.importlib, "import_module", lambda name: SimpleNamespace(EmbeddedSurface=nothing)
+    )
+    view = SceneView()
+    qtbot.addWidget(view)
+    view.show()
+    with qtbot.waitSignal(view.notice):
+        view.set_cloud(FLAT)
+    complete(view, qtbot)
+    view.close()
 
 
 def test_a_driver_that_crashes_is_found_out_in_another_process(monkeypatch, caplog):
