@@ -1,0 +1,50 @@
+"""Live recordings of the simulated rig, in real time, against what really is before its camera."""
+
+import numpy as np
+
+from core.acquire.source import SourceChoice, SourceSettings
+from core.files.rig import Rig
+from core.image.targets import BlackSquare, Checkerboard
+from core.live.events import LiveRequest, LiveTaken, LiveView, Stop
+from core.pipeline.live import run_live
+from core.pipeline.sources import make_source
+from core.simulate.stage import table_pose
+from tests.pipeline.live_bench import Window
+
+RIG = Rig(Checkerboard(17, 12, 10.0), BlackSquare(60.0), 3, np.radians(5.0))
+CHOICE = SourceChoice("simulated", "scale = 0.25")
+
+
+def test_the_growing_cloud_of_a_block_is_true(tmp_path):
+    truth = make_source(CHOICE, RIG).truth
+    window = Window(lambda event: Stop() if isinstance(event, LiveView) and event.recorded >= 60 else None)
+    request = LiveRequest(
+        "scan", CHOICE, SourceSettings(rate_hz=12), RIG, tmp_path / "scan", camera=truth.camera, fan=truth.fan
+    )
+    ended = run_live(request, window.next_command, window.hear, window.ready)
+    assert ended.error == ""
+    assert ended.recorded >= 60
+    cloud = []
+    for detail in window.details:
+        cloud = [detail.points] if detail.renewed else [*cloud, detail.points]
+    points = np.concatenate([part.points for part in cloud])
+    sigma = np.concatenate([part.sigma for part in cloud])
+    assert len(points) > 1500
+    good = points[sigma < 0.3]
+    heights = heights_above_table(good)
+    assert np.sum(np.abs(heights) < 1) > 300
+    assert abs(np.median(heights[np.abs(heights - truth.thickness_mm) < 3]) - truth.thickness_mm) < 0.5
+
+
+def heights_above_table(points):
+    """True heights in mm over the table."""
+    pose = table_pose()
+    return (points - pose.translation) @ pose.rotation[:, 2]
+
+
+def test_views_of_the_board_are_taken_at_its_rests(tmp_path):
+    window = Window(lambda event: Stop() if isinstance(event, LiveTaken) and event.name == "view02" else None)
+    request = LiveRequest("camera", CHOICE, SourceSettings(rate_hz=12), RIG, tmp_path / "camera")
+    ended = run_live(request, window.next_command, window.hear, window.ready)
+    assert ended.recorded == 3
+    assert {"Hold still.", "Taken."} <= {detail.sentence for detail in window.details}
