@@ -9,7 +9,7 @@ from PySide6.QtCore import QEvent
 from PySide6.QtWidgets import QTabWidget, QVBoxLayout, QWidget
 
 from workbench.pages import camera_words as words
-from workbench.pages.camera_panels import TARGETS, CameraCard
+from workbench.pages.camera_panels import TARGETS, CameraCard, CameraModelForm
 from workbench.pages.camera_picture import PictureTab
 from workbench.pages.camera_presenter import CameraPresenter, Stage, short
 from workbench.pages.camera_tabs import CoverageTab, ExpectedTab, HistoryTab, ResidualTab
@@ -47,8 +47,8 @@ class CameraPage(StepPage):
         self.centre.addWidget(self.tabs, 1)
         self.centre.addWidget(self.bars)
 
-        self.stage = CameraCard(presenter)
-        self.add_to_side(self.stage)
+        self.card = CameraCard(presenter)
+        self.add_to_side(self.card)
         self.live_panel = LivePanel(presenter.live)
         self.source = SourceChooser(self.live_panel, what=self.tr("Folder with pictures of the camera's target"))
         self.pictures_fold = self.add_panel(self.tr("Pictures"), self.source)
@@ -60,6 +60,8 @@ class CameraPage(StepPage):
         self.views_fold = self.add_panel(self.tr("Views"), self.views)
         self.quality, self.parameters, self.notes = ValueRows(), ValueRows(), muted()
         self.result_fold = self.add_panel(self.tr("Result"), self._result())
+        self.model = CameraModelForm(presenter)
+        self.add_panel(self.tr("Camera model"), self.model, collapsed=True)
         self._rows: Any = None
         self._bars: Any = None
         self._folded = ""
@@ -68,8 +70,9 @@ class CameraPage(StepPage):
     def refresh(self) -> None:
         p = self.presenter
         stage = p.stage
-        self.stage.refresh()
+        self.card.refresh()
         self.target.refresh()
+        self.model.refresh()
         self.target.setEnabled(stage is not Stage.LIVE)
         count = len(p.work.pictures) if p.work.pictures is not None else None
         detail = self.tr("{0} pictures").format(count) if count is not None and p.folder is not None else ""

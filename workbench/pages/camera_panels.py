@@ -5,6 +5,7 @@ from __future__ import annotations
 from PySide6.QtWidgets import QWidget
 
 from workbench.pages.camera_presenter import CameraPresenter, Stage
+from workbench.views.forms import SettingsForm
 from workbench.views.stage_card import CardButton, StageCard
 
 TARGETS = ("checkerboard", "charuco", "circle_grid")
@@ -73,3 +74,28 @@ class CameraCard(StageCard):
             Stage.ACCEPTED: (self.tr("Accepted"), p.state.sentence),
             Stage.OUTDATED: (self.tr("Accepted, but out of date"), p.state.sentence),
         }
+
+
+class CameraModelForm(SettingsForm):
+    """What is solved for."""
+
+    def __init__(self, presenter: CameraPresenter, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._presenter = presenter
+        self.add_check("skew", self.tr("Skew γ is free"), self.tr("Whether the pixel's axes may be out of square."))
+        self.add_check(
+            "k3", self.tr("k₃ is free"), self.tr("For strongly distorting lenses; else it makes the rest less sure.")
+        )
+        choices = [
+            ("gross", self.tr("leave out gross ones")),
+            ("all", self.tr("leave out all that stand out")),
+            ("keep", self.tr("keep all")),
+        ]
+        self.add_choice(
+            "outliers", self.tr("Misfits"), choices, self.tr("Views and corners that do not fit the others.")
+        )
+        self.edited.connect(presenter.set_model)
+
+    def refresh(self) -> None:
+        """Show the settings."""
+        self.set_values(self._presenter.model_values())

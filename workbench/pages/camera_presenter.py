@@ -162,6 +162,20 @@ class CameraPresenter(StepPresenter):
         put_source(self.model, "camera", folder, self.tr("choose the camera's pictures"))
         self.work.search()
 
+    # ---- what is solved for
+
+    def model_values(self) -> dict[str, Any]:
+        """Which parameters are free, and what is done with what does not fit."""
+        camera = self.project.options.camera
+        return {"skew": camera.skew, "k3": camera.k3, "outliers": camera.outliers}
+
+    def set_model(self, field: str, value: Any) -> None:
+        """Change one of `model_values`; undoable, and solved again at once."""
+        options = self.project.options
+        changed: dict[str, Any] = {field: value}
+        after = replace(options, camera=replace(options.camera, **changed))
+        self.model.edit(self.tr("change the camera model"), replace(self.project, options=after))
+
     # ---- views
 
     def views(self) -> tuple[ViewQuality, ...]:

@@ -250,3 +250,12 @@ def test_closing_the_project_forgets_everything(accepted):
     accepted.model.close()
     assert accepted.work.calibration is None
     assert accepted.history.entries == ()
+
+
+def test_another_camera_model_is_solved_at_once_and_undone(solved, qtbot):
+    solved.set_model("skew", False)
+    settled(qtbot, solved)
+    assert solved.work.calibration.camera.matrix[0, 1] == 0
+    assert not solved.model_values()["skew"]
+    solved.model.undo_stack.undo()
+    assert solved.work.calibration.camera.matrix[0, 1] != 0

@@ -1,0 +1,200 @@
+"""The camera page, clicked."""
+
+from typing import cast
+
+import numpy as np
+import pytest
+from PySide6.QtCore import Qt
+
+from core.live.events import CameraDetail, LiveEnded, LiveStarted, LiveTaken, LiveView
+from tests.workbench.hand_lane import HandLane
+from workbench import jobs
+from workbench.pages.camera_page import CameraPage
+from workbench.pages.camera_presenter import CameraPresenter, Stage
+from workbench.views import ask
+
+LEFT = Qt.MouseButton.LeftButton
+
+
+@pytest.fixture
+def page(camera_bench, qtbot):
+    made = CameraPage(CameraPresenter(camera_bench))
+    made.presenter.opened()
+    made._opened()
+    qtbot.addWidget(made)
+    made.resize(1100, 700)
+    made.show()
+    return made
+
+
+@pytest.fixture
+def solved(page, views_folder, qtbot):
+    page.source.folder_chosen.emit(views_folder)
+    qtbot.waitUntil(lambda: page.presenter.work.judgement is not None)
+    qtbot.waitUntil(lambda: not page.presenter.bench.quick.busy)
+    return page
+
+
+@pytest.fixture
+def lane(camera_bench):
+    return cast(HandLane, camera_bench.live)
+
+
+def live_view(uv=None, sentence="Hold still.", missing=("Record at least 10 views; there are 2.",)):
+    detail = CameraDetail(7, uv, sentence, np.eye(12, 16, dtype=bool), missing, 2, True)
+    return LiveView(np.zeros((48, 64), np.uint8), 10, 7, 12.0, 2, 0, detail)
+
+
+def start_live(page, lane, qtbot):
+    qtbot.mouseClick(page.live_panel.start, LEFT)
+    lane.current.told.emit(LiveStarted("Camera 1", (640, 480)))
+
+
+def test_an_empty_page_says_what_to_do_next_and_offers_it(page, qtbot, monkeypatch, views_folder):
+    assert "Take pictures of the target" in page.picture.image.empty_state.message
+    assert page.card.title.text() == "No pictures yet"
+    assert page.live_panel.start.property("primary")
+    monkeypatch.setattr(ask, "choose_folder", lambda *_: views_folder)
+    qtbot.mouseClick(page.picture.image.empty_state.button, LEFT)
+    qtbot.waitUntil(lambda: page.presenter.stage is Stage.SOLVED)
+
+
+def test_there_is_one_primary_button_and_it_is_the_next_thing_to_do(solved, qtbot):
+    buttons = solved.card.buttons
+    assert buttons["accept"].property("primary") and not buttons["run"].property("primary")
+    assert not solved.live_panel.start.property("primary")
+    qtbot.mouseClick(buttons["accept"], LEFT)
+    qtbot.waitUntil(lambda: solved.presenter.stage is Stage.ACCEPTED)
+    assert solved.card.title.text() == "Accepted"
+    assert not any(button.property("primary") for button in buttons.values())
+
+
+def test_greyed_buttons_say_why(page):
+    for button in page.card.buttons.values():
+        assert not button.isEnabled() and button.toolTip()
+
+
+def test_the_result_takes_the_room_of_what_it_was_made_from(solved):
+    assert not solved.pictures_fold.isExpanded() and not solved.target_fold.isExpanded()
+    assert not solved.result_fold.isHidden()
+
+
+def test_views_are_listed_and_unchecking_one_leaves_it_out(solved, qtbot):
+    solved.views.toggled.emit("camera/view03.png", False)
+    assert solved.presenter.project.options.excluded == {"camera/view03.png"}
+    qtbot.waitUntil(lambda: not solved.presenter.work.solving)
+    assert solved.presenter.model.undo_stack.undoText() == "leave out view03.png"
+
+
+def test_a_click_on_a_bar_shows_the_view_with_corners_and_residuals(solved, qtbot):
+    solved.bars.bar_clicked.emit("camera/view05.png")
+    qtbot.waitUntil(lambda: "residuals" in solved.picture.image.layer_names())
+    assert solved.views.current() == "camera/view05.png"
+    assert solved.picture.line.text().startswith("view05.png: RMS 0.0")
+
+
+def test_a_view_without_target_says_why(solved, qtbot):
+    solved.presenter.choose_view("camera/view08.png")
+    qtbot.waitUntil(lambda: "no checkerboard" in solved.picture.line.text())
+    qtbot.waitUntil(lambda: "corners" not in solved.picture.image.layer_names())
+
+
+def test_the_threshold_line_leaves_views_out(solved, qtbot):
+    solved.bars.threshold_changed.emit(0.06)
+    assert solved.presenter.project.options.excluded == {"camera/view03.png"}
+
+
+@pytest.mark.parametrize("name", ["coverage", "residuals", "expected", "history"])
+def test_every_tab_shows_something_before_and_after(page, views_folder, qtbot, name):
+    tab = getattr(page, name)
+    page.tabs.setCurrentWidget(tab)
+    page.presenter.use_folder(views_folder)
+    qtbot.waitUntil(lambda: page.presenter.work.judgement is not None)
+    tab.refresh()
+    said = tab.missing if name == "coverage" else tab.words
+    assert said.text()
+
+
+def test_what_is_missing_is_told_in_words(solved):
+    solved.tabs.setCurrentWidget(solved.coverage)
+    assert "Record at least 10 views; there are 8." in solved.coverage.missing.text()
+
+
+def test_parameters_are_shown_with_their_standard_deviation_and_unit(solved):
+    focal = solved.parameters.text_of("α (fx)")
+    assert "±" in focal and focal.endswith(" px")
+
+
+def test_the_target_form_edits_the_project(page, qtbot):
+    page.target.form.edited.emit("columns", 11)
+    qtbot.waitUntil(lambda: page.presenter.project.rig.camera_target.columns == 11)
+
+
+def test_another_kind_of_target_shows_its_own_fields(page, qtbot):
+    page.target.form.edited.emit("kind", "charuco")
+    qtbot.waitUntil(lambda: "marker_mm" in page.target.form.values())
+
+
+def test_the_target_is_printed_where_the_dialog_says(page, qtbot, monkeypatch, tmp_path):
+    monkeypatch.setattr(ask, "choose_file_to_save", lambda *_: tmp_path / "board")
+    qtbot.mouseClick(page.target.print, LEFT)
+    qtbot.waitUntil((tmp_path / "board.pdf").exists, timeout=20000)
+
+
+def test_a_live_picture_is_shown_with_its_corners_and_answered_once(page, lane, qtbot):
+    page.source.set_mode("live")
+    start_live(page, lane, qtbot)
+    corners = np.array([[100.0, 120.0], [200.0, 130.0]])
+    lane.current.view.emit(live_view(corners))
+    assert lane.sent == ["shown"]
+    assert {"corners", "covered"} <= set(page.picture.image.layer_names())
+    assert "Hold still." in page.picture.hints.text
+    lane.current.view.emit(live_view(None, "The target is not seen."))
+    assert "corners" not in page.picture.image.layer_names()
+    assert lane.sent == ["shown", "shown"]
+
+
+def test_a_live_picture_is_answered_while_another_page_is_shown(page, lane, qtbot):
+    start_live(page, lane, qtbot)
+    page.hide()
+    lane.current.view.emit(live_view())
+    assert lane.sent == ["shown"]
+
+
+def test_views_taken_are_listed_and_can_be_put_aside(page, lane, qtbot):
+    start_live(page, lane, qtbot)
+    lane.current.told.emit(LiveTaken("view00", np.zeros((30, 40), np.uint8)))
+    lane.current.told.emit(LiveTaken("view01", np.zeros((30, 40), np.uint8)))
+    assert [name for name, _ in page.presenter.live_views] == ["camera/view00", "camera/view01"]
+    page.views.toggled.emit("camera/view00", False)
+    assert [name for name, _ in page.presenter.live_views] == ["camera/view01"]
+    assert lane.sent[-1].name == "view00"
+
+
+def test_stopping_calibrates_from_what_was_taken(page, lane, qtbot, views_folder):
+    start_live(page, lane, qtbot)
+    folder = lane.waiting[0][2][0].folder
+    folder.mkdir(parents=True)
+    for path in views_folder.iterdir():
+        (folder / path.name).write_bytes(path.read_bytes())
+    qtbot.mouseClick(page.live_panel.start, LEFT)
+    lane.finish(LiveEnded(folder, 9, 0))
+    qtbot.waitUntil(lambda: page.presenter.stage is Stage.SOLVED)
+    qtbot.waitUntil(lambda: "corners" in page.picture.image.layer_names())
+
+
+def test_the_user_may_look_at_another_tab_while_views_are_taken(page, lane, qtbot):
+    start_live(page, lane, qtbot)
+    page.tabs.setCurrentWidget(page.history)
+    lane.current.told.emit(LiveTaken("view00", np.zeros((30, 40), np.uint8)))
+    assert page.tabs.currentWidget() is page.history
+
+
+def test_the_keys_do_what_the_buttons_do(solved, qtbot):
+    solved.presenter.do_accept()
+    qtbot.waitUntil(lambda: solved.presenter.stage is Stage.ACCEPTED)
+    before = solved.presenter.bench.measuring.ran.count(jobs.FIND_VIEWS)
+    solved.presenter.do_run()
+    qtbot.waitUntil(lambda: solved.presenter.bench.measuring.ran.count(jobs.FIND_VIEWS) == before + 1)
+    solved.presenter.do_live()
+    assert solved.presenter.live.running
