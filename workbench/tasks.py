@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import multiprocessing
 import threading
+import traceback
 from collections import deque
 from collections.abc import Callable
 from multiprocessing.connection import Connection
@@ -141,6 +142,13 @@ class Lane(QObject):
             self._cancel_number.value = task.number
             self._stop_timer.start(STOP_WITHIN_MS)
 
+    def cancel_all(self) -> None:
+        """Stop what runs, and forget what waits."""
+        for task, *_ in list(self._waiting):
+            self.cancel(task)
+        if self._current is not None:
+            self.cancel(self._current)
+
     def post(self, task: Task, message: tuple[str, Any]) -> None:
         """Send `message` to the job if it is still running."""
         if task is self._current and self._connection is not None:
@@ -162,25 +170,42 @@ class Lane(QObject):
     def _next(self) -> None:
         if self._current is not None or not self._waiting:
             return
-        self.warm_up()
         task, job, args, offers = self._waiting.popleft()
         self._current = task
-        assert self._connection is not None
         self.task_started.emit(task)
         try:
+            self.warm_up()
+            assert self._connection is not None
             self._connection.send(("run", (task.number, job, args, offers)))
-        except OSError:
-            self._on_message(self._generation, None)
+        except Exception as error:  # noqa: BLE001  no process, or nothing that can be sent: the job fails, not the lane
+            if isinstance(error, OSError):
+                self._end_process()
+            self._fail_soon(task, Failure(type(error).__name__, str(error), traceback.format_exc()))
+
+    def _fail_soon(self, task: Task, problem: Failure) -> None:
+        """A job that could not even begin: told a moment later, when whoever asked for it has its task."""
+
+        def fail() -> None:
+            if task is self._current:
+                self._finish(task, "cancelled" if task.cancelling else "failed", problem)
+
+        QTimer.singleShot(0, self, fail)
 
     def _start(self) -> None:
         ours, theirs = self._context.Pipe()
         self._generation += 1
         self._cancel_number = self._context.Value("q", 0, lock=False)
-        self._process = self._context.Process(
+        process = self._context.Process(
             target=serve, args=(theirs, self._cancel_number, self._warm), name=f"trisect-{self.name}", daemon=True
         )
-        self._process.start()
-        theirs.close()
+        try:
+            process.start()
+        except BaseException:
+            ours.close()
+            raise
+        finally:
+            theirs.close()
+        self._process = process
         self._connection = ours
         self._reader = threading.Thread(
             target=self._read, args=(ours, self._generation), name=f"lane-{self.name}", daemon=True

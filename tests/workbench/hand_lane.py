@@ -71,6 +71,10 @@ class HandLane(QObject):
     def cancel(self, task: Task) -> None:
         self._end(task, lambda: task.cancelled.emit())
 
+    def cancel_all(self) -> None:
+        for task, *_ in reversed(list(self.waiting)):
+            self.cancel(task)
+
     def post(self, task: Task, message: tuple[str, Any]) -> None:
         self.sent.append(message[1] if message[0] == "command" else message[0])
 

@@ -99,6 +99,35 @@ def test_a_result_that_cannot_be_sent_is_a_failure(qtbot: Any, lane: Lane) -> No
     assert answers.got[0][0] == "failed"
 
 
+def test_a_process_that_cannot_be_started_fails_the_job_and_the_lane_goes_on(
+    qtbot: Any, lane: Lane, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(_: Any) -> None:
+        raise OSError("too many open files")
+
+    lane.close()
+    answers = Answers()
+    with monkeypatch.context() as patch:
+        patch.setattr(lane._context.Process, "start", refuse)
+        answers.run(lane, "double", 1)
+        assert answers.got == [], "told before whoever asked could know of the task"
+        finish(qtbot, lane)
+    ((kind, problem),) = answers.got
+    assert kind == "failed"
+    assert "too many open files" in sentence(problem)
+    answers.run(lane, "double", 4)
+    finish(qtbot, lane)
+    assert answers.got[1:] == [("done", 8)]
+
+
+def test_what_cannot_be_sent_to_a_job_fails_it_and_the_lane_goes_on(qtbot: Any, lane: Lane) -> None:
+    answers = Answers()
+    answers.run(lane, "double", lambda: None)
+    answers.run(lane, "double", 4)
+    finish(qtbot, lane)
+    assert [kind for kind, _ in answers.got] == ["failed", "done"]
+
+
 @pytest.mark.parametrize("name", ["count_until_cancelled", "deaf"])
 def test_cancel_acts_within_a_second_even_on_a_job_that_does_not_listen(qtbot: Any, lane: Lane, name: str) -> None:
     answers = Answers()
