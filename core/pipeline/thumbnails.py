@@ -1,4 +1,4 @@
-"""Small pictures of recorded ones, for lists."""
+"""Small pictures of recorded ones, for lists and for looking at many of them quickly."""
 
 from __future__ import annotations
 
@@ -16,6 +16,19 @@ from core.pipeline.live_display import Display
 from core.progress import Progress, silent
 
 Thumbnail = NDArray[np.uint8]
+
+
+def display_picture(
+    path: Path, channel: Channel | None, width_px: int, progress: Progress = silent
+) -> tuple[Thumbnail, int]:
+    """A picture in 8 bit, reduced by a whole factor to at most `width_px` across, and the factor.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read.
+    """
+    return Display(width_px).reduced(read_picture(path, channel))
 
 
 def thumbnails(

@@ -19,7 +19,6 @@ from workbench.views.colours import (
     EXCLUDED,
     SWEEP,
     fan_colour,
-    sigma_colours,
 )
 from workbench.views.image_view import ImageView
 
@@ -29,7 +28,9 @@ PREVIEW_SIGMA_MM = HintLimits().sigma_mm
 LIT = "#FFB000"
 """Cells with light that has given no points yet."""
 
-_SHADES = 16
+GAP_PX = 4.0
+"""Points farther apart than this are not joined."""
+
 _UNKNOWN = -1
 _CROSSINGS = ("good", "weak", "left out")
 
@@ -82,15 +83,18 @@ def show_crossings(image: ImageView, preview: FramePreview | None) -> None:
         image.set_points(name, uv, colour=mark.colour, symbol=mark.symbol, size=11, tips=tips, title=title)
 
 
-def show_points(image: ImageView, uv: ArrayLike | None, sigma: ArrayLike | None, limit_mm: float) -> None:
-    """The measured points of a frame, coloured by σ."""
+def show_points(
+    image: ImageView, uv: NDArray[np.float32] | None, sigma: NDArray[np.float32] | None, limit_mm: float
+) -> None:
+    """The measured points of a frame in their order along the stripes, as lines coloured by σ."""
     if uv is None or sigma is None:
         image.remove_layer("points")
         return
-    # a few colours only: each is drawn at one go
-    steps = np.round(np.asarray(sigma, dtype=np.float64) * (_SHADES / limit_mm)) * (limit_mm / _SHADES)
-    title = _tr("points: σ 0 … {0} mm").format(f"{limit_mm:g}")
-    image.set_points("points", uv, colour=sigma_colours(steps, limit_mm), symbol=".", size=5, title=title)
+    ends = np.flatnonzero(np.hypot(*np.diff(uv, axis=0).T) > GAP_PX) + 1
+    image.set_lines(
+        "points", np.split(uv, ends), values=np.split(sigma, ends), limits=(0.0, limit_mm), width=4.0,
+        title=_tr("points: σ 0 … {0} mm").format(f"{limit_mm:g}"),
+    )  # fmt: skip
 
 
 def show_coverage(image: ImageView, cells: NDArray[np.bool_], lit: NDArray[np.bool_]) -> None:

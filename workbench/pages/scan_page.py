@@ -135,11 +135,12 @@ class ScanPage(StepPage):
         finally:
             self.presenter.live.shown()
 
-    def _show_measured(self, detail: ScanDetail, picture: Any) -> None:
+    def _show_measured(self, detail: ScanDetail, picture: Any, scale: int) -> None:
         try:
             if self.presenter.work.measuring:
-                self.picture.show_measured(detail, picture)
-                self.running.show_detail(detail, picture.shape[1])
+                self.picture.show_measured(detail, picture, scale)
+                self.running.show_detail(detail, picture.shape[1] * scale)
+                self._show_frames()
         finally:
             self.presenter.work.shown()
 
@@ -178,5 +179,6 @@ class ScanPage(StepPage):
         if shown != self._rows:
             self._rows = shown
             self.frames.set_rows(rows)
-        if p.scrub.current and self.frames.current() != p.scrub.current:
-            self.frames.set_current(p.scrub.current)
+        current = p.work.seen_last if p.work.measuring else p.scrub.current
+        if current and self.frames.current() != current:
+            self.frames.set_current(current)

@@ -183,13 +183,14 @@ class RunningPanel(QWidget):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.condition = Meter(
-            self.tr("Condition of the crossings"),
+            self.tr("Crossings: condition"),
             [(500.0, "good"), (20_000.0, "warn"), (1e6, "bad")],
             minimum=10.0,
             logarithmic=True,
         )
         self.condition.setToolTip(
-            self.tr("How near to one straight line this frame's crossings with the fan are: small is good. "
+            self.tr("How near to one straight line this frame's crossings with the fan are: small is good, ∞ means "
+                    "collinear or fewer than three. Other frames may still help. "
                     "Tilt the laser, or cross the fan at another height.")
         )  # fmt: skip
         self.speed = Meter(self.tr("Speed"), [(0.6 * FAST, "good"), (FAST, "warn"), (2 * FAST, "bad")])

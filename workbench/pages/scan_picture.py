@@ -6,6 +6,7 @@ from collections.abc import Callable
 from enum import StrEnum
 from typing import Any
 
+import numpy as np
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
 from core.live.events import LiveView, ScanDetail
@@ -39,6 +40,8 @@ class ScanPicture(QWidget):
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         column.addWidget(self.image)
+        nothing = np.zeros((1, 1), np.bool_)
+        overlays.show_coverage(self.image, nothing, nothing)  # the first layers are the lowest
         self._empty()
 
     def refresh(self) -> None:
@@ -65,10 +68,10 @@ class ScanPicture(QWidget):
         if isinstance(view.detail, ScanDetail):
             self._show_detail(view.detail)
 
-    def show_measured(self, detail: ScanDetail, picture: Any) -> None:
+    def show_measured(self, detail: ScanDetail, picture: Any, scale: int) -> None:
         """A frame of the recording that is being measured."""
         self._begin("measured")
-        self.image.set_picture(picture)
+        self.image.set_picture(picture, scale=scale)
         self._show_detail(detail)
 
     def _show_detail(self, detail: ScanDetail) -> None:

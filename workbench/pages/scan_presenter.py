@@ -307,7 +307,6 @@ class ScanPresenter(StepPresenter):
             return
         if self.calibrated:
             self.work.measure(by_itself=True)
-            self.bench.notices.info(self.tr("The recording is being measured; Cancel keeps the recording."))
         else:
             self.bench.notices.info(
                 self.tr("The scan is recorded. It can be measured once camera and laser planes are accepted.")

@@ -15,6 +15,8 @@ from workbench.views.colours import Level
 
 Row = tuple[str, str, str, Level]
 
+_RAISED = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
+
 
 def quality_rows(look: ScanLook | None) -> list[Row]:
     """How good the result is: label, value with unit, tip, level."""
@@ -97,8 +99,11 @@ def covered_sentence(detail: ScanDetail | None) -> str:
 def condition_text(condition: float) -> str:
     """The condition of a frame's crossings."""
     if math.isinf(condition):
-        return _tr("∞ (collinear or too few)")
-    return f"{condition:.0f}" if condition < 1e4 else f"{condition:.0e}".replace("e+0", "·10^").replace("e+", "·10^")
+        return _tr("∞")
+    if condition < 10_000:
+        return f"{condition:.0f}"
+    exponent = math.floor(math.log10(condition))
+    return f"{condition / 10**exponent:.0f}·10" + str(exponent).translate(_RAISED)
 
 
 def speed_text(speed_px: float) -> str:

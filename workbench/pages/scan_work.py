@@ -23,6 +23,9 @@ from workbench.tasks import Task
 
 PART = "scan/"
 
+DISPLAY_PX = 1280
+"""Width of the pictures that are shown while a recording is measured, at most."""
+
 
 class ScanWork(QObject):
     """Lists the frames, reads the accepted calibrations, measures, and reads the result.
@@ -36,8 +39,8 @@ class ScanWork(QObject):
     detail = Signal(object)
     """ScanDetail of a frame, while a recording is measured: all of them, for the points."""
 
-    frame_seen = Signal(object, object)
-    """ScanDetail and the picture it is about: as many as are asked for by `shown`."""
+    frame_seen = Signal(object, object, int)
+    """ScanDetail, the picture it is about and how many times that is reduced; the next comes after `shown`."""
 
     started = Signal()
     measured = Signal(object)
@@ -158,14 +161,14 @@ class ScanWork(QObject):
             return
         self._reading = True
         self._bench.quick.run(
-            jobs.READ_PICTURE,
+            jobs.DISPLAY_PICTURE,
             folder / short(detail.preview.name),
             self._model.project.rig.channel,
+            DISPLAY_PX,
             label=self.tr("Reading a picture"),
-            on_done=lambda picture: self.frame_seen.emit(detail, picture),
+            on_done=lambda answer: self.frame_seen.emit(detail, *answer),
             on_failed=lambda _: self.shown(),
             on_cancelled=self.shown,
-            offers={},
         )
 
     def _measured(self, folder: Path, project: Project, summary: ScanSummary) -> None:

@@ -13,6 +13,10 @@ NARROWEST = 160
 """No view is made narrower than so many pixels."""
 
 
+GAP = 4
+"""Pixels between a view and the line that parts it from the next."""
+
+
 class PaneTitle(QWidget):
     """The line over a view: its title, what the page adds, and the button that gives it all the room."""
 
@@ -69,7 +73,6 @@ class SideBySide(QSplitter):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(Qt.Orientation.Horizontal, parent)
         self.setChildrenCollapsible(False)
-        self.setHandleWidth(7)
         self._panes: list[tuple[PaneTitle, QWidget]] = []
         self._alone: int | None = None
 
@@ -77,7 +80,7 @@ class SideBySide(QSplitter):
         """Put a view at the right end."""
         head, pane = PaneTitle(title), QWidget()
         column = QVBoxLayout(pane)
-        column.setContentsMargins(0, 0, 0, 0)
+        column.setContentsMargins(0 if not self._panes else GAP, 0, GAP, 0)
         column.setSpacing(3)
         column.addWidget(head)
         column.addWidget(view, 1)
