@@ -7,11 +7,8 @@ shows them and no faster.
 
 from __future__ import annotations
 
-import time
-from collections import deque
 from collections.abc import Callable
 
-from core.acquire.source import Ended, Frame, FrameSource, Unplugged
 from core.errors import InputError
 from core.files.atomic import make_folder
 from core.files.recorder import Recorder
@@ -41,7 +38,7 @@ from core.live.events import (
 )
 from core.pipeline.live_camera import LiveCamera
 from core.pipeline.live_desk import Desk, LiveStep
-from core.pipeline.live_display import Display
+from core.pipeline.live_loop import LiveLoop
 from core.pipeline.live_planes import LivePlanes
 from core.pipeline.live_scan import LiveScan
 from core.pipeline.sources import make_source
@@ -71,26 +68,6 @@ __all__ = [
     "TakeReference",
     "run_live",
 ]
-
-RETRY_S = 1.0
-"""How often a source that was unplugged is looked for."""
-
-LISTEN_S = 0.05
-"""Commands are heard at least this often."""
-
-WORKING_LISTEN_S = 0.005
-"""The same while a frame is being looked at."""
-
-PATIENCE_S = 0.25
-"""A picture that is to be shown together with what is found in it is shown without when that takes longer."""
-
-LAST_LOOK_S = 5.0
-"""How long the last frame of a source that has ended may take to be looked at."""
-
-MOST_DAMAGED = 20
-"""So many damaged frames in a row end the recording."""
-
-_RATE_OVER_S = 2.0
 
 
 def run_live(
@@ -124,7 +101,7 @@ def run_live(
         return LiveEnded(request.folder, 0, 0, str(refused))
     desk = Desk(request, source, emit)
     step = _step(desk)
-    loop = _Loop(desk, step, commands, ready)
+    loop = LiveLoop(desk, step, commands, ready)
     error = ""
     try:
         error = loop.run()
@@ -154,170 +131,3 @@ def _step(desk: Desk) -> LiveStep:
             return LivePlanes(desk)
         case "scan":
             return LiveScan(desk, Recorder(desk.request.folder))
-
-
-class _Loop:
-    """The loop itself: one source, one step."""
-
-    def __init__(
-        self, desk: Desk, step: LiveStep, commands: Callable[[], Command | None], ready: Callable[[], bool]
-    ) -> None:
-        self._desk, self._step, self._commands, self._ready = desk, step, commands, ready
-        self._source: FrameSource = desk.source
-        self._settings = desk.request.settings
-        self._display = Display(desk.request.display_px)
-        self._stopping = self._started = False
-        self._waiting: deque[Command] = deque()
-        self._newest: Frame | None = None
-        self._fresh: Frame | None = None
-        self._shown_index = -1
-        self._shown_s = 0.0
-        self._times: deque[float] = deque()
-        self._dropped_before = self._dropped_now = self._damaged = 0
-
-    @property
-    def dropped(self) -> int:
-        """Frames lost so far, by the source and by the disk."""
-        return self._dropped_before + self._dropped_now + self._desk.lost
-
-    def run(self) -> str:
-        """Until the end; the sentence of what ended it too early, or ""."""
-        try:
-            self._open()
-            self._source.prepare(self._desk.request.step)
-            self._step.begin()
-            while not self._stopping:
-                self._turn()
-        except Ended:
-            return self._look_at_last()
-        except InputError as problem:
-            return str(problem)
-        return ""
-
-    def _turn(self) -> None:
-        """One turn: commands, a frame, what was found, a picture for the window."""
-        try:
-            self._obey()
-            if self._stopping:
-                return
-            frame = self._read()
-            if frame is not None:
-                self._take_in(frame)
-            self._fresh = self._step.poll() or self._fresh
-            self._show()
-        except Unplugged as gone:
-            self._wait_for_source(str(gone))
-
-    def _open(self) -> None:
-        self._source.configure(self._settings)
-        self._source.open()
-
-    def _read(self) -> Frame | None:
-        """The next frame; one that is damaged is told and left out, unless all are."""
-        try:
-            frame = self._source.read(WORKING_LISTEN_S if self._desk.worker.busy else LISTEN_S)
-        except Unplugged:
-            raise
-        except InputError as damage:
-            self._damaged += 1
-            if self._damaged >= MOST_DAMAGED:
-                raise
-            self._desk.notice(str(damage))
-            return None
-        if frame is not None:
-            self._damaged = 0
-        return frame
-
-    def _take_in(self, frame: Frame) -> None:
-        if not self._started:
-            self._started = True
-            height, width = frame.picture.shape
-            self._desk.emit(LiveStarted(self._source.name, (width, height)))
-        self._newest, self._dropped_now = frame, frame.dropped
-        self._times.append(frame.time_s)
-        while len(self._times) > 2 and frame.time_s - self._times[0] > _RATE_OVER_S:
-            self._times.popleft()
-        self._step.frame(frame)
-
-    def _obey(self) -> None:
-        """Act on all commands that have come."""
-        while (command := self._waiting.popleft() if self._waiting else self._commands()) is not None:
-            match command:
-                case Stop():
-                    self._stopping = True
-                    return
-                case Configure(settings):
-                    self._settings = settings
-                    try:
-                        self._source.configure(settings)
-                    except Unplugged:
-                        raise
-                    except InputError as error:
-                        self._desk.emit(LiveNotice(str(error)))
-                case Switch(lasers):
-                    if not self._desk.switch(lasers):
-                        self._desk.notice("This source cannot switch the lasers: do it by hand.")
-                case _:
-                    self._step.tell(command)
-
-    def _show(self) -> None:
-        """Send the window a picture if it is ready for one and there is a new one."""
-        newest, fresh = self._newest, self._fresh
-        if newest is None or not self._ready():
-            return
-        now = time.monotonic()
-        if self._step.paired and self._desk.worker.busy and now - self._shown_s < PATIENCE_S and fresh is None:
-            return
-        frame = fresh if self._step.paired and fresh is not None and fresh.index > self._shown_index else newest
-        if frame.index == self._shown_index and fresh is None:
-            return
-        self._fresh, self._shown_index, self._shown_s = None, frame.index, now
-        picture, scale = self._display.reduced(frame.picture)
-        self._desk.emit(
-            LiveView(picture, scale, frame.index, self._rate(), self._desk.recorded, self.dropped, self._step.detail())
-        )
-
-    def _rate(self) -> float:
-        if len(self._times) < 2:
-            return 0.0
-        return (len(self._times) - 1) / max(self._times[-1] - self._times[0], 1e-6)
-
-    def _wait_for_source(self, sentence: str) -> None:
-        """The source is gone: look for it until it is back, or until told to stop."""
-        self._desk.emit(LiveUnplugged(sentence))
-        self._source.close()
-        self._dropped_before, self._dropped_now = self._dropped_before + self._dropped_now, 0
-        self._newest = self._fresh = None
-        self._shown_index = -1
-        self._times.clear()
-        tried = time.monotonic()
-        while not self._stopping:
-            while (command := self._commands()) is not None:
-                if isinstance(command, Stop):
-                    self._stopping = True
-                    return
-                self._waiting.append(command)
-            time.sleep(LISTEN_S)
-            if time.monotonic() - tried < RETRY_S:
-                continue
-            tried = time.monotonic()
-            try:
-                self._open()
-                self._step.begin()
-            except InputError:
-                self._source.close()
-                continue
-            self._desk.emit(LiveBack())
-            return
-
-    def _look_at_last(self) -> str:
-        """The source has ended: wait for the frame that is being looked at, and show it if the window is ready."""
-        deadline = time.monotonic() + LAST_LOOK_S
-        try:
-            while self._desk.worker.busy and time.monotonic() < deadline:
-                self._fresh = self._step.poll() or self._fresh
-                time.sleep(WORKING_LISTEN_S)
-        except InputError as problem:
-            return str(problem)
-        self._show()
-        return ""

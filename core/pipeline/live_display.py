@@ -30,4 +30,4 @@ class Display:
         if picture.dtype == np.uint8:
             return np.ascontiguousarray(small, dtype=np.uint8), factor
         self._bits = max(self._bits, int(picture.max()).bit_length())
-        return np.asarray(small >> (self._bits - 8)).astype(np.uint8), factor
+        return np.asarray(np.asarray(small, dtype=np.uint16) >> (self._bits - 8), dtype=np.uint8), factor

@@ -62,7 +62,12 @@ def _pose_around(
     part = np.ascontiguousarray(picture[v0 : int(high[1] + reach[1]) + 1, u0 : int(high[0] + reach[0]) + 1])
     origin = np.array([u0, v0], dtype=np.float64)
     pose = measure_plane_pose(
-        "", part, None, target, None if camera is None else _part_of(camera, part, origin), settings
+        "",
+        part,
+        None,
+        target,
+        None if camera is None else _part_of(camera, (part.shape[1], part.shape[0]), origin),
+        settings,
     )
     view = pose.view
     if view is None:
@@ -74,11 +79,11 @@ def _pose_around(
     )
 
 
-def _part_of(camera: Camera, part: Picture, origin: Array) -> Camera:
-    """The camera that sees only a part of the picture, whose first pixel is at `origin` (2,)."""
+def _part_of(camera: Camera, size: tuple[int, int], origin: Array) -> Camera:
+    """The camera that sees only a part of the picture, of this size, whose first pixel is at `origin` (2,)."""
     matrix = camera.matrix.copy()
     matrix[:2, 2] -= origin
-    return Camera((part.shape[1], part.shape[0]), matrix, camera.distortion)
+    return Camera(size, matrix, camera.distortion)
 
 
 @dataclass(frozen=True, eq=False, slots=True)

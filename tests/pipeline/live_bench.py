@@ -9,7 +9,7 @@ from core.acquire.source import Ended, Frame, Lasers, SourceChoice, SourceSettin
 from core.errors import InputError
 from core.files.rig import Rig
 from core.live.events import LiveRequest, LiveView
-from core.pipeline import live
+from core.pipeline import live, live_loop
 
 
 class ScriptedSource:
@@ -101,7 +101,7 @@ class Window:
 def record(monkeypatch, source, window, step, rig: Rig, folder: Path, **choices):
     """A whole live recording with a scripted source."""
     monkeypatch.setattr(live, "make_source", lambda choice, rig: source)
-    monkeypatch.setattr(live, "RETRY_S", 0.05)
+    monkeypatch.setattr(live_loop, "RETRY_S", 0.05)
     request = LiveRequest(step, SourceChoice("scripted"), SourceSettings(), rig, folder, **choices)
     pickle.dumps(request)
     return live.run_live(request, window.next_command, window.hear, window.ready)
