@@ -20,6 +20,7 @@ from core.files.project_results import ProjectResults
 from core.files.run_file import read_run
 from core.files.scan_file import read_scan
 from core.model import Camera, Fan
+from core.model.arrays import Array
 from core.pipeline.frame_stages import frame_stages
 from core.pipeline.pose_stages import pose_stages
 from core.pipeline.project_results import load_results
@@ -27,7 +28,9 @@ from core.pipeline.project_steps import accepted_camera, project_set, results_fo
 from core.pipeline.scan_step import left_out_sentences
 from core.pipeline.workspace import FILES
 from core.progress import Progress, silent
+from core.scan.cloud import Cloud
 from core.scan.coverage_map import CoverageMap
+from core.scan.features import ScanFeatures
 from core.scan.scan_look import ScanLook, reasons_counted
 from core.scan.stages import FrameStages, SettledScan
 
@@ -61,35 +64,24 @@ def accepted_calibration(
 def show_scan(folder: Path, progress: Progress = silent) -> ScanLook:
     """The scan among the results of the project in `folder`; without points if there is none that can be read."""
     results = load_results(folder, progress)
-    cloud = results.cloud
-    said = left_out_sentences(results.frames)
-    coverage, features = None, None
-    if cloud is not None:
-        features = read_scan(results.files["scan"]).features
-        coverage = CoverageMap(features.image_size)
-        for frame in features.frames:
-            for piece in frame.centrelines:
-                coverage.add_lit(piece.uv)
-        coverage.add(cloud.uv)
-    nothing = np.zeros(0, np.float32)
-    sigma = nothing if cloud is None else cloud.sigma.astype(np.float32)
-    half, most = np.quantile(sigma, (0.5, 0.95)) if len(sigma) else (np.nan, np.nan)
+    cloud = _NO_POINTS if results.cloud is None else results.cloud
+    features = None if results.cloud is None else read_scan(results.files["scan"]).features
+    half, most = np.quantile(cloud.sigma, (0.5, 0.95)) if len(cloud) else (np.nan, np.nan)
+    counted_already = left_out_sentences(results.frames)
     return ScanLook(
-        points=np.zeros((0, 3), np.float32) if cloud is None else cloud.points.astype(np.float32),
-        sigma=sigma,
-        uv=np.zeros((0, 2), np.float32) if cloud is None else cloud.uv.astype(np.float32),
-        frame=np.zeros(0, np.int32) if cloud is None else cloud.frame.astype(np.int32),
+        points=cloud.points.astype(np.float32),
+        sigma=cloud.sigma.astype(np.float32),
+        uv=cloud.uv.astype(np.float32),
+        frame=cloud.frame.astype(np.int32),
         triangles=0 if results.mesh is None else len(results.mesh.triangles),
         frames=results.frames,
         frames_used=sum(frame.used for frame in results.frames),
         median_sigma_mm=float(half),
         sigma_95_mm=float(most),
         left_out=reasons_counted(results.frames),
-        cells=np.zeros((1, 1), np.bool_) if coverage is None else coverage.cells,
-        lit=np.zeros((1, 1), np.bool_) if coverage is None else coverage.lit,
-        share=0.0 if coverage is None else coverage.share,
+        share=0.0 if features is None else _covered(features, cloud.uv),
         stripe=None if features is None else features.sweep_stripe,
-        notes=tuple(note for note in _scan_notes(results) if note not in said),
+        notes=tuple(note for note in _scan_notes(results) if note not in counted_already),
         problems=results.problems,
     )
 
@@ -137,6 +129,27 @@ class _Version:
     def of(cls, path: Path) -> _Version:
         about = path.stat()
         return cls(path, about.st_mtime_ns, about.st_size)
+
+
+_NO_POINTS = Cloud(
+    points=np.zeros((0, 3)),
+    uv=np.zeros((0, 2)),
+    sigma=np.zeros(0),
+    intensity=np.zeros(0),
+    frame=np.zeros(0, np.int64),
+    sweep=np.zeros(0, np.int64),
+    normals=np.zeros((0, 3)),
+)
+
+
+def _covered(features: ScanFeatures, uv: Array) -> float:
+    """Share of what was lit in which there are points, at `uv` (N, 2) in pixels."""
+    coverage = CoverageMap(features.image_size)
+    for frame in features.frames:
+        for piece in frame.centrelines:
+            coverage.add_lit(piece.uv)
+    coverage.add(uv)
+    return coverage.share
 
 
 def _scan_notes(results: ProjectResults) -> tuple[str, ...]:

@@ -32,9 +32,8 @@ class ScanLook:
         Half and 95 % of the points have no larger σ; NaN without points.
     left_out
         Why frames gave no points, and how many each time, the most frequent reason first.
-    cells, lit, share
-        (rows, columns) of the picture: True where there are points, and where any laser light was seen; and the covered
-        share (0 … 1) of what was lit.
+    share
+        Covered share (0 … 1) of what was lit, as in `core.scan.coverage_map`.
     stripe
         How the hand-held laser's stripe looks, as the measurement settled it.
     notes
@@ -53,8 +52,6 @@ class ScanLook:
     median_sigma_mm: float
     sigma_95_mm: float
     left_out: tuple[tuple[str, int], ...]
-    cells: NDArray[np.bool_]
-    lit: NDArray[np.bool_]
     share: float
     stripe: StripeSettings | None
     notes: tuple[str, ...]

@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from PySide6.QtCore import QEvent, Qt
-from PySide6.QtGui import QKeySequence, QShortcut
+from PySide6.QtGui import QKeyEvent, QKeySequence, QShortcut
 from PySide6.QtWidgets import QWidget
 
 from core.live.events import LiveView, ScanDetail
@@ -22,6 +22,9 @@ from workbench.views.live_panel import LivePanel, LiveStrip
 from workbench.views.side_by_side import SideBySide
 from workbench.views.source_chooser import SourceChooser
 from workbench.views.tables import ListRow, ViewList
+
+_STEPS = {Qt.Key.Key_Left: -1, Qt.Key.Key_Right: 1}
+"""Keys that go through the frames."""
 
 
 class ScanPage(StepPage):
@@ -105,10 +108,28 @@ class ScanPage(StepPage):
         p.work.frame_seen.connect(self._show_measured)
         p.model.opened.connect(self._opened)
         self.cloud.scene.notice.connect(p.bench.notices.info)
-        for key, by in ((Qt.Key.Key_Left, -1), (Qt.Key.Key_Right, 1)):
+        self.picture.image.installEventFilter(self)
+        for key, by in _STEPS.items():
             shortcut = QShortcut(QKeySequence(key), self)
             shortcut.setContext(Qt.ShortcutContext.WidgetWithChildrenShortcut)
             shortcut.activated.connect(lambda by=by: self._step(by))
+
+    def eventFilter(self, watched: Any, event: QEvent) -> bool:
+        """The arrows go through the frames on a picture that is shown whole, too: there is nothing to pan."""
+        if (
+            isinstance(event, QKeyEvent)
+            and event.key() in _STEPS
+            and event.modifiers() in (Qt.KeyboardModifier.NoModifier, Qt.KeyboardModifier.KeypadModifier)
+            and self.presenter.scrubbing
+            and self.picture.image.fitted
+        ):
+            if event.type() == QEvent.Type.ShortcutOverride:
+                event.ignore()
+                return True
+            if event.type() == QEvent.Type.KeyPress:
+                self._step(_STEPS[Qt.Key(event.key())])
+                return True
+        return super().eventFilter(watched, event)
 
     def _opened(self) -> None:
         self._folded = ""

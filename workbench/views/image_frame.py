@@ -132,6 +132,11 @@ class ImageFrame(QWidget):
         self._box.show_at_zoom(1.0 / self._box.pixel, QPointF(u, v))
 
     @property
+    def fitted(self) -> bool:
+        """Whether the whole picture is shown."""
+        return self._fitted
+
+    @property
     def zoom(self) -> float:
         """How many pixels of the screen one of the picture is wide."""
         return self.devicePixelRatioF() / self._box.pixel
