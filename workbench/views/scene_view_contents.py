@@ -18,6 +18,10 @@ GRID = "#grid"
 """Name of the lines of the grid, which is seen whole."""
 
 
+MARKS_NEARER = 0.003
+"""Marks and lines often lie on the cloud; to be seen they are drawn nearer to the viewer by this part of the distance."""
+
+
 @dataclass(frozen=True, eq=False, slots=True)
 class Marks:
     """Points (N, 3) in one colour, `size` pixels wide."""

@@ -16,15 +16,18 @@ from PySide6.QtWidgets import QWidget
 from core.model.arrays import Array
 from workbench.views.scene_view_camera import SceneCamera
 from workbench.views.scene_view_colours import Rgb
-from workbench.views.scene_view_contents import Lines, Marks, Patches, Scene
+from workbench.views.scene_view_contents import MARKS_NEARER, Lines, Marks, Patches, Scene
 from workbench.views.scene_view_picture_widget import PictureWidget, image_pixels
 from workbench.views.scene_view_pieces import Key, Piece, Version, make, version
 
 LAMP = np.array([-0.30, 0.39, 0.87])
 """Direction to the lamp: right, up, towards the viewer."""
 
-AT_MOST = 400_000
-"""Points spread over one piece of a mesh."""
+AT_MOST, AT_MOST_MOVING = 60_000, 20_000
+"""Points spread over one piece of a mesh, and over the coarse mesh in motion."""
+
+WIDEST, WIDEST_MOVING = 6, 3
+"""So many pixels wide they may become where they have to stand for more."""
 
 
 class PainterSurface:
@@ -70,12 +73,12 @@ class PainterSurface:
             if piece.triangles is None:
                 self._canvas.splat(camera, piece.points, piece.colours, self._point_size * ratio)
             else:
-                self._canvas.draw_mesh(camera, piece)
+                self._canvas.draw_mesh(camera, piece, moving=key.kind == "coarse")
         if last:
             for item in scene.items.values():
                 if isinstance(item, Marks):
                     colours = np.tile(np.array(item.colour, dtype=np.uint8), (len(item.points), 1))
-                    self._canvas.splat(camera, item.points, colours, item.size * ratio, nearer=1e-3)
+                    self._canvas.splat(camera, item.points, colours, item.size * ratio, nearer=MARKS_NEARER)
             self._widget.show_pixels(_with_patches(self._canvas, camera, scene))
 
     def pixels(self) -> NDArray[np.uint8]:
@@ -135,18 +138,27 @@ class _Canvas:
                 t = np.linspace(0, 1, int(np.clip(step, 2, 4000)) + 1)[1:, None]
                 dense.append(a + (b - a) * t)
             points = np.vstack(dense)
-            self.splat(camera, points, np.tile(np.array(colour, dtype=np.uint8), (len(points), 1)), lines.width * ratio)
+            self.splat(
+                camera,
+                points,
+                np.tile(np.array(colour, dtype=np.uint8), (len(points), 1)),
+                lines.width * ratio,
+                nearer=MARKS_NEARER,
+            )
 
-    def draw_mesh(self, camera: SceneCamera, piece: Piece) -> None:
-        """Points spread over triangles, about two a pixel."""
+    def draw_mesh(self, camera: SceneCamera, piece: Piece, *, moving: bool) -> None:
+        """Points spread over triangles, two a pixel or wider ones."""
         assert piece.triangles is not None and piece.normals is not None
         if not len(piece.triangles):
             return
+        most, widest = (AT_MOST_MOVING, WIDEST_MOVING) if moving else (AT_MOST, WIDEST)
         screen, _ = camera.project(piece.points, self.size)
         a, b, c = (screen[piece.triangles[:, i]] for i in range(3))
         area = np.abs((b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])) / 2
-        wanted = 1 + 2 * np.clip(np.nan_to_num(area), 0, AT_MOST)
-        count = np.ceil(wanted * min(1.0, AT_MOST / wanted.sum())).astype(np.int64)
+        seen = float(self.size[0] * self.size[1])
+        wanted = 1 + 2 * np.clip(np.nan_to_num(area), 0, seen)
+        width = int(np.clip(np.ceil(np.sqrt(min(wanted.sum(), 2 * seen) / most)), 1, widest))
+        count = np.ceil(wanted * min(1.0, most / wanted.sum())).astype(np.int64)
         of = np.repeat(np.arange(len(count)), count)
         t = np.arange(len(of), dtype=np.float32)
         u, v = (0.7548777 * t) % 1, (0.5698403 * t) % 1  # Roberts' R2 sequence
@@ -157,7 +169,7 @@ class _Canvas:
         points = (piece.points[corners] * weights).sum(axis=1)
         shade = 0.3 + 0.7 * np.abs(piece.normals @ (LAMP @ camera.axes))
         lit = piece.colours * shade[:, None]
-        self.splat(camera, points, (lit[corners] * weights).sum(axis=1).clip(0, 255).astype(np.uint8), 1)
+        self.splat(camera, points, (lit[corners] * weights).sum(axis=1).clip(0, 255).astype(np.uint8), width)
 
 
 def _with_patches(canvas: _Canvas, camera: SceneCamera, scene: Scene) -> NDArray[np.uint8]:

@@ -15,13 +15,14 @@ from numpy.typing import NDArray
 from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkDataArray, vtkIdTypeArray, vtkPoints, vtkUnsignedCharArray
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+from vtkmodules.vtkCommonMath import vtkMatrix4x4
 from vtkmodules.vtkRenderingCore import vtkActor, vtkLight, vtkPolyDataMapper, vtkRenderer, vtkRenderWindow
 
 from core.model.arrays import Array
 from workbench.views.scene_view_camera import SceneCamera
 from workbench.views.scene_view_cloud import CHUNK
 from workbench.views.scene_view_colours import Rgb
-from workbench.views.scene_view_contents import Item, Labels, Lines, Marks, Measure, Patches, Scene
+from workbench.views.scene_view_contents import MARKS_NEARER, Item, Labels, Lines, Marks, Measure, Patches, Scene
 from workbench.views.scene_view_pieces import Key, Version, make, version
 
 
@@ -66,9 +67,12 @@ class Stage:
             actor.SetVisibility(key in shown)
             if key.kind == "cloud" and key in shown:
                 actor.GetProperty().SetPointSize(self.point_size * self.pixel_ratio)
+        nearer = _nearer(camera)
         for item, item_actor in self._items.values():
             if item_actor is not None:
                 item_actor.SetVisibility(first if isinstance(item, Lines) else last)
+                if not isinstance(item, Patches):
+                    item_actor.SetUserMatrix(nearer)
         self.renderer.SetPreserveColorBuffer(not first)
         self.renderer.SetPreserveDepthBuffer(not first)
         self.renderer.SetUseFXAA(smooth)
@@ -160,9 +164,6 @@ class Stage:
         data.SetVerts(_one_cell_each(len(marks.points)))
         actor = _actor(data, marks.colour)
         actor.GetProperty().SetPointSize(marks.size * self.pixel_ratio)
-        # Marks lie on the points they mark: nearer by a hair, so that they are not hidden by them.
-        actor.GetMapper().SetRelativeCoincidentTopologyPointOffsetParameter(-8)
-        actor.GetMapper().SetResolveCoincidentTopologyToPolygonOffset()
         return actor
 
     def _lines(self, lines: Lines) -> vtkActor:
@@ -221,6 +222,16 @@ def _patches(patches: Patches) -> vtkActor:
     actor = _actor(data)
     actor.ForceTranslucentOn()
     return actor
+
+
+def _nearer(camera: SceneCamera) -> vtkMatrix4x4:
+    """Brings points nearer to the viewer, each on its line of sight."""
+    linear, shift = np.eye(3), camera.axes[2] * camera.distance * MARKS_NEARER
+    if not camera.parallel:
+        linear, shift = linear * (1 - MARKS_NEARER), camera.position * MARKS_NEARER
+    matrix = vtkMatrix4x4()
+    matrix.DeepCopy([*np.column_stack([linear, shift]).ravel(), 0, 0, 0, 1])
+    return matrix
 
 
 def _light(actor: vtkActor) -> None:
