@@ -55,7 +55,6 @@ class CameraPage(StepPage):
         self.target = TargetPanel(presenter.target, TARGETS)
         self.target_fold = self.add_panel(self.tr("Target"), self.target)
         self.views = ViewList()
-        self.views.set_headers(self.tr("View"), self.tr("RMS (px)"))
         self.views.setMinimumHeight(240)
         self.views_fold = self.add_panel(self.tr("Views"), self.views)
         self.quality, self.parameters, self.notes = ValueRows(), ValueRows(), muted()
@@ -111,8 +110,8 @@ class CameraPage(StepPage):
 
     def _fold(self, stage: Stage) -> None:
         """Once there is a result, it takes the room of what it was made from; the user may unfold that again."""
-        live, solved = stage is Stage.LIVE, self.presenter.work.calibration is not None
-        wanted = "live" if live else "result" if solved else "pictures"
+        live, work = stage is Stage.LIVE, self.presenter.work
+        wanted = "live" if live else "result" if work.searching or work.seen is not None else "pictures"
         if wanted == self._folded:
             return
         self._folded = wanted
@@ -136,6 +135,8 @@ class CameraPage(StepPage):
         shown = [(row.name, row.text, row.used, row.reason, id(row.thumbnail)) for row in rows]
         if shown != self._rows:
             self._rows = shown
+            measured = self.presenter.work.calibration is not None and not self.presenter.live.running
+            self.views.set_headers(self.tr("View"), self.tr("RMS (px)") if measured else "")
             self.views.set_rows(rows)
         if self.presenter.current and self.views.current() != self.presenter.current:
             self.views.set_current(self.presenter.current)

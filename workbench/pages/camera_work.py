@@ -11,6 +11,7 @@ from PySide6.QtCore import QObject, Signal
 from core.calibrate.results import CameraCalibration
 from core.calibrate.seen_views import SeenViews, seen_again
 from core.calibrate.views_judgement import ViewsJudgement
+from core.errors import InputError
 from core.files.project import Project
 from core.files.project_keys import rests_on
 from workbench import jobs
@@ -133,7 +134,7 @@ class CameraWork(QObject):
     def _search_failed(self, key: Key, problem: Any) -> None:
         self.search_task = None
         if key == self._found_key:
-            self.problem = str(problem)
+            self.problem = _in_words(problem)
         self.changed.emit()
 
     def _solve(self, seen: SeenViews, key: Key) -> None:
@@ -149,7 +150,7 @@ class CameraWork(QObject):
             seen,
             label=self.tr("Solving the camera"),
             on_done=lambda calibration: self._solved_for(key, calibration, ""),
-            on_failed=lambda problem: self._solved_for(key, None, str(problem)),
+            on_failed=lambda problem: self._solved_for(key, None, _in_words(problem)),
             replace_waiting=True,
         )
 
@@ -244,3 +245,11 @@ def _solve_key(project: Project) -> Key:
     keys = rests_on("camera", project, {})
     kept = [value for name, value in keys.items() if name not in (*FOUND_BY, "accepted camera calibration")]
     return (*_found_key(project), *kept)
+
+
+def _in_words(problem: Any) -> str:
+    """A problem as a sentence of its own; where it is, the page itself shows."""
+    if not isinstance(problem, InputError) or problem.where not in ("", "camera"):
+        return str(problem)
+    text = f"{problem.what}; {problem.todo}." if problem.todo else f"{problem.what}."
+    return text[:1].upper() + text[1:]

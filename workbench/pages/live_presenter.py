@@ -340,7 +340,7 @@ class LivePresenter(QObject):
                 self._deadline.start()  # it is not hanging: frames still go to the disk
             case LiveUnplugged():
                 self.gone = True
-                self.bench.notices.warning(event.sentence)
+                self.bench.notices.info(event.sentence)  # the page says it, as long as it is so
                 self.unplugged.emit(event.sentence)
             case LiveBack():
                 self.gone = False

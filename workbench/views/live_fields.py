@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from PySide6.QtCore import Signal
+from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QComboBox, QDoubleSpinBox, QHBoxLayout, QToolButton, QWidget
 
 from core.acquire.source import SourceInfo
@@ -52,9 +52,11 @@ class DeviceField(QWidget):
         self._kind = kind
         self.box.blockSignals(True)
         self.box.clear()
-        for device in devices:
-            text = f"{device.name} – {device.detail}" if device.detail else device.name
-            self.box.addItem(text, device.choice.id)
+        names = [device.name for device in devices]
+        for place, device in enumerate(devices):
+            alike = device.detail and names.count(device.name) > 1
+            self.box.addItem(f"{device.name} – {device.detail}" if alike else device.name, device.choice.id)
+            self.box.setItemData(place, device.detail, Qt.ItemDataRole.ToolTipRole)
         place = self.box.findData(chosen)
         if place >= 0:
             self.box.setCurrentIndex(place)

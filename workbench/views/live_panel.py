@@ -102,6 +102,8 @@ class LivePanel(QWidget):
         """Show the state and the numbers of pictures."""
         self.state.setText(self.live.state_text())
         self.counts.setText(self.live.counts_text())
+        self.state.setVisible(self.live.running)
+        self.counts.setVisible(self.live.running)
 
     def showEvent(self, event: Any) -> None:
         super().showEvent(event)
