@@ -6,9 +6,11 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from PySide6.QtCore import QRectF, Qt
+from PySide6.QtCore import QRectF
 from PySide6.QtGui import QImage, QPainter
 from PySide6.QtWidgets import QGraphicsItem, QStyleOptionGraphicsItem, QWidget
+
+from core.image.display import halved
 
 _SIXTEEN_BIT_WHITES = (1023, 4095, 16383, 65535)
 
@@ -25,8 +27,7 @@ class PictureItem(QGraphicsItem):
         self.scale_factor = 1.0
         self.gain, self.gamma = 1.0, 1.0
         self._grey: NDArray[np.uint8] = np.zeros((0, 0), dtype=np.uint8)
-        self._image = QImage()
-        self._reduced: list[QImage] = []
+        self._shown: list[NDArray[np.uint8]] = []
 
     @property
     def rect(self) -> QRectF:
@@ -76,7 +77,7 @@ class PictureItem(QGraphicsItem):
 
     def image(self) -> QImage:
         """The picture as it is shown, full size."""
-        return self._image.copy()
+        return _wrapped(self._shown[0]).convertToFormat(QImage.Format.Format_RGB32) if self._shown else QImage()
 
     def boundingRect(self) -> QRectF:
         return self.rect
@@ -91,33 +92,29 @@ class PictureItem(QGraphicsItem):
 
     def _fitting(self, on_screen: float) -> QImage:
         """The picture, halved as often as it can be without losing what the screen can show."""
-        image, halvings = self._image, 0
-        while on_screen <= 0.5 and min(image.width(), image.height()) > 8:
-            if halvings == len(self._reduced):
-                self._reduced.append(
-                    image.scaled(
-                        image.width() // 2,
-                        image.height() // 2,
-                        Qt.AspectRatioMode.IgnoreAspectRatio,
-                        Qt.TransformationMode.SmoothTransformation,
-                    )
-                )
-            image, halvings, on_screen = self._reduced[halvings], halvings + 1, on_screen * 2
-        return image
+        halvings = 0
+        while on_screen <= 0.5 and min(self._shown[halvings].shape[:2]) > 8:
+            if halvings + 1 == len(self._shown):
+                self._shown.append(halved(self._shown[halvings]))
+            halvings, on_screen = halvings + 1, on_screen * 2
+        return _wrapped(self._shown[halvings])
 
     def _render(self) -> None:
-        shown = np.clip(np.arange(256) / 255.0 * self.gain, 0.0, 1.0) ** (1.0 / self.gamma) * 255.0
-        tone = np.round(shown).astype(np.uint8)
-        rows, columns = self._grey.shape[:2]
-        if self._grey.ndim == 3:
-            coloured = tone[self._grey]
-            image = QImage(coloured.data, columns, rows, 3 * columns, QImage.Format.Format_RGB888)
+        """Brighten; the picture stays one byte a pixel and colour, which is quick for tens of millions of pixels."""
+        if (self.gain, self.gamma) == (1.0, 1.0):
+            self._shown = [self._grey]
         else:
-            image = QImage(self._grey.data, columns, rows, columns, QImage.Format.Format_Indexed8)
-            image.setColorTable([0xFF000000 | int(grey) * 0x010101 for grey in tone])
-        self._image = image.convertToFormat(QImage.Format.Format_RGB32)
-        self._reduced = []
+            shown = np.clip(np.arange(256) / 255.0 * self.gain, 0.0, 1.0) ** (1.0 / self.gamma) * 255.0
+            self._shown = [np.take(np.round(shown).astype(np.uint8), self._grey)]
         self.update()
+
+
+def _wrapped(pixels: NDArray[np.uint8]) -> QImage:
+    """The pixels as an image that does not copy them."""
+    rows, columns = pixels.shape[:2]
+    if pixels.ndim == 3:
+        return QImage(pixels.data, columns, rows, 3 * columns, QImage.Format.Format_RGB888)
+    return QImage(pixels.data, columns, rows, columns, QImage.Format.Format_Grayscale8)
 
 
 def _eight_bit(picture: NDArray[Any], levels: tuple[float, float] | None) -> NDArray[np.uint8]:
