@@ -90,7 +90,7 @@ class InspectionView:
     outlines
         Outlines (n, 2) in pixels of the upper and the lower face's points; None without a thickness.
     used_uv
-        Pixels (≤ 6000, 2) of a sample of the points used on the upper and on the lower face.
+        Pixels (n, 2) of some of the points used on the upper and on the lower face.
     relief
         The surface as a picture.
     image_size

@@ -27,8 +27,8 @@ from core.scan.cloud import Cloud
 from core.scan.frame_record import FrameRecord
 from core.scan.surface import Mesh
 
-SAMPLE = 6000
-"""So many of the points used on a face are shown on the picture."""
+SAMPLE = 2500
+"""So many of the points used are shown on the picture."""
 
 _STEP = "preparing what is shown"
 
@@ -79,7 +79,7 @@ def inspection_view(folder: Path, project: Project, progress: Progress = silent)
         mesh=mesh,
         gauge=None if gauge is None else _reordered(gauge, order),
         outlines=None if gauge is None else _outlines(gauge, cloud),
-        used_uv=None if gauge is None else (_sample(gauge.upper, cloud), _sample(gauge.lower, cloud)),
+        used_uv=None if gauge is None else _sample(gauge, cloud),
         relief=relief(camera.camera.image_size, shown.uv, shown.points[:, 2], shown.normals),
         image_size=camera.camera.image_size,
         pictures=pictures,
@@ -174,10 +174,11 @@ def _outlines(gauge: GaugeResult, cloud: Cloud) -> tuple[Array, Array] | None:
         return None  # a thickness of one light profile: lines have no outline
 
 
-def _sample(face: Face, cloud: Cloud) -> Array:
-    """Pixels of at most SAMPLE points of a face, evenly over the order of the cloud."""
-    step = max(1, -(-len(face.indices) // SAMPLE))
-    return np.asarray(cloud.uv[face.indices[::step]])
+def _sample(gauge: GaugeResult, cloud: Cloud) -> tuple[Array, Array]:
+    """Pixels of some of the points used on the upper and on the lower face, as dense on both."""
+    step = max(1, -(-sum(gauge.points_used) // SAMPLE))
+    upper, lower = gauge.upper.indices[::step], gauge.lower.indices[::step]
+    return np.asarray(cloud.uv[upper]), np.asarray(cloud.uv[lower])
 
 
 def _ranges(cloud: Cloud, height: Array, deviation: Array) -> Mapping[str, tuple[float, float]]:

@@ -39,6 +39,7 @@ class InspectPage(StepPage):
                 CardButton("repeat", self.tr("Add to repeats"), "mdi6.playlist-plus", self._add_repeat),
             ]
         )
+        self.card.title.setObjectName("title")
         self.add_to_side(self.card)
         self.result = ResultPanel(presenter)
         self.result_fold = self.add_panel(self.tr("Result"), self.result)
@@ -123,5 +124,5 @@ class InspectPage(StepPage):
             Stage.UNMEASURED: (self.tr("No thickness yet"), p.warning()),
             Stage.FAILED: (self.tr("No thickness was measured"), p.problem_of_measuring),
             Stage.MEASURED: (value, p.state.sentence),
-            Stage.OUTDATED: (self.tr("{0}, out of date").format(value), f"{p.state.sentence} {p.warning()}"),
+            Stage.OUTDATED: (value, f"{p.state.sentence} {p.warning()}"),
         }

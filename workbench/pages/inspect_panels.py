@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from PySide6.QtCore import QEvent, QSize, Qt, Signal
 from PySide6.QtWidgets import (
     QGridLayout,
@@ -24,7 +26,10 @@ from workbench.pages.step_page import heading, muted
 from workbench.theme import icon
 from workbench.views.colours import FACE_LOWER, FACE_UPPER
 from workbench.views.forms import SettingsForm
-from workbench.views.value_rows import ValueRows, Verdict
+from workbench.views.value_rows import ValueRows, Verdict, VerdictKind
+
+if TYPE_CHECKING:
+    from core.inspect.results import GaugeResult
 
 
 class FacesPanel(QWidget):
@@ -50,8 +55,8 @@ class FacesPanel(QWidget):
         self.states = {face: QLabel() for face in FACES}
         self.tools: dict[tuple[str, str], QToolButton] = {}
         self.words, self.own, self.automatic = muted(), QPushButton(), QPushButton()
-        self.own.setText(self.tr("Edit the faces found"))
-        self.automatic.setText(self.tr("Find automatically"))
+        self.own.setText(self.tr("Edit those found"))
+        self.automatic.setText(self.tr("Automatic"))
         self.exchange = QToolButton()
         self.own.clicked.connect(lambda: presenter.faces.take_found())
         self.automatic.clicked.connect(lambda: presenter.faces.find_automatically())
@@ -179,17 +184,25 @@ class ResultPanel(QWidget):
         if gauge is None or (id(gauge), outdated) == self._shown:
             return
         self._shown = (id(gauge), outdated)
-        kind = gauge.verdict if gauge.verdict in ("conforming", "not conforming", "not proven") else ""
-        sentence = verdict_sentence(gauge)
-        if outdated:
-            sentence = self.tr("This was before the changes: measure again. {0}").format(sentence)
-        self.verdict.set_verdict(kind, sentence)  # type: ignore[arg-type]
+        self._show_verdict(gauge, outdated)
         self.rows.set_rows(words.result_rows(gauge))
         self.rule.setText(self.tr("Rule: {0}.").format(gauge.rule))
         self.budget.set_rows(words.budget_rows(gauge))
         self.notes.setText("\n".join(gauge.notes))
         for widget in (self.notes, self.notes_title):
             widget.setVisible(bool(gauge.notes))
+
+    def _show_verdict(self, gauge: GaugeResult, outdated: bool) -> None:
+        """What was proven of other faces or another tolerance is proven no more."""
+        kinds: dict[str, VerdictKind] = {
+            "conforming": "conforming",
+            "not conforming": "not conforming",
+            "not proven": "not proven",
+        }
+        if outdated:
+            self.verdict.set_verdict("", self.tr("The result below is out of date. Measure again for a verdict."))
+        else:
+            self.verdict.set_verdict(kinds.get(gauge.verdict, ""), verdict_sentence(gauge))
 
 
 class PicksPanel(QWidget):

@@ -118,7 +118,7 @@ class PictureTab(QWidget):
             else:
                 title = self.tr("points used, upper") if face == "upper" else self.tr("points used, lower")
                 self.image.set_points(
-                    f"used {face}", view.used_uv[place], colour=COLOURS[face], symbol=".", size=2, title=title
+                    f"used {face}", view.used_uv[place], colour=COLOURS[face], symbol=".", size=3, title=title
                 )
 
     def _words(self) -> str:

@@ -74,6 +74,7 @@ class RepeatsTab(QWidget):
         wanted = (repeats.all, spec.nominal_mm, spec.tolerance_mm)
         self._show_buttons()
         self.words.setText(self._sentence())
+        self.words.setVisible(bool(self.words.text()))
         if wanted == self._shown:
             return
         self._shown = wanted

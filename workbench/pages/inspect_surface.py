@@ -12,8 +12,8 @@ from PySide6.QtWidgets import (
     QDoubleSpinBox,
     QHBoxLayout,
     QLabel,
+    QPushButton,
     QSlider,
-    QToolButton,
     QVBoxLayout,
     QWidget,
 )
@@ -55,7 +55,10 @@ class SurfaceTab(QWidget):
         self._face = ""
         self._drawn: tuple[object, ...] = ()
         self._marked: list[str] = []
-        self._oriented: object = None
+        self._cloud: tuple[object, ...] = ()
+        self._mesh: tuple[object, ...] = ()
+        self._oriented = False
+        self._picking = False
         self._later = QTimer(self)
         self._later.setSingleShot(True)
         self._later.setInterval(DRAW_WITHIN_MS)
@@ -131,8 +134,8 @@ class SurfaceTab(QWidget):
 
     # ---- making it
 
-    def _choices(self) -> tuple[dict[Shape, QToolButton], QComboBox, QDoubleSpinBox, QSlider]:
-        shapes: dict[Shape, QToolButton] = {}
+    def _choices(self) -> tuple[dict[Shape, QPushButton], QComboBox, QDoubleSpinBox, QSlider]:
+        shapes: dict[Shape, QPushButton] = {}
         group = QButtonGroup(self)
         entries: tuple[tuple[Shape, str, str], ...] = (
             ("points", self.tr("Points"), self.tr("Show the measured points")),
@@ -140,11 +143,10 @@ class SurfaceTab(QWidget):
             ("both", self.tr("Both"), self.tr("Show the points on the triangulated surface")),
         )
         for name, text, tip in entries:
-            button = QToolButton()
+            button = QPushButton()
             button.setText(text)
             button.setToolTip(tip)
             button.setCheckable(True)
-            button.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
             group.addButton(button)
             shapes[name] = button
         shapes["points"].setChecked(True)
@@ -219,7 +221,8 @@ class SurfaceTab(QWidget):
         else:
             message = self.tr("Reading the scan …")
         self._later.stop()
-        self._drawn, self._marked, self._oriented = (), [], None
+        self._drawn = self._cloud = self._mesh = ()
+        self._marked, self._oriented = [], False
         self.scene.clear(message)
         self.line.setText("")
         self.hint.setText("")
@@ -248,21 +251,25 @@ class SurfaceTab(QWidget):
             widget.blockSignals(False)
 
     def _draw(self) -> None:
-        """Send cloud and mesh to the 3D view; prefixes of arrays, so nothing large is copied."""
-        view = self._presenter.view
+        """Send cloud and mesh to the 3D view as far as they changed; parts of arrays, so nothing large is copied."""
+        p, view = self._presenter, self._presenter.view
         if view is None:
             return
         self._later.stop()
-        count = self._presenter.points_shown()
-        afresh = self._drawn[:1] != (id(view),) and not self._drawn
-        self._drawn = (id(view), self.shape, self.colour, count)
-        if view.gauge is not None and view.gauge.normal is not None and self._oriented is None:
-            self._oriented = view
+        count, seen = p.points_shown(), self.shape != "mesh"
+        before, self._drawn = self._drawn, (id(view), self.shape, self.colour, count)
+        if view.gauge is not None and view.gauge.normal is not None and not self._oriented:
+            self._oriented = True
             self.scene.set_orientation(-view.gauge.normal, (0.0, -1.0, 0.0))
-        self.scene.show_cloud(self.shape != "mesh")
+        self.scene.show_cloud(seen)
         self.scene.show_mesh(self.shape != "points")
-        self.scene.set_cloud(view.points[:count], keep_camera=not afresh, **self._look(view, slice(count)))
-        if view.mesh is not None and self.shape != "points":
+        cloud = (id(view), count, self.colour if seen else "plain")
+        if cloud != self._cloud:
+            self._cloud = cloud
+            self.scene.set_cloud(view.points[:count], keep_camera=bool(before), **self._look(view, count, cloud[2]))
+        mesh = (id(view), p.triangles_shown(), self.colour)
+        if view.mesh is not None and self.shape != "points" and mesh != self._mesh:
+            self._mesh = mesh
             self._draw_mesh(view, view.mesh)
         self._mark_used(view, count)
 
@@ -273,16 +280,15 @@ class SurfaceTab(QWidget):
             look = {"values": getattr(mesh, name), **self._scale(view, name)}
         self.scene.set_mesh(mesh.vertices, mesh.triangles[: self._presenter.triangles_shown()], **look)
 
-    def _look(self, view: InspectionView, shown: slice) -> dict[str, Any]:
-        name = self.colour
+    def _look(self, view: InspectionView, count: int, name: str) -> dict[str, Any]:
         if name == "plain":
             return {"colours": PLAIN}
         if name == "faces":
             table = np.array(
                 [to_colour(colour).getRgb()[:3] for colour in (PLAIN, FACE_UPPER, FACE_LOWER)], dtype=np.uint8
             )
-            return {"colours": table[view.face[shown]]}
-        return {"values": getattr(view, name)[shown], **self._scale(view, name)}
+            return {"colours": table[view.face[:count]]}
+        return {"values": getattr(view, name)[:count], **self._scale(view, name)}
 
     def _scale(self, view: InspectionView, name: str) -> dict[str, Any]:
         titles = {
@@ -331,8 +337,6 @@ class SurfaceTab(QWidget):
         elif not picks.mode and self._picking:
             self._picking = False
             self.scene.stop_drawing()
-
-    _picking = False
 
     def _mark(self, item: Pick | Span) -> None:
         if isinstance(item, Pick):

@@ -22,9 +22,9 @@ Row = tuple[str, str, str, Level]
 
 
 def thickness(gauge: GaugeResult) -> str:
-    """'50.008 mm ± 0.027 mm'."""
+    """'50.008 mm ± 0.027 mm (k = 2)'."""
     value, expanded = with_uncertainty(gauge.thickness_mm, gauge.U_mm)
-    return f"{value} mm ± {expanded} mm"
+    return f"{value} mm ± {expanded} mm (k = {gauge.k:g})"
 
 
 def result_rows(gauge: GaugeResult) -> list[Row]:
@@ -140,12 +140,12 @@ def pick_lines(pick: Pick) -> tuple[str, str]:
     """Where a picked point is, and where it was seen."""
     decimals = max(decimals_of(pick.sigma_mm), 0)
     x, y, z = (fixed(float(value), decimals) for value in pick.place)
-    place = _tr("{name}   x {x}   y {y}   z {z} mm ± {sigma} mm (sd)").format(
-        name=pick.name, x=x, y=y, z=z, sigma=fixed(pick.sigma_mm, decimals)
-    )
+    place = _tr("{name}   x {x}   y {y}   z {z} mm").format(name=pick.name, x=x, y=y, z=z)
     u, v = pick.uv
     frame = PurePosixPath(pick.frame).name or _tr("fan, no frame")
-    return place, _tr("{frame}, u {u} v {v} px").format(frame=frame, u=fixed(u, 1), v=fixed(v, 1))
+    return place, _tr("± {sigma} mm (sd), {frame}, u {u} v {v} px").format(
+        sigma=fixed(pick.sigma_mm, decimals), frame=frame, u=fixed(u, 1), v=fixed(v, 1)
+    )
 
 
 def span_lines(span: Span) -> tuple[str, str]:
@@ -153,7 +153,7 @@ def span_lines(span: Span) -> tuple[str, str]:
     text = _tr("{name}   {value} mm, u = {u} mm").format(name=span.name, **_span(span))
     ends = []
     for pick in (span.a, span.b):
-        x, y, z = (fixed(float(value), 2) for value in pick.place)
+        x, y, z = (fixed(float(value), 1) for value in pick.place)
         ends.append(f"({x}, {y}, {z})")
     return text, _tr("from {0} to {1} mm").format(*ends)
 
