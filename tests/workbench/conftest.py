@@ -2,24 +2,58 @@
 
 from __future__ import annotations
 
+import faulthandler
+import gc
 import os
+import shutil
+import sys
 import threading
+import time
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 if not os.environ.get("DISPLAY"):
     os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
 
 import pytest
-from PySide6.QtCore import QTimer
+from PySide6.QtCore import QCoreApplication, QEvent, QTimer
 from PySide6.QtWidgets import QApplication, QWidget
 
+from tests.simulated import SMALL
+from tests.workbench.shared import made_once
+from tests.workbench.technician import Technician
 from workbench import jobs
+from workbench.app import build_window
 from workbench.bench import Bench
+from workbench.main_window import MainWindow
 from workbench.notices import Notices
 from workbench.project_model import ProjectModel
 from workbench.settings import AppSettings
 from workbench.tasks import Lane
+from workbench.views import ask
+
+HANGS_AFTER_S = 180
+"""A test that takes so long hangs: where every thread stands is told, and the test process ends."""
+
+
+class SharedBench(Bench):
+    """A bench whose processes outlive its window: they serve the next test, too."""
+
+    def close(self) -> None:
+        """End what still runs."""
+        for lane in (self.measuring, self.quick, self.live):
+            if lane.busy:
+                lane.close()
+
+
+@pytest.fixture(autouse=True)
+def nothing_hangs() -> Iterator[None]:
+    """Ends the test process where a test never comes back: a question nobody answers, a lock."""
+    faulthandler.dump_traceback_later(HANGS_AFTER_S, exit=True, file=sys.__stderr__)
+    yield
+    faulthandler.cancel_dump_traceback_later()
 
 
 @pytest.fixture(scope="session")
@@ -39,33 +73,131 @@ def bench(qapp: QApplication, lanes: dict[str, Lane], tmp_path: Path) -> Iterato
             lanes[name] = Lane(name, warm=(jobs.MEASURE_SCAN,))
     settings = AppSettings(tmp_path / "settings.ini")
     settings.projects_folder = tmp_path / "projects"
-    made = Bench(ProjectModel(), Notices(), settings, lanes["measuring"], lanes["quick"], lanes["live"])
+    made = SharedBench(ProjectModel(), Notices(), settings, lanes["measuring"], lanes["quick"], lanes["live"])
     yield made
-    for lane in lanes.values():
-        if lane.busy:
-            lane.close()
+    made.close()
+
+
+@pytest.fixture
+def window(bench: Bench, qapp: QApplication, monkeypatch: pytest.MonkeyPatch) -> Iterator[MainWindow]:
+    """The program's window as it starts, shown at its smallest usual size."""
+    style, palette, sheet = qapp.style().objectName(), qapp.palette(), qapp.styleSheet()
+    made = build_window(qapp, bench, "light")
+    made.resize(1280, 800)
+    made.show()
+    qapp.processEvents()
+    yield made
+    bench.close()  # whatever a failed test left running is not asked about
+    with monkeypatch.context() as patch:
+        patch.setattr(ask, "ask", lambda *_: 0)
+        made.close()
+    made.deleteLater()
+    del made
+    QCoreApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete)
+    bench.settings.theme_changed.disconnect()
+    qapp.setStyleSheet(sheet)
+    qapp.setStyle(style)
+    qapp.setPalette(palette)
+
+
+@pytest.fixture
+def technician(window: MainWindow, qtbot: Any, monkeypatch: pytest.MonkeyPatch) -> Technician:
+    """Somebody at the window."""
+    return Technician(window, qtbot, monkeypatch)
+
+
+@pytest.fixture(scope="session")
+def small_recordings(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A small simulated recording set, made once for all test processes; do not change it."""
+    from core.simulate.recording import simulate_set
+
+    return made_once(tmp_path_factory, "small-recordings", lambda folder: simulate_set(SMALL, folder))
+
+
+@pytest.fixture(scope="session")
+def finished_project_folder(small_recordings: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A project with every step done, its pictures within, made once for all test processes; do not change it."""
+    return made_once(tmp_path_factory, "finished-project", lambda folder: _finish_project(folder, small_recordings))
+
+
+@pytest.fixture
+def measured_project(finished_project_folder: Path, tmp_path: Path) -> Path:
+    """A copy of a finished project on a small simulated set, to be opened and changed."""
+    return Path(shutil.copytree(finished_project_folder, tmp_path / "measured"))
+
+
+def _finish_project(folder: Path, pictures: Path) -> None:
+    from core.files.project import project_from_set, stored_source, write_project
+    from core.pipeline.sample_project import finished_project
+
+    recordings = Path(shutil.copytree(pictures, folder / "recordings"))
+    project = project_from_set(recordings, "Block")
+    inside = {part: stored_source(folder, recordings / part) for part in ("camera", "planes", "scan")}
+    project = replace(
+        project,
+        info=replace(project.info, part="Gauge block", operator="Somebody"),
+        sources=replace(project.sources, **inside),
+        options=replace(project.options, sigma_cut_mm=0.3),
+    )
+    write_project(folder, finished_project(folder, project))
+
+
+# ---- nothing is left behind
 
 
 @pytest.fixture(autouse=True)
 def nothing_left_behind(request: pytest.FixtureRequest) -> Iterator[None]:
-    """Fails a test that leaves a thread, a running timer of a window, or a window behind."""
+    """Fails a test that leaves a thread, a process, a running timer, or a window behind."""
     before = set(threading.enumerate())
     yield
     app = QApplication.instance()
     if app is None:
         return
-    app.processEvents()
-    left = [
-        t
-        for t in threading.enumerate()
-        if t not in before and t.is_alive() and not t.name.startswith(("lane-", "pyvista"))
-    ]
-    for thread in left:
-        thread.join(2)
-    left = [thread for thread in left if thread.is_alive()]
-    assert not left, f"threads left behind: {left}"
     assert isinstance(app, QApplication)
+    app.processEvents()
     shown = [w for w in app.topLevelWidgets() if isinstance(w, QWidget) and w.isVisible()]
     assert not shown, f"windows left open: {shown}"
-    running = [t for w in app.topLevelWidgets() for t in w.findChildren(QTimer) if t.isActive()]
-    assert not running, f"timers left running: {[(t.parent(), t.interval()) for t in running]}"
+    threads = [t for t in threading.enumerate() if t not in before and not t.name.startswith(("lane-", "pyvista"))]
+    for thread in threads:
+        thread.join(2)
+    threads = [thread for thread in threads if thread.is_alive()]
+    assert not threads, f"threads left behind: {threads}"
+    running = _running_timers(app)
+    assert not running, f"timers left running: {running}"
+    children = _foreign_children(request)
+    assert not children, f"processes left behind: {children}"
+
+
+def _running_timers(app: QApplication) -> list[str]:
+    """Timers that will fire again although their test is over; all there are, whoever holds them."""
+    gc.collect(1)
+    owned = [timer for widget in app.topLevelWidgets() for timer in widget.findChildren(QTimer) if timer.isActive()]
+    return [f"every {timer.interval()} ms of {timer.parent()}" for timer in owned]
+
+
+def _foreign_children(request: pytest.FixtureRequest) -> list[str]:
+    """Processes of this one that are neither lanes nor of Python's own making."""
+    listing = Path("/proc/self/task")
+    if not listing.is_dir():
+        return []
+    end = time.monotonic() + 3
+    while left := [line for line in _children(listing) if not _is_known(line)]:
+        if time.monotonic() > end:
+            return left
+        time.sleep(0.05)
+    return []
+
+
+def _children(listing: Path) -> Iterator[str]:
+    for task in listing.glob("*/children"):
+        for pid in task.read_text().split():
+            try:
+                command = Path(f"/proc/{pid}/cmdline").read_text().replace("\0", " ").strip()
+            except OSError:
+                continue
+            if command:  # else it has ended
+                yield f"{pid}: {command}"
+
+
+def _is_known(line: str) -> bool:
+    return "multiprocessing" in line or "scene_view_probe" in line or "from execnet" in line

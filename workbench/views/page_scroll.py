@@ -47,7 +47,7 @@ class PageScroll(QScrollArea):
             label.deleteLater()
         while len(self._labels) < len(self._pages):
             label = QLabel()
-            label.setStyleSheet("border: 1px solid #8884;")
+            label.setStyleSheet("border: 1px solid palette(mid);")
             label.setAccessibleName(self.tr("Page {0}").format(len(self._labels) + 1))
             self._column.addWidget(label, 0, Qt.AlignmentFlag.AlignHCenter)
             self._labels.append(label)

@@ -1,0 +1,36 @@
+"""What is slow to make is made once for all test processes, and copied where it is changed."""
+
+from __future__ import annotations
+
+import shutil
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+GIVE_UP_S = 240.0
+
+
+def made_once(tmp_path_factory: pytest.TempPathFactory, name: str, make: Callable[[Path], object]) -> Path:
+    """The folder `name`, filled by `make` in whichever test process comes first; the others wait for it."""
+    base: Path = tmp_path_factory.getbasetemp()
+    common = base.parent if base.name.startswith("popen-") else base  # of all processes of pytest-xdist
+    folder, lock, end = common / name, common / f"{name}.lock", time.monotonic() + GIVE_UP_S
+    while not folder.exists():
+        try:
+            lock.mkdir()
+        except FileExistsError:
+            if time.monotonic() > end:
+                raise TimeoutError(f"another test process does not finish {name}") from None
+            time.sleep(0.1)
+            continue
+        try:
+            if not folder.exists():
+                beside = common / f"{name}.part"
+                shutil.rmtree(beside, ignore_errors=True)
+                make(beside)
+                beside.rename(folder)
+        finally:
+            lock.rmdir()
+    return folder
