@@ -164,8 +164,8 @@ class SceneCamera:
     def depth_range(self, corners: Array) -> tuple[float, float]:
         """Nearest and farthest depth in mm to draw so that `corners` (N, 3) and all between them are in it."""
         depth = self.distance - (corners - self.focal) @ self.axes[2]
-        span = max(float(depth.max() - depth.min()), self.distance * 0.01)
-        near, far = float(depth.min()) - 0.02 * span, float(depth.max()) + 0.02 * span
+        room = max(0.02 * float(depth.max() - depth.min()), 0.01 * self.distance)  # marks are drawn a little nearer
+        near, far = float(depth.min()) - room, float(depth.max()) + room
         if not self.parallel:
             far = max(far, self.distance * 0.01)
             near = max(near, far / 2000)

@@ -19,7 +19,7 @@ GRID = "#grid"
 
 
 MARKS_NEARER = 0.003
-"""Marks and lines often lie on the cloud; to be seen they are drawn nearer to the viewer by this part of the distance."""
+"""Marks and lines often lie on the cloud; to be seen they are drawn nearer to the viewer, by this part of the way."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
