@@ -8,6 +8,7 @@ from typing import Any
 
 from workbench import jobs
 from workbench.notices import Notices
+from workbench.processes import ONE_THREAD
 from workbench.project_model import ProjectModel
 from workbench.settings import AppSettings
 from workbench.tasks import Lane, Task, details, sentence
@@ -65,5 +66,5 @@ def make_bench(settings: AppSettings | None = None) -> Bench:
         settings or AppSettings(),
         Lane("measuring", warm=measuring),
         Lane("quick", warm=measuring),
-        Lane("live", warm=(jobs.RUN_LIVE,)),
+        Lane("live", warm=(jobs.RUN_LIVE,), environment=ONE_THREAD),
     )

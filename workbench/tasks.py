@@ -12,7 +12,7 @@ import multiprocessing
 import threading
 import traceback
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from multiprocessing.connection import Connection
 from typing import Any
 
@@ -20,6 +20,7 @@ from PySide6.QtCore import QObject, QTimer, Signal
 
 from core.errors import InputError
 from workbench.jobs import Job
+from workbench.processes import lean_start
 from workbench.worker import Failure, serve
 
 STOP_WITHIN_MS = 900
@@ -62,9 +63,15 @@ class Lane(QObject):
     task_ended = Signal(object)
     _message = Signal(int, object)
 
-    def __init__(self, name: str, warm: tuple[Job, ...] = (), parent: QObject | None = None) -> None:
+    def __init__(
+        self,
+        name: str,
+        warm: tuple[Job, ...] = (),
+        environment: Mapping[str, str] | None = None,
+        parent: QObject | None = None,
+    ) -> None:
         super().__init__(parent)
-        self.name, self._warm = name, warm
+        self.name, self._warm, self._environment = name, warm, dict(environment or {})
         self._context = multiprocessing.get_context("spawn")
         self._waiting: deque[tuple[Task, Job, tuple[Any, ...], dict[str, str]]] = deque()
         self._current: Task | None = None
@@ -199,7 +206,8 @@ class Lane(QObject):
             target=serve, args=(theirs, self._cancel_number, self._warm), name=f"trisect-{self.name}", daemon=True
         )
         try:
-            process.start()
+            with lean_start(self._environment):
+                process.start()
         except BaseException:
             ours.close()
             raise

@@ -57,3 +57,9 @@ def echo(channel: Any) -> list[Any]:
             heard.append(command)
             channel.offer(command)
         time.sleep(0.005)
+
+
+def surroundings(progress: Progress) -> tuple[str, bool]:
+    import sys
+
+    return os.environ.get("OMP_NUM_THREADS", ""), "PySide6.QtWidgets" in sys.modules

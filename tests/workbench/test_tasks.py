@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import os
 import time
 from typing import Any
 
@@ -8,6 +9,7 @@ import pytest
 from core.errors import InputError
 from workbench.bench import Bench
 from workbench.jobs import Job
+from workbench.processes import ONE_THREAD
 from workbench.tasks import Lane, Task, details, sentence
 from workbench.worker import Failure
 
@@ -176,3 +178,15 @@ def test_a_view_is_sent_only_after_the_last_one_was_shown(qtbot: Any, lane: Lane
     task.send("stop")
     finish(qtbot, lane)
     assert answers.got == [("done", ["a", "b", "c", "d"])]
+
+
+def test_a_lane_sees_its_environment_and_carries_no_window(qtbot: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("OMP_NUM_THREADS", "7")
+    answers, lane = Answers(), Lane("alone", environment=ONE_THREAD)
+    try:
+        answers.run(lane, "surroundings")
+        finish(qtbot, lane)
+    finally:
+        lane.close()
+    assert answers.got == [("done", ("1", False))]
+    assert os.environ["OMP_NUM_THREADS"] == "7"
