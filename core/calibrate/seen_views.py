@@ -41,6 +41,18 @@ class SeenViews:
         return tuple(one for one in self.views if one.view is None)
 
 
+@dataclass(frozen=True, eq=False, slots=True)
+class RecalledCamera:
+    """The accepted calibration; what the project's pictures show, if it was made from these very ones.
+
+    `as_it_is`: it is what these pictures give with the project's settings as they are.
+    """
+
+    calibration: CameraCalibration
+    seen: SeenViews | None
+    as_it_is: bool
+
+
 def seen_again(calibration: CameraCalibration, where: str) -> SeenViews:
     """What the pictures showed that `calibration` was made from, so that it can be solved again without them."""
     size = calibration.camera.image_size

@@ -1,13 +1,47 @@
-"""The history of a project's camera calibrations, compared."""
+"""The history of a project's camera calibrations: compared, and gone on with without searching the pictures again."""
 
 from __future__ import annotations
 
+import hashlib
+import json
 from pathlib import Path
+
+import numpy as np
 
 from core.calibrate.camera_changes import CameraChanges, camera_changes
 from core.calibrate.results import CameraCalibration
-from core.files.calibration_store import read_stored_camera
+from core.calibrate.seen_views import RecalledCamera, seen_again
+from core.files.calibration_store import read_stored, read_stored_camera
+from core.files.pictures import read_bytes
+from core.files.project_data import Project
+from core.files.project_folder import source_folder
+from core.files.set_listing import pictures_in
+from core.image.targets import Target
 from core.progress import Progress, silent
+
+
+def recall_camera(project_folder: Path, project: Project, progress: Progress = silent) -> RecalledCamera:
+    """Read the accepted calibration of a project, and see whether it is of the project's pictures.
+
+    Raises
+    ------
+    InputError
+        If it is not in the history, or damaged, or a picture cannot be read.
+    """
+    id_ = project.accepted.camera
+    calibration, about = read_stored_camera(project_folder, id_), read_stored(project_folder, "camera", id_)
+    folder = source_folder(project_folder, project.sources.camera)
+    if about is None or not about.inputs or not calibration.views:
+        return RecalledCamera(calibration, None, False)
+    hashes: dict[str, str] = {}
+    paths = pictures_in(folder)
+    for path in paths:
+        progress("comparing the pictures", len(hashes), len(paths))
+        hashes[f"camera/{path.name}"] = hashlib.sha256(read_bytes(path)).hexdigest()
+    if hashes != about.inputs or not _shows(calibration, project.rig.camera_target):
+        return RecalledCamera(calibration, None, False)
+    same = _plain(about.settings) == _plain(project.options.camera_settings)
+    return RecalledCamera(calibration, seen_again(calibration, project.sources.camera), same)
 
 
 def compare_stored(
@@ -23,3 +57,15 @@ def compare_stored(
     if isinstance(second, str):
         second = read_stored_camera(project_folder, second)
     return camera_changes(read_stored_camera(project_folder, first_id), second, progress)
+
+
+def _shows(calibration: CameraCalibration, target: Target) -> bool:
+    """Whether the views are of this target: every point seen is one of its points."""
+    points = {tuple(point) for point in np.round(target.points, 4).tolist()}
+    seen = (tuple(point) for view in calibration.views for point in np.round(view.view.points, 4).tolist())
+    return all(point in points for point in seen)
+
+
+def _plain(settings: object) -> object:
+    """Settings as they come back from a file."""
+    return json.loads(json.dumps(settings, sort_keys=True, default=list))

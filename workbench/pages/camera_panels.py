@@ -72,6 +72,12 @@ class CameraCard(StageCard):
                 self.tr("Leave out bad views, or take other pictures; or accept it after all."),
             ),
             Stage.ACCEPTED: (self.tr("Accepted"), p.state.sentence),
+            Stage.OTHER: (
+                self.tr("Another calibration is in use"),
+                self.tr(
+                    "The accepted one is listed under History. What is shown here is not in use; accept it to use it."
+                ),
+            ),
             Stage.OUTDATED: (self.tr("Accepted, but out of date"), p.state.sentence),
         }
 

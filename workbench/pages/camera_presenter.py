@@ -43,6 +43,7 @@ class Stage(StrEnum):
     REJECTED = "rejected"
     ACCEPTED = "accepted"
     OUTDATED = "outdated"
+    OTHER = "other"
 
 
 class CameraPresenter(StepPresenter):
@@ -89,6 +90,8 @@ class CameraPresenter(StepPresenter):
                 return Stage.ACCEPTED
             return Stage.OUTDATED
         if self.candidate:
+            if accepted and self.state.state is State.DONE:
+                return Stage.OTHER
             return Stage.REJECTED if self.candidate in self._rejected else Stage.SOLVED
         if work.problem:
             return Stage.FAILED
@@ -114,6 +117,7 @@ class CameraPresenter(StepPresenter):
             Stage.SOLVED: self.tr("Accept a camera calibration first."),
             Stage.REJECTED: self.tr("The calibration was rejected; accept a better one first."),
             Stage.ACCEPTED: "",
+            Stage.OTHER: "",
             Stage.OUTDATED: self.tr("The accepted camera calibration is out of date; calibrate again."),
         }[self.stage]
 

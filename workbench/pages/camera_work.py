@@ -9,7 +9,7 @@ from typing import Any
 from PySide6.QtCore import QObject, Signal
 
 from core.calibrate.results import CameraCalibration
-from core.calibrate.seen_views import SeenViews, seen_again
+from core.calibrate.seen_views import RecalledCamera, SeenViews
 from core.calibrate.views_judgement import ViewsJudgement
 from core.errors import InputError
 from core.files.project import Project
@@ -75,15 +75,14 @@ class CameraWork(QObject):
         if folder is None:
             return
         self.follow()
-        done = self._model.results.get("camera")
-        if accepted and done is not None:
+        if accepted:
+            project = self._model.project
             self._bench.glance(
-                jobs.READ_CAMERA,
+                jobs.RECALL_CAMERA,
                 folder,
-                accepted,
+                project,
                 label=self.tr("Reading the calibration"),
-                on_done=lambda read: self._recall(folder, done.rests_on, read),
-                offers={},
+                on_done=lambda recalled: self._recall(folder, project, recalled),
             )
 
     def follow(self) -> None:
@@ -183,17 +182,13 @@ class CameraWork(QObject):
             self.judgement = judgement
             self.changed.emit()
 
-    def _recall(self, folder: Path, made_from: Any, calibration: CameraCalibration) -> None:
+    def _recall(self, folder: Path, project: Project, recalled: RecalledCamera) -> None:
         """The accepted calibration was read; where it is of the pictures in use, it can be solved again at once."""
-        project = self._model.project
-        if folder != self._model.folder or _found_key(project) != tuple(made_from.get(name, "") for name in FOUND_BY):
+        if folder != self._model.folder or recalled.seen is None or _found_key(project) in self._seen:
             return
-        if not calibration.views or self.seen is not None:
-            return
-        self._seen[_found_key(project)] = seen_again(calibration, project.sources.camera)
-        keys = rests_on("camera", project, {})
-        if all(made_from.get(name) == value for name, value in keys.items()):
-            self._solved[_solve_key(project)] = calibration, ""
+        self._seen[_found_key(project)] = recalled.seen
+        if recalled.as_it_is:
+            self._solved[_solve_key(project)] = recalled.calibration, ""
         self._found_key = ()
         self.follow()
 

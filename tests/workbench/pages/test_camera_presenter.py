@@ -2,9 +2,12 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
+from core.files.pictures import write_picture
 from core.files.project import Sources
+from core.files.project_keys import finished
 from workbench import jobs
 from workbench.pages.camera_presenter import CameraPresenter, Stage
 from workbench.step_state import State
@@ -228,7 +231,9 @@ def test_a_kept_calibration_is_compared_and_restored(accepted, qtbot):
     second = accepted.project.accepted.camera
     accepted.history.restore()
     assert accepted.project.accepted.camera == first
+    assert accepted.stage is Stage.OTHER and accepted.blocker() == ""
     accepted.model.undo_stack.undo()
+    assert accepted.stage is Stage.ACCEPTED
     assert accepted.project.accepted.camera == second
 
 
@@ -244,6 +249,22 @@ def test_reopening_shows_the_accepted_calibration_and_solves_it_without_searchin
     settled(qtbot, accepted)
     assert accepted.candidate != candidate
     assert jobs.FIND_VIEWS not in accepted.bench.measuring.ran
+
+
+def test_a_restored_calibration_of_other_pictures_is_not_taken_for_that_of_these(
+    accepted, views_folder, tmp_path, qtbot
+):
+    other = tmp_path / "other"
+    other.mkdir()
+    for path in views_folder.iterdir():
+        write_picture(other / path.name, np.full((12, 16), 7, np.uint8))
+    accepted.model.edit("x", replace(accepted.project, sources=Sources(camera=str(other))))
+    accepted.model.record("camera", finished("camera", accepted.project, {}))
+    accepted.model.save()
+    accepted.model.open(accepted.model.folder)
+    qtbot.waitUntil(lambda: not accepted.bench.quick.busy)
+    assert accepted.work.seen is None
+    assert accepted.stage is Stage.ACCEPTED
 
 
 def test_closing_the_project_forgets_everything(accepted):
