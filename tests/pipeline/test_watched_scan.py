@@ -1,0 +1,111 @@
+"""A recording that is watched while it is measured, and the measured scan as it is shown."""
+
+import pickle
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from core.errors import Cancelled, InputError
+from core.files.project import Accepted
+from core.live.events import ScanDetail
+from core.pipeline.project_looks import accepted_calibration, show_scan
+from core.pipeline.project_steps import results_folder
+from core.pipeline.thumbnails import display_picture
+from core.pipeline.watched_scan import Watched, measure_watched
+from tests.simulated import copy_of
+
+pytestmark = pytest.mark.xdist_group("small simulated set")
+
+
+@pytest.fixture(scope="module")
+def details(done) -> list[ScanDetail]:
+    told = []
+    watched = Watched(done.camera.camera.image_size, told.append)
+    for preview in done.watched:
+        watched(preview)
+    return told
+
+
+def test_every_frame_is_told_of_once_and_in_order(done, details):
+    assert [detail.preview.name for detail in details] == [frame.name for frame in done.summary.frames]
+    assert {detail.stage for detail in details} == {"scanning"}
+    assert all(detail.preview.renewed is None and detail.preview.fan_lines is None for detail in details)
+
+
+def test_points_put_together_are_those_of_the_last_renewal_and_of_each_frame_since(done, details):
+    shown = 0
+    for preview, detail in zip(done.watched, details, strict=True):
+        assert detail.renewed == (preview.renewed is not None)
+        expected = len(preview.points) if preview.renewed is None else len(preview.renewed)
+        assert len(detail.points) == expected
+        shown = expected if detail.renewed else shown + expected
+    assert shown > 1000
+
+
+def test_coverage_grows_and_fan_lines_stand_once_they_are_known(details):
+    covered = [int(detail.cells.sum()) for detail in details]
+    assert covered == sorted(covered) and covered[-1] > covered[0]
+    assert (details[-1].cells <= details[-1].lit).all()
+    assert 0 < details[-1].share <= 1
+    assert all(len(detail.fan_lines) == 3 for detail in details)
+
+
+def test_measuring_watched_gives_what_measuring_gives_and_can_be_cancelled(done, tmp_path):
+    folder = copy_of(done.folder, tmp_path / "project")
+
+    def cancelled(step, _done, _total):
+        if step == "frames":
+            raise Cancelled
+
+    before = (results_folder(folder) / "cloud.ply").read_bytes()
+    with pytest.raises(Cancelled):
+        measure_watched(folder, done.project, cancelled, lambda _: None)
+    assert (results_folder(folder) / "cloud.ply").read_bytes() == before
+
+
+def test_without_calibrations_nothing_is_watched_but_told_why(done):
+    with pytest.raises(InputError, match="no calibration of the camera"):
+        measure_watched(done.folder, replace(done.project, accepted=Accepted()), watch=lambda _: None)
+
+
+def test_the_look_of_a_scan_says_what_the_measurement_said(done):
+    look = show_scan(done.folder)
+    assert len(look) == done.summary.points and look.triangles == done.summary.triangles
+    assert look.points.dtype == look.sigma.dtype == np.float32
+    assert look.frames == done.summary.frames
+    assert look.frames_used == sum(frame.used for frame in done.summary.frames)
+    assert look.frames_used + sum(number for _, number in look.left_out) == len(look.frames)
+    assert look.median_sigma_mm == pytest.approx(np.median(look.sigma), rel=1e-5)
+    assert look.median_sigma_mm < look.sigma_95_mm <= done.project.options.sigma_cut_mm
+    assert 0 < look.share < 1 and look.stripe.width_px > 1
+    assert not look.problems
+    assert len(pickle.dumps(look)) < 40 * len(look) + 20_000
+
+
+def test_no_result_is_shown_as_none(tmp_path):
+    look = show_scan(tmp_path)
+    assert len(look) == 0 and look.frames == () and look.stripe is None
+    assert np.isnan(look.median_sigma_mm) and look.share == 0
+
+
+def test_a_damaged_result_is_shown_as_none_with_the_reason(done, tmp_path):
+    folder = copy_of(done.folder, tmp_path / "project")
+    (results_folder(folder) / "cloud.ply").write_bytes(b"ply\nnonsense")
+    look = show_scan(folder)
+    assert len(look) == 0
+    assert any("cloud.ply" in problem for problem in look.problems)
+
+
+def test_accepted_calibrations_come_as_far_as_there_are_any(done):
+    camera, fan = accepted_calibration(done.folder, done.project)
+    assert camera.image_size == done.camera.camera.image_size and fan.lines == 3
+    only_camera = replace(done.project, accepted=replace(done.project.accepted, fan=""))
+    assert accepted_calibration(done.folder, only_camera)[1] is None
+    assert accepted_calibration(done.folder, replace(done.project, accepted=Accepted())) == (None, None)
+
+
+def test_a_frame_is_shown_reduced_by_a_whole_factor(done, simulated):
+    width = done.camera.camera.image_size[0]
+    picture, factor = display_picture(simulated / "scan" / "frame0003.png", None, width // 2)
+    assert factor == 2 and picture.dtype == np.uint8 and picture.shape[1] == width // 2
