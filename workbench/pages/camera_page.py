@@ -90,7 +90,7 @@ class CameraPage(StepPage):
     def _connect(self) -> None:
         p = self.presenter
         self.source.folder_chosen.connect(p.use_folder)
-        self.source.accept_drops_on(self.picture.image)
+        self.source.accept_drops_on(self)
         self.views.toggled.connect(lambda name, used: p.set_used([name], used))
         self.views.toggled_together.connect(lambda names, used: p.set_used(list(names), used))
         self.views.current_changed.connect(p.choose_view)

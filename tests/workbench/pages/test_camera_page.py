@@ -4,7 +4,9 @@ from typing import cast
 
 import numpy as np
 import pytest
-from PySide6.QtCore import Qt
+from PySide6.QtCore import QMimeData, QPoint, QPointF, Qt, QUrl
+from PySide6.QtGui import QDragEnterEvent, QDropEvent
+from PySide6.QtWidgets import QApplication
 
 from core.live.events import CameraDetail, LiveEnded, LiveStarted, LiveTaken, LiveView
 from tests.workbench.hand_lane import HandLane
@@ -198,3 +200,24 @@ def test_the_keys_do_what_the_buttons_do(solved, qtbot):
     qtbot.waitUntil(lambda: solved.presenter.bench.measuring.ran.count(jobs.FIND_VIEWS) == before + 1)
     solved.presenter.do_live()
     assert solved.presenter.live.running
+
+
+def test_a_folder_dropped_on_the_picture_is_taken(page, qtbot, views_folder):
+    data = QMimeData()
+    data.setUrls([QUrl.fromLocalFile(str(views_folder))])
+    action, keys = Qt.DropAction.CopyAction, Qt.KeyboardModifier.NoModifier
+    enter = QDragEnterEvent(QPoint(5, 5), action, data, LEFT, keys)
+    QApplication.sendEvent(page.picture.image.canvas, enter)
+    assert enter.isAccepted()
+    QApplication.sendEvent(page, QDropEvent(QPointF(5, 5), action, data, LEFT, keys))
+    qtbot.waitUntil(lambda: page.presenter.stage is Stage.SOLVED)
+    assert page.presenter.folder == views_folder
+
+
+def test_everything_can_be_reached_by_the_tab_key(solved, qtbot):
+    reached, widget = set(), solved.card.buttons["run"]
+    while widget not in reached:
+        reached.add(widget)
+        widget = widget.nextInFocusChain()
+    for needed in (solved.card.buttons["accept"], solved.tabs.tabBar(), solved.picture.factor):
+        assert needed in reached and needed.focusPolicy() & Qt.FocusPolicy.TabFocus
