@@ -14,9 +14,10 @@ from PySide6.QtWidgets import QApplication
 from core.calibrate.seen_views import SeenView, SeenViews
 from core.errors import InputError
 from core.files.pictures import write_picture
-from core.files.project import Project, new_project
+from core.files.project import Accepted, Project, new_project
 from tests.calibrate.camera_views import TRUTH, synthetic_views
 from tests.workbench.hand_lane import HandLane
+from tests.workbench.pages import scan_cases
 from workbench import jobs
 from workbench.bench import Bench
 from workbench.notices import Notices
@@ -64,4 +65,27 @@ def camera_bench(hand_bench: Bench, tmp_path: Path) -> Bench:
     """An open project without pictures; the target is found at once in whatever it is given."""
     cast(HandLane, hand_bench.measuring).answers[jobs.FIND_VIEWS] = seen
     hand_bench.model.create(tmp_path / "project", new_project("block"))
+    return hand_bench
+
+
+@pytest.fixture
+def scan_folder(tmp_path: Path) -> Path:
+    """A recording of a few small pictures, with a reference."""
+    folder = tmp_path / "recorded" / "scan"
+    folder.mkdir(parents=True)
+    names = [scan_cases.name_of(number).removeprefix("scan/") for number in range(scan_cases.FRAMES)]
+    for name in ("reference.png", *names):
+        write_picture(folder / name, np.full(scan_cases.SIZE[::-1], 40, np.uint8))
+    return folder
+
+
+@pytest.fixture
+def scan_bench(hand_bench: Bench, tmp_path: Path) -> Bench:
+    """An open project with both calibrations accepted; measuring waits for the test, frames are looked at at once."""
+    cast(HandLane, hand_bench.measuring).held = {jobs.WATCH_SCAN}
+    quick = cast(HandLane, hand_bench.quick)
+    quick.answers[jobs.ACCEPTED_CALIBRATION] = lambda folder, project: ("camera", "fan")
+    quick.answers[jobs.SHOW_SCAN] = lambda folder: scan_cases.look()
+    quick.answers[jobs.SHOW_FRAME] = lambda folder, project, name: scan_cases.stages(name)
+    hand_bench.model.create(tmp_path / "project", replace(new_project("block"), accepted=Accepted("camera-1", "fan-1")))
     return hand_bench

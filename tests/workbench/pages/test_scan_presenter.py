@@ -19,34 +19,19 @@ from workbench.step_state import State
 
 
 @pytest.fixture
-def scan_folder(tmp_path):
-    folder = tmp_path / "recorded" / "scan"
-    folder.mkdir(parents=True)
-    for name in ("reference.png", *(f"frame{number:04d}.png" for number in range(cases.FRAMES))):
-        write_picture(folder / name, np.full(cases.SIZE[::-1], 40, np.uint8))
-    return folder
+def measuring(scan_bench):
+    return cast(HandLane, scan_bench.measuring)
 
 
 @pytest.fixture
-def measuring(hand_bench):
-    return cast(HandLane, hand_bench.measuring)
+def quick(scan_bench):
+    return cast(HandLane, scan_bench.quick)
 
 
 @pytest.fixture
-def quick(hand_bench):
-    lane = cast(HandLane, hand_bench.quick)
-    lane.answers[jobs.ACCEPTED_CALIBRATION] = lambda folder, project: ("camera", "fan")
-    lane.answers[jobs.SHOW_SCAN] = lambda folder: cases.look()
-    lane.answers[jobs.SHOW_FRAME] = lambda folder, project, name: cases.stages(name)
-    return lane
-
-
-@pytest.fixture
-def presenter(hand_bench, measuring, quick, tmp_path):
-    measuring.held = {jobs.WATCH_SCAN}
-    made = ScanPresenter(hand_bench)
-    project = replace(new_project("block"), accepted=Accepted("camera-1", "fan-1"))
-    hand_bench.model.create(tmp_path / "project", project)
+def presenter(scan_bench):
+    made = ScanPresenter(scan_bench)
+    made.opened()
     return made
 
 
@@ -344,8 +329,8 @@ def test_frames_of_another_recording_are_not_judged_by_the_old_result(measured, 
 
 
 @pytest.fixture
-def lane(hand_bench):
-    return cast(HandLane, hand_bench.live)
+def lane(scan_bench):
+    return cast(HandLane, scan_bench.live)
 
 
 def record(presenter, lane, scan_folder, qtbot, frames=cases.FRAMES):
@@ -375,11 +360,11 @@ def test_the_calibrations_are_given_to_the_recording(presenter, lane, qtbot):
     assert (request.camera, request.fan) == ("camera", "fan")
 
 
-def test_a_recording_does_not_start_before_the_calibrations_are_read(hand_bench, quick, presenter, lane):
+def test_a_recording_does_not_start_before_the_calibrations_are_read(scan_bench, quick, presenter, lane):
     presenter.work.camera = presenter.work.fan = None
     presenter.do_live()
     assert not presenter.live.running
-    assert any("still being read" in notice.text for notice in hand_bench.notices.all)
+    assert any("still being read" in notice.text for notice in scan_bench.notices.all)
 
 
 def test_after_a_recording_the_measurement_starts_by_itself(presenter, lane, measuring, scan_folder, qtbot):

@@ -1,0 +1,333 @@
+"""The scan page, clicked."""
+
+from typing import cast
+
+import numpy as np
+import pytest
+from PySide6.QtCore import Qt
+
+from core.errors import InputError
+from core.live.events import LiveAsk, LiveEnded, LiveStarted, Resume
+from tests.workbench.hand_lane import HandLane
+from tests.workbench.pages import scan_cases as cases
+from workbench import jobs
+from workbench.pages.scan_page import ScanPage
+from workbench.pages.scan_picture import View
+from workbench.pages.scan_presenter import ScanPresenter, Stage
+from workbench.views import ask
+
+LEFT = Qt.MouseButton.LeftButton
+
+
+@pytest.fixture
+def page(scan_bench, qtbot, monkeypatch):
+    monkeypatch.setenv("TRISECT_NO_OPENGL", "painter")
+    made = ScanPage(ScanPresenter(scan_bench))
+    made.presenter.opened()
+    made._opened()
+    qtbot.addWidget(made)
+    made.resize(1100, 700)
+    made.show()
+    made.presenter.entered()
+    return made
+
+
+@pytest.fixture
+def measuring(scan_bench):
+    return cast(HandLane, scan_bench.measuring)
+
+
+@pytest.fixture
+def lane(scan_bench):
+    return cast(HandLane, scan_bench.live)
+
+
+@pytest.fixture
+def recorded(page, scan_folder, qtbot):
+    page.source.folder_chosen.emit(scan_folder)
+    qtbot.waitUntil(lambda: page.presenter.scrub.up_to_date)
+    return page
+
+
+@pytest.fixture
+def measured(recorded, measuring, qtbot):
+    qtbot.mouseClick(recorded.stage.buttons["run"], LEFT)
+    measuring.finish(cases.summary())
+    qtbot.waitUntil(lambda: recorded.presenter.work.look is not None)
+    qtbot.waitUntil(lambda: recorded.presenter.scrub.up_to_date and not recorded.presenter.bench.quick.busy)
+    return recorded
+
+
+def start_live(page, lane, qtbot):
+    qtbot.waitUntil(lambda: not page.presenter.bench.quick.busy)
+    page.source.set_mode("live")
+    qtbot.mouseClick(page.live_panel.start, LEFT)
+    lane.current.told.emit(LiveStarted("Camera 1", cases.SIZE))
+
+
+# ---- what is seen when
+
+
+def test_an_empty_page_says_what_to_do_next_and_offers_it(page, qtbot, monkeypatch, scan_folder):
+    image = page.picture.image
+    assert "Record a scan with a live source" in image.empty_state.message
+    assert page.stage.title.text() == "No recording yet"
+    assert (
+        page.bar.isHidden() and page.running.isHidden() and page.result_fold.isHidden() and page.frames_fold.isHidden()
+    )
+    assert page.live_panel.start.property("primary")
+    monkeypatch.setattr(ask, "choose_folder", lambda *_: scan_folder)
+    qtbot.mouseClick(image.empty_state.button, LEFT)
+    qtbot.waitUntil(lambda: page.presenter.stage is Stage.RECORDED)
+
+
+def test_greyed_buttons_say_why(page):
+    for button in page.stage.buttons.values():
+        assert not button.isEnabled() and button.toolTip()
+
+
+def test_a_recording_can_be_looked_through_before_it_is_measured(recorded):
+    assert recorded.stage.title.text() == "6 frames, not measured yet"
+    assert recorded.stage.buttons["run"].property("primary") and not recorded.live_panel.start.property("primary")
+    assert recorded.source.detail.text() == "6 frames, with a reference"
+    assert not recorded.bar.isHidden() and recorded.picture.image.has_picture
+    assert recorded.bar.said.text() == "Frame 4 of 6 (frame0003.png): 3 crossings by itself; not measured yet."
+    assert not recorded.bar.stages[View.POINTS].isEnabled()
+    assert recorded.bar.stages[View.POINTS].toolTip() == "Measure the scan first."
+
+
+def test_the_measured_scan_shows_its_quality_with_units_and_the_reasons_counted(measured):
+    quality, reasons = measured.result.quality, measured.result.reasons
+    assert quality.text_of("Points") == "1\u2009500" and quality.text_of("Triangles") == "2\u2009800"
+    assert quality.text_of("Frames used") == "5 of 6"
+    assert quality.text_of("Median σ") == "0.021 mm"
+    assert quality.text_of("Covered") == "63 % of what was lit"
+    assert reasons.text_of("Its light plane is too uncertain for any point to pass the σ cut") == "1"
+    assert "relief" in measured.result.notes.text()
+    assert not measured.source_fold.isExpanded() and measured.result_fold.isExpanded()
+    assert not any(button.property("primary") for button in measured.stage.buttons.values())
+
+
+def test_a_scan_without_thickness_says_so(recorded, measuring, qtbot):
+    qtbot.mouseClick(recorded.stage.buttons["run"], LEFT)
+    measuring.finish(cases.summary(gauge=None))
+    qtbot.waitUntil(lambda: recorded.presenter.work.look is not None)
+    assert "No thickness: there are no two parallel faces" in recorded.result.notes.text()
+
+
+def test_the_cloud_is_shown_in_3d_coloured_by_sigma_up_to_the_cut(measured):
+    scene = measured.cloud.scene
+    assert scene.state()["points"] == 1500
+    assert scene._scene.colouring.limits == (0.0, 0.05) and scene._scene.colouring.unit == "mm"
+
+
+def test_a_failed_measurement_is_told_on_the_page(recorded, measuring, qtbot):
+    qtbot.mouseClick(recorded.stage.buttons["run"], LEFT)
+    measuring.fail(InputError("no sweep can be located"))
+    assert recorded.stage.title.text() == "Not measured"
+    assert "no sweep can be located" in recorded.stage.words.text()
+    assert recorded.stage.buttons["run"].property("primary")
+
+
+# ---- frames
+
+
+def test_frames_are_listed_with_points_sigma_crossings_and_reasons(measured):
+    rows = measured.frames.rows()
+    assert [row.title for row in rows[:2]] == ["frame0000.png", "frame0001.png"]
+    assert rows[1].text == "0.020 mm" and rows[1].reason == "200 points · 23 crossings"
+    assert rows[-1].text == "" and rows[-1].reason == cases.UNCERTAIN and rows[-1].used
+
+
+def test_unchecking_a_frame_in_the_list_leaves_it_out_and_undo_lets_it_in(measured, qtbot):
+    table = measured.frames.table
+    table.scrollTo(measured.frames.model.index(1, 0))
+    place = table.visualRect(measured.frames.model.index(1, 0))
+    qtbot.mouseClick(table.viewport(), LEFT, pos=place.topLeft() + type(place.topLeft())(12, place.height() // 2))
+    assert measured.presenter.project.options.excluded == {cases.name_of(1)}
+    assert measured.stage.title.text() == "Measured, but out of date"
+    assert measured.stage.words.text() == "Out of date: changed since: left-out frames. Measure again."
+    assert measured.stage.buttons["run"].text() == "Measure again" and measured.stage.buttons["run"].property("primary")
+    measured.presenter.model.undo_stack.undo()
+    assert measured.frames.rows()[1].used and measured.stage.title.text() == "Measured"
+
+
+def test_the_box_by_the_slider_leaves_out_the_frame_that_is_shown(measured, qtbot):
+    name = measured.presenter.scrub.current
+    qtbot.mouseClick(measured.bar.used, LEFT, pos=measured.bar.used.rect().center().transposed() / 2)
+    assert measured.presenter.project.options.excluded == {name}
+    assert not measured.bar.used.isChecked()
+
+
+def test_slider_buttons_list_and_arrows_go_through_the_frames_together(measured, qtbot):
+    scrub = measured.presenter.scrub
+    measured.bar.slider.setValue(0)
+    assert scrub.index == 0 and not measured.bar.back.isEnabled()
+    qtbot.mouseClick(measured.bar.on, LEFT)
+    assert scrub.index == 1 and measured.frames.current() == cases.name_of(1)
+    measured.picture.image.setFocus()
+    qtbot.keyClick(measured.picture.image, Qt.Key.Key_Right)
+    assert scrub.index == 2 and measured.bar.slider.value() == 2
+    qtbot.keyClick(measured.picture.image, Qt.Key.Key_Left)
+    assert scrub.index == 1
+    measured.frames.table.setCurrentIndex(measured.frames.model.index(4, 0))
+    assert scrub.index == 4
+    qtbot.waitUntil(lambda: scrub.up_to_date)
+    assert measured.bar.said.text().startswith(
+        "Frame 5 of 6 (frame0004.png): 500 points, median σ 0.050 mm; 3 crossings"
+    )
+
+
+def test_arrows_pan_a_picture_that_is_not_shown_whole(measured, qtbot):
+    image, scrub = measured.picture.image, measured.presenter.scrub
+    image.one_to_one()
+    before = scrub.index
+    qtbot.keyClick(image, Qt.Key.Key_Right)
+    assert scrub.index == before
+
+
+@pytest.mark.parametrize(
+    ("view", "layers"),
+    [
+        (View.RECORDED, set()),
+        (View.DIFFERENCE, set()),
+        (View.RIDGE, set()),
+        (View.CENTRELINES, {"fan 1", "fan ?", "sweep"}),
+        (View.CROSSINGS, {"fan 1", "fan ?", "sweep", "good", "weak", "left out"}),
+        (View.POINTS, {"fan 1", "fan ?", "sweep", "points"}),
+    ],
+)
+def test_every_stage_of_a_frame_can_be_seen(measured, qtbot, view, layers):
+    qtbot.mouseClick(measured.bar.stages[view], LEFT)
+    image = measured.picture.image
+    assert set(image.layer_names()) == layers
+    shown = {View.DIFFERENCE: 80, View.RIDGE: 120}.get(view, 40)
+    assert image._picture.picture[0, 0] == shown
+
+
+def test_a_crossing_says_on_hover_why_it_is_weak(measured, qtbot):
+    layer = measured.picture.image._layers["weak"]
+    assert layer.tip(0) == cases.WEAK
+
+
+# ---- settings
+
+
+def test_settings_are_changed_in_the_form_and_undone(measured, qtbot):
+    form = measured.settings.form
+    form.edited.emit("sigma_cut_mm", 0.2)
+    qtbot.waitUntil(lambda: measured.presenter.project.options.sigma_cut_mm == 0.2)
+    assert measured.stage.title.text() == "Measured, but out of date"
+    measured.presenter.model.undo_stack.undo()
+    assert form.values()["sigma_cut_mm"] == 0.05
+
+
+def test_stripe_settings_wait_for_the_tick_to_be_taken_away(measured, qtbot):
+    form = measured.settings.form
+    assert not form.editor("width_px").isEnabled() and "tick" in form.editor("width_px").toolTip()
+    assert form.values()["width_px"] == 5.9
+    form.edited.emit("automatic", False)
+    qtbot.waitUntil(lambda: form.editor("width_px").isEnabled())
+    assert measured.presenter.project.options.stripe.width_px == 5.9
+
+
+def test_every_setting_has_a_line_of_help(page):
+    for key in ("method", "sigma_cut_mm", "automatic", "width_px", "contrast"):
+        assert page.settings.form.help_of(key).endswith(".")
+
+
+# ---- while it is measured
+
+
+def test_a_recording_that_is_measured_shows_frames_marks_gauges_and_a_growing_cloud(recorded, measuring, qtbot):
+    quick = cast(HandLane, recorded.presenter.bench.quick)
+    quick.answers[jobs.DISPLAY_PICTURE] = lambda path, channel, width: (np.full((24, 32), 70, np.uint8), 2)
+    qtbot.mouseClick(recorded.stage.buttons["run"], LEFT)
+    assert recorded.bar.isHidden() and not recorded.running.isHidden()
+    assert recorded.stage.buttons["cancel"].isEnabled() and recorded.stage.buttons["cancel"].property("primary")
+    measuring.current.told.emit(cases.detail(0, renewed=True, hints=("Tilt the laser more.",)))
+    qtbot.waitUntil(lambda: recorded.picture.image._picture.picture[0, 0] == 70)
+    assert recorded.running.condition.said == "120 · good" and recorded.running.speed.said == "1 px/frame · good"
+    assert recorded.running.covered.text() == "covered 63 % of what was lit"
+    assert recorded.running.hints.text == "Tilt the laser more."
+    titles = recorded.picture.image.legend_titles
+    assert "sweep: σ 0 … 0.2 mm, else grey" in titles and "lit, no points yet" in titles
+    for number in (1, 2):
+        measuring.current.told.emit(cases.detail(number))
+    assert recorded.cloud.scene.state()["points"] == 90
+    measuring.current.told.emit(cases.detail(3, renewed=True))
+    assert recorded.cloud.scene.state()["points"] == 30
+    qtbot.waitUntil(lambda: recorded.frames.current() == cases.name_of(3))
+    assert recorded.frames.rows()[0].reason == "30 points in the preview"
+
+
+def test_cancel_leaves_the_recording_as_it_was(recorded, measuring, qtbot):
+    qtbot.mouseClick(recorded.stage.buttons["run"], LEFT)
+    qtbot.mouseClick(recorded.stage.buttons["cancel"], LEFT)
+    assert recorded.presenter.stage is Stage.RECORDED and not measuring.busy
+    assert not recorded.bar.isHidden()
+
+
+# ---- live
+
+
+def test_a_live_scan_goes_from_the_reference_to_the_result(page, lane, measuring, scan_folder, qtbot):
+    start_live(page, lane, qtbot)
+    lane.current.view.emit(cases.live_view(0, stage="reference"))
+    assert page.stage.title.text() == "Taking the reference"
+    assert page.running.condition.said == "–"
+    lane.current.told.emit(LiveAsk("Switch the hand-held laser on, press Start.", "Start", Resume()))
+    assert not page.strip.isHidden() and page.strip.answer.text() == "Start"
+    qtbot.mouseClick(page.strip.answer, LEFT)
+    assert isinstance(lane.sent[-1], Resume)
+    lane.current.view.emit(cases.live_view(1, renewed=True, condition=np.inf))
+    assert page.stage.title.text() == "Scanning"
+    assert {"covered", "fan 3", "sweep", "good", "weak", "left out"} <= set(page.picture.image.layer_names())
+    assert page.running.condition.said == "∞ · poor"
+    assert "2 frames recorded" in page.live_panel.counts.text()
+    assert page.cloud.scene.state()["points"] == 30
+    assert lane.sent.count("shown") == 2
+    lane.finish(LiveEnded(scan_folder, cases.FRAMES, 0))
+    assert page.stage.title.text() == "Measuring the recording …"
+    assert "by itself" in page.stage.words.text()
+    measuring.finish(cases.summary())
+    qtbot.waitUntil(lambda: page.presenter.stage is Stage.MEASURED and page.presenter.scrub.up_to_date)
+
+
+def test_without_calibrations_a_live_scan_shows_stripes_only(page, lane, qtbot):
+    presenter = page.presenter
+    presenter.model.edit("x", type(presenter.project)(presenter.project.info, presenter.project.rig))
+    start_live(page, lane, qtbot)
+    lane.current.view.emit(cases.live_view(0))
+    assert page.picture.image.legend_titles.count("sweep") == 1
+    assert "good" not in page.picture.image.layer_names()
+
+
+def test_every_live_picture_is_answered_even_when_the_page_is_hidden(page, lane, qtbot):
+    start_live(page, lane, qtbot)
+    page.hide()
+    lane.current.view.emit(cases.live_view(0))
+    assert lane.sent[-1] == "shown"
+
+
+def test_a_recording_that_ends_before_it_began_leaves_the_page_empty(page, lane, scan_folder, qtbot):
+    start_live(page, lane, qtbot)
+    lane.fail(InputError("there is no camera"))
+    assert page.presenter.stage is Stage.NONE
+    assert "Record a scan" in page.picture.image.empty_state.message
+
+
+# ---- the two views
+
+
+def test_each_view_can_have_all_the_room_and_give_it_back(recorded, qtbot):
+    views = recorded.views
+    title, _ = views._panes[1]
+    qtbot.mouseDClick(title, LEFT)
+    assert views.alone == 1 and not recorded.picture.isVisible() and recorded.cloud.isVisible()
+    qtbot.mouseClick(title.button, LEFT)
+    assert views.alone is None and recorded.picture.isVisible() and recorded.cloud.isVisible()
+
+
+def test_an_empty_3d_view_says_what_to_do(page, recorded):
+    assert recorded.cloud.scene._message == "Press Measure: the points will grow here."
