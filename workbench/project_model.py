@@ -44,6 +44,7 @@ class ProjectModel(QObject):
         self.folder: Path | None = None
         self._file = ProjectFile(new_project(""))
         self._saved: ProjectFile | None = None
+        self._told = ""
         self.undo_stack = QUndoStack(self)
         self._autosave = QTimer(self)
         self._autosave.setSingleShot(True)
@@ -80,18 +81,23 @@ class ProjectModel(QObject):
         """
         if (folder / "project.json").exists():
             raise InputError("there is a project already", where=folder, todo="choose another name, or open it")
-        self._take(folder, ProjectFile(project), saved=None)
-        self.save()
+        file = ProjectFile(project)
+        write_project(folder, file)
+        self._take(folder, file, saved=file)
 
-    def open(self, path: Path, *, recover: bool = False) -> None:
-        """Open a project folder; with `recover`, its autosaved state.
+    def open(self, path: Path, *, recover: bool = False, version: ProjectFile | None = None) -> None:
+        """Open a project folder; with `recover`, its autosaved state; with `version`, that state, to be saved.
 
         Raises
         ------
         InputError
-            If there is none, or it is damaged or of a newer program.
+            If there is none, or it is damaged or of a newer program; neither matters with a `version`.
         """
         folder = path.parent if path.name == "project.json" else path
+        if version is not None:
+            self._take(folder, version, saved=None)
+            self._autosave.start()
+            return
         saved = read_project(folder)
         rescued = recoverable(folder) if recover else None
         self._take(folder, rescued or saved, saved=saved)
@@ -141,8 +147,11 @@ class ProjectModel(QObject):
             return
         try:
             write_autosave(self.folder, self._file)
+            self._told = ""
         except InputError as error:
-            self.failed.emit(str(error))
+            if str(error) != self._told:  # said once, not at every edit
+                self._told = str(error)
+                self.failed.emit(self._told)
 
     def _show(self, project: Project) -> None:
         before = self.project
@@ -156,7 +165,7 @@ class ProjectModel(QObject):
             self.modified.emit(self.is_modified)
 
     def _take(self, folder: Path | None, file: ProjectFile, saved: ProjectFile | None) -> None:
-        self.folder, self._file, self._saved = folder, file, saved
+        self.folder, self._file, self._saved, self._told = folder, file, saved, ""
         self.undo_stack.clear()
         self.opened.emit()
         self.modified.emit(self.is_modified)

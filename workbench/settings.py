@@ -31,9 +31,11 @@ class AppSettings(QObject):
 
     def remember(self, project: Path) -> None:
         """Put a project at the top of the recent ones."""
-        paths = [project, *(path for path in self.recent if path != project)][:RECENT]
-        self._store.setValue("recent", [str(path) for path in paths])
-        self.recent_changed.emit()
+        self._keep_recent([project, *(path for path in self.recent if path != project)])
+
+    def forget(self, project: Path) -> None:
+        """Leave a project out of the recent ones; nothing happens to the project."""
+        self._keep_recent([path for path in self.recent if path != project])
 
     @property
     def theme(self) -> str:
@@ -80,6 +82,10 @@ class AppSettings(QObject):
     def keep_stage_seconds(self, label: str, seconds: dict[str, float]) -> None:
         """Remember how long the stages of a job took."""
         self._store.setValue(f"stages/{label}", seconds)
+
+    def _keep_recent(self, paths: list[Path]) -> None:
+        self._store.setValue("recent", [str(path) for path in paths[:RECENT]])
+        self.recent_changed.emit()
 
     def flush(self) -> None:
         """Write now."""

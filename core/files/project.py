@@ -28,10 +28,13 @@ from core.files.project_folder import (
     write_autosave,
     write_project,
 )
+from core.files.project_json import NewerProject
+from core.files.project_rescue import Version, can_be_saved, rescues
 
 __all__ = [
     "Accepted",
     "Done",
+    "NewerProject",
     "Paper",
     "Project",
     "ProjectFile",
@@ -39,7 +42,9 @@ __all__ = [
     "Repeat",
     "ReportChoices",
     "Sources",
+    "Version",
     "backups",
+    "can_be_saved",
     "is_project",
     "new_project",
     "project_from_set",
@@ -47,6 +52,7 @@ __all__ = [
     "read_project",
     "recoverable",
     "remove_autosave",
+    "rescues",
     "source_folder",
     "sources_of_set",
     "stored_source",

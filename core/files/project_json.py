@@ -39,6 +39,10 @@ MIGRATIONS: Mapping[int, Callable[[dict[str, Any]], dict[str, Any]]] = {}
 _TODO = "open a version in backups, or make a new project"
 
 
+class NewerProject(InputError):
+    """The project was written by a newer program: nothing is wrong with it."""
+
+
 def project_text(file: ProjectFile, path: Path) -> str:
     """What project.json says of `file`.
 
@@ -80,7 +84,7 @@ def read_project_text(path: Path) -> ProjectFile:
         raise InputError("this is no project: there is no schema version in it", where=path, todo=_TODO)
     schema = tables["schema_version"]
     if schema > SCHEMA:
-        raise InputError(
+        raise NewerProject(
             f"the project was written by a newer program (schema version {schema}, this program knows up to {SCHEMA})",
             where=path,
             todo="open it with a newer version of Trisect",

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from core.errors import InputError
 from core.files.atomic import cannot_write, make_folder
+from core.files.leftovers import remove_leftovers
 from core.files.project import Accepted, Done, Project, ProjectFile, project_from_set, write_project
 from core.files.project_keys import finished
 from core.pipeline.project_steps import (
@@ -21,7 +22,7 @@ from core.pipeline.project_steps import (
     solve_views,
 )
 from core.progress import Progress, silent
-from core.simulate.sample import sample_set
+from core.simulate.sample import sample_folder, sample_set
 
 
 def sample_project(folder: Path, progress: Progress = silent) -> Path:
@@ -36,6 +37,8 @@ def sample_project(folder: Path, progress: Progress = silent) -> Path:
     """
     if folder.exists():
         raise InputError("there is something already", where=folder, todo="choose another name")
+    for place in (folder, sample_folder()):
+        remove_leftovers(place)
     pictures = sample_set(progress)
     make_folder(folder.parent)
     try:
@@ -46,6 +49,11 @@ def sample_project(folder: Path, progress: Progress = silent) -> Path:
     except OSError as error:
         raise cannot_write(folder, error) from error
     return folder
+
+
+def clear_unfinished(folder: Path) -> None:
+    """Remove what is left of a sample project that was being made in `folder` by a process that has been ended."""
+    remove_leftovers(folder, quiet_s=0.0)
 
 
 def finished_project(folder: Path, project: Project, progress: Progress = silent) -> ProjectFile:

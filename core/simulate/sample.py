@@ -22,6 +22,11 @@ def sample_scenario() -> Scenario:
     return Scenario.from_toml((files("resources") / "sample" / SAMPLE).read_text(encoding="utf-8"), SAMPLE)
 
 
+def sample_folder() -> Path:
+    """Where the sample's recording set is kept, once it is rendered."""
+    return Path(platformdirs.user_cache_dir("trisect", appauthor=False)) / f"sample-{_key(sample_scenario())}"
+
+
 def sample_set(progress: Progress = silent) -> Path:
     """The folder of the sample's recording set, rendered (in well under a minute) if it is not there yet.
 
@@ -30,11 +35,10 @@ def sample_set(progress: Progress = silent) -> Path:
     InputError
         If the cache folder cannot be written to.
     """
-    scenario = sample_scenario()
-    folder = Path(platformdirs.user_cache_dir("trisect", appauthor=False)) / f"sample-{_key(scenario)}"
+    folder = sample_folder()
     if not _whole(folder):
         try:
-            simulate_set(scenario, folder, progress)
+            simulate_set(sample_scenario(), folder, progress)
         except InputError:
             if not _whole(folder):  # another process may have been quicker
                 raise

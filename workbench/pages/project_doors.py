@@ -10,10 +10,24 @@ from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QWidget
 
 from core.errors import InputError
-from core.files.project import Project, is_project, new_project, project_from_set, recoverable
-from workbench import jobs
+from core.files.project import (
+    NewerProject,
+    Project,
+    ProjectFile,
+    Version,
+    can_be_saved,
+    is_project,
+    new_project,
+    project_from_set,
+    read_project,
+    recoverable,
+    rescues,
+)
 from workbench.bench import Bench
+from workbench.pages.sample_door import SampleDoor
 from workbench.views import ask
+
+PROJECT, BACKUPS, SET = "project.json", "backups", "rig.toml"
 
 
 class ProjectDoors(QObject):
@@ -24,6 +38,7 @@ class ProjectDoors(QObject):
     def __init__(self, bench: Bench, window: QWidget) -> None:
         super().__init__(window)
         self.bench, self.model, self._window = bench, bench.model, window
+        self.sample = SampleDoor(bench, self.open_project, self)
 
     def new_project(self) -> None:
         """Ask for a name and make an empty project."""
@@ -41,31 +56,53 @@ class ProjectDoors(QObject):
             self._window, self.tr("Choose a recording set (a folder with rig.toml)"), Path.home()
         )
         if folder is not None:
-            self.open_set(folder)
+            self.open_dropped(folder)
 
     def open_dropped(self, path: Path) -> None:
-        """Open whatever this is: a project, or a recording set."""
-        if is_project(path):
+        """Open whatever this is: a project or its project.json, an earlier version of it, or a recording set."""
+        path = path.resolve()
+        if is_project(path) or rescues(path):
             self.open_project(path)
-        elif (path / "rig.toml").exists() or path.name == "rig.toml":
-            self.open_set(path.parent if path.name == "rig.toml" else path)
+        elif path.is_file() and path.parent.name == BACKUPS and is_project(path.parent.parent):
+            self.open_version(path)
+        elif (path / SET).exists() or path.name == SET:
+            self.open_set(path.parent if path.name == SET else path)
         else:
             self.bench.notices.error(
                 self.tr("{0}: is neither a project (project.json) nor a recording set (rig.toml).").format(path)
             )
 
     def open_project(self, path: Path) -> None:
-        """Open a project; asks whether to recover what was autosaved before a crash."""
-        if not self.close_project():
+        """Open a project; asks what to do about changes saved before a crash, or about a damaged project.json."""
+        folder = (path.parent if path.name == PROJECT else path).resolve()
+        if folder == self.model.folder:
             return
-        folder = path.parent if path.name == "project.json" else path
         try:
-            recover = recoverable(folder) is not None and self._wants_recovery(folder)
-            self.model.open(folder, recover=recover)
+            saved = read_project(folder)
+        except NewerProject as error:
+            self.bench.notices.error(str(error))
+        except InputError as error:
+            version = self._wanted_version(folder, error)
+            if version is not None:
+                self._open(folder, version.file)
+        else:
+            recovered = recoverable(folder)
+            if recovered is None or recovered == saved:
+                self._open(folder)
+            elif (wanted := self._wants_recovery(folder)) is not None:
+                self._open(folder, recover=wanted)
+
+    def open_version(self, path: Path) -> None:
+        """Open a project as it was in one of its backups; saving makes that the present one."""
+        try:
+            version = read_project(path)
         except InputError as error:
             self.bench.notices.error(str(error))
             return
-        self.bench.settings.remember(folder)
+        if self._open(path.parent.parent, version):
+            self.bench.notices.info(
+                self.tr("This is an earlier version; once it is saved, the present one is among the backups.")
+            )
 
     def open_set(self, folder: Path) -> None:
         """Make a project that measures a recording set where it lies."""
@@ -77,27 +114,19 @@ class ProjectDoors(QObject):
 
     def open_sample(self) -> None:
         """Open the finished sample project; it is measured first if this has not been done yet."""
-        folder = self.bench.settings.projects_folder / self.tr("Sample")
-        if is_project(folder):
-            self.open_project(folder)
-            return
-        self.bench.measure(
-            jobs.SAMPLE_PROJECT,
-            folder,
-            label=self.tr("Preparing the sample"),
-            on_done=lambda made: self.open_project(made),
-        )
+        self.sample.open()
 
     def try_simulated(self) -> None:
         """A new project whose live source is the simulated rig."""
         base = self.bench.settings.projects_folder
         names = (self.tr("Simulated rig") + (f" {number}" if number > 1 else "") for number in range(1, 1000))
         name = next(name for name in names if not (base / name).exists())
-        if self._create(base / name, lambda given: new_project(given), name):
+        if self._create(base / name, new_project, name):
             self.go_to.emit("camera")
 
     def save(self) -> bool:
-        """Save; False if it could not be."""
+        """Save, with what is being typed; False if it could not be."""
+        self._take_typed()
         try:
             self.model.save()
         except InputError as error:
@@ -109,11 +138,10 @@ class ProjectDoors(QObject):
         """Save and close the project; False if it is to stay open."""
         if not self.model.is_open:
             return True
-        if self.bench.live.busy or self.bench.measuring.busy:
-            if not self.may_leave([self.tr("A job is running.")]):
-                return False
-        elif not self.may_leave([]):
+        busy = self.bench.live.busy or self.bench.measuring.busy
+        if not self.may_leave([self.tr("A job is running.")] if busy else []):
             return False
+        self.bench.measuring.cancel_all()
         self.model.close()
         return True
 
@@ -124,6 +152,7 @@ class ProjectDoors(QObject):
             text = self.tr("{0} What is recorded is kept. Stop it and leave?").format(running)
             if ask.ask(self._window, self.tr("Leave the project"), text, [self.tr("Stop and leave"), self.tr("Stay")]):
                 return False
+        self._take_typed()
         self.model.leaving.emit()
         if not self.model.is_modified or self.save():
             return True
@@ -131,10 +160,53 @@ class ProjectDoors(QObject):
         answers = [self.tr("Leave without saving"), self.tr("Stay")]
         return ask.ask(self._window, self.tr("Leave the project"), text, answers) == 0
 
-    def _wants_recovery(self, folder: Path) -> bool:
+    def _take_typed(self) -> None:
+        """What is being typed counts, too: an editor tells its text when it loses the focus."""
+        editor = self._window.focusWidget()
+        if editor is not None and editor.hasFocus():
+            editor.clearFocus()
+            editor.setFocus()
+
+    def _wanted_version(self, folder: Path, error: InputError) -> Version | None:
+        """Which earlier state of a damaged project is to be opened, if there is one and it is wanted."""
+        versions = rescues(folder)
+        if not versions:
+            self.bench.notices.error(str(error))
+            return None
+        text = self.tr(
+            "{0} cannot be read: {1}. There are earlier states of the project; nothing is written before you save."
+        ).format(folder / PROJECT, error.what)
+        answers = [self._in_words(version) for version in versions]
+        chosen = ask.ask(self._window, self.tr("Damaged project"), text, [*answers, self.tr("Do not open")])
+        return versions[chosen] if chosen < len(versions) else None
+
+    def _in_words(self, version: Version) -> str:
+        saved = version.file.saved
+        at = saved.astimezone().strftime("%Y-%m-%d %H:%M") if saved else self.tr("an unknown time")
+        if version.autosaved:
+            return self.tr("Unsaved changes of {0}").format(at)
+        return self.tr("Backup of {0}").format(at)
+
+    def _wants_recovery(self, folder: Path) -> bool | None:
+        """Whether unsaved changes are wanted back; None if the project is not to be opened at all."""
         text = self.tr("{0} was not closed properly. There are newer changes than the saved ones.").format(folder.name)
-        answers = [self.tr("Recover the changes"), self.tr("Open the saved state")]
-        return ask.ask(self._window, self.tr("Recover the project"), text, answers) == 0
+        answers = [self.tr("Recover the changes"), self.tr("Open the saved state"), self.tr("Do not open")]
+        return {0: True, 1: False}.get(ask.ask(self._window, self.tr("Recover the project"), text, answers))
+
+    def _open(self, folder: Path, version: ProjectFile | None = None, *, recover: bool = False) -> bool:
+        if not self.close_project():
+            return False
+        try:
+            self.model.open(folder, recover=recover, version=version)
+        except InputError as error:
+            self.bench.notices.error(str(error))
+            return False
+        self.bench.settings.remember(folder)
+        if not can_be_saved(folder):
+            self.bench.notices.warning(
+                self.tr("{0} is read-only: what is changed or measured here cannot be saved.").format(folder)
+            )
+        return True
 
     def _make(self, title: str, name: str, project: Callable[[str], Project]) -> None:
         answer = ask.ask_name_and_folder(self._window, title, name, self.bench.settings.projects_folder)
@@ -145,10 +217,10 @@ class ProjectDoors(QObject):
         self._create(folder / ask.file_name(name), project, name)
 
     def _create(self, folder: Path, project: Callable[[str], Project], name: str) -> bool:
-        if not self.close_project():
-            return False
         try:
             made = project(name)
+            if not self.close_project():
+                return False
             self.model.create(folder, replace(made, info=replace(made.info, name=name)))
         except InputError as error:
             self.bench.notices.error(str(error))

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from PySide6.QtCore import QEvent, QSize, Qt
+from PySide6.QtCore import QEvent, QSize, Qt, QTimer
+from PySide6.QtGui import QAction, QKeySequence
 from PySide6.QtWidgets import (
     QCommandLinkButton,
     QFrame,
@@ -13,6 +14,7 @@ from PySide6.QtWidgets import (
     QLabel,
     QListWidget,
     QListWidgetItem,
+    QSizePolicy,
     QVBoxLayout,
     QWidget,
 )
@@ -71,23 +73,20 @@ class WelcomePage(QWidget):
         )
         for place, link in enumerate((self.sample, self.simulated, self.new, self.open, self.from_set)):
             grid.addWidget(link, place, 0)
-        self.recent = QListWidget()
-        self.recent.setAccessibleName(self.tr("Recent projects"))
-        self.recent.itemActivated.connect(lambda item: doors.open_project(item.data(Qt.ItemDataRole.UserRole)))
-        self.recent.itemClicked.connect(lambda item: doors.open_project(item.data(Qt.ItemDataRole.UserRole)))
+        self.recent = self._recent_list()
         heading = QLabel(self.tr("Recent projects"))
         heading.setObjectName("heading")
         self._none = QLabel(self.tr("Projects you open appear here."))
         self._none.setObjectName("muted")
+        self._none.setAlignment(Qt.AlignmentFlag.AlignTop)
         right = QVBoxLayout()
-        right.setAlignment(Qt.AlignmentFlag.AlignTop)
         right.addWidget(heading)
-        right.addWidget(self._none, 0, Qt.AlignmentFlag.AlignTop)
+        right.addWidget(self._none, 1)
         right.addWidget(self.recent, 1)
-        right.addStretch(0)
         card = QFrame()
         card.setObjectName("card")
-        card.setMaximumSize(1080, 620)
+        card.setMaximumWidth(1080)
+        card.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Maximum)
         inside = QVBoxLayout(card)
         inside.setContentsMargins(36, 28, 36, 28)
         inside.addWidget(title)
@@ -109,8 +108,11 @@ class WelcomePage(QWidget):
         row.addStretch(1)
         row.addWidget(card, 20)
         row.addStretch(1)
-        layout.addLayout(row, 20)
+        layout.addLayout(row)
         layout.addStretch(1)
+        doors.sample.changed.connect(self._show_sample)
+        doors.bench.settings.recent_changed.connect(self.refresh)
+        self._show_sample()
         self.refresh()
 
     def refresh(self) -> None:
@@ -119,7 +121,7 @@ class WelcomePage(QWidget):
         for path in self._doors.bench.settings.recent:
             item = QListWidgetItem(f"{path.name}\n{path.parent}")
             item.setData(Qt.ItemDataRole.UserRole, path)
-            item.setToolTip(str(path))
+            item.setToolTip(self.tr("Open {0}").format(path))
             self.recent.addItem(item)
         self.recent.setVisible(self.recent.count() > 0)
         self._none.setVisible(self.recent.count() == 0)
@@ -129,6 +131,40 @@ class WelcomePage(QWidget):
         if event.type() == QEvent.Type.PaletteChange and hasattr(self, "_links"):
             for link, symbol in self._links:
                 link.setIcon(icon(symbol, colour="accent"))
+
+    def _show_sample(self) -> None:
+        preparing = self._doors.sample.preparing
+        self.sample.setEnabled(not preparing)
+        self.sample.setText(self.tr("Preparing the sample …") if preparing else self.tr("Open sample"))
+        self.sample.setToolTip(self.tr("It is being prepared; the status bar says how far it is.") if preparing else "")
+
+    def _recent_list(self) -> QListWidget:
+        """One click or Enter opens; Delete or the menu leaves a project out of the list."""
+        listed = QListWidget()
+        listed.setAccessibleName(self.tr("Recent projects"))
+        listed.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        listed.setTextElideMode(Qt.TextElideMode.ElideMiddle)
+        listed.setSpacing(2)
+        listed.setFrameShape(QFrame.Shape.NoFrame)
+        listed.itemActivated.connect(self._open_recent)
+        listed.itemClicked.connect(self._open_recent)
+        forget = QAction(self.tr("Leave out of this list"), listed)
+        forget.setShortcut(QKeySequence(QKeySequence.StandardKey.Delete))
+        forget.setShortcutContext(Qt.ShortcutContext.WidgetShortcut)
+        forget.triggered.connect(self._forget)
+        listed.addAction(forget)
+        listed.setContextMenuPolicy(Qt.ContextMenuPolicy.ActionsContextMenu)
+        return listed
+
+    def _open_recent(self, item: QListWidgetItem) -> None:
+        """Once the click is over: opening a project changes this list."""
+        path = item.data(Qt.ItemDataRole.UserRole)
+        QTimer.singleShot(0, self, lambda: self._doors.open_project(path))
+
+    def _forget(self) -> None:
+        item = self.recent.currentItem()
+        if item is not None:
+            self._doors.bench.settings.forget(item.data(Qt.ItemDataRole.UserRole))
 
     def _link(self, symbol: str, text: str, help_text: str, do: Callable[[], object]) -> QCommandLinkButton:
         link = QCommandLinkButton(text, help_text)

@@ -1,0 +1,62 @@
+"""The sample as a finished project: whole, or not there at all."""
+
+from pathlib import Path
+
+import pytest
+
+from core.errors import Cancelled, InputError
+from core.files.project import read_project
+from core.files.project_keys import STEPS, changed, rests_on
+from core.pipeline import sample_project as module
+from core.pipeline.sample_project import clear_unfinished, sample_project
+
+pytestmark = pytest.mark.xdist_group("small simulated set")
+
+
+@pytest.fixture
+def small(simulated, tmp_path, monkeypatch) -> Path:
+    """The small set stands for the sample; gives the folder projects are put into."""
+    monkeypatch.setattr(module, "sample_set", lambda progress: simulated)
+    monkeypatch.setattr(module, "sample_folder", lambda: tmp_path / "cache" / "sample")
+    return tmp_path / "projects"
+
+
+def until(step):
+    """A progress that is cancelled in the middle of a stage."""
+
+    def progress(name, done, total):
+        if name == step and 2 * done >= total:
+            raise Cancelled
+
+    return progress
+
+
+@pytest.mark.parametrize("stage", ["camera views", "frames"])
+def test_cancelled_in_the_middle_it_leaves_nothing(small, stage):
+    with pytest.raises(Cancelled):
+        sample_project(small / "Sample", until(stage))
+    assert list(small.iterdir()) == []
+
+
+def test_it_is_finished_and_nothing_of_it_is_out_of_date(small):
+    folder = sample_project(small / "Sample")
+    assert [path.name for path in small.iterdir()] == ["Sample"]
+    file = read_project(folder)
+    assert {"camera", "planes", "scan", "report"} <= set(file.results) <= set(STEPS)
+    for step, done in file.results.items():
+        assert changed(done.rests_on, rests_on(step, file.project, file.results)) == (), step
+    assert (folder / "results" / "report.pdf").read_bytes().startswith(b"%PDF")
+    assert file.project.info.notes
+
+
+def test_what_is_there_already_is_left_alone(small):
+    (small / "Sample").mkdir(parents=True)
+    with pytest.raises(InputError, match="there is something already; choose another name"):
+        sample_project(small / "Sample")
+
+
+def test_what_a_killed_process_left_is_cleared_up(small):
+    (small / ".Sample.abc" / "project" / "results").mkdir(parents=True)
+    (small / "Sample of mine").mkdir()
+    clear_unfinished(small / "Sample")
+    assert [path.name for path in small.iterdir()] == ["Sample of mine"]

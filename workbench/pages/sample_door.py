@@ -1,0 +1,74 @@
+"""The way into the finished sample project: it is made when it is first asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from PySide6.QtCore import QObject, Signal
+
+from core.files.project import is_project
+from workbench import jobs
+from workbench.bench import Bench
+from workbench.tasks import Task
+
+
+class SampleDoor(QObject):
+    """Opens the sample with `open_project`; makes it first, once, if it is not there."""
+
+    changed = Signal()
+    """The sample is being prepared, or no longer."""
+
+    def __init__(self, bench: Bench, open_project: Callable[[Path], object], parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self._bench, self._open_project = bench, open_project
+        self._task: Task | None = None
+
+    @property
+    def preparing(self) -> bool:
+        """Whether the sample is being made."""
+        return self._task is not None
+
+    def open(self) -> None:
+        """Open the sample, or begin to make it; it opens then by itself, unless another project is open by then."""
+        if self._task is not None:
+            self._bench.notices.info(self.tr("The sample is being prepared; the status bar says how far it is."))
+            return
+        folder, asked_at = self._folder(), self._bench.model.folder
+        if is_project(folder):
+            self._open_project(folder)
+            return
+
+        def made(project: Path) -> None:
+            self._ended()
+            if self._bench.model.folder == asked_at:
+                self._open_project(project)
+            else:
+                self._bench.notices.info(self.tr("The sample is ready: File, Open sample."))
+
+        def cancelled() -> None:
+            self._ended()
+            self._bench.glance(
+                jobs.CLEAR_SAMPLE, folder, label=self.tr("Clearing up"), on_done=lambda _: None, offers={}
+            )
+
+        self._task = self._bench.measure(
+            jobs.SAMPLE_PROJECT,
+            folder,
+            label=self.tr("Preparing the sample"),
+            on_done=made,
+            on_failed=lambda _: self._ended(),
+            on_cancelled=cancelled,
+        )
+        self.changed.emit()
+
+    def _folder(self) -> Path:
+        """Where the sample is, or the first free place for it."""
+        base, name = self._bench.settings.projects_folder, self.tr("Sample")
+        places = (base / (name if number == 1 else f"{name} {number}") for number in range(1, 1000))
+        return next(place for place in places if is_project(place) or not place.exists())
+
+    def _ended(self, *_: Any) -> None:
+        self._task = None
+        self.changed.emit()
