@@ -29,7 +29,9 @@ class CameraCard(StageCard):
     def refresh(self) -> None:
         """Show the stage."""
         p, stage = self._presenter, self._presenter.stage
-        next_one = {Stage.SOLVED: "accept", Stage.FOUND: "run", Stage.FAILED: "run", Stage.OUTDATED: "run"}
+        next_one = {Stage.SOLVED: "accept", Stage.FOUND: "run", Stage.OUTDATED: "run"}
+        if p.work.seen is None:  # else searching again would help nothing
+            next_one[Stage.FAILED] = "run"
         self.show_stage(
             *self._words()[stage],
             {

@@ -228,8 +228,9 @@ class LiveStrip(QWidget):
         self.live = live
         self.question, self.answer = QLabel(), QPushButton()
         self.gone = QLabel()
-        self._ask = _card(self.question, self.answer)
-        self._gone = _card(self.gone, None, "mdi6.power-plug-off-outline")
+        self._signs = QToolButton(), QToolButton()
+        self._ask = _card(self._signs[0], self.question, self.answer)
+        self._gone = _card(self._signs[1], self.gone, None)
         self.answer.setProperty("primary", True)
         self.answer.clicked.connect(lambda: live.answer())
         column = QVBoxLayout(self)
@@ -243,6 +244,8 @@ class LiveStrip(QWidget):
 
     def refresh(self) -> None:
         """Show what is asked and what is wrong now."""
+        for sign, symbol in zip(self._signs, ("mdi6.hand-pointing-right", "mdi6.power-plug-off-outline"), strict=True):
+            sign.setIcon(icon(symbol, colour="warn"))
         sentence, button = self.live.question
         self.question.setText(sentence)
         self.answer.setText(button)
@@ -254,14 +257,17 @@ class LiveStrip(QWidget):
         self._gone.setVisible(self.live.gone)
         self.setVisible(bool(sentence) or self.live.gone)
 
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "_gone"):
+            self.refresh()
 
-def _card(label: QLabel, button: QPushButton | None, symbol: str = "mdi6.hand-pointing-right") -> QFrame:
-    card, sign = QFrame(), QToolButton()
+
+def _card(sign: QToolButton, label: QLabel, button: QPushButton | None) -> QFrame:
+    card = QFrame()
     card.setObjectName("card")
-    sign.setIcon(icon(symbol, colour="warn"))
     sign.setAutoRaise(True)
-    sign.setEnabled(True)
-    sign.setFocusPolicy(sign.focusPolicy().NoFocus)
+    sign.setFocusPolicy(Qt.FocusPolicy.NoFocus)
     label.setWordWrap(True)
     row = QHBoxLayout(card)
     row.setContentsMargins(8, 6, 8, 6)
