@@ -19,7 +19,7 @@ GAP_SHARE = 6.0
 """Gaps up to this many times the median distance of a place to the nearest point are closed: those between stripes."""
 SLACK = 0.008
 """Corners are left out as long as the outline stays this near to the points, as a share of their longer side."""
-MOST_CORNERS = 24
+MOST_CORNERS = 16
 OPENED_SHARE = 0.85
 """Single stripes that stick out are cut off as long as so much of the area stays."""
 
@@ -39,7 +39,7 @@ def face_outline(cloud: Cloud, chosen: NDArray[np.int64]) -> Array:
     Returns
     -------
     Array
-        (n, 2) corners, 3 ≤ n ≤ 24, going round once; holes in the face are filled.
+        (n, 2) corners, 3 ≤ n ≤ 16, going round once; holes in the face are filled.
 
     Raises
     ------
@@ -68,7 +68,7 @@ def outline_px(uv: ArrayLike) -> Array:
     Returns
     -------
     Array
-        (n, 2) corners, 3 ≤ n ≤ 24, of the largest connected part; holes are filled.
+        (n, 2) corners, 3 ≤ n ≤ 16, of the largest connected part; holes are filled.
 
     Raises
     ------
@@ -80,8 +80,9 @@ def outline_px(uv: ArrayLike) -> Array:
     cell = max(SMALLEST_CELL_PX, float(size.max()) / CELLS_ACROSS)
     if len(places) < 3 or _on_one_line(places, cell):
         raise InputError("the chosen points lie on one line", where="region", todo="draw round more of the face")
-    contour = _largest_contour(_covered(np.floor((places - low) / cell).astype(np.int64)))
-    slack = SLACK * float(size.max()) / cell
+    covered, gap = _covered(np.floor((places - low) / cell).astype(np.int64))
+    contour = _largest_contour(covered)
+    slack = max(SLACK * float(size.max()) / cell, gap / 3)
     corners = _simplified(contour, slack)
     while len(corners) > MOST_CORNERS:
         slack *= 1.3
@@ -101,8 +102,8 @@ def _on_one_line(places: Array, cell: float) -> bool:
     return bool(np.ptp(centred @ across) < cell)
 
 
-def _covered(cells: NDArray[np.int64]) -> NDArray[np.uint8]:
-    """The cells with points, gaps between stripes closed; a rim as wide as the gaps round it."""
+def _covered(cells: NDArray[np.int64]) -> tuple[NDArray[np.uint8], float]:
+    """The cells with points, gaps between stripes closed, and half the widest gap that is closed."""
     column, row = cells.T
     bare = np.ones((int(row.max()) + 1, int(column.max()) + 1), dtype=np.uint8)
     bare[row, column] = 0
@@ -116,7 +117,7 @@ def _covered(cells: NDArray[np.int64]) -> NDArray[np.uint8]:
     disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (side, side))
     opened = np.asarray(cv2.morphologyEx(kept, cv2.MORPH_OPEN, disc), dtype=np.uint8)
     whole = opened if opened.sum() >= OPENED_SHARE * kept.sum() else kept
-    return whole[pad:-pad, pad:-pad]
+    return whole[pad:-pad, pad:-pad], gap
 
 
 def _largest_contour(covered: NDArray[np.uint8]) -> NDArray[np.int32]:

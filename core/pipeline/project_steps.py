@@ -33,6 +33,7 @@ from core.files.run_file import write_run
 from core.inspect.results import GaugeResult
 from core.model import Camera
 from core.pipeline.camera_step import see_views, solve_camera
+from core.pipeline.gauge_complaints import in_a_project
 from core.pipeline.gauge_step import gauge_if_possible, gauge_step
 from core.pipeline.planes_step import measure_poses, planes_settings, solve_planes
 from core.pipeline.project_results import load_results
@@ -219,7 +220,10 @@ def measure_gauge(folder: Path, project: Project, progress: Progress = silent) -
     InputError
         If there is no scan, or it has no two parallel faces there.
     """
-    return gauge_step(_work(folder, project), progress)
+    try:
+        return gauge_step(_work(folder, project), progress)
+    except InputError as error:
+        raise in_a_project(error) from error
 
 
 def make_report(folder: Path, project: Project, progress: Progress = silent) -> Path:

@@ -21,8 +21,9 @@ from core.report.wording import verdict_sentence
 from workbench.pages import inspect_words as words
 from workbench.pages.inspect_faces import FACES, NUMBERS
 from workbench.pages.inspect_picks import Mode, Pick
-from workbench.pages.inspect_presenter import InspectPresenter, Stage
+from workbench.pages.inspect_presenter import InspectPresenter
 from workbench.pages.step_page import heading, muted
+from workbench.step_state import State
 from workbench.theme import icon
 from workbench.views.colours import FACE_LOWER, FACE_UPPER
 from workbench.views.forms import SettingsForm
@@ -180,10 +181,11 @@ class ResultPanel(QWidget):
 
     def refresh(self) -> None:
         """Show what the presenter says now."""
-        gauge, outdated = self._presenter.gauge, self._presenter.stage is Stage.OUTDATED
-        if gauge is None or (id(gauge), outdated) == self._shown:
+        p = self._presenter
+        gauge, outdated = p.gauge, p.state.state is not State.DONE
+        if gauge is None or (p.serial, outdated) == self._shown:
             return
-        self._shown = (id(gauge), outdated)
+        self._shown = (p.serial, outdated)
         self._show_verdict(gauge, outdated)
         self.rows.set_rows(words.result_rows(gauge))
         self.rule.setText(self.tr("Rule: {0}.").format(gauge.rule))
@@ -221,7 +223,7 @@ class PicksPanel(QWidget):
         self.list, self.remove, self.clear = QListWidget(), QPushButton(), QPushButton()
         self.list.setAccessibleName(self.tr("Picked points and distances"))
         self.list.setWordWrap(True)
-        self.list.setMinimumHeight(130)
+        self.list.setFixedHeight(120)
         self.remove.setText(self.tr("Remove"))
         self.clear.setText(self.tr("Remove all"))
         above, below = QHBoxLayout(), QHBoxLayout()

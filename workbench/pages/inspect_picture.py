@@ -54,8 +54,8 @@ class PictureTab(QWidget):
             self._clear()
             return
         self._list_pictures(view)
-        if p.picture == RELIEF and self._shown != (id(view), RELIEF):
-            self._shown = (id(view), RELIEF)
+        if p.picture == RELIEF and self._shown != (p.serial, RELIEF):
+            self._shown = (p.serial, RELIEF)
             self.image.set_picture(view.relief.picture, scale=view.relief.cell_px)
         self._lay_faces(view)
         self.line.setText(self._words())
@@ -69,9 +69,10 @@ class PictureTab(QWidget):
 
     def _show_picture(self, name: str, picture: Any) -> None:
         view = self._presenter.view
-        if view is None or self._shown == (id(view), name):
+        serial = self._presenter.serial
+        if view is None or self._shown == (serial, name):
             return
-        self._shown = (id(view), name)
+        self._shown = (serial, name)
         self.image.set_picture(picture)
 
     def _clear(self) -> None:
@@ -98,7 +99,7 @@ class PictureTab(QWidget):
         """The regions, or the outlines of the faces found, and the points used; laid anew only if they changed."""
         faces = self._presenter.faces
         regions = {face: faces.region(face) for face in FACES}
-        laid = (id(view), *(None if region is None else region.tobytes() for region in regions.values()))
+        laid = (self._presenter.serial, *(None if region is None else region.tobytes() for region in regions.values()))
         if laid == self._laid:
             return
         self._laid = laid

@@ -51,8 +51,8 @@ class InspectPresenter(StepPresenter):
 
     step = "inspect"
 
-    view_changed = Signal()
-    """Another scan or another thickness is shown, or none."""
+    measured = Signal()
+    """The thickness was measured on this page, and is shown now."""
 
     picture_ready = Signal(str, object)
     """Name of a recorded picture, and the picture."""
@@ -60,6 +60,7 @@ class InspectPresenter(StepPresenter):
     def __init__(self, bench: Bench) -> None:
         super().__init__(bench)
         self.view: InspectionView | None = None
+        self.serial = 0
         self.problem = ""
         self.clip_mm: float | None = None
         self.picture = RELIEF
@@ -69,7 +70,7 @@ class InspectPresenter(StepPresenter):
         self._unmeasurable = ""
         self._shown: tuple[object, ...] = ()
         self._asked: tuple[object, ...] = ()
-        self._visible = False
+        self._visible = self._new = False
         self.faces = InspectFaces(self)
         self.picks = InspectPicks(self)
         self.repeats = InspectRepeats(self)
@@ -90,9 +91,16 @@ class InspectPresenter(StepPresenter):
             return Stage.UNREADABLE if self.problem else Stage.READING
         if self._unmeasurable:
             return Stage.FAILED
+        if self.stale:
+            return Stage.READING
         if self.view.gauge is None:
             return Stage.UNMEASURED
         return Stage.MEASURED if self.state.state is State.DONE else Stage.OUTDATED
+
+    @property
+    def stale(self) -> bool:
+        """Whether something newer than what is shown is being read."""
+        return self._shown != self._asked
 
     @property
     def gauge(self) -> GaugeResult | None:
@@ -126,6 +134,8 @@ class InspectPresenter(StepPresenter):
         """Why the thickness cannot be measured now, or ""."""
         if "scan" not in self.model.results:
             return self.tr("Scan the part first.")
+        if self.problem:
+            return self.tr("The scan cannot be read.")
         if self._measuring is not None:
             return self.tr("The thickness is being measured.")
         return self.faces.missing()
@@ -141,8 +151,8 @@ class InspectPresenter(StepPresenter):
 
         def done(_: Any) -> None:
             if folder == self.model.folder:
+                self._new = True
                 self.model.record("inspect", finished("inspect", project, self.model.results))
-                self._look()
 
         def failed(problem: Any) -> None:
             if folder == self.model.folder:
@@ -292,7 +302,6 @@ class InspectPresenter(StepPresenter):
         def failed(problem: Any) -> None:
             if wanted == self._asked and folder == self.model.folder:
                 self.problem, self.view = sentence(problem), None
-                self.view_changed.emit()
                 self.changed.emit()
 
         self._reading = self.bench.glance(
@@ -308,15 +317,17 @@ class InspectPresenter(StepPresenter):
     def _take(self, view: InspectionView, wanted: tuple[object, ...]) -> None:
         """Show another scan, or the same one with another thickness."""
         scan_before, self._shown = self._shown[:1], wanted
-        self.view = view
+        self.view, self.serial = view, self.serial + 1
         if scan_before != wanted[:1]:
             self.picks.clear()
             self.clip_mm, self._unmeasurable = None, ""
         if self.picture not in (RELIEF, *view.pictures):
             self.picture = RELIEF
         self.read_picture()
-        self.view_changed.emit()
         self.changed.emit()
+        if self._new:
+            self._new = False
+            self.measured.emit()
 
     def _as_scanned(self) -> Project:
         """The project with the recording that the scan among the results was measured from."""
@@ -328,4 +339,4 @@ class InspectPresenter(StepPresenter):
         self.clip_mm, self.picture, self.outlining = None, RELIEF, ""
         self.picks.clear()
         self.faces.forget()
-        self.view_changed.emit()
+        self._new = False

@@ -34,7 +34,7 @@ class InspectRepeats(QObject):
         owner = self._owner
         if owner.gauge is None:
             return self.tr("Measure the thickness first.")
-        if owner.state.state is not State.DONE:
+        if owner.state.state is not State.DONE or owner.stale:
             return self.tr("The thickness is out of date: measure it again first.")
         if any(repeat.scan == owner.recording for repeat in self.all):
             return self.tr(

@@ -81,6 +81,7 @@ class SurfaceTab(QWidget):
         self.scene.region_selected.connect(self._selected)
         self.scene.drawing_cancelled.connect(self._cancelled)
         self.scene.notice.connect(self.notice)
+        presenter.measured.connect(lambda: self.choose_colour("faces"))
 
     def refresh(self) -> None:
         """Show what the presenter says now."""
@@ -96,8 +97,8 @@ class SurfaceTab(QWidget):
             self.shapes[name].setEnabled(view.mesh is not None)
         if view.mesh is None and self.shape != "points":
             self.shapes["points"].setChecked(True)
-        if (id(view), self.shape, self.colour, p.points_shown()) != self._drawn:
-            if self._drawn[:1] != (id(view),):
+        if (p.serial, self.shape, self.colour, p.points_shown()) != self._drawn:
+            if self._drawn[:1] != (p.serial,):
                 self._draw()  # the first picture at once
             else:
                 self._later.start()
@@ -257,17 +258,17 @@ class SurfaceTab(QWidget):
             return
         self._later.stop()
         count, seen = p.points_shown(), self.shape != "mesh"
-        before, self._drawn = self._drawn, (id(view), self.shape, self.colour, count)
+        before, self._drawn = self._drawn, (p.serial, self.shape, self.colour, count)
         if view.gauge is not None and view.gauge.normal is not None and not self._oriented:
             self._oriented = True
             self.scene.set_orientation(-view.gauge.normal, (0.0, -1.0, 0.0))
         self.scene.show_cloud(seen)
         self.scene.show_mesh(self.shape != "points")
-        cloud = (id(view), count, self.colour if seen else "plain")
+        cloud = (p.serial, count, self.colour if seen else "plain")
         if cloud != self._cloud:
             self._cloud = cloud
             self.scene.set_cloud(view.points[:count], keep_camera=bool(before), **self._look(view, count, cloud[2]))
-        mesh = (id(view), p.triangles_shown(), self.colour)
+        mesh = (p.serial, p.triangles_shown(), self.colour)
         if view.mesh is not None and self.shape != "points" and mesh != self._mesh:
             self._mesh = mesh
             self._draw_mesh(view, view.mesh)
