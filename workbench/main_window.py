@@ -183,7 +183,7 @@ class MainWindow(QMainWindow):
         self._messages_button.setFlat(True)
         self._messages_button.setIconSize(QSize(14, 14))
         self._messages_button.clicked.connect(lambda: dock.setVisible(not dock.isVisible()))
-        self.statusBar().addWidget(self.task_bar, 1)
+        self.statusBar().addPermanentWidget(self.task_bar)
         self.statusBar().addPermanentWidget(self._messages_button)
         return dock
 
