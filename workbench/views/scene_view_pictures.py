@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterable
 
 import numpy as np
-import pyvista
+import vtkmodules.vtkInteractionWidgets
+import vtkmodules.vtkViewsContext2D  # noqa: F401  both and Plotter: or pyvista imports them in the GUI thread
 from numpy.typing import NDArray
 from PySide6.QtWidgets import QWidget
+from pyvista import Plotter
 
 from workbench.views.scene_view_camera import SceneCamera
 from workbench.views.scene_view_colours import Rgb
@@ -16,6 +19,8 @@ from workbench.views.scene_view_messages import route_messages
 from workbench.views.scene_view_picture_widget import PictureWidget
 from workbench.views.scene_view_pieces import Key
 from workbench.views.scene_view_stage import Stage, read_pixels
+
+os.environ.setdefault("ALLOW_PLOTTING", "true")  # the probe has found out; pyvista would try again in the GUI thread
 
 
 class PicturesSurface:
@@ -26,7 +31,7 @@ class PicturesSurface:
     def __init__(self, parent: QWidget, draw_now: Callable[[], None]) -> None:
         self._widget = PictureWidget(parent, draw_now)
         route_messages()
-        self._plotter = pyvista.Plotter(off_screen=True)
+        self._plotter = Plotter(off_screen=True)
         window = self._plotter.render_window
         assert window is not None
         for renderer in list(window.GetRenderers()):
