@@ -65,7 +65,6 @@ class InspectPresenter(StepPresenter):
         self.clip_mm: float | None = None
         self.picture = RELIEF
         self.outlining = ""
-        self._reading: Task | None = None
         self._measuring: Task | None = None
         self._unmeasurable = ""
         self._shown: tuple[object, ...] = ()
@@ -304,13 +303,18 @@ class InspectPresenter(StepPresenter):
                 self.problem, self.view = sentence(problem), None
                 self.changed.emit()
 
-        self._reading = self.bench.glance(
+        def cancelled() -> None:
+            if wanted == self._asked:
+                self._asked = self._shown
+
+        self.bench.glance(
             jobs.INSPECTION_VIEW,
             folder,
             self._as_scanned(),
             label=self.tr("Reading the scan"),
             on_done=done,
             on_failed=failed,
+            on_cancelled=cancelled,
             replace_waiting=True,
         )
 

@@ -1,0 +1,401 @@
+"""The inspect page, clicked."""
+
+from dataclasses import replace
+from typing import cast
+
+import numpy as np
+import pytest
+from PySide6.QtCore import QPoint, Qt
+from PySide6.QtGui import QGuiApplication
+from PySide6.QtWidgets import QAbstractButton, QComboBox, QDoubleSpinBox, QSlider
+
+from core.errors import InputError
+from tests.workbench.hand_lane import HandLane
+from tests.workbench.pages import inspect_cases as cases
+from workbench import jobs
+from workbench.pages.inspect_page import InspectPage
+from workbench.pages.inspect_presenter import InspectPresenter, Stage
+
+LEFT = Qt.MouseButton.LeftButton
+OUTLINE = np.array([[10.0, 10.0], [30.0, 10.0], [20.0, 30.0]])
+
+
+@pytest.fixture
+def measuring(hand_bench):
+    lane = cast(HandLane, hand_bench.measuring)
+    lane.held = {jobs.MEASURE_GAUGE}
+    return lane
+
+
+@pytest.fixture
+def quick(hand_bench):
+    lane = cast(HandLane, hand_bench.quick)
+    lane.answers[jobs.INSPECTION_VIEW] = lambda folder, project: cases.view(cases.gauge())
+    lane.answers[jobs.OUTLINE_SELECTED] = lambda folder, numbers: OUTLINE
+    return lane
+
+
+@pytest.fixture
+def page(hand_bench, measuring, quick, tmp_path, qtbot, monkeypatch):
+    """The page of an open project without a scan."""
+    monkeypatch.setenv("TRISECT_NO_OPENGL", "painter")
+    made = InspectPage(InspectPresenter(hand_bench))
+    hand_bench.model.create(tmp_path / "project", cases.project(nominal_mm=50.0, tolerance_mm=0.2))
+    qtbot.addWidget(made)
+    made.resize(1100, 700)
+    made.show()
+    made.presenter.entered()
+    yield made
+    made.close()
+
+
+def scan(page, qtbot, *, inspected=True):
+    p = page.presenter
+    for step, done in cases.results(p.project, inspected=inspected).items():
+        p.model.record(step, done)
+    qtbot.waitUntil(lambda: p.view is not None and not p.stale)
+
+
+@pytest.fixture
+def shown(page, qtbot):
+    """The page with a scan and its thickness."""
+    scan(page, qtbot)
+    return page
+
+
+@pytest.fixture
+def unmeasured(page, quick, qtbot):
+    """The page with a scan without a thickness."""
+    quick.answers[jobs.INSPECTION_VIEW] = lambda folder, project: cases.view()
+    scan(page, qtbot, inspected=False)
+    return page
+
+
+def undo(page):
+    page.presenter.model.undo_stack.undo()
+
+
+def cloud(page):
+    return page.surface.scene._scene.cloud
+
+
+def press(qtbot, button):
+    assert button.isEnabled(), button.toolTip()
+    qtbot.mouseClick(button, LEFT)
+
+
+# ---- what is seen when
+
+
+def test_an_empty_page_says_what_to_do_next(page):
+    assert page.card.title.text() == "Nothing to inspect yet"
+    assert page.surface.scene._message.startswith("There is no scan yet. Scan the part")
+    assert page.result_fold.isHidden()
+    page.tabs.setCurrentWidget(page.picture)
+    assert "Scan the part" in page.picture.image.empty_state.message
+    page.tabs.setCurrentWidget(page.series)
+    assert "Each scan counts once" in page.series.words.text()
+    assert "how well the measurement repeats" in page.series.chart.empty_state.message
+
+
+def test_greyed_buttons_say_why(page):
+    for tab in (page.surface, page.picture, page.series):
+        page.tabs.setCurrentWidget(tab)
+        buttons = [
+            button for part in (page.card, page.faces, page.picks, tab) for button in part.findChildren(QAbstractButton)
+        ]
+        greyed = [button for button in buttons if button.isVisible() and not button.isEnabled()]
+        assert all(button.toolTip() for button in greyed), [button.text() for button in greyed if not button.toolTip()]
+    assert page.card.buttons["measure"].toolTip() == "Scan the part first."
+
+
+def test_everything_has_a_name_for_those_who_do_not_see_it(shown):
+    for kind in (QAbstractButton, QComboBox, QDoubleSpinBox, QSlider):
+        for part in (shown.surface, shown.picture, shown.series, shown.card, shown.faces, shown.picks):
+            for widget in part.findChildren(kind):
+                named = (
+                    widget.accessibleName()
+                    or (isinstance(widget, QAbstractButton) and widget.text())
+                    or widget.toolTip()
+                )
+                assert named or not widget.isVisibleTo(shown), (part, widget)
+
+
+def test_a_finished_scan_shows_its_thickness_and_verdict(shown):
+    assert shown.card.title.text() == "50.012 mm ± 0.024 mm (k = 2)"
+    assert shown.result.verdict.text == "Conforming"
+    rows = shown.result.rows
+    assert rows.text_of("Thickness") == "50.012 mm" and rows.text_of("U (k = 2)") == "± 0.024 mm"
+    assert rows.text_of("Deviation") == "+0.012 mm" and rows.text_of("Parallelism") == "0.029°"
+    assert rows.text_of("Flatness, upper face") == "0.031 mm" and rows.text_of("Flatness, lower face") == "0.042 mm"
+    assert rows.text_of("Points used, upper face") == "300"
+    assert shown.result.rule.text() == "Rule: distance of two parallel planes."
+    assert shown.result.budget.text_of("Camera calibration") == "0.0020 mm"
+    assert shown.result.budget.text_of("u, all together") == "0.0120 mm"
+    assert shown.result.notes.isHidden()
+
+
+def test_notes_of_the_measurement_are_shown(page, quick, qtbot):
+    told = cases.gauge(notes=("The stated uncertainty does not hold that of the fan.",))
+    quick.answers[jobs.INSPECTION_VIEW] = lambda folder, project: cases.view(told)
+    scan(page, qtbot)
+    assert page.result.notes.text() == "The stated uncertainty does not hold that of the fan."
+
+
+def test_a_scan_without_a_thickness_offers_to_measure_it(unmeasured):
+    assert unmeasured.card.title.text() == "No thickness yet"
+    measure = unmeasured.card.buttons["measure"]
+    assert measure.property("primary") and measure.text() == "Measure thickness" and "Ctrl+R" in measure.toolTip()
+    assert unmeasured.result_fold.isHidden()
+    assert unmeasured.surface.colours.itemText(1) == "depth"
+
+
+# ---- measuring
+
+
+def test_measuring_by_the_button_shows_the_points_used(unmeasured, measuring, quick, qtbot):
+    quick.answers[jobs.INSPECTION_VIEW] = lambda folder, project: cases.view(cases.gauge())
+    press(qtbot, unmeasured.card.buttons["measure"])
+    assert unmeasured.card.title.text() == "Measuring the thickness …"
+    assert not unmeasured.card.buttons["measure"].isEnabled()
+    measuring.finish(cases.gauge())
+    qtbot.waitUntil(lambda: unmeasured.presenter.stage is Stage.MEASURED)
+    assert unmeasured.surface.colour == "faces"
+    assert "300 used on the upper face" in unmeasured.surface.line.text()
+    assert unmeasured.card.buttons["measure"].text() == "Measure again"
+
+
+def test_what_changed_since_is_said_and_the_verdict_is_taken_back(shown, qtbot):
+    form = shown.faces.form
+    form.edited.emit("tolerance_mm", 0.01)
+    assert "Out of date: changed since: nominal thickness" in shown.card.words.text()
+    assert shown.result.verdict.text == "No verdict"
+    assert shown.card.buttons["measure"].property("primary")
+    undo(shown)
+    assert shown.result.verdict.text == "Conforming"
+
+
+def test_a_failed_measurement_keeps_no_old_verdict_up(shown, measuring, qtbot):
+    shown.faces.form.edited.emit("tolerance_mm", 0.01)
+    press(qtbot, shown.card.buttons["measure"])
+    measuring.fail(InputError("among 1 plane faces no two are parallel", where="point cloud"))
+    assert shown.card.title.text() == "No thickness was measured"
+    assert "no two are parallel" in shown.card.words.text()
+    assert shown.result.verdict.text == "No verdict"
+
+
+def test_half_a_pair_of_numbers_is_complained_about(shown):
+    shown.faces.form.edited.emit("tolerance_mm", None)
+    assert shown.faces.form.help_of("tolerance_mm").startswith("Enter the tolerance too")
+    shown.faces.form.edited.emit("tolerance_mm", 0.2)
+    assert shown.faces.form.help_of("tolerance_mm").startswith("Largest permitted deviation")
+
+
+# ---- the 3D view
+
+
+def test_every_colour_shows_its_bar_with_a_unit(shown):
+    bars = {}
+    for name in ("faces", "height", "sigma", "deviation", "frame", "plain"):
+        shown.surface.choose_colour(name)
+        shown.surface._draw()
+        bars[name] = cloud(shown).colouring.title
+    assert bars["height"] == "height over the lower face [mm]"
+    assert bars["sigma"] == "σ of the depth [mm]"
+    assert bars["deviation"] == "deviation from the face [mm]"
+    assert bars["frame"] == "frame number" and bars["faces"] == bars["plain"] == ""
+
+
+def test_without_faces_nothing_can_be_coloured_by_them(unmeasured):
+    model = unmeasured.surface.colours.model()
+    for name in ("faces", "deviation"):
+        assert not model.item(unmeasured.surface.colours.findData(name)).isEnabled()
+
+
+def test_points_mesh_or_both(shown, qtbot):
+    scene = shown.surface.scene._scene
+    for name, points, mesh in (("mesh", False, True), ("both", True, True), ("points", True, False)):
+        press(qtbot, shown.surface.shapes[name])
+        shown.surface._draw()
+        assert (scene.cloud_shown, scene.mesh_shown and scene.mesh is not None) == (points, mesh), name
+    press(qtbot, shown.surface.shapes["mesh"])
+    shown.surface._draw()
+    assert shown.surface.line.text() == "2 of 2 triangles shown"
+
+
+def test_a_scan_without_a_mesh_shows_points_only(page, quick, qtbot):
+    quick.answers[jobs.INSPECTION_VIEW] = lambda folder, project: cases.view(cases.gauge(), mesh=False)
+    press_later = page.surface.shapes["mesh"]
+    scan(page, qtbot)
+    assert not press_later.isEnabled() and page.surface.shape == "points"
+
+
+def test_the_sigma_limit_says_how_many_points_are_left(shown, qtbot):
+    assert shown.surface.line.text() == "600 of 600 points shown"
+    shown.surface.limit.setValue(0.03)
+    left = shown.presenter.points_shown()
+    assert shown.surface.line.text() == f"{left} of 600 points shown" and 0 < left < 600
+    qtbot.waitUntil(lambda: cloud(shown).given == left)
+    shown.surface.slider.setValue(shown.surface.slider.maximum())
+    assert shown.surface.line.text() == "600 of 600 points shown"
+    qtbot.waitUntil(lambda: cloud(shown).given == 600)
+
+
+def test_points_used_stand_out_on_a_mesh(shown, qtbot):
+    press(qtbot, shown.surface.shapes["mesh"])
+    shown.surface.choose_colour("faces")
+    shown.surface._draw()
+    marked = {name for _, name in shown.surface.scene._scene.items}
+    assert {"used upper", "used lower"} <= marked
+    shown.surface.choose_colour("height")
+    shown.surface._draw()
+    assert not {"used upper"} & {name for _, name in shown.surface.scene._scene.items}
+
+
+def test_picked_points_stand_in_the_list_and_in_the_view(shown, qtbot):
+    press(qtbot, shown.picks.tools["point"])
+    assert shown.surface.hint.text().startswith("Click points of the surface")
+    shown.surface.scene.point_picked.emit(7, shown.presenter.view.points[7])
+    text = shown.picks.list.item(0).text()
+    assert text.startswith("P1   x ") and " mm\n± 0.0" in text and "(sd)" in text and "px" in text
+    assert "P1" in {name for _, name in shown.surface.scene._scene.items}
+    shown.surface.scene.stop_drawing()
+    assert shown.presenter.picks.mode == "" and not shown.picks.tools["point"].isChecked()
+    press(qtbot, shown.picks.remove)
+    assert shown.picks.list.count() == 0
+    assert "P1" not in {name for _, name in shown.surface.scene._scene.items}
+
+
+def test_a_click_on_the_cloud_picks_the_point_under_it(shown, qtbot):
+    press(qtbot, shown.picks.tools["point"])
+    scene = shown.surface.scene
+    spots = scene.screen_positions(shown.presenter.view.points)
+    x, y = spots[np.argmin(np.hypot(*(spots - spots.mean(axis=0)).T))]
+    qtbot.mouseClick(scene._overlay, LEFT, pos=QPoint(round(x), round(y)))
+    qtbot.waitUntil(lambda: shown.picks.list.count() == 1)
+
+
+def test_a_distance_is_drawn_between_its_ends(shown, qtbot):
+    press(qtbot, shown.picks.tools["distance"])
+    for point in (0, 1):
+        shown.surface.scene.point_picked.emit(point, shown.presenter.view.points[point])
+    assert ", u = 0.0" in shown.picks.list.item(0).text()
+    assert "D1" in {name for _, name in shown.surface.scene._scene.items}
+    press(qtbot, shown.picks.clear)
+    assert shown.picks.list.count() == 0
+
+
+# ---- regions
+
+
+def test_a_lasso_in_3d_becomes_a_region(shown, qtbot):
+    press(qtbot, shown.faces.tools["upper", "lasso"])
+    overlay = shown.surface.scene._overlay
+    size = shown.surface.scene._size()
+    corners = [QPoint(2, 2), QPoint(size[0] - 2, 2), QPoint(size[0] - 2, size[1] - 2), QPoint(2, size[1] - 2)]
+    qtbot.mousePress(overlay, LEFT, pos=corners[0])
+    for corner in corners[1:]:
+        qtbot.mouseMove(overlay, corner)
+    qtbot.mouseRelease(overlay, LEFT, pos=corners[-1])
+    qtbot.waitUntil(lambda: shown.presenter.faces.own)
+    assert np.array_equal(shown.presenter.faces.region("upper"), OUTLINE)
+    assert "own region, 3 corners" in shown.faces.states["upper"].text()
+    undo(shown)
+    assert "found automatically" in shown.faces.states["upper"].text()
+
+
+def test_a_polygon_in_the_picture_becomes_a_region(shown, qtbot):
+    shown.tabs.setCurrentWidget(shown.picture)
+    press(qtbot, shown.faces.tools["lower", "polygon"])
+    image = shown.picture.image
+    for u, v in ((10, 10), (50, 10), (30, 40)):
+        qtbot.mouseClick(image.canvas, LEFT, pos=image.to_screen(u, v))
+        qtbot.wait(QGuiApplication.styleHints().mouseDoubleClickInterval() + 10)
+    qtbot.keyClick(image, Qt.Key.Key_Return)
+    region = shown.presenter.faces.region("lower")
+    assert region is not None and region == pytest.approx(np.array([[10, 10], [50, 10], [30, 40]]), abs=0.5)
+
+
+def test_drawing_by_keys_alone(shown, qtbot):
+    shown.tabs.setCurrentWidget(shown.picture)
+    shown.faces.tools["upper", "polygon"].click()
+    image = shown.picture.image
+    for key in (Qt.Key.Key_Right, Qt.Key.Key_Down, Qt.Key.Key_Left):
+        for _ in range(3):
+            qtbot.keyClick(image, key, Qt.KeyboardModifier.ShiftModifier)
+        qtbot.keyClick(image, Qt.Key.Key_Space)
+    qtbot.keyClick(image, Qt.Key.Key_Return)
+    assert shown.presenter.faces.own
+
+
+def test_regions_are_dragged_in_the_picture_and_undone(shown, qtbot):
+    shown.tabs.setCurrentWidget(shown.picture)
+    press(qtbot, shown.faces.own)
+    assert "Drag a corner" in shown.picture.line.text()
+    moved = cases.UPPER_OUTLINE + [[2, 0], [0, 0], [0, 0], [0, 0]]
+    shown.picture.image.polygon_edited.emit("upper", moved)
+    assert np.array_equal(shown.presenter.faces.region("upper"), moved)
+    undo(shown)
+    assert np.array_equal(shown.picture.image._layers["upper"].uv, cases.UPPER_OUTLINE)
+
+
+def test_the_picture_shows_the_faces_and_the_points_used(shown):
+    shown.tabs.setCurrentWidget(shown.picture)
+    assert shown.picture.image.has_picture
+    assert set(shown.picture.image.layer_names()) == {"upper", "lower", "used upper", "used lower"}
+    assert "upper face, found" in shown.picture.image.legend_titles
+    shown.presenter.faces.take_found()
+    assert "upper face, own region" in shown.picture.image.legend_titles
+
+
+def test_a_waiting_region_asks_for_the_other_one(unmeasured):
+    unmeasured.tabs.setCurrentWidget(unmeasured.picture)
+    unmeasured.picture.image.polygon_drawn.emit("upper", OUTLINE)
+    assert unmeasured.picture.line.text().startswith("Draw the lower face too")
+    assert unmeasured.faces.words.text().startswith("Draw the lower face too")
+    assert unmeasured.card.buttons["measure"].toolTip().startswith("Draw the lower face too")
+
+
+def test_drawing_from_the_repeats_goes_to_the_picture(shown, qtbot):
+    shown.tabs.setCurrentWidget(shown.series)
+    press(qtbot, shown.faces.tools["upper", "polygon"])
+    assert shown.tabs.currentWidget() is shown.picture
+
+
+# ---- repeats
+
+
+def test_a_repeat_is_added_shown_and_refused_twice(shown, qtbot):
+    press(qtbot, shown.card.buttons["repeat"])
+    assert shown.tabs.currentWidget() is shown.series and shown.tabs.tabText(2) == "Repeats (1)"
+    table = shown.series.table.table
+    assert [table.item(0, column).text() for column in range(4)] == ["scan-1", "50.012", "± 0.024", "cal-1"]
+    assert shown.series.rows.text_of("Mean") == "50.0120 mm"
+    assert shown.series.rows.text_of("STD") == "needs two repeats"
+    again = shown.card.buttons["repeat"]
+    assert not again.isEnabled() and again.toolTip().startswith("This scan is among the repeats already.")
+    assert shown.series.add.toolTip() == again.toolTip()
+    undo(shown)
+    assert shown.series.table.table.rowCount() == 0 and again.isEnabled()
+
+
+def test_repeats_are_removed_and_copied(shown, qtbot):
+    repeats = tuple(cases.repeat(number, 50 + 0.01 * number) for number in (2, 3, 4))
+    shown.presenter.model.edit("repeats", replace(shown.presenter.project, repeats=repeats))
+    shown.tabs.setCurrentWidget(shown.series)
+    assert not shown.series.remove.isEnabled() or shown.series.table.current_row() >= 0
+    shown.series.table.set_current_row(1)
+    press(qtbot, shown.series.remove)
+    assert [repeat.scan for repeat in shown.presenter.project.repeats] == ["recordings/scan-2", "recordings/scan-4"]
+    press(qtbot, shown.series.copy)
+    assert QGuiApplication.clipboard().text().splitlines()[2].startswith("recordings/scan-4\t50.040000")
+    undo(shown)
+    assert shown.series.table.table.rowCount() == 3
+    assert shown.series.rows.text_of("Largest error") == "0.0400 mm"
+
+
+def test_repeats_of_several_calibrations_are_pointed_out(shown):
+    repeats = (cases.repeat(2, 50.0), cases.repeat(3, 50.1, calibration="cal-2"))
+    shown.presenter.model.edit("repeats", replace(shown.presenter.project, repeats=repeats))
+    shown.tabs.setCurrentWidget(shown.series)
+    assert shown.series.words.text().startswith("Measured with 2 different calibrations")

@@ -1,0 +1,111 @@
+"""The inspect page's work on a real scan, in real processes."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.workbench.watchdog import Watchdog
+from workbench.bench import Bench
+from workbench.pages.inspect_presenter import InspectPresenter, Stage
+from workbench.step_state import step_states
+
+
+@pytest.fixture
+def presenter(bench: Bench, measured_project: Path, qtbot) -> InspectPresenter:
+    """A finished project is open, and its scan is shown."""
+    made = InspectPresenter(bench)
+    bench.model.open(measured_project)
+    made.entered()
+    qtbot.waitUntil(lambda: made.stage is Stage.MEASURED, timeout=60_000)
+    return made
+
+
+def settled(presenter, qtbot):
+    quiet = presenter.bench
+    qtbot.waitUntil(lambda: not (quiet.measuring.busy or quiet.quick.busy), timeout=60_000)
+
+
+def test_own_regions_are_measured_and_undone_in_full(presenter, qtbot):
+    before = presenter.gauge
+    height = presenter.view.height
+    presenter.outline("upper", height > 40)
+    qtbot.waitUntil(lambda: presenter.faces.own, timeout=20_000)
+    assert presenter.stage is Stage.OUTDATED
+    presenter.do_run()
+    qtbot.waitUntil(lambda: presenter.stage is Stage.MEASURED, timeout=60_000)
+    assert presenter.gauge is not before
+    assert presenter.gauge.thickness_mm == pytest.approx(before.thickness_mm, abs=before.U_mm)
+    assert np.median(presenter.view.height[presenter.gauge.upper.indices]) > 40
+    presenter.model.undo_stack.undo()
+    assert presenter.stage is Stage.OUTDATED and not presenter.faces.own
+    presenter.do_run()
+    qtbot.waitUntil(lambda: presenter.stage is Stage.MEASURED, timeout=60_000)
+    assert presenter.gauge.thickness_mm == pytest.approx(before.thickness_mm, abs=1e-9)
+    assert not presenter.bench.notices.all
+
+
+def test_exchanged_regions_are_told_and_nothing_is_lost(presenter, qtbot):
+    presenter.faces.take_found()
+    presenter.faces.exchange()
+    presenter.do_run()
+    qtbot.waitUntil(lambda: presenter.stage is Stage.FAILED, timeout=60_000)
+    assert presenter.problem_of_measuring.endswith("exchange the two regions.")
+    assert presenter.gauge is not None
+    presenter.faces.exchange()
+    presenter.do_run()
+    qtbot.waitUntil(lambda: presenter.stage is Stage.MEASURED, timeout=60_000)
+
+
+def test_a_cancelled_measurement_leaves_the_thickness_as_it_was(presenter, qtbot):
+    before = dict(presenter.model.results)
+    presenter.do_run()
+    presenter._measuring.cancel()
+    qtbot.waitUntil(lambda: presenter.stage is Stage.MEASURED, timeout=3_000)
+    assert dict(presenter.model.results) == before
+    settled(presenter, qtbot)
+
+
+def test_a_repeat_and_its_thickness_are_there_after_reopening(presenter, qtbot):
+    presenter.repeats.add()
+    thickness = presenter.gauge.thickness_mm
+    presenter.model.save()
+    presenter.model.open(presenter.model.folder)
+    qtbot.waitUntil(lambda: presenter.stage is Stage.MEASURED, timeout=60_000)
+    assert presenter.gauge.thickness_mm == thickness
+    assert presenter.repeats.statistics().mean_mm == pytest.approx(thickness)
+    assert presenter.repeats.can_add.startswith("This scan is among the repeats already.")
+    assert step_states(presenter.project, presenter.model.results)["report"].sentence.startswith("Out of date")
+
+
+def test_a_recorded_picture_is_shown(presenter, qtbot):
+    ready = []
+    presenter.picture_ready.connect(lambda name, picture: ready.append((name, picture.shape)))
+    presenter.choose_picture(presenter.view.shown)
+    qtbot.waitUntil(lambda: bool(ready), timeout=20_000)
+    width, height = presenter.view.image_size
+    assert ready == [(presenter.view.shown, (height, width))]
+    settled(presenter, qtbot)
+
+
+def test_looking_and_measuring_never_stop_the_window(presenter, qtbot):
+    from workbench.pages.inspect_page import InspectPage
+
+    page = InspectPage(presenter)
+    qtbot.addWidget(page)
+    page.resize(1100, 700)
+    page.show()
+    qtbot.wait(300)
+    with Watchdog() as watchdog:
+        for name in ("faces", "sigma", "deviation", "frame", "height"):
+            page.surface.choose_colour(name)
+            qtbot.wait(60)
+        presenter.clip(0.1)
+        qtbot.wait(120)
+        page.tabs.setCurrentIndex(1)
+        qtbot.wait(60)
+        page.tabs.setCurrentIndex(0)
+        presenter.do_run()
+        qtbot.waitUntil(lambda: presenter.stage is Stage.MEASURED, timeout=60_000)
+    page.close()
+    assert watchdog.longest_ms < 50, watchdog.worst()
