@@ -116,10 +116,13 @@ class ProjectModel(QObject):
 
     def record(self, step: str, done: Done | None) -> None:
         """A step has been measured (or its result is gone)."""
-        results = {name: result for name, result in self.results.items() if name != step}
-        if done is not None:
-            results[step] = done
-        self._file = replace(self._file, results=results)
+        self.record_all({step: done})
+
+    def record_all(self, done: Mapping[str, Done | None]) -> None:
+        """Several steps have been measured (or their results are gone) in one."""
+        kept = {name: result for name, result in self.results.items() if name not in done}
+        new = {name: result for name, result in done.items() if result is not None}
+        self._file = replace(self._file, results={**kept, **new})
         self._touched()
         self.results_changed.emit()
 

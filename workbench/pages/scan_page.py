@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from PySide6.QtCore import QEvent, Qt
+from PySide6.QtCore import QEvent, Qt, QTimer
 from PySide6.QtGui import QKeyEvent, QKeySequence, QShortcut
 from PySide6.QtWidgets import QWidget
 
@@ -203,3 +203,7 @@ class ScanPage(StepPage):
         current = p.work.seen_last if p.work.measuring else p.scrub.current
         if current and self.frames.current() != current:
             self.frames.set_current(current)
+            QTimer.singleShot(0, self, self._scroll_to_current)  # the list may not be laid out yet
+
+    def _scroll_to_current(self) -> None:
+        self.frames.table.scrollTo(self.frames.table.currentIndex())

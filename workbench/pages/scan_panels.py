@@ -58,9 +58,7 @@ class ScanCard(StageCard):
         p = self._presenter
         match stage:
             case Stage.NONE:
-                return self.tr("No recording yet"), self.tr(
-                    "Sweep the part with a live source, or choose the folder of a recording."
-                )
+                return self.tr("No recording yet"), self._how_to_begin()
             case Stage.LISTING:
                 return self.tr("Listing the frames …"), ""
             case Stage.EMPTY:
@@ -84,6 +82,12 @@ class ScanCard(StageCard):
                 return self.tr("Measured"), p.state.sentence
             case Stage.OUTDATED:
                 return self.tr("Measured, but out of date"), self.tr("{0} Measure again.").format(p.state.sentence)
+
+    def _how_to_begin(self) -> str:
+        begin = self.tr("Sweep the part with a live source, or choose the folder of a recording.")
+        if self._presenter.calibrated:
+            return begin
+        return self.tr("{0} It can be measured once camera and laser planes are accepted.").format(begin)
 
     def _live_words(self) -> tuple[str, str]:
         tips = {

@@ -81,7 +81,7 @@ def frame_sentence(place: int, total: int, name: str, record: FrameRecord | None
             record.sweep_crossings, record.left_out,
         )  # fmt: skip
     if record is not None:
-        return _tr("{0}: no points, because {1}.").format(start, record.reason)
+        return _tr("{0}: no points; {1}.").format(start, record.reason)
     if stages is not None and stages.reason:
         return _tr("{0}: {1}.").format(start, stages.reason)
     if stages is not None and stages.seen is not None:

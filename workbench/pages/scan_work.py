@@ -46,6 +46,8 @@ class ScanWork(QObject):
     measured = Signal(object)
     """ScanSummary."""
 
+    task: Task | None
+
     def __init__(self, bench: Bench, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self._bench, self._model = bench, bench.model
@@ -59,7 +61,7 @@ class ScanWork(QObject):
         self.fan: Fan | None = None
         self.look: ScanLook | None = None
         self.no_gauge = ""
-        self.task: Task | None = None
+        self.task = None
         self.by_itself = False
         self.previews: dict[str, FramePreview] = {}
         self.seen_last = ""
@@ -116,7 +118,7 @@ class ScanWork(QObject):
             return
         self.by_itself, self.previews, self._latest, self._problem = by_itself, {}, None, ("", "")
         self.seen_last = ""
-        self.task = task = self._bench.measure(
+        task: Task = self._bench.measure(
             jobs.WATCH_SCAN,
             folder,
             project,
@@ -126,6 +128,7 @@ class ScanWork(QObject):
             on_cancelled=lambda: self._not_measured(task, project, ""),
             offers={"progress": "progress", "watch": "watch"},
         )
+        self.task = task
         task.told.connect(lambda detail: self._told(task, detail))
         self.started.emit()
         self.changed.emit()
@@ -173,14 +176,14 @@ class ScanWork(QObject):
 
     def _measured(self, folder: Path, project: Project, summary: ScanSummary) -> None:
         self.task, self.no_gauge = None, summary.no_gauge
-        if folder == self._model.folder:
-            model = self._model
-            self._looked = ""
-            model.record("scan", finished("scan", project, model.results))
-            thickness = finished("inspect", project, model.results) if summary.gauge is not None else None
-            model.record("inspect", thickness)
-            self.measured.emit(summary)
-        self.changed.emit()
+        if folder != self._model.folder:
+            return
+        self._looked = ""
+        results = dict(self._model.results)
+        results["scan"] = scan = finished("scan", project, results)
+        thickness = finished("inspect", project, results) if summary.gauge is not None else None
+        self._model.record_all({"scan": scan, "inspect": thickness})
+        self.measured.emit(summary)
 
     def _not_measured(self, task: Task, project: Project, problem: str) -> None:
         if task is self.task:

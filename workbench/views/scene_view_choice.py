@@ -109,6 +109,7 @@ def _find_out(embedded: bool, teller: Herald) -> None:
     except Exception:  # noqa: BLE001  whatever is wrong with the libraries, the program goes on without them
         _log.exception("the 3D libraries cannot be imported; pictures of the scene are painted without them")
     finally:
+        gc.freeze()  # what was imported stays for good: later collections need not go through it again
         if collecting:
             gc.enable()
     _Choice.kind, _Choice.thread = kind, None

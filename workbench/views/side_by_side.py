@@ -8,7 +8,6 @@ from PySide6.QtWidgets import QHBoxLayout, QLabel, QSplitter, QToolButton, QVBox
 
 from workbench.theme import icon
 
-
 NARROWEST = 160
 """No view is made narrower than so many pixels."""
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 from PySide6.QtCore import QEvent, QSize, Qt, Signal
 from PySide6.QtWidgets import QButtonGroup, QFrame, QHBoxLayout, QLabel, QToolButton, QVBoxLayout, QWidget
@@ -63,12 +63,13 @@ class StepRail(QFrame):
 
     def set_states(self, states: Mapping[str, tuple[str, str]]) -> None:
         """`states`: for each step its state (a key of BADGES) and the sentence that explains it."""
+        others = [name for name, (state, _) in states.items() if state != self._states[name]]
         for name, (state, sentence) in states.items():
             self._states[name] = state
             self._buttons[name].setToolTip(sentence)
             self._badges[name].setToolTip(sentence)
             self._buttons[name].setAccessibleDescription(sentence)
-        self._show_badges()
+        self._show_badges(others)
 
     def state_of(self, name: str) -> str:
         """The state shown for a step."""
@@ -82,9 +83,9 @@ class StepRail(QFrame):
     def _dress(self) -> None:
         for name, button in self._buttons.items():
             button.setIcon(icon(self._icons[name]))
-        self._show_badges()
+        self._show_badges(self._badges)
 
-    def _show_badges(self) -> None:
-        for name, badge in self._badges.items():
+    def _show_badges(self, names: Iterable[str]) -> None:
+        for name in names:
             symbol, colour = BADGES[self._states[name]]
-            badge.setPixmap(icon(symbol, colour=colour).pixmap(QSize(16, 16)))
+            self._badges[name].setPixmap(icon(symbol, colour=colour).pixmap(QSize(16, 16)))
