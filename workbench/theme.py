@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from importlib.resources import files
+from pathlib import Path
 
 import qtawesome
 from PySide6.QtCore import Qt
@@ -90,6 +92,7 @@ def _palette(s: Shades) -> QPalette:
 
 
 def _style(s: Shades) -> str:
+    check = Path(str(files("resources"))) / "icons" / f"check-{'dark' if s is DARK else 'light'}.svg"
     return f"""
 QToolTip {{ color: {s.text}; background: {s.panel}; border: 1px solid {s.line}; padding: 4px; }}
 QFrame#card {{ background: {s.panel}; border: 1px solid {s.line}; border-radius: 6px; }}
@@ -109,6 +112,13 @@ QPushButton:checked {{ border-color: {s.accent}; color: {s.accent}; }}
 QLineEdit, QPlainTextEdit {{ padding: 3px 5px; border: 1px solid {s.line};
     border-radius: 4px; background: {s.panel}; selection-background-color: {s.accent}; }}
 QLineEdit:focus, QPlainTextEdit:focus {{ border-color: {s.accent}; }}
+QCheckBox {{ spacing: 6px; }}
+QCheckBox::indicator {{ width: 14px; height: 14px; border: 1px solid {s.muted}; border-radius: 3px;
+    background: {s.panel}; }}
+QCheckBox::indicator:hover, QCheckBox::indicator:focus {{ border-color: {s.accent}; }}
+QCheckBox::indicator:checked {{ background: {s.accent}; border-color: {s.accent}; image: url("{check.as_posix()}"); }}
+QCheckBox::indicator:disabled {{ background: {s.window}; border-color: {s.line}; }}
+QCheckBox::indicator:checked:disabled {{ background: {s.muted}; }}
 QAbstractSpinBox, QComboBox {{ min-height: 20px; }}
 QHeaderView::section {{ background: {s.window}; color: {s.muted}; border: none; border-bottom: 1px solid {s.line};
     padding: 4px 7px; }}

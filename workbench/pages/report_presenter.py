@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from enum import StrEnum
 from pathlib import Path
 from typing import Any
-
-from PySide6.QtCore import Signal
 
 from core.files.project import Project
 from core.files.project_keys import finished
@@ -15,34 +14,58 @@ from workbench import jobs
 from workbench.bench import Bench
 from workbench.pages.presenter import StepPresenter
 from workbench.step_state import State, step_states
-from workbench.tasks import Task
+from workbench.tasks import Task, sentence
 
-PAGE_WIDTH_PX = 1000
+PAGE_WIDTH_PX = 1400
+
+ENDINGS = {"pdf": ".pdf", "cloud": ".ply", "mesh": ".ply", "stl": ".stl", "csv": ".csv", "json": ".json"}
+"""What can be handed over, and how the file's name ends."""
+
+EXPORT_FOLDER = "export folder"
+
+
+class Stage(StrEnum):
+    """How far the report is."""
+
+    NONE = "none"
+    READY = "ready"
+    MAKING = "making"
+    MADE = "made"
+    OUTDATED = "outdated"
 
 
 class ReportPresenter(StepPresenter):
-    """Preview, sections, paper, export."""
+    """Preview, sections, paper, export.
+
+    `pages` are the last ones drawn; while `drawing`, others are on their way. `problem` says why there are none.
+    """
 
     step = "report"
-    pages_ready = Signal(object)
-    exported = Signal(object)
 
     def __init__(self, bench: Bench) -> None:
         super().__init__(bench)
         self.pages: tuple[Any, ...] = ()
         self.problem = ""
-        self._preview: Task | None = None
-        self._previewed: Project | None = None
+        self._drawing: tuple[Any, ...] | None = None
+        self._drawn: tuple[Any, ...] | None = None
+        self._making: Task | None = None
         self._visible = False
+        self.model.results_changed.connect(self._refresh_preview)
 
-    @property
-    def previewing(self) -> bool:
-        """Whether the pages are being drawn."""
-        return self._preview is not None
+    # ---- what is in it
 
     def sections(self) -> list[tuple[str, str, bool]]:
         """Name, title, and whether it is in the report, of each section that can be left out."""
         return [(name, title, name not in self.project.report.hidden) for name, title in SECTIONS.items()]
+
+    def empty_section(self, name: str) -> str:
+        """Why a section has nothing to print yet, or ""."""
+        nothing = {
+            "repeats": "" if self.project.repeats else self.tr("No scan has been added to the repeats yet."),
+            "remarks": "" if self.project.info.notes else self.tr("There are no notes on the Project page yet."),
+            "budget": "" if "inspect" in self.model.results else self.tr("The thickness has not been measured yet."),
+        }
+        return nothing.get(name, "")
 
     def choose_section(self, name: str, shown: bool) -> None:
         """Put a section in or leave it out; undoable."""
@@ -56,6 +79,17 @@ class ReportPresenter(StepPresenter):
         report = replace(self.project.report, paper=paper)
         self.model.edit(self.tr("print on {0}").format(paper), replace(self.project, report=report))
 
+    # ---- how far it is
+
+    @property
+    def stage(self) -> Stage:
+        """How far the report is."""
+        if self._making is not None:
+            return Stage.MAKING
+        if not self.ready():
+            return Stage.NONE
+        return {State.DONE: Stage.MADE, State.OUTDATED: Stage.OUTDATED}.get(self.state.state, Stage.READY)
+
     def ready(self) -> bool:
         """Whether there is something to report."""
         return "scan" in self.model.results
@@ -64,62 +98,100 @@ class ReportPresenter(StepPresenter):
         return "" if self.ready() else self.tr("Scan the part first; then there is something to report.")
 
     def warning(self) -> str:
-        """What is out of date in the results the report would print, or ""."""
+        """What is out of date in the results the report prints, or ""."""
         states = step_states(self.project, self.model.results)
-        for step in ("scan", "inspect"):
+        titles = {"scan": self.tr("Scan"), "inspect": self.tr("Inspect")}
+        for step, title in titles.items():
             if states[step].state is State.OUTDATED:
-                titles = {"scan": self.tr("Scan"), "inspect": self.tr("Inspect")}
-                return self.tr("{0}: {1}").format(titles[step], states[step].sentence)
+                return self.tr("{0}: {1} The report prints what was measured then.").format(
+                    title, states[step].sentence
+                )
         return ""
+
+    # ---- make and hand over
+
+    def why_not_make(self) -> str:
+        """Why the report cannot be made now, or ""."""
+        return self.tr("The report is being made.") if self._making is not None else self.blocker()
 
     def do_run(self) -> None:
         """Make the report into the project's results."""
-        if not self.ready() or self.model.folder is None:
-            return
-        project = self.project
-
-        def done(path: Path) -> None:
-            self.model.record("report", finished("report", project, self.model.results))
-            self.bench.notices.info(self.tr("The report is {0}.").format(path))
-            self.exported.emit(path)
-
-        self.bench.measure(
-            jobs.MAKE_REPORT, self.model.folder, project, label=self.tr("Making the report"), on_done=done
-        )
+        self._make("")
 
     def export(self, kind: str, path: Path) -> None:
-        """Write a copy for others: "pdf", "cloud", "mesh", "stl", "csv" or "json"."""
-        if self.model.folder is None:
-            return
-
-        def done(written: Path) -> None:
-            self.bench.notices.info(self.tr("Written: {0}").format(written))
-            self.exported.emit(written)
-
-        self.bench.measure(
-            jobs.EXPORT, self.model.folder, self.project, kind, path, label=self.tr("Writing {0}").format(path.name),
-            on_done=done,
-        )  # fmt: skip
+        """Write a copy for others, of a kind in ENDINGS; a report that is not up to date is made first."""
+        path = path if path.suffix.lower() == ENDINGS[kind] else path.with_name(path.name + ENDINGS[kind])
+        self.bench.settings.keep_text(EXPORT_FOLDER, str(path.parent))
+        if kind == "pdf" and self.stage is not Stage.MADE:
+            self._make(path)
+        else:
+            self._export(kind, path)
 
     def export_missing(self, kind: str) -> str:
         """Why this cannot be handed over yet, or ""."""
-        needs = {"pdf": "report", "json": "inspect"}.get(kind, "scan")
-        if needs in self.model.results:
-            return ""
-        return {
-            "report": self.tr("Make the report first."),
-            "inspect": self.tr("Measure the thickness first."),
-            "scan": self.tr("Scan the part first."),
-        }[needs]
+        if not self.ready():
+            return self.tr("Scan the part first.")
+        if kind == "pdf" and self._making is not None:
+            return self.tr("The report is being made.")
+        if kind == "json" and "inspect" not in self.model.results:
+            return self.tr("Measure the thickness first.")
+        return ""
 
-    def export_name(self, kind: str) -> str:
-        """The name proposed for an exported file."""
+    def export_place(self, kind: str) -> Path:
+        """The file proposed for an export: where the last one was put, called like the part."""
         name = self.project.info.part or self.project.info.name or self.tr("result")
-        endings = {"pdf": ".pdf", "cloud": ".ply", "mesh": " mesh.ply", "stl": ".stl", "csv": ".csv", "json": ".json"}
-        return "".join("-" if c in '<>:"/\\|?*' else c for c in name) + endings[kind]
+        name = "".join("-" if c in '<>:"/\\|?*' or ord(c) < 32 else c for c in name).strip(" .") or self.tr("result")
+        name += {"mesh": self.tr(" surface"), "json": self.tr(" thickness")}.get(kind, "")
+        folder = Path(self.bench.settings.text(EXPORT_FOLDER, str(self.model.folder or Path.home())))
+        return (folder if folder.is_dir() else Path.home()) / (name + ENDINGS[kind])
+
+    def results_folder(self) -> Path | None:
+        """Where the results lie; None if there are none."""
+        folder = self.model.folder / "results" if self.model.folder is not None else None
+        return folder if folder is not None and folder.is_dir() else None
+
+    def _make(self, then_copy_to: Path | str) -> None:
+        folder, project, results = self.model.folder, self.project, self.model.results
+        if folder is None or self.why_not_make():
+            return
+
+        def done(path: Path) -> None:
+            self._making = None
+            if folder == self.model.folder:
+                self.model.record("report", finished("report", project, results))
+                self.bench.notices.info(self.tr("The report is {0}.").format(path))
+                if isinstance(then_copy_to, Path):
+                    self._export("pdf", then_copy_to)
+            self.changed.emit()
+
+        def ended(*_: Any) -> None:
+            self._making = None
+            self.changed.emit()
+
+        self._making = self.bench.measure(
+            jobs.MAKE_REPORT, folder, project, label=self.tr("Making the report"), on_done=done, on_failed=ended,
+            on_cancelled=ended,
+        )  # fmt: skip
+        self.changed.emit()
+
+    def _export(self, kind: str, path: Path) -> None:
+        if self.model.folder is None:
+            return
+        self.bench.measure(
+            jobs.EXPORT, self.model.folder, self.project, kind, path, label=self.tr("Writing {0}").format(path.name),
+            on_done=lambda written: self.bench.notices.info(self.tr("Written: {0}").format(written)),
+        )  # fmt: skip
+
+    # ---- preview
+
+    @property
+    def drawing(self) -> bool:
+        """Whether pages are being drawn."""
+        return self._drawing is not None
 
     def opened(self) -> None:
-        self._drop_preview()
+        self.pages, self.problem = (), ""
+        self._drawing = self._drawn = None
         self._refresh_preview()
 
     def project_changed(self, before: Project, after: Project) -> None:
@@ -132,33 +204,49 @@ class ReportPresenter(StepPresenter):
     def left(self) -> None:
         self._visible = False
 
+    def _printed(self) -> tuple[Any, ...]:
+        """Everything the pages say something of."""
+        project, results = self.project, self.model.results
+        return (
+            self.model.folder,
+            project.info,
+            project.rig,
+            project.sources,
+            project.repeats,
+            project.report,
+            project.options.part,
+            results.get("scan"),
+            results.get("inspect"),
+        )
+
     def _refresh_preview(self) -> None:
-        """Draw the pages anew if something in them has changed and somebody looks."""
-        if not self._visible or self.model.folder is None or not self.ready() or self._previewed == self.project:
+        """Draw the pages anew if something in them has changed and somebody looks; one drawing at a time."""
+        if not self._visible or self.model.folder is None or self.drawing:
             return
-        self._previewed = project = self.project
-        self._preview = self.bench.quick.run(
+        if not self.ready():
+            self.pages, self.problem, self._drawn = (), "", None
+            return
+        wanted = self._printed()
+        if wanted == self._drawn:
+            return
+        self._drawing = wanted
+        self.bench.quick.run(
             jobs.PREVIEW_REPORT,
             self.model.folder,
-            project,
+            self.project,
             PAGE_WIDTH_PX,
-            label="report preview",
-            on_done=lambda pages: self._show(project, pages, ""),
-            on_failed=lambda problem: self._show(project, (), str(problem)),
-            replace_waiting=True,
+            label=self.tr("Drawing the pages"),
+            on_done=lambda pages: self._show(wanted, pages, ""),
+            on_failed=lambda problem: self._show(wanted, (), sentence(problem)),
+            on_cancelled=lambda: self._show(wanted, self.pages, ""),
         )
         self.changed.emit()
 
-    def _show(self, project: Project, pages: tuple[Any, ...], problem: str) -> None:
-        if project is not self._previewed:
+    def _show(self, drawn: tuple[Any, ...], pages: tuple[Any, ...], problem: str) -> None:
+        """The pages are drawn; what has changed meanwhile is drawn next."""
+        if drawn is not self._drawing:
             return
-        self._preview = None
+        self._drawing, self._drawn = None, drawn
         self.pages, self.problem = pages, problem
-        self.pages_ready.emit(pages)
+        self._refresh_preview()
         self.changed.emit()
-
-    def _drop_preview(self) -> None:
-        if self._preview is not None:
-            self._preview.cancel()
-        self._preview = self._previewed = None
-        self.pages, self.problem = (), ""

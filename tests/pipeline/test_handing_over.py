@@ -1,0 +1,100 @@
+"""Looking at a report before it is made, and copies for others."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from pypdf import PdfReader
+
+from core.errors import Cancelled, InputError
+from core.files.atomic import write_bytes
+from core.files.ply import read_cloud, read_mesh
+from core.files.project import ReportChoices
+from core.pipeline.handing_over import export, preview_report
+from core.pipeline.project_steps import make_report, results_folder
+from core.report.content import SECTIONS
+from tests.simulated import copy_of
+
+pytestmark = pytest.mark.xdist_group("small simulated set")
+
+
+@pytest.fixture
+def folder(done, tmp_path):
+    return copy_of(done.folder, tmp_path / "project")
+
+
+def test_the_preview_is_the_report_and_writes_nothing(done, folder):
+    before = {path: path.stat().st_mtime_ns for path in folder.rglob("*")}
+    pages = preview_report(folder, done.project, 300)
+    assert {path: path.stat().st_mtime_ns for path in folder.rglob("*")} == before
+    assert len(pages) == len(PdfReader(make_report(folder, done.project)).pages)
+    for page in pages:
+        assert (page.dtype, page.shape[1:]) == (np.uint8, (300, 3))
+        assert page.shape[0] == pytest.approx(300 * 297 / 210, abs=2)
+        assert page.mean() > 200, "a page is mostly white"
+        assert page.std() > 5, "and not empty"
+
+
+def test_the_preview_follows_sections_and_paper(done, folder):
+    whole = preview_report(folder, done.project, 300)
+    choices = ReportChoices(frozenset(SECTIONS), "Letter")
+    short = preview_report(folder, replace(done.project, report=choices), 300)
+    assert len(short) < len(whole)
+    assert short[0].shape[0] == pytest.approx(300 * 11 / 8.5, abs=2)
+
+
+def test_a_preview_can_be_cancelled(done, folder):
+    def stop(step, now, total):
+        raise Cancelled
+
+    with pytest.raises(Cancelled):
+        preview_report(folder, done.project, 300, stop)
+
+
+@pytest.mark.parametrize(
+    ("kind", "name"), [("pdf", "report.pdf"), ("cloud", "cloud.ply"), ("mesh", "mesh.ply"), ("json", "gauge.json")]
+)
+def test_a_copy_has_the_bytes_of_the_result(done, folder, tmp_path, kind, name):
+    copy = export(folder, done.project, kind, tmp_path / f"out-{name}")
+    assert copy.read_bytes() == (results_folder(folder) / name).read_bytes()
+    if kind == "json":
+        assert json.loads(copy.read_text())["thickness_mm"] == pytest.approx(50, abs=1)
+
+
+def test_the_surface_as_stl_has_every_triangle(done, folder, tmp_path):
+    stl = export(folder, done.project, "stl", tmp_path / "part.stl").read_bytes()
+    mesh = read_mesh(results_folder(folder) / "mesh.ply")
+    assert int(np.frombuffer(stl, "<u4", 1, 80)[0]) == len(mesh.triangles)
+
+
+def test_the_points_as_csv_have_every_point(done, folder, tmp_path):
+    csv = export(folder, done.project, "csv", tmp_path / "points.csv").read_text().splitlines()
+    points = [line for line in csv if line[:1].isdigit() or line[:1] == "-"]
+    assert len(points) == len(read_cloud(results_folder(folder) / "cloud.ply").cloud)
+
+
+@pytest.mark.parametrize("kind", ["pdf", "cloud", "mesh", "stl", "csv", "json"])
+def test_what_is_not_there_is_told_and_nothing_is_written(done, folder, tmp_path, kind):
+    for path in results_folder(folder).iterdir():
+        path.unlink()
+    with pytest.raises(InputError, match=r"is not there|is missing"):
+        export(folder, done.project, kind, tmp_path / "copy")
+    assert not (tmp_path / "copy").exists()
+
+
+def test_a_copy_that_cannot_be_written_leaves_an_older_one_whole(done, folder, tmp_path):
+    older = tmp_path / "older"
+    write_bytes(older, b"older")
+    (tmp_path / "file").write_text("in the way")
+    for kind in ("pdf", "csv", "stl"):
+        with pytest.raises(InputError, match="cannot be written"):
+            export(folder, done.project, kind, tmp_path / "file" / "copy")
+    assert older.read_bytes() == b"older"
+
+
+def test_exporting_a_result_onto_itself_changes_nothing(done, folder):
+    report = results_folder(folder) / "report.pdf"
+    before = report.read_bytes()
+    export(folder, done.project, "pdf", report)
+    assert report.read_bytes() == before

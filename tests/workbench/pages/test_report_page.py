@@ -1,0 +1,161 @@
+"""The report page under the mouse."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from PySide6.QtCore import Qt, QUrl
+from PySide6.QtGui import QDesktopServices
+from PySide6.QtWidgets import QWidget
+
+from core.files.project import Project, new_project
+from core.files.project_keys import finished
+from tests.workbench.pages.test_report_presenter import PAGES, Drawing, measured
+from workbench.bench import Bench
+from workbench.pages.report_page import ReportPage
+from workbench.pages.report_presenter import ReportPresenter
+from workbench.views import ask
+
+
+@pytest.fixture
+def drawing(hand_bench: Bench) -> Drawing:
+    return Drawing(hand_bench)
+
+
+@pytest.fixture
+def page(hand_bench: Bench, drawing: Drawing, tmp_path: Path, qtbot: Any) -> Iterator[ReportPage]:
+    presenter = ReportPresenter(hand_bench)
+    made = ReportPage(presenter)
+    qtbot.addWidget(made)
+    made.resize(1098, 700)
+    hand_bench.model.create(tmp_path / "project", new_project("Block"))
+    presenter.entered()
+    with qtbot.waitExposed(made):
+        made.show()
+    yield made
+    made.hide()
+
+
+def click(qtbot: Any, widget: QWidget) -> None:
+    where = widget.rect().center()
+    where.setX(min(where.x(), 10))
+    qtbot.mouseClick(widget, Qt.MouseButton.LeftButton, pos=where)
+
+
+def test_an_empty_project_says_what_comes_first_everywhere(page: ReportPage) -> None:
+    assert page.preview.message == "Scan the part first; then there is something to report."
+    assert page.card.title.text() == "Nothing to report yet"
+    assert not page.make.isEnabled()
+    assert page.make.toolTip() == "Scan the part first; then there is something to report."
+    assert {button.toolTip() for button in page.exports.values()} == {"Scan the part first."}
+    assert page.folder.toolTip() == "There are no results yet."
+    assert not any(button.isEnabled() for button in (*page.exports.values(), page.folder))
+
+
+def test_pages_come_are_dimmed_while_others_are_drawn_and_stay_if_that_is_all(
+    page: ReportPage, drawing: Drawing, qtbot: Any
+) -> None:
+    measured(page.presenter)
+    assert page.preview.message == "Drawing the pages …"
+    drawing.done()
+    assert (page.preview.count(), page.preview.note) == (1, "Drawing the pages …"), "the thickness came meanwhile"
+    drawing.done(PAGES * 3)
+    assert (page.preview.count(), page.preview.note) == (3, "")
+    click(qtbot, page.boxes["maps"])
+    assert (page.preview.count(), page.preview.note) == (3, "Drawing the pages …")
+    drawing.done(PAGES * 2)
+    assert (page.preview.count(), page.preview.note) == (2, "")
+
+
+def test_sections_and_paper_are_chosen_by_the_mouse_and_taken_back(page: ReportPage, qtbot: Any) -> None:
+    stack, box = page.presenter.model.undo_stack, page.boxes["maps"]
+    click(qtbot, box)
+    assert page.presenter.project.report.hidden == {"maps"}
+    page.paper.setFocus()
+    qtbot.keyClick(page.paper, Qt.Key.Key_Down)
+    assert page.presenter.project.report.paper == "Letter"
+    stack.undo()
+    assert page.paper.currentText() == "A4"
+    stack.undo()
+    assert box.isChecked()
+    stack.redo()
+    assert not box.isChecked()
+
+
+def test_a_section_with_nothing_to_print_says_so(page: ReportPage) -> None:
+    assert page.boxes["remarks"].text() == "Remarks of the operator (nothing yet)"
+    assert "Project page" in page.boxes["remarks"].toolTip()
+
+
+def test_the_button_makes_the_report_and_then_makes_it_again(page: ReportPage, drawing: Drawing, qtbot: Any) -> None:
+    measured(page.presenter)
+    assert page.make.property("primary")
+    click(qtbot, page.make)
+    assert page.card.title.text() == "Making the report …"
+    assert not page.make.isEnabled()
+    qtbot.waitUntil(lambda: page.card.title.text() == "The report is made")
+    assert page.make.text() == "Make it again"
+    assert not page.make.property("primary")
+    click(qtbot, page.boxes["maps"])
+    assert page.card.title.text() == "The report is out of date"
+    assert page.card.words.text() == "Out of date: changed since: sections of the report."
+    assert page.make.property("primary")
+    click(qtbot, page.make)
+    qtbot.waitUntil(lambda: page.card.title.text() == "The report is made")
+
+
+@pytest.mark.parametrize("kind", ["pdf", "cloud", "mesh", "stl", "csv", "json"])
+def test_each_kind_is_handed_over_by_its_button(
+    page: ReportPage, drawing: Drawing, qtbot: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, kind: str
+) -> None:
+    measured(page.presenter)
+    wanted: list[Any] = []
+
+    def choose(*what: Any) -> Path:
+        wanted.append(what)
+        return tmp_path / "copy"
+
+    monkeypatch.setattr(ask, "choose_file_to_save", choose)
+    click(qtbot, page.exports[kind])
+    qtbot.waitUntil(lambda: bool(drawing.exported))
+    (_, _, proposed, kinds) = wanted[0]
+    assert f"*{proposed.suffix}" in kinds
+    assert drawing.exported == [(kind, tmp_path / f"copy{proposed.suffix}")]
+
+
+def test_nothing_is_written_where_no_file_is_chosen(
+    page: ReportPage, drawing: Drawing, qtbot: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    measured(page.presenter)
+    monkeypatch.setattr(ask, "choose_file_to_save", lambda *_: None)
+    click(qtbot, page.exports["pdf"])
+    assert not drawing.measuring.busy
+
+
+def test_the_results_folder_is_opened_or_told_where_nothing_can_open_it(
+    page: ReportPage, qtbot: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = tmp_path / "project" / "results"
+    folder.mkdir()
+    measured(page.presenter)
+    opened: list[QUrl] = []
+
+    def nobody(url: QUrl) -> bool:
+        opened.append(url)
+        return False
+
+    monkeypatch.setattr(QDesktopServices, "openUrl", nobody)
+    click(qtbot, page.folder)
+    assert [Path(url.toLocalFile()) for url in opened] == [folder]
+    assert str(folder) in page.presenter.bench.notices.all[-1].text
+
+
+def test_at_the_smallest_window_nothing_is_cut(page: ReportPage, drawing: Drawing) -> None:
+    page.resize(1024 - 182, 600)
+    measured(page.presenter)
+    page.presenter.model.record("report", finished("report", Project(), {}))
+    for widget in (*page.boxes.values(), *page.exports.values(), page.make, page.folder):
+        assert widget.width() >= widget.minimumSizeHint().width(), widget.text()
