@@ -157,6 +157,10 @@ class InspectFaces(QObject):
         if replace(was, nominal_mm=None, tolerance_mm=None) != replace(now, nominal_mm=None, tolerance_mm=None):
             self._regions = {}
 
+    def forget_regions(self) -> None:
+        """Another scan is shown: what was half drawn on the last one counts no more."""
+        self._regions = {}
+
     def forget(self) -> None:
         """Another project is open."""
         self._numbers, self._regions = {}, {}

@@ -8,7 +8,8 @@ from PySide6.QtCore import QEvent
 from PySide6.QtWidgets import QTabWidget, QWidget
 
 from workbench.pages import inspect_words as words
-from workbench.pages.inspect_panels import FacesPanel, PicksPanel, ResultPanel
+from workbench.pages.inspect_panels import FacesPanel, ResultPanel
+from workbench.pages.inspect_picks_panel import PicksPanel
 from workbench.pages.inspect_picture import PictureTab
 from workbench.pages.inspect_presenter import InspectPresenter, Stage
 from workbench.pages.inspect_series import RepeatsTab

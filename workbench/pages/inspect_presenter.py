@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -18,8 +17,9 @@ from workbench.bench import Bench
 from workbench.pages.inspect_faces import InspectFaces
 from workbench.pages.inspect_picks import InspectPicks
 from workbench.pages.inspect_repeats import InspectRepeats
+from workbench.pages.inspect_scan import InspectScan
 from workbench.pages.presenter import StepPresenter
-from workbench.step_state import State
+from workbench.step_state import State, step_states
 from workbench.tasks import Task, sentence
 
 if TYPE_CHECKING:
@@ -59,23 +59,20 @@ class InspectPresenter(StepPresenter):
 
     def __init__(self, bench: Bench) -> None:
         super().__init__(bench)
-        self.view: InspectionView | None = None
-        self.serial = 0
-        self.problem = ""
+        self.scan = InspectScan(self)
         self.clip_mm: float | None = None
         self.picture = RELIEF
         self.outlining = ""
         self._measuring: Task | None = None
         self._unmeasurable = ""
-        self._shown: tuple[object, ...] = ()
-        self._asked: tuple[object, ...] = ()
-        self._visible = self._new = False
+        self._seen = self._just_measured = False
         self.faces = InspectFaces(self)
         self.picks = InspectPicks(self)
         self.repeats = InspectRepeats(self)
         self.faces.changed.connect(self.changed)
         self.picks.changed.connect(self.changed)
-        self.model.results_changed.connect(self._look)
+        self.scan.changed.connect(self._scan_changed)
+        self.model.results_changed.connect(lambda: self.scan.look(seen=self._seen))
 
     # ---- state
 
@@ -97,20 +94,34 @@ class InspectPresenter(StepPresenter):
         return Stage.MEASURED if self.state.state is State.DONE else Stage.OUTDATED
 
     @property
+    def view(self) -> InspectionView | None:
+        """The scan that is shown."""
+        return self.scan.view
+
+    @property
+    def serial(self) -> int:
+        """Tells what is shown from what was shown before."""
+        return self.scan.serial
+
+    @property
+    def problem(self) -> str:
+        """Why the scan cannot be shown, or ""."""
+        return self.scan.problem
+
+    @property
     def stale(self) -> bool:
         """Whether something newer than what is shown is being read."""
-        return self._shown != self._asked
+        return self.scan.stale
+
+    @property
+    def scan_is_old(self) -> bool:
+        """Whether the scan itself is out of date."""
+        return step_states(self.project, self.model.results)["scan"].state is State.OUTDATED
 
     @property
     def gauge(self) -> GaugeResult | None:
         """The thickness that is shown."""
         return self.view.gauge if self.view is not None else None
-
-    @property
-    def recording(self) -> str:
-        """The recording the scan was measured from, as the project names it."""
-        done = self.model.results.get("scan")
-        return done.rests_on.get("recording", "") if done is not None else ""
 
     def blocker(self) -> str:
         return self.tr("Scan the part first.") if "scan" not in self.model.results else ""
@@ -120,7 +131,9 @@ class InspectPresenter(StepPresenter):
         return {
             Stage.UNMEASURED: self.tr("Measure the thickness, or go on without one: then the report has none."),
             Stage.FAILED: self.tr("Without a thickness the report shows the surface only."),
-            Stage.OUTDATED: self.tr("Measure again, or the report prints the thickness as it was."),
+            Stage.OUTDATED: self.tr("Measure the scan again first, on the page before.")
+            if self.scan_is_old
+            else self.tr("Measure again, or the report prints the thickness as it was."),
         }.get(self.stage, "")
 
     @property
@@ -150,7 +163,7 @@ class InspectPresenter(StepPresenter):
 
         def done(_: Any) -> None:
             if folder == self.model.folder:
-                self._new = True
+                self._just_measured = True
                 self.model.record("inspect", finished("inspect", project, self.model.results))
 
         def failed(problem: Any) -> None:
@@ -160,7 +173,7 @@ class InspectPresenter(StepPresenter):
         self._measuring = self.bench.measure(
             jobs.MEASURE_GAUGE,
             folder,
-            self._as_scanned(),
+            self.scan.as_scanned(),
             label=self.tr("Measuring the thickness"),
             on_done=done,
             on_failed=failed,
@@ -206,7 +219,7 @@ class InspectPresenter(StepPresenter):
         name, folder = self.picture, self.model.folder
         if name == RELIEF or folder is None:
             return
-        scans = source_folder(folder, self.recording)
+        scans = source_folder(folder, self.scan.recording)
         if scans is None:
             return
         self.bench.glance(
@@ -254,15 +267,17 @@ class InspectPresenter(StepPresenter):
     # ---- what happens elsewhere
 
     def opened(self) -> None:
-        self._forget()
-        self._look()
+        self._just_measured = False
+        self.faces.forget()
+        self.scan.forget()
+        self.scan.look(seen=self._seen)
 
     def entered(self) -> None:
-        self._visible = True
-        self._look()
+        self._seen = True
+        self.scan.look(seen=True)
 
     def left(self) -> None:
-        self._visible = False
+        self._seen = False
         self.picks.stop()
 
     def project_changed(self, before: Project, after: Project) -> None:
@@ -270,77 +285,16 @@ class InspectPresenter(StepPresenter):
             self._unmeasurable = ""
         self.faces.follow(before.rig.gauge, after.rig.gauge)
 
-    def read_again(self) -> None:
-        """Read the scan once more."""
-        self._asked = ()
-        self.problem = ""
-        self._look()
-        self.changed.emit()
-
-    def _look(self) -> None:
-        """Read the scan if the page is seen and another one is there."""
-        results = self.model.results
-        wanted = tuple(
-            (done.key, done.at) for done in (results.get("scan"), results.get("inspect")) if done is not None
-        )
-        if "scan" not in results or not self.model.is_open:
-            if self.view is not None or self._asked:
-                self._forget()
-                self.changed.emit()
-            return
-        if not self._visible or wanted == self._asked:
-            return
-        self._asked, self.problem = wanted, ""
-        folder = self.model.folder
-        assert folder is not None
-
-        def done(view: Any) -> None:
-            if wanted == self._asked and folder == self.model.folder:
-                self._take(view, wanted)
-
-        def failed(problem: Any) -> None:
-            if wanted == self._asked and folder == self.model.folder:
-                self.problem, self.view = sentence(problem), None
-                self.changed.emit()
-
-        def cancelled() -> None:
-            if wanted == self._asked:
-                self._asked = self._shown
-
-        self.bench.glance(
-            jobs.INSPECTION_VIEW,
-            folder,
-            self._as_scanned(),
-            label=self.tr("Reading the scan"),
-            on_done=done,
-            on_failed=failed,
-            on_cancelled=cancelled,
-            replace_waiting=True,
-        )
-
-    def _take(self, view: InspectionView, wanted: tuple[object, ...]) -> None:
-        """Show another scan, or the same one with another thickness."""
-        scan_before, self._shown = self._shown[:1], wanted
-        self.view, self.serial = view, self.serial + 1
-        if scan_before != wanted[:1]:
+    def _scan_changed(self) -> None:
+        """Another scan is shown, or the same one with another thickness, or none."""
+        if self.scan.is_new:
             self.picks.clear()
-            self.clip_mm, self._unmeasurable = None, ""
-        if self.picture not in (RELIEF, *view.pictures):
+            self.faces.forget_regions()
+            self.clip_mm, self.outlining, self._unmeasurable = None, "", ""
+        if self.view is None or self.picture not in (RELIEF, *self.view.pictures):
             self.picture = RELIEF
         self.read_picture()
         self.changed.emit()
-        if self._new:
-            self._new = False
+        if self._just_measured and not self.stale:
+            self._just_measured = False
             self.measured.emit()
-
-    def _as_scanned(self) -> Project:
-        """The project with the recording that the scan among the results was measured from."""
-        return replace(self.project, sources=replace(self.project.sources, scan=self.recording))
-
-    def _forget(self) -> None:
-        self.view, self.problem, self._unmeasurable = None, "", ""
-        self._shown = self._asked = ()
-        self.clip_mm, self.picture, self.outlining = None, RELIEF, ""
-        self.picks.clear()
-        self.faces.forget()
-        self._new = False

@@ -34,9 +34,11 @@ class InspectRepeats(QObject):
         owner = self._owner
         if owner.gauge is None:
             return self.tr("Measure the thickness first.")
+        if owner.scan_is_old:
+            return self.tr("The scan is out of date: measure it again first, on the page before.")
         if owner.state.state is not State.DONE or owner.stale:
             return self.tr("The thickness is out of date: measure it again first.")
-        if any(repeat.scan == owner.recording for repeat in self.all):
+        if any(repeat.scan == owner.scan.recording for repeat in self.all):
             return self.tr(
                 "This scan is among the repeats already. A repeat is another scan of the part: measuring the same "
                 "pictures again says nothing about how well the measurement repeats."
@@ -45,13 +47,13 @@ class InspectRepeats(QObject):
 
     def add(self) -> None:
         """Add the thickness of this scan to the series; undoable. The same scan twice is refused with a sentence."""
-        why_not = self.can_add
-        gauge, view, scan = self._owner.gauge, self._owner.view, self._owner.model.results.get("scan")
+        why_not, gauge, view = self.can_add, self._owner.gauge, self._owner.view
+        scan = self._owner.model.results.get("scan")
         if why_not or gauge is None or view is None or scan is None:
             self._owner.bench.notices.warning(why_not or self.tr("Measure the thickness first."))
             return
         repeat = Repeat(
-            scan=self._owner.recording,
+            scan=self._owner.scan.recording,
             thickness_mm=gauge.thickness_mm,
             U_mm=gauge.U_mm,
             k=gauge.k,

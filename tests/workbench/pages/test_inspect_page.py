@@ -147,7 +147,7 @@ def test_a_scan_without_a_thickness_offers_to_measure_it(unmeasured):
     measure = unmeasured.card.buttons["measure"]
     assert measure.property("primary") and measure.text() == "Measure thickness" and "Ctrl+R" in measure.toolTip()
     assert unmeasured.result_fold.isHidden()
-    assert unmeasured.surface.colours.itemText(1) == "depth"
+    assert unmeasured.surface.choices.colours.itemText(1) == "depth"
 
 
 # ---- measuring
@@ -197,7 +197,7 @@ def test_half_a_pair_of_numbers_is_complained_about(shown):
 def test_every_colour_shows_its_bar_with_a_unit(shown):
     bars = {}
     for name in ("faces", "height", "sigma", "deviation", "frame", "plain"):
-        shown.surface.choose_colour(name)
+        shown.surface.choices.choose_colour(name)
         shown.surface._draw()
         bars[name] = cloud(shown).colouring.title
     assert bars["height"] == "height over the lower face [mm]"
@@ -207,47 +207,47 @@ def test_every_colour_shows_its_bar_with_a_unit(shown):
 
 
 def test_without_faces_nothing_can_be_coloured_by_them(unmeasured):
-    model = unmeasured.surface.colours.model()
+    model = unmeasured.surface.choices.colours.model()
     for name in ("faces", "deviation"):
-        assert not model.item(unmeasured.surface.colours.findData(name)).isEnabled()
+        assert not model.item(unmeasured.surface.choices.colours.findData(name)).isEnabled()
 
 
 def test_points_mesh_or_both(shown, qtbot):
     scene = shown.surface.scene._scene
     for name, points, mesh in (("mesh", False, True), ("both", True, True), ("points", True, False)):
-        press(qtbot, shown.surface.shapes[name])
+        press(qtbot, shown.surface.choices.shapes[name])
         shown.surface._draw()
         assert (scene.cloud_shown, scene.mesh_shown and scene.mesh is not None) == (points, mesh), name
-    press(qtbot, shown.surface.shapes["mesh"])
+    press(qtbot, shown.surface.choices.shapes["mesh"])
     shown.surface._draw()
     assert shown.surface.line.text() == "2 of 2 triangles shown"
 
 
 def test_a_scan_without_a_mesh_shows_points_only(page, quick, qtbot):
     quick.answers[jobs.INSPECTION_VIEW] = lambda folder, project: cases.view(cases.gauge(), mesh=False)
-    press_later = page.surface.shapes["mesh"]
+    press_later = page.surface.choices.shapes["mesh"]
     scan(page, qtbot)
     assert not press_later.isEnabled() and page.surface.shape == "points"
 
 
 def test_the_sigma_limit_says_how_many_points_are_left(shown, qtbot):
     assert shown.surface.line.text() == "600 of 600 points shown"
-    shown.surface.limit.setValue(0.03)
+    shown.surface.choices.limit.setValue(0.03)
     left = shown.presenter.points_shown()
     assert shown.surface.line.text() == f"{left} of 600 points shown" and 0 < left < 600
     qtbot.waitUntil(lambda: cloud(shown).given == left)
-    shown.surface.slider.setValue(shown.surface.slider.maximum())
+    shown.surface.choices.slider.setValue(shown.surface.choices.slider.maximum())
     assert shown.surface.line.text() == "600 of 600 points shown"
     qtbot.waitUntil(lambda: cloud(shown).given == 600)
 
 
 def test_points_used_stand_out_on_a_mesh(shown, qtbot):
-    press(qtbot, shown.surface.shapes["mesh"])
-    shown.surface.choose_colour("faces")
+    press(qtbot, shown.surface.choices.shapes["mesh"])
+    shown.surface.choices.choose_colour("faces")
     shown.surface._draw()
     marked = {name for _, name in shown.surface.scene._scene.items}
     assert {"used upper", "used lower"} <= marked
-    shown.surface.choose_colour("height")
+    shown.surface.choices.choose_colour("height")
     shown.surface._draw()
     assert not {"used upper"} & {name for _, name in shown.surface.scene._scene.items}
 

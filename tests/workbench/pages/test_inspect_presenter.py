@@ -8,6 +8,7 @@ import pytest
 
 from core.errors import InputError
 from core.files.pictures import write_picture
+from core.files.project import Accepted
 from core.files.project_keys import finished
 from tests.workbench.hand_lane import HandLane
 from tests.workbench.pages import inspect_cases as cases
@@ -114,7 +115,7 @@ def test_a_scan_that_cannot_be_read_is_told_and_can_be_read_again(empty, quick, 
     assert empty.problem == "cloud.ply: this is no whole PLY file."
     assert empty.can_measure == "The scan cannot be read."
     quick.answers[jobs.INSPECTION_VIEW] = lambda folder, project: cases.view()
-    empty.read_again()
+    empty.scan.read_again()
     qtbot.waitUntil(lambda: empty.view is not None)
 
 
@@ -195,6 +196,15 @@ def test_a_changed_nominal_value_makes_the_thickness_out_of_date_and_undo_brings
     assert shown.warning() == "Measure again, or the report prints the thickness as it was."
     undo(shown)
     assert shown.stage is Stage.MEASURED
+
+
+def test_a_scan_that_is_out_of_date_itself_is_named_as_the_reason(shown):
+    shown.model.edit("accept", replace(shown.project, accepted=Accepted("camera-2", "fan-2")))
+    assert shown.stage is Stage.OUTDATED and "scan" in shown.state.sentence
+    assert shown.warning() == "Measure the scan again first, on the page before."
+    assert shown.repeats.can_add.startswith("The scan is out of date")
+    undo(shown)
+    assert shown.stage is Stage.MEASURED and shown.repeats.can_add == ""
 
 
 # ---- nominal value and tolerance

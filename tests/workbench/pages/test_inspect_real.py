@@ -98,7 +98,7 @@ def test_looking_and_measuring_never_stop_the_window(presenter, qtbot):
     qtbot.wait(300)
     with Watchdog() as watchdog:
         for name in ("faces", "sigma", "deviation", "frame", "height"):
-            page.surface.choose_colour(name)
+            page.surface.choices.choose_colour(name)
             qtbot.wait(60)
         presenter.clip(0.1)
         qtbot.wait(120)

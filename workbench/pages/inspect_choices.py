@@ -1,0 +1,186 @@
+"""What is shown of the surface: points or mesh, what colours it, and up to which σ."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from PySide6.QtCore import QEvent, Qt, Signal
+from PySide6.QtWidgets import (
+    QButtonGroup,
+    QComboBox,
+    QDoubleSpinBox,
+    QHBoxLayout,
+    QLabel,
+    QPushButton,
+    QSlider,
+    QWidget,
+)
+
+from core.inspect.inspection import DEPTH
+from workbench.theme import icon
+
+if TYPE_CHECKING:
+    from core.inspect.inspection import InspectionView
+
+STEPS = 200
+"""Of the slider from the smallest σ to the largest."""
+
+Shape = Literal["points", "mesh", "both"]
+
+SYMBOLS: dict[Shape, str] = {
+    "points": "mdi6.dots-hexagon",
+    "mesh": "mdi6.triangle-outline",
+    "both": "mdi6.vector-triangle",
+}
+
+
+class SurfaceChoices(QWidget):
+    """The bar over the 3D view."""
+
+    changed = Signal()
+    """The shape or the colour is another one."""
+
+    limited = Signal(object)
+    """Points up to this σ in mm are to be shown; None: all."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.shapes: dict[Shape, QPushButton] = {}
+        self.colours, self.limit, self.slider = QComboBox(), QDoubleSpinBox(), QSlider(Qt.Orientation.Horizontal)
+        bar = QHBoxLayout(self)
+        bar.setContentsMargins(0, 0, 0, 0)
+        bar.setSpacing(4)
+        self._make_shapes(bar)
+        bar.addSpacing(8)
+        self._make_colours(bar)
+        bar.addStretch(1)
+        self._make_limit(bar)
+        self._dress()
+
+    @property
+    def shape(self) -> Shape:
+        """What is shown of the surface."""
+        return next(name for name, button in self.shapes.items() if button.isChecked())
+
+    @property
+    def colour(self) -> str:
+        """What colours it: "faces", "sigma", "height", "deviation", "frame", "plain"."""
+        return str(self.colours.currentData())
+
+    def choose_colour(self, name: str) -> None:
+        """Colour by something else."""
+        self.colours.setCurrentIndex(self.colours.findData(name))
+
+    def show_view(self, view: InspectionView | None, clip_mm: float | None) -> None:
+        """Offer what there is to choose for a scan; nothing without one."""
+        for widget in (*self.shapes.values(), self.colours, self.limit, self.slider):
+            widget.setEnabled(view is not None)
+        if view is None:
+            return
+        for name in ("mesh", "both"):
+            self.shapes[name].setEnabled(view.mesh is not None)
+        if view.mesh is None and self.shape != "points":
+            self.shapes["points"].setChecked(True)
+        self._name_colours(view)
+        self._show_limit(view, clip_mm)
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "slider"):
+            self._dress()
+
+    def _make_shapes(self, bar: QHBoxLayout) -> None:
+        group = QButtonGroup(self)
+        entries: tuple[tuple[Shape, str, str], ...] = (
+            ("points", self.tr("Points"), self.tr("Show the measured points")),
+            ("mesh", self.tr("Mesh"), self.tr("Show the triangulated surface")),
+            ("both", self.tr("Both"), self.tr("Show the points on the triangulated surface")),
+        )
+        for name, text, tip in entries:
+            button = QPushButton(text)
+            button.setToolTip(tip)
+            button.setCheckable(True)
+            group.addButton(button)
+            bar.addWidget(button)
+            self.shapes[name] = button
+        self.shapes["points"].setChecked(True)
+        group.buttonToggled.connect(lambda _, on: self.changed.emit() if on else None)
+
+    def _make_colours(self, bar: QHBoxLayout) -> None:
+        self.colours.setAccessibleName(self.tr("Colour by"))
+        self.colours.setToolTip(self.tr("What the colours of the surface mean"))
+        for name, text in (
+            ("faces", self.tr("points used")),
+            ("height", self.tr("height")),
+            ("sigma", self.tr("σ of the points")),
+            ("deviation", self.tr("deviation from face")),
+            ("frame", self.tr("frame")),
+            ("plain", self.tr("nothing (plain)")),
+        ):
+            self.colours.addItem(text, name)
+        self.choose_colour("height")
+        self.colours.currentIndexChanged.connect(lambda _: self.changed.emit())
+        label = QLabel(self.tr("Colour"))
+        label.setBuddy(self.colours)
+        bar.addWidget(label)
+        bar.addWidget(self.colours)
+
+    def _make_limit(self, bar: QHBoxLayout) -> None:
+        tip = self.tr(
+            "Show points up to this standard uncertainty σ. Only what is seen changes: the thickness uses all points "
+            "of its faces."
+        )
+        self.limit.setSuffix(" mm")
+        self.limit.setKeyboardTracking(False)
+        self.slider.setRange(1, STEPS)
+        self.slider.setMinimumWidth(60)
+        self.slider.setMaximumWidth(150)
+        label = QLabel(self.tr("σ up to"))
+        label.setBuddy(self.limit)
+        for widget in (label, self.limit, self.slider):
+            widget.setToolTip(tip)
+        for widget in (self.limit, self.slider):
+            widget.setAccessibleName(self.tr("Show points up to this σ"))
+        self.limit.valueChanged.connect(self._limited)
+        self.slider.valueChanged.connect(self._slid)
+        bar.addWidget(label)
+        bar.addWidget(self.limit)
+        bar.addWidget(self.slider, 1)
+
+    def _name_colours(self, view: InspectionView) -> None:
+        """Without a lower face heights are depths, and there is nothing to colour by faces."""
+        place = self.colours.findData("height")
+        self.colours.setItemText(place, self.tr("depth") if view.height_is == DEPTH else self.tr("height"))
+        model: Any = self.colours.model()
+        for name in ("faces", "deviation"):
+            model.item(self.colours.findData(name)).setEnabled(view.gauge is not None)
+        if view.gauge is None and self.colour in ("faces", "deviation"):
+            self.choose_colour("height")
+
+    def _show_limit(self, view: InspectionView, clip_mm: float | None) -> None:
+        largest = float(view.sigma[-1])
+        for widget in (self.limit, self.slider):
+            widget.blockSignals(True)
+        self.limit.setDecimals(4 if largest < 0.1 else 3)
+        self.limit.setRange(float(view.sigma[0]), _up(largest, self.limit.decimals()))
+        self.limit.setSingleStep(10.0 ** -(self.limit.decimals() - 1))
+        self.limit.setValue(self.limit.maximum() if clip_mm is None else clip_mm)
+        self.slider.setValue(STEPS if clip_mm is None else round(STEPS * clip_mm / self.limit.maximum()))
+        for widget in (self.limit, self.slider):
+            widget.blockSignals(False)
+
+    def _limited(self, value: float) -> None:
+        self.limited.emit(None if value >= self.limit.maximum() else value)
+
+    def _slid(self, step: int) -> None:
+        self.limited.emit(None if step >= STEPS else self.limit.maximum() * step / STEPS)
+
+    def _dress(self) -> None:
+        for name, button in self.shapes.items():
+            button.setIcon(icon(SYMBOLS[name]))
+
+
+def _up(value: float, decimals: int) -> float:
+    """The next number of so many decimals that is not below `value`."""
+    return float(np.ceil(round(value * 10**decimals, 6)) / 10**decimals)

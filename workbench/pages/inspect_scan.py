@@ -1,0 +1,110 @@
+"""The scan that is shown: read from the results when the page is seen and there is another one."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from PySide6.QtCore import QObject, Signal
+
+from core.files.project import Project
+from workbench import jobs
+from workbench.tasks import sentence
+
+if TYPE_CHECKING:
+    from core.inspect.inspection import InspectionView
+    from workbench.pages.inspect_presenter import InspectPresenter
+
+Key = tuple[object, ...]
+"""Names a scan, and its thickness."""
+
+
+class InspectScan(QObject):
+    """`view` is the scan shown, with `serial` to tell it from the one before; `problem` is why there is none."""
+
+    changed = Signal()
+    """Another scan or another thickness is shown, or none."""
+
+    def __init__(self, owner: InspectPresenter) -> None:
+        super().__init__(owner)
+        self._owner = owner
+        self.view: InspectionView | None = None
+        self.serial = 0
+        self.problem = ""
+        self.is_new = False
+        self._shown: Key = ()
+        self._asked: Key = ()
+
+    @property
+    def stale(self) -> bool:
+        """Whether something newer than what is shown is being read."""
+        return self._shown != self._asked
+
+    @property
+    def recording(self) -> str:
+        """The recording the scan was measured from, as the project names it."""
+        done = self._owner.model.results.get("scan")
+        return done.rests_on.get("recording", "") if done is not None else ""
+
+    def as_scanned(self) -> Project:
+        """The project with the recording that the scan among the results was measured from."""
+        project = self._owner.project
+        return replace(project, sources=replace(project.sources, scan=self.recording))
+
+    def look(self, *, seen: bool) -> None:
+        """Read the scan if the page is seen and there is another one."""
+        owner, results = self._owner, self._owner.model.results
+        if "scan" not in results or not owner.model.is_open:
+            if self.view is not None or self._asked:
+                self.forget()
+            return
+        finished = (results.get("scan"), results.get("inspect"))
+        wanted = tuple((done.key, done.at) for done in finished if done is not None)
+        if not seen or wanted == self._asked:
+            return
+        self._asked, self.problem = wanted, ""
+        folder = owner.model.folder
+
+        def is_wanted() -> bool:
+            return wanted == self._asked and folder == owner.model.folder
+
+        def done(view: Any) -> None:
+            if is_wanted():
+                self._take(view)
+
+        def failed(problem: Any) -> None:
+            if is_wanted():
+                self.problem, self.view = sentence(problem), None
+                self.changed.emit()
+
+        def cancelled() -> None:
+            if is_wanted():
+                self._asked = self._shown
+
+        owner.bench.glance(
+            jobs.INSPECTION_VIEW,
+            folder,
+            self.as_scanned(),
+            label=self.tr("Reading the scan"),
+            on_done=done,
+            on_failed=failed,
+            on_cancelled=cancelled,
+            replace_waiting=True,
+        )
+
+    def read_again(self) -> None:
+        """Read the scan once more."""
+        self._asked, self.problem = (), ""
+        self.look(seen=True)
+
+    def forget(self) -> None:
+        """Show none."""
+        self.view, self.problem, self.is_new = None, "", True
+        self._shown = self._asked = ()
+        self.changed.emit()
+
+    def _take(self, view: InspectionView) -> None:
+        self.is_new = self._shown[:1] != self._asked[:1]
+        self._shown = self._asked
+        self.view, self.serial = view, self.serial + 1
+        self.changed.emit()
