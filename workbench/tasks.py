@@ -21,6 +21,7 @@ from PySide6.QtCore import QObject, QTimer, Signal
 from core.errors import InputError
 from workbench.jobs import Job
 from workbench.processes import lean_start
+from workbench.wording import in_the_window
 from workbench.worker import Failure, serve
 
 STOP_WITHIN_MS = 900
@@ -302,7 +303,7 @@ class Lane(QObject):
 
 def sentence(problem: InputError | Failure) -> str:
     """The one sentence that tells a failed task to the technician."""
-    return str(problem)
+    return in_the_window(str(problem))
 
 
 def details(problem: InputError | Failure) -> str:
