@@ -17,7 +17,7 @@ from PySide6.QtWidgets import (
 from workbench.pages import scan_words as words
 from workbench.pages.scan_picture import View
 from workbench.pages.scan_presenter import ScanPresenter
-from workbench.pages.scan_work import short
+from workbench.pages.scan_run import short
 from workbench.pages.step_page import muted
 from workbench.theme import icon
 

@@ -78,7 +78,7 @@ class ScanCloud(QWidget):
 
     def _message(self) -> str:
         p = self._presenter
-        if p.live.running or p.work.measuring:
+        if p.live.running or p.run.measuring:
             return self.tr("The points will grow here.")
         if p.stage is Stage.NONE:
             return self.tr("The measured points will be here.")

@@ -16,7 +16,7 @@ from workbench.pages.scan_cloud import ScanCloud
 from workbench.pages.scan_panels import ResultPanel, RunningPanel, ScanCard, SettingsPanel
 from workbench.pages.scan_picture import ScanPicture, View
 from workbench.pages.scan_presenter import ScanPresenter, Stage
-from workbench.pages.scan_work import short
+from workbench.pages.scan_run import short
 from workbench.pages.step_page import StepPage
 from workbench.views.live_panel import LivePanel, LiveStrip
 from workbench.views.side_by_side import SideBySide
@@ -103,9 +103,8 @@ class ScanPage(StepPage):
         self.bar.choose(View.CROSSINGS)
         p.live.started.connect(lambda _: self._begin())
         p.live.view.connect(self._show_live)
-        p.work.started.connect(self._begin)
-        p.work.detail.connect(self.cloud.grow)
-        p.work.frame_seen.connect(self._show_measured)
+        p.run.started.connect(self._begin)
+        p.run.frame_seen.connect(self._show_measured)
         p.model.opened.connect(self._opened)
         self.cloud.scene.notice.connect(p.bench.notices.info)
         self.picture.image.installEventFilter(self)
@@ -158,12 +157,13 @@ class ScanPage(StepPage):
 
     def _show_measured(self, detail: ScanDetail, picture: Any, scale: int) -> None:
         try:
-            if self.presenter.work.measuring:
+            if self.presenter.run.measuring:
                 self.picture.show_measured(detail, picture, scale)
+                self.cloud.grow(detail)
                 self.running.show_detail(detail, picture.shape[1] * scale)
                 self._show_frames()
         finally:
-            self.presenter.work.shown()
+            self.presenter.run.shown()
 
     def _folder_words(self) -> str:
         work = self.presenter.work
@@ -186,11 +186,11 @@ class ScanPage(StepPage):
 
     def _show_frames(self) -> None:
         p = self.presenter
-        records, previews = p.work.records(), p.work.previews
+        records, previews = p.work.records(), p.run.previews
         rows = []
         for name in p.work.names:
-            record, preview = records.get(name), previews.get(name) if p.work.measuring else None
-            if p.work.measuring:
+            record, preview = records.get(name), previews.get(name) if p.run.measuring else None
+            if p.run.measuring:
                 record = None
             sigma = record.sigma_mm if record is not None and not math.isnan(record.sigma_mm) else None
             text = words.mm(sigma) if sigma is not None else ""
@@ -200,7 +200,7 @@ class ScanPage(StepPage):
         if shown != self._rows:
             self._rows = shown
             self.frames.set_rows(rows)
-        current = p.work.seen_last if p.work.measuring else p.scrub.current
+        current = p.run.seen_last if p.run.measuring else p.scrub.current
         if current and self.frames.current() != current:
             self.frames.set_current(current)
             QTimer.singleShot(0, self, self._scroll_to_current)  # the list may not be laid out yet

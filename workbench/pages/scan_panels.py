@@ -70,14 +70,14 @@ class ScanCard(StageCard):
             case Stage.RECORDED:
                 title = self.tr("{0} frames, not measured yet").format(len(p.work.names))
                 return title, p.cannot_measure or self.tr("Press Measure; no setting is needed.")
-            case Stage.MEASURING if p.work.by_itself:
+            case Stage.MEASURING if p.run.by_itself:
                 return self.tr("Measuring the recording …"), self.tr(
                     "It began by itself and needs no setting. Cancel keeps the recording."
                 )
             case Stage.MEASURING:
                 return self.tr("Measuring …"), self.tr("Cancel keeps the recording and the result before.")
             case Stage.FAILED:
-                return self.tr("Not measured"), p.work.problem
+                return self.tr("Not measured"), p.run.problem
             case Stage.MEASURED:
                 return self.tr("Measured"), p.state.sentence
             case Stage.OUTDATED:
@@ -167,16 +167,16 @@ class ResultPanel(QWidget):
 
     def refresh(self) -> None:
         """Show the result."""
-        work = self._presenter.work
-        look = work.look
+        look = self._presenter.work.look
         self.quality.set_rows(words.quality_rows(look))
         reasons = words.reason_rows(look)
         self.reasons.set_rows(reasons)
         for widget in (self._why, self.reasons):
             widget.setVisible(bool(reasons))
         said = [*look.notes, *look.problems] if look is not None else []
-        if work.no_gauge:
-            said.append(self.tr("No thickness: {0}").format(work.no_gauge))
+        no_gauge = self._presenter.run.no_gauge
+        if no_gauge:
+            said.append(self.tr("No thickness: {0}").format(no_gauge))
         self.notes.setText("\n".join(said))
         self.notes.setVisible(bool(said))
 

@@ -52,7 +52,7 @@ class ScanPicture(QWidget):
                 self._clear(p.live.state_text())
         elif p.scrubbing:
             self._show_frame()
-        elif not p.work.measuring:
+        elif not p.run.measuring:
             self._empty()
 
     def show_view(self, view: View) -> None:

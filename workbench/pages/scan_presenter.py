@@ -12,20 +12,18 @@ from core.errors import InputError
 from core.files.options import Options
 from core.files.project import Project
 from core.files.project_keys import changed, rests_on
-from core.image.stripe import StripeSettings
 from core.live.events import LiveEnded, LiveView, ScanDetail
 from core.model import Camera, Fan
 from core.scan.frame_record import FrameRecord
 from workbench.bench import Bench
 from workbench.pages.live_presenter import LivePresenter
 from workbench.pages.presenter import StepPresenter
+from workbench.pages.scan_run import ScanRun, short
 from workbench.pages.scan_scrub import FrameScrub
-from workbench.pages.scan_work import ScanWork, short
+from workbench.pages.scan_settings import changed_options, values_of
+from workbench.pages.scan_work import ScanWork
 from workbench.pages.sources import folder_of, put_source
 from workbench.step_state import State
-
-USUAL_STRIPE = StripeSettings(6.0, 60.0)
-"""Where width and contrast start when they are to be given and nothing has been measured yet."""
 
 
 class Stage(StrEnum):
@@ -54,6 +52,7 @@ class ScanPresenter(StepPresenter):
         self.live = LivePresenter(bench, "scan", self)
         self.live.calibration = self._calibration
         self.work = ScanWork(bench, self)
+        self.run = ScanRun(bench, self)
         self.scrub = FrameScrub(bench, self.work, self)
         self.live_stage = ""
         self._shown = False
@@ -62,6 +61,7 @@ class ScanPresenter(StepPresenter):
         self.live.view.connect(self._live_view)
         self.live.ended.connect(self._live_ended)
         self.work.changed.connect(self._look_again)
+        self.run.changed.connect(self._look_again)
         self.scrub.changed.connect(self.changed)
         self.model.results_changed.connect(self._results_changed)
 
@@ -73,9 +73,9 @@ class ScanPresenter(StepPresenter):
         work = self.work
         if self.live.running:
             return Stage.LIVE
-        if work.measuring:
+        if self.run.measuring:
             return Stage.MEASURING
-        if work.problem:
+        if self.run.problem:
             return Stage.FAILED
         state = self.state.state
         if state is State.DONE:
@@ -117,7 +117,7 @@ class ScanPresenter(StepPresenter):
         accepted, work = self.project.accepted, self.work
         if self.live.running:
             return self.tr("Stop the recording first.")
-        if work.measuring:
+        if self.run.measuring:
             return self.tr("The scan is being measured.")
         if not accepted.camera:
             return self.tr("Accept a camera calibration first.")
@@ -181,50 +181,28 @@ class ScanPresenter(StepPresenter):
 
     def settings(self) -> dict[str, Any]:
         """How the scan is measured, as the fields of a form."""
-        options = self.project.options
-        stripe = options.stripe or self._settled_stripe()
-        return {
-            "method": options.method,
-            "sigma_cut_mm": options.sigma_cut_mm,
-            "automatic": options.stripe is None,
-            "width_px": stripe.width_px,
-            "contrast": stripe.contrast,
-        }
+        return values_of(self.project.options, self.work.look)
 
     def set_setting(self, field: str, value: Any) -> None:
-        """Change a setting; undoable."""
+        """Change a setting; undoable. What cannot be is refused with a sentence."""
         try:
-            options = self._changed_options(field, value)
+            options = changed_options(self.project.options, self.work.look, field, value)
         except (InputError, ValueError) as error:
             self.bench.notices.error(str(error))
             self.changed.emit()
             return
         self._set_options(self.tr("change how the scan is measured"), options, f"scan {field}")
 
-    def _changed_options(self, field: str, value: Any) -> Options:
-        options = self.project.options
-        stripe = options.stripe or self._settled_stripe()
-        if field == "automatic":
-            return replace(options, stripe=None if value else stripe)
-        if field in ("width_px", "contrast"):
-            return replace(options, stripe=replace(stripe, **{field: float(value)}))
-        return replace(options, **{field: value})
-
-    def _settled_stripe(self) -> StripeSettings:
-        look = self.work.look
-        found = look.stripe if look is not None else None
-        return StripeSettings(round(found.width_px, 1), round(found.contrast)) if found is not None else USUAL_STRIPE
-
     # ---- measuring
 
     def measure(self) -> None:
         """Measure the recording."""
         if not self.cannot_measure:
-            self.work.measure()
+            self.run.start()
 
     def cancel(self) -> None:
         """Stop measuring; what was measured before stays."""
-        self.work.cancel()
+        self.run.cancel()
 
     # ---- keys
 
@@ -247,6 +225,7 @@ class ScanPresenter(StepPresenter):
     def opened(self) -> None:
         self._shown = self._leaving = False
         self.scrub.forget()
+        self.run.opened()
         self.work.opened()
 
     def project_changed(self, before: Project, after: Project) -> None:
@@ -306,7 +285,7 @@ class ScanPresenter(StepPresenter):
         if not ended.recorded or self.folder != ended.folder or self._leaving:
             return
         if self.calibrated:
-            self.work.measure(by_itself=True)
+            self.run.start(by_itself=True)
         else:
             self.bench.notices.info(
                 self.tr("The scan is recorded. It can be measured once camera and laser planes are accepted.")

@@ -1,4 +1,4 @@
-"""What is known of the scan: its frames, the calibrations it is seen with, its measurement and the result."""
+"""What is known of the scan: its frames, the calibrations it is seen with, and the result."""
 
 from __future__ import annotations
 
@@ -8,45 +8,23 @@ from typing import Any
 
 from PySide6.QtCore import QObject, Signal
 
-from core.files.project import Project
-from core.files.project_keys import finished, rests_on
-from core.files.project_results import ScanSummary
-from core.live.events import ScanDetail
 from core.model import Camera, Fan
-from core.scan.frame_preview import FramePreview
 from core.scan.frame_record import FrameRecord
 from core.scan.scan_look import ScanLook
 from workbench import jobs
 from workbench.bench import Bench
+from workbench.pages.scan_run import PART
 from workbench.pages.sources import folder_of
-from workbench.tasks import Task
-
-PART = "scan/"
-
-DISPLAY_PX = 1280
-"""Width of the pictures that are shown while a recording is measured, at most."""
 
 
 class ScanWork(QObject):
-    """Lists the frames, reads the accepted calibrations, measures, and reads the result.
+    """Lists the frames, reads the accepted calibrations and the result.
 
     `frames` and `reference` are of the project as it is; None while they are being listed. `camera` and `fan` are the
     accepted ones, as far as they have been read. `look` is the scan among the results, whatever it was measured from.
     """
 
     changed = Signal()
-
-    detail = Signal(object)
-    """ScanDetail of a frame, while a recording is measured: all of them, for the points."""
-
-    frame_seen = Signal(object, object, int)
-    """ScanDetail, the picture it is about and how many times that is reduced; the next comes after `shown`."""
-
-    started = Signal()
-    measured = Signal(object)
-    """ScanSummary."""
-
-    task: Task | None
 
     def __init__(self, bench: Bench, parent: QObject | None = None) -> None:
         super().__init__(parent)
@@ -60,25 +38,7 @@ class ScanWork(QObject):
         self.camera: Camera | None = None
         self.fan: Fan | None = None
         self.look: ScanLook | None = None
-        self.no_gauge = ""
-        self.task = None
-        self.by_itself = False
-        self.previews: dict[str, FramePreview] = {}
-        self.seen_last = ""
-        self._problem = ("", "")
         self._listed = self._calibrated = self._looked = ""
-        self._latest: ScanDetail | None = None
-        self._reading = False
-
-    @property
-    def measuring(self) -> bool:
-        """Whether the scan is being measured, or waits for its turn."""
-        return self.task is not None
-
-    @property
-    def problem(self) -> str:
-        """Why the last measurement of the project as it is failed, or ""."""
-        return self._problem[1] if self._problem[0] == _key(self._model.project) else ""
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -97,8 +57,6 @@ class ScanWork(QObject):
 
     def opened(self) -> None:
         """Another project: forget; list its frames, read its calibrations and its result."""
-        if self.task is not None:
-            self.task.cancel()
         self._forget()
         if self._model.folder is not None:
             self.follow()
@@ -111,87 +69,6 @@ class ScanWork(QObject):
         self._read_calibration(self._model.folder)
         self._read_result(self._model.folder)
 
-    def measure(self, *, by_itself: bool = False) -> None:
-        """Measure the recording; what it shows comes as `detail` and `frame_seen`."""
-        folder, project = self._model.folder, self._model.project
-        if folder is None or self.measuring:
-            return
-        self.by_itself, self.previews, self._latest, self._problem = by_itself, {}, None, ("", "")
-        self.seen_last = ""
-        task: Task = self._bench.measure(
-            jobs.WATCH_SCAN,
-            folder,
-            project,
-            label=self.tr("Scan"),
-            on_done=lambda summary: self._measured(folder, project, summary),
-            on_failed=lambda problem: self._not_measured(task, project, str(problem)),
-            on_cancelled=lambda: self._not_measured(task, project, ""),
-            offers={"progress": "progress", "watch": "watch"},
-        )
-        self.task = task
-        task.told.connect(lambda detail: self._told(task, detail))
-        self.started.emit()
-        self.changed.emit()
-
-    def cancel(self) -> None:
-        """Stop measuring; the result before stays."""
-        if self.task is not None:
-            self.task.cancel()
-
-    def shown(self) -> None:
-        """The last `frame_seen` is on the screen; the next one is welcome."""
-        self._reading = False
-        if self._latest is not None:
-            self._read_picture()
-
-    # ---- measuring
-
-    def _told(self, task: Task, detail: ScanDetail) -> None:
-        if task is not self.task:
-            return
-        if detail.preview is not None:
-            self.previews[detail.preview.name], self.seen_last = detail.preview, detail.preview.name
-        self._latest = detail
-        self.detail.emit(detail)
-        if not self._reading:
-            self._read_picture()
-
-    def _read_picture(self) -> None:
-        """Fetch the picture of the newest frame; older ones that nobody had time for are passed over."""
-        detail, self._latest = self._latest, None
-        folder = folder_of(self._model, "scan")
-        if detail is None or detail.preview is None or folder is None:
-            return
-        self._reading = True
-        self._bench.quick.run(
-            jobs.DISPLAY_PICTURE,
-            folder / short(detail.preview.name),
-            self._model.project.rig.channel,
-            DISPLAY_PX,
-            label=self.tr("Reading a picture"),
-            on_done=lambda answer: self.frame_seen.emit(detail, *answer),
-            on_failed=lambda _: self.shown(),
-            on_cancelled=self.shown,
-        )
-
-    def _measured(self, folder: Path, project: Project, summary: ScanSummary) -> None:
-        self.task, self.no_gauge = None, summary.no_gauge
-        if folder != self._model.folder:
-            return
-        self._looked = ""
-        results = dict(self._model.results)
-        results["scan"] = scan = finished("scan", project, results)
-        thickness = finished("inspect", project, results) if summary.gauge is not None else None
-        self._model.record_all({"scan": scan, "inspect": thickness})
-        self.measured.emit(summary)
-
-    def _not_measured(self, task: Task, project: Project, problem: str) -> None:
-        if task is self.task:
-            self.task, self._problem = None, (_key(project), problem)
-            self.changed.emit()
-
-    # ---- reading
-
     def _list_frames(self) -> None:
         folder, wanted = folder_of(self._model, "scan"), self._model.project.sources.scan
         if self.frames is not None and wanted == self._listed:
@@ -199,7 +76,6 @@ class ScanWork(QObject):
         if wanted == self._listed and wanted:
             return  # on its way
         self._listed, self.frames, self.reference, self.no_frames = wanted, None, None, ""
-        self.previews = {}
         if folder is None:
             self.frames = ()
             return
@@ -257,12 +133,3 @@ class ScanWork(QObject):
                 self.changed.emit()
 
         self._bench.glance(jobs.SHOW_SCAN, folder, label=self.tr("Reading the scan"), on_done=read)
-
-
-def short(name: str) -> str:
-    """The name of a frame within its folder."""
-    return name.removeprefix(PART)
-
-
-def _key(project: Project) -> str:
-    return repr(sorted(rests_on("scan", project, {}).items()))

@@ -254,9 +254,9 @@ def test_a_recording_that_is_measured_shows_frames_marks_gauges_and_a_growing_cl
     assert "sweep: σ 0 … 0.2 mm, else grey" in titles and "lit, no points yet" in titles
     for number in (1, 2):
         measuring.current.told.emit(cases.detail(number))
-    assert recorded.cloud.scene.state()["points"] == 90
+    qtbot.waitUntil(lambda: recorded.cloud.scene.state()["points"] == 90)
     measuring.current.told.emit(cases.detail(3, renewed=True))
-    assert recorded.cloud.scene.state()["points"] == 30
+    qtbot.waitUntil(lambda: recorded.cloud.scene.state()["points"] == 30)
     qtbot.waitUntil(lambda: recorded.frames.current() == cases.name_of(3))
     assert recorded.frames.rows()[0].reason == "30 points in the preview"
 

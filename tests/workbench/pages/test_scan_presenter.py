@@ -68,7 +68,7 @@ def test_calibrations_come_first(recorded):
     accept(recorded, "camera-1")
     assert recorded.blocker() == recorded.cannot_measure == "Accept the laser planes first."
     recorded.do_run()
-    assert not recorded.work.measuring
+    assert not recorded.run.measuring
 
 
 def test_a_folder_without_frames_is_told(presenter, tmp_path, qtbot):
@@ -121,7 +121,7 @@ def test_a_part_without_parallel_faces_takes_an_old_thickness_away(measured, mea
     measured.do_run()
     measuring.finish(cases.summary(gauge=None))
     assert "inspect" not in measured.model.results
-    assert measured.work.no_gauge == "there are no two parallel faces"
+    assert measured.run.no_gauge == "there are no two parallel faces"
     assert measured.stage is Stage.MEASURED
 
 
@@ -144,7 +144,7 @@ def test_a_failed_measurement_says_why_until_something_is_changed(recorded, meas
     recorded.do_run()
     measuring.fail(InputError("no sweep can be located", where="scan"))
     assert recorded.stage is Stage.FAILED
-    assert "no sweep can be located" in recorded.work.problem
+    assert "no sweep can be located" in recorded.run.problem
     assert "could not be measured" in recorded.blocker()
     assert any("no sweep" in notice.text for notice in recorded.bench.notices.all)
     recorded.set_setting("sigma_cut_mm", 0.5)
@@ -156,25 +156,28 @@ def test_a_failed_measurement_says_why_until_something_is_changed(recorded, meas
 def test_another_project_stops_measuring_and_is_not_given_the_result(recorded, measuring, tmp_path):
     recorded.do_run()
     recorded.model.create(tmp_path / "other", new_project("other"))
-    assert not measuring.busy and not recorded.work.measuring
+    assert not measuring.busy and not recorded.run.measuring
     assert recorded.model.results == {} and recorded.stage is Stage.NONE
 
 
-def test_pictures_are_fetched_one_at_a_time_and_those_in_between_are_passed_over(recorded, measuring, quick, qtbot):
+def test_pictures_are_fetched_one_at_a_time_and_bring_all_points_since_the_last(recorded, measuring, quick, qtbot):
     quick.answers[jobs.DISPLAY_PICTURE] = lambda path, channel, width: (np.zeros((24, 32), np.uint8), 2)
-    seen, points = [], []
-    recorded.work.frame_seen.connect(lambda detail, picture, scale: seen.append((detail.index, scale)))
-    recorded.work.detail.connect(lambda detail: points.append(detail.index))
+    seen = []
+    recorded.run.frame_seen.connect(
+        lambda detail, picture, scale: seen.append((detail.index, scale, len(detail.points), detail.renewed))
+    )
     recorded.do_run()
     for number in range(cases.FRAMES):
         measuring.current.told.emit(cases.detail(number))
     qtbot.waitUntil(lambda: len(seen) == 1)
     qtbot.wait(30)
-    assert seen == [(0, 2)] and points == list(range(cases.FRAMES))
-    recorded.work.shown()
+    assert seen == [(0, 2, 30 * cases.FRAMES, False)]
+    measuring.current.told.emit(cases.detail(1, renewed=True))
+    measuring.current.told.emit(cases.detail(2))
+    recorded.run.shown()
     qtbot.waitUntil(lambda: len(seen) == 2)
-    assert seen[1] == (cases.FRAMES - 1, 2)
-    assert recorded.work.previews.keys() == set(recorded.work.names)
+    assert seen[1] == (2, 2, 60, True)
+    assert recorded.run.previews.keys() == set(recorded.work.names)
 
 
 def test_a_picture_that_cannot_be_read_does_not_stop_the_others(recorded, measuring, quick, qtbot):
@@ -185,7 +188,7 @@ def test_a_picture_that_cannot_be_read_does_not_stop_the_others(recorded, measur
 
     quick.answers[jobs.DISPLAY_PICTURE] = read
     seen = []
-    recorded.work.frame_seen.connect(lambda detail, *_: seen.append(detail.index))
+    recorded.run.frame_seen.connect(lambda detail, *_: seen.append(detail.index))
     recorded.do_run()
     measuring.current.told.emit(cases.detail(0))
     measuring.current.told.emit(cases.detail(1))
@@ -370,7 +373,7 @@ def test_a_recording_does_not_start_before_the_calibrations_are_read(scan_bench,
 def test_after_a_recording_the_measurement_starts_by_itself(presenter, lane, measuring, scan_folder, qtbot):
     record(presenter, lane, scan_folder, qtbot)
     assert presenter.folder == scan_folder
-    assert presenter.stage is Stage.MEASURING and presenter.work.by_itself
+    assert presenter.stage is Stage.MEASURING and presenter.run.by_itself
     assert measuring.waiting[0][1] == jobs.WATCH_SCAN
     assert measuring.waiting[0][2][1] == presenter.project
 

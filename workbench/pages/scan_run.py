@@ -1,0 +1,171 @@
+"""The measurement of a recording while it runs: what it shows, and what it leaves in the project."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from PySide6.QtCore import QObject, Signal
+
+from core.files.project import Project
+from core.files.project_keys import finished, rests_on
+from core.files.project_results import ScanSummary
+from core.live.events import ScanDetail
+from core.scan.frame_preview import FramePreview
+from core.scan.preview_cloud import PreviewCloud
+from workbench import jobs
+from workbench.bench import Bench
+from workbench.pages.sources import folder_of
+from workbench.tasks import Task
+
+PART = "scan/"
+
+DISPLAY_PX = 1280
+"""Width of the pictures that are shown while a recording is measured, at most."""
+
+
+class ScanRun(QObject):
+    """Measures the recording of the project as it is when it starts, and records the result.
+
+    `previews` is what each frame showed by itself so far, `seen_last` the newest of them.
+    """
+
+    changed = Signal()
+
+    frame_seen = Signal(object, object, int)
+    """ScanDetail with all points since the last one, the picture it is about, and how many times that is reduced. The
+    next comes after `shown`; frames in between are passed over."""
+
+    started = Signal()
+
+    previews: dict[str, FramePreview]
+    seen_last: str
+    by_itself: bool
+    """Whether it was started by the end of a recording."""
+
+    no_gauge: str
+    """Why the last measurement gave no thickness, or ""."""
+
+    def __init__(self, bench: Bench, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self._bench, self._model = bench, bench.model
+        self._task: Task | None = None
+        self._reading = False
+        self._problem = ("", "")
+        self.no_gauge = ""
+        self._forget(by_itself=False)
+
+    def _forget(self, *, by_itself: bool) -> None:
+        self.by_itself, self.previews, self.seen_last = by_itself, {}, ""
+        self._latest: ScanDetail | None = None
+        self._points: list[PreviewCloud] = []
+        self._renewed = False
+
+    @property
+    def measuring(self) -> bool:
+        """Whether the scan is being measured, or waits for its turn."""
+        return self._task is not None
+
+    @property
+    def problem(self) -> str:
+        """Why the last measurement of the project as it is failed, or ""."""
+        return self._problem[1] if self._problem[0] == _key(self._model.project) else ""
+
+    def opened(self) -> None:
+        """Another project: stop, and forget."""
+        self.cancel()
+        self._task, self._problem, self.no_gauge = None, ("", ""), ""
+        self._forget(by_itself=False)
+
+    def start(self, *, by_itself: bool = False) -> None:
+        """Measure."""
+        folder, project = self._model.folder, self._model.project
+        if folder is None or self.measuring:
+            return
+        self._forget(by_itself=by_itself)
+        self._problem = ("", "")
+        task: Task = self._bench.measure(
+            jobs.WATCH_SCAN,
+            folder,
+            project,
+            label=self.tr("Scan"),
+            on_done=lambda summary: self._measured(folder, project, summary),
+            on_failed=lambda problem: self._not_measured(task, project, str(problem)),
+            on_cancelled=lambda: self._not_measured(task, project, ""),
+            offers={"progress": "progress", "watch": "watch"},
+        )
+        self._task = task
+        task.told.connect(lambda detail: self._told(task, detail))
+        self.started.emit()
+        self.changed.emit()
+
+    def cancel(self) -> None:
+        """Stop measuring; the result before stays."""
+        if self._task is not None:
+            self._task.cancel()
+
+    def shown(self) -> None:
+        """The last `frame_seen` is on the screen; the next one is welcome."""
+        self._reading = False
+        if self._latest is not None:
+            self._read_picture()
+
+    def _told(self, task: Task, detail: ScanDetail) -> None:
+        if task is not self._task:
+            return
+        if detail.preview is not None:
+            self.previews[detail.preview.name], self.seen_last = detail.preview, detail.preview.name
+        if detail.renewed:
+            self._points, self._renewed = [], True
+        self._points.append(detail.points)
+        self._latest = detail
+        if not self._reading:
+            self._read_picture()
+
+    def _read_picture(self) -> None:
+        """Fetch the picture of the newest frame."""
+        detail, self._latest = self._latest, None
+        folder = folder_of(self._model, "scan")
+        if detail is None or detail.preview is None or folder is None:
+            return
+        self._reading = True
+        self._bench.quick.run(
+            jobs.DISPLAY_PICTURE,
+            folder / short(detail.preview.name),
+            self._model.project.rig.channel,
+            DISPLAY_PX,
+            label=self.tr("Reading a picture"),
+            on_done=lambda answer: self._seen(detail, *answer),
+            on_failed=lambda _: self.shown(),
+            on_cancelled=self.shown,
+        )
+
+    def _seen(self, detail: ScanDetail, picture: Any, scale: int) -> None:
+        """The picture is there: with it go all points that nobody has been given."""
+        points, renewed = PreviewCloud.joined(self._points), self._renewed
+        self._points, self._renewed = [], False
+        self.frame_seen.emit(replace(detail, points=points, renewed=renewed), picture, scale)
+
+    def _measured(self, folder: Path, project: Project, summary: ScanSummary) -> None:
+        self._task, self.no_gauge = None, summary.no_gauge
+        if folder != self._model.folder:
+            return
+        results = dict(self._model.results)
+        results["scan"] = scan = finished("scan", project, results)
+        thickness = finished("inspect", project, results) if summary.gauge is not None else None
+        self._model.record_all({"scan": scan, "inspect": thickness})
+
+    def _not_measured(self, task: Task, project: Project, problem: str) -> None:
+        if task is self._task:
+            self._task, self._problem = None, (_key(project), problem)
+            self.changed.emit()
+
+
+def short(name: str) -> str:
+    """The name of a frame within its folder."""
+    return name.removeprefix(PART)
+
+
+def _key(project: Project) -> str:
+    return repr(sorted(rests_on("scan", project, {}).items()))
