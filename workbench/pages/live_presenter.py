@@ -56,10 +56,10 @@ DISPLAY_PX = 1280
 class LivePresenter(QObject):
     """Starts, steers and ends the live recordings of one step.
 
-    `calibration` and `pairs` may be set by the page: what is known of camera and fan when a recording starts, and
-    whether poses are taken with the laser on and off. Each `view` must be answered by one `shown()` when it is on the
-    screen; no other comes before. When a recording ends, its folder becomes the step's source by an undoable edit,
-    then `ended` is emitted.
+    `calibration`, `cannot_start` and `pairs` may be set by the page: what is known of camera and fan when a recording
+    starts, why none can start now ("" if it can), and whether poses are taken with the laser on and off. Each `view`
+    must be answered by one `shown()` when it is on the screen; no other comes before. When a recording ends, its folder
+    becomes the step's source by an undoable edit, then `ended` is emitted.
     """
 
     changed = Signal()
@@ -102,6 +102,7 @@ class LivePresenter(QObject):
         self.settings = LiveSettings(bench, step, self)
         self.settings.changed.connect(self._configure)
         self.calibration: Callable[[], tuple[Camera | None, Fan | None]] = lambda: (None, None)
+        self.cannot_start: Callable[[], str] = lambda: ""
         self.pairs = True
         self.adding = False
         self._auto = step != "scan"
@@ -181,7 +182,7 @@ class LivePresenter(QObject):
 
     def start(self, *, stop_other: bool = False) -> None:
         """Open the source and go; if another page's recording runs, ask first (`other_running`)."""
-        if self.running or self.model.folder is None:
+        if self.running or self.model.folder is None or self.cannot_start():
             return
         other = self.bench.live.current
         if other is not None:

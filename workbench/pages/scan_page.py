@@ -68,6 +68,7 @@ class ScanPage(StepPage):
         self.stage.refresh()
         self.source.set_folder(p.folder, self._folder_words())
         self.live_panel.set_primary(stage in (Stage.NONE, Stage.EMPTY))
+        self.live_panel.refresh()
         if live:
             self.source.set_mode("live")
         self._fold(stage)

@@ -13,7 +13,6 @@ from core.files.options import Options
 from core.files.project import Project
 from core.files.project_keys import changed, rests_on
 from core.live.events import LiveEnded, LiveView, ScanDetail
-from core.model import Camera, Fan
 from core.scan.frame_record import FrameRecord
 from workbench.bench import Bench
 from workbench.pages.live_presenter import LivePresenter
@@ -50,7 +49,8 @@ class ScanPresenter(StepPresenter):
         self._leaving = False
         self.model.leaving.connect(self._leave)  # before the recording is ended for it
         self.live = LivePresenter(bench, "scan", self)
-        self.live.calibration = self._calibration
+        self.live.calibration = lambda: (self.work.camera, self.work.fan)
+        self.live.cannot_start = self._cannot_record
         self.work = ScanWork(bench, self)
         self.run = ScanRun(bench, self)
         self.scrub = FrameScrub(bench, self.work, self)
@@ -148,6 +148,7 @@ class ScanPresenter(StepPresenter):
     def use_folder(self, folder: Path) -> None:
         """Measure another recording."""
         self.live.stop()
+        self.run.cancel()
         put_source(self.model, "scan", folder, self.tr("choose the recording of the scan"))
 
     # ---- frames
@@ -261,10 +262,13 @@ class ScanPresenter(StepPresenter):
         done = self.model.results.get("scan")
         return changed(done.rests_on, rests_on("scan", self.project, {})) if done is not None else ()
 
-    def _calibration(self) -> tuple[Camera | None, Fan | None]:
-        if self.calibrated and self.work.camera is None:
-            raise InputError(self.tr("the accepted calibrations are still being read; start again in a moment"))
-        return self.work.camera, self.work.fan
+    def _cannot_record(self) -> str:
+        """Why no recording can start now, or ""."""
+        if self.run.measuring:
+            return self.tr("The scan is being measured; wait for it, or cancel it.")
+        if not self.work.calibrations_read:
+            return self.tr("The calibrations are being read.")
+        return ""
 
     def _live_started(self) -> None:
         self._leaving = False

@@ -21,7 +21,7 @@ class ScanWork(QObject):
     """Lists the frames, reads the accepted calibrations and the result.
 
     `frames` and `reference` are of the project as it is; None while they are being listed. `camera` and `fan` are the
-    accepted ones, as far as they have been read. `look` is the scan among the results, whatever it was measured from.
+    accepted ones, once `calibrations_read`. `look` is the scan among the results, whatever it was measured from.
     """
 
     changed = Signal()
@@ -37,6 +37,7 @@ class ScanWork(QObject):
         self.no_frames = ""
         self.camera: Camera | None = None
         self.fan: Fan | None = None
+        self.calibrations_read = False
         self.look: ScanLook | None = None
         self._listed = self._calibrated = self._looked = ""
 
@@ -105,16 +106,23 @@ class ScanWork(QObject):
         if wanted == self._calibrated:
             return
         self._calibrated, self.camera, self.fan = wanted, None, None
-        if not project.accepted.camera:
+        self.calibrations_read = not project.accepted.camera
+        if self.calibrations_read:
             return
 
         def read(found: tuple[Camera | None, Fan | None]) -> None:
             if self._calibrated == wanted and folder == self._model.folder:
                 self.camera, self.fan = found
+                self.calibrations_read = True
                 self.changed.emit()
 
-        self._bench.quick.run(  # what is wrong with it is told when it is measured with
-            jobs.ACCEPTED_CALIBRATION, folder, project, label=self.tr("Reading the calibrations"), on_done=read
+        self._bench.quick.run(
+            jobs.ACCEPTED_CALIBRATION,
+            folder,
+            project,
+            label=self.tr("Reading the calibrations"),
+            on_done=read,
+            on_failed=lambda _: read((None, None)),  # what is wrong is told when it is measured with them
         )
 
     def _read_result(self, folder: Path) -> None:

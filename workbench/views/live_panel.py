@@ -67,11 +67,12 @@ class LivePanel(QWidget):
         self.start.setIcon(
             icon("mdi6.stop" if running else "mdi6.play", colour="on_accent" if self.start.property("primary") else "")
         )
-        self.start.setEnabled(not live.stopping)
+        cannot = "" if running else live.cannot_start()
+        self.start.setEnabled(not live.stopping and not cannot)
         self.start.setToolTip(
             self.tr("Finish; what is recorded is kept (Ctrl+L)")
             if running
-            else self.tr("Open the source and show its pictures (Ctrl+L)")
+            else cannot or self.tr("Open the source and show its pictures (Ctrl+L)")
         )
         self.pause.setText(self.tr("Resume") if live.paused else self.tr("Pause"))
         self.pause.setIcon(icon("mdi6.record" if live.paused else "mdi6.pause"))

@@ -363,11 +363,38 @@ def test_the_calibrations_are_given_to_the_recording(presenter, lane, qtbot):
     assert (request.camera, request.fan) == ("camera", "fan")
 
 
-def test_a_recording_does_not_start_before_the_calibrations_are_read(scan_bench, quick, presenter, lane):
-    presenter.work.camera = presenter.work.fan = None
+def test_a_recording_does_not_start_before_the_calibrations_are_read(scan_bench, quick):
+    quick.held = {jobs.ACCEPTED_CALIBRATION}
+    presenter = ScanPresenter(scan_bench)
+    presenter.opened()
+    assert presenter.live.cannot_start() == "The calibrations are being read."
     presenter.do_live()
     assert not presenter.live.running
-    assert any("still being read" in notice.text for notice in scan_bench.notices.all)
+
+
+def test_damaged_calibrations_do_not_keep_anybody_from_recording(scan_bench, quick, qtbot):
+    def damaged(*_):
+        raise InputError("the file is damaged", where="camera-1.json")
+
+    quick.answers[jobs.ACCEPTED_CALIBRATION] = damaged
+    presenter = ScanPresenter(scan_bench)
+    presenter.opened()
+    qtbot.waitUntil(lambda: presenter.work.calibrations_read)
+    assert presenter.live.cannot_start() == "" and presenter.work.camera is None
+
+
+def test_no_recording_starts_while_a_scan_is_measured(recorded):
+    recorded.do_run()
+    assert "being measured" in recorded.live.cannot_start()
+    recorded.do_live()
+    assert not recorded.live.running
+
+
+def test_choosing_another_recording_ends_measuring_this_one(recorded, measuring, tmp_path):
+    recorded.do_run()
+    (tmp_path / "other").mkdir()
+    recorded.use_folder(tmp_path / "other")
+    assert not measuring.busy and not recorded.run.measuring
 
 
 def test_after_a_recording_the_measurement_starts_by_itself(presenter, lane, measuring, scan_folder, qtbot):
