@@ -58,6 +58,11 @@ class Technician:
         lanes = [lane.current.label for lane in self._lanes() if lane.current is not None]
         return f"on page {page!r} ({stage}), running {lanes}, messages {said}"
 
+    def doing(self) -> str:
+        """Page and stage, for a report."""
+        page = self.window.current
+        return f"{page} {getattr(self.window.presenters.get(page), 'stage', '')}"
+
     def _lanes(self) -> Sequence[Any]:
         return self.bench.measuring, self.bench.quick, self.bench.live
 

@@ -1,38 +1,66 @@
-"""Measures how long the GUI thread is away from its event loop.
+"""Measures how long the GUI thread is away from its event loop, and what it does there.
 
 A heartbeat beats every few milliseconds. Between two beats the GUI thread handles whatever came; the processor time it
 spends on that is what it kept the technician waiting for. Processor time, not the clock: on a machine with fewer
-cores than processes the clock also counts the time the system gave to somebody else. Both are kept.
+cores than processes the clock also counts the time the system gave to somebody else. Both are kept. A signal looks now
+and then where the GUI thread is, so that the cause of a long absence can be told. (Another thread that looks at the
+GUI thread's frames crashes Python 3.11.)
 """
 
 from __future__ import annotations
 
+import signal
 import time
+import traceback
+from collections.abc import Callable
 from dataclasses import dataclass
-from types import TracebackType
+from pathlib import Path
+from types import FrameType, TracebackType
+from typing import Any
 
 from PySide6.QtCore import QObject, QTimer
 
 BEAT_MS = 5
+LOOK_S = 0.008
+DEPTH = 7
+ROOT = Path(__file__).parents[2]
 
 
 @dataclass(frozen=True, slots=True)
 class Absence:
-    """One stretch between two beats, in ms."""
+    """One stretch between two beats, in ms; `during` names the situation, `where` the lines it was seen at."""
 
     busy_ms: float
     clock_ms: float
     at_s: float
+    during: str = ""
+    where: tuple[str, ...] = ()
+
+    def __str__(self) -> str:
+        lines = "".join(f"\n      {line}" for line in self.where)
+        return f"{self.busy_ms:.0f} ms ({self.clock_ms:.0f} by the clock) at {self.at_s:.1f} s, {self.during}{lines}"
 
 
 class Watchdog(QObject):
-    """A context: watches the GUI thread from entering to leaving it."""
+    """A context: watches the GUI thread from entering to leaving it.
 
-    def __init__(self) -> None:
+    Parameters
+    ----------
+    during
+        Names the situation, for the report.
+    stacks
+        Look where the GUI thread is; costs it a little time.
+    """
+
+    def __init__(self, during: Callable[[], str] = lambda: "", *, stacks: bool = True) -> None:
         super().__init__()
         self._timer = QTimer(self)
         self._timer.setInterval(BEAT_MS)
         self._timer.timeout.connect(self._beat)
+        self._during, self._stacks = during, stacks
+        self._situation = ""
+        self._seen: list[tuple[str, ...]] = []
+        self._before: Any = None
         self.absences: list[Absence] = []
 
     @property
@@ -44,18 +72,74 @@ class Watchdog(QObject):
         """The longest absences."""
         return sorted(self.absences, key=lambda absence: -absence.busy_ms)[:count]
 
+    def longer_than(self, limit_ms: float) -> list[Absence]:
+        """Absences longer than that, the longest first."""
+        return [absence for absence in self.worst(len(self.absences)) if absence.busy_ms > limit_ms]
+
     def __enter__(self) -> Watchdog:
         self._started = time.perf_counter()
         self._busy, self._clock = time.thread_time(), self._started
+        self._situation = self._during()
         self._timer.start()
+        if self._stacks and hasattr(signal, "setitimer"):
+            self._before = signal.signal(signal.SIGALRM, self._look)
+            signal.setitimer(signal.ITIMER_REAL, LOOK_S, LOOK_S)
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None
     ) -> None:
         self._timer.stop()
+        if self._before is not None:
+            signal.setitimer(signal.ITIMER_REAL, 0)
+            signal.signal(signal.SIGALRM, self._before)
 
     def _beat(self) -> None:
         busy, clock = time.thread_time(), time.perf_counter()
-        self.absences.append(Absence(1e3 * (busy - self._busy), 1e3 * (clock - self._clock), clock - self._started))
-        self._busy, self._clock = busy, clock
+        seen, self._seen = self._seen, []
+        away = 1e3 * (busy - self._busy)
+        where = tuple(dict.fromkeys(" < ".join(stack) for stack in seen if stack)) if away > 20 else ()
+        self.absences.append(
+            Absence(away, 1e3 * (clock - self._clock), clock - self._started, self._situation, where[:12])
+        )
+        self._situation = self._during()
+        self._busy, self._clock = time.thread_time(), time.perf_counter()
+
+    def _look(self, number: int, frame: FrameType | None) -> None:
+        lines = [
+            f"{Path(line.filename).name}:{line.lineno} {line.name}"
+            for line in traceback.StackSummary.extract(traceback.walk_stack(frame), lookup_lines=False)
+            if not any(part in line.filename for part in ("/tests/", "pytest", "pluggy"))
+        ]
+        self._seen.append(tuple(lines[:DEPTH]))
+
+
+LIMIT_MS = 50.0
+"""The GUI thread may be busy for so long in one go."""
+
+SCENE_LIMIT_MS = 150.0
+"""The same while 3D is set up or drawn by software OpenGL, which draws in the GUI thread; a graphics card does not."""
+
+_NOMINAL_S = 0.004
+
+
+def slowness() -> float:
+    """How many times slower than the reference this machine is just now; at least 1."""
+    return max(1.0, min(_reference_s() for _ in range(5)) / _NOMINAL_S)
+
+
+def too_long(dog: Watchdog, slower: float) -> list[str]:
+    """The absences that keep a technician waiting, told with their causes."""
+    return [
+        str(absence)
+        for absence in dog.longer_than(LIMIT_MS * slower)
+        if not any("scene_view" in line for line in absence.where) or absence.busy_ms > SCENE_LIMIT_MS * slower
+    ]
+
+
+def _reference_s() -> float:
+    begun = time.thread_time()
+    total = 0
+    for number in range(100_000):
+        total += number % 7
+    return time.thread_time() - begun

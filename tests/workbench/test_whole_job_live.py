@@ -1,0 +1,64 @@
+"""The whole job on the simulated rig, live: from Try with the simulated rig to the report."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from core.pipeline.workspace import FILES
+from tests.workbench.technician import Technician
+
+SCENE = "scale = 0.25\nseed = 3\n"
+VIEWS, POSES, FRAMES = 7, 5, 40
+
+
+@pytest.mark.slow
+def test_from_the_simulated_rig_to_the_report(technician: Technician, tmp_path: Path) -> None:
+    t = technician
+    scene = tmp_path / "small.toml"
+    scene.write_text(SCENE)
+    t.press(t.window.welcome.simulated)
+    t.until(lambda: t.window.current == "camera", "the camera page")
+    folder = t.model.folder
+    assert folder is not None
+
+    t.press("Live source")
+    t.type_in(t.field("Device"), str(scene))
+    t.press("Start live")
+    t.until(lambda: t.presenter().live.recorded >= VIEWS, f"{VIEWS} views", 60)
+    assert t.window.next.toolTip() == "Stop the live source when there are enough views."
+    t.press("Stop")
+    t.press("Accept", 60)
+    t.next()
+
+    t.press("Live source")
+    t.press("Start live")
+    t.until(lambda: t.presenter().live.recorded >= POSES, f"{POSES} poses", 60)
+    t.press("Stop")
+    t.press("Accept", 60)
+    t.next()
+
+    t.unfold("Settings")
+    t.type_in(t.field("Largest σ"), "0.3")
+    t.until(lambda: t.presenter().work.fan is not None, "the calibrations to be read")
+    t.press("Live source")
+    t.press("Start live")
+    t.until(lambda: t.presenter().live.recorded >= FRAMES, f"{FRAMES} frames", 60)
+    seen = t.presenter().live.recorded
+    t.press("Stop")
+    t.next(90)
+
+    t.press("Add to repeats")
+    t.next()
+    t.press("Make the report")
+    t.until(lambda: "report" in t.model.results, "the report")
+    lost = "pictures were lost on the way"  # the rig runs in real time, and so many other tests beside it
+    assert [text for text in t.errors() if lost not in text] == []
+
+    assert [t.window.rail.state_of(step) for step in t.window.pages] == ["done"] * 6
+    frames = [path for path in (folder / t.model.project.sources.scan).iterdir() if path.name.startswith("frame")]
+    assert len(frames) >= seen
+    gauge = json.loads((folder / "results" / FILES["gauge"]).read_text())
+    assert gauge["thickness_mm"] == pytest.approx(50.0, abs=0.3)
