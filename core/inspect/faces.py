@@ -33,6 +33,8 @@ MOST_PLANES = 8
 FEWEST_POINTS = 12
 LIKE_NORMALS = np.cos(np.radians(30.0))
 """Points of a plane have local normals within 30° of its own: slices of a sphere or a mask do not."""
+SAME_FACE = 0.5
+"""Two polygons hold one face if they share more than this part of the points of the smaller one."""
 PARALLEL = np.radians(2.0)
 """Faces are parallel within this angle; larger angles are another feature, not a worse gauge block."""
 
@@ -120,7 +122,7 @@ def faces_in_polygons(
     Raises
     ------
     InputError
-        If a polygon has fewer than 3 corners or holds no plane face, naming it.
+        If a polygon has fewer than 3 corners or holds no plane face, naming it, or both hold the same one.
     """
     chosen = []
     for name, polygon in (("upper_polygon_px", upper_polygon_px), ("lower_polygon_px", lower_polygon_px)):
@@ -136,6 +138,12 @@ def faces_in_polygons(
                 todo="draw it over a face that the scan covers",
             )
         chosen.append(indices)
+    if len(np.intersect1d(chosen[0], chosen[1])) > SAME_FACE * min(map(len, chosen)):
+        raise InputError(
+            "both polygons hold one and the same face",
+            where="[gauge] upper_polygon_px",
+            todo="draw each of them over a face of its own",
+        )
     return FacePair(chosen[0], chosen[1])
 
 
@@ -180,6 +188,11 @@ def find_planes(
         left = left[~near]
     progress("faces", most, most)
     return planes
+
+
+def points_on(cloud: Cloud, plane: FoundPlane, tolerance_mm: float) -> NDArray[np.int64]:
+    """Indices of all points of the cloud within `tolerance_mm` of a plane that do not face elsewhere."""
+    return np.flatnonzero(_on_plane(cloud, plane.normal, plane.distance, tolerance_mm))
 
 
 def search_tolerance(cloud: Cloud, tolerance_mm: float | None) -> float:

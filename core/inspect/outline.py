@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from core.errors import InputError
 from core.inspect.face_region import inside_polygon
-from core.inspect.faces import FEWEST_POINTS, find_planes
+from core.inspect.faces import FEWEST_POINTS, FoundPlane, find_planes, points_on, search_tolerance
 from core.model.arrays import Array
 from core.scan.cloud import Cloud
 
@@ -20,14 +20,21 @@ GAP_SHARE = 6.0
 SLACK = 0.008
 """Corners are left out as long as the outline stays this near to the points, as a share of their longer side."""
 MOST_CORNERS = 16
+MOST_FACES = 5
+SMALL_FACE = 0.2
+"""Faces among the chosen points smaller than this share of the largest one are not meant."""
+WHOLE = 0.6
+"""Faces are chosen as a whole, as far as anything is, if the share chosen of them is this part of the largest share."""
 OPENED_SHARE = 0.85
 """Single stripes that stick out are cut off as long as so much of the area stays."""
 
 
-def face_outline(cloud: Cloud, chosen: NDArray[np.int64]) -> Array:
-    """The outline in pixels of the largest plane face among the `chosen` points.
+def face_outline(cloud: Cloud, chosen: NDArray[np.int64], face: str) -> Array:
+    """The outline in pixels of the plane face that is meant by the `chosen` points.
 
-    What was chosen on the screen usually holds points behind the face as well; they are on other planes.
+    What is chosen on the screen holds points behind the face as well, often more of them. Meant is the face that was
+    chosen as a whole rather than a part of one that goes on outside; of several such ones the nearest to the camera for
+    the upper face, the farthest for the lower one.
 
     Parameters
     ----------
@@ -35,6 +42,8 @@ def face_outline(cloud: Cloud, chosen: NDArray[np.int64]) -> Array:
         The measured points, with normals.
     chosen
         Indices of points of the cloud.
+    face
+        "upper" or "lower".
 
     Returns
     -------
@@ -47,14 +56,29 @@ def face_outline(cloud: Cloud, chosen: NDArray[np.int64]) -> Array:
         If there is no plane face among them.
     """
     part = cloud.select(np.asarray(chosen, dtype=np.int64))
-    planes = find_planes(part, margin_mm=0.0, most=1) if len(part) >= FEWEST_POINTS else []
-    if not planes or len(planes[0].region.indices) < FEWEST_POINTS:
+    found = find_planes(part, margin_mm=0.0, most=MOST_FACES) if len(part) >= FEWEST_POINTS else []
+    planes = [plane for plane in found if len(plane.region.indices) >= FEWEST_POINTS]
+    if not planes:
         raise InputError(
             f"there is no plane face among the {len(part)} chosen points",
             where="region",
             todo="draw round a larger part of one face",
         )
-    return outline_px(part.uv[planes[0].region.indices])
+    return outline_px(part.uv[_meant(cloud, part, planes, nearest=face == "upper").region.indices])
+
+
+def _meant(cloud: Cloud, part: Cloud, planes: list[FoundPlane], *, nearest: bool) -> FoundPlane:
+    """The plane that was chosen as a whole; of several the nearest to the camera, or the farthest."""
+    tolerance = search_tolerance(cloud, None)
+    largest = max(plane.region.area_mm2 for plane in planes)
+    large = [plane for plane in planes if plane.region.area_mm2 >= SMALL_FACE * largest]
+    shares = [
+        len(points_on(part, plane, tolerance)) / max(len(points_on(cloud, plane, tolerance)), 1) for plane in large
+    ]
+    whole = [plane for plane, share in zip(large, shares, strict=True) if share >= WHOLE * max(shares)]
+    direction = max(whole, key=lambda plane: plane.region.area_mm2).normal
+    depths = [float(np.median(part.points[plane.region.indices] @ direction)) for plane in whole]
+    return whole[int(np.argmin(depths) if nearest else np.argmax(depths))]
 
 
 def outline_px(uv: ArrayLike) -> Array:

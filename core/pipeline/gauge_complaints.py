@@ -10,7 +10,8 @@ def in_a_project(error: InputError) -> InputError:
     if error.where.startswith("[gauge]"):
         face = "upper" if "upper" in error.where else "lower"
         todo = "exchange the two regions" if error.todo.startswith("exchange") else error.todo
-        return InputError(error.what, where=f"region of the {face} face", todo=todo)
+        what = error.what.replace("polygon", "region")
+        return InputError(what, where=f"region of the {face} face", todo=todo)
     if "rig.toml" in error.todo:
         return InputError(error.what, where=error.where, todo="scan both faces, or draw a region on each of them")
     return error

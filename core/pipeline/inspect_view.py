@@ -92,8 +92,19 @@ def inspection_view(folder: Path, project: Project, progress: Progress = silent)
     return view
 
 
-def outline_selected(folder: Path, numbers: NDArray[np.int32], progress: Progress = silent) -> Array:
-    """The outline (n, 2) in pixels of the largest plane face among the points of these numbers in the cloud.
+def outline_selected(folder: Path, numbers: NDArray[np.int32], face: str, progress: Progress = silent) -> Array:
+    """The outline (n, 2) in pixels of the plane face meant by the points of these numbers in the cloud.
+
+    Parameters
+    ----------
+    folder
+        The project's.
+    numbers
+        Which points were chosen.
+    face
+        "upper" or "lower": which face is to be outlined.
+    progress
+        Told what is being done; may cancel.
 
     Raises
     ------
@@ -105,7 +116,7 @@ def outline_selected(folder: Path, numbers: NDArray[np.int32], progress: Progres
     cloud = read_cloud(path).cloud
     if len(numbers) and int(numbers.max()) >= len(cloud):
         raise InputError("this scan has been replaced by another one", where=path, todo="draw the region again")
-    outline = face_outline(cloud, numbers.astype(np.int64))
+    outline = face_outline(cloud, numbers.astype(np.int64), face)
     progress("outline", 1, 1)
     return outline
 

@@ -132,3 +132,10 @@ def test_polygons_that_hold_nothing_are_named(scan):
         faces_in_polygons(cloud, nothing, square(TABLE_MM, 70.0))
     with pytest.raises(InputError, match=r"lower_polygon_px.*three corners"):
         faces_in_polygons(cloud, square(TABLE_MM - 40, 20.0), [[0, 0], [5, 0]])
+
+
+def test_polygons_over_one_and_the_same_face_are_refused(scan):
+    cloud = scan.measure(np.random.default_rng(0))
+    corners = square(TABLE_MM, scan.reach)
+    with pytest.raises(InputError, match=r"one and the same face.*over a face of its own"):
+        faces_in_polygons(cloud, corners, corners + 2.0)

@@ -71,17 +71,28 @@ def test_points_on_one_line_have_no_outline():
         outline_px(line[:2])
 
 
-def test_a_lasso_through_the_block_outlines_the_largest_face_inside(scan, cloud):
-    chosen = np.flatnonzero(scan.upper)
-    behind = np.flatnonzero(~scan.upper)[::40]  # what lies behind the block as seen on the screen
-    outline = face_outline(cloud, np.concatenate([chosen, behind]))
-    inside = inside_polygon(cloud.uv, outline)
+def test_a_lasso_round_the_block_means_the_block_though_more_of_the_table_is_behind_it(scan, cloud):
+    table = np.flatnonzero(~scan.upper)
+    order = table[np.argsort(cloud.uv[table, 1])]
+    behind = order[: int(0.4 * len(table))]  # what lies behind the block as seen from a low corner
+    chosen = np.concatenate([np.flatnonzero(scan.upper), behind])
+    assert len(behind) > np.count_nonzero(scan.upper)
+    inside = inside_polygon(cloud.uv, face_outline(cloud, chosen, "upper"))
     assert scan.upper[inside].mean() > 0.97
     assert inside[scan.upper].mean() > 0.8
 
 
+def test_of_faces_chosen_as_a_whole_the_upper_one_is_nearer_to_the_camera(scan, cloud):
+    everything = np.arange(len(cloud))
+    upper = inside_polygon(cloud.uv, face_outline(cloud, everything, "upper"))
+    lower = inside_polygon(cloud.uv, face_outline(cloud, everything, "lower"))
+    assert scan.upper[upper].mean() > 0.97
+    assert lower[~scan.upper].mean() > 0.8
+
+
 def test_the_faces_outlines_give_the_faces_back(scan, cloud):
-    upper, lower = face_outline(cloud, np.flatnonzero(scan.upper)), face_outline(cloud, np.flatnonzero(~scan.upper))
+    upper = face_outline(cloud, np.flatnonzero(scan.upper), "upper")
+    lower = face_outline(cloud, np.flatnonzero(~scan.upper), "lower")
     pair = faces_in_polygons(cloud, upper, lower)
     assert scan.upper[pair.upper].all()
     assert not scan.upper[pair.lower].any()
@@ -90,7 +101,7 @@ def test_the_faces_outlines_give_the_faces_back(scan, cloud):
 
 def test_without_a_plane_face_it_says_so(cloud):
     with pytest.raises(InputError, match="no plane face among the 5 chosen points"):
-        face_outline(cloud, np.arange(5))
+        face_outline(cloud, np.arange(5), "upper")
 
 
 def test_a_point_belongs_to_a_face_near_its_plane_and_near_its_points(scan, cloud):

@@ -170,7 +170,9 @@ def test_it_can_be_cancelled(done):
 def test_chosen_points_become_regions_that_measure_the_same_block(done, view, tmp_path):
     folder = shutil.copytree(done.folder, tmp_path / "project")
     numbers = [view.number[face.indices] for face in (view.gauge.upper, view.gauge.lower)]
-    upper, lower = (outline_selected(folder, chosen) for chosen in numbers)
+    upper, lower = (
+        outline_selected(folder, chosen, face) for chosen, face in zip(numbers, ("upper", "lower"), strict=True)
+    )
     gauge = GaugeSpec(upper_polygon_px=upper, lower_polygon_px=lower)
     again = measure_gauge(folder, replace(done.project, rig=replace(done.project.rig, gauge=gauge)))
     assert again.thickness_mm == pytest.approx(view.gauge.thickness_mm, abs=again.U_mm)
@@ -178,7 +180,7 @@ def test_chosen_points_become_regions_that_measure_the_same_block(done, view, tm
 
 def test_a_selection_of_another_scan_is_refused(done):
     with pytest.raises(InputError, match="replaced by another one"):
-        outline_selected(done.folder, np.array([10**6], dtype=np.int32))
+        outline_selected(done.folder, np.array([10**6], dtype=np.int32), "upper")
 
 
 def test_exchanged_regions_are_told_in_the_words_of_a_window(done, view, tmp_path):
@@ -190,6 +192,14 @@ def test_exchanged_regions_are_told_in_the_words_of_a_window(done, view, tmp_pat
     assert "_px" not in str(told.value)
     assert str(told.value).startswith("region of the upper face: ")
     assert str(told.value).endswith("exchange the two regions.")
+
+
+def test_two_regions_over_one_face_are_told_in_the_words_of_a_window(done, view, tmp_path):
+    folder = shutil.copytree(done.folder, tmp_path / "project")
+    _, lower = view.outlines
+    rig = replace(done.project.rig, gauge=GaugeSpec(upper_polygon_px=lower, lower_polygon_px=lower + 1.0))
+    with pytest.raises(InputError, match=r"region of the upper face: both regions hold one and the same face; draw"):
+        measure_gauge(folder, replace(done.project, rig=rig))
 
 
 def test_a_region_beside_the_part_is_told_in_the_words_of_a_window(done, tmp_path):

@@ -141,8 +141,8 @@ class FacesPanel(QWidget):
             ("lower", "lasso"): self.tr("Draw round the lower face with the button held down."),
         }[face, kind]
         return self.tr(
-            "{0} In the picture the region is what you draw; in 3D it becomes the outline, in the picture, of the "
-            "largest plane among the points inside. A region may reach over the face's edge."
+            "{0} In the picture the region is what you draw. In 3D it becomes the outline, in the picture, of the "
+            "plane face you draw round; what is seen behind it does not count. A region may reach over the face's edge."
         ).format(first)
 
     def _enable(self, button: QPushButton | QToolButton, why_not: str, tip: str) -> None:

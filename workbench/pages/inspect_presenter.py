@@ -254,6 +254,7 @@ class InspectPresenter(StepPresenter):
             jobs.OUTLINE_SELECTED,
             folder,
             numbers[:: -(-len(numbers) // MOST_SENT)],
+            face,
             label=self.tr("Outlining the chosen points"),
             on_done=done,
         )

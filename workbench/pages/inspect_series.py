@@ -6,6 +6,7 @@ from PySide6.QtCore import QEvent, Qt
 from PySide6.QtGui import QGuiApplication
 from PySide6.QtWidgets import QHBoxLayout, QPushButton, QSplitter, QVBoxLayout, QWidget
 
+from core.files.project import Repeat
 from workbench.pages import inspect_words as words
 from workbench.pages.inspect_presenter import InspectPresenter
 from workbench.pages.step_page import muted
@@ -78,7 +79,7 @@ class RepeatsTab(QWidget):
         if wanted == self._shown:
             return
         self._shown = wanted
-        self.table.set_rows([words.repeat_row(repeat) for repeat in repeats.all], [r.scan for r in repeats.all])
+        self.table.set_rows([words.repeat_row(repeat) for repeat in repeats.all], [self._tip(r) for r in repeats.all])
         statistics = repeats.statistics()
         if statistics is None:
             self.rows.set_rows([])
@@ -130,6 +131,9 @@ class RepeatsTab(QWidget):
                 "Measured with {0} different calibrations: their differences are part of the scatter."
             ).format(repeats.calibrations())
         return ""
+
+    def _tip(self, repeat: Repeat) -> str:
+        return self.tr("Recording {0}, calibration {1}").format(repeat.scan, repeat.calibration_id)
 
     def _copy(self) -> None:
         repeats = self._presenter.repeats

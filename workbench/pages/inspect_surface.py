@@ -176,12 +176,11 @@ class SurfaceTab(QWidget):
             "deviation": self.tr("deviation from the face"),
             "frame": self.tr("frame number"),
         }
-        maps = {"deviation": "deviation", "sigma": "plasma"}
         return {
             "value_name": titles[name],
             "unit": "" if name == "frame" else "mm",
             "limits": view.ranges[name],
-            "colour_map": maps.get(name, "viridis"),
+            "colour_map": "deviation" if name == "deviation" else "viridis",
         }
 
     def _mark_used(self, view: InspectionView, count: int) -> None:

@@ -101,7 +101,7 @@ def repeat_row(repeat: Repeat) -> tuple[str, str, str, str, str]:
     """Scan, thickness, U, calibration, time."""
     value, expanded = with_uncertainty(repeat.thickness_mm, repeat.U_mm)
     time = repeat.measured_at.astimezone().strftime("%Y-%m-%d %H:%M")
-    return scan_name(repeat.scan), value, f"± {expanded}", repeat.calibration_id, time
+    return scan_name(repeat.scan), value, f"± {expanded}", short_id(repeat.calibration_id), time
 
 
 def repeats_tsv(repeats: tuple[Repeat, ...], statistics: RepeatStatistics | None) -> str:
@@ -128,6 +128,11 @@ def repeats_tsv(repeats: tuple[Repeat, ...], statistics: RepeatStatistics | None
         )
         lines += [[]] + [[name, f"{value:.6f}"] for name, value in named if value is not None and not math.isnan(value)]
     return "\n".join("\t".join(line) for line in lines) + "\n"
+
+
+def short_id(calibration_id: str) -> str:
+    """The beginnings of the two ids, enough to tell calibrations apart in a table."""
+    return "-".join(part[:6] for part in calibration_id.split("-"))
 
 
 def scan_name(stored: str) -> str:

@@ -18,10 +18,11 @@ UNKNOWN: Rgb = (140, 140, 140)
 PLAIN: Rgb = (92, 142, 200)
 """Colour of a cloud without values."""
 
-# Eleven colours of each map, evenly from low to high. viridis and plasma: S. van der Walt, N. Smith (CC0).
+# Colours of each map, evenly from low to high. viridis and plasma: S. van der Walt, N. Smith (CC0). Their dark ends,
+# which cannot be seen on a dark ground, are brightened; viridis is then that of σ on pictures.
 _STOPS = {
-    "viridis": "440154 482475 414487 355f8d 2a788e 21918c 22a884 44bf70 7ad151 bddf26 fde725",
-    "plasma": "0d0887 41049d 6a00a8 8f0da4 b12a90 cc4778 e16462 f2844b fca636 fcce25 f0f921",
+    "viridis": "6f7ff0 4f9be0 3bb5b8 4fc987 95d94a fde725",
+    "plasma": "6c5ce7 8f4bd8 b045c4 cc4778 e16462 f2844b fca636 fcce25 f0f921",
     "deviation": "1b3fae 2c64d8 4f8df0 83b2ee b0c8e0 b9bdb6 e3c0a4 efa079 e6714f cf3f36 a31326",
 }
 

@@ -31,7 +31,7 @@ def measuring(hand_bench):
 def quick(hand_bench):
     lane = cast(HandLane, hand_bench.quick)
     lane.answers[jobs.INSPECTION_VIEW] = lambda folder, project: cases.view(cases.gauge())
-    lane.answers[jobs.OUTLINE_SELECTED] = lambda folder, numbers: OUTLINE
+    lane.answers[jobs.OUTLINE_SELECTED] = lambda folder, numbers, face: OUTLINE
     return lane
 
 

@@ -30,7 +30,7 @@ def measuring(hand_bench):
 def quick(hand_bench):
     lane = cast(HandLane, hand_bench.quick)
     lane.answers[jobs.INSPECTION_VIEW] = lambda folder, project: cases.view(cases.gauge())
-    lane.answers[jobs.OUTLINE_SELECTED] = lambda folder, numbers: TRIANGLE
+    lane.answers[jobs.OUTLINE_SELECTED] = lambda folder, numbers, face: TRIANGLE
     return lane
 
 
@@ -310,14 +310,14 @@ def test_nominal_value_and_regions_do_not_disturb_each_other(shown):
 
 def test_points_chosen_in_3d_become_the_outline_of_their_face(shown, quick, qtbot):
     asked = []
-    quick.answers[jobs.OUTLINE_SELECTED] = lambda folder, numbers: asked.append(numbers) or TRIANGLE
+    quick.answers[jobs.OUTLINE_SELECTED] = lambda folder, numbers, face: asked.append((face, numbers)) or TRIANGLE
     chosen = np.zeros(400, bool)
     chosen[[3, 5]] = True
     shown.outline("upper", chosen)
     assert shown.outlining == "upper"
     qtbot.waitUntil(lambda: shown.faces.own)
     assert shown.outlining == ""
-    assert np.array_equal(asked[0], shown.view.number[[3, 5]])
+    assert asked[0][0] == "upper" and np.array_equal(asked[0][1], shown.view.number[[3, 5]])
     assert np.array_equal(shown.faces.region("upper"), TRIANGLE)
     undo(shown)
     assert not shown.faces.own
@@ -330,7 +330,7 @@ def test_an_empty_choice_is_told(shown, quick):
 
 
 def test_points_that_hold_no_face_are_told(shown, quick, qtbot):
-    def refuse(folder, numbers):
+    def refuse(folder, numbers, face):
         raise InputError("there is no plane face among the 3 chosen points", where="region")
 
     quick.answers[jobs.OUTLINE_SELECTED] = refuse
