@@ -20,13 +20,19 @@ from core.model import Camera, Fan
 from workbench import jobs
 from workbench.bench import Bench
 from workbench.pages.live_presenter import LivePresenter
+from workbench.pages.planes_history import PlanesHistory
 from workbench.pages.planes_work import PlanesWork
 from workbench.pages.presenter import StepPresenter
 from workbench.pages.sources import folder_of, put_source
-from workbench.pages.target_values import changed_target, values_of
+from workbench.pages.target_choice import TargetChoice
 from workbench.step_state import State
 
 PART = "planes/"
+
+PAIRS = "live/planes/pairs"
+"""The setting whether poses are taken with the laser on and off."""
+
+NOTHING_READ: tuple[str, Any, Any] = ("", None, None)
 
 
 class Stage(StrEnum):
@@ -52,29 +58,33 @@ class PlanesPresenter(StepPresenter):
     step = "planes"
 
     pose_ready = Signal(object)
-    """PoseStages of the current pose."""
+    """PoseStages of the current pose, once it has been measured."""
 
-    target_refused = Signal(str, str)
-    """Field of the target and why it cannot be so."""
+    picture_ready = Signal(str, object)
+    """Name of the current pose and its picture, before it is measured."""
 
     def __init__(self, bench: Bench) -> None:
         super().__init__(bench)
         self.live = LivePresenter(bench, "planes", self)
+        self.live.pairs = bench.settings.text(PAIRS, "yes") == "yes"
         self.work = PlanesWork(bench, self)
-        self.history: tuple[Any, ...] = ()
+        self.history = PlanesHistory(bench, self)
+        self.target = TargetChoice(bench, "plane_target", self.tr("change the plate"), self)
         self.camera: Camera | None = None
         self.current = ""
         self.live_views: list[tuple[str, Any]] = []
         self._rejected: set[str] = set()
         self._accepting = False
-        self._read: tuple[str, Any] = ("", None)
+        self._read: tuple[str, Any, Any] = NOTHING_READ
         self._camera_id = ""
         self.live.calibration = self._known
+        self.live.cannot_start = self._cannot_record
         self.live.changed.connect(self.changed)
         self.live.started.connect(lambda _: self.live_views.clear())
         self.live.taken.connect(self._live_taken)
         self.live.ended.connect(self._live_ended)
         self.work.changed.connect(self._work_changed)
+        self.history.changed.connect(self.changed)
 
     # ---- state
 
@@ -142,6 +152,8 @@ class PlanesPresenter(StepPresenter):
     @property
     def can_accept(self) -> str:
         """Why nothing can be accepted now, or ""."""
+        if self.live.running:
+            return self.tr("Stop the live source first.")
         if self.work.calibration is None or self.work.solving or self._accepting:
             return self.tr("There is no calibration yet.")
         if self.candidate == self.project.accepted.fan and self.state.state is State.DONE:
@@ -151,6 +163,8 @@ class PlanesPresenter(StepPresenter):
     @property
     def can_reject(self) -> str:
         """Why nothing can be rejected now, or ""."""
+        if self.live.running:
+            return self.tr("Stop the live source first.")
         if not self.candidate or self.work.solving:
             return self.tr("There is no calibration yet.")
         if self.candidate in self._rejected and self.candidate != self.project.accepted.fan:
@@ -170,44 +184,20 @@ class PlanesPresenter(StepPresenter):
         put_source(self.model, "planes", folder, self.tr("choose the laser planes' pictures"))
         self.work.measure()
 
-    def target_values(self) -> dict[str, Any]:
-        """The plate as the fields of a form."""
-        return values_of(self.project.rig.plane_target)
-
-    def set_target(self, field: str, value: Any) -> None:
-        """Change the plate; undoable. What cannot be is refused with a sentence."""
-        rig = self.project.rig
-        try:
-            target = changed_target(rig.plane_target, field, value)
-        except ValueError as error:
-            self.target_refused.emit(field, str(error))
-            return
-        self.target_refused.emit(field, "")
-        after = replace(self.project, rig=replace(rig, plane_target=target))
-        self.model.edit(self.tr("change the plate"), after, f"plane target {field}")
-
-    def print_target(self, path: Path, paper: str) -> None:
-        """Write the plate's target to scale as a PDF."""
-        self.bench.glance(
-            jobs.TARGET_SHEET,
-            path,
-            self.project.rig.plane_target,
-            paper,
-            self.project.info.name,
-            label=self.tr("Drawing the target"),
-            on_done=lambda done: self.bench.notices.info(
-                self.tr("The target was written to {0}. Print it at 100 % and measure its rulers.").format(done)
-            ),
-        )
-
     def set_laser(self, field: str, value: Any) -> None:
-        """Change "lines", "angle" (rad) or "constrain"; undoable."""
+        """Change "lines", "angle" (rad; None where nobody states it) or "constrain"; undoable."""
         project = self.project
         if field == "constrain":
             after = replace(project, options=replace(project.options, constrain_fan=bool(value)))
         else:
-            after = replace(project, rig=replace(project.rig, **{field: value}))
+            after = replace(project, rig=replace(project.rig, **{field: value or 0.0}))
         self.model.edit(self.tr("change the laser"), after, f"laser {field}")
+
+    def set_pairs(self, on: bool) -> None:
+        """Whether each pose is also taken with the laser off; remembered by the program, as the rig stays the same."""
+        self.live.pairs = on
+        self.bench.settings.keep_text(PAIRS, "yes" if on else "no")
+        self.changed.emit()
 
     # ---- poses
 
@@ -249,7 +239,7 @@ class PlanesPresenter(StepPresenter):
 
     def look_again(self) -> None:
         """The picture of the current pose is wanted again."""
-        self._read = ("", None)
+        self._read = NOTHING_READ
         self._look()
 
     # ---- accept and reject
@@ -270,7 +260,7 @@ class PlanesPresenter(StepPresenter):
             self._rejected.discard(id_)
             made_from = replace(project, accepted=after.accepted)
             self.model.record("planes", finished("planes", made_from, self.model.results))
-            self._read_history()
+            self.history.refresh()
 
         def failed(_: Any) -> None:
             self._accepting = False
@@ -291,13 +281,6 @@ class PlanesPresenter(StepPresenter):
             self.model.edit(self.tr("reject the laser planes"), after)
         self.changed.emit()
 
-    def restore(self, id_: str) -> None:
-        """Accept planes of the history again; undoable."""
-        if id_ and id_ != self.project.accepted.fan:
-            after = replace(self.project, accepted=replace(self.project.accepted, fan=id_))
-            self.model.edit(self.tr("restore laser planes"), after)
-            self.model.record("planes", finished("planes", self.project, self.model.results))
-
     # ---- keys
 
     def do_run(self) -> None:
@@ -316,15 +299,18 @@ class PlanesPresenter(StepPresenter):
     # ---- what happens elsewhere
 
     def opened(self) -> None:
-        self.current, self._read, self.history = "", ("", None), ()
+        self.current, self._read = "", NOTHING_READ
         self._rejected.clear()
+        self._accepting = False
+        self._camera_id = ""
         self._follow_camera()
         self.work.opened()
-        self._read_history()
+        self.history.forget()
+        self.history.refresh()
 
     def project_changed(self, before: Project, after: Project) -> None:
         if before.sources.planes != after.sources.planes:
-            self.current, self._read = "", ("", None)
+            self.current, self._read = "", NOTHING_READ
         self._follow_camera()
         self.work.follow()
 
@@ -346,22 +332,19 @@ class PlanesPresenter(StepPresenter):
                 self.camera = calibration.camera
                 self.changed.emit()
 
+        self.camera = None
         self.bench.glance(jobs.READ_CAMERA, folder, id_, label=self.tr("Reading the camera"), on_done=read, offers={})
-
-    def _read_history(self) -> None:
-        folder = self.model.folder
-        if folder is None:
-            return
-
-        def read(entries: tuple[Any, ...]) -> None:
-            if folder == self.model.folder:
-                self.history = tuple(entry for entry in entries if entry.kind == "fan")
-                self.changed.emit()
-
-        self.bench.glance(jobs.HISTORY, folder, label=self.tr("Reading the history"), on_done=read, offers={})
 
     def _known(self) -> tuple[Camera | None, Fan | None]:
         return self.camera, self.work.calibration.fan if self.work.calibration is not None else None
+
+    def _cannot_record(self) -> str:
+        """Why no poses can be taken now, or ""."""
+        if self.work.measuring:
+            return self.tr("The pictures are being measured; wait for it, or cancel it.")
+        if self.project.accepted.camera and self.camera is None:
+            return self.tr("The camera calibration is being read.")
+        return ""
 
     def _live_taken(self, taken: LiveTaken) -> None:
         self.live_views.append((taken.name, taken.thumbnail))
@@ -371,26 +354,39 @@ class PlanesPresenter(StepPresenter):
             self.work.measure()
 
     def _work_changed(self) -> None:
-        names = [pose.name for pose in self.work.poses or ()] or [path.stem for path in self.work.pictures or ()]
+        names = [path.stem for path in self.work.pictures or ()] or [pose.name for pose in self.work.poses or ()]
         if self.current not in names:
             self.current = names[0] if names else ""
         self._look()
         self.changed.emit()
 
     def _look(self) -> None:
-        """Have the current pose's picture read, with the numbers its stripes have in the calibration shown."""
+        """Have the current pose's picture read, with what was found in it and the numbers its stripes have now."""
         name, folder, features = self.current, self.model.folder, self.features_of(self.current)
         calibration = self.work.calibration
-        if not name or folder is None or features is None or self._read == (name, calibration):
+        if not name or folder is None or self._read == (name, features, calibration):
             return
-        self._read = (name, calibration)
-        self.bench.glance(
-            jobs.SHOW_POSE,
-            folder,
-            self.project,
-            features,
-            calibration.fan if calibration is not None else None,
-            label=self.tr("Reading a pose"),
-            on_done=lambda stages: self.pose_ready.emit(stages) if stages.name == self.current else None,
-            replace_waiting=True,
-        )
+        picture = next((path for path in self.work.pictures or () if path.stem == name), None)
+        if features is not None:
+            self._read = (name, features, calibration)
+            self.bench.glance(
+                jobs.SHOW_POSE,
+                folder,
+                self.project,
+                features,
+                calibration.fan if calibration is not None else None,
+                label=self.tr("Reading a pose"),
+                on_done=lambda stages: self.pose_ready.emit(stages) if stages.name == self.current else None,
+                replace_waiting=True,
+            )
+        elif picture is not None:
+            self._read = (name, None, None)
+            self.bench.glance(
+                jobs.READ_PICTURE,
+                picture,
+                self.project.rig.channel,
+                label=self.tr("Reading a pose"),
+                on_done=lambda found: self.picture_ready.emit(name, found) if name == self.current else None,
+                offers={},
+                replace_waiting=True,
+            )

@@ -15,7 +15,7 @@ from core.files.project_keys import rests_on
 from workbench import jobs
 from workbench.bench import Bench
 from workbench.pages.sources import folder_of
-from workbench.tasks import Task
+from workbench.tasks import Task, sentence
 
 MEASURED_BY = ("camera calibration", "pictures of the plane target", "plane target", "colour channel")
 """What measuring the poses rests on; solving rests on the laser, the left-out poses and the constraint too."""
@@ -56,7 +56,7 @@ class PlanesWork(QObject):
         self._solved: OrderedDict[Key, tuple[FanCalibration | None, str]] = OrderedDict()
         self._measured_key: Key = ()
         self._solve_key: Key = ()
-        self._listed = ""
+        self._listed = self._thumbnails_of = ""
 
     @property
     def measuring(self) -> bool:
@@ -96,7 +96,9 @@ class PlanesWork(QObject):
             self.poses = self._measured.get(measured)
             if self.poses is None:
                 self.calibration, self.problem = None, ""
-        if self.poses is not None and solve != self._solve_key:
+        if self.poses is None:
+            self.solving = False
+        elif solve != self._solve_key:
             self._solve_key = solve
             self._solve(self.poses, solve)
         self.changed.emit()
@@ -114,16 +116,16 @@ class PlanesWork(QObject):
             project,
             label=self.tr("Laser planes"),
             on_done=lambda poses: self._poses_measured(folder, key, poses),
-            on_failed=lambda problem: self._measuring_failed(key, str(problem)),
-            on_cancelled=lambda: self._measuring_failed(key, ""),
+            on_failed=lambda problem: self._measuring_failed(folder, key, sentence(problem)),
+            on_cancelled=lambda: self._measuring_failed(folder, key, ""),
         )
         self.changed.emit()
 
     def _poses_measured(self, folder: Path, key: Key, poses: Poses) -> None:
-        self.measure_task = None
         if folder == self._model.folder:
+            self.measure_task = None
             self._remember(key, poses)
-        self.changed.emit()
+            self.changed.emit()
 
     def _recalled(self, folder: Path, measured: Key, solve: Key, poses: Poses, calibration: FanCalibration) -> None:
         if folder == self._model.folder and measured not in self._measured:
@@ -139,7 +141,9 @@ class PlanesWork(QObject):
         self._measured_key, self._listed = (), ""
         self.follow()
 
-    def _measuring_failed(self, key: Key, problem: str) -> None:
+    def _measuring_failed(self, folder: Path, key: Key, problem: str) -> None:
+        if folder != self._model.folder:
+            return  # the project has been left; another one may be measured by now
         self.measure_task = None
         if key == self._measured_key:
             self.problem = problem
@@ -158,7 +162,7 @@ class PlanesWork(QObject):
             poses,
             label=self.tr("Solving the laser planes"),
             on_done=lambda calibration: self._solved_for(key, calibration, ""),
-            on_failed=lambda problem: self._solved_for(key, None, str(problem)),
+            on_failed=lambda problem: self._solved_for(key, None, sentence(problem)),
             replace_waiting=True,
         )
 
@@ -178,7 +182,9 @@ class PlanesWork(QObject):
         wanted, folder = f"{project.sources.planes}|{project.rig.channel}", folder_of(self._model, "planes")
         if wanted == self._listed:
             return
-        self._listed, self.pictures, self.thumbnails = wanted, None, {}
+        if wanted != self._thumbnails_of:
+            self.pictures, self.thumbnails = None, {}
+        self._listed = self._thumbnails_of = wanted
         if folder is None:
             self.pictures = ()
             return

@@ -20,6 +20,9 @@ VIEW_ANGLE = np.radians(30.0)
 DEGREES_PER_PIXEL = 0.35
 """How far a drag turns the scene."""
 
+BORDER_PX = 10
+"""What fills the picture leaves so much free on every side: names stand above what they name."""
+
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Orientation:
@@ -144,7 +147,7 @@ class SceneCamera:
     def fitted(self, points: Array, size: tuple[int, int], margin: tuple[int, int] = (0, 0)) -> SceneCamera:
         """Moved so that `points` (N, 3) fill the picture, seen from the same direction.
 
-        `margin` are pixels to leave free at the right and at the lower edge.
+        `margin` are pixels to leave free at the right and at the lower edge, besides BORDER_PX on every side.
         """
         if len(points) == 0:
             return self
@@ -152,7 +155,7 @@ class SceneCamera:
         low, high = local.min(axis=0), local.max(axis=0)
         middle = (low + high) / 2
         x, y, z = (local - middle).T
-        free = (max(size[0] - margin[0], 1), max(size[1] - margin[1], 1))
+        free = [max(whole - less - 2 * BORDER_PX, 1) for whole, less in zip(size, margin, strict=True)]
         tangent = np.tan(self.view_angle / 2)
         tall, wide = tangent * free[1] / size[1], tangent * free[0] / size[1]
         towards = 0.0 if self.parallel else z

@@ -12,8 +12,6 @@ from PySide6.QtWidgets import (
     QHBoxLayout,
     QLabel,
     QPushButton,
-    QSizePolicy,
-    QStackedWidget,
     QVBoxLayout,
     QWidget,
 )
@@ -51,25 +49,24 @@ class SourceChooser(QWidget):
             modes.addWidget(button, 1)
         self.path, self.detail, self.browse = QLabel(), QLabel(), QPushButton(self.tr("Choose folder …"))
         self.browse.setToolTip(self.tr("Choose a folder of pictures, or drop one here"))
-        self._stack = QStackedWidget()
-        self._stack.addWidget(self._folder_part())
-        self._stack.addWidget(live_panel)
+        self._parts = (self._folder_part(), live_panel)
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         column.addLayout(modes)
-        column.addWidget(self._stack)
+        for part in self._parts:  # no stack of widgets: that is always as high as the highest of them
+            column.addWidget(part)
+        live_panel.hide()
         self._modes.idToggled.connect(self._toggled)
         self.browse.clicked.connect(lambda: self.choose())
         self.recorded.setChecked(True)
         self.accept_drops_on(self)
-        self._fit()
         self._dress()
         self.set_folder(None)
 
     @property
     def mode(self) -> str:
         """Which one is shown: "folder" or "live"."""
-        return "live" if self._stack.currentIndex() == 1 else "folder"
+        return "live" if self.live.isChecked() else "folder"
 
     def set_mode(self, mode: str) -> None:
         """Show the folder or the live source."""
@@ -107,7 +104,7 @@ class SourceChooser(QWidget):
 
     def changeEvent(self, event: QEvent) -> None:
         super().changeEvent(event)
-        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "_stack"):
+        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "_parts"):
             self._dress()
 
     def _folder_part(self) -> QWidget:
@@ -128,21 +125,10 @@ class SourceChooser(QWidget):
         self.live.setIcon(icon("mdi6.video-outline"))
         self.browse.setIcon(icon("mdi6.folder-open-outline"))
 
-    def _fit(self) -> None:
-        """Only what is shown takes room."""
-        for place in range(self._stack.count()):
-            part = self._stack.widget(place)
-            assert part is not None
-            shown = place == self._stack.currentIndex()
-            policy = QSizePolicy.Policy.Preferred if shown else QSizePolicy.Policy.Ignored
-            part.setSizePolicy(QSizePolicy.Policy.Preferred, policy)
-        self._stack.adjustSize()
-        self.updateGeometry()
-
     def _toggled(self, place: int, on: bool) -> None:
         if on:
-            self._stack.setCurrentIndex(place)
-            self._fit()
+            for number, part in enumerate(self._parts):
+                part.setVisible(number == place)
             self.mode_changed.emit(self.mode)
 
 

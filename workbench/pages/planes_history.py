@@ -1,0 +1,61 @@
+"""The laser planes a project has kept: listed, restored."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+from PySide6.QtCore import QObject, Signal
+
+from core.files.project_keys import finished
+from workbench import jobs
+from workbench.bench import Bench
+
+
+class PlanesHistory(QObject):
+    """`entries` are StoredCalibration, the newest first."""
+
+    changed = Signal()
+
+    def __init__(self, bench: Bench, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self._bench, self._model = bench, bench.model
+        self.entries: tuple[Any, ...] = ()
+
+    def forget(self) -> None:
+        """Nothing is known yet."""
+        self.entries = ()
+
+    def refresh(self) -> None:
+        """Read the list again."""
+        folder = self._model.folder
+        if folder is None:
+            return
+
+        def read(entries: tuple[Any, ...]) -> None:
+            if folder == self._model.folder:
+                self.entries = tuple(entry for entry in entries if entry.kind == "fan")
+                self.changed.emit()
+
+        self._bench.glance(jobs.HISTORY, folder, label=self.tr("Reading the laser planes' history"), on_done=read,
+                           offers={}, replace_waiting=True)  # fmt: skip
+
+    def why_not_restore(self, id_: str) -> str:
+        """Why these planes cannot be accepted again, or ""."""
+        accepted = self._model.project.accepted
+        entry = next((entry for entry in self.entries if entry.id == id_), None)
+        if entry is None:
+            return self.tr("Choose a calibration in the list first.")
+        if id_ == accepted.fan:
+            return self.tr("These laser planes are accepted already.")
+        if entry.camera_id != accepted.camera:
+            return self.tr("They rest on another camera calibration; restore that one first.")
+        return ""
+
+    def restore(self, id_: str) -> None:
+        """Accept planes of the history again; undoable."""
+        if self.why_not_restore(id_):
+            return
+        project = self._model.project
+        self._model.edit(self.tr("restore laser planes"), replace(project, accepted=replace(project.accepted, fan=id_)))
+        self._model.record("planes", finished("planes", self._model.project, self._model.results))

@@ -1,0 +1,200 @@
+"""What stands at the side of the laser planes page: how far it is, the laser, the live source, the result."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from PySide6.QtWidgets import QCheckBox, QVBoxLayout, QWidget
+
+from workbench.pages import planes_words as words
+from workbench.pages.planes_presenter import PlanesPresenter, Stage
+from workbench.pages.step_page import heading, muted
+from workbench.views.forms import SettingsForm
+from workbench.views.live_panel import LivePanel
+from workbench.views.stage_card import CardButton, StageCard
+from workbench.views.value_rows import ValueRows
+
+PLATES = ("black_square", "checkerboard", "charuco", "circle_grid")
+"""Kinds of targets the laser planes can be calibrated with."""
+
+
+class PlanesCard(StageCard):
+    """The stage; the next thing to do is the primary button."""
+
+    def __init__(self, presenter: PlanesPresenter, parent: QWidget | None = None) -> None:
+        self._presenter = p = presenter
+        super().__init__(
+            [
+                CardButton("run", p.tr("Calibrate"), "mdi6.play", p.do_run),
+                CardButton("accept", p.tr("Accept"), "mdi6.check-bold", p.accept),
+                CardButton("reject", p.tr("Reject"), "mdi6.close-thick", p.reject),
+            ],
+            parent,
+        )
+
+    def refresh(self) -> None:
+        """Show the stage."""
+        p, stage = self._presenter, self._presenter.stage
+        next_one = {Stage.SOLVED: "accept", Stage.FOUND: "run", Stage.FAILED: "run"}.get(stage, "")
+        if stage is Stage.OUTDATED:
+            next_one = "accept" if p.candidate and not p.can_accept else "run"
+        self.show_stage(
+            *self._words()[stage],
+            {
+                "run": (p.can_measure, self.tr("Measure all pictures and solve the planes (Ctrl+R)")),
+                "accept": (p.can_accept, self.tr("Measure with these laser planes from now on (Ctrl+Return)")),
+                "reject": (p.can_reject, self.tr("Do not measure with these laser planes")),
+            },
+            next_one,
+        )
+
+    def _words(self) -> dict[Stage, tuple[str, str]]:
+        p = self._presenter
+        return {
+            Stage.NO_CAMERA: (
+                self.tr("The camera comes first"),
+                self.tr("The planes are seen through the camera: accept its calibration, then come back."),
+            ),
+            Stage.NONE: (
+                self.tr("No pictures yet"),
+                self.tr("Choose a folder of pictures of the plate under the fan, or take them with a live source."),
+            ),
+            Stage.EMPTY: (self.tr("No pictures there"), self.tr("The folder holds no pictures; choose another one.")),
+            Stage.FOUND: (
+                self.tr("{0} poses, not measured yet").format(len(p.work.pictures or ())),
+                self.tr("Check plate and laser below, then press Calibrate."),
+            ),
+            Stage.LIVE: (
+                self.tr("Taking poses"),
+                self.tr(
+                    "Hold the plate into the fan at different distances and tilts. Stop when nothing is missing; "
+                    "then the planes are calibrated."
+                ),
+            ),
+            Stage.MEASURING: (
+                self.tr("Measuring the pictures …"),
+                self.tr("Target and stripes are found in each pose."),
+            ),
+            Stage.SOLVING: (self.tr("Solving …"), self.tr("Planes and poses are adjusted together.")),
+            Stage.FAILED: (self.tr("No calibration"), p.work.problem),
+            Stage.SOLVED: (
+                self.tr("Calibrated, not accepted yet"),
+                self.tr("Look at the poses and the angles; leave out what is bad, then accept."),
+            ),
+            Stage.REJECTED: (
+                self.tr("Rejected"),
+                self.tr("Leave out bad poses, or take other pictures; or accept it after all."),
+            ),
+            Stage.ACCEPTED: (self.tr("Accepted"), p.state.sentence),
+            Stage.OUTDATED: (
+                self.tr("Accepted, but out of date"),
+                " ".join(part for part in (p.state.sentence, p.work.problem) if part),
+            ),
+        }
+
+
+class PlanesLive(QWidget):
+    """The live source, and whether the laser can be switched off for a second picture of each pose."""
+
+    def __init__(self, presenter: PlanesPresenter, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._presenter = presenter
+        self.panel = LivePanel(presenter.live)
+        self.pairs = QCheckBox(self.tr("Take each pose with the laser off, too"))
+        self.pairs.clicked.connect(presenter.set_pairs)
+        inside = self.panel.layout()
+        assert isinstance(inside, QVBoxLayout)
+        inside.insertWidget(inside.indexOf(self.panel.state), self.pairs)
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.addWidget(self.panel)
+
+    def refresh(self) -> None:
+        """Show how poses are taken."""
+        running = self._presenter.live.running
+        self.pairs.setChecked(self._presenter.live.pairs)
+        self.pairs.setEnabled(not running)
+        self.pairs.setToolTip(
+            self.tr("Stop the live source first.")
+            if running
+            else self.tr(
+                "Target and stripes are then found each in a picture of its own. The source switches the laser off for "
+                "a moment, or you are asked to; leave it out where the laser cannot be switched"
+            )
+        )
+
+
+class LaserForm(SettingsForm):
+    """What is known of the fixed laser."""
+
+    def __init__(self, presenter: PlanesPresenter, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._presenter = presenter
+        self.add_number(
+            "lines", self.tr("Lines"), "", self.tr("How many lines the fixed laser draws."), minimum=1, maximum=9
+        )
+        self.add_number(
+            "angle", self.tr("Angle"), "°", self.tr("Between neighbouring lines, as its maker states it."),
+            minimum=0.1, maximum=45, decimals=3, step=0.1, none_text=self.tr("not stated"),
+        )  # fmt: skip
+        self.add_check(
+            "constrain",
+            self.tr("Hold the planes to one pencil"),
+            self.tr("Steadier; used only where the free planes agree with it."),
+        )
+        self.edited.connect(self._tell)
+
+    def refresh(self) -> None:
+        """Show the laser."""
+        rig, options = self._presenter.project.rig, self._presenter.project.options
+        angle = math.degrees(rig.angle) if rig.angle else None
+        self.set_values({"lines": rig.lines, "angle": angle, "constrain": options.constrain_fan})
+        one = self.tr("One line has no neighbour.") if rig.lines == 1 else ""
+        for key in ("angle", "constrain"):
+            self.set_editable(key, not one, one)
+
+    def _tell(self, key: str, value: Any) -> None:
+        self._presenter.set_laser(key, math.radians(value) if key == "angle" and value is not None else value)
+
+
+class PlanesResult(QWidget):
+    """How good the calibration shown is, and whether the laser is what it is said to be."""
+
+    def __init__(self, presenter: PlanesPresenter, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._presenter = presenter
+        self.quality, self.angles = ValueRows(), ValueRows()
+        self.left_out, self.verdict, self.notes = muted(), muted(), muted()
+        self._left_out_heading, self._angles_heading = heading(self.tr("Left out")), heading(self.tr("Angles"))
+        self._angles_heading.setToolTip(self.tr("Between neighbouring light planes"))
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        for widget in (
+            self.quality,
+            self._left_out_heading,
+            self.left_out,
+            self._angles_heading,
+            self.angles,
+            self.verdict,
+            self.notes,
+        ):
+            column.addWidget(widget)
+
+    def refresh(self) -> bool:
+        """Show the calibration; whether there is anything to say."""
+        work = self._presenter.work
+        calibration = work.calibration
+        self.quality.set_rows(words.quality_rows(calibration))
+        self.angles.set_rows(words.angle_rows(calibration))
+        self._say(self.verdict, words.verdict_sentence(calibration))
+        self._say(self.notes, words.notes(calibration))
+        lines = words.left_out_lines(calibration.poses if calibration is not None else work.poses or ())
+        self._say(self.left_out, "\n".join(lines))
+        self._left_out_heading.setVisible(bool(lines))
+        self._angles_heading.setVisible(calibration is not None and len(calibration.free_angles) > 0)
+        return calibration is not None or bool(lines)
+
+    def _say(self, label: Any, text: str) -> None:
+        label.setText(text)
+        label.setVisible(bool(text))
