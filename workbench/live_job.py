@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from core.pipeline.live import LiveEnded, LiveEvent, LiveRequest, LiveView, run_live
-
 from workbench.worker import Channel
 
 

@@ -66,7 +66,8 @@ class InspectFaces(QObject):
             label = self.tr("measure without a nominal value")
         else:
             label = self.tr("change the nominal thickness") if key == "nominal_mm" else self.tr("change the tolerance")
-        self._put(replace(self.spec, **values), label, f"gauge {key}")
+        spec = replace(self.spec, nominal_mm=values["nominal_mm"], tolerance_mm=values["tolerance_mm"])
+        self._put(spec, label, f"gauge {key}")
         self.changed.emit()
 
     # ---- faces
@@ -87,7 +88,7 @@ class InspectFaces(QObject):
         The other face keeps its region. Without one it gets the outline of the points that were used on it; where
         nothing was measured yet, the region waits for the other one.
         """
-        polygon = np.round(np.asarray(corners, dtype=np.float64), 1)
+        polygon: Array = np.round(np.asarray(corners, dtype=np.float64), 1).astype(np.float64)
         if polygon.ndim != 2 or len(polygon) < 3:
             return
         other = FACES[1 - FACES.index(face)]

@@ -15,7 +15,7 @@ from workbench.pages import inspect_words as words
 from workbench.pages.inspect_choices import Shape, SurfaceChoices
 from workbench.pages.inspect_picks import Pick, Span
 from workbench.pages.inspect_presenter import InspectPresenter, Stage
-from workbench.views.colours import FACE_LOWER, FACE_UPPER, to_colour
+from workbench.views.colours import FACE_LOWER, FACE_UPPER, to_rgba
 from workbench.views.scene_view import SceneView
 
 if TYPE_CHECKING:
@@ -163,9 +163,7 @@ class SurfaceTab(QWidget):
         if name == "plain":
             return {"colours": PLAIN}
         if name == "faces":
-            table = np.array(
-                [to_colour(colour).getRgb()[:3] for colour in (PLAIN, FACE_UPPER, FACE_LOWER)], dtype=np.uint8
-            )
+            table = np.array([to_rgba(colour)[:3] for colour in (PLAIN, FACE_UPPER, FACE_LOWER)], dtype=np.uint8)
             return {"colours": table[view.face[:count]]}
         return {"values": getattr(view, name)[:count], **self._scale(view, name)}
 

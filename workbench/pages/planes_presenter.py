@@ -76,7 +76,7 @@ class PlanesPresenter(StepPresenter):
         self._rejected: set[str] = set()
         self._accepting = False
         self._read: tuple[str, Any, Any] = NOTHING_READ
-        self._camera_id = ""
+        self._camera_id, self._camera_lost = "", False
         self.live.calibration = self._known
         self.live.cannot_start = self._cannot_record
         self.live.changed.connect(self.changed)
@@ -190,7 +190,8 @@ class PlanesPresenter(StepPresenter):
         if field == "constrain":
             after = replace(project, options=replace(project.options, constrain_fan=bool(value)))
         else:
-            after = replace(project, rig=replace(project.rig, **{field: value or 0.0}))
+            changes: dict[str, Any] = {field: value or 0.0}
+            after = replace(project, rig=replace(project.rig, **changes))
         self.model.edit(self.tr("change the laser"), after, f"laser {field}")
 
     def set_pairs(self, on: bool) -> None:
@@ -332,8 +333,14 @@ class PlanesPresenter(StepPresenter):
                 self.camera = calibration.camera
                 self.changed.emit()
 
-        self.camera = None
-        self.bench.glance(jobs.READ_CAMERA, folder, id_, label=self.tr("Reading the camera"), on_done=read, offers={})
+        def failed(_: Any) -> None:
+            self._camera_lost = id_ == self._camera_id
+
+        self.camera, self._camera_lost = None, False
+        self.bench.glance(
+            jobs.READ_CAMERA, folder, id_, label=self.tr("Reading the camera"), on_done=read, on_failed=failed,
+            offers={},
+        )  # fmt: skip
 
     def _known(self) -> tuple[Camera | None, Fan | None]:
         return self.camera, self.work.calibration.fan if self.work.calibration is not None else None
@@ -342,7 +349,7 @@ class PlanesPresenter(StepPresenter):
         """Why no poses can be taken now, or ""."""
         if self.work.measuring:
             return self.tr("The pictures are being measured; wait for it, or cancel it.")
-        if self.project.accepted.camera and self.camera is None:
+        if self.project.accepted.camera and self.camera is None and not self._camera_lost:
             return self.tr("The camera calibration is being read.")
         return ""
 

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import fields, replace
-from typing import Any
+from typing import Any, Literal
 
 from PySide6.QtCore import QCoreApplication
 
 from core.files.project import ProjectInfo
 from workbench.pages.presenter import StepPresenter
 from workbench.step_state import ORDER, State, step_states
+
+ProgressLevel = Literal["", "good", "warn", "bad"]
 
 
 class ProjectPresenter(StepPresenter):
@@ -33,9 +35,9 @@ class ProjectPresenter(StepPresenter):
     def blocker(self) -> str:
         return "" if self.project.info.name.strip() else self.tr("Give the project a name first.")
 
-    def progress_rows(self) -> list[tuple[str, str, str, str]]:
+    def progress_rows(self) -> list[tuple[str, str, str, ProgressLevel]]:
         """One row a step: title, state in words, the sentence that explains it, level."""
-        words = {
+        words: dict[State, tuple[str, ProgressLevel]] = {
             State.TODO: (self.tr("to do"), ""),
             State.READY: (self.tr("ready"), ""),
             State.DONE: (self.tr("done"), "good"),
