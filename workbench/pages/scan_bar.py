@@ -111,6 +111,8 @@ class FrameBar(QWidget):
         column.setSpacing(4)
         column.addLayout(row)
         column.addLayout(along)
+        self.said.setFixedHeight(2 * self.said.fontMetrics().lineSpacing())
+        self.said.setAlignment(Qt.AlignmentFlag.AlignTop)
         column.addWidget(self.said)
 
     def _tips(self) -> dict[View, str]:

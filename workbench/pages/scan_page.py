@@ -7,7 +7,7 @@ from typing import Any
 
 from PySide6.QtCore import QEvent, Qt, QTimer
 from PySide6.QtGui import QKeyEvent, QKeySequence, QShortcut
-from PySide6.QtWidgets import QWidget
+from PySide6.QtWidgets import QSizePolicy, QStackedWidget, QWidget
 
 from core.live.events import LiveView, ScanDetail
 from workbench.pages import scan_words as words
@@ -42,8 +42,11 @@ class ScanPage(StepPage):
         self.running, self.bar = RunningPanel(), FrameBar(presenter)
         self.centre.addWidget(self.strip)
         self.centre.addWidget(self.views, 1)
-        self.centre.addWidget(self.running)
-        self.centre.addWidget(self.bar)
+        self.below = QStackedWidget()  # one as high as the other: the views keep their size
+        self.below.addWidget(self.bar)
+        self.below.addWidget(self.running)
+        self.below.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
+        self.centre.addWidget(self.below)
 
         self.stage = ScanCard(presenter)
         self.add_to_side(self.stage)
@@ -72,8 +75,8 @@ class ScanPage(StepPage):
         if live:
             self.source.set_mode("live")
         self._fold(stage)
-        self.running.setVisible(busy)
-        self.bar.setVisible(p.scrubbing)
+        self.below.setVisible(busy or p.scrubbing)
+        self.below.setCurrentWidget(self.running if busy else self.bar)
         if p.scrubbing:
             self.bar.refresh()
         self.settings.refresh()

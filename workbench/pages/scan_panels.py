@@ -210,6 +210,7 @@ class RunningPanel(QWidget):
         grid.addWidget(self.hints, 1, 0, 1, 3)
         grid.setColumnStretch(0, 2)
         grid.setColumnStretch(1, 2)
+        grid.setRowStretch(2, 1)
 
     def show_detail(self, detail: ScanDetail | None, width_px: float) -> None:
         """What a frame shows; its picture is `width_px` wide."""

@@ -72,9 +72,7 @@ def test_an_empty_page_says_what_to_do_next_and_offers_it(page, qtbot, monkeypat
     image = page.picture.image
     assert "Record a scan with a live source" in image.empty_state.message
     assert page.stage.title.text() == "No recording yet"
-    assert (
-        page.bar.isHidden() and page.running.isHidden() and page.result_fold.isHidden() and page.frames_fold.isHidden()
-    )
+    assert page.below.isHidden() and page.result_fold.isHidden() and page.frames_fold.isHidden()
     assert page.live_panel.start.property("primary")
     monkeypatch.setattr(ask, "choose_folder", lambda *_: scan_folder)
     qtbot.mouseClick(image.empty_state.button, LEFT)

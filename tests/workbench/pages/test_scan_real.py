@@ -1,0 +1,100 @@
+"""The scan page with a real recording, in real processes."""
+
+from pathlib import Path
+
+import pytest
+from PySide6.QtCore import Qt
+
+from tests.workbench.watchdog import Watchdog
+from workbench.bench import Bench
+from workbench.pages.scan_page import ScanPage
+from workbench.pages.scan_picture import View
+from workbench.pages.scan_presenter import ScanPresenter, Stage
+
+LIMIT_MS = 50.0
+
+
+@pytest.fixture
+def page(bench: Bench, measured_project: Path, qtbot) -> ScanPage:
+    made = ScanPage(ScanPresenter(bench))
+    qtbot.addWidget(made)
+    made.resize(1100, 700)
+    made.show()
+    bench.model.open(measured_project)
+    made.presenter.entered()
+    qtbot.waitUntil(lambda: made.presenter.scrub.up_to_date, timeout=60_000)
+    qtbot.waitUntil(lambda: made.presenter.work.look is not None, timeout=20_000)
+    qtbot.waitUntil(lambda: made.cloud.scene.state()["complete"], timeout=60_000)  # its libraries are there, too
+    return made
+
+
+def idle(page, qtbot):
+    bench = page.presenter.bench
+    qtbot.waitUntil(lambda: not bench.quick.busy and not bench.measuring.busy, timeout=60_000)
+
+
+def test_a_finished_scan_is_shown_and_measured_again_without_stopping_the_window(page, qtbot):
+    p = page.presenter
+    assert p.stage is Stage.MEASURED and p.blocker() == ""
+    assert page.result.quality.text_of("Frames used").endswith(f"of {len(p.work.names)}")
+    p.set_used([p.work.names[0]], False)
+    assert p.stage is Stage.OUTDATED
+    drawn = []
+    p.run.frame_seen.connect(lambda *_: drawn.append(1))
+    with Watchdog() as dog:
+        p.do_run()
+        qtbot.waitUntil(lambda: p.stage is Stage.MEASURED, timeout=120_000)
+        idle(page, qtbot)
+    assert drawn
+    assert dog.longest_ms < LIMIT_MS, [str(absence) for absence in dog.worst(3)]
+    assert p.work.look.left_out[0][0] or p.work.look.frames_used
+    assert p.record_of(p.work.names[0]).reason == "left out by hand"
+    assert {"scan", "inspect"} <= set(p.model.results)
+    assert [notice.text for notice in p.bench.notices.all if notice.level != "info"] == []
+
+
+def test_every_stage_of_every_frame_can_be_gone_through_without_stopping_the_window(page, qtbot):
+    p = page.presenter
+    with Watchdog() as dog:
+        p.scrub.go_to(0)
+        for _ in p.work.names:
+            qtbot.waitUntil(lambda: p.scrub.up_to_date, timeout=20_000)
+            qtbot.keyClick(page.picture.image, Qt.Key.Key_Right)
+        for view in View:
+            page.bar.stages[view].click()
+            qtbot.wait(20)
+        idle(page, qtbot)
+    assert p.scrub.index == len(p.work.names) - 1
+    assert dog.longest_ms < LIMIT_MS, [str(absence) for absence in dog.worst(3)]
+
+
+def test_measuring_is_cancelled_within_a_second_and_the_result_stays(page, qtbot):
+    p = page.presenter
+    before = p.model.results["scan"]
+    p.do_run()
+    qtbot.waitUntil(lambda: p.run.previews != {}, timeout=30_000)
+    p.cancel()
+    qtbot.waitUntil(lambda: not p.run.measuring, timeout=1_500)
+    assert p.model.results["scan"] is before and p.stage is Stage.MEASURED
+    idle(page, qtbot)
+
+
+@pytest.mark.slow
+def test_a_live_scan_of_the_simulated_rig_becomes_a_measured_one(page, qtbot):
+    p = page.presenter
+    p.live.settings.set_id("scale = 0.25")
+    p.set_setting("sigma_cut_mm", 0.5)
+    with Watchdog() as dog:
+        p.do_live()
+        qtbot.waitUntil(lambda: p.live.recorded >= 30, timeout=90_000)
+        assert p.live_stage == "scanning" and page.cloud.scene.state()["points"] > 0
+        p.live.pause(True)
+        qtbot.waitUntil(lambda: p.live_stage == "paused", timeout=5_000)
+        p.live.pause(False)
+        p.do_live()
+        qtbot.waitUntil(lambda: p.run.measuring, timeout=10_000)
+        assert p.run.by_itself and p.project.sources.scan.startswith("recordings/scan-")
+        qtbot.waitUntil(lambda: not p.run.measuring, timeout=120_000)
+        idle(page, qtbot)
+    assert dog.longest_ms < LIMIT_MS, [str(absence) for absence in dog.worst(3)]
+    assert p.stage is Stage.MEASURED and p.work.look.frames_used > 10
