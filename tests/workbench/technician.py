@@ -183,17 +183,44 @@ class Technician:
             self.activate()
 
     @contextmanager
-    def answers(self, answer: str) -> Iterator[list[str]]:
-        """Inside, a question comes up and is answered with the button of this text; gives what was asked."""
+    def answers(self, *answers: str) -> Iterator[list[str]]:
+        """Inside, questions come up one after another, each answered by the button of that text; gives the questions.
+
+        All of them must come, and no other.
+        """
         asked: list[str] = []
+        wrong: list[BaseException] = []
+        timer = QTimer()
+        timer.setInterval(20)
 
-        def act(box: QMessageBox) -> None:
+        def look() -> None:
+            box = QApplication.activeModalWidget()
+            if not isinstance(box, QMessageBox) or not box.isVisible() or box.property("answered"):
+                return
+            box.setProperty("answered", True)
             asked.append(box.text())
-            button = next(button for button in box.buttons() if button.text().replace("&", "") == answer)
-            self._qtbot.mouseClick(button, Qt.MouseButton.LeftButton)
+            try:
+                wanted = answers[len(asked) - 1]
+                button = next(button for button in box.buttons() if button.text().replace("&", "") == wanted)
+                self._qtbot.mouseClick(button, Qt.MouseButton.LeftButton)
+            except (IndexError, StopIteration):
+                offered = [button.text() for button in box.buttons()]
+                wrong.append(AssertionError(f"asked {box.text()!r}, offered {offered}, expected {answers}"))
+            finally:
+                if box.isVisible():
+                    box.close()
 
-        with self.meets(act):
+        timer.timeout.connect(look)
+        timer.start()
+        try:
             yield asked
+            self.until(lambda: wrong or len(asked) == len(answers), f"questions to be answered with {answers}", 10)
+        finally:
+            timer.stop()
+        if wrong:
+            raise wrong[0]
+        if self.window.isVisible():
+            self.activate()
 
     @contextmanager
     def names_project(self, name: str) -> Iterator[None]:

@@ -15,6 +15,7 @@ from PySide6.QtCore import QEventLoop, QObject, QTimer, Signal
 
 from core.acquire.source import Lasers, Step
 from core.errors import InputError
+from core.files.unfinished import forget_recording, note_recording
 from core.live.events import (
     Auto,
     Capture,
@@ -194,6 +195,7 @@ class LivePresenter(QObject):
             other.send(Stop())
         try:
             request = self._request(self.model.folder)
+            note_recording(self.model.folder, self.step, request.folder)
         except InputError as error:
             self.bench.notices.error(str(error))
             return
@@ -387,9 +389,19 @@ class LivePresenter(QObject):
         self._tell_ended(ended)
 
     def _tell_ended(self, ended: LiveEnded) -> None:
+        if self._project_folder is not None and (not ended.recorded or self._project_folder == self.model.folder):
+            self._forget_note(self._project_folder)
         self.adding = False
         self.ended.emit(ended)
         self.changed.emit()
+
+    def _forget_note(self, project: Path) -> None:
+        """The recording is in the project: once that is on the disk, it need not be found after a crash."""
+        self.model.autosave()
+        try:
+            forget_recording(project)
+        except InputError as error:
+            self.bench.notices.error(str(error))
 
     def _on_failed(self, problem: Any) -> None:
         """The loop did not get to its own end: it was ended, its process died, or the source could not be opened."""

@@ -23,8 +23,10 @@ from core.files.project import (
     recoverable,
     rescues,
 )
+from core.files.unfinished import Unfinished, forget_recording, unfinished_recording
 from workbench.bench import Bench
 from workbench.pages.sample_door import SampleDoor
+from workbench.pages.sources import put_source
 from workbench.views import ask
 
 PROJECT, BACKUPS, SET = "project.json", "backups", "rig.toml"
@@ -206,7 +208,31 @@ class ProjectDoors(QObject):
             self.bench.notices.warning(
                 self.tr("{0} is read-only: what is changed or measured here cannot be saved.").format(folder)
             )
+        if (unfinished := unfinished_recording(folder)) is not None:
+            self._offer(folder, unfinished)
         return True
+
+    def _offer(self, folder: Path, unfinished: Unfinished) -> None:
+        """A recording was cut short by a crash: its pictures are whole, and may be used."""
+        words = {
+            "camera": self.tr("Views of the camera's target were being recorded when the program ended: {0} pictures."),
+            "planes": self.tr("Poses of the plate were being recorded when the program ended: {0} pictures."),
+            "scan": self.tr("A scan was being recorded when the program ended: {0} pictures."),
+        }
+        text = " ".join(
+            [
+                words[unfinished.step].format(unfinished.pictures),
+                self.tr("They are kept in {0}. Use them?").format(unfinished.folder),
+            ]
+        )
+        answers = [self.tr("Use them"), self.tr("Leave them there")]
+        if ask.ask(self._window, self.tr("Interrupted recording"), text, answers) == 0:
+            put_source(self.model, unfinished.step, unfinished.folder, self.tr("use an interrupted recording"))
+            self.go_to.emit(unfinished.step)
+        try:
+            forget_recording(folder)
+        except InputError as error:
+            self.bench.notices.error(str(error))
 
     def _make(self, title: str, name: str, project: Callable[[str], Project]) -> None:
         answer = ask.ask_name_and_folder(self._window, title, name, self.bench.settings.projects_folder)

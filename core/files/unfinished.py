@@ -1,0 +1,53 @@
+"""A recording that was being made when the program died: noted when it begins, so that it is found afterwards."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import get_args
+
+from core.acquire.source import Step
+from core.errors import InputError
+from core.files.atomic import cannot_write, make_folder, write_text
+from core.files.set_listing import pictures_in
+
+NOTE = Path("recordings") / ".unfinished.json"
+"""Within the project; there only while something is recorded, or after a crash."""
+
+
+@dataclass(frozen=True, slots=True)
+class Unfinished:
+    """What was being recorded, where its pictures are, and how many there are."""
+
+    step: Step
+    folder: Path
+    pictures: int
+
+
+def note_recording(project: Path, step: Step, folder: Path) -> None:
+    """Note that `folder` is being recorded for `step`; InputError if nothing can be written there."""
+    make_folder((project / NOTE).parent)
+    write_text(project / NOTE, json.dumps({"step": step, "folder": folder.name}), sync=False)
+
+
+def forget_recording(project: Path) -> None:
+    """The recording is part of the project, or is not wanted; InputError if the note cannot be removed."""
+    try:
+        (project / NOTE).unlink(missing_ok=True)
+    except OSError as error:
+        raise cannot_write(project / NOTE, error) from error
+
+
+def unfinished_recording(project: Path) -> Unfinished | None:
+    """What was being recorded when the program died; None if nothing was, or no picture of it is there."""
+    try:
+        noted = json.loads((project / NOTE).read_text(encoding="utf-8"))
+        step, name = noted["step"], noted["folder"]
+        if step not in get_args(Step) or name != Path(name).name:
+            return None
+        folder = (project / NOTE).parent / name
+        pictures = len(pictures_in(folder))
+    except (OSError, ValueError, KeyError, TypeError, InputError):
+        return None  # no note, or none that can be read: the pictures are where they are
+    return Unfinished(step, folder, pictures) if pictures else None

@@ -1,0 +1,66 @@
+"""The real program, started as its users start it, with somebody in it who does what a test asks for.
+
+`python -m tests.workbench.driven DEED PROJECT [SCENE]`; every line it writes is a fact: "edited", "recorded 12".
+"""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from PySide6.QtCore import QTimer
+
+import workbench.app as program
+from workbench.main_window import MainWindow
+from workbench.project_model import AUTOSAVE_MS
+
+
+def say(*words: object) -> None:
+    """A fact for whoever reads standard output."""
+    print(*words, flush=True)
+
+
+def edit(window: MainWindow, *_: str) -> None:
+    """Change the project, do not save it, and say when the change should be safe."""
+    project = window.model.project
+    window.model.edit("change part", replace(project, info=replace(project.info, part="Edited, not saved")))
+    QTimer.singleShot(2 * AUTOSAVE_MS, lambda: say("edited"))
+
+
+def record(window: MainWindow, scene: str) -> None:
+    """Edit, then record a scan of the simulated rig, and say how many frames the window was told of."""
+    edit(window)
+    window.go_to("scan")
+    live: Any = window.presenters["scan"].live  # type: ignore[attr-defined]
+    live.settings.set_id(scene)
+    live.view.connect(lambda view: say("recorded", view.recorded))
+    start_when_possible(live)
+
+
+def start_when_possible(live: Any) -> None:
+    """Start as soon as the page lets one."""
+    live.start()
+    if not live.running:
+        QTimer.singleShot(50, lambda: start_when_possible(live))
+
+
+DEEDS = {"edit": edit, "record": record, "nothing": lambda *_: say("started")}
+
+
+def main() -> int:
+    """Run the program and do the deed once it is there."""
+    deed, project, more = DEEDS[sys.argv[1]], sys.argv[2], sys.argv[3:]
+    after_start = program._after_start
+
+    def then(window: MainWindow, path: Path | None) -> None:
+        after_start(window, path)
+        deed(window, *more)
+
+    program._after_start = then
+    return program.main([project])
+
+
+if __name__ == "__main__":
+    sys.exit(main())

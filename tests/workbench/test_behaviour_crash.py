@@ -1,0 +1,161 @@
+"""kill -9 in the middle of work: what was edited is offered again, what was recorded is there."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from core.files.pictures import read_picture
+from core.files.project import new_project, read_project, recoverable, write_project
+from core.files.set_listing import scan_frames
+from tests.workbench.technician import Technician
+
+ROOT = Path(__file__).parents[2]
+SCENE = "scale = 0.2\nseed = 3\n"
+START_S = 60.0
+
+Program = Callable[..., "Running"]
+
+
+class Running:
+    """The program in a process group of its own, and what it has said."""
+
+    def __init__(self, home: Path, *arguments: str) -> None:
+        environment = os.environ | {
+            "QT_QPA_PLATFORM": "offscreen",
+            "TRISECT_NO_OPENGL": "painter",
+            "HOME": str(home),
+            "XDG_CONFIG_HOME": str(home / "config"),
+            "XDG_STATE_HOME": str(home / "state"),
+        }
+        self.process = subprocess.Popen(
+            [sys.executable, "-m", "tests.workbench.driven", *arguments],
+            cwd=ROOT,
+            env=environment,
+            stdout=subprocess.PIPE,
+            text=True,
+            start_new_session=True,
+        )
+
+    def said(self, wanted: Callable[[str], bool]) -> str:
+        """Wait for a line that is wanted."""
+        assert self.process.stdout is not None
+        end = time.monotonic() + START_S
+        for line in self.process.stdout:
+            if wanted(line.strip()):
+                return line.strip()
+            assert time.monotonic() < end, "the program does not get there"
+        raise AssertionError(f"the program ended with {self.process.wait(5)}")
+
+    def kill(self, *, everything: bool) -> None:
+        """kill -9: the window's process alone, or all of its processes at once."""
+        if everything:
+            os.killpg(self.process.pid, signal.SIGKILL)
+        else:
+            self.process.kill()
+        self.process.wait(10)
+
+    def members(self) -> list[int]:
+        """Processes of the group that still run."""
+        found = []
+        for stat in Path("/proc").glob("[0-9]*/stat"):
+            try:
+                state, _, group = stat.read_text().rpartition(")")[2].split()[:3]
+            except OSError:
+                continue
+            if int(group) == self.process.pid and state != "Z":
+                found.append(int(stat.parent.name))
+        return found
+
+
+@pytest.fixture
+def program(tmp_path: Path) -> Iterator[Program]:
+    started: list[Running] = []
+
+    def start(*arguments: str) -> Running:
+        started.append(Running(tmp_path / "home", *arguments))
+        return started[-1]
+
+    yield start
+    for one in started:
+        if one.members():
+            os.killpg(one.process.pid, signal.SIGKILL)
+        one.process.wait(10)
+        if one.process.stdout is not None:
+            one.process.stdout.close()
+
+
+@pytest.fixture
+def project(tmp_path: Path) -> Path:
+    """A saved project."""
+    from core.files.project import ProjectFile
+
+    folder = tmp_path / "project"
+    write_project(folder, ProjectFile(new_project("Crash")))
+    return folder
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="kill -9 is not known there")
+@pytest.mark.slow
+@pytest.mark.parametrize("everything", [False, True], ids=["the window", "everything"])
+def test_killed_while_recording_with_unsaved_edits_nothing_is_lost(
+    program: Program, project: Path, technician: Technician, tmp_path: Path, everything: bool
+) -> None:
+    scene = tmp_path / "scene.toml"
+    scene.write_text(SCENE)
+    running = program("record", str(project), str(scene))
+    recorded: list[int] = []
+
+    def enough(line: str) -> bool:
+        word, _, count = line.partition(" ")
+        if word == "recorded":
+            recorded.append(int(count))
+        return word == "edited" or (word == "recorded" and enough_edited)
+
+    enough_edited = False
+    running.said(enough)
+    enough_edited = True
+    running.said(lambda line: enough(line) and recorded[-1] >= 12)
+    running.kill(everything=everything)
+    technician.until(lambda: not running.members(), "all processes of the program to end", 15)
+
+    (folder,) = (project / "recordings").glob("scan-*")
+    reference, frames = scan_frames(folder)
+    assert reference is not None
+    assert len(frames) >= recorded[-1] - (1 if everything else 0)  # one may have been on its way to the disk
+    for path in (reference, *frames):
+        assert read_picture(path).shape == read_picture(reference).shape
+
+    assert read_project(project).project.info.part == ""
+    t = technician
+    with t.answers("Recover the changes", "Use them") as asked:
+        t.window.doors.open_project(project)
+    assert "was not closed properly" in asked[0]
+    assert f"{len(frames) + 1} pictures" in asked[1]
+    assert t.model.project.info.part == "Edited, not saved"
+    assert t.window.current == "scan"
+    t.idle()
+    assert len(t.presenter().work.frames) == len(frames)
+    assert t.model.undo_stack.undoText() == "use an interrupted recording"
+    t.model.save()
+    assert recoverable(project) is None
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="kill -9 is not known there")
+def test_killed_with_unsaved_edits_the_saved_state_can_be_had_as_well(
+    program: Program, project: Path, technician: Technician
+) -> None:
+    running = program("edit", str(project))
+    running.said(lambda line: line == "edited")
+    running.kill(everything=True)
+    with technician.answers("Open the saved state"):
+        technician.window.doors.open_project(project)
+    assert technician.model.project.info.part == ""
+    assert recoverable(project) is None
