@@ -87,6 +87,13 @@ class PlanesCard(StageCard):
                 self.tr("Leave out bad poses, or take other pictures; or accept it after all."),
             ),
             Stage.ACCEPTED: (self.tr("Accepted"), p.state.sentence),
+            Stage.OTHER: (
+                self.tr("Others are in use"),
+                self.tr(
+                    "You measure with laser planes kept earlier. Those shown are of these pictures and settings; "
+                    "accept them to measure with them."
+                ),
+            ),
             Stage.OUTDATED: (
                 self.tr("Accepted, but out of date"),
                 " ".join(part for part in (p.state.sentence, p.work.problem) if part),

@@ -49,6 +49,7 @@ class Stage(StrEnum):
     SOLVED = "solved"
     REJECTED = "rejected"
     ACCEPTED = "accepted"
+    OTHER = "other"
     OUTDATED = "outdated"
 
 
@@ -98,11 +99,12 @@ class PlanesPresenter(StepPresenter):
             return Stage.MEASURING
         if work.poses is not None and work.solving:
             return Stage.SOLVING
+        done = self.state.state is State.DONE
         if accepted and self.candidate in ("", accepted):
-            if self.state.state is State.DONE or (self.candidate == accepted and self.state.state is State.READY):
-                return Stage.ACCEPTED
-            return Stage.OUTDATED
+            return Stage.ACCEPTED if done else Stage.OUTDATED
         if self.candidate:
+            if accepted and done:
+                return Stage.OTHER
             return Stage.REJECTED if self.candidate in self._rejected else Stage.SOLVED
         if not self.project.accepted.camera:
             return Stage.NO_CAMERA
@@ -130,7 +132,10 @@ class PlanesPresenter(StepPresenter):
             Stage.SOLVED: self.tr("Accept the laser planes first."),
             Stage.REJECTED: self.tr("The laser planes were rejected; accept better ones first."),
             Stage.ACCEPTED: "",
-            Stage.OUTDATED: self.tr("The accepted laser planes are out of date; calibrate again."),
+            Stage.OTHER: "",
+            Stage.OUTDATED: self.state.sentence
+            if self.candidate
+            else self.tr("The accepted laser planes are out of date; calibrate again."),
         }[self.stage]
 
     def busy(self) -> str:
@@ -139,12 +144,12 @@ class PlanesPresenter(StepPresenter):
     @property
     def can_measure(self) -> str:
         """Why the pictures cannot be measured now, or ""."""
+        if self.live.running:
+            return self.tr("Stop the live source first.")
         if not self.project.accepted.camera:
             return self.tr("Accept a camera calibration first.")
         if not self.project.sources.planes:
             return self.tr("Choose or record pictures first.")
-        if self.live.running:
-            return self.tr("Stop the live source first.")
         if self.work.measuring:
             return self.tr("The pictures are being measured.")
         return ""
@@ -365,7 +370,17 @@ class PlanesPresenter(StepPresenter):
         if self.current not in names:
             self.current = names[0] if names else ""
         self._look()
+        self._recognise()
         self.changed.emit()
+
+    def _recognise(self) -> None:
+        """Where pictures and settings give just what is accepted, it is not out of date, whatever was changed since."""
+        done = self.model.results.get("planes")
+        if done is None or not self.candidate or self.work.solving or self.candidate != self.project.accepted.fan:
+            return
+        now = finished("planes", self.project, self.model.results, done.at)
+        if now.rests_on != done.rests_on:
+            self.model.record("planes", now)
 
     def _look(self) -> None:
         """Have the current pose's picture read, with what was found in it and the numbers its stripes have now."""

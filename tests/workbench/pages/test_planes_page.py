@@ -1,0 +1,360 @@
+"""The laser planes page, clicked."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, cast
+
+import numpy as np
+import pytest
+from PySide6.QtCore import QMimeData, QPoint, QPointF, Qt, QUrl
+from PySide6.QtGui import QDragEnterEvent, QDropEvent
+from PySide6.QtWidgets import QApplication, QWidget
+
+from core.files.project_keys import finished
+from core.live.events import LiveAsk, LiveEnded, LiveStarted, LiveTaken, LiveView, PlanesDetail, Stop
+from tests.workbench.hand_lane import HandLane
+from tests.workbench.pages.planes_cases import NO_PLATE, Planes, folder_with_poses, project_with
+from workbench import jobs
+from workbench.bench import Bench
+from workbench.pages.planes_page import PlanesPage
+from workbench.pages.planes_presenter import PlanesPresenter, Stage
+from workbench.views import ask
+
+LEFT = Qt.MouseButton.LeftButton
+
+
+@pytest.fixture
+def planes(hand_bench: Bench) -> Planes:
+    return Planes(hand_bench)
+
+
+@pytest.fixture(scope="session")
+def pictures(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return folder_with_poses(tmp_path_factory.mktemp("poses") / "planes")
+
+
+@pytest.fixture
+def page(hand_bench: Bench, planes: Planes, tmp_path: Path, qtbot: Any) -> Iterator[PlanesPage]:
+    made = PlanesPage(PlanesPresenter(hand_bench))
+    hand_bench.model.create(tmp_path / "project", project_with())
+    made.presenter.model.record("camera", finished("camera", made.presenter.project, {}))
+    qtbot.addWidget(made)
+    made.resize(1098, 700)
+    with qtbot.waitExposed(made):
+        made.show()
+    settled(qtbot, made)
+    yield made
+    made.hide()
+
+
+@pytest.fixture
+def solved(page: PlanesPage, pictures: Path, qtbot: Any) -> PlanesPage:
+    page.presenter.use_folder(pictures)
+    qtbot.waitUntil(lambda: page.presenter.stage is Stage.SOLVED)
+    settled(qtbot, page)
+    return page
+
+
+def settled(qtbot: Any, page: PlanesPage) -> None:
+    qtbot.waitUntil(lambda: not page.presenter.bench.quick.busy and not page.presenter.bench.measuring.busy)
+
+
+def click(qtbot: Any, widget: QWidget) -> None:
+    where = widget.rect().center()
+    where.setX(min(where.x(), 10))
+    qtbot.mouseClick(widget, LEFT, pos=where)
+
+
+def pose_row(page: PlanesPage, name: str) -> Any:
+    return next(row for row in page.poses.rows() if row.name == name)
+
+
+def check(qtbot: Any, page: PlanesPage, name: str) -> None:
+    """Click the check box of a pose."""
+    table = page.poses.table
+    place = table.visualRect(page.poses.model.index(page.poses.model.row_of(name), 0))
+    qtbot.mouseClick(table.viewport(), LEFT, pos=QPoint(place.left() + 10, place.center().y()))
+
+
+# ---- empty, failed, solved
+
+
+def test_an_empty_page_says_what_to_do_next_and_offers_it(
+    page: PlanesPage, pictures: Path, qtbot: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    empty = page.pose.image.empty_state
+    assert empty.message.startswith("Take pictures of the plate under the laser")
+    assert page.card.title.text() == "No pictures yet"
+    assert page.live.panel.start.property("primary")
+    assert not page.result_fold.isVisible()
+    monkeypatch.setattr(ask, "choose_folder", lambda *_: pictures)
+    click(qtbot, empty.button)
+    qtbot.waitUntil(lambda: page.presenter.stage is Stage.SOLVED)
+
+
+def test_without_a_camera_the_page_says_so_and_offers_nothing_else(page: PlanesPage) -> None:
+    page.presenter.model.edit("reject", project_with(camera=""))
+    assert page.card.title.text() == "The camera comes first"
+    assert "seen through the camera" in page.pose.image.empty_state.message
+    assert page.card.buttons["run"].toolTip() == "Accept a camera calibration first."
+
+
+def test_a_folder_can_be_dropped_anywhere_on_the_page(page: PlanesPage, pictures: Path, qtbot: Any) -> None:
+    data = QMimeData()
+    data.setUrls([QUrl.fromLocalFile(str(pictures))])
+    action, keys = Qt.DropAction.CopyAction, Qt.KeyboardModifier.NoModifier
+    enter = QDragEnterEvent(QPoint(5, 5), action, data, LEFT, keys)
+    QApplication.sendEvent(page.pose.image.canvas, enter)
+    assert enter.isAccepted()
+    QApplication.sendEvent(page, QDropEvent(QPointF(5, 5), action, data, LEFT, keys))
+    qtbot.waitUntil(lambda: page.presenter.stage is Stage.SOLVED)
+
+
+def test_there_is_one_primary_button_and_it_is_the_next_thing_to_do(solved: PlanesPage, qtbot: Any) -> None:
+    buttons = solved.card.buttons
+    assert [key for key, button in buttons.items() if button.property("primary")] == ["accept"]
+    assert not solved.live.panel.start.property("primary")
+    click(qtbot, buttons["accept"])
+    qtbot.waitUntil(lambda: solved.presenter.stage is Stage.ACCEPTED)
+    assert solved.card.title.text() == "Accepted"
+    assert not any(button.property("primary") for button in buttons.values())
+    click(qtbot, buttons["reject"])
+    assert solved.card.title.text() == "Rejected"
+
+
+def test_greyed_buttons_say_why(page: PlanesPage) -> None:
+    for button in page.card.buttons.values():
+        assert not button.isEnabled()
+        assert button.toolTip()
+
+
+def test_the_result_takes_the_room_of_what_it_was_made_from(solved: PlanesPage) -> None:
+    folds = (solved.pictures_fold, solved.target_fold, solved.laser_fold)
+    assert not any(fold.isExpanded() for fold in folds)
+    assert solved.result_fold.isVisible()
+    solved.presenter.model.undo_stack.undo()
+    assert all(fold.isExpanded() for fold in folds)
+    assert not solved.result_fold.isVisible()
+
+
+def test_a_problem_stands_where_the_next_step_is_told(page: PlanesPage, pictures: Path, qtbot: Any) -> None:
+    page.presenter.target.set_target("kind", "checkerboard")
+    page.presenter.use_folder(pictures)
+    qtbot.waitUntil(lambda: page.card.title.text() == "No calibration")
+    assert "none of the 7 poses can be used" in page.card.words.text()
+    assert page.card.buttons["run"].property("primary")
+
+
+# ---- poses
+
+
+def test_unchecking_a_pose_leaves_it_out_of_result_and_count(solved: PlanesPage, qtbot: Any) -> None:
+    check(qtbot, solved, "pose01")
+    settled(qtbot, solved)
+    assert solved.presenter.model.undo_stack.undoText() == "leave out pose01"
+    assert (pose_row(solved, "pose01").used, pose_row(solved, "pose01").reason) == (False, "left out by hand")
+    assert solved.result.quality.text_of("Poses") == "5 of 7 count"
+    assert solved.result.left_out.text().splitlines() == ["1 × left out by hand: pose01", f"1 × {NO_PLATE}: pose06"]
+    solved.presenter.model.undo_stack.undo()
+    assert pose_row(solved, "pose01").used
+    assert solved.result.quality.text_of("Poses") == "6 of 7 count"
+
+
+def test_several_chosen_poses_are_left_out_by_one_key_and_one_undo(solved: PlanesPage, qtbot: Any) -> None:
+    table, edits = solved.poses.table, solved.presenter.model.undo_stack.count()
+    table.selectRow(1)
+    table.selectionModel().select(
+        solved.poses.model.index(2, 0),
+        table.selectionModel().SelectionFlag.Select | table.selectionModel().SelectionFlag.Rows,
+    )
+    qtbot.keyClick(table, Qt.Key.Key_Space)
+    assert solved.presenter.project.options.excluded == {"planes/pose01", "planes/pose02"}
+    assert solved.presenter.model.undo_stack.count() == edits + 1
+    solved.presenter.model.undo_stack.undo()
+    assert not solved.presenter.project.options.excluded
+
+
+def test_a_pose_shows_its_plate_stripes_and_line_numbers(solved: PlanesPage, qtbot: Any) -> None:
+    solved.poses.table.setCurrentIndex(solved.poses.model.index(3, 0))
+    settled(qtbot, solved)
+    assert set(solved.pose.image.layer_names()) >= {"corners", "stripe 0", "stripe 1", "stripe 2"}
+    assert solved.pose.line.text().startswith("pose03: stripes RMS 0.0")
+    assert solved.pose.line.text().endswith("3 lines seen")
+
+
+def test_a_pose_without_a_plate_says_why(solved: PlanesPage, qtbot: Any) -> None:
+    solved.presenter.choose_pose("pose06")
+    settled(qtbot, solved)
+    assert f"left out ({NO_PLATE})" in solved.pose.line.text()
+    assert not [name for name in solved.pose.image.layer_names() if name.startswith(("corners", "stripe"))]
+
+
+def test_a_click_on_a_bar_shows_its_pose(solved: PlanesPage) -> None:
+    solved.bars.bar_clicked.emit("pose04")
+    assert solved.poses.current() == "pose04"
+    assert solved.pose.line.text().startswith("pose04")
+
+
+def test_angles_are_shown_held_and_free_with_the_verdict(solved: PlanesPage, qtbot: Any) -> None:
+    assert solved.result.angles.text_of("Angle 1–2") == "5.000° held, 5.001° free"
+    assert solved.result.angles.text_of("Off one pencil").endswith(" mm")
+    assert solved.result.verdict.text().startswith("One common axis and angles of 5°: this suits the laser")
+    solved.laser_fold.expand(animate=False)
+    click(qtbot, solved.laser.editor("constrain"))
+    settled(qtbot, solved)
+    assert "the freely fitted planes are used, as asked" in solved.result.verdict.text()
+
+
+# ---- 3D and history
+
+
+def test_the_rig_is_drawn_in_3d_and_the_chosen_pose_stands_out(solved: PlanesPage, qtbot: Any) -> None:
+    drawn: list[str] = []
+    for name in ("set_planes", "set_polylines", "set_labels", "set_camera_frustum"):
+        real = getattr(solved.rig.scene, name)
+
+        def spy(*args: Any, real: Any = real, name: str = name) -> None:
+            drawn.append(args[0] if isinstance(args[0], str) else name)
+            real(*args)
+
+        setattr(solved.rig.scene, name, spy)
+    solved.tabs.setCurrentWidget(solved.rig)
+    assert drawn == ["set_camera_frustum", "planes", "targets", "stripes", "poses", "chosen"]
+    solved.rig.refresh()
+    assert len(drawn) == 6, "nothing is drawn again for nothing"
+    solved.presenter.choose_pose("pose02")
+    assert drawn[6:] == ["chosen"]
+
+
+def test_planes_are_restored_from_the_history(solved: PlanesPage, qtbot: Any) -> None:
+    click(qtbot, solved.card.buttons["accept"])
+    settled(qtbot, solved)
+    first = solved.presenter.candidate
+    check(qtbot, solved, "pose01")
+    settled(qtbot, solved)
+    click(qtbot, solved.card.buttons["accept"])
+    settled(qtbot, solved)
+    solved.tabs.setCurrentWidget(solved.history)
+    assert solved.history.table.table.rowCount() == 2
+    assert solved.history.restore.toolTip() == "Choose a calibration in the list first."
+    solved.history.table.set_current_row(1)
+    click(qtbot, solved.history.restore)
+    assert solved.presenter.project.accepted.fan == first
+    assert solved.history.restore.toolTip() == "These laser planes are accepted already."
+    assert not solved.bars.isVisible()
+
+
+# ---- laser and plate
+
+
+def test_the_laser_is_changed_in_its_form_and_undone(page: PlanesPage, qtbot: Any) -> None:
+    lines = page.laser.editor("lines")
+    lines.setFocus()
+    lines.selectAll()  # type: ignore[attr-defined]
+    qtbot.keyClicks(lines, "1")
+    qtbot.keyClick(lines, Qt.Key.Key_Return)
+    assert page.presenter.project.rig.lines == 1
+    assert not page.laser.editor("angle").isEnabled()
+    assert page.laser.editor("angle").toolTip() == "One line has no neighbour."
+    page.presenter.model.undo_stack.undo()
+    assert page.laser.values()["lines"] == 3
+    assert page.laser.editor("angle").isEnabled()
+    page.laser.edited.emit("angle", None)
+    assert page.presenter.project.rig.angle == 0.0
+    assert page.laser.values()["angle"] is None
+
+
+def test_the_plate_is_chosen_in_its_form(page: PlanesPage, qtbot: Any) -> None:
+    page.target.form.edited.emit("kind", "circle_grid")
+    qtbot.waitUntil(lambda: "asymmetric" in page.target.form.values())
+    page.presenter.model.undo_stack.undo()
+    assert page.target.form.values()["kind"] == "black_square"
+
+
+# ---- live
+
+
+@pytest.fixture
+def lane(page: PlanesPage) -> HandLane:
+    return cast(HandLane, page.presenter.bench.live)
+
+
+def detail(uv: Any = None, stripes: int = 3) -> PlanesDetail:
+    lines = tuple(np.array([[10.0, 10.0 + k], [60.0, 12.0 + k]]) for k in range(stripes))
+    cells = np.eye(12, 16, dtype=bool)
+    missing = ("Record at least 8 poses; there are 2.",)
+    return PlanesDetail(7, uv, lines, tuple(range(stripes)), "Hold still.", cells, missing, 2, True)
+
+
+def live_view(*args: Any) -> LiveView:
+    return LiveView(np.zeros((48, 64), np.uint8), 10, 7, 12.0, 2, 0, detail(*args))
+
+
+def start_live(page: PlanesPage, lane: HandLane, qtbot: Any) -> None:
+    page.source.set_mode("live")
+    click(qtbot, page.live.panel.start)
+    lane.waiting[0][0].told.emit(LiveStarted("Camera 1", (640, 480)))
+
+
+def test_poses_are_taken_live_with_everything_drawn_and_each_picture_answered_once(
+    page: PlanesPage, lane: HandLane, qtbot: Any
+) -> None:
+    start_live(page, lane, qtbot)
+    assert page.card.title.text() == "Taking poses"
+    task = lane.waiting[0][0]
+    task.view.emit(live_view(np.array([[100.0, 120.0], [200.0, 130.0]])))
+    assert set(page.pose.image.layer_names()) >= {"covered", "corners", "stripe 0", "stripe 2"}
+    task.view.emit(live_view(None, 1))
+    assert not {"corners", "stripe 1", "stripe 2"} & set(page.pose.image.layer_names())
+    assert lane.sent.count("shown") == 2
+    task.told.emit(LiveTaken("pose00", np.zeros((12, 16), np.uint8)))
+    assert [row.name for row in page.poses.rows()] == ["pose00"]
+    check(qtbot, page, "pose00")
+    assert page.poses.rows() == ()
+    assert not page.target.isEnabled()
+
+
+def test_the_laser_is_asked_to_be_switched_and_the_answer_goes_back(
+    page: PlanesPage, lane: HandLane, qtbot: Any
+) -> None:
+    start_live(page, lane, qtbot)
+    lane.waiting[0][0].told.emit(LiveAsk("Switch the three-line laser off.", "Continue", Stop()))
+    assert page.strip.isVisible()
+    click(qtbot, page.strip.answer)
+    assert lane.sent[-1] == Stop()
+
+
+def test_a_laser_that_cannot_be_switched_is_said_before_the_start(page: PlanesPage, lane: HandLane, qtbot: Any) -> None:
+    page.source.set_mode("live")
+    assert page.live.pairs.isChecked()
+    click(qtbot, page.live.pairs)
+    start_live(page, lane, qtbot)
+    assert lane.waiting[0][2][0].pairs is False
+    assert not page.live.pairs.isEnabled()
+    assert page.live.pairs.toolTip() == "Stop the live source first."
+
+
+def test_a_recording_that_ends_is_measured_and_shown(page: PlanesPage, lane: HandLane, qtbot: Any) -> None:
+    start_live(page, lane, qtbot)
+    task, _, (request,), _ = lane.waiting[0]
+    task.view.emit(live_view())
+    folder_with_poses(request.folder)
+    click(qtbot, page.live.panel.start)
+    lane.finish(LiveEnded(request.folder, 7, 0))
+    qtbot.waitUntil(lambda: page.presenter.stage is Stage.SOLVED)
+    settled(qtbot, page)
+    assert page.pose.line.text().startswith("pose00: stripes RMS")
+    assert "covered" not in page.pose.image.layer_names()
+
+
+def test_the_page_is_drawn_no_more_often_than_something_changes(solved: PlanesPage, planes: Planes, qtbot: Any) -> None:
+    """What is shown asks for a picture, the picture changes what is shown: that must come to rest."""
+    ran = len(planes.quick.ran)
+    for _ in range(5):
+        solved.refresh()
+        solved.presenter.changed.emit()
+    qtbot.wait(30)
+    assert len(planes.quick.ran) == ran
+    assert jobs.SHOW_POSE in planes.quick.ran
