@@ -27,6 +27,7 @@ SHORTCUTS: tuple[tuple[str, str, str], ...] = (
     ("fit", "F", str(QT_TRANSLATE_NOOP("Shortcuts", "Picture: show the whole picture"))),
     ("one", "1", str(QT_TRANSLATE_NOOP("Shortcuts", "Picture: one screen pixel a picture pixel"))),
     ("views", "1 … 7, R", str(QT_TRANSLATE_NOOP("Shortcuts", "3D view: standard views, fit"))),
+    ("frames", "Left, Right", str(QT_TRANSLATE_NOOP("Shortcuts", "Scan: go through the frames"))),
     ("polygon", "Return, Esc", str(QT_TRANSLATE_NOOP("Shortcuts", "Drawing a region: close it, give it up"))),
 )
 """Name, key and meaning."""

@@ -78,8 +78,12 @@ class ScanCloud(QWidget):
 
     def _message(self) -> str:
         p = self._presenter
+        if p.live.running and not p.calibrated:
+            return self.tr("There are no points without accepted calibrations; the pictures are recorded.")
         if p.live.running or p.run.measuring:
             return self.tr("The points will grow here.")
+        if p.work.look is not None and not p.work.look.problems:
+            return self.tr("No point is certain enough; allow a larger σ in the settings, or scan again.")
         if p.stage is Stage.NONE:
             return self.tr("The measured points will be here.")
         return p.cannot_measure or self.tr("Press Measure: the points will grow here.")

@@ -190,21 +190,20 @@ class ScanPage(StepPage):
 
     def _show_frames(self) -> None:
         p = self.presenter
-        records, previews = p.work.records(), p.run.previews
+        running = p.run.measuring
+        records, seen = ({}, p.run.seen) if running else (p.work.records(), {})
         rows = []
         for name in p.work.names:
-            record, preview = records.get(name), previews.get(name) if p.run.measuring else None
-            if p.run.measuring:
-                record = None
+            record = records.get(name)
             sigma = record.sigma_mm if record is not None and not math.isnan(record.sigma_mm) else None
             text = words.mm(sigma) if sigma is not None else ""
-            said = words.frame_line(record, preview)
+            said = words.frame_line(record, seen.get(name))
             rows.append(ListRow(name, sigma, text, not p.is_left_out(name), said, None, short(name)))
         shown = [(row.name, row.text, row.used, row.reason) for row in rows]
         if shown != self._rows:
             self._rows = shown
             self.frames.set_rows(rows)
-        current = p.run.seen_last if p.run.measuring else p.scrub.current
+        current = p.run.newest if running else p.scrub.current
         if current and self.frames.current() != current:
             self.frames.set_current(current)
             QTimer.singleShot(0, self, self._scroll_to_current)  # the list may not be laid out yet

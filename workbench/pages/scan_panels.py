@@ -81,7 +81,8 @@ class ScanCard(StageCard):
             case Stage.MEASURED:
                 return self.tr("Measured"), p.state.sentence
             case Stage.OUTDATED:
-                return self.tr("Measured, but out of date"), self.tr("{0} Measure again.").format(p.state.sentence)
+                why = self.tr("{0} Measure again.") if p.changed_since() else "{0}"
+                return self.tr("Measured, but out of date"), why.format(p.state.sentence)
 
     def _how_to_begin(self) -> str:
         begin = self.tr("Sweep the part with a live source, or choose the folder of a recording.")

@@ -99,7 +99,7 @@ class ScanPresenter(StepPresenter):
             return ""
         if stage in (Stage.LIVE, Stage.MEASURING):
             return self.cannot_measure
-        if stage is Stage.OUTDATED and not self._changed_since():
+        if stage is Stage.OUTDATED and not self.changed_since():
             return self.state.sentence
         if self.cannot_measure:
             return self.cannot_measure
@@ -132,6 +132,11 @@ class ScanPresenter(StepPresenter):
         if all(name in self.project.options.excluded for name in work.names):
             return self.tr("All frames are left out; let some of them count again.")
         return ""
+
+    def changed_since(self) -> tuple[str, ...]:
+        """What the result rests on and is not what it was."""
+        done = self.model.results.get("scan")
+        return changed(done.rests_on, rests_on("scan", self.project, {})) if done is not None else ()
 
     @property
     def calibrated(self) -> bool:
@@ -213,6 +218,10 @@ class ScanPresenter(StepPresenter):
     def do_live(self) -> None:
         self.live.toggle()
 
+    def do_capture(self) -> None:
+        """What the recording asks for is done: take the reference, start."""
+        self.live.answer()
+
     # ---- what happens elsewhere
 
     def entered(self) -> None:
@@ -256,11 +265,6 @@ class ScanPresenter(StepPresenter):
 
     def _set_options(self, label: str, options: Options, merge_key: str = "") -> None:
         self.model.edit(label, replace(self.project, options=options), merge_key)
-
-    def _changed_since(self) -> tuple[str, ...]:
-        """What the result rests on and is not what it was."""
-        done = self.model.results.get("scan")
-        return changed(done.rests_on, rests_on("scan", self.project, {})) if done is not None else ()
 
     def _cannot_record(self) -> str:
         """Why no recording can start now, or ""."""

@@ -12,7 +12,6 @@ from core.files.project import Project
 from core.files.project_keys import finished, rests_on
 from core.files.project_results import ScanSummary
 from core.live.events import ScanDetail
-from core.scan.frame_preview import FramePreview
 from core.scan.preview_cloud import PreviewCloud
 from workbench import jobs
 from workbench.bench import Bench
@@ -28,7 +27,7 @@ DISPLAY_PX = 1280
 class ScanRun(QObject):
     """Measures the recording of the project as it is when it starts, and records the result.
 
-    `previews` is what each frame showed by itself so far, `seen_last` the newest of them.
+    `seen` says of each frame so far how many points it has in the preview, and why it has none; `newest` is the last.
     """
 
     changed = Signal()
@@ -39,8 +38,8 @@ class ScanRun(QObject):
 
     started = Signal()
 
-    previews: dict[str, FramePreview]
-    seen_last: str
+    seen: dict[str, tuple[int, str]]
+    newest: str
     by_itself: bool
     """Whether it was started by the end of a recording."""
 
@@ -57,7 +56,7 @@ class ScanRun(QObject):
         self._forget(by_itself=False)
 
     def _forget(self, *, by_itself: bool) -> None:
-        self.by_itself, self.previews, self.seen_last = by_itself, {}, ""
+        self.by_itself, self.seen, self.newest = by_itself, {}, ""
         self._latest: ScanDetail | None = None
         self._points: list[PreviewCloud] = []
         self._renewed = False
@@ -115,7 +114,8 @@ class ScanRun(QObject):
         if task is not self._task:
             return
         if detail.preview is not None:
-            self.previews[detail.preview.name], self.seen_last = detail.preview, detail.preview.name
+            preview = detail.preview
+            self.seen[preview.name], self.newest = (len(preview.points), preview.reason), preview.name
         if detail.renewed:
             self._points, self._renewed = [], True
         self._points.append(detail.points)

@@ -7,7 +7,6 @@ import math
 from PySide6.QtCore import QCoreApplication
 
 from core.live.events import ScanDetail
-from core.scan.frame_preview import FramePreview
 from core.scan.frame_record import FrameRecord
 from core.scan.scan_look import ScanLook
 from core.scan.stages import FrameStages
@@ -56,15 +55,16 @@ def reason_rows(look: ScanLook | None) -> list[Row]:
     ]
 
 
-def frame_line(record: FrameRecord | None, preview: FramePreview | None) -> str:
-    """The second line of a frame in the list."""
+def frame_line(record: FrameRecord | None, seen: tuple[int, str] | None) -> str:
+    """The second line of a frame in the list; `seen`: points in the preview, and why there are none."""
     if record is not None:
         if not record.used:
             return record.reason
         crossings = record.fan_crossings + record.sweep_crossings
         return _tr("{0} points · {1} crossings").format(count(record.points), crossings)
-    if preview is not None:
-        return preview.reason or _tr("{0} points in the preview").format(count(len(preview.points)))
+    if seen is not None:
+        points, reason = seen
+        return reason or _tr("{0} points in the preview").format(count(points))
     return ""
 
 

@@ -1,5 +1,6 @@
 """The scan page, clicked."""
 
+from dataclasses import replace
 from typing import cast
 
 import numpy as np
@@ -7,6 +8,7 @@ import pytest
 from PySide6.QtCore import Qt
 
 from core.errors import InputError
+from core.files.project_keys import finished
 from core.live.events import LiveAsk, LiveEnded, LiveStarted, Resume
 from tests.workbench.hand_lane import HandLane
 from tests.workbench.pages import scan_cases as cases
@@ -277,7 +279,8 @@ def test_a_live_scan_goes_from_the_reference_to_the_result(page, lane, measuring
     lane.current.told.emit(LiveAsk("Switch the hand-held laser on, press Start.", "Start", Resume()))
     assert not page.strip.isHidden() and page.strip.answer.text() == "Start"
     qtbot.mouseClick(page.strip.answer, LEFT)
-    assert isinstance(lane.sent[-1], Resume)
+    page.presenter.do_capture()
+    assert [type(sent) for sent in lane.sent[-2:]] == [Resume, Resume]
     lane.current.view.emit(cases.live_view(1, renewed=True, condition=np.inf))
     assert page.stage.title.text() == "Scanning"
     assert {"covered", "fan 3", "sweep", "good", "weak", "left out"} <= set(page.picture.image.layer_names())
@@ -299,6 +302,7 @@ def test_without_calibrations_a_live_scan_shows_stripes_only(page, lane, qtbot):
     lane.current.view.emit(cases.live_view(0))
     assert page.picture.image.legend_titles.count("sweep") == 1
     assert "good" not in page.picture.image.layer_names()
+    assert "no points without accepted calibrations" in page.cloud.scene._message
 
 
 def test_every_live_picture_is_answered_even_when_the_page_is_hidden(page, lane, qtbot):
@@ -329,3 +333,17 @@ def test_each_view_can_have_all_the_room_and_give_it_back(recorded, qtbot):
 
 def test_an_empty_3d_view_says_what_to_do(page, recorded):
     assert recorded.cloud.scene._message == "Press Measure: the points will grow here."
+
+
+def test_a_result_without_points_says_what_to_change(measured, scan_bench, measuring, qtbot):
+    cast(HandLane, scan_bench.quick).answers[jobs.SHOW_SCAN] = lambda folder: cases.look(points=0)
+    qtbot.mouseClick(measured.stage.buttons["run"], LEFT)
+    measuring.finish(cases.summary(gauge=None))
+    qtbot.waitUntil(lambda: "larger σ" in measured.cloud.scene._message)
+
+
+def test_a_result_whose_calibration_is_out_of_date_is_not_told_to_be_measured_again(measured):
+    model = measured.presenter.model
+    camera = finished("camera", measured.presenter.project, {})
+    model.record("camera", replace(camera, rests_on={**camera.rests_on, "left-out views": "others"}))
+    assert measured.stage.words.text() == "Out of date, because this is: calibrate the camera."

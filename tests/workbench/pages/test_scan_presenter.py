@@ -177,7 +177,7 @@ def test_pictures_are_fetched_one_at_a_time_and_bring_all_points_since_the_last(
     recorded.run.shown()
     qtbot.waitUntil(lambda: len(seen) == 2)
     assert seen[1] == (2, 2, 60, True)
-    assert recorded.run.previews.keys() == set(recorded.work.names)
+    assert recorded.run.seen.keys() == set(recorded.work.names) and recorded.run.seen[cases.name_of(2)] == (30, "")
 
 
 def test_a_picture_that_cannot_be_read_does_not_stop_the_others(recorded, measuring, quick, qtbot):

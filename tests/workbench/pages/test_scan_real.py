@@ -72,7 +72,7 @@ def test_measuring_is_cancelled_within_a_second_and_the_result_stays(page, qtbot
     p = page.presenter
     before = p.model.results["scan"]
     p.do_run()
-    qtbot.waitUntil(lambda: p.run.previews != {}, timeout=30_000)
+    qtbot.waitUntil(lambda: p.run.seen != {}, timeout=30_000)
     p.cancel()
     qtbot.waitUntil(lambda: not p.run.measuring, timeout=1_500)
     assert p.model.results["scan"] is before and p.stage is Stage.MEASURED
