@@ -143,7 +143,7 @@ class LaserForm(SettingsForm):
         )
         self.add_number(
             "angle", self.tr("Angle"), "°", self.tr("Between neighbouring lines, as its maker states it."),
-            minimum=0.1, maximum=45, decimals=3, step=0.1, none_text=self.tr("not stated"),
+            minimum=0.1, maximum=45, decimals=3, step=0.1, none_text=self.tr("not stated"), first=5.0,
         )  # fmt: skip
         self.add_check(
             "constrain",

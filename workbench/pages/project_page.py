@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QScrollArea, QVBoxLayout, QWidget
+from PySide6.QtCore import QEvent, Qt, QUrl
+from PySide6.QtGui import QDesktopServices
+from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QPushButton, QScrollArea, QVBoxLayout, QWidget
 
 from workbench.pages.project_presenter import ProjectPresenter
 from workbench.pages.step_page import StepPage, heading, muted
+from workbench.theme import icon
 from workbench.views.forms import SettingsForm
+from workbench.views.paths import breakable
 from workbench.views.value_rows import ValueRows
 
 
@@ -30,8 +33,9 @@ class ProjectPage(StepPage):
         ):
             none = self.tr("not measured")
             w.add_number(
-                key, p.label(key), "°C", words, minimum=-20, maximum=highest, decimals=1, step=0.5, none_text=none
-            )
+                key, p.label(key), "°C", words, minimum=-20, maximum=highest, decimals=1, step=0.5, none_text=none,
+                first=20.0,
+            )  # fmt: skip
         h.add_text("operator", p.label("operator"), self.tr("Who measures."))
         h.add_text("laboratory", p.label("laboratory"), self.tr("Who answers for the report: its heading."))
         h.add_text("customer", p.label("customer"), self.tr("Whom the report is for."))
@@ -42,9 +46,8 @@ class ProjectPage(StepPage):
         self.rows, self.next_words = ValueRows(), muted()
         self.add_panel(self.tr("How far the work is"), self.rows)
         self.add_to_side(self.next_words)
-        self.place = muted()
-        self.place.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
-        self.add_panel(self.tr("Where it is kept"), self.place, collapsed=True)
+        self.place, self.folder = muted(), QPushButton(self.tr("Open the project folder"))
+        self.add_panel(self.tr("Where it is kept"), self._kept())
 
     def refresh(self) -> None:
         values = self.presenter.values()
@@ -52,20 +55,45 @@ class ProjectPage(StepPage):
             form.set_values({key: value for key, value in values.items() if key in form.values()})
         self.rows.set_rows(self.presenter.progress_rows())
         self.next_words.setText(self.presenter.next_words())
-        self.place.setText(self.presenter.place())
+        self.place.setText(breakable(self.presenter.place()))
+        self.folder.setIcon(icon("mdi6.folder-open-outline"))
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "folder"):
+            self._changed()
 
     def _columns(self) -> QWidget:
         inside = QWidget()
-        row = QHBoxLayout(inside)
-        row.setContentsMargins(0, 0, 0, 0)
+        column = QVBoxLayout(inside)
+        column.setContentsMargins(0, 0, 0, 0)
+        row = QHBoxLayout()
         row.setSpacing(12)
         for title, form in ((self.tr("Part"), self.what), (self.tr("People and remarks"), self.who)):
-            row.addWidget(_card(heading(title), form), 1, Qt.AlignmentFlag.AlignTop)
+            row.addWidget(_card(heading(title), form), 1)
+        column.addLayout(row)
+        column.addStretch(1)
         scroll = QScrollArea()
         scroll.setWidget(inside)
         scroll.setWidgetResizable(True)
         scroll.setFrameShape(QFrame.Shape.NoFrame)
         return scroll
+
+    def _kept(self) -> QWidget:
+        inside = QWidget()
+        column = QVBoxLayout(inside)
+        column.setContentsMargins(0, 4, 0, 4)
+        self.place.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
+        self.folder.setToolTip(self.tr("Recordings, calibrations, results and the last five saved versions are in it"))
+        self.folder.clicked.connect(self._open_folder)
+        column.addWidget(self.place)
+        column.addWidget(self.folder)
+        return inside
+
+    def _open_folder(self) -> None:
+        place = self.presenter.place()
+        if place and not QDesktopServices.openUrl(QUrl.fromLocalFile(place)):
+            self.presenter.bench.notices.warning(self.tr("Nothing here opens folders: {0}").format(place))
 
 
 def _card(title: QLabel, form: QWidget) -> QFrame:
@@ -75,4 +103,5 @@ def _card(title: QLabel, form: QWidget) -> QFrame:
     column.setContentsMargins(16, 12, 16, 14)
     column.addWidget(title)
     column.addWidget(form)
+    column.addStretch(1)
     return card

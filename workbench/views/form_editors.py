@@ -12,15 +12,19 @@ _STEPPING_MS = 400
 
 
 class NumberEditor(QDoubleSpinBox):
-    """A number with its unit; with `none_text` it may be empty, which reads as that text and gives None."""
+    """A number with its unit; with `none_text` it may be empty, which reads as that text and gives None.
+
+    Stepping away from none goes to `first`, or to the smallest number.
+    """
 
     committed = Signal()
 
     def __init__(
-        self, minimum: float, maximum: float, decimals: int, step: float, unit: str, none_text: str | None
-    ) -> None:
+        self, minimum: float, maximum: float, decimals: int, step: float, unit: str, none_text: str | None,
+        first: float | None = None,
+    ) -> None:  # fmt: skip
         super().__init__()
-        self._none_text = none_text
+        self._none_text, self._first = none_text, minimum if first is None else first
         self._whole = decimals == 0
         self._told: float | None = None
         self.setLocale(QLocale.c())
@@ -58,7 +62,10 @@ class NumberEditor(QDoubleSpinBox):
         self._told = self.content()
 
     def stepBy(self, steps: int) -> None:
-        super().stepBy(steps)
+        if self.content() is None and steps > 0:
+            self.setValue(self._first)
+        else:
+            super().stepBy(steps)
         self._stepping.start()
 
     def validate(self, text: str, position: int) -> tuple[QValidator.State, str, int]:

@@ -59,10 +59,14 @@ class SettingsForm(QWidget):
         decimals: int = 0,
         step: float = 1.0,
         none_text: str | None = None,
+        first: float | None = None,
         tip: str = "",
     ) -> None:
-        """A number; whole, and told as int, if it has no decimals. With `none_text` it may be left empty: None."""
-        editor = NumberEditor(minimum, maximum, decimals, step, unit, none_text)
+        """A number; whole, and told as int, if it has no decimals. With `none_text` it may be left empty: None.
+
+        `first` is the number that stepping up from none goes to.
+        """
+        editor = NumberEditor(minimum, maximum, decimals, step, unit, none_text, first)
         editor.setMinimumWidth(_EDITOR_WIDTH)
         self._add(key, label, editor, help, tip)
 

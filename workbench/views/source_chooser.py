@@ -18,6 +18,7 @@ from PySide6.QtWidgets import (
 
 from workbench.theme import icon
 from workbench.views import ask
+from workbench.views.paths import breakable
 
 
 class SourceChooser(QWidget):
@@ -76,7 +77,7 @@ class SourceChooser(QWidget):
         """Show the folder in use and a sentence about it ("24 pictures")."""
         if folder is not None:
             self._folder = folder
-        self.path.setText(_breakable(str(folder)) if folder is not None else self.tr("No folder is chosen yet."))
+        self.path.setText(breakable(str(folder)) if folder is not None else self.tr("No folder is chosen yet."))
         self.path.setToolTip(str(folder) if folder is not None else "")
         self.detail.setText(detail or ("" if folder is not None else self.tr("Choose a folder, or drop one here.")))
 
@@ -138,8 +139,3 @@ def dropped_folder(event: QDropEvent | QDragEnterEvent) -> Path | None:
     if not paths or (paths[0] / "project.json").exists() or (paths[0] / "rig.toml").exists():
         return None  # a project or a whole recording set: the window opens it
     return paths[0] if paths[0].is_dir() else paths[0].parent
-
-
-def _breakable(path: str) -> str:
-    """A path that can be wrapped after each separator."""
-    return path.replace("/", "/\u200b").replace("\\", "\\\u200b")
