@@ -34,8 +34,8 @@ class ScanCloud(QWidget):
     def refresh(self) -> None:
         """Show what the presenter says now."""
         p = self._presenter
-        if p.stage in (Stage.LIVE, Stage.MEASURING):
-            return
+        if p.stage in (Stage.LIVE, Stage.MEASURING) or p.work.frames is None:
+            return  # what is there grows, or stands until it is clear what comes next
         look, limit = p.work.look, p.project.options.sigma_cut_mm
         if look is None or not len(look):
             if self._look is not None or self._growing or not self._said(self._message()):
@@ -49,11 +49,17 @@ class ScanCloud(QWidget):
             look.points, values=look.sigma, value_name="σ", unit="mm", limits=(0.0, limit), keep_camera=True
         )
 
-    def begin(self) -> None:
-        """Something new is recorded or measured: its points will come."""
+    def begin_live(self) -> None:
+        """A recording begins: its points will come."""
         self._look = None
         self.scene.clear(self._message())
         self._grow_anew()
+
+    def begin_measuring(self) -> None:
+        """The recording is being measured: what is shown stands until its first points come."""
+        self._look, self._growing = None, True
+        if not self.scene.state()["points"]:
+            self.scene.clear(self._message())
 
     def show_live(self, view: LiveView) -> None:
         """What a picture of the live source brings."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 from PySide6.QtCore import QEvent, Qt, QTimer
@@ -105,9 +106,9 @@ class ScanPage(StepPage):
         self.frames.current_changed.connect(lambda name: p.scrub.choose(name))
         self.bar.view_chosen.connect(self.picture.show_view)
         self.bar.choose(View.CROSSINGS)
-        p.live.started.connect(lambda _: self._begin())
+        p.live.started.connect(lambda _: self._begin(self.cloud.begin_live))
         p.live.view.connect(self._show_live)
-        p.run.started.connect(self._begin)
+        p.run.started.connect(lambda: self._begin(self.cloud.begin_measuring))
         p.run.frame_seen.connect(self._show_measured)
         p.model.opened.connect(self._opened)
         self.cloud.scene.notice.connect(p.bench.notices.info)
@@ -140,9 +141,9 @@ class ScanPage(StepPage):
         self.views.show_alone(None)
         self.source.set_mode("folder" if self.presenter.project.sources.scan else "live")
 
-    def _begin(self) -> None:
+    def _begin(self, cloud: Callable[[], None]) -> None:
         self.running.show_detail(None, 0.0)
-        self.cloud.begin()
+        cloud()
 
     def _step(self, by: int) -> None:
         if self.presenter.scrubbing:

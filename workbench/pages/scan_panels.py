@@ -202,6 +202,8 @@ class RunningPanel(QWidget):
         self.speed.setToolTip(self.tr("How far the stripe moves from one frame to the next"))
         self.covered, self.hints = QLabel(), HintBar()
         self.covered.setToolTip(self.tr("Share of the picture between all laser light in which there are points"))
+        widest = words.covered_sentence(1.0)
+        self.covered.setMinimumWidth(self.covered.fontMetrics().horizontalAdvance(widest))
         grid = QGridLayout(self)
         grid.setContentsMargins(0, 4, 0, 0)
         grid.setHorizontalSpacing(18)
@@ -216,7 +218,7 @@ class RunningPanel(QWidget):
     def show_detail(self, detail: ScanDetail | None, width_px: float) -> None:
         """What a frame shows; its picture is `width_px` wide."""
         preview = detail.preview if detail is not None and detail.stage == "scanning" else None
-        self.covered.setText(words.covered_sentence(detail))
+        self.covered.setText(words.covered_sentence(detail.share) if detail is not None else "")
         self.hints.set_hints(preview.hints if preview is not None else ())
         if preview is None or not preview.centrelines:
             self.condition.set_value(None)

@@ -52,7 +52,7 @@ class ScanPicture(QWidget):
                 self._clear(p.live.state_text())
         elif p.scrubbing:
             self._show_frame()
-        elif not p.run.measuring:
+        elif not p.run.measuring and p.work.frames is not None:  # while they are listed, the last picture stands
             self._empty()
 
     def show_view(self, view: View) -> None:
@@ -82,8 +82,8 @@ class ScanPicture(QWidget):
         overlays.show_sweep(
             self.image, pieces, preview.sigma_mm if preview is not None and calibrated and pieces else ()
         )
-        if calibrated and preview is not None:
-            overlays.show_crossings(self.image, preview)
+        if calibrated:
+            overlays.show_crossings(self.image, preview if pieces else None)
 
     def _show_frame(self) -> None:
         scrub = self._presenter.scrub

@@ -6,7 +6,6 @@ import math
 
 from PySide6.QtCore import QCoreApplication
 
-from core.live.events import ScanDetail
 from core.scan.frame_record import FrameRecord
 from core.scan.scan_look import ScanLook
 from core.scan.stages import FrameStages
@@ -89,11 +88,9 @@ def frame_sentence(place: int, total: int, name: str, record: FrameRecord | None
     return _tr("{0}: not measured yet.").format(start)
 
 
-def covered_sentence(detail: ScanDetail | None) -> str:
+def covered_sentence(share: float) -> str:
     """How much of the surface there is."""
-    if detail is None:
-        return ""
-    return _tr("covered {0} of what was lit").format(percent(detail.share))
+    return _tr("covered {0} of what was lit").format(percent(share))
 
 
 def condition_text(condition: float) -> str:

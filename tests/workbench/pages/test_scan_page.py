@@ -261,6 +261,17 @@ def test_a_recording_that_is_measured_shows_frames_marks_gauges_and_a_growing_cl
     assert recorded.frames.rows()[0].reason == "30 points in the preview"
 
 
+def test_a_cancelled_measurement_shows_the_result_before_again(measured, measuring, qtbot):
+    quick = cast(HandLane, measured.presenter.bench.quick)
+    quick.answers[jobs.DISPLAY_PICTURE] = lambda path, channel, width: (np.full((24, 32), 70, np.uint8), 2)
+    qtbot.mouseClick(measured.stage.buttons["run"], LEFT)
+    assert measured.cloud.scene.state()["points"] == 1500
+    measuring.current.told.emit(cases.detail(0, renewed=True))
+    qtbot.waitUntil(lambda: measured.cloud.scene.state()["points"] == 30)
+    qtbot.mouseClick(measured.stage.buttons["cancel"], LEFT)
+    assert measured.cloud.scene.state()["points"] == 1500
+
+
 def test_cancel_leaves_the_recording_as_it_was(recorded, measuring, qtbot):
     qtbot.mouseClick(recorded.stage.buttons["run"], LEFT)
     qtbot.mouseClick(recorded.stage.buttons["cancel"], LEFT)
@@ -291,8 +302,18 @@ def test_a_live_scan_goes_from_the_reference_to_the_result(page, lane, measuring
     lane.finish(LiveEnded(scan_folder, cases.FRAMES, 0))
     assert page.stage.title.text() == "Measuring the recording …"
     assert "by itself" in page.stage.words.text()
+    assert page.picture.image.has_picture and page.cloud.scene.state()["points"] == 30
     measuring.finish(cases.summary())
     qtbot.waitUntil(lambda: page.presenter.stage is Stage.MEASURED and page.presenter.scrub.up_to_date)
+
+
+def test_while_paused_no_sweep_and_no_crossings_are_shown(page, lane, qtbot):
+    start_live(page, lane, qtbot)
+    lane.current.view.emit(cases.live_view(0))
+    assert "good" in page.picture.image.layer_names()
+    lane.current.view.emit(cases.live_view(0, stage="paused"))
+    assert "good" not in page.picture.image.layer_names()
+    assert page.running.condition.said == "–" and page.stage.title.text() == "Paused"
 
 
 def test_without_calibrations_a_live_scan_shows_stripes_only(page, lane, qtbot):
