@@ -113,10 +113,12 @@ QLineEdit, QPlainTextEdit {{ padding: 3px 5px; border: 1px solid {s.line};
     border-radius: 4px; background: {s.panel}; selection-background-color: {s.accent}; }}
 QLineEdit:focus, QPlainTextEdit:focus {{ border-color: {s.accent}; }}
 QCheckBox {{ spacing: 6px; }}
-QCheckBox::indicator {{ width: 14px; height: 14px; border: 1px solid {s.muted}; border-radius: 3px;
-    background: {s.panel}; }}
+QCheckBox::indicator, QTableView::indicator {{ width: 14px; height: 14px; border: 1px solid {s.muted};
+    border-radius: 3px; background: {s.panel}; }}
 QCheckBox::indicator:hover, QCheckBox::indicator:focus {{ border-color: {s.accent}; }}
-QCheckBox::indicator:checked {{ background: {s.accent}; border-color: {s.accent}; image: url("{check.as_posix()}"); }}
+QCheckBox::indicator:checked, QTableView::indicator:checked {{ background: {s.accent}; border-color: {s.accent};
+    image: url("{check.as_posix()}"); }}
+QTableView::indicator:selected {{ border-color: {s.on_accent}; }}
 QCheckBox::indicator:disabled {{ background: {s.window}; border-color: {s.line}; }}
 QCheckBox::indicator:checked:disabled {{ background: {s.muted}; }}
 QAbstractSpinBox, QComboBox {{ min-height: 20px; }}

@@ -46,7 +46,7 @@ class RowDelegate(QStyledItemDelegate):
         box = QStyleOptionViewItem(option)
         middle = option.rect.top() + (option.rect.height() - side) // 2
         box.rect = QRect(QPoint(option.rect.left() + 6, middle), QSize(side, side))
-        box.state &= ~(QStyle.StateFlag.State_HasFocus | QStyle.StateFlag.State_Selected)
+        box.state &= ~QStyle.StateFlag.State_HasFocus
         checked = option.checkState == Qt.CheckState.Checked
         box.state |= QStyle.StateFlag.State_On if checked else QStyle.StateFlag.State_Off
         style.drawPrimitive(QStyle.PrimitiveElement.PE_IndicatorItemViewItemCheck, box, painter, option.widget)
