@@ -103,6 +103,16 @@ class Technician:
         assert found, f"no field {label!r}; {self.whereabouts()}"
         return found[0]
 
+    def choose(self, label: str, text: str) -> None:
+        """Choose an entry of a list that folds out, by the keys."""
+        box = self.field(label)
+        self.scroll_to(box)
+        place = next(place for place in range(box.count()) if box.itemText(place).startswith(text))
+        box.setFocus()
+        while box.currentIndex() != place:
+            self.keys(box, Qt.Key.Key_Down if place > box.currentIndex() else Qt.Key.Key_Up)
+        QApplication.processEvents()
+
     def unfold(self, title: str) -> None:
         """Open a panel at the side."""
         panel = next(one for one in self.page().findChildren(QCollapsible) if one.text() == title)
@@ -133,9 +143,11 @@ class Technician:
         """Replace what stands in an editor and leave it by Tab."""
         self.scroll_to(editor)
         editor.setFocus()
-        self.keys(editor, "a", Qt.KeyboardModifier.ControlModifier)
-        self._qtbot.keyClicks(editor, text)
-        self._qtbot.keyClick(editor, Qt.Key.Key_Tab)
+        typed = QApplication.focusWidget()
+        assert typed is not None and (editor is typed or editor.isAncestorOf(typed)), f"{editor} takes no focus"
+        self.keys(typed, "a", Qt.KeyboardModifier.ControlModifier)
+        self._qtbot.keyClicks(typed, text)
+        self._qtbot.keyClick(typed, Qt.Key.Key_Tab)
         QApplication.processEvents()
 
     def keys(self, widget: QWidget, key: Any, modifier: Any = Qt.KeyboardModifier.NoModifier) -> None:
@@ -266,7 +278,11 @@ class Technician:
         """Its presenter."""
         return self.window.presenters[self.window.current]
 
+    def told(self) -> list[str]:
+        """All messages."""
+        return [notice.text for notice in self.bench.notices.all]
+
     def errors(self) -> list[str]:
-        """Messages that are not good to hear; that there is no OpenGL is none of them."""
+        """Messages that are not good to hear, but for what only this machine is to blame for."""
         said = [notice.text for notice in self.bench.notices.all if notice.level != "info"]
-        return [text for text in said if "OpenGL" not in text]
+        return [text for text in said if "OpenGL" not in text and "pictures were lost on the way" not in text]

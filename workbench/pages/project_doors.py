@@ -140,16 +140,20 @@ class ProjectDoors(QObject):
         """Save and close the project; False if it is to stay open."""
         if not self.model.is_open:
             return True
-        busy = self.bench.live.busy or self.bench.measuring.busy
-        if not self.may_leave([self.tr("A job is running.")] if busy else []):
+        if not self.may_leave([self.tr("A recording is running.")] if self.bench.live.busy else []):
             return False
         self.bench.measuring.cancel_all()
         self.model.close()
         return True
 
     def may_leave(self, busy: Sequence[str]) -> bool:
-        """Whether the project can be left: asks if something runs or cannot be saved, else saves."""
-        running = " ".join(sentence for sentence in busy if sentence)
+        """Whether the project can be left: asks if something runs or cannot be saved, else saves.
+
+        `busy`: a sentence for each recording that runs; what is being measured is known here.
+        """
+        job = self.bench.measuring.current
+        measuring = self.tr("A job is not finished yet: {0}.").format(job.label) if job is not None else ""
+        running = " ".join(dict.fromkeys(sentence for sentence in (*busy, measuring) if sentence))
         if running:
             text = self.tr("{0} What is recorded is kept. Stop it and leave?").format(running)
             if ask.ask(self._window, self.tr("Leave the project"), text, [self.tr("Stop and leave"), self.tr("Stay")]):

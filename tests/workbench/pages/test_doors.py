@@ -331,7 +331,7 @@ def test_leaving_while_something_is_measured_asks_and_then_stops_it(
         jobs.MEASURE_SCAN, label="Scan", on_done=ended.append, on_cancelled=lambda: ended.append("cancelled")
     )
     assert not doors.close_project()
-    assert "A job is running." in asked.questions[0][0]
+    assert "A job is not finished yet: Scan." in asked.questions[0][0]
     asked.answer = "Stop and leave"
     assert doors.close_project()
     assert ended == ["cancelled"]
