@@ -13,7 +13,7 @@ test quick: export OMP_NUM_THREADS = 1
 # Windows are tested twice: without a screen, and on a virtual one with the real 3D view.
 SCREEN := $(shell command -v xvfb-run >/dev/null && echo 'xvfb-run -a -s "-screen 0 1920x1080x24"')
 
-.PHONY: demo app test quick check screenshots wheel clean
+.PHONY: demo app test quick check screenshots pictures wheel clean
 
 demo: $(READY)            ## measure the embedded sample: cloud, mesh and report of a 50 mm gauge block in ./out
 	$(BIN)/trisect demo --out $(OUT)
@@ -31,6 +31,9 @@ quick: check              ## the same without the slow proofs
 
 screenshots: $(READY)     ## pictures of every page, both sizes, both themes, in ./screenshots
 	$(SCREEN) $(BIN)/python -m tests.workbench.screenshots screenshots
+
+pictures: $(READY)        ## the four pictures of the README
+	$(SCREEN) $(BIN)/python -m tests.workbench.screenshots resources/pictures --readme
 
 check: $(READY)
 	$(BIN)/ruff format --check .

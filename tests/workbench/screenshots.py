@@ -1,4 +1,7 @@
-"""Pictures of every page for people to look at: python -m tests.workbench.screenshots FOLDER [--small]."""
+"""Pictures of every page for people to look at: python -m tests.workbench.screenshots FOLDER [--readme].
+
+With --readme only the four that the README shows, small (make pictures).
+"""
 
 from __future__ import annotations
 
@@ -8,7 +11,7 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from PySide6.QtCore import QSize
+from PySide6.QtCore import QSize, Qt
 from PySide6.QtGui import QImage, QPainter
 from PySide6.QtWidgets import QApplication
 
@@ -20,7 +23,8 @@ from workbench.steps import STEPS
 
 SIZES = (QSize(1280, 800), QSize(1920, 1080))
 THEMES = ("light", "dark")
-README_WIDTH = 960
+README = ("camera", "scan", "inspect", "report")
+README_WIDTH = 900
 
 
 def main() -> int:
@@ -34,7 +38,7 @@ def main() -> int:
         window = build_window(app, bench, "light")
         window.show()
         try:
-            _all(app, bench, window, folder)
+            (_readme if "--readme" in sys.argv else _all)(app, bench, window, folder)
         finally:
             window.close()
     return 0
@@ -48,6 +52,18 @@ def _all(app: QApplication, bench: Bench, window: MainWindow, folder: Path) -> N
         window.go_to(step.name)
         _settle(app, bench, 2.0)
         _each(app, bench, window, folder, f"{number}-{step.name}")
+
+
+def _readme(app: QApplication, bench: Bench, window: MainWindow, folder: Path) -> None:
+    """The README's pictures: 256 colours are enough, and keep them small."""
+    window.resize(SIZES[0])
+    window.doors.open_sample()
+    _wait(app, lambda: window.model.is_open and not bench.measuring.busy, 300)
+    for name in README:
+        window.go_to(name)
+        _settle(app, bench, 4.0)
+        small = grab(window).scaledToWidth(README_WIDTH, Qt.TransformationMode.SmoothTransformation)
+        small.convertToFormat(QImage.Format.Format_Indexed8).save(str(folder / f"{name}.png"))
 
 
 def _each(app: QApplication, bench: Bench, window: MainWindow, folder: Path, name: str) -> None:
