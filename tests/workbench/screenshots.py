@@ -11,6 +11,7 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
+from PIL import Image
 from PySide6.QtCore import QSize, Qt
 from PySide6.QtGui import QImage, QPainter
 from PySide6.QtWidgets import QApplication
@@ -55,15 +56,19 @@ def _all(app: QApplication, bench: Bench, window: MainWindow, folder: Path) -> N
 
 
 def _readme(app: QApplication, bench: Bench, window: MainWindow, folder: Path) -> None:
-    """The README's pictures: 256 colours are enough, and keep them small."""
+    """The README's pictures: few colours are enough, and keep them small."""
     window.resize(SIZES[0])
     window.doors.open_sample()
     _wait(app, lambda: window.model.is_open and not bench.measuring.busy, 300)
     for name in README:
         window.go_to(name)
-        _settle(app, bench, 4.0)
+        _settle(app, bench, 8.0)
         small = grab(window).scaledToWidth(README_WIDTH, Qt.TransformationMode.SmoothTransformation)
-        small.convertToFormat(QImage.Format.Format_Indexed8).save(str(folder / f"{name}.png"))
+        path = folder / f"{name}.png"
+        small.save(str(path))
+        with Image.open(path) as picture:
+            flat = picture.convert("RGB").quantize(128, dither=Image.Dither.NONE)
+        flat.save(path, optimize=True)
 
 
 def _each(app: QApplication, bench: Bench, window: MainWindow, folder: Path, name: str) -> None:
