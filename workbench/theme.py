@@ -48,8 +48,9 @@ def is_dark() -> bool:
 
 def apply_theme(app: QApplication, name: str) -> None:
     """Dress the application: "light", "dark", or as the system is set for "system"."""
-    if app.style().objectName().lower() != "fusion":
+    if app.property("dressed") != "fusion":  # under a style sheet the style no longer tells its name
         app.setStyle("Fusion")
+        app.setProperty("dressed", "fusion")
     if name == "system":
         name = "dark" if app.styleHints().colorScheme() == Qt.ColorScheme.Dark else "light"
     chosen = DARK if name == "dark" else LIGHT

@@ -91,7 +91,6 @@ class CameraPage(StepPage):
         p = self.presenter
         self.source.folder_chosen.connect(p.use_folder)
         self.source.accept_drops_on(self)
-        self.views.toggled.connect(lambda name, used: p.set_used([name], used))
         self.views.toggled_together.connect(lambda names, used: p.set_used(list(names), used))
         self.views.current_changed.connect(p.choose_view)
         self.bars.bar_clicked.connect(p.choose_view)

@@ -19,6 +19,9 @@ from workbench.views.tables import DataTable
 NEAR, FAR = 0.85, 1.15
 """The planes are drawn from a little before the nearest pose to a little behind the farthest."""
 
+SHOWN = 30
+"""A stripe is a straight line: so many of its points, a few more at most, are drawn."""
+
 TARGET, CHOSEN = "#7FB3D5", "#F2C14E"
 
 
@@ -74,7 +77,7 @@ class RigTab(QWidget):
         colours = [TARGET if pose.used else EXCLUDED for pose, _ in outlines]
         self.scene.set_polylines("targets", [line for _, line in outlines], colours, 1.5)
         stripes = [
-            (points, line)
+            (points[:: max(len(points) // SHOWN, 1)], line)
             for pose, _ in outlines
             for line, points in enumerate(pose.points, start=1)
             if len(points) and pose.used

@@ -82,7 +82,7 @@ def test_the_result_takes_the_room_of_what_it_was_made_from(solved):
 
 
 def test_views_are_listed_and_unchecking_one_leaves_it_out(solved, qtbot):
-    solved.views.toggled.emit("camera/view03.png", False)
+    solved.views.toggled_together.emit(("camera/view03.png",), False)
     assert solved.presenter.project.options.excluded == {"camera/view03.png"}
     qtbot.waitUntil(lambda: not solved.presenter.work.solving)
     assert solved.presenter.model.undo_stack.undoText() == "leave out view03.png"
