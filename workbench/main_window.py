@@ -54,8 +54,8 @@ class MainWindow(QMainWindow):
         self._title, self._help = QLabel(), QLabel()
         self._title.setObjectName("title")
         self._help.setObjectName("muted")
-        self._missing = QLabel()
-        self._missing.setObjectName("muted")
+        self.missing = QLabel()
+        self.missing.setObjectName("muted")
         self.back = QPushButton(self.tr("Back"))
         self.next = QPushButton(self.tr("Next"))
         self.next.setProperty("primary", True)
@@ -155,7 +155,7 @@ class MainWindow(QMainWindow):
         foot.setContentsMargins(14, 6, 14, 8)
         foot.addWidget(self.back)
         foot.addStretch(1)
-        foot.addWidget(self._missing)
+        foot.addWidget(self.missing)
         foot.addWidget(self.next)
         column = QVBoxLayout()
         column.setContentsMargins(0, 0, 0, 0)
@@ -234,7 +234,7 @@ class MainWindow(QMainWindow):
         self.next.setEnabled(not missing and not last)
         self.next.setVisible(not last)
         self.next.setToolTip(missing or self.tr("Go on to the next step"))
-        self._missing.setText("" if last else missing)
+        self.missing.setText("" if last else missing)
         self.back.setEnabled(self._current != STEPS[0].name)
 
     def _show_name(self) -> None:

@@ -24,6 +24,7 @@ from superqt import QCollapsible
 
 from workbench.main_window import MainWindow
 from workbench.views import ask
+from workbench.views.scene_view import SceneView
 
 PATIENCE_S = 30.0
 
@@ -149,6 +150,10 @@ class Technician:
         self._qtbot.keyClicks(typed, text)
         self._qtbot.keyClick(typed, Qt.Key.Key_Tab)
         QApplication.processEvents()
+
+    def write(self, text: str) -> None:
+        """Type where the cursor is."""
+        self._qtbot.keyClicks(QApplication.focusWidget(), text)
 
     def keys(self, widget: QWidget, key: Any, modifier: Any = Qt.KeyboardModifier.NoModifier) -> None:
         """One key."""
@@ -277,6 +282,10 @@ class Technician:
     def presenter(self) -> Any:
         """Its presenter."""
         return self.window.presenters[self.window.current]
+
+    def scenes(self) -> list[SceneView]:
+        """The 3D views of the page."""
+        return self.page().findChildren(SceneView)
 
     def told(self) -> list[str]:
         """All messages."""

@@ -4,11 +4,24 @@ from __future__ import annotations
 
 import math
 
-from PySide6.QtCore import QLocale, Qt, QTimer, Signal
-from PySide6.QtGui import QFocusEvent, QHideEvent, QValidator, QWheelEvent
+from PySide6.QtCore import QEvent, QLocale, Qt, QTimer, Signal
+from PySide6.QtGui import QFocusEvent, QHideEvent, QKeyEvent, QKeySequence, QValidator, QWheelEvent
 from PySide6.QtWidgets import QCheckBox, QComboBox, QDoubleSpinBox, QLineEdit, QPlainTextEdit
 
 _STEPPING_MS = 400
+
+
+def _is_for_the_window(event: QEvent, typing: bool) -> bool:
+    """Whether this is Undo or Redo in an editor in which nothing is half typed: then the project's are meant.
+
+    Editors of Qt take these keys for themselves, whether they have anything to undo or not.
+    """
+    if typing or event.type() != QEvent.Type.ShortcutOverride or not isinstance(event, QKeyEvent):
+        return False
+    if not (event.matches(QKeySequence.StandardKey.Undo) or event.matches(QKeySequence.StandardKey.Redo)):
+        return False
+    event.ignore()
+    return True
 
 
 class NumberEditor(QDoubleSpinBox):
@@ -60,6 +73,9 @@ class NumberEditor(QDoubleSpinBox):
         number = self.minimum() if value is None else float(value)  # type: ignore[arg-type]
         self.setValue(self.minimum() if math.isnan(number) else number)
         self._told = self.content()
+
+    def event(self, event: QEvent) -> bool:
+        return _is_for_the_window(event, self.lineEdit().isUndoAvailable()) or super().event(event)
 
     def stepBy(self, steps: int) -> None:
         if self.content() is None and steps > 0:
@@ -127,6 +143,9 @@ class TextEditor(QLineEdit):
             self.setText(self._told)
             self.setCursorPosition(0)
 
+    def event(self, event: QEvent) -> bool:
+        return _is_for_the_window(event, self.text() != self._told) or super().event(event)
+
     def _tell(self) -> None:
         if self.text() != self._told:
             self._told = self.text()
@@ -158,6 +177,9 @@ class MultilineEditor(QPlainTextEdit):
         self._told = str(value)
         if self.toPlainText() != self._told:
             self.setPlainText(self._told)
+
+    def event(self, event: QEvent) -> bool:
+        return _is_for_the_window(event, self.toPlainText() != self._told) or super().event(event)
 
     def focusOutEvent(self, event: QFocusEvent) -> None:
         super().focusOutEvent(event)

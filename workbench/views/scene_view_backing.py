@@ -38,7 +38,6 @@ class Backing(QObject):
         self.point_size = 2.0
         self.surface: SceneSurface | None = None
         self.pace: ScenePace | None = None
-        self._told = False
         self._begin, self._reveal = single_shot(self, 0, self._start), single_shot(self, 0, self._show)
         self._doubt = single_shot(self, DOUBT_MS, self._give_up)
         self.presented.connect(self._doubt.stop)
@@ -131,8 +130,7 @@ class Backing(QObject):
             _log.exception("the 3D view could not be made as %s", kind)
         if surface is None:
             kind, surface = "painter", PainterSurface(self._canvas, self._draw_now)
-        if kind != "embedded" and not self._told:
-            self._told = True
+        if kind != "embedded" and choice.first_time(kind):
             self.notice.emit(self._sentence(kind))
         return surface
 

@@ -49,6 +49,7 @@ class _Choice:
     thread: threading.Thread | None = None
     kind: SurfaceKind | None = None
     opengl: bool | None = None
+    told: frozenset[str] = frozenset()
 
 
 def herald() -> Herald:
@@ -78,6 +79,13 @@ def opengl_in_windows() -> bool:
     if _Choice.opengl is None:
         _Choice.opengl = QGuiApplication.platformName() in WITH_WINDOWS and _context_can_be_made()
     return _Choice.opengl
+
+
+def first_time(kind: SurfaceKind) -> bool:
+    """Whether no view of the program has been drawn so before: what there is to say about it is said once."""
+    first = kind not in _Choice.told
+    _Choice.told |= {kind}
+    return first
 
 
 def forget_opengl() -> None:

@@ -1,6 +1,6 @@
 import pytest
 from PySide6.QtCore import QPoint, QPointF, Qt
-from PySide6.QtGui import QWheelEvent
+from PySide6.QtGui import QKeySequence, QShortcut, QWheelEvent
 from PySide6.QtWidgets import QApplication
 
 from workbench.views.forms import SettingsForm
@@ -191,3 +191,25 @@ def test_every_editor_has_a_name_and_a_tooltip(form):
     for key in form.values():
         assert form.editor(key).toolTip()
         assert form.editor(key).accessibleName() or key == "constrain"
+
+
+@pytest.mark.parametrize("key", ["part", "notes", "square", "air"])
+def test_undo_is_the_editors_own_while_something_is_half_typed_and_else_the_windows(form, qtbot, key):
+    undone = []
+    shortcut = QShortcut(QKeySequence(QKeySequence.StandardKey.Undo), form)
+    shortcut.activated.connect(lambda: undone.append("the project"))
+    editor = form.editor(key)
+    editor.setFocus()
+    qtbot.keyClick(editor, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
+    assert undone == ["the project"]
+    before = form.values()[key]
+    type_in(qtbot, editor, "7")
+    qtbot.keyClick(editor, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
+    assert undone == ["the project"]
+    assert form.values()[key] == before
+    type_in(qtbot, editor, "7")
+    qtbot.keyClick(editor, Qt.Key.Key_Tab)
+    assert form.values()[key] != before
+    editor.setFocus()
+    qtbot.keyClick(editor, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
+    assert undone == ["the project", "the project"]

@@ -44,6 +44,7 @@ def kind(request, qapp, monkeypatch) -> str:
     if request.param == "pictures" and not request.getfixturevalue("pictures_work"):
         pytest.skip("no off-screen rendering here")
     monkeypatch.setattr(choice._Choice, "kind", request.param)
+    monkeypatch.setattr(choice._Choice, "told", frozenset())
     return request.param
 
 
@@ -515,6 +516,7 @@ def test_opengl_that_shows_nothing_is_given_up(qapp, qtbot, monkeypatch):
 
     monkeypatch.setattr(choice._Choice, "kind", "embedded")
     monkeypatch.setattr(choice._Choice, "opengl", choice._Choice.opengl)  # put back afterwards
+    monkeypatch.setattr(choice._Choice, "told", frozenset())
     monkeypatch.setattr(scene_view_backing, "DOUBT_MS", 50)
     monkeypatch.setattr(
         scene_view_backing.importlib, "import_module", lambda name: SimpleNamespace(EmbeddedSurface=nothing)
