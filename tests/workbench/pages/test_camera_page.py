@@ -168,7 +168,7 @@ def test_views_taken_are_listed_and_can_be_put_aside(page, lane, qtbot):
     lane.current.told.emit(LiveTaken("view00", np.zeros((30, 40), np.uint8)))
     lane.current.told.emit(LiveTaken("view01", np.zeros((30, 40), np.uint8)))
     assert [name for name, _ in page.presenter.live_views] == ["camera/view00", "camera/view01"]
-    page.views.toggled.emit("camera/view00", False)
+    page.views.toggled_together.emit(("camera/view00",), False)
     assert [name for name, _ in page.presenter.live_views] == ["camera/view01"]
     assert lane.sent[-1].name == "view00"
 
