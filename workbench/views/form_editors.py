@@ -75,7 +75,7 @@ class NumberEditor(QDoubleSpinBox):
         self._told = self.content()
 
     def event(self, event: QEvent) -> bool:
-        return _is_for_the_window(event, self.lineEdit().isUndoAvailable()) or super().event(event)
+        return _is_for_the_window(event, self._half_typed()) or super().event(event)
 
     def stepBy(self, steps: int) -> None:
         if self.content() is None and steps > 0:
@@ -108,6 +108,12 @@ class NumberEditor(QDoubleSpinBox):
         if self._stepping.isActive():
             self._tell()
         super().hideEvent(event)
+
+    def _half_typed(self) -> bool:
+        """Whether the text says something else than the value."""
+        none = bool(self.specialValueText()) and self.value() == self.minimum()
+        shown = self.specialValueText() if none else self.textFromValue(self.value()) + self.suffix()
+        return self.lineEdit().text() != shown
 
     def _typed(self, text: str) -> str:
         return text.removesuffix(self.suffix()).strip()
