@@ -91,7 +91,7 @@ class ProjectDoors(QObject):
             recovered = recoverable(folder)
             if recovered is None or recovered == saved:
                 self._open(folder)
-            elif (wanted := self._wants_recovery(folder)) is not None:
+            elif (wanted := self._wants_recovery(folder, recovered)) is not None:
                 self._open(folder, recover=wanted)
 
     def open_version(self, path: Path) -> None:
@@ -180,22 +180,26 @@ class ProjectDoors(QObject):
             self.bench.notices.error(str(error))
             return None
         text = self.tr(
-            "{0} cannot be read: {1}. There are earlier states of the project; nothing is written before you save."
+            "{0} cannot be read: {1}. There are earlier states of the project; the damaged file is kept in backups."
         ).format(folder / PROJECT, error.what)
         answers = [self._in_words(version) for version in versions]
         chosen = ask.ask(self._window, self.tr("Damaged project"), text, [*answers, self.tr("Do not open")])
         return versions[chosen] if chosen < len(versions) else None
 
     def _in_words(self, version: Version) -> str:
-        saved = version.file.saved
-        at = saved.astimezone().strftime("%Y-%m-%d %H:%M") if saved else self.tr("an unknown time")
+        at = self._time(version.file)
         if version.autosaved:
             return self.tr("Unsaved changes of {0}").format(at)
         return self.tr("Backup of {0}").format(at)
 
-    def _wants_recovery(self, folder: Path) -> bool | None:
+    def _time(self, file: ProjectFile) -> str:
+        return file.saved.astimezone().strftime("%Y-%m-%d %H:%M") if file.saved else self.tr("an unknown time")
+
+    def _wants_recovery(self, folder: Path, recovered: ProjectFile) -> bool | None:
         """Whether unsaved changes are wanted back; None if the project is not to be opened at all."""
-        text = self.tr("{0} was not closed properly. There are newer changes than the saved ones.").format(folder.name)
+        text = self.tr("{0} was not closed properly: there are unsaved changes of {1}.").format(
+            folder.name, self._time(recovered)
+        )
         answers = [self.tr("Recover the changes"), self.tr("Open the saved state"), self.tr("Do not open")]
         return {0: True, 1: False}.get(ask.ask(self._window, self.tr("Recover the project"), text, answers))
 
