@@ -35,8 +35,8 @@ class PoseTab(QWidget):
         column.addWidget(self.line)
         column.addWidget(self.image, 1)
         column.addWidget(self.hints)
-        presenter.pose_ready.connect(self._show_pose)
-        presenter.picture_ready.connect(self._show_picture)
+        presenter.look.measured.connect(self._show_pose)
+        presenter.look.picture.connect(self._show_picture)
         presenter.live.view.connect(self._show_live)
         presenter.live.started.connect(lambda _: self.image.clear_layers())
         self._empty()
@@ -53,11 +53,11 @@ class PoseTab(QWidget):
         if self._name == LIVE:
             self._name = ""
             self.image.clear_layers()
-            p.look_again()
+            p.look.again()
         if not p.current:
             self._empty()
             return
-        features = p.features_of(p.current)
+        features = p.look.features_of(p.current)
         notes = " ".join(features.notes) if features is not None else ""
         reason = features.reason if features is not None else ""
         said = words.pose_sentence(p.current, p.pose_of(p.current), reason)

@@ -8,9 +8,6 @@ from enum import StrEnum
 from pathlib import Path
 from typing import Any
 
-from PySide6.QtCore import Signal
-
-from core.calibrate.pose_features import PoseFeatures
 from core.calibrate.results import PlanePose
 from core.files.fan_file import fan_id
 from core.files.project import Project
@@ -20,7 +17,9 @@ from core.model import Camera, Fan
 from workbench import jobs
 from workbench.bench import Bench
 from workbench.pages.live_presenter import LivePresenter
+from workbench.pages.planes_camera import PlanesCamera
 from workbench.pages.planes_history import PlanesHistory
+from workbench.pages.planes_look import PlanesLook
 from workbench.pages.planes_work import PlanesWork
 from workbench.pages.presenter import StepPresenter
 from workbench.pages.sources import folder_of, put_source
@@ -31,8 +30,6 @@ PART = "planes/"
 
 PAIRS = "live/planes/pairs"
 """The setting whether poses are taken with the laser on and off."""
-
-NOTHING_READ: tuple[str, Any, Any] = ("", None, None)
 
 
 class Stage(StrEnum):
@@ -58,26 +55,17 @@ class PlanesPresenter(StepPresenter):
 
     step = "planes"
 
-    pose_ready = Signal(object)
-    """PoseStages of the current pose, once it has been measured."""
-
-    picture_ready = Signal(str, object)
-    """Name of the current pose and its picture, before it is measured."""
-
     def __init__(self, bench: Bench) -> None:
         super().__init__(bench)
         self.live = LivePresenter(bench, "planes", self)
         self.live.pairs = bench.settings.text(PAIRS, "yes") == "yes"
         self.work = PlanesWork(bench, self)
+        self.look, self.seen_by = PlanesLook(bench, self.work, self), PlanesCamera(bench, self)
         self.history = PlanesHistory(bench, self)
         self.target = TargetChoice(bench, "plane_target", self.tr("change the plate"), self)
-        self.camera: Camera | None = None
-        self.current = ""
         self.live_views: list[tuple[str, Any]] = []
         self._rejected: set[str] = set()
         self._accepting = False
-        self._read: tuple[str, Any, Any] = NOTHING_READ
-        self._camera_id, self._camera_lost = "", False
         self.live.calibration = self._known
         self.live.cannot_start = self._cannot_record
         self.live.changed.connect(self.changed)
@@ -86,6 +74,7 @@ class PlanesPresenter(StepPresenter):
         self.live.ended.connect(self._live_ended)
         self.work.changed.connect(self._work_changed)
         self.history.changed.connect(self.changed)
+        self.seen_by.changed.connect(self.changed)
 
     # ---- state
 
@@ -207,6 +196,11 @@ class PlanesPresenter(StepPresenter):
 
     # ---- poses
 
+    @property
+    def current(self) -> str:
+        """The pose that is looked at."""
+        return self.look.current
+
     def poses(self) -> tuple[PlanePose, ...]:
         """The poses as the calibration shown judges them."""
         return self.work.calibration.poses if self.work.calibration is not None else ()
@@ -231,22 +225,13 @@ class PlanesPresenter(StepPresenter):
     def choose_pose(self, name: str) -> None:
         """Show this pose."""
         if name != self.current:
-            self.current = name
-            self._look()
+            self.look.current = name
+            self.look.refresh()
             self.changed.emit()
 
     def pose_of(self, name: str) -> PlanePose | None:
         """A pose as the calibration shown judges it."""
         return next((pose for pose in self.poses() if pose.name == name), None)
-
-    def features_of(self, name: str) -> PoseFeatures | None:
-        """What the pictures of a pose show; None if nobody has looked."""
-        return next((pose for pose in self.work.poses or () if pose.name == name), None)
-
-    def look_again(self) -> None:
-        """The picture of the current pose is wanted again."""
-        self._read = NOTHING_READ
-        self._look()
 
     # ---- accept and reject
 
@@ -305,56 +290,32 @@ class PlanesPresenter(StepPresenter):
     # ---- what happens elsewhere
 
     def opened(self) -> None:
-        self.current, self._read = "", NOTHING_READ
+        self.look.forget()
         self._rejected.clear()
         self._accepting = False
-        self._camera_id = ""
-        self._follow_camera()
+        self.seen_by.forget()
+        self.seen_by.follow()
         self.work.opened()
         self.history.forget()
         self.history.refresh()
 
     def project_changed(self, before: Project, after: Project) -> None:
         if before.sources.planes != after.sources.planes:
-            self.current, self._read = "", NOTHING_READ
-        self._follow_camera()
+            self.look.forget()
+        self.seen_by.follow()
         self.work.follow()
 
     def stop(self) -> None:
         self.live.finish()
 
-    def _follow_camera(self) -> None:
-        """Read the accepted camera, which live pictures and the 3D view want."""
-        folder, id_ = self.model.folder, self.project.accepted.camera
-        if folder is None or not id_:
-            self.camera, self._camera_id = None, ""
-            return
-        if id_ == self._camera_id:
-            return
-        self._camera_id = id_
-
-        def read(calibration: Any) -> None:
-            if id_ == self._camera_id:
-                self.camera = calibration.camera
-                self.changed.emit()
-
-        def failed(_: Any) -> None:
-            self._camera_lost = id_ == self._camera_id
-
-        self.camera, self._camera_lost = None, False
-        self.bench.glance(
-            jobs.READ_CAMERA, folder, id_, label=self.tr("Reading the camera"), on_done=read, on_failed=failed,
-            offers={},
-        )  # fmt: skip
-
     def _known(self) -> tuple[Camera | None, Fan | None]:
-        return self.camera, self.work.calibration.fan if self.work.calibration is not None else None
+        return self.seen_by.camera, self.work.calibration.fan if self.work.calibration is not None else None
 
     def _cannot_record(self) -> str:
         """Why no poses can be taken now, or ""."""
         if self.work.measuring:
             return self.tr("The pictures are being measured; wait for it, or cancel it.")
-        if self.project.accepted.camera and self.camera is None and not self._camera_lost:
+        if self.seen_by.reading:
             return self.tr("The camera calibration is being read.")
         return ""
 
@@ -366,10 +327,7 @@ class PlanesPresenter(StepPresenter):
             self.work.measure()
 
     def _work_changed(self) -> None:
-        names = [path.stem for path in self.work.pictures or ()] or [pose.name for pose in self.work.poses or ()]
-        if self.current not in names:
-            self.current = names[0] if names else ""
-        self._look()
+        self.look.follow()
         self._recognise()
         self.changed.emit()
 
@@ -381,34 +339,3 @@ class PlanesPresenter(StepPresenter):
         now = finished("planes", self.project, self.model.results, done.at)
         if now.rests_on != done.rests_on:
             self.model.record("planes", now)
-
-    def _look(self) -> None:
-        """Have the current pose's picture read, with what was found in it and the numbers its stripes have now."""
-        name, folder, features = self.current, self.model.folder, self.features_of(self.current)
-        calibration = self.work.calibration
-        if not name or folder is None or self._read == (name, features, calibration):
-            return
-        picture = next((path for path in self.work.pictures or () if path.stem == name), None)
-        if features is not None:
-            self._read = (name, features, calibration)
-            self.bench.glance(
-                jobs.SHOW_POSE,
-                folder,
-                self.project,
-                features,
-                calibration.fan if calibration is not None else None,
-                label=self.tr("Reading a pose"),
-                on_done=lambda stages: self.pose_ready.emit(stages) if stages.name == self.current else None,
-                replace_waiting=True,
-            )
-        elif picture is not None:
-            self._read = (name, None, None)
-            self.bench.glance(
-                jobs.READ_PICTURE,
-                picture,
-                self.project.rig.channel,
-                label=self.tr("Reading a pose"),
-                on_done=lambda found: self.picture_ready.emit(name, found) if name == self.current else None,
-                offers={},
-                replace_waiting=True,
-            )

@@ -42,7 +42,7 @@ class RigTab(QWidget):
 
     def refresh(self) -> None:
         """Draw the calibration that is shown, and mark the pose that is chosen."""
-        calibration, camera = self._presenter.work.calibration, self._presenter.camera
+        calibration, camera = self._presenter.work.calibration, self._presenter.seen_by.camera
         if calibration is None or camera is None:
             if self._drawn != (None, None):
                 self._empty()

@@ -11,20 +11,18 @@ from PySide6.QtWidgets import QWidget
 
 from core.errors import InputError
 from core.files.project import (
-    NewerProject,
     Project,
     ProjectFile,
-    Version,
     can_be_saved,
     is_project,
     new_project,
     project_from_set,
     read_project,
-    recoverable,
     rescues,
 )
 from core.files.unfinished import Unfinished, forget_recording, unfinished_recording
 from workbench.bench import Bench
+from workbench.pages.project_states import wanted_state
 from workbench.pages.sample_door import SampleDoor
 from workbench.pages.sources import put_source
 from workbench.views import ask
@@ -80,19 +78,12 @@ class ProjectDoors(QObject):
         if folder == self.model.folder:
             return
         try:
-            saved = read_project(folder)
-        except NewerProject as error:
-            self.bench.notices.error(str(error))
+            wanted = wanted_state(self._window, folder)
         except InputError as error:
-            version = self._wanted_version(folder, error)
-            if version is not None:
-                self._open(folder, version.file)
-        else:
-            recovered = recoverable(folder)
-            if recovered is None or recovered == saved:
-                self._open(folder)
-            elif (wanted := self._wants_recovery(folder, recovered)) is not None:
-                self._open(folder, recover=wanted)
+            self.bench.notices.error(str(error))
+            return
+        if wanted is not None:
+            self._open(folder, wanted.version, recover=wanted.recover)
 
     def open_version(self, path: Path) -> None:
         """Open a project as it was in one of its backups; saving makes that the present one."""
@@ -172,36 +163,6 @@ class ProjectDoors(QObject):
         if editor is not None and editor.hasFocus():
             editor.clearFocus()
             editor.setFocus()
-
-    def _wanted_version(self, folder: Path, error: InputError) -> Version | None:
-        """Which earlier state of a damaged project is to be opened, if there is one and it is wanted."""
-        versions = rescues(folder)
-        if not versions:
-            self.bench.notices.error(str(error))
-            return None
-        text = self.tr(
-            "{0} cannot be read: {1}. There are earlier states of the project; the damaged file is kept in backups."
-        ).format(folder / PROJECT, error.what)
-        answers = [self._in_words(version) for version in versions]
-        chosen = ask.ask(self._window, self.tr("Damaged project"), text, [*answers, self.tr("Do not open")])
-        return versions[chosen] if chosen < len(versions) else None
-
-    def _in_words(self, version: Version) -> str:
-        at = self._time(version.file)
-        if version.autosaved:
-            return self.tr("Unsaved changes of {0}").format(at)
-        return self.tr("Backup of {0}").format(at)
-
-    def _time(self, file: ProjectFile) -> str:
-        return file.saved.astimezone().strftime("%Y-%m-%d %H:%M") if file.saved else self.tr("an unknown time")
-
-    def _wants_recovery(self, folder: Path, recovered: ProjectFile) -> bool | None:
-        """Whether unsaved changes are wanted back; None if the project is not to be opened at all."""
-        text = self.tr("{0} was not closed properly: there are unsaved changes of {1}.").format(
-            folder.name, self._time(recovered)
-        )
-        answers = [self.tr("Recover the changes"), self.tr("Open the saved state"), self.tr("Do not open")]
-        return {0: True, 1: False}.get(ask.ask(self._window, self.tr("Recover the project"), text, answers))
 
     def _open(self, folder: Path, version: ProjectFile | None = None, *, recover: bool = False) -> bool:
         if not self.close_project():

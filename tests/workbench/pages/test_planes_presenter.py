@@ -108,7 +108,7 @@ def test_pictures_are_seen_before_they_are_measured_and_not_read_again_and_again
     page: PlanesPresenter, planes: Planes, pictures: Path, qtbot: Any
 ) -> None:
     seen: list[str] = []
-    page.picture_ready.connect(lambda name, _: seen.append(name))
+    page.look.picture.connect(lambda name, _: seen.append(name))
     sources = replace(page.project.sources, planes=pictures.as_posix())
     page.model.edit("choose", replace(page.project, sources=sources))
     settled(qtbot, page)
@@ -307,7 +307,7 @@ def test_accepted_planes_are_there_when_the_project_is_opened_again(
     settled(qtbot, accepted)
     assert (accepted.stage, accepted.candidate) == (Stage.ACCEPTED, id_)
     assert len(accepted.history.entries) == 1
-    assert accepted.camera is CAMERA
+    assert accepted.seen_by.camera is CAMERA
 
 
 def test_rejecting_what_is_accepted_is_an_edit_that_can_be_undone(accepted: PlanesPresenter) -> None:

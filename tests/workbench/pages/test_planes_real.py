@@ -32,7 +32,7 @@ def settled(qtbot: Any, page: PlanesPresenter, seconds: float = 60) -> None:
 def test_a_finished_project_shows_what_it_was_made_from_and_can_be_changed(page: PlanesPresenter, qtbot: Any) -> None:
     assert stage(page) is Stage.ACCEPTED
     accepted, first = page.candidate, page.poses()[0].name
-    assert page.camera is not None
+    assert page.seen_by.camera is not None
     kept = [entry.id for entry in page.history.entries]
     page.set_used([first], False)
     settled(qtbot, page)

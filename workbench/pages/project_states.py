@@ -1,0 +1,75 @@
+"""Which state of a project is opened, where there is more than one: the one question that is asked then."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from PySide6.QtCore import QCoreApplication
+from PySide6.QtWidgets import QWidget
+
+from core.errors import InputError
+from core.files.project import NewerProject, ProjectFile, Version, read_project, recoverable, rescues
+from workbench.views import ask
+
+
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """What `ProjectModel.open` is to be told: the autosaved state, or an earlier `version`; neither for the saved."""
+
+    recover: bool = False
+    version: ProjectFile | None = None
+
+
+def wanted_state(parent: QWidget, folder: Path) -> Wanted | None:
+    """Which state of the project in `folder` to open; None if the user wants none.
+
+    Asks where there are changes autosaved before a crash, or where project.json is damaged and something else is not.
+
+    Raises
+    ------
+    InputError
+        If there is no state that can be read, or the project is of a newer program.
+    """
+    try:
+        saved = read_project(folder)
+    except NewerProject:
+        raise
+    except InputError as error:
+        versions = rescues(folder)
+        if not versions:
+            raise
+        return _ask_for_version(parent, folder, error, versions)
+    recovered = recoverable(folder)
+    if recovered is None or recovered == saved:
+        return Wanted()
+    return _ask_for_recovery(parent, folder, recovered)
+
+
+def _ask_for_version(parent: QWidget, folder: Path, error: InputError, versions: tuple[Version, ...]) -> Wanted | None:
+    text = _tr(
+        "{0} cannot be read: {1}. There are earlier states of the project; the damaged file is kept in backups."
+    ).format(folder / "project.json", error.what)
+    answers = [_in_words(version) for version in versions]
+    chosen = ask.ask(parent, _tr("Damaged project"), text, [*answers, _tr("Do not open")])
+    return Wanted(version=versions[chosen].file) if chosen < len(versions) else None
+
+
+def _ask_for_recovery(parent: QWidget, folder: Path, recovered: ProjectFile) -> Wanted | None:
+    text = _tr("{0} was not closed properly: there are unsaved changes of {1}.").format(folder.name, _time(recovered))
+    answers = [_tr("Recover the changes"), _tr("Open the saved state"), _tr("Do not open")]
+    chosen = ask.ask(parent, _tr("Recover the project"), text, answers)
+    return Wanted(recover=chosen == 0) if chosen < 2 else None
+
+
+def _in_words(version: Version) -> str:
+    words = _tr("Unsaved changes of {0}") if version.autosaved else _tr("Backup of {0}")
+    return words.format(_time(version.file))
+
+
+def _time(file: ProjectFile) -> str:
+    return file.saved.astimezone().strftime("%Y-%m-%d %H:%M") if file.saved else _tr("an unknown time")
+
+
+def _tr(text: str) -> str:
+    return QCoreApplication.translate("ProjectDoors", text)
