@@ -23,6 +23,9 @@ from core.files.project import (
 )
 from workbench.edits import Edit
 
+CALIBRATIONS = {"camera": "camera", "planes": "fan"}
+"""Steps whose result is a calibration, and which of the accepted ones it is."""
+
 AUTOSAVE_MS = 1000
 """An edit is on disk at most so long after it was made."""
 
@@ -45,6 +48,7 @@ class ProjectModel(QObject):
         self._file = ProjectFile(new_project(""))
         self._saved: ProjectFile | None = None
         self._told = ""
+        self._accepted: dict[tuple[str, str], Done] = {}
         self.undo_stack = QUndoStack(self)
         self._autosave = QTimer(self)
         self._autosave.setSingleShot(True)
@@ -123,6 +127,8 @@ class ProjectModel(QObject):
         kept = {name: result for name, result in self.results.items() if name not in done}
         new = {name: result for name, result in done.items() if result is not None}
         self._file = replace(self._file, results={**kept, **new})
+        for step, result in new.items():
+            self._remember(step, result)
         self._touched()
         self.results_changed.emit()
 
@@ -158,9 +164,23 @@ class ProjectModel(QObject):
 
     def _show(self, project: Project) -> None:
         before = self.project
-        self._file = replace(self._file, project=project)
+        self._file = replace(self._file, project=project, results=self._results_for(before, project))
         self._touched()
         self.changed.emit(before, project)
+
+    def _results_for(self, before: Project, after: Project) -> Mapping[str, Done]:
+        """What was measured, where the accepted calibrations are others: how each of them came about is a fact, too."""
+        results = dict(self.results)
+        for step, which in CALIBRATIONS.items():
+            id_ = getattr(after.accepted, which)
+            if id_ != getattr(before.accepted, which) and (step, id_) in self._accepted:
+                results[step] = self._accepted[step, id_]
+        return results
+
+    def _remember(self, step: str, done: Done) -> None:
+        """How the accepted calibration of a step came about, for when it is accepted again by undo or redo."""
+        if step in CALIBRATIONS and (id_ := getattr(self.project.accepted, CALIBRATIONS[step])):
+            self._accepted[step, id_] = done
 
     def _touched(self) -> None:
         if self.is_open:
@@ -170,5 +190,8 @@ class ProjectModel(QObject):
     def _take(self, folder: Path | None, file: ProjectFile, saved: ProjectFile | None) -> None:
         self.folder, self._file, self._saved, self._told = folder, file, saved, ""
         self.undo_stack.clear()
+        self._accepted.clear()
+        for step, done in file.results.items():
+            self._remember(step, done)
         self.opened.emit()
         self.modified.emit(self.is_modified)

@@ -25,6 +25,10 @@ NEEDS: Mapping[str, tuple[str, ...]] = {
 """What must be there before a step can be done."""
 
 
+STALE_WITH: Mapping[str, tuple[str, ...]] = {**NEEDS, "report": ("scan", "inspect")}
+"""What makes a step out of date when it is: a report prints the thickness, though it can do without one."""
+
+
 class State(StrEnum):
     """A step's place on the rail."""
 
@@ -60,7 +64,7 @@ def _state(step: str, project: Project, results: Mapping[str, Done], before: Map
     done = results.get(step)
     if done is not None:
         why = list(changed(done.rests_on, rests_on(step, project, results)))
-        stale = [need for need in NEEDS[step] if before[need].state is State.OUTDATED]
+        stale = [other for other in STALE_WITH[step] if before[other].state is State.OUTDATED]
         if why:
             return StepState(State.OUTDATED, _tr("Out of date: changed since: {0}.").format(", ".join(why)))
         if stale:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from PySide6.QtCore import Qt, QTimer
+from PySide6.QtCore import QPoint, Qt, QTimer
 from PySide6.QtWidgets import (
     QAbstractButton,
     QApplication,
@@ -25,6 +25,8 @@ from superqt import QCollapsible
 from workbench.main_window import MainWindow
 from workbench.views import ask
 from workbench.views.scene_view import SceneView
+from workbench.views.tables import ViewList
+from workbench.views.view_delegate import CHECK_WIDTH
 
 PATIENCE_S = 30.0
 
@@ -84,6 +86,7 @@ class Technician:
             lambda: button.isVisible() and button.isEnabled(), f"{button.text()!r} ({button.toolTip()})", seconds
         )
         self.scroll_to(button)
+        self.until(lambda: not button.visibleRegion().isEmpty(), f"{button.text()!r} to be in sight", 5)
         where = button.rect().center()
         if isinstance(button, QCheckBox):
             where.setX(min(10, where.x()))
@@ -113,6 +116,18 @@ class Technician:
         while box.currentIndex() != place:
             self.keys(box, Qt.Key.Key_Down if place > box.currentIndex() else Qt.Key.Key_Up)
         QApplication.processEvents()
+
+    def uncheck(self, title: str) -> None:
+        """Take the tick of a row of the page's list away by clicking it."""
+        views = next(views for views in self.page().findChildren(ViewList) if views.isVisible())
+        row = next(place for place, row in enumerate(views.model.rows) if title in (row.title, row.name))
+        assert views.model.rows[row].used
+        self.scroll_to(views)
+        index = views.model.index(row, 0)
+        views.table.scrollTo(index)
+        where = views.table.visualRect(index)
+        spot = QPoint(where.left() + CHECK_WIDTH // 2, where.center().y())
+        self._qtbot.mouseClick(views.table.viewport(), Qt.MouseButton.LeftButton, pos=spot)
 
     def unfold(self, title: str) -> None:
         """Open a panel at the side."""

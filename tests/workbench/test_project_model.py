@@ -10,6 +10,7 @@ from core.errors import InputError
 from core.files.project import Project, new_project, read_project, recoverable
 from core.files.project_keys import finished
 from workbench.project_model import ProjectModel
+from workbench.step_state import State, step_states
 
 
 @pytest.fixture
@@ -95,3 +96,27 @@ def test_a_project_is_never_created_over_another(model: ProjectModel) -> None:
     assert model.folder is not None
     with pytest.raises(InputError, match="there is a project already"):
         ProjectModel().create(model.folder, new_project("x"))
+
+
+def test_the_result_of_an_accepted_calibration_comes_back_with_it(model: ProjectModel) -> None:
+    """Leaving a view out, accepting what comes of it, and undoing both leaves everything as it was."""
+    first = accepting(model.project, "aaa")
+    model.edit("accept", first)
+    model.record("camera", finished("camera", first, {}))
+    at_first = model.results["camera"]
+    model.edit("leave out", replace(first, options=replace(first.options, excluded=frozenset({"camera/view03.png"}))))
+    model.edit("accept", accepting(model.project, "bbb"))
+    model.record("camera", finished("camera", model.project, {}))
+    at_last = model.results["camera"]
+    assert at_last.rests_on != at_first.rests_on
+    model.undo_stack.undo()
+    assert model.results["camera"] is at_first
+    model.undo_stack.redo()
+    assert model.results["camera"] is at_last
+    model.undo_stack.undo()
+    model.undo_stack.undo()
+    assert step_states(model.project, model.results)["camera"].state is State.DONE
+
+
+def accepting(project: Project, id_: str) -> Project:
+    return replace(project, accepted=replace(project.accepted, camera=id_))
