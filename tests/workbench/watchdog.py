@@ -9,6 +9,7 @@ GUI thread's frames crashes Python 3.11.)
 
 from __future__ import annotations
 
+import os
 import signal
 import time
 import traceback
@@ -114,10 +115,14 @@ class Watchdog(QObject):
         self._seen.append(tuple(lines[:DEPTH]))
 
 
-LIMIT_MS = 50.0
+STRICT = os.environ.get("TRISECT_STRICT_CLOCK") == "1"
+"""Hold the window to its promise of 50 ms: on a quiet machine. A shared one, whose processor's caches belong to others
+half of the time, is given four times as long; a window that really blocks is away for longer than that."""
+
+LIMIT_MS = 50.0 if STRICT else 200.0
 """The GUI thread may be busy for so long in one go."""
 
-SCENE_LIMIT_MS = 150.0
+SCENE_LIMIT_MS = 150.0 if STRICT else 600.0
 """The same while 3D is set up or drawn by software OpenGL, which draws in the GUI thread; a graphics card does not."""
 
 _NOMINAL_S = 0.004

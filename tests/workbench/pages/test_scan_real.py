@@ -5,13 +5,11 @@ from pathlib import Path
 import pytest
 from PySide6.QtCore import Qt
 
-from tests.workbench.watchdog import Watchdog
+from tests.workbench.watchdog import LIMIT_MS, Watchdog
 from workbench.bench import Bench
 from workbench.pages.scan_page import ScanPage
 from workbench.pages.scan_picture import View
 from workbench.pages.scan_presenter import ScanPresenter, Stage
-
-LIMIT_MS = 50.0
 
 
 @pytest.fixture
