@@ -77,6 +77,7 @@ class ProjectPage(StepPage):
         scroll.setWidget(inside)
         scroll.setWidgetResizable(True)
         scroll.setFrameShape(QFrame.Shape.NoFrame)
+        scroll.setAccessibleName(self.tr("Fields of the project"))
         return scroll
 
     def _kept(self) -> QWidget:

@@ -83,6 +83,7 @@ class StepPage(QWidget):
         scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         scroll.setFrameShape(QFrame.Shape.NoFrame)
         scroll.setMinimumWidth(300)
+        scroll.setAccessibleName(self.tr("Settings and quality"))
         return scroll
 
 

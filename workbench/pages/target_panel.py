@@ -87,7 +87,23 @@ class TargetPanel(QWidget):
         if kind == "circle_grid":
             form.add_check("asymmetric", self.tr("Every second row moved"))
         form.edited.connect(self._presenter.set_target, Qt.ConnectionType.QueuedConnection)
-        QWidget.setTabOrder(form, self.paper)
+        self._put_before_the_paper(old)
+
+    def _put_before_the_paper(self, old: QWidget) -> None:
+        """New fields come last when one goes on by Tab: let them come where they are seen."""
+        before: QWidget | None = self.paper.previousInFocusChain()
+        while before is not None and before is not self.paper and self._is_passed(before, old):
+            before = before.previousInFocusChain()
+        if before is None or before is self.paper:
+            return
+        for editor in self.form.editors():
+            QWidget.setTabOrder(before, editor)
+            before = editor
+
+    def _is_passed(self, widget: QWidget, old: QWidget) -> bool:
+        """Whether Tab passes a widget over, or it is part of this panel."""
+        takes_focus = bool(widget.focusPolicy() & Qt.FocusPolicy.TabFocus)
+        return not takes_focus or widget is old or self.isAncestorOf(widget)
 
     def _add_counts(self, form: SettingsForm, kind: str) -> None:
         counted = {

@@ -126,6 +126,10 @@ class SettingsForm(QWidget):
         """
         return self._editors[key]
 
+    def editors(self) -> tuple[QWidget, ...]:
+        """All editors, from above to below."""
+        return tuple(self._editors.values())
+
     def help_of(self, key: str) -> str:
         """What stands under a setting: its help, or the complaint."""
         return self._helps[key][0].text()

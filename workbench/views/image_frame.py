@@ -51,6 +51,7 @@ class ImageFrame(QWidget):
         self._layers_menu = LayersMenu(self._layers, self)
         self._fitted = True
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+        self.setAccessibleName(self.tr("Picture"))
         column = QVBoxLayout(self)
         column.setContentsMargins(1, 1, 1, 1)
         column.setSpacing(0)

@@ -55,6 +55,7 @@ class BarsWithThreshold(Plot):
         self._height = 1.0
         super().__init__(parent)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+        self.setAccessibleName(self.tr("Errors as bars: Left and Right go along, Up and Down move the threshold"))
         self._column.setContentsMargins(1, 1, 1, 1)
         self._canvas.scene().sigMouseClicked.connect(self._clicked)
 

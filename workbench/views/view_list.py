@@ -77,6 +77,7 @@ class ViewList(QWidget):
     def set_headers(self, what: str, value: str) -> None:
         """Name both columns: what is listed, and the value with its unit."""
         self.model.set_headers(what, value)
+        self.table.setAccessibleName(what)
 
     def set_rows(self, rows: Sequence[ListRow]) -> None:
         """Show rows. Which are chosen, which is current, and the scrolling are kept."""
