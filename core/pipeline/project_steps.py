@@ -42,8 +42,9 @@ from core.pipeline.scan_step import scan_step
 from core.pipeline.staging import staged
 from core.pipeline.workspace import FILES, Workspace
 from core.progress import Progress, silent
-from core.report.content import SECTIONS, RepeatLine, ReportContent
+from core.report.content import RepeatLine, ReportContent
 from core.report.pdf import build_report
+from core.report.section_names import SECTIONS
 from core.scan.frame_preview import FramePreview
 
 __all__ = [

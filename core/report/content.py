@@ -7,7 +7,6 @@ from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from datetime import datetime
-from types import MappingProxyType
 from typing import Literal, TypeAlias
 
 import numpy as np
@@ -18,29 +17,10 @@ from core.image.centreline import Centreline
 from core.inspect.results import GaugeResult
 from core.inspect.study import RepeatStatistics, repeat_statistics
 from core.model.arrays import Array, frozen_array, set_field
+from core.report.section_names import SECTIONS
 from core.scan.cloud import Cloud
 from core.scan.results import FrameRecord
 from core.scan.surface import Mesh
-
-SECTIONS: Mapping[str, str] = MappingProxyType(
-    {
-        "surface": "Measured surface",
-        "frame": "One frame of the scan",
-        "maps": "Residuals of both faces, or depth and σ of the cloud",
-        "budget": "Uncertainty budget of the thickness",
-        "repeats": "Repeated scans",
-        "calibrations": "Calibrations and rig",
-        "frames": "Frames and calibration pictures",
-        "remarks": "Remarks of the operator",
-        "settings": "Software and settings",
-        "inputs": "Inputs, each with its hash",
-    }
-)
-"""Name and title of each section that can be left out, in printing order.
-
-What a reader must not miss is not among them: the result, what it does not cover, warnings, and the hash over all
-inputs.
-"""
 
 Paper: TypeAlias = Literal["A4", "Letter"]
 """What a report is printed on."""

@@ -1,11 +1,13 @@
 """The real program, started as its users start it, with somebody in it who does what a test asks for.
 
-`python -m tests.workbench.driven DEED PROJECT [SCENE]`; every line it writes is a fact: "edited", "recorded 12".
+`python -m tests.workbench.driven DEED [PROJECT [SCENE]]`; every line it writes is a fact: "edited", "recorded 12".
 """
 
 from __future__ import annotations
 
+import os
 import sys
+import time
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -15,6 +17,9 @@ from PySide6.QtCore import QTimer
 import workbench.app as program
 from workbench.main_window import MainWindow
 from workbench.project_model import AUTOSAVE_MS
+
+HEAVY = ("numba", "matplotlib", "pyvista", "vtkmodules", "reportlab", "pypdfium2", "pypylon", "trimesh")
+"""What the window can do without until somebody measures or looks at something in 3D."""
 
 
 def say(*words: object) -> None:
@@ -46,12 +51,19 @@ def start_when_possible(live: Any) -> None:
         QTimer.singleShot(50, lambda: start_when_possible(live))
 
 
-DEEDS = {"edit": edit, "record": record, "nothing": lambda *_: say("started")}
+def tell_of_start(window: MainWindow, *_: str) -> None:
+    """The window is there and answers: how long that took, and what had to be imported for it."""
+    say("seconds", round(time.time() - float(os.environ["STARTED_AT"]), 2))
+    say("modules", *sorted(name for name in sys.modules if name in HEAVY or name.startswith("core.pipeline")))
+    window.close()
+
+
+DEEDS = {"edit": edit, "record": record, "start": tell_of_start}
 
 
 def main() -> int:
     """Run the program and do the deed once it is there."""
-    deed, project, more = DEEDS[sys.argv[1]], sys.argv[2], sys.argv[3:]
+    deed, project, more = DEEDS[sys.argv[1]], sys.argv[2:3], sys.argv[3:]
     after_start = program._after_start
 
     def then(window: MainWindow, path: Path | None) -> None:
@@ -59,7 +71,7 @@ def main() -> int:
         deed(window, *more)
 
     program._after_start = then
-    return program.main([project])
+    return program.main(project)
 
 
 if __name__ == "__main__":

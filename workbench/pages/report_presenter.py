@@ -9,7 +9,7 @@ from typing import Any
 
 from core.files.project import Project
 from core.files.project_keys import finished
-from core.report.content import SECTIONS
+from core.report.section_names import SECTIONS
 from workbench import jobs
 from workbench.bench import Bench
 from workbench.pages.presenter import StepPresenter
