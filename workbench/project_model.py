@@ -150,12 +150,15 @@ class ProjectModel(QObject):
         self.modified.emit(False)
 
     def autosave(self) -> None:
-        """Write the state beside project.json, for recovery after a crash."""
+        """Write the state beside project.json, for recovery after a crash; what was undone is not to be recovered."""
         self._autosave.stop()
-        if self.folder is None or not self.is_modified:
+        if self.folder is None:
             return
         try:
-            write_autosave(self.folder, self._file)
+            if self.is_modified:
+                write_autosave(self.folder, self._file)
+            else:
+                remove_autosave(self.folder)
             self._told = ""
         except InputError as error:
             if str(error) != self._told:  # said once, not at every edit

@@ -18,6 +18,7 @@ if not os.environ.get("DISPLAY"):
     os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
 
 import pytest
+import shiboken6
 from PySide6.QtCore import QCoreApplication, QEvent, QTimer
 from PySide6.QtWidgets import QApplication, QWidget
 
@@ -171,17 +172,17 @@ def nothing_left_behind(request: pytest.FixtureRequest) -> Iterator[None]:
         thread.join(2)
     threads = [thread for thread in threads if thread.is_alive()]
     assert not threads, f"threads left behind: {threads}"
-    running = _running_timers(app)
-    assert not running, f"timers left running: {running}"
+    if "window" in request.fixturenames:
+        running = _running_timers()
+        assert not running, f"timers left running: {running}"
     children = _foreign_children(request)
     assert not children, f"processes left behind: {children}"
 
 
-def _running_timers(app: QApplication) -> list[str]:
-    """Timers that will fire again although their test is over; all there are, whoever holds them."""
-    gc.collect(1)
-    owned = [timer for widget in app.topLevelWidgets() for timer in widget.findChildren(QTimer) if timer.isActive()]
-    return [f"every {timer.interval()} ms of {timer.parent()}" for timer in owned]
+def _running_timers() -> list[str]:
+    """Timers that would fire again although their window is closed, whoever holds them."""
+    timers = [each for each in gc.get_objects() if isinstance(each, QTimer) and shiboken6.isValid(each)]
+    return [f"every {timer.interval()} ms of {timer.parent()}" for timer in timers if timer.isActive()]
 
 
 def _foreign_children(request: pytest.FixtureRequest) -> list[str]:

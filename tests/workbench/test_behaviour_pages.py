@@ -127,3 +127,16 @@ def test_a_name_typed_and_not_left_yet_is_saved(technician: Technician, tmp_path
     t.shortcut(Qt.Key.Key_S)
     assert t.model.project.info.part == "Older"
     assert not t.model.is_modified
+
+
+def test_leaving_with_everything_undone_leaves_nothing_to_recover(technician: Technician, tmp_path: Path) -> None:
+    t = technician
+    folder = tmp_path / "undone"
+    t.model.create(folder, new_project("Block"))
+    t.activate()
+    t.type_in(t.field("Part"), "Other")
+    t.model.autosave()
+    t.shortcut(Qt.Key.Key_Z)
+    assert not t.model.is_modified
+    assert t.window.close()
+    assert not (folder / ".autosave.json").exists()

@@ -92,6 +92,17 @@ def test_opening_without_recovery_forgets_the_autosave(model: ProjectModel) -> N
     assert recoverable(folder) is None
 
 
+def test_an_edit_that_was_undone_is_not_offered_after_a_crash(model: ProjectModel) -> None:
+    assert model.folder is not None
+    model.edit("rename", renamed(model.project, "Other"))
+    model.autosave()
+    assert recoverable(model.folder) is not None
+    model.undo_stack.undo()
+    model.autosave()
+    assert recoverable(model.folder) is None
+    assert not (model.folder / ".autosave.json").exists()
+
+
 def test_a_project_is_never_created_over_another(model: ProjectModel) -> None:
     assert model.folder is not None
     with pytest.raises(InputError, match="there is a project already"):

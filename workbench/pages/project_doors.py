@@ -151,7 +151,10 @@ class ProjectDoors(QObject):
                 return False
         self._take_typed()
         self.model.leaving.emit()
-        if not self.model.is_modified or self.save():
+        if not self.model.is_modified:
+            self.model.autosave()  # nothing is left that could be offered for recovery
+            return True
+        if self.save():
             return True
         text = self.tr("The project cannot be saved. Leave and lose the changes?")
         answers = [self.tr("Leave without saving"), self.tr("Stay")]
