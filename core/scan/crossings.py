@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from core.image.centreline import Centreline
 from core.image.crossing import Crossing, cross_centrelines
 from core.image.shading import shading_sigma
-from core.model.arrays import Array
+from core.model.arrays import Array, set_field
 from core.progress import Progress, silent, steps
 
 Index = NDArray[np.int64]
@@ -36,7 +36,23 @@ class CrossingTable:
     along_a, along_b
         (M,) where on that centreline, as length along it from its first point, in pixels.
     half_length_px
-        Half the length of the local fit.
+        Length of a cell, see below.
+    cell_a, cell_b
+        (M,) the first cell of each centreline that the local fit rests on.
+    share_a, share_b
+        (M, K) how the errors of crossings on one centreline hang together, in pixels; K = 0 where that is not known.
+
+    Notes
+    -----
+    A centreline (frame and piece, whether it is a or b) is cut along itself into cells: cell k reaches from
+    k·half_length_px to (k + 1)·half_length_px, measured as `along`. Each cell has one error z, standard normal and
+    independent of all others. A local fit that rests on the cells c … c + K − 1 is off across its line by ::
+
+        ε_a = Σ_k share_a[:, k]·z[cell_a + k] + rest,    rest ~ N(0, sigma_a² − Σ_k share_a²), independent
+
+    So the covariance of two crossings on one centreline is the sum over the cells they have in common, and `sigma` is
+    the whole standard uncertainty of each. Positive is along (−t_v, t_u); tangents point the way `along` grows, so that
+    is the same side all along a centreline.
     """
 
     uv: Array
@@ -51,6 +67,17 @@ class CrossingTable:
     along_a: Array
     along_b: Array
     half_length_px: float
+    cell_a: Index = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    cell_b: Index = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    share_a: Array = field(default_factory=lambda: np.zeros((0, 0)))
+    share_b: Array = field(default_factory=lambda: np.zeros((0, 0)))
+
+    def __post_init__(self) -> None:
+        count = len(self.a)
+        for name in ("cell_a", "cell_b", "share_a", "share_b"):
+            value = getattr(self, name)
+            if len(value) != count and value.size == 0:
+                set_field(self, name, np.zeros((count, *value.shape[1:]), value.dtype))
 
     def __len__(self) -> int:
         return len(self.a)
@@ -72,7 +99,7 @@ class CrossingTable:
 
     def swapped(self) -> CrossingTable:
         """The same crossings with a called b and b called a."""
-        pairs = ("tangent", "sigma", "piece", "along")
+        pairs = ("tangent", "sigma", "piece", "along", "cell", "share")
         turned = {f"{name}_{to}": getattr(self, f"{name}_{of}") for name in pairs for to, of in ("ab", "ba")}
         return replace(self, a=self.b, b=self.a, **turned)
 
