@@ -54,6 +54,8 @@ class ScanFile:
         Index of the frame to show in the report, or None.
     calibration_id
         Names the calibration the scan was measured with.
+    features_key
+        Names what the features rest on: with the same key they need not be looked for again. Nothing if not known.
     """
 
     features: ScanFeatures
@@ -64,6 +66,7 @@ class ScanFile:
     crossings_used: Array
     shown: int | None
     calibration_id: str
+    features_key: str = ""
 
 
 def write_scan(path: Path, scan: ScanFile) -> None:
@@ -72,6 +75,7 @@ def write_scan(path: Path, scan: ScanFile) -> None:
     crossings = features.crossings
     arrays: dict[str, NDArray[Any]] = {
         "calibration_id": np.array(scan.calibration_id),
+        "features_key": np.array(scan.features_key),
         "image_size": np.array(features.image_size),
         "pis": scan.pis,
         "covariance": scan.covariance,
@@ -144,6 +148,7 @@ def _unpacked(arrays: Arrays) -> ScanFile:
         crossings_used=arrays["crossings_used"],
         shown=None if shown == _NO_FRAME else shown,
         calibration_id=str(arrays["calibration_id"]),
+        features_key=str(arrays.get("features_key", "")),
     )
 
 

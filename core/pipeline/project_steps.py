@@ -176,6 +176,8 @@ def measure_scan(
     """Measure surface and thickness with the accepted calibrations; a part without two parallel faces is no error.
 
     New results take the place of the old ones when all is done; until then, and if it is cancelled, the old ones stay.
+    Where the scan among them is of the same pictures (another σ cut, method or calibration was chosen), these are not
+    looked at again, and there is nothing to watch.
 
     Parameters
     ----------
@@ -198,7 +200,7 @@ def measure_scan(
         put_in_place(folder, project.accepted, beside)
         work = Workspace.open(found, beside, _part(project))
         _record_calibrations(work, folder, project)
-        measured = scan_step(work, project.options, progress, watch)
+        measured = scan_step(work, project.options, progress, watch, earlier=results / FILES["scan"])
         gauge, no_gauge = gauge_if_possible(work, progress)
         notes, calibration_id = work.record().all_notes, work.calibration().id
     return ScanSummary(

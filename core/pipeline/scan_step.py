@@ -15,8 +15,9 @@ from core.files.ply import write_cloud, write_mesh
 from core.files.recording_set import RecordingSet, require_scan
 from core.files.scan_file import ScanFile, write_scan
 from core.model import Camera
+from core.pipeline.kept_features import features_key, kept_features
 from core.pipeline.options import Options
-from core.pipeline.workspace import Workspace, check_size
+from core.pipeline.workspace import Calibration, Workspace, check_size
 from core.progress import Progress, silent, steps
 from core.scan.features import (
     FeatureOptions,
@@ -53,10 +54,19 @@ def scan_step(
     options: Options | None = None,
     progress: Progress = silent,
     watch: Callable[[FramePreview], None] | None = None,
+    earlier: Path | None = None,
 ) -> Measured:
     """Measure the surface with the calibration in camera.json and planes.json.
 
-    `watch` is shown each frame with what it would give by itself, in the order of the recording, on this thread.
+    Parameters
+    ----------
+    work, options, progress
+        What is measured, how, and who is told.
+    watch
+        Shown each frame with what it would give by itself, in the order of the recording, on this thread.
+    earlier
+        A scan.npz: where it is of the same pictures, looked at in the same way, they are not looked at again, and there
+        is nothing to watch. The results are the same, byte for byte.
 
     Raises
     ------
@@ -71,15 +81,9 @@ def scan_step(
     camera, fan = calibration.camera.camera, calibration.fan.fan
     with work.step("scan") as log:
         log.settings.update(options.scan_settings)
-        looking = feature_options(options)
-        progress("reference", 0, 1)
-        picture, note = reference_picture(found, camera, options, progress)
-        reference = read_reference(picture, looking)
-        log.notes.extend(note)
-        progress("reference", 1, 1)
-        frames, total = stream_frames(found, options), len(found.frames)
-        show = _shown_to(watch, Preview(reference, camera, fan)) if watch else None
-        features = extract_features(reference, frames, total, looking, progress, show)
+        features = kept_features(earlier, found, options, progress) if earlier is not None else None
+        if features is None or features.image_size != camera.image_size:
+            features = _look(found, calibration, options, progress, watch)
         solving = ReconstructOptions(method=options.method, sigma_cut_mm=options.sigma_cut_mm)
         scan = reconstruct(features, camera, fan, solving, progress)
         scan = replace(scan, cloud=with_normals(scan.cloud, progress=progress))
@@ -88,8 +92,27 @@ def scan_step(
         log.notes.extend(scan.notes)
         surface = with_normals(fuse(scan.cloud, camera.image_size, progress=progress), progress=progress)
         mesh = build_mesh(surface, progress=progress)
-        _write(work, scan, mesh, _file(features, scan, calibration.id))
+        _write(work, scan, mesh, _file(features, scan, calibration.id, features_key(found, options)))
     return Measured(scan, mesh)
+
+
+def _look(
+    found: RecordingSet,
+    calibration: Calibration,
+    options: Options,
+    progress: Progress,
+    watch: Callable[[FramePreview], None] | None,
+) -> ScanFeatures:
+    """What the reference and all frames show."""
+    camera, looking = calibration.camera.camera, feature_options(options)
+    progress("reference", 0, 1)
+    picture, note = reference_picture(found, camera, options, progress)
+    reference = read_reference(picture, looking)
+    progress("reference", 1, 1)
+    frames, total = stream_frames(found, options), len(found.frames)
+    show = _shown_to(watch, Preview(reference, camera, calibration.fan.fan)) if watch else None
+    features = extract_features(reference, frames, total, looking, progress, show)
+    return replace(features, notes=(*note, *features.notes))
 
 
 def _shown_to(watch: Callable[[FramePreview], None], preview: Preview) -> Callable[[FrameFeatures], None]:
@@ -177,7 +200,7 @@ def left_out_sentences(frames: tuple[FrameRecord, ...]) -> list[str]:
     ]
 
 
-def _file(features: ScanFeatures, scan: ScanResult, calibration_id: str) -> ScanFile:
+def _file(features: ScanFeatures, scan: ScanResult, calibration_id: str, key: str) -> ScanFile:
     shown = _shown(scan.frames)
     mine = (scan.crossings.a == shown) & scan.crossings.with_fan & (scan.crossing_weights > SILENCED)
     return ScanFile(
@@ -189,6 +212,7 @@ def _file(features: ScanFeatures, scan: ScanResult, calibration_id: str) -> Scan
         crossings_used=np.asarray(scan.crossings.uv[mine]),
         shown=shown,
         calibration_id=calibration_id,
+        features_key=key,
     )
 
 
