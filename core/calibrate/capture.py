@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -71,7 +72,7 @@ class Verdict:
 class CaptureJudge:
     """Judges the views of a live picture one after another.
 
-    `views` are those taken so far, `cells` (rows, COLUMNS) what of the picture they cover.
+    `views` are those taken so far and those known from before, `cells` (rows, COLUMNS) what of the picture they cover.
     """
 
     def __init__(
@@ -126,6 +127,12 @@ class CaptureJudge:
         if sentence := self._already_there(view):
             return Verdict(False, sentence)
         return Verdict(True, "Taken.")
+
+    def know(self, views: Iterable[TargetView]) -> None:
+        """Views of an earlier recording, which new ones are added to; they cannot be thrown away here."""
+        for view in views:
+            nameless = TargetView(view.points, view.uv, view.sigma, "")
+            self._taken.append((nameless, view_geometry(nameless, self._camera)))
 
     def taken(self, view: TargetView, time_s: float) -> None:
         """The view was taken, by this judge's word or by hand."""

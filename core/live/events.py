@@ -13,6 +13,7 @@ from core.acquire.source import Lasers, SourceChoice, SourceSettings, Step
 from core.files.options import Options
 from core.files.rig import Rig
 from core.image.centreline import Centreline
+from core.image.target_view import TargetView
 from core.model import Camera, Fan
 from core.model.arrays import Array
 from core.scan.frame_preview import FramePreview
@@ -43,6 +44,8 @@ class LiveRequest:
         Take views and poses without being told.
     pairs
         Take each pose of the plane target with the fan on and off.
+    there
+        What the target showed in the pictures that these are added to.
     """
 
     step: Step
@@ -56,6 +59,7 @@ class LiveRequest:
     display_px: int = 1280
     auto: bool = True
     pairs: bool = True
+    there: tuple[TargetView, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -57,6 +57,7 @@ class LiveCamera:
         if self._judge is None:
             height, width = frame.picture.shape
             self._judge = CaptureJudge((width, height), self._desk.request.camera)
+            self._judge.know(self._desk.request.there)
             self._missing = self._judge.missing()
         self._desk.worker.start(look_for_target, frame, self._desk.request.rig.camera_target, self._desk.request.camera)
 

@@ -69,6 +69,7 @@ class LivePlanes:
         if self._judge is None:
             height, width = frame.picture.shape
             self._judge = CaptureJudge((width, height), self._camera, series=PLANE_POSES)
+            self._judge.know(self._desk.request.there)
             self._missing = self._judge.missing()
         if self._stage == "looking":
             known = self._target, self._camera, self._settings, self._lines

@@ -4,7 +4,7 @@ import pytest
 from core.acquire.source import Lasers
 from core.files.pictures import read_picture
 from core.files.rig import Rig
-from core.image.targets import BlackSquare, Checkerboard
+from core.image.targets import BlackSquare, Checkerboard, detect
 from core.live.events import (
     Auto,
     Capture,
@@ -93,6 +93,18 @@ def test_views_that_add_something_are_taken_by_themselves(monkeypatch, tmp_path,
     assert seen[-1].views >= 3
     assert seen[-1].cells.any()
     assert seen[0].missing == ("Record at least 10 views; there is none.",)
+
+
+def test_views_that_are_there_already_count_for_what_is_missing_and_are_not_taken_again(monkeypatch, tmp_path, plates):
+    there = tuple(detect(RIG.camera_target, view, f"camera/view{n:02d}.png") for n, view in enumerate(plates.views[:3]))
+    window = Window()
+    shown = OneAfterAnother(plates.views[:1])
+    ended = views_taken(monkeypatch, tmp_path, plates, window, shown, frames=60, there=there)
+    assert ended.recorded == 0
+    seen = [detail for detail in window.details if detail.uv is not None]
+    assert seen[0].missing[0] == "Record at least 10 views; there are 3."
+    assert seen[0].cells.any()
+    assert "Turn the board: this tilt is already there." in {detail.sentence for detail in seen}
 
 
 def test_the_same_view_is_taken_once(monkeypatch, tmp_path, plates):

@@ -14,6 +14,7 @@ from core.calibrate.results import LEFT_OUT, ViewQuality
 from core.files.camera_file import camera_id
 from core.files.project import Project
 from core.files.project_keys import finished
+from core.image.target_view import TargetView
 from core.live.events import LiveEnded, LiveTaken
 from core.model.arrays import Array
 from workbench import jobs
@@ -66,6 +67,7 @@ class CameraPresenter(StepPresenter):
         self._accepting = False
         self._read = ""
         self.live_views: list[tuple[str, Any]] = []
+        self.live.there = self._views_that_count
         self.live.changed.connect(self.changed)
         self.live.started.connect(lambda _: self.live_views.clear())
         self.live.taken.connect(self._live_taken)
@@ -313,6 +315,11 @@ class CameraPresenter(StepPresenter):
 
     def _live_taken(self, taken: LiveTaken) -> None:
         self.live_views.append((f"{PART}{taken.name}", taken.thumbnail))
+
+    def _views_that_count(self) -> tuple[TargetView, ...]:
+        """What the target shows in the pictures there are, without those left out by hand."""
+        found = self.work.seen.found if self.work.seen is not None else ()
+        return tuple(view for view in found if view.name not in self.project.options.excluded)
 
     def _put_aside(self, names: Sequence[str]) -> None:
         for name in names:

@@ -16,6 +16,7 @@ from PySide6.QtCore import QEventLoop, QObject, QTimer, Signal
 from core.acquire.source import Lasers, Step
 from core.errors import InputError
 from core.files.unfinished import forget_recording, note_recording
+from core.image.target_view import TargetView
 from core.live.events import (
     Auto,
     Capture,
@@ -57,8 +58,9 @@ DISPLAY_PX = 1280
 class LivePresenter(QObject):
     """Starts, steers and ends the live recordings of one step.
 
-    `calibration`, `cannot_start` and `pairs` may be set by the page: what is known of camera and fan when a recording
-    starts, why none can start now ("" if it can), and whether poses are taken with the laser on and off. Each `view`
+    `calibration`, `cannot_start`, `there` and `pairs` may be set by the page: what is known of camera and fan when a
+    recording starts, why none can start now ("" if it can), the views that count in the pictures new ones may be added
+    to, and whether poses are taken with the laser on and off. Each `view`
     must be answered by one `shown()` when it is on the screen; no other comes before. When a recording ends, its folder
     becomes the step's source by an undoable edit, then `ended` is emitted.
     """
@@ -104,6 +106,7 @@ class LivePresenter(QObject):
         self.settings.changed.connect(self._configure)
         self.calibration: Callable[[], tuple[Camera | None, Fan | None]] = lambda: (None, None)
         self.cannot_start: Callable[[], str] = lambda: ""
+        self.there: Callable[[], tuple[TargetView, ...]] = tuple
         self.pairs = True
         self.adding = False
         self._auto = step != "scan"
@@ -300,6 +303,7 @@ class LivePresenter(QObject):
             DISPLAY_PX,
             self._auto,
             self.pairs,
+            self.there() if self.adding and self.can_add else (),
         )
 
     def _recorded_text(self) -> str:

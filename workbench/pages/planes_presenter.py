@@ -12,6 +12,7 @@ from core.calibrate.results import PlanePose
 from core.files.fan_file import fan_id
 from core.files.project import Project
 from core.files.project_keys import finished
+from core.image.target_view import TargetView
 from core.live.events import LiveEnded, LiveTaken
 from core.model import Camera, Fan
 from workbench import jobs
@@ -67,6 +68,7 @@ class PlanesPresenter(StepPresenter):
         self._rejected: set[str] = set()
         self._accepting = False
         self.live.calibration = self._known
+        self.live.there = self._views_that_count
         self.live.cannot_start = self._cannot_record
         self.live.changed.connect(self.changed)
         self.live.started.connect(lambda _: self.live_views.clear())
@@ -310,6 +312,12 @@ class PlanesPresenter(StepPresenter):
 
     def _known(self) -> tuple[Camera | None, Fan | None]:
         return self.seen_by.camera, self.work.calibration.fan if self.work.calibration is not None else None
+
+    def _views_that_count(self) -> tuple[TargetView, ...]:
+        """What the plate shows in the pictures there are, without those left out by hand."""
+        excluded = self.project.options.excluded
+        counting = (pose.view for pose in self.work.poses or () if PART + pose.name not in excluded)
+        return tuple(view for view in counting if view is not None)
 
     def _cannot_record(self) -> str:
         """Why no poses can be taken now, or ""."""

@@ -1,6 +1,7 @@
 """Decisions of the camera page."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ import pytest
 from core.files.pictures import write_picture
 from core.files.project import Sources
 from core.files.project_keys import finished
+from core.live.events import LiveEnded
 from workbench import jobs
 from workbench.pages.camera_presenter import CameraPresenter, Stage
 from workbench.step_state import State
@@ -280,3 +282,18 @@ def test_another_camera_model_is_solved_at_once_and_undone(solved, qtbot):
     assert not solved.model_values()["skew"]
     solved.model.undo_stack.undo()
     assert solved.work.calibration.camera.matrix[0, 1] != 0
+
+
+def test_new_views_are_asked_for_with_regard_to_those_there_that_count(solved, qtbot):
+    lane = solved.bench.live
+    solved.set_used(["camera/view02.png"], False)
+    settled(qtbot, solved)
+    solved.live.start()
+    assert lane.waiting[0][2][0].there == ()
+    solved.live.stop()
+    lane.finish(LiveEnded(Path("nowhere"), 0, 0))
+    solved.live.set_adding(True)
+    solved.live.start()
+    names = [view.name for view in lane.waiting[0][2][0].there]
+    assert names == [f"camera/view{n:02d}.png" for n in range(8) if n != 2]
+    lane.finish(LiveEnded(Path("nowhere"), 0, 0))
