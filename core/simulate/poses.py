@@ -13,11 +13,13 @@ from core.model.arrays import Array
 BORDER_PX = 12.0
 
 
-def camera_poses(camera: Camera, outline: Array, views: int, rng: np.random.Generator) -> list[Pose]:
+def camera_poses(
+    camera: Camera, outline: Array, views: int, rng: np.random.Generator, *, nearest_mm: float = 450.0
+) -> list[Pose]:
     """`views` poses of a plate whose corners are `outline` (4, 3) in mm: all over the picture, tilted to 35°.
 
-    Distances from 450 to 650 mm (farther where the plate would not fit in), tilt axes all round, a little turned. The
-    plate is wholly in each picture.
+    Distances from `nearest_mm` to 200 mm more (farther where the plate would not fit in), tilt axes all round, a little
+    turned. The plate is wholly in each picture.
     """
     poses = []
     for view in range(views):
@@ -27,7 +29,7 @@ def camera_poses(camera: Camera, outline: Array, views: int, rng: np.random.Gene
         tilt = np.radians(5.0 + 30.0 * tilted)
         axis = 2 * np.pi * about + rng.normal(0, 0.1)
         roll = np.radians(rng.normal(0, 6.0)) + (np.pi / 2 if view % 7 == 3 else 0.0)
-        distance = 450.0 + 200.0 * away + rng.normal(0, 5.0)
+        distance = nearest_mm + 200.0 * away + rng.normal(0, 5.0)
         place = np.array([across, down])
         poses.append(_fitted(camera, outline, 2.4 * (place - 0.5), _turn(tilt, axis, roll), distance))
     return poses

@@ -31,7 +31,12 @@ RENDER_THREADS = 2
 
 
 def simulate_set(
-    scenario: Scenario, folder: Path, progress: Progress = silent, *, calibration_from: Path | None = None
+    scenario: Scenario,
+    folder: Path,
+    progress: Progress = silent,
+    *,
+    calibration_from: Path | None = None,
+    rig: Rig | None = None,
 ) -> None:
     """Render the recording set of `scenario` into `folder`, and its truth into FOLDER.truth beside it.
 
@@ -45,6 +50,8 @@ def simulate_set(
         Told after each picture; what it raises (Cancelled) passes through and leaves nothing behind.
     calibration_from
         An earlier simulated set of the same rig and scale: its camera/ and planes/ are copied, not rendered.
+    rig
+        Another rig than the scenario's, such as a planned one.
 
     Raises
     ------
@@ -61,16 +68,15 @@ def simulate_set(
     try:
         with tempfile.TemporaryDirectory(prefix=f".{folder.name}.", dir=folder.parent) as beside:
             made, hidden = Path(beside) / "set", Path(beside) / "truth"
-            _render(scenario, made, hidden, progress, calibration_from)
+            _render(scenario, rig or scenario_rig(scenario), made, hidden, progress, calibration_from)
             _put_in_place(made, hidden, folder)
     except OSError as error:
         raise cannot_write(folder, error) from error
 
 
-def _render(scenario: Scenario, made: Path, hidden: Path, progress: Progress, earlier: Path | None) -> None:
+def _render(scenario: Scenario, rig: Rig, made: Path, hidden: Path, progress: Progress, earlier: Path | None) -> None:
     for part in (made / "camera", made / "planes", made / "scan", hidden):
         part.mkdir(parents=True)
-    rig = scenario_rig(scenario)
     rays = ray_map(rig.camera)
     calibration = CalibrationPictures(scenario, rig, rays)
     camera_poses, plane_poses = calibration.camera_poses, calibration.plane_poses
