@@ -127,14 +127,30 @@ def extract_features(
             watch(features)
     progress("frames", len(found), total)
     _require_sweeps(found)
-    crossings = all_crossings(seen.fan, [frame.centrelines for frame in found], options.window, progress)
-    found = [
-        replace(frame, centrelines=_refined(frame.centrelines))
-        for frame in steps(found, progress, "smoothing", len(found))
-    ]
-    return ScanFeatures(
-        seen.image_size, _refined(seen.fan), tuple(found), crossings, sweep_stripe, seen.stripe, _notes(found)
-    )
+    return gather(seen.image_size, seen.fan, found, (seen.stripe, sweep_stripe), options.window, progress)
+
+
+def gather(
+    image_size: tuple[int, int],
+    fan: tuple[Centreline, ...],
+    frames: Sequence[FrameFeatures],
+    stripes: tuple[StripeSettings, StripeSettings | None],
+    window: CrossingWindow,
+    progress: Progress = silent,
+    smoothed: bool = True,
+) -> ScanFeatures:
+    """Centrelines as they were extracted to a scan's features: crossed, and then averaged along themselves.
+
+    `stripes` are the fan's and the sweeps'; without `smoothed` the centrelines stay as they are.
+    """
+    crossings = all_crossings(fan, [frame.centrelines for frame in frames], window, progress)
+    if smoothed:
+        fan = _refined(fan)
+        frames = [
+            replace(frame, centrelines=_refined(frame.centrelines))
+            for frame in steps(frames, progress, "smoothing", len(frames))
+        ]
+    return ScanFeatures(image_size, fan, tuple(frames), crossings, stripes[1], stripes[0], _notes(frames))
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -297,11 +313,11 @@ def _require_sweeps(frames: list[FrameFeatures]) -> None:
     )
 
 
-def _notes(frames: list[FrameFeatures]) -> tuple[str, ...]:
+def _notes(frames: Sequence[FrameFeatures]) -> tuple[str, ...]:
     return _moved_notes(frames) + _light_notes(frames)
 
 
-def _light_notes(frames: list[FrameFeatures]) -> tuple[str, ...]:
+def _light_notes(frames: Sequence[FrameFeatures]) -> tuple[str, ...]:
     changed = [frame for frame in frames if frame.light_change]
     if not changed:
         return ()
@@ -314,7 +330,7 @@ def _light_notes(frames: list[FrameFeatures]) -> tuple[str, ...]:
     )
 
 
-def _moved_notes(frames: list[FrameFeatures]) -> tuple[str, ...]:
+def _moved_notes(frames: Sequence[FrameFeatures]) -> tuple[str, ...]:
     moved = [frame for frame in frames if frame.reason in (MOVED, LOST)]
     if not moved:
         return ()
