@@ -113,7 +113,7 @@ class ExactScan:
         if moved is not None:
             later = _shifted(stage_scene, np.array(moved[1]))
             scenes[moved[0] :] = [later] * (len(shots) - moved[0])
-        eyes = {id(scene): _Eye(rig, scene) for scene in scenes + [stage_scene]}
+        eyes = {id(scene): _Eye(rig, scene) for scene in {id(one): one for one in [stage_scene, *scenes]}.values()}
         fan = [eyes[id(stage_scene)].curves(sheet) for sheet in fan_sheets(rig, WORK_POINT)]
         return cls(
             rig,
