@@ -20,10 +20,11 @@ from core.calibrate.fan_bundle import Bundle, BundlePose, solve
 from core.calibrate.fan_summary import summarise
 from core.calibrate.fan_verdict import Constrained, judge
 from core.calibrate.line_assignment import NOT_SEEN, assign_lines
-from core.calibrate.located_pose import LocatedPose, locate, on_target
+from core.calibrate.located_pose import LocatedPose, locate
 from core.calibrate.pencil import FreePlanes, PlaneSet
 from core.calibrate.plane_pose import PoseFeatures
 from core.calibrate.results import LEFT_OUT, FanCalibration
+from core.calibrate.target_plane import on_target
 from core.errors import InputError
 from core.model import Camera, Fan, LightPlane
 from core.model.arrays import Array

@@ -8,8 +8,9 @@ import numpy as np
 
 from core.calibrate.fan_bundle import Bundle
 from core.calibrate.fan_verdict import Verdict, fan_of
-from core.calibrate.located_pose import LocatedPose, on_target
+from core.calibrate.located_pose import LocatedPose
 from core.calibrate.results import FanCalibration, PlanePose
+from core.calibrate.target_plane import on_target
 from core.model import LightPlane, Pose
 from core.model.arrays import Array
 
@@ -39,6 +40,7 @@ def summarise(
         constraint_p=verdict.p,
         stripe_sd_mm=used.extra_mm,
         corner_scale=used.corner_scale,
+        by_camera=used.by_camera,
     )
 
 

@@ -6,13 +6,12 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from core.calibrate.fan_bundle import target_plane, target_plane_covariance
 from core.calibrate.line_assignment import PoseLines
 from core.calibrate.plane_pose import PoseFeatures
 from core.calibrate.stripe_lines import StripeLine, straight_lines
+from core.calibrate.target_plane import target_plane, target_plane_covariance
 from core.image.targets import TargetNotFound, estimate_pose
 from core.model import Camera, Pose
-from core.model.arrays import Array
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -76,8 +75,3 @@ def locate(features: PoseFeatures, camera: Camera) -> LocatedPose:
     lines = straight_lines(features.centrelines, camera)
     located = LocatedPose(features, estimate.pose, estimate.rms_px, lines)
     return located if lines else located.left_out("no straight stripe was found on the target")
-
-
-def on_target(rays: Array, pose: Pose) -> Array:
-    """Points (N, 3) in mm where `rays` (N, 3) meet the plane of a target at `pose`."""
-    return np.asarray(rays / (rays @ target_plane(pose))[:, None], dtype=np.float64)

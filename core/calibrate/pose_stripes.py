@@ -6,10 +6,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from core.calibrate.located_pose import locate, on_target
+from core.calibrate.located_pose import locate
 from core.calibrate.pose_features import PoseFeatures
 from core.calibrate.pose_stages import NOT_SEEN, NumberedStripe
 from core.calibrate.stripe_lines import StripeLine
+from core.calibrate.target_plane import on_target
 from core.model import Camera, Fan, LightPlane, Pose
 from core.model.arrays import Array
 

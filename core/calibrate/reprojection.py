@@ -47,12 +47,7 @@ def linearise(camera: Camera, pose: Pose, points: Array) -> tuple[Array, Array, 
     affine = camera.matrix[:2, :2]
     uv = distorted @ affine.T + camera.matrix[:2, 2]
 
-    by_camera = np.zeros((len(points), 2, 10))
-    by_camera[:, 0, 0] = distorted[:, 0]
-    by_camera[:, 1, 1] = distorted[:, 1]
-    by_camera[:, 0, 2] = distorted[:, 1]
-    by_camera[:, 0, 3] = by_camera[:, 1, 4] = 1
-    by_camera[:, :, 5:] = affine @ _by_distortion(xy)
+    by_camera = np.concatenate([_by_matrix(distorted), affine @ _by_distortion(xy)], axis=2)
 
     by_position = np.zeros((len(points), 2, 3))
     by_position[:, 0, 0] = by_position[:, 1, 1] = inverse_z
@@ -62,6 +57,23 @@ def linearise(camera: Camera, pose: Pose, points: Array) -> tuple[Array, Array, 
     by_pose[:, :, :3] = np.cross(turned[:, None, :], by_position)  # a · (ω × X) = ω · (X × a)
     by_pose[:, :, 3:] = by_position
     return uv, by_camera, by_pose
+
+
+def ray_changes(camera: Camera, rays: Array) -> Array:
+    """∂(x, y)/∂camera (N, 2, 10) of `rays` (N, 3), the pixels they belong to the same."""
+    distorted = camera.distort(rays[:, :2])
+    by_camera = np.concatenate([_by_matrix(distorted), camera.matrix[:2, :2] @ _by_distortion(rays[:, :2])], axis=2)
+    return np.asarray(-camera.ray_jacobian(rays) @ by_camera, dtype=np.float64)
+
+
+def _by_matrix(distorted: Array) -> Array:
+    """∂uv/∂(α, β, γ, u0, v0) at distorted coordinates (N, 2): (N, 2, 5)."""
+    derivative = np.zeros((len(distorted), 2, 5))
+    derivative[:, 0, 0] = distorted[:, 0]
+    derivative[:, 1, 1] = distorted[:, 1]
+    derivative[:, 0, 2] = distorted[:, 1]
+    derivative[:, 0, 3] = derivative[:, 1, 4] = 1
+    return derivative
 
 
 def _by_distortion(xy: Array) -> Array:

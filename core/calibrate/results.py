@@ -105,6 +105,9 @@ class FanCalibration:
     `constraint_p` is the probability of a constrained fit this much worse than the free one if the constraint were
     true. `stripe_sd_mm` is the standard deviation of a whole stripe from its plane beyond the stripe's own noise
     (flatness of the plate, lens), `corner_scale` the factor by which the target's points scatter more than they state.
+    `by_camera` (3N, 10) is how the stacked π of `fan` follow a change of the camera's parameters, the pictures the
+    same; None where that is not known. `scale_sd` is the standard uncertainty of the target's size, as a share of it:
+    no picture shows it, and all lengths have it in common.
     """
 
     fan: Fan
@@ -120,3 +123,5 @@ class FanCalibration:
     constraint_p: float = math.nan
     stripe_sd_mm: float = math.nan
     corner_scale: float = math.nan
+    by_camera: Array | None = None
+    scale_sd: float = 0.0

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.calibrate.pencil import huber_weights, robust_sd
+from core.calibrate.reprojection import ray_changes
 from core.image.centreline import Centreline
 from core.model import Camera
 from core.model.arrays import Array
@@ -39,6 +40,8 @@ class StripeLine:
     uncertainty of each across the line, in ray units (mm per mm of depth), from the scatter of the data, grain of
     the speckle included. `across` (2,) is the unit normal of the line in (x, y). `rays` (N, 3) are all its points,
     `uv` (N, 2) where they were seen in pixels. `saturated` is the share of points whose section is saturated.
+    `by_camera` (2, 10) tells how far the pivots move across the line per unit of each camera parameter, the pixels
+    the same.
     """
 
     pivots: Array
@@ -47,6 +50,7 @@ class StripeLine:
     rays: Array
     uv: Array
     saturated: float
+    by_camera: Array
 
     def __len__(self) -> int:
         return len(self.rays)
@@ -63,7 +67,7 @@ def straight_lines(centrelines: Sequence[Centreline], camera: Camera, limit: int
         members = chunks.largest_line(STRAIGHT_PX / camera.focal)
         if members is None or chunks.counts[members].sum() < SHORTEST:
             break
-        line = _fit(chunks, members)
+        line = _fit(chunks, members, camera)
         if line is not None:
             lines.append(line)
         chunks = chunks.without(members)
@@ -144,7 +148,7 @@ def _chunks(centrelines: Sequence[Centreline], camera: Camera) -> _Chunks:
     return _Chunks(xy, uv, sigma, saturated, owner, centres, directions, counts)
 
 
-def _fit(chunks: _Chunks, members: NDArray[np.intp]) -> StripeLine | None:
+def _fit(chunks: _Chunks, members: NDArray[np.intp], camera: Camera) -> StripeLine | None:
     """Robust straight line through the points of some chunks; None if too few agree."""
     chosen = np.flatnonzero(np.isin(chunks.owner, members))
     saturated = float(chunks.saturated[chosen].mean())
@@ -168,10 +172,13 @@ def _fit(chunks: _Chunks, members: NDArray[np.intp]) -> StripeLine | None:
     centre, along, spread = _moments(xy, weight)
     across = np.array([-along[1], along[0]])
     pivots = np.column_stack([centre + np.outer([-spread, spread], along), np.ones(2)])
-    variance = _mean_variance((xy - centre) @ across, weight, owner)
-    return StripeLine(
-        pivots, float(np.sqrt(2 * variance)), across, np.column_stack([xy, np.ones(len(xy))]), uv, saturated
-    )
+    sigma_of_pivots = float(np.sqrt(2 * _mean_variance((xy - centre) @ across, weight, owner)))
+    rays = np.column_stack([xy, np.ones(len(xy))])
+    shifts = np.einsum("i,nij->nj", across, ray_changes(camera, rays))
+    along_line = (xy - centre) @ along / spread
+    moved, turned = weight @ shifts / weight.sum(), (weight * along_line) @ shifts / weight.sum()
+    by_camera = np.array([moved - turned, moved + turned])
+    return StripeLine(pivots, sigma_of_pivots, across, rays, uv, saturated, by_camera)
 
 
 def _moments(xy: Array, weight: Array) -> tuple[Array, Array, float]:

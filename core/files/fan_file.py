@@ -11,7 +11,7 @@ import numpy as np
 from pydantic import Field, ValidationError, model_validator
 
 from core import __version__
-from core.calibrate.results import FanCalibration, PlanePose
+from core.calibrate.results import CAMERA_PARAMETERS, FanCalibration, PlanePose
 from core.errors import InputError
 from core.files.atomic import write_text
 from core.files.camera_file import Finite, Maybe, ResultFile, Row3, camera_id, number
@@ -19,6 +19,7 @@ from core.files.complaints import Clash, complaint
 from core.files.json_text import read_json, to_json
 from core.model import Camera, Fan, LightPlane, Pose
 
+_PARAMETERS = len(CAMERA_PARAMETERS)
 _VECTOR = "three finite numbers, not all zero"
 
 
@@ -59,6 +60,8 @@ class _PlanesFile(ResultFile):
     free_planes: list[_Plane] = Field(default_factory=list)
     angles_deg: _Angles = Field(default_factory=_Angles)
     covariance: list[list[Finite]] | None = Field(None, description="3N × 3N finite numbers for N planes")
+    by_camera: list[list[Finite]] | None = Field(None, description="3N × 10 finite numbers for N planes")
+    scale_sd: Finite = Field(0.0, ge=0, le=0.1, description="a share of the target's size from 0 to 0.1")
     pencil_gap_mm: Maybe = None
     constraint_suits: bool | None = None
     verdict: str = ""
@@ -71,6 +74,8 @@ class _PlanesFile(ResultFile):
         size = 3 * len(self.planes)
         if self.covariance is not None and [len(row) for row in self.covariance] != [size] * size:
             raise Clash("covariance", f"is not {size} × {size} numbers, as {len(self.planes)} planes need")
+        if self.by_camera is not None and [len(row) for row in self.by_camera] != [_PARAMETERS] * size:
+            raise Clash("by_camera", f"is not {size} × {_PARAMETERS} numbers, as {len(self.planes)} planes need")
         if self.free_planes and len(self.free_planes) != len(self.planes):
             raise Clash("free_planes", f"has {len(self.free_planes)} planes, not {len(self.planes)} as planes has")
         return self
@@ -105,6 +110,8 @@ def write_fan(path: Path, calibration: FanCalibration, camera: Camera) -> None:
                 "camera_id": camera_id(camera),
                 "version": __version__,
                 "covariance": calibration.fan.covariance,
+                "by_camera": calibration.by_camera,
+                "scale_sd": calibration.scale_sd,
                 "poses": [_pose(pose) for pose in calibration.poses],
             }
         ),
@@ -148,6 +155,8 @@ def read_fan(path: Path, camera: Camera) -> FanCalibration:
         verdict=file.verdict,
         poses=tuple(_plane_pose(pose) for pose in file.poses),
         notes=tuple(file.notes),
+        by_camera=None if file.by_camera is None else np.array(file.by_camera),
+        scale_sd=file.scale_sd,
     )
 
 

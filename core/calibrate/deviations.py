@@ -1,0 +1,95 @@
+"""One standard uncertainty of camera and fan together, direction by direction.
+
+The fan was calibrated through the camera, so that their errors are not independent: a camera that is off takes the fan
+with it, which makes up for a part of the error. A set of deviations whose squares add up carries all of that through
+any computation, with no derivative of it.
+
+References
+----------
+JCGM 100:2008, Guide to the expression of uncertainty in measurement, 5.2 (correlated input quantities).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from core.calibrate.camera_covariance import principal_deviations
+from core.calibrate.reprojection import parameters_of
+from core.calibrate.results import CameraCalibration, FanCalibration
+from core.model import Camera, Fan, LightPlane
+from core.model.arrays import Array
+
+Source = Literal["camera", "fan", "scale"]
+
+NEGLIGIBLE = 1e-12
+"""Directions with less than this share of the largest variance are left out."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Deviation:
+    """A camera and a fan that the calibrations hold for as possible, one standard uncertainty off in one direction.
+
+    `source` says whose error it is: "camera" (the fan moves along with it, as it would have been calibrated through
+    such a camera), "fan" (the camera is as calibrated), "scale" (the plane target is larger than stated).
+    """
+
+    source: Source
+    camera: Camera
+    fan: Fan
+
+
+def calibration_deviations(camera: CameraCalibration, fan: FanCalibration) -> tuple[Deviation, ...]:
+    """Pairs of camera and fan, each displaced by one standard uncertainty along one principal direction.
+
+    Let q be anything measured with a camera and a fan, and q₀ the same with the calibrated ones. Then, to first order,
+    Σ (q − q₀)² over all deviations is the variance of q from the calibrations, and the sums over those of one `source`
+    are its independent parts. Products of the changes of two quantities sum up to their covariance.
+
+    Parameters
+    ----------
+    camera
+        The camera's calibration; parameters without variance stay as they are.
+    fan
+        The fan's calibration with that camera. Without `by_camera` (a planes.json of another program) the fan stays
+        where it is when the camera moves: q's variance then comes out larger than it need be.
+
+    Returns
+    -------
+    At most 10 deviations of the camera, 3N of the fan and one of the scale, largest first within each source; none
+    where there is no covariance.
+    """
+    return (*_of_camera(camera, fan), *_of_fan(camera.camera, fan), *_of_scale(camera.camera, fan))
+
+
+def fan_behind(fan: FanCalibration, calibrated: Camera, camera: Camera) -> Fan:
+    """The fan as it comes out of the same pictures with `camera` in place of the `calibrated` one, to first order."""
+    if fan.by_camera is None:
+        return fan.fan
+    return moved_fan(fan.fan, fan.by_camera @ (parameters_of(camera) - parameters_of(calibrated)))
+
+
+def moved_fan(fan: Fan, change: Array) -> Fan:
+    """`fan` with `change` (3N,) in 1/mm added to its stacked π."""
+    return Fan(tuple(LightPlane(pi) for pi in fan.pis + change.reshape(-1, 3)), fan.covariance)
+
+
+def _of_camera(camera: CameraCalibration, fan: FanCalibration) -> Iterator[Deviation]:
+    for displaced in reversed(principal_deviations(camera)):
+        yield Deviation("camera", displaced, fan_behind(fan, camera.camera, displaced))
+
+
+def _of_fan(camera: Camera, fan: FanCalibration) -> Iterator[Deviation]:
+    values, vectors = np.linalg.eigh(np.asarray(fan.fan.covariance))
+    for value, vector in zip(values[::-1], vectors.T[::-1], strict=True):
+        if value > NEGLIGIBLE * values[-1]:
+            yield Deviation("fan", camera, moved_fan(fan.fan, np.sqrt(value) * vector))
+
+
+def _of_scale(camera: Camera, fan: FanCalibration) -> Iterator[Deviation]:
+    """A target larger by s of itself makes all of space larger and every π smaller by s; the camera stays the same."""
+    if fan.scale_sd > 0:
+        yield Deviation("scale", camera, moved_fan(fan.fan, -fan.scale_sd * fan.fan.pis.ravel()))

@@ -1,0 +1,41 @@
+"""The plane of a flat target in the inverse-depth form, τ·X = 1 on it, and how it moves with the target's pose."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from core.calibrate import reprojection
+from core.image.target_view import TargetView
+from core.model import Camera, Pose
+from core.model.arrays import Array
+
+
+def target_plane(pose: Pose) -> Array:
+    """τ (3,) in 1/mm of the target's plane z = 0: τ·X = 1 on it."""
+    return target_plane_changes(pose)[0]
+
+
+def on_target(rays: Array, pose: Pose) -> Array:
+    """Points (N, 3) in mm where `rays` (N, 3) meet the plane of a target at `pose`."""
+    return np.asarray(rays / (rays @ target_plane(pose))[:, None], dtype=np.float64)
+
+
+def target_plane_changes(pose: Pose) -> tuple[Array, Array]:
+    """τ (3,) and its derivative (3, 6) by a small turn in front of the pose and a shift."""
+    normal = pose.rotation[:, 2]
+    distance = float(normal @ pose.translation)
+    # column i is e_i × normal: what a small turn about axis i adds to the normal
+    turned = np.array([[0.0, normal[2], -normal[1]], [-normal[2], 0.0, normal[0]], [normal[1], -normal[0], 0.0]])
+    normal_step = np.hstack([turned, np.zeros((3, 3))])
+    distance_step = pose.translation @ normal_step
+    distance_step[3:] += normal
+    return normal / distance, normal_step / distance - np.outer(normal, distance_step) / distance**2
+
+
+def target_plane_covariance(view: TargetView, pose: Pose, camera: Camera) -> Array:
+    """(3, 3) of τ, from the stated uncertainty of the target's points."""
+    _, _, by_pose = reprojection.linearise(camera, pose, view.points)
+    scaled = (by_pose / view.sigma[:, None, None]).reshape(-1, 6)
+    by_step = target_plane_changes(pose)[1]
+    covariance: Array = by_step @ np.linalg.pinv(scaled.T @ scaled, hermitian=True, rcond=1e-14) @ by_step.T
+    return covariance
