@@ -16,6 +16,9 @@ OBJECTS = ("block", "narrow-block", "steps", "sphere", "mask", "stl", "plane")
 CAMERA_TARGETS = ("checkerboard", "charuco", "circle_grid")
 PLANE_TARGETS = ("black_square", *CAMERA_TARGETS)
 
+YAW_DEG = 4.0
+"""Nobody puts a part down quite straight."""
+
 
 @dataclass(frozen=True, slots=True)
 class Scenario:
@@ -49,6 +52,8 @@ class Scenario:
         Take the paper's eq. (6) as printed, angles 4.929° and 4.919°, instead of an exact 5° pencil.
     reference
         Write scan/reference.png, the fan alone.
+    yaw_deg, right_mm, away_mm
+        Where the object stands: turned about the table's normal, and moved over the table, from its middle.
     """
 
     object: str = "block"
@@ -68,6 +73,9 @@ class Scenario:
     published_planes: bool = False
     reference: bool = True
     stl_path: str = ""
+    yaw_deg: float = YAW_DEG
+    right_mm: float = 0.0
+    away_mm: float = 0.0
 
     def __post_init__(self) -> None:
         choices = (
@@ -91,6 +99,9 @@ class Scenario:
             ("speckle", 0.0, 2.0),
             ("ambient_grey", 0.0, 250.0),
             ("texture", 0.0, 0.3),
+            ("yaw_deg", -180.0, 180.0),
+            ("right_mm", -60.0, 60.0),
+            ("away_mm", -60.0, 60.0),
         )
         for name, low, high in ranges:
             if not low <= getattr(self, name) <= high:

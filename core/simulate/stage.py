@@ -11,6 +11,7 @@ from core.model import Pose
 from core.model.arrays import Array
 from core.simulate.mask import face_mask
 from core.simulate.objects import gauge_block, step_block, stl, turned
+from core.simulate.scenario import YAW_DEG as YAW_DEG
 from core.simulate.scenario import Scenario
 from core.simulate.scene import Mesh, Scene, Sphere
 
@@ -19,7 +20,6 @@ WORK_POINT = np.array([0.0, 54.0, 510.0])
 
 TABLE_DEPTH_MM = 560.0
 TABLE_TILT_DEG = (3.0, -2.0, 5.0)
-YAW_DEG = 4.0
 
 
 def table_pose() -> Pose:
@@ -52,21 +52,22 @@ STEP_HEIGHTS_MM = (40.0, 50.0, 60.0, 70.0)
 
 
 def _thing(scenario: Scenario) -> Mesh | Sphere | None:
-    """The object in table coordinates, turned a little on its base."""
-    yaw = np.radians(YAW_DEG)
+    """The object in table coordinates, turned on its base and put in its place."""
+    yaw, place = np.radians(scenario.yaw_deg), np.array([scenario.right_mm, scenario.away_mm])
     if scenario.object == "block":
-        return turned(gauge_block(scenario.height_mm), yaw)
+        return turned(gauge_block(scenario.height_mm), yaw, place)
     if scenario.object == "narrow-block":
-        return turned(gauge_block(scenario.height_mm, (50.0, 30.0)), yaw, (0.0, 8.0))
+        return turned(gauge_block(scenario.height_mm, (50.0, 30.0)), yaw, place + [0.0, 8.0])
     if scenario.object == "steps":
-        return turned(step_block(STEP_HEIGHTS_MM), yaw)
+        return turned(step_block(STEP_HEIGHTS_MM), yaw, place)
     if scenario.object == "sphere":
         radius = scenario.height_mm / 2
-        return Sphere(np.array([0.0, 3.0, radius]), radius)  # the outer fan lines equally far from its rims
+        # 3 mm: the outer fan lines equally far from its rims
+        return Sphere(np.array([*(place + [0.0, 3.0]), radius]), radius)
     if scenario.object == "mask":
-        return turned(face_mask(scenario.height_mm), yaw)
+        return turned(face_mask(scenario.height_mm), yaw, place)
     if scenario.object == "stl":
-        return stl(Path(scenario.stl_path))
+        return turned(stl(Path(scenario.stl_path)), yaw, place)
     return None
 
 
