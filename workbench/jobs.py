@@ -14,9 +14,11 @@ Job = NewType("Job", str)
 _STEPS = "core.pipeline.project_steps"
 
 FIND_VIEWS = Job(f"{_STEPS}:find_views")
+FOUND_VIEWS = Job(f"{_STEPS}:found_views")
 SOLVE_VIEWS = Job(f"{_STEPS}:solve_views")
 ACCEPT_CAMERA = Job(f"{_STEPS}:accept_camera")
 FIND_POSES = Job(f"{_STEPS}:find_poses")
+FOUND_POSES = Job(f"{_STEPS}:found_poses")
 SOLVE_POSES = Job(f"{_STEPS}:solve_poses")
 ACCEPT_FAN = Job(f"{_STEPS}:accept_fan")
 SHOW_POSE = Job("core.pipeline.project_looks:show_pose")

@@ -19,23 +19,19 @@ from core.files.arrays_file import (
     unpack_centrelines,
     write_arrays,
 )
-from core.image.target_view import TargetView
+from core.files.views_arrays import pack_views, unpack_views
 
 _TODO = "calibrate the fan first: trisect planes SET --out DIR"
-_NO_VIEW = -1
 
 
 def write_poses(path: Path, fan_id: str, poses: Sequence[PoseFeatures]) -> None:
     """Write planes.npz with the id of the fan that was fitted to `poses`; InputError if it cannot be written."""
-    views = [pose.view for pose in poses if pose.view is not None]
     arrays: dict[str, NDArray[Any]] = {
         "fan_id": np.array(fan_id),
         "names": pack_texts([pose.name for pose in poses]),
         "reasons": pack_texts([pose.reason for pose in poses]),
-        "view_lengths": np.array([_NO_VIEW if pose.view is None else len(pose.view.uv) for pose in poses], np.int64),
-        "view_points": np.concatenate([np.zeros((0, 3)), *(view.points for view in views)]),
-        "view_uv": np.concatenate([np.zeros((0, 2)), *(view.uv for view in views)]),
-        "view_sigma": np.concatenate([np.zeros(0), *(view.sigma for view in views)]),
+        "notes": pack_texts(["\n".join(pose.notes) for pose in poses]),
+        **pack_views([pose.view for pose in poses]),
         **pack_centrelines("stripe", [pose.centrelines for pose in poses]),
     }
     write_arrays(path, arrays)
@@ -63,15 +59,14 @@ def read_poses(path: Path, fan_id: str) -> tuple[PoseFeatures, ...]:
 
 
 def _unpacked(arrays: Arrays) -> tuple[PoseFeatures, ...]:
-    names, reasons = arrays["names"].tolist(), arrays["reasons"].tolist()
-    poses, first = [], 0
-    columns = zip(names, reasons, arrays["view_lengths"].tolist(), unpack_centrelines("stripe", arrays), strict=True)
-    for name, reason, length, centrelines in columns:
-        view = None
-        if length != _NO_VIEW:
-            part = slice(first, first + length)
-            points, uv, sigma = (arrays[f"view_{column}"][part] for column in ("points", "uv", "sigma"))
-            view = TargetView(points, uv, sigma, name)
-            first += length
-        poses.append(PoseFeatures(name, view, centrelines, reason))
-    return tuple(poses)
+    names = arrays["names"].tolist()
+    notes = arrays["notes"].tolist() if "notes" in arrays else [""] * len(names)  # files of earlier versions
+    columns = zip(
+        names,
+        unpack_views(names, arrays),
+        unpack_centrelines("stripe", arrays),
+        arrays["reasons"].tolist(),
+        (tuple(said.splitlines()) for said in notes),
+        strict=True,
+    )
+    return tuple(PoseFeatures(*pose) for pose in columns)

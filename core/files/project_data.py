@@ -71,13 +71,17 @@ class ReportChoices:
 
 @dataclass(frozen=True, slots=True)
 class Project:
-    """Everything the user decides. Two projects are equal if every field is, and then have one hash."""
+    """Everything the user decides. Two projects are equal if every field is, and then have one hash.
+
+    `rejected`: ids of calibrations that were found and are not wanted.
+    """
 
     info: ProjectInfo = field(default_factory=ProjectInfo)
     rig: Rig = field(default_factory=default_rig)
     sources: Sources = field(default_factory=Sources)
     options: Options = field(default_factory=Options)
     accepted: Accepted = field(default_factory=Accepted)
+    rejected: frozenset[str] = frozenset()
     repeats: tuple[Repeat, ...] = ()
     report: ReportChoices = field(default_factory=ReportChoices)
 

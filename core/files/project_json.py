@@ -30,10 +30,12 @@ from core.files.project_tables import OptionsTable, ProjectTables
 from core.files.rig import rig_of, rig_tables
 from core.image.stripe import StripeSettings
 
-SCHEMA = 1
+SCHEMA = 2
 """Raised with every change of the keys: an older program then says that the project is too new for it."""
 
-MIGRATIONS: Mapping[int, Callable[[dict[str, Any]], dict[str, Any]]] = {}
+MIGRATIONS: Mapping[int, Callable[[dict[str, Any]], dict[str, Any]]] = {
+    1: lambda tables: {**tables, "rejected": []},
+}
 """By schema: the tables as the next schema has them, from those of this one."""
 
 _TODO = "open a version in backups, or make a new project"
@@ -62,6 +64,7 @@ def project_text(file: ProjectFile, path: Path) -> str:
         "sources": asdict(project.sources),
         "options": _options_table(project.options),
         "accepted": asdict(project.accepted),
+        "rejected": sorted(project.rejected),
         "repeats": [{**asdict(repeat), "measured_at": _stamp(repeat.measured_at)} for repeat in project.repeats],
         "report": {"hidden": sorted(project.report.hidden), "paper": project.report.paper},
         "results": {step: _done_table(done) for step, done in sorted(file.results.items())},
@@ -114,6 +117,7 @@ def _project_file(file: ProjectTables, path: Path) -> ProjectFile:
         sources=Sources(**dict(file.sources)),
         options=_options(file.options),
         accepted=Accepted(**dict(file.accepted)),
+        rejected=frozenset(file.rejected),
         repeats=tuple(Repeat(**dict(repeat)) for repeat in repeats),
         report=ReportChoices(frozenset(report.hidden), report.paper),
     )

@@ -134,6 +134,7 @@ class ProjectTables(Table):
     sources: SourcesTable = SourcesTable()
     options: OptionsTable = OptionsTable()
     accepted: AcceptedTable = AcceptedTable()
+    rejected: list[_Id] = Field(default_factory=list, description="a list of ids of calibrations")
     repeats: list[RepeatTable] = Field(default_factory=list)
     report: ReportTable = ReportTable()
     results: dict[str, DoneTable] = Field(default_factory=dict)

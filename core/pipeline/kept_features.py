@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import asdict
 from functools import cache
 from importlib.resources import files
@@ -22,7 +24,7 @@ from core.progress import Progress, silent, steps
 from core.scan.features import ScanFeatures
 
 _SEES = ("acquire", "image", "scan")
-"""The rooms that read pictures and make features of them."""
+"""The rooms that read a scan's pictures and make features of them."""
 
 
 def kept_features(
@@ -40,12 +42,7 @@ def kept_features(
         return None  # damaged: it will be replaced
     if not earlier.features_key:
         return None
-    pictures = _pictures(found, options)
-    for path in steps(pictures, progress, "comparing the pictures", len(pictures)):
-        try:
-            found.hashes[found.name_of(path)] = hashlib.sha256(read_bytes(path)).hexdigest()
-        except InputError:
-            continue  # as it was then, or the key differs
+    take_hashes(found, _pictures(found, options), progress)
     return earlier.features if earlier.features_key == features_key(found, options) else None
 
 
@@ -53,13 +50,20 @@ def features_key(found: RecordingSet, options: Options) -> str:
     """What the features of a scan rest on, in 16 hex digits; the hashes of its pictures must have been taken."""
     pictures = [(found.name_of(path), found.hashes.get(found.name_of(path), "")) for path in _pictures(found, options)]
     rests_on = {
-        "program": _program(),
+        "program": program_text(_SEES),
         "channel": found.rig.channel,
         "stripe": asdict(options.stripe) if options.stripe else None,
         "frames": [found.name_of(path) for path in found.frames],
         "pictures": pictures,
     }
     return hashlib.sha256(json.dumps(rests_on).encode()).hexdigest()[:16]
+
+
+def take_hashes(found: RecordingSet, pictures: Sequence[Path], progress: Progress = silent) -> None:
+    """The hashes of pictures, as reading them would take them; one that cannot be read has none."""
+    for path in steps(pictures, progress, "comparing the pictures", len(pictures)):
+        with suppress(InputError):
+            found.hashes[found.name_of(path)] = hashlib.sha256(read_bytes(path)).hexdigest()
 
 
 def _pictures(found: RecordingSet, options: Options) -> list[Path]:
@@ -69,10 +73,10 @@ def _pictures(found: RecordingSet, options: Options) -> list[Path]:
 
 
 @cache
-def _program() -> str:
-    """The text of all that makes features of pictures, as a hash."""
+def program_text(rooms: tuple[str, ...]) -> str:
+    """The text of some rooms of core, as a hash."""
     digest = hashlib.sha256()
-    for room in _SEES:
+    for room in rooms:
         sources = [source for source in files("core").joinpath(room).iterdir() if source.name.endswith(".py")]
         for source in sorted(sources, key=lambda source: source.name):
             digest.update(source.read_bytes())

@@ -33,6 +33,7 @@ from core.files.run_file import write_run
 from core.inspect.results import GaugeResult
 from core.model import Camera
 from core.pipeline.camera_step import see_views, solve_camera
+from core.pipeline.found_features import keep_poses, keep_views, kept_poses, kept_views
 from core.pipeline.gauge_complaints import in_a_project
 from core.pipeline.gauge_step import gauge_if_possible, gauge_step
 from core.pipeline.planes_step import measure_poses, planes_settings, solve_planes
@@ -54,6 +55,8 @@ __all__ = [
     "accepted_camera",
     "find_poses",
     "find_views",
+    "found_poses",
+    "found_views",
     "load_results",
     "make_report",
     "measure_gauge",
@@ -98,8 +101,19 @@ def accepted_camera(folder: Path, project: Project) -> Camera:
 
 
 def find_views(folder: Path, project: Project, progress: Progress = silent) -> SeenViews:
-    """Look for the camera target in every picture; InputError if there are none, or they differ."""
-    return see_views(project_set(folder, project), progress)
+    """Look for the camera target in every picture; InputError if there are none, or they differ.
+
+    What is found is kept in the project.
+    """
+    found = project_set(folder, project)
+    seen = see_views(found, progress)
+    keep_views(folder, project, found, seen)
+    return seen
+
+
+def found_views(folder: Path, project: Project, progress: Progress = silent) -> SeenViews | None:
+    """What `find_views` found in these very pictures the last time, if nothing else has been looked at since."""
+    return kept_views(folder, project, project_set(folder, project), progress)
 
 
 def solve_views(folder: Path, project: Project, seen: SeenViews, progress: Progress = silent) -> CameraCalibration:
@@ -123,8 +137,19 @@ def accept_camera(folder: Path, project: Project, calibration: CameraCalibration
 
 
 def find_poses(folder: Path, project: Project, progress: Progress = silent) -> tuple[PoseFeatures, ...]:
-    """Target and stripes in the pictures of every pose; InputError without an accepted camera or without pictures."""
-    return measure_poses(project_set(folder, project), accepted_camera(folder, project), progress)
+    """Target and stripes in the pictures of every pose; InputError without an accepted camera or without pictures.
+
+    What is found is kept in the project.
+    """
+    found = project_set(folder, project)
+    poses = measure_poses(found, accepted_camera(folder, project), progress)
+    keep_poses(folder, project, found, poses)
+    return poses
+
+
+def found_poses(folder: Path, project: Project, progress: Progress = silent) -> tuple[PoseFeatures, ...]:
+    """What `find_poses` found in these very pictures the last time, seen by the accepted camera; else nothing."""
+    return kept_poses(folder, project, project_set(folder, project), progress)
 
 
 def solve_poses(

@@ -44,6 +44,7 @@ def full_project():
         Options("three-crossings", 0.3, CameraOptions(False, frozenset({"p1", "k2"}), True, "all"), "my part",
                 StripeSettings(8.5, 120), frozenset({"camera/b.png", "planes/pose02", "scan/ä ö.png"}), False),
         Accepted("0123456789ab", "ba9876543210"),
+        frozenset({"deadbeef0123", "0123456789cd"}),
         (REPEAT, replace(REPEAT, thickness_mm=50.001)),
         ReportChoices(frozenset({"plots", "frames"}), "Letter"),
     )  # fmt: skip
@@ -118,8 +119,8 @@ def test_the_file_is_for_people_too(tmp_path):
     text = project_text(full_file(), tmp_path)
     tables = json.loads(text)
     assert list(tables) == [
-        "schema_version", "version", "created", "saved", "info", "rig", "sources", "options", "accepted", "repeats",
-        "report", "results",
+        "schema_version", "version", "created", "saved", "info", "rig", "sources", "options", "accepted", "rejected",
+        "repeats", "report", "results",
     ]  # fmt: skip
     assert tables["schema_version"] == SCHEMA
     assert tables["options"]["excluded"] == ["camera/b.png", "planes/pose02", "scan/ä ö.png"]

@@ -13,12 +13,12 @@ from PySide6.QtCore import Signal
 from core.calibrate.results import LEFT_OUT, ViewQuality
 from core.files.camera_file import camera_id
 from core.files.project import Project
-from core.files.project_keys import finished
 from core.image.target_view import TargetView
 from core.live.events import LiveEnded, LiveTaken
 from core.model.arrays import Array
 from workbench import jobs
 from workbench.bench import Bench
+from workbench.pages.acceptance import Acceptance
 from workbench.pages.camera_history import CameraHistory
 from workbench.pages.camera_work import CameraWork
 from workbench.pages.live_presenter import LivePresenter
@@ -61,10 +61,9 @@ class CameraPresenter(StepPresenter):
         self.work = CameraWork(bench, self)
         self.history = CameraHistory(bench, self)
         self.target = TargetChoice(bench, "camera_target", self.tr("change the camera's target"), self)
+        self.acceptance = Acceptance(bench, "camera", jobs.ACCEPT_CAMERA, self)
         self.current = ""
         self.threshold: float | None = None
-        self._rejected: set[str] = set()
-        self._accepting = False
         self._read = ""
         self.live_views: list[tuple[str, Any]] = []
         self.live.there = self._views_that_count
@@ -74,6 +73,8 @@ class CameraPresenter(StepPresenter):
         self.live.ended.connect(self._live_ended)
         self.work.changed.connect(self._work_changed)
         self.history.changed.connect(self.changed)
+        self.acceptance.kept.connect(self.history.refresh)
+        self.acceptance.changed.connect(self.changed)
 
     # ---- state
 
@@ -94,7 +95,7 @@ class CameraPresenter(StepPresenter):
         if self.candidate:
             if accepted and self.state.state is State.DONE:
                 return Stage.OTHER
-            return Stage.REJECTED if self.candidate in self._rejected else Stage.SOLVED
+            return Stage.REJECTED if self.acceptance.is_rejected(self.candidate) else Stage.SOLVED
         if work.problem:
             return Stage.FAILED
         if not self.project.sources.camera:
@@ -140,7 +141,7 @@ class CameraPresenter(StepPresenter):
     @property
     def can_accept(self) -> str:
         """Why nothing can be accepted now, or ""."""
-        if self.work.calibration is None or self.work.solving or self._accepting:
+        if self.work.calibration is None or self.work.solving or self.acceptance.keeping:
             return self.tr("There is no calibration yet.")
         if self.candidate == self.project.accepted.camera:
             return self.tr("This calibration is accepted already.")
@@ -151,7 +152,7 @@ class CameraPresenter(StepPresenter):
         """Why nothing can be rejected now, or ""."""
         if not self.candidate or self.work.solving:
             return self.tr("There is no calibration yet.")
-        if self.candidate in self._rejected and self.candidate != self.project.accepted.camera:
+        if self.acceptance.is_rejected(self.candidate) and self.candidate != self.project.accepted.camera:
             return self.tr("This calibration is rejected already.")
         return ""
 
@@ -236,46 +237,13 @@ class CameraPresenter(StepPresenter):
 
     def accept(self) -> None:
         """Measure with the calibration that is shown, from now on; undoable."""
-        folder, calibration, project = self.model.folder, self.work.calibration, self.project
-        if folder is None or calibration is None or self.can_accept:
-            return
-        self._accepting = True
-
-        def kept(id_: str) -> None:
-            self._accepting = False
-            if folder != self.model.folder:
-                return
-            now = self.project
-            after = replace(now, accepted=replace(now.accepted, camera=id_))
-            self.model.edit(self.tr("accept the camera calibration"), after)
-            self._rejected.discard(id_)
-            made_from = replace(project, accepted=after.accepted)
-            self.model.record("camera", finished("camera", made_from, self.model.results))
-            self.history.refresh()
-
-        def failed(_: Any) -> None:
-            self._accepting = False
-            self.changed.emit()
-
-        self.bench.glance(
-            jobs.ACCEPT_CAMERA,
-            folder,
-            project,
-            calibration,
-            label=self.tr("Keeping the calibration"),
-            on_done=kept,
-            on_failed=failed,
-        )
+        if not self.can_accept:
+            self.acceptance.accept(self.work.calibration)
 
     def reject(self) -> None:
-        """Do not measure with the calibration that is shown; undoable where it was accepted."""
-        if self.can_reject:
-            return
-        self._rejected.add(self.candidate)
-        if self.candidate == self.project.accepted.camera:
-            after = replace(self.project, accepted=replace(self.project.accepted, camera=""))
-            self.model.edit(self.tr("reject the camera calibration"), after)
-        self.changed.emit()
+        """Do not measure with the calibration that is shown; undoable."""
+        if not self.can_reject:
+            self.acceptance.reject(self.candidate)
 
     # ---- keys
 
@@ -296,7 +264,7 @@ class CameraPresenter(StepPresenter):
 
     def opened(self) -> None:
         self.current, self.threshold, self._read = "", None, ""
-        self._rejected.clear()
+        self.acceptance.forget()
         self.work.opened()
         self.history.forget()
         self.history.refresh()

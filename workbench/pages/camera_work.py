@@ -67,23 +67,25 @@ class CameraWork(QObject):
         return self.search_task is not None
 
     def opened(self) -> None:
-        """Another project: forget, list its pictures, and read the calibration it has accepted."""
+        """Another project: forget, list its pictures, and take up what has been found in them."""
         if self.search_task is not None:
             self.search_task.cancel()
         self._forget()
-        folder, accepted = self._model.folder, self._model.project.accepted.camera
+        folder, project = self._model.folder, self._model.project
         if folder is None:
             return
         self.follow()
-        if accepted:
-            project = self._model.project
-            self._bench.glance(
-                jobs.RECALL_CAMERA,
-                folder,
-                project,
-                label=self.tr("Reading the calibration"),
-                on_done=lambda recalled: self._recall(folder, project, recalled),
-            )
+        if not project.accepted.camera:
+            self._take_up_found(folder, project)
+            return
+        self._bench.glance(
+            jobs.RECALL_CAMERA,
+            folder,
+            project,
+            label=self.tr("Reading the calibration"),
+            on_done=lambda recalled: self._recall(folder, project, recalled),
+            on_failed=lambda _: self._take_up_found(folder, project),
+        )
 
     def follow(self) -> None:
         """The project is another: show what is known for it, and solve again if its pictures are known."""
@@ -184,13 +186,31 @@ class CameraWork(QObject):
 
     def _recall(self, folder: Path, project: Project, recalled: RecalledCamera) -> None:
         """The accepted calibration was read; where it is of the pictures in use, it can be solved again at once."""
-        if folder != self._model.folder or recalled.seen is None or _found_key(project) in self._seen:
+        if recalled.seen is None:
+            self._take_up_found(folder, project)
             return
-        self._seen[_found_key(project)] = recalled.seen
-        if recalled.as_it_is:
+        if recalled.as_it_is and folder == self._model.folder:
             self._solved[_solve_key(project)] = recalled.calibration, ""
-        self._found_key = ()
-        self.follow()
+        self._take_up(folder, project, recalled.seen)
+
+    def _take_up_found(self, folder: Path, project: Project) -> None:
+        """What was found in the pictures when they were searched last, though nothing made of it was accepted."""
+        if not project.sources.camera or folder != self._model.folder:
+            return
+        self._bench.quick.run(
+            jobs.FOUND_VIEWS,
+            folder,
+            project,
+            label=self.tr("Reading what was found"),
+            on_done=lambda seen: self._take_up(folder, project, seen),
+        )
+
+    def _take_up(self, folder: Path, project: Project, seen: SeenViews | None) -> None:
+        key = _found_key(project)
+        if folder == self._model.folder and seen is not None and key not in self._seen:
+            self._seen[key] = seen
+            self._found_key = ()
+            self.follow()
 
     def _list_pictures(self, project: Project) -> None:
         stored, folder = project.sources.camera, folder_of(self._model, "camera")

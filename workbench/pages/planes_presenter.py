@@ -17,6 +17,7 @@ from core.live.events import LiveEnded, LiveTaken
 from core.model import Camera, Fan
 from workbench import jobs
 from workbench.bench import Bench
+from workbench.pages.acceptance import Acceptance
 from workbench.pages.live_presenter import LivePresenter
 from workbench.pages.planes_camera import PlanesCamera
 from workbench.pages.planes_history import PlanesHistory
@@ -64,9 +65,8 @@ class PlanesPresenter(StepPresenter):
         self.look, self.seen_by = PlanesLook(bench, self.work, self), PlanesCamera(bench, self)
         self.history = PlanesHistory(bench, self)
         self.target = TargetChoice(bench, "plane_target", self.tr("change the plate"), self)
+        self.acceptance = Acceptance(bench, "planes", jobs.ACCEPT_FAN, self)
         self.live_views: list[tuple[str, Any]] = []
-        self._rejected: set[str] = set()
-        self._accepting = False
         self.live.calibration = self._known
         self.live.there = self._views_that_count
         self.live.cannot_start = self._cannot_record
@@ -76,6 +76,8 @@ class PlanesPresenter(StepPresenter):
         self.live.ended.connect(self._live_ended)
         self.work.changed.connect(self._work_changed)
         self.history.changed.connect(self.changed)
+        self.acceptance.kept.connect(self.history.refresh)
+        self.acceptance.changed.connect(self.changed)
         self.seen_by.changed.connect(self.changed)
 
     # ---- state
@@ -96,7 +98,7 @@ class PlanesPresenter(StepPresenter):
         if self.candidate:
             if accepted and done:
                 return Stage.OTHER
-            return Stage.REJECTED if self.candidate in self._rejected else Stage.SOLVED
+            return Stage.REJECTED if self.acceptance.is_rejected(self.candidate) else Stage.SOLVED
         if not self.project.accepted.camera:
             return Stage.NO_CAMERA
         if work.problem:
@@ -150,7 +152,7 @@ class PlanesPresenter(StepPresenter):
         """Why nothing can be accepted now, or ""."""
         if self.live.running:
             return self.tr("Stop the live source first.")
-        if self.work.calibration is None or self.work.solving or self._accepting:
+        if self.work.calibration is None or self.work.solving or self.acceptance.keeping:
             return self.tr("There is no calibration yet.")
         if self.candidate == self.project.accepted.fan and self.state.state is State.DONE:
             return self.tr("These laser planes are accepted already.")
@@ -163,7 +165,7 @@ class PlanesPresenter(StepPresenter):
             return self.tr("Stop the live source first.")
         if not self.candidate or self.work.solving:
             return self.tr("There is no calibration yet.")
-        if self.candidate in self._rejected and self.candidate != self.project.accepted.fan:
+        if self.acceptance.is_rejected(self.candidate) and self.candidate != self.project.accepted.fan:
             return self.tr("This calibration is rejected already.")
         return ""
 
@@ -239,40 +241,13 @@ class PlanesPresenter(StepPresenter):
 
     def accept(self) -> None:
         """Measure with the planes that are shown, from now on; undoable."""
-        folder, calibration, poses, project = self.model.folder, self.work.calibration, self.work.poses, self.project
-        if folder is None or calibration is None or poses is None or self.can_accept:
-            return
-        self._accepting = True
-
-        def kept(id_: str) -> None:
-            self._accepting = False
-            if folder != self.model.folder:
-                return
-            after = replace(self.project, accepted=replace(self.project.accepted, fan=id_))
-            self.model.edit(self.tr("accept the laser planes"), after)
-            self._rejected.discard(id_)
-            made_from = replace(project, accepted=after.accepted)
-            self.model.record("planes", finished("planes", made_from, self.model.results))
-            self.history.refresh()
-
-        def failed(_: Any) -> None:
-            self._accepting = False
-            self.changed.emit()
-
-        self.bench.glance(
-            jobs.ACCEPT_FAN, folder, project, calibration, poses, label=self.tr("Keeping the laser planes"),
-            on_done=kept, on_failed=failed,
-        )  # fmt: skip
+        if not self.can_accept:
+            self.acceptance.accept(self.work.calibration, self.work.poses)
 
     def reject(self) -> None:
-        """Do not measure with the planes that are shown; undoable where they were accepted."""
-        if self.can_reject:
-            return
-        self._rejected.add(self.candidate)
-        if self.candidate == self.project.accepted.fan:
-            after = replace(self.project, accepted=replace(self.project.accepted, fan=""))
-            self.model.edit(self.tr("reject the laser planes"), after)
-        self.changed.emit()
+        """Do not measure with the planes that are shown; undoable."""
+        if not self.can_reject:
+            self.acceptance.reject(self.candidate)
 
     # ---- keys
 
@@ -293,8 +268,7 @@ class PlanesPresenter(StepPresenter):
 
     def opened(self) -> None:
         self.look.forget()
-        self._rejected.clear()
-        self._accepting = False
+        self.acceptance.forget()
         self.seen_by.forget()
         self.seen_by.follow()
         self.work.opened()

@@ -64,7 +64,7 @@ class PlanesWork(QObject):
         return self.measure_task is not None
 
     def opened(self) -> None:
-        """Another project: forget, list its pictures, and recall what its accepted planes were made from."""
+        """Another project: forget, list its pictures, and take up what has been found in them."""
         if self.measure_task is not None:
             self.measure_task.cancel()
         self._forget()
@@ -72,18 +72,24 @@ class PlanesWork(QObject):
         if folder is None:
             return
         self.follow()
-        done = self._model.results.get("planes")
-        if done is None or not project.accepted.fan:
-            return
-        keys = rests_on("planes", project, {})
-        if all(keys.get(name) == done.rests_on.get(name) for name in MEASURED_BY):
-            measured, solve = _measured_key(project), _solve_key(project)
+        done, keys = self._model.results.get("planes"), rests_on("planes", project, {})
+        known = {} if done is None else done.rests_on
+        measured, solve = _measured_key(project), _solve_key(project)
+        if project.accepted.fan and all(keys.get(name) == known.get(name) for name in MEASURED_BY):
             self._bench.glance(
                 jobs.RECALL_POSES,
                 folder,
                 project,
                 label=self.tr("Reading the laser planes"),
                 on_done=lambda found: self._recalled(folder, measured, solve, *found),
+            )
+        elif project.accepted.camera and project.sources.planes:
+            self._bench.quick.run(
+                jobs.FOUND_POSES,
+                folder,
+                project,
+                label=self.tr("Reading what was found"),
+                on_done=lambda poses: self._found(folder, measured, poses),
             )
 
     def follow(self) -> None:
@@ -131,6 +137,13 @@ class PlanesWork(QObject):
         if folder == self._model.folder and measured not in self._measured:
             self._solved[solve] = calibration, ""
             self._measured[measured] = poses
+            self._measured_key = ()
+            self.follow()
+
+    def _found(self, folder: Path, key: Key, poses: Poses) -> None:
+        """What was found in the pictures when they were measured last, though nothing made of it was accepted."""
+        if poses and folder == self._model.folder and key not in self._measured:
+            self._measured[key] = poses
             self._measured_key = ()
             self.follow()
 

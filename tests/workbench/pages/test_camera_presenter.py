@@ -297,3 +297,62 @@ def test_new_views_are_asked_for_with_regard_to_those_there_that_count(solved, q
     names = [view.name for view in lane.waiting[0][2][0].there]
     assert names == [f"camera/view{n:02d}.png" for n in range(8) if n != 2]
     lane.finish(LiveEnded(Path("nowhere"), 0, 0))
+
+
+def reopened(presenter, qtbot):
+    """The project saved, closed and opened again."""
+    folder = presenter.model.folder
+    presenter.model.save()
+    presenter.model.close()
+    presenter.model.open(folder)
+    settled(qtbot, presenter)
+    return presenter
+
+
+def test_rejecting_a_solution_nobody_accepted_is_undone_and_redone(solved, qtbot):
+    solved.reject()
+    assert solved.stage is Stage.REJECTED
+    assert solved.model.undo_stack.undoText() == "reject the camera calibration"
+    solved.model.undo_stack.undo()
+    settled(qtbot, solved)
+    assert solved.stage is Stage.SOLVED
+    solved.model.undo_stack.redo()
+    settled(qtbot, solved)
+    assert solved.stage is Stage.REJECTED
+    solved.accept()
+    qtbot.waitUntil(lambda: solved.stage is Stage.ACCEPTED)
+    assert solved.project.rejected == frozenset()
+
+
+def test_a_solution_found_but_not_accepted_is_offered_again_when_the_project_is_reopened(solved, qtbot):
+    found, shown = solved.work.seen, solved.candidate
+    solved.bench.quick.answers[jobs.FOUND_VIEWS] = lambda folder, project: found
+    searched = solved.bench.measuring.ran.count(jobs.FIND_VIEWS)
+    reopened(solved, qtbot)
+    qtbot.waitUntil(lambda: solved.stage is Stage.SOLVED)
+    assert solved.candidate == shown
+    assert solved.can_accept == "" and solved.can_reject == ""
+    assert solved.bench.measuring.ran.count(jobs.FIND_VIEWS) == searched
+
+
+def test_a_rejected_solution_is_still_rejected_when_the_project_is_reopened(solved, qtbot):
+    found = solved.work.seen
+    solved.bench.quick.answers[jobs.FOUND_VIEWS] = lambda folder, project: found
+    solved.reject()
+    reopened(solved, qtbot)
+    qtbot.waitUntil(lambda: solved.stage is Stage.REJECTED)
+    assert "was rejected" in solved.blocker()
+
+
+def test_beside_an_accepted_camera_a_newer_solution_is_offered_again_too(accepted, tmp_path, qtbot):
+    other = tmp_path / "other"
+    other.mkdir()
+    for number in range(3):
+        write_picture(other / f"view{number:02d}.png", np.full((12, 16), number, np.uint8))
+    accepted.use_folder(other)
+    settled(qtbot, accepted)
+    qtbot.waitUntil(lambda: accepted.work.seen is not None)
+    found = accepted.work.seen
+    accepted.bench.quick.answers[jobs.FOUND_VIEWS] = lambda folder, project: found
+    reopened(accepted, qtbot)
+    qtbot.waitUntil(lambda: accepted.work.seen is found)

@@ -320,12 +320,32 @@ def test_rejecting_what_is_accepted_is_an_edit_that_can_be_undone(accepted: Plan
     assert stage(accepted) is Stage.ACCEPTED
 
 
-def test_rejecting_what_is_not_accepted_changes_no_project(found: PlanesPresenter, qtbot: Any) -> None:
-    edits = found.model.undo_stack.count()
+def test_rejecting_what_nobody_accepted_is_an_edit_too_and_accepting_it_takes_that_back(
+    found: PlanesPresenter, qtbot: Any
+) -> None:
     found.reject()
-    assert (found.stage, found.model.undo_stack.count()) == (Stage.REJECTED, edits)
+    assert (stage(found), found.model.undo_stack.undoText()) == (Stage.REJECTED, "reject the laser planes")
+    found.model.undo_stack.undo()
+    settled(qtbot, found)
+    assert stage(found) is Stage.SOLVED
+    found.reject()
     found.accept()
     qtbot.waitUntil(lambda: found.stage is Stage.ACCEPTED)
+    assert found.project.rejected == frozenset()
+
+
+def test_planes_found_but_not_accepted_are_offered_again_when_the_project_is_reopened(
+    found: PlanesPresenter, qtbot: Any
+) -> None:
+    poses, shown, folder = found.work.poses, found.candidate, found.model.folder
+    assert folder is not None
+    cast(HandLane, found.bench.quick).answers[jobs.FOUND_POSES] = lambda folder, project: poses
+    found.model.save()
+    found.model.close()
+    found.model.open(folder)
+    qtbot.waitUntil(lambda: found.stage is Stage.SOLVED)
+    assert (found.candidate, found.can_accept) == (shown, "")
+    assert cast(HandLane, found.bench.measuring).ran.count(jobs.FIND_POSES) == 1
 
 
 def test_another_camera_puts_the_planes_out_of_date_and_says_so(accepted: PlanesPresenter) -> None:

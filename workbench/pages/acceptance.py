@@ -1,0 +1,90 @@
+"""Accepting and rejecting a calibration: both are decisions of the project, undone and kept like any other."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any, Literal
+
+from PySide6.QtCore import QObject, Signal
+
+from core.files.project import Project
+from core.files.project_keys import finished
+from workbench.bench import Bench
+from workbench.jobs import Job
+from workbench.project_model import CALIBRATIONS
+
+
+class Acceptance(QObject):
+    """Which calibration of one step is accepted, and which ones are rejected; `keep` is the job that keeps one."""
+
+    changed = Signal()
+    kept = Signal()
+    """One was accepted: the history has it."""
+
+    def __init__(
+        self, bench: Bench, step: Literal["camera", "planes"], keep: Job, parent: QObject | None = None
+    ) -> None:
+        super().__init__(parent)
+        self._bench, self._model, self._step, self._keep = bench, bench.model, step, keep
+        self.keeping = False
+
+    @property
+    def accepted(self) -> str:
+        """The id of the accepted one, or ""."""
+        return str(getattr(self._model.project.accepted, CALIBRATIONS[self._step]))
+
+    def is_rejected(self, id_: str) -> bool:
+        """Whether this one is not wanted."""
+        return id_ in self._model.project.rejected
+
+    def forget(self) -> None:
+        """Another project."""
+        self.keeping = False
+
+    def accept(self, *made: Any) -> None:
+        """Keep a calibration, and measure with it from now on; `made` is what keeping it takes."""
+        folder, project = self._model.folder, self._model.project
+        if folder is None or self.keeping:
+            return
+        self.keeping = True
+
+        def kept(id_: str) -> None:
+            self.keeping = False
+            if folder != self._model.folder:
+                return
+            now = self._model.project
+            after = replace(self._with(now, id_), rejected=now.rejected - {id_})
+            self._model.edit(self._words()[0], after)
+            made_from = replace(project, accepted=after.accepted)
+            self._model.record(self._step, finished(self._step, made_from, self._model.results))
+            self.kept.emit()
+
+        def failed(_: Any) -> None:
+            self.keeping = False
+            self.changed.emit()
+
+        label = self._words()[2]
+        self._bench.glance(self._keep, folder, project, *made, label=label, on_done=kept, on_failed=failed)
+
+    def reject(self, id_: str) -> None:
+        """Do not measure with this one."""
+        now = self._model.project
+        after = self._with(now, "") if id_ == self.accepted else now
+        self._model.edit(self._words()[1], replace(after, rejected=now.rejected | {id_}))
+
+    def _with(self, project: Project, id_: str) -> Project:
+        return replace(project, accepted=replace(project.accepted, **{CALIBRATIONS[self._step]: id_}))
+
+    def _words(self) -> tuple[str, str, str]:
+        """Names of the edits that accept and reject, and of the job."""
+        if self._step == "camera":
+            return (
+                self.tr("accept the camera calibration"),
+                self.tr("reject the camera calibration"),
+                self.tr("Keeping the calibration"),
+            )
+        return (
+            self.tr("accept the laser planes"),
+            self.tr("reject the laser planes"),
+            self.tr("Keeping the laser planes"),
+        )
