@@ -56,7 +56,7 @@ class ScanPage(StepPage):
         self.source_fold = self.add_panel(self.tr("Recording"), self.source)
         self.result = ResultPanel(presenter)
         self.result_fold = self.add_panel(self.tr("Result"), self.result)
-        self.frames = ViewList()
+        self.frames = ViewList(thumbnails_later=True)
         self.frames.set_headers(self.tr("Frame"), self.tr("Median σ (mm)"))
         self.frames.setMinimumHeight(240)
         self.frames_fold = self.add_panel(self.tr("Frames"), self.frames)
@@ -104,6 +104,8 @@ class ScanPage(StepPage):
         self.source.accept_drops_on(self.picture.image)
         self.frames.toggled_together.connect(lambda names, used: p.set_used(list(names), used))
         self.frames.current_changed.connect(lambda name: p.scrub.choose(name))
+        self.frames.thumbnail_wanted.connect(p.thumbnails.want)
+        p.thumbnails.changed.connect(self._show_frames)
         self.bar.view_chosen.connect(self.picture.show_view)
         self.bar.choose(View.CROSSINGS)
         p.live.started.connect(lambda _: self._begin(self.cloud.begin_live))
@@ -199,8 +201,9 @@ class ScanPage(StepPage):
             sigma = record.sigma_mm if record is not None and not math.isnan(record.sigma_mm) else None
             text = words.mm(sigma) if sigma is not None else ""
             said = words.frame_line(record, seen.get(name))
-            rows.append(ListRow(name, sigma, text, not p.is_left_out(name), said, None, short(name)))
-        shown = [(row.name, row.text, row.used, row.reason) for row in rows]
+            picture = p.thumbnails.pictures.get(name)
+            rows.append(ListRow(name, sigma, text, not p.is_left_out(name), said, picture, short(name)))
+        shown = [(row.name, row.text, row.used, row.reason, row.thumbnail is None) for row in rows]
         if shown != self._rows:
             self._rows = shown
             self.frames.set_rows(rows)

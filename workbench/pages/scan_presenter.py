@@ -20,6 +20,7 @@ from workbench.pages.presenter import StepPresenter
 from workbench.pages.scan_run import ScanRun, short
 from workbench.pages.scan_scrub import FrameScrub
 from workbench.pages.scan_settings import changed_options, values_of
+from workbench.pages.scan_thumbnails import FrameThumbnails
 from workbench.pages.scan_work import ScanWork
 from workbench.pages.sources import folder_of, put_source
 from workbench.step_state import State
@@ -54,6 +55,7 @@ class ScanPresenter(StepPresenter):
         self.work = ScanWork(bench, self)
         self.run = ScanRun(bench, self)
         self.scrub = FrameScrub(bench, self.work, self)
+        self.thumbnails = FrameThumbnails(bench, self)
         self.live_stage = ""
         self._shown = False
         self.live.changed.connect(self._look_again)
@@ -235,12 +237,14 @@ class ScanPresenter(StepPresenter):
     def opened(self) -> None:
         self._shown = self._leaving = False
         self.scrub.forget()
+        self.thumbnails.forget()
         self.run.opened()
         self.work.opened()
 
     def project_changed(self, before: Project, after: Project) -> None:
         if before.sources.scan != after.sources.scan:
             self.scrub.forget()
+        self.thumbnails.follow()
         self.work.follow()
         self._follow_frames()
 

@@ -59,8 +59,7 @@ def frame_line(record: FrameRecord | None, seen: tuple[int, str] | None) -> str:
     if record is not None:
         if not record.used:
             return record.reason
-        crossings = record.fan_crossings + record.sweep_crossings
-        return _tr("{0} points · {1} crossings").format(count(record.points), crossings)
+        return _tr("{0} points").format(count(record.points))
     if seen is not None:
         points, reason = seen
         return reason or _tr("{0} points in the preview").format(count(points))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QModelIndex, QPersistentModelIndex, QPoint, QRect, QSize, Qt
+from PySide6.QtCore import QModelIndex, QPersistentModelIndex, QPoint, QRect, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QFontMetrics, QPainter, QPalette, QPixmap
 from PySide6.QtWidgets import QStyle, QStyledItemDelegate, QStyleOptionViewItem
 
@@ -18,6 +18,9 @@ _Index = QModelIndex | QPersistentModelIndex
 
 class RowDelegate(QStyledItemDelegate):
     """Check box, thumbnail, name, and below it why it was left out; the value over its bar."""
+
+    thumbnail_missing = Signal(str)
+    """Name of a row in sight whose thumbnail comes later."""
 
     def sizeHint(self, option: QStyleOptionViewItem, index: _Index) -> QSize:
         return QSize(140, row_height(option.fontMetrics))
@@ -55,13 +58,23 @@ class RowDelegate(QStyledItemDelegate):
     def _draw_thumbnail(self, painter: QPainter, cell: QRect, left: int, index: _Index) -> int:
         pixmap: QPixmap | None = index.data(Qt.ItemDataRole.DecorationRole)
         if pixmap is None:
-            return left
+            return self._keep_free(painter, cell, left, index)
         size = QSize(pixmap.size()).scaled(THUMBNAIL, Qt.AspectRatioMode.KeepAspectRatio)
         place = QRect(QPoint(left, cell.top() + (cell.height() - size.height()) // 2), size)
         painter.setRenderHint(QPainter.RenderHint.SmoothPixmapTransform)
         painter.setOpacity(1.0 if index.data(VALUE_ROLE).used else 0.45)
         painter.drawPixmap(place, pixmap)
         painter.setOpacity(1.0)
+        return left + THUMBNAIL.width() + 8
+
+    def _keep_free(self, painter: QPainter, cell: QRect, left: int, index: _Index) -> int:
+        """The place of a thumbnail that comes later, if it does."""
+        model = self.parent()
+        if not isinstance(model, RowsModel) or not model.later:
+            return left
+        place = QRect(QPoint(left, cell.top() + (cell.height() - THUMBNAIL.height()) // 2), THUMBNAIL)
+        painter.fillRect(place, QColor(shades().line))
+        self.thumbnail_missing.emit(index.data(VALUE_ROLE).name)
         return left + THUMBNAIL.width() + 8
 
     def _draw_lines(

@@ -59,13 +59,18 @@ class ViewList(QWidget):
     activated = Signal(str)
     """Name of the row double-clicked or entered."""
 
-    def __init__(self, parent: QWidget | None = None) -> None:
+    thumbnail_wanted = Signal(str)
+    """Name of a row that is in sight, and whose thumbnail comes later; told again and again until it is there."""
+
+    def __init__(self, parent: QWidget | None = None, *, thumbnails_later: bool = False) -> None:
         super().__init__(parent)
         self.model = RowsModel(self)
+        self.model.later = thumbnails_later
         self.table = CheckingTable()
         self.table.setModel(self.model)
         self._delegate = RowDelegate(self.model)
         self.table.setItemDelegate(self._delegate)
+        self._delegate.thumbnail_missing.connect(self.thumbnail_wanted, Qt.ConnectionType.QueuedConnection)
         self._told = ""
         self._set_up_table()
         self.set_headers(self.tr("View"), self.tr("Error"))

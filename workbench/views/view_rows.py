@@ -48,6 +48,8 @@ class RowsModel(QAbstractTableModel):
         self._headers = ("", "")
         self._sorted_by, self._order = -1, Qt.SortOrder.AscendingOrder
         self._pixmaps: dict[str, tuple[object, QPixmap]] = {}
+        self.later = False
+        """Whether thumbnails come later, when a row is in sight: their place is kept free."""
         self.largest = 0.0
 
     @property

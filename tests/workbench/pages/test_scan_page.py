@@ -8,6 +8,7 @@ import pytest
 from PySide6.QtCore import Qt
 
 from core.errors import InputError
+from core.files.pictures import write_picture
 from core.files.project_keys import finished
 from core.live.events import LiveAsk, LiveEnded, LiveStarted, Resume
 from tests.workbench.hand_lane import HandLane
@@ -135,8 +136,34 @@ def test_a_failed_measurement_is_told_on_the_page(recorded, measuring, qtbot):
 def test_frames_are_listed_with_points_sigma_crossings_and_reasons(measured):
     rows = measured.frames.rows()
     assert [row.title for row in rows[:2]] == ["frame0000.png", "frame0001.png"]
-    assert rows[1].text == "0.020 mm" and rows[1].reason == "200 points · 23 crossings"
+    assert rows[1].text == "0.020 mm" and rows[1].reason == "200 points"
     assert rows[-1].text == "" and rows[-1].reason == cases.UNCERTAIN and rows[-1].used
+
+
+def test_frames_in_sight_get_small_pictures_which_are_made_once(recorded, qtbot):
+    quick, thumbnails = recorded.presenter.bench.quick, recorded.presenter.thumbnails
+    qtbot.waitUntil(lambda: len(thumbnails.pictures) >= 4)
+    assert all(row.thumbnail is not None for row in recorded.frames.rows() if row.name in thumbnails.pictures)
+    made = quick.ran.count(jobs.THUMBNAILS)
+    recorded.frames.table.viewport().repaint()
+    recorded.presenter.scrub.step(1)
+    qtbot.waitUntil(lambda: not quick.busy)
+    assert quick.ran.count(jobs.THUMBNAILS) == made
+    recorded.presenter.use_folder(recorded.presenter.folder.parent)
+    assert thumbnails.pictures == {}
+
+
+def test_frames_out_of_sight_get_no_small_picture(page, qtbot, tmp_path):
+    folder = tmp_path / "long" / "scan"
+    folder.mkdir(parents=True)
+    for number in range(60):
+        write_picture(folder / f"frame{number:04d}.png", np.full(cases.SIZE[::-1], 40, np.uint8))
+    page.presenter.use_folder(folder)
+    qtbot.waitUntil(lambda: len(page.presenter.thumbnails.pictures) >= 3)
+    qtbot.waitUntil(lambda: not page.presenter.bench.quick.busy)
+    assert len(page.presenter.thumbnails.pictures) < 30
+    page.frames.table.scrollToTop()
+    qtbot.waitUntil(lambda: "scan/frame0000.png" in page.presenter.thumbnails.pictures)
 
 
 def test_unchecking_a_frame_in_the_list_leaves_it_out_and_undo_lets_it_in(measured, qtbot):

@@ -1,0 +1,80 @@
+"""Small pictures of the frames: made for those that are looked at, when they are, and kept."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from PySide6.QtCore import QObject, Signal
+
+from workbench import jobs
+from workbench.bench import Bench
+from workbench.pages.scan_run import short
+from workbench.pages.sources import folder_of
+
+AT_ONCE = 6
+"""So many are made in one go, so that what the eye waits for comes between."""
+
+IN_SIGHT = 24
+"""Of those wanted and not made yet, the last so many are still in sight."""
+
+
+class FrameThumbnails(QObject):
+    """`pictures` by the names of the frames; None for one that cannot be read."""
+
+    changed = Signal()
+
+    def __init__(self, bench: Bench, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self._bench, self._model = bench, bench.model
+        self.forget()
+
+    def forget(self) -> None:
+        """Another recording."""
+        self.pictures: dict[str, Any] = {}
+        self._of = self._source()
+        self._wanted: dict[str, None] = {}
+        self._making = False
+
+    def follow(self) -> None:
+        """The recording may be another one."""
+        if self._of != self._source():
+            self.forget()
+
+    def want(self, name: str) -> None:
+        """A frame is in sight and has no picture yet."""
+        if name in self.pictures:
+            return
+        self._wanted.pop(name, None)
+        self._wanted[name] = None  # the newest last
+        if not self._making:
+            self._make()
+
+    def _make(self) -> None:
+        names = list(self._wanted)[-IN_SIGHT:][:AT_ONCE]
+        folder, of = folder_of(self._model, "scan"), self._of
+        if not names or folder is None:
+            return
+        self._wanted = dict.fromkeys(list(self._wanted)[-IN_SIGHT:][AT_ONCE:])
+        self._making = True
+
+        def ended(pictures: tuple[Any, ...]) -> None:
+            if of != self._of:
+                return
+            self._making = False
+            self.pictures.update(zip(names, pictures, strict=True))
+            self.changed.emit()
+            self._make()
+
+        self._bench.quick.run(
+            jobs.THUMBNAILS,
+            [folder / short(name) for name in names],
+            self._model.project.rig.channel,
+            label=self.tr("Small pictures"),
+            on_done=ended,
+            on_failed=lambda _: ended((None,) * len(names)),
+            on_cancelled=lambda: ended((None,) * len(names)),
+        )
+
+    def _source(self) -> str:
+        project = self._model.project
+        return f"{self._model.folder}|{project.sources.scan}|{project.rig.channel}"
