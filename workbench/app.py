@@ -5,15 +5,18 @@ from __future__ import annotations
 import argparse
 import signal
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from importlib.resources import files
 from pathlib import Path
+from typing import TextIO
 
 from PySide6.QtCore import QEvent, QLocale, QTimer, QTranslator
-from PySide6.QtGui import QFileOpenEvent
+from PySide6.QtGui import QFileOpenEvent, QIcon
 from PySide6.QtWidgets import QApplication
 
 from core import __version__
+from core.errors import InputError
+from workbench import association
 from workbench.bench import Bench, make_bench
 from workbench.main_window import MainWindow
 from workbench.notices import log_to_file
@@ -31,6 +34,7 @@ class Application(QApplication):
         self.setApplicationDisplayName("Trisect")
         self.setApplicationVersion(__version__)
         self.setDesktopFileName("trisect")
+        self.setWindowIcon(QIcon(str(files("resources") / "icons" / "trisect.svg")))
         self.window: MainWindow | None = None
 
     def event(self, event: QEvent) -> bool:
@@ -54,7 +58,13 @@ def main(argv: Sequence[str] | None = None) -> int:
     parser.add_argument("path", nargs="?", type=Path, help="a project or a recording set to open")
     parser.add_argument("--theme", choices=THEMES, default="", help="light, dark, or as the system is set")
     parser.add_argument("--version", action="version", version=f"trisect {__version__}")
+    parser.add_argument(
+        "--install-desktop", action="store_true", help="have projects open by double click for this user, and end"
+    )
+    parser.add_argument("--uninstall-desktop", action="store_true", help="take that back, and end")
     given = parser.parse_args(argv)
+    if given.install_desktop or given.uninstall_desktop:
+        return _associate(association.install if given.install_desktop else association.uninstall)
     signal.signal(signal.SIGINT, signal.SIG_DFL)  # Ctrl-C in the terminal ends it like a crash: the autosave is there
     app = Application(sys.argv[:1])
     translator = QTranslator()
@@ -72,6 +82,23 @@ def main(argv: Sequence[str] | None = None) -> int:
     finally:
         bench.close()
         bench.notices.release()
+
+
+def _associate(do: Callable[[], association.Outcome]) -> int:
+    """Tell the system what opens projects, and say on the terminal what was done."""
+    try:
+        outcome = do()
+    except InputError as error:
+        _say(sys.stderr, str(error))
+        return 2
+    _say(sys.stdout, outcome.sentence, *map(str, outcome.files))
+    return 0
+
+
+def _say(stream: TextIO | None, *lines: str) -> None:
+    """On the terminal, if there is one: a program with a window may have none."""
+    if stream is not None:
+        stream.write("\n".join(lines) + "\n")
 
 
 def _after_start(window: MainWindow, path: Path | None) -> None:

@@ -11,6 +11,7 @@ from PySide6.QtGui import QAction, QDesktopServices, QKeySequence
 from PySide6.QtWidgets import QMenu, QMessageBox
 
 from core import __version__
+from workbench.pages.double_click import choose_double_click
 from workbench.settings import THEMES
 from workbench.shortcuts import KEYS, SHORTCUTS
 from workbench.steps import STEPS
@@ -89,6 +90,12 @@ class Menus:
         help_menu = bar.addMenu(w.tr("&Help"))
         keys = self._add(help_menu, "help", w.tr("&Keys"), self._show_keys)
         keys.setShortcuts([QKeySequence("F1"), QKeySequence("?")])
+        self._add(
+            help_menu,
+            "double click",
+            w.tr("Open projects by &double click …"),
+            lambda: choose_double_click(w, w.bench.notices),
+        )
         self._add(help_menu, "log", w.tr("Open the &log folder"), self._open_log)
         self._add(help_menu, "about", w.tr("&About Trisect"), self._about)
 

@@ -66,9 +66,9 @@ class Notices(QObject):
         log.log(_LOG_LEVEL[level], "%s%s", text, f"\n{details}" if details else "")
         self.added.emit(notice)
 
-    def info(self, text: str) -> None:
+    def info(self, text: str, details: str = "") -> None:
         """Something that is good to know."""
-        self.add(Level.INFO, text)
+        self.add(Level.INFO, text, details)
 
     def warning(self, text: str, details: str = "") -> None:
         """Something to look at."""

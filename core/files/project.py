@@ -15,9 +15,11 @@ from core.files.project_data import (
     new_project,
 )
 from core.files.project_folder import (
+    OPENER,
     backups,
     is_project,
     project_from_set,
+    put_opener,
     read_autosave,
     read_project,
     recoverable,
@@ -32,6 +34,7 @@ from core.files.project_json import NewerProject
 from core.files.project_rescue import Version, can_be_saved, rescues
 
 __all__ = [
+    "OPENER",
     "Accepted",
     "Done",
     "NewerProject",
@@ -48,6 +51,7 @@ __all__ = [
     "is_project",
     "new_project",
     "project_from_set",
+    "put_opener",
     "read_autosave",
     "read_project",
     "recoverable",

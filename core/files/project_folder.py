@@ -3,6 +3,7 @@
 Layout::
 
     PROJECT/project.json            the project
+    PROJECT/NAME.trisect            what a double click opens the project by; says nothing itself
     PROJECT/.autosave.json          changes that are not saved yet; there only while a project is open, or after a crash
     PROJECT/backups/                the last versions of project.json
     PROJECT/recordings/             raw frames, one folder for each recording
@@ -13,6 +14,7 @@ Layout::
 from __future__ import annotations
 
 import re
+from contextlib import suppress
 from dataclasses import replace
 from datetime import datetime
 from pathlib import Path
@@ -27,10 +29,13 @@ from core.files.rig import read_rig
 PROJECT = "project.json"
 AUTOSAVE = ".autosave.json"
 BACKUPS = "backups"
+OPENER = ".trisect"
+"""How the file ends that a double click opens the project by: systems know what opens a file by the end of its name."""
 KEPT = 5
 """So many earlier versions of project.json are kept."""
 
 _BACKUP = re.compile(r"^project-(\d+)-\d{8}-\d{6}\.json$")
+_OPENER_SAYS = "This file opens the project in its folder with Trisect; the project itself is in project.json.\n"
 _ELSEWHERE = "make the folder writable, or copy the project to another disk and open it there"
 
 
@@ -81,6 +86,14 @@ def write_project(folder: Path, file: ProjectFile) -> None:
         write_text(path, text)
     except (InputError, OSError) as error:
         raise _unsaved(path, error) from error
+    put_opener(folder)
+
+
+def put_opener(folder: Path) -> None:
+    """Put NAME.trisect into a project's folder, if none is there; a folder that cannot be written to does without."""
+    with suppress(InputError, OSError):
+        if next(folder.glob(f"*{OPENER}"), None) is None:
+            write_text(folder / f"{folder.resolve().name}{OPENER}", _OPENER_SAYS, sync=False)
 
 
 def backups(folder: Path) -> tuple[Path, ...]:

@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QWidget
 
 from core.errors import InputError
 from core.files.project import (
+    OPENER,
     Project,
     ProjectFile,
     can_be_saved,
@@ -59,8 +60,10 @@ class ProjectDoors(QObject):
             self.open_dropped(folder)
 
     def open_dropped(self, path: Path) -> None:
-        """Open whatever this is: a project or its project.json, an earlier version of it, or a recording set."""
+        """Open what `path` is: a project, its project.json or NAME.trisect, an earlier version, or a recording set."""
         path = path.resolve()
+        if path.suffix == OPENER and not path.is_dir():
+            path = path.parent
         if is_project(path) or rescues(path):
             self.open_project(path)
         elif path.is_file() and path.parent.name == BACKUPS and is_project(path.parent.parent):

@@ -1,0 +1,211 @@
+"""Opening projects by double click: the system is told which program opens NAME.trisect, for this user alone.
+
+Linux and its kin: a .desktop entry, a MIME type and an icon, as freedesktop.org has them (Desktop Entry Specification
+1.5, Shared MIME-info Database 0.21). Windows: the user's own classes in the registry. macOS ties kinds of files to
+bundles of programs, which this is not.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import dataclass
+from importlib.resources import files
+from pathlib import Path
+
+from PySide6.QtCore import QCoreApplication, QSettings
+
+from core.errors import InputError
+from core.files.atomic import make_folder, write_text
+from core.files.project import OPENER
+
+MIME = "application/x-trisect-project"
+CLASS = "Trisect.Project"
+PLATFORM = str(sys.platform)
+CLASSES = r"HKEY_CURRENT_USER\Software\Classes"
+
+TOLD_WITHIN_S = 20.0
+"""The system's own programs that take notice of new files have so long."""
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What was done, in one sentence, and the files it was done to."""
+
+    sentence: str
+    files: tuple[Path, ...] = ()
+
+
+def install(command: tuple[str, ...] | None = None) -> Outcome:
+    """Have projects open in this program by double click; doing it again changes nothing.
+
+    Parameters
+    ----------
+    command
+        What starts the program, if not the one that runs.
+
+    Raises
+    ------
+    InputError
+        If a file cannot be written, or this system has no such thing.
+    """
+    command = command or starter()
+    if PLATFORM == "win32":
+        _register(command)
+        return Outcome(_tr("Windows opens files NAME.trisect in Trisect now."))
+    wanted = _wanted(command)
+    for path, text in wanted.items():
+        make_folder(path.parent)
+        if not path.exists() or path.read_text(encoding="utf-8") != text:
+            write_text(path, text)
+    unknown = _take_notice()
+    sentence = _tr("A double click on NAME.trisect in a project's folder opens it in Trisect now.")
+    if unknown:
+        sentence += " " + _tr("Log in again for it to work: {0} is not installed here.").format(", ".join(unknown))
+    return Outcome(sentence, tuple(wanted))
+
+
+def uninstall() -> Outcome:
+    """Take all of it back; what is not there is no error.
+
+    Raises
+    ------
+    InputError
+        If a file cannot be removed, or this system has no such thing.
+    """
+    gone = _tr("Projects are no longer opened by double click.")
+    if PLATFORM == "win32":
+        _unregister()
+        return Outcome(gone)
+    paths = tuple(path for path in _wanted(("",)) if path.exists())
+    for path in paths:
+        try:
+            path.unlink()
+        except OSError as error:
+            raise InputError(f"cannot be removed ({error.strerror})", where=path, todo="remove it by hand") from error
+    _take_notice()
+    return Outcome(gone, paths)
+
+
+def installed() -> bool:
+    """Whether it is installed for this user."""
+    if PLATFORM == "win32":
+        return bool(_classes().value(f"{CLASS}/shell/open/command/."))
+    return PLATFORM != "darwin" and all(path.exists() for path in _wanted(("",)))
+
+
+def starter() -> tuple[str, ...]:
+    """The command that starts the program that runs."""
+    script = Path(sys.executable).with_name("trisect-workbench" + (".exe" if PLATFORM == "win32" else ""))
+    return (str(script),) if script.exists() else (sys.executable, "-m", "workbench")
+
+
+def _wanted(command: tuple[str, ...]) -> Mapping[Path, str]:
+    """The files that tell the system, and what is in them."""
+    if PLATFORM == "darwin":
+        raise InputError(
+            "macOS opens files by double click only in programs that are bundles",
+            todo="open a project with File, Open project, or drop its folder on the window",
+        )
+    data = _data_home()
+    return {
+        data / "applications" / "trisect.desktop": _desktop_entry(command),
+        data / "mime" / "packages" / "trisect.xml": _mime_package(),
+        data / "icons" / "hicolor" / "scalable" / "apps" / "trisect.svg": icon_text(),
+    }
+
+
+def icon_text() -> str:
+    """The program's icon, as SVG."""
+    return (files("resources") / "icons" / "trisect.svg").read_text(encoding="utf-8")
+
+
+def _data_home() -> Path:
+    """Where the user's own entries belong: XDG_DATA_HOME, which counts only if it is a full path."""
+    told = Path(os.environ.get("XDG_DATA_HOME", ""))
+    return told if told.is_absolute() else Path.home() / ".local" / "share"
+
+
+def _desktop_entry(command: tuple[str, ...]) -> str:
+    lines = [
+        "[Desktop Entry]",
+        "Type=Application",
+        "Version=1.5",
+        "Name=Trisect",
+        "GenericName=3D inspection",
+        "Comment=Measure parts with one camera and two lasers",
+        f"Exec={' '.join(_quoted(part) for part in command)} %f",
+        "Icon=trisect",
+        "Terminal=false",
+        "Categories=Science;Engineering;",
+        f"MimeType={MIME};",
+        "StartupWMClass=trisect",
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def _quoted(part: str) -> str:
+    """An argument of Exec: quoted, then escaped as a string, and a percent sign doubled (Desktop Entry, "Exec")."""
+    quoted = "".join("\\" + char if char in '"`$\\' else char for char in part)
+    return '"' + quoted.replace("\\", "\\\\").replace("%", "%%") + '"'
+
+
+def _mime_package() -> str:
+    return f"""<?xml version="1.0" encoding="UTF-8"?>
+<mime-info xmlns="http://www.freedesktop.org/standards/shared-mime-info">
+  <mime-type type="{MIME}">
+    <comment>Trisect project</comment>
+    <sub-class-of type="text/plain"/>
+    <icon name="trisect"/>
+    <glob pattern="*{OPENER}"/>
+  </mime-type>
+</mime-info>
+"""
+
+
+def _take_notice() -> list[str]:
+    """Have the system read the entries; the programs for it that are not there."""
+    data, unknown = _data_home(), []
+    for name, folder in (("update-mime-database", data / "mime"), ("update-desktop-database", data / "applications")):
+        program = shutil.which(name)
+        if program is None:
+            unknown.append(name)
+            continue
+        with suppress(OSError, subprocess.SubprocessError):
+            subprocess.run([program, str(folder)], check=False, capture_output=True, timeout=TOLD_WITHIN_S)
+    return unknown
+
+
+def _register(command: tuple[str, ...]) -> None:
+    """The user's own classes; "." names the default value of a key."""
+    classes = _classes()
+    start = " ".join(f'"{part}"' for part in command)
+    for key, value in {
+        f"{OPENER}/.": CLASS,
+        f"{CLASS}/.": "Trisect project",
+        f"{CLASS}/shell/open/command/.": f'{start} "%1"',
+    }.items():
+        classes.setValue(key, value)
+    classes.sync()
+    if classes.status() != QSettings.Status.NoError:
+        raise InputError("the registry cannot be written to", where=CLASSES)
+
+
+def _classes() -> QSettings:
+    return QSettings(CLASSES, QSettings.Format.NativeFormat)
+
+
+def _unregister() -> None:
+    classes = _classes()
+    classes.remove(CLASS)
+    if classes.value(f"{OPENER}/.") == CLASS:
+        classes.remove(OPENER)
+    classes.sync()
+
+
+def _tr(text: str) -> str:
+    return QCoreApplication.translate("Association", text)
