@@ -180,11 +180,10 @@ class _Problem:
         residuals, blocks = [], []
         for index, (known, pose) in enumerate(zip(self.known, state.poses, strict=True)):
             uv, by_camera, by_pose = reprojection.linearise(camera, pose, known.view.points)
-            sd = known.view.sigma[:, None] * self.corner_scale
-            residuals.append(((uv - known.view.uv) / sd).ravel())
+            residuals.append(known.view.whitened(uv - known.view.uv) / self.corner_scale)
             block = np.zeros((2 * len(uv), width))
-            block[:, unknowns + 6 * index : unknowns + 6 * index + 6] = (by_pose / sd[..., None]).reshape(-1, 6)
-            block[:, -PARAMETERS:] = (by_camera / sd[..., None]).reshape(-1, PARAMETERS)
+            block[:, unknowns + 6 * index : unknowns + 6 * index + 6] = known.view.whitened(by_pose) / self.corner_scale
+            block[:, -PARAMETERS:] = known.view.whitened(by_camera) / self.corner_scale
             blocks.append(block)
         distances = self._distances(state)
         weight = np.sqrt(self.weight)[:, None] / self._sd()

@@ -35,7 +35,7 @@ def target_plane_changes(pose: Pose) -> tuple[Array, Array]:
 def target_plane_covariance(view: TargetView, pose: Pose, camera: Camera) -> Array:
     """(3, 3) of τ, from the stated uncertainty of the target's points."""
     _, _, by_pose = reprojection.linearise(camera, pose, view.points)
-    scaled = (by_pose / view.sigma[:, None, None]).reshape(-1, 6)
+    scaled = view.whitened(by_pose)
     by_step = target_plane_changes(pose)[1]
     covariance: Array = by_step @ np.linalg.pinv(scaled.T @ scaled, hermitian=True, rcond=1e-14) @ by_step.T
     return covariance

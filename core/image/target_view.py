@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from core.model.arrays import Array, frozen_array, set_field
 
 
@@ -21,15 +23,29 @@ class TargetView:
         (N,) standard uncertainty of each coordinate of `uv`, in pixels.
     name
         The picture they were found in, for messages.
+    covariance
+        (2N, 2N) of the stacked `uv` in square pixels, where the points share their errors (corners on common edges);
+        None: independent, with `sigma`.
     """
 
     points: Array
     uv: Array
     sigma: Array
     name: str = ""
+    covariance: Array | None = None
 
     def __post_init__(self) -> None:
         count = len(self.points)
         set_field(self, "points", frozen_array(self.points, (count, 3), "points"))
         set_field(self, "uv", frozen_array(self.uv, (count, 2), "uv"))
         set_field(self, "sigma", frozen_array(self.sigma, (count,), "sigma"))
+        if self.covariance is not None:
+            set_field(self, "covariance", frozen_array(self.covariance, (2 * count, 2 * count), "covariance"))
+
+    def whitened(self, values: Array) -> Array:
+        """Pixels `values` (N, 2, …) of the points as 2N independent numbers of unit variance, (2N, …)."""
+        stacked = values.reshape(2 * len(self.uv), *values.shape[2:])
+        if self.covariance is None:
+            scale = np.repeat(self.sigma, 2).reshape(-1, *(1,) * (stacked.ndim - 1))
+            return np.asarray(stacked / scale, dtype=np.float64)
+        return np.asarray(np.linalg.solve(np.linalg.cholesky(self.covariance), stacked), dtype=np.float64)

@@ -286,10 +286,11 @@ def test_spoilt_scan_files_are_refused(tmp_path, scan):
 def test_poses_round_trip_and_belong_to_their_fan(tmp_path):
     rng = np.random.default_rng(5)
     view = TargetView(rng.normal(size=(4, 3)), rng.normal(size=(4, 2)), np.ones(4), "p1")
+    covariance = np.cov(rng.normal(size=(8, 20)))
     poses = (
         PoseFeatures("p1", view, (centreline(rng, 6),)),
         PoseFeatures("p2", None, (), "no target"),
-        PoseFeatures("p3", replace(view, name="p3"), (centreline(rng, 2), centreline(rng, 3))),
+        PoseFeatures("p3", replace(view, name="p3", covariance=covariance), (centreline(rng, 2), centreline(rng, 3))),
     )
     write_poses(tmp_path / "planes.npz", "fan1", poses)
     back = read_poses(tmp_path / "planes.npz", "fan1")
@@ -300,6 +301,8 @@ def test_poses_round_trip_and_belong_to_their_fan(tmp_path):
     ]
     assert back[1].view is None
     assert np.array_equal(back[2].view.uv, view.uv)
+    assert back[0].view.covariance is None
+    assert np.array_equal(back[2].view.covariance, covariance)
     assert np.array_equal(back[2].centrelines[1].uv, poses[2].centrelines[1].uv)
     assert read_poses(tmp_path / "planes.npz", "another fan") == ()
     assert read_poses(tmp_path / "none.npz", "fan1") == ()

@@ -42,6 +42,27 @@ def test_corners_are_unbiased_under_noise_and_sigma_is_the_size_of_the_errors():
     assert 0.5 < np.sqrt(np.mean(errors**2) / np.mean(sigmas**2)) < 1.5
 
 
+def test_covariance_knows_the_middles_of_the_edges_better_than_their_ends():
+    """A straight edge fitted to points all along it: its turn moves the two corners against each other."""
+    middles, turns = [], []
+    for seed in range(8):
+        picture = render(CAMERA, POSES["tilted"], square(60.0), blur=0.9, noise=4, samples=3, seed=seed)
+        view = detect(SQUARE, picture, camera=CAMERA)
+        errors, blocks = view.uv - corners(POSES["tilted"]), view.covariance.reshape(4, 2, 4, 2)
+        for a, b in ((k, (k + 1) % 4) for k in range(4)):
+            along = view.uv[b] - view.uv[a]
+            across = np.array([along[1], -along[0]]) / np.linalg.norm(along)
+            own = np.einsum("i,aibj,j->ab", across, blocks[[a, b]][:, :, [a, b]], across)
+            middles.append((np.sum(errors[[a, b]] @ across) / 2, own.sum() / 4))
+            turns.append((np.diff(errors[[a, b]] @ across)[0] / 2, (own[0, 0] + own[1, 1] - 2 * own[0, 1]) / 4))
+        assert np.linalg.eigvalsh(view.covariance).min() > 0
+        assert np.diag(view.covariance).reshape(4, 2).mean(axis=1) == pytest.approx(view.sigma**2)
+    (middle, stated_middle), (turn, stated_turn) = np.array(middles).T, np.array(turns).T
+    assert stated_middle.mean() < 0.5 * stated_turn.mean()
+    assert 0.6 < np.mean(middle**2) / stated_middle.mean() < 1.6
+    assert 0.6 < np.mean(turn**2) / stated_turn.mean() < 1.6
+
+
 def test_laser_stripes_across_the_square_hardly_move_its_corners():
     picture = render(CAMERA, POSES["tilted"], square(60.0), blur=0.9, stripes=STRIPES, noise=1)
     view = detect(SQUARE, picture, camera=CAMERA)

@@ -10,7 +10,7 @@ from core.image.target_view import TargetView
 from core.image.targets.dark_squares import DarkSquares, dark_squares, first_corner
 from core.image.targets.edges import PictureSpline, Profiles, profiles
 from core.image.targets.kinds import BlackSquare
-from core.image.targets.lines import Line, fit_line, meet
+from core.image.targets.lines import Line, corner_covariance, fit_line, meet
 from core.image.targets.not_found import TargetNotFound
 from core.image.targets.picture import Picture, as_8bit, enlarged, reduced
 from core.model import Camera
@@ -34,7 +34,7 @@ CLIPPED_SHARE = 0.5
 def detect_black_square(
     square: BlackSquare, picture: Picture, name: str = "", camera: Camera | None = None
 ) -> TargetView:
-    """The four corners of `square` in the order that :class:`BlackSquare` states, with σ from the line fits.
+    """The four corners of `square` in the order that :class:`BlackSquare` states, with covariance from the line fits.
 
     Edge points are the steepest places of profiles across each edge, one per pixel of edge. Those that a laser stripe
     disturbs are left out: by the level of the dark or the bright side, and by Tukey's weights in the line fit. Lines
@@ -65,12 +65,14 @@ def detect_black_square(
                     todo="check focus and exposure, and that neither a thing nor a laser line covers the edge",
                 )
         lines = [edge for edge in edges if edge is not None]
-        corners = [meet(lines[k - 1], lines[k]) for k in range(4)]
-        quad = flat.to_pixels(np.array([point for point, _ in corners]))
+        quad = flat.to_pixels(np.array([meet(lines[k - 1], lines[k]) for k in range(4)]))
     clipped = max(_clipped_shift(picture, profile) for _, _, profile in across)
-    variance = np.array([np.trace(covariance) / 2 for _, covariance in corners]) + SYSTEMATIC_PX**2 + clipped**2
     first = first_corner(quad)
-    return TargetView(square.points, np.roll(quad, -first, axis=0), np.roll(np.sqrt(variance), -first), name)
+    order = np.roll(np.arange(4), -first)
+    covariance = corner_covariance(lines)[order][:, :, order].reshape(8, 8)
+    covariance = covariance + (SYSTEMATIC_PX**2 + clipped**2) * np.eye(8)
+    sigma = np.sqrt(np.diag(covariance).reshape(4, 2).mean(axis=1))
+    return TargetView(square.points, quad[order], sigma, name, covariance)
 
 
 class _Flat:

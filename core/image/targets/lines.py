@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -29,11 +30,6 @@ class Line:
     def tangent(self) -> Array:
         """Unit vector along the line."""
         return np.array([-self.normal[1], self.normal[0]])
-
-    def variance_at(self, point: Array) -> float:
-        """Variance of the line's place, across it, at `point` (2,)."""
-        along = float((point - self.middle) @ self.tangent)
-        return self.variance_middle + self.variance_angle * along**2
 
 
 def fit_line(points: Array, candidates: NDArray[np.bool_], floor: float) -> Line | None:
@@ -76,13 +72,27 @@ def fit_line(points: Array, candidates: NDArray[np.bool_], floor: float) -> Line
     return Line(middle, normal, sigma, variance / len(distance), variance / float((along**2).sum()), inliers)
 
 
-def meet(a: Line, b: Line) -> tuple[Array, Array]:
-    """Where two lines meet, (2,), and its covariance (2, 2)."""
+def meet(a: Line, b: Line) -> Array:
+    """Where two lines meet, (2,)."""
     normals = np.array([a.normal, b.normal])
-    point = np.linalg.solve(normals, [a.normal @ a.middle, b.normal @ b.middle])
-    back = np.linalg.inv(normals)
-    covariance: Array = back @ np.diag([a.variance_at(point), b.variance_at(point)]) @ back.T
-    return point, covariance
+    return np.asarray(np.linalg.solve(normals, [a.normal @ a.middle, b.normal @ b.middle]), dtype=np.float64)
+
+
+def corner_covariance(lines: Sequence[Line]) -> Array:
+    """Covariance (K, 2, K, 2) of the corners of a polygon, corner k where line k − 1 meets line k.
+
+    Neighbouring corners have an edge in common: its middle is known far better than its ends, which a turn of the
+    line moves against each other.
+    """
+    count = len(lines)
+    by_lines = np.zeros((count, 2, count, 2))
+    for k in range(count):
+        before, after = lines[k - 1], lines[k]
+        point, back = meet(before, after), np.linalg.inv([before.normal, after.normal])
+        for column, (index, line) in enumerate((((k - 1) % count, before), (k, after))):
+            by_lines[k, :, index] = np.outer(back[:, column], [1.0, (point - line.middle) @ line.tangent])
+    variance = np.array([[line.variance_middle, line.variance_angle] for line in lines])
+    return np.asarray(np.einsum("aimn,mn,bjmn->aibj", by_lines, variance, by_lines), dtype=np.float64)
 
 
 def _least_median(xy: Array) -> tuple[Array, Array]:
