@@ -17,7 +17,7 @@ from core.progress import Progress, silent, steps
 from core.scan.crossings import CrossingTable
 from core.scan.fan_lines import UNASSIGNED, FanLines, possible_fan_lines, settle_by_sweeps
 from core.scan.geometry import CrossingRays, inverse_depth_gradient, noise_gains
-from core.scan.network import FanStretches, solve_network
+from core.scan.network import solve_network
 from core.scan.sweep_plane import solve_sweep_plane
 
 
@@ -97,9 +97,7 @@ def locate_together(
     """
     frames = np.unique(np.concatenate([crossings.a, crossings.b[~crossings.with_fan]]))
     renumbered = crossings.renumber(np.searchsorted(frames, np.arange(frames[-1] + 1)))
-    network = solve_network(
-        renumbered, CrossingRays.of(crossings, camera), _stretches(crossings, line), fan, len(frames), progress
-    )
+    network = solve_network(renumbered, CrossingRays.of(crossings, camera), line, fan, len(frames), progress)
     notes: tuple[str, ...] = ()
     if network.fan_silenced:
         notes = (
@@ -107,16 +105,6 @@ def locate_together(
             "and that object and camera stood still.",
         )
     return LocatedSweeps(frames, network.pis, network.covariance, network.weights, network.scale, notes)
-
-
-def _stretches(crossings: CrossingTable, line: NDArray[np.int64]) -> FanStretches:
-    """Cut the fan's centrelines into stretches as long as the crossings' fit window."""
-    with_fan = crossings.with_fan
-    bins = np.floor(crossings.along_b / (2 * crossings.half_length_px)).astype(np.int64)
-    keys = crossings.piece_b * 100_000 + bins
-    stretch = np.full(len(crossings), -1, dtype=np.int64)
-    stretch[with_fan] = np.unique(keys[with_fan], return_inverse=True)[1]
-    return FanStretches(stretch, line)
 
 
 def locate_each(

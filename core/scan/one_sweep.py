@@ -17,9 +17,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.model.arrays import Array
+from core.scan.adjustment import GRADIENT_FLOOR
 from core.scan.crossings import CrossingTable
 from core.scan.geometry import CrossingRays, floored, inverse_depth_gradient, noise_gains
-from core.scan.network import GRADIENT_FLOOR, REJECT_AT, SIGMA_FLOOR_PX
+from core.scan.line_errors import SIGMA_FLOOR_PX
+from core.scan.network import REJECT_AT
 from core.scan.sweep_plane import PRIOR_SD, plane_condition
 
 ROUNDS = 5

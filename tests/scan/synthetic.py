@@ -7,7 +7,6 @@ import numpy as np
 from core.model import Camera, Fan, LightPlane
 from core.scan.crossings import CrossingTable
 from core.scan.geometry import CrossingRays
-from core.scan.network import FanStretches
 
 CAMERA = Camera(
     (3840, 2748),
@@ -43,7 +42,7 @@ def sweeps(count: int, seed: int) -> np.ndarray:
 class Network:
     table: CrossingTable
     geometry: CrossingRays
-    stretches: FanStretches
+    line: np.ndarray
 
 
 def network(
@@ -81,8 +80,7 @@ def network(
                 error_b = rng.normal(0, noise_px)
             uv = uv + t_b * error_a / -sine + t_a * error_b / sine
             rows.append((uv, t_a, t_b, a, b, line, face_index, key))
-    keys = list(offsets)
-    stretch = [keys.index(row[-1]) if row[-1] else -1 for row in rows]
+    cell = np.array([row[-1][2] if row[-1] else 0 for row in rows])
     count = len(rows)
     uv, t_a, t_b, a, b, line, face = (np.array([row[i] for row in rows]) for i in range(7))
     fan_sigma = max(fan_noise_px, 1e-3)
@@ -96,11 +94,15 @@ def network(
         b=b,
         piece_a=face,
         piece_b=np.where(b < 0, line * 2 + face, face),
-        along_a=np.arange(count) * 1000.0,  # windows never overlap: every error is drawn on its own
-        along_b=np.arange(count) * 1000.0,
-        half_length_px=window,
+        along_a=np.arange(count) * 1000.0,  # every error of a sweep is drawn on its own
+        along_b=np.where(b < 0, 2 * window * cell, np.arange(count) * 1000.0),
+        half_length_px=2 * window,
+        cell_a=np.zeros(count, dtype=np.int64),
+        cell_b=cell,
+        share_a=np.zeros((count, 1)),
+        share_b=np.where(b < 0, fan_sigma, 0.0)[:, None],  # one error for all crossings on a stretch of the fan
     )
-    return Network(table, CrossingRays.of(table, CAMERA), FanStretches(np.array(stretch), line))
+    return Network(table, CrossingRays.of(table, CAMERA), line)
 
 
 def stripe_rays(pi: np.ndarray) -> np.ndarray:

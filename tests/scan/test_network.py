@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from core.scan.geometry import CrossingRays
-from core.scan.network import FanStretches, Network, solve_network
+from core.scan.network import Network, solve_network
 from tests.scan.synthetic import CAMERA, FAN, network, stripe_rays, sweeps
 
 NOISE_PX = 0.05
@@ -12,7 +12,7 @@ NOISE_PX = 0.05
 
 def solved(truth: np.ndarray, seed: int, noise_px: float = NOISE_PX):
     scan = network(truth, noise_px, seed, fan_noise_px=0.6 * noise_px)
-    return solve_network(scan.table, scan.geometry, scan.stretches, FAN, len(truth))
+    return solve_network(scan.table, scan.geometry, scan.line, FAN, len(truth))
 
 
 def depth_errors(result: Network, truth: np.ndarray, sweep: int) -> tuple[np.ndarray, np.ndarray]:
@@ -59,7 +59,7 @@ def test_bad_crossings_are_left_out():
     moved = scan.table.uv.copy()
     moved[bad] += 15.0
     table = replace(scan.table, uv=moved)
-    result = solve_network(table, CrossingRays.of(table, CAMERA), scan.stretches, FAN, len(truth))
+    result = solve_network(table, CrossingRays.of(table, CAMERA), scan.line, FAN, len(truth))
     assert np.median(result.weights[bad]) < 0.05
     errors, _ = all_depth_errors(result, truth)
     assert np.median(np.abs(errors)) < 0.05
@@ -69,9 +69,8 @@ def test_a_sweep_without_fan_crossings_is_held_by_the_others():
     truth = sweeps(30, 5)
     scan = network(truth, NOISE_PX, 5, fan_noise_px=0.03)
     keep = ~((scan.table.a == 7) & scan.table.with_fan)
-    stretches = FanStretches(scan.stretches.stretch[keep], scan.stretches.line[keep])
     table = scan.table.select(keep)
-    result = solve_network(table, CrossingRays.of(table, CAMERA), stretches, FAN, len(truth))
+    result = solve_network(table, CrossingRays.of(table, CAMERA), scan.line[keep], FAN, len(truth))
     errors, _ = depth_errors(result, truth, 7)
     assert np.median(np.abs(errors)) < 0.1
 
@@ -81,7 +80,7 @@ def test_on_a_flat_table_alone_the_scale_is_unknown_and_the_covariance_says_so()
     flat = network(truth, NOISE_PX, 6, fan_noise_px=0.03, relief=False)
     relief = network(truth, NOISE_PX, 6, fan_noise_px=0.03)
     spread = [
-        np.median(np.diag(solve_network(s.table, s.geometry, s.stretches, FAN, len(truth)).covariance))
+        np.median(np.diag(solve_network(s.table, s.geometry, s.line, FAN, len(truth)).covariance))
         for s in (flat, relief)
     ]
     assert spread[0] > 100 * spread[1]
@@ -91,6 +90,5 @@ def test_without_the_fan_nothing_is_solved():
     truth = sweeps(5, 7)
     scan = network(truth, NOISE_PX, 7)
     keep = ~scan.table.with_fan
-    stretches = FanStretches(scan.stretches.stretch[keep], scan.stretches.line[keep])
     with pytest.raises(ValueError, match="no sweep crosses the fan"):
-        solve_network(scan.table.select(keep), CrossingRays.of(scan.table, CAMERA), stretches, FAN, len(truth))
+        solve_network(scan.table.select(keep), CrossingRays.of(scan.table, CAMERA), scan.line[keep], FAN, len(truth))

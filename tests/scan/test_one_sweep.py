@@ -15,23 +15,15 @@ def against_others(seed: int, count: int = 14, noise_px: float = NOISE_PX, relie
     whole: Network = network(planes, noise_px, seed, relief=relief)
     last = count - 1
     among = (whole.table.a != last) & (whole.table.b != last)
-    solved = solve_network(
-        whole.table.select(among), whole.geometry.select(among), select(whole.stretches, among), FAN, last
-    )
+    solved = solve_network(whole.table.select(among), whole.geometry.select(among), whole.line[among], FAN, last)
     to_fan, to_others = whole.table.select((whole.table.a == last) & whole.table.with_fan), whole.table.b == last
     table = to_fan.followed_by(whole.table.select(to_others).swapped())
     rows = np.concatenate([np.flatnonzero((whole.table.a == last) & whole.table.with_fan), np.flatnonzero(to_others)])
     geometry = whole.geometry.select(rows)
     sweep = np.where(table.with_fan, UNASSIGNED, table.b)
-    line = whole.stretches.line[rows]
+    line = whole.line[rows]
     pis = np.where(table.with_fan[:, None], FAN.pis[np.maximum(line, 0)], solved.pis[np.maximum(table.b, 0)])
     return table, geometry, KnownPlanes(pis, sweep, solved.covariance), planes[last]
-
-
-def select(stretches, rows):
-    used = np.unique(stretches.stretch[rows])
-    new = np.searchsorted(used[used >= 0], stretches.stretch[rows])
-    return type(stretches)(np.where(stretches.stretch[rows] < 0, -1, new), stretches.line[rows])
 
 
 def depth_errors(pi, true):
