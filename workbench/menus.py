@@ -37,7 +37,7 @@ class Menus:
         """Grey what makes no sense now."""
         window = self._window
         is_open = window.model.is_open
-        for name in ("save", "close", "back", "next", "run", "accept", "live", "capture"):
+        for name in ("save", "copy", "close", "back", "next", "run", "accept", "live", "capture"):
             self.actions[name].setEnabled(is_open)
         for step in STEPS:
             self.actions[f"step {step.name}"].setEnabled(is_open)
@@ -55,6 +55,7 @@ class Menus:
         self._add(file, "simulated", w.tr("&Try with the simulated rig"), w.doors.try_simulated)
         file.addSeparator()
         self._add(file, "save", w.tr("&Save"), w.doors.save)
+        self._add(file, "copy", w.tr("Save a c&opy …"), w.doors.copy.save_copy)
         self._add(file, "close", w.tr("&Close project"), w.doors.close_project)
         self._add(file, "quit", w.tr("&Quit"), w.close)
 

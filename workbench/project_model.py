@@ -66,6 +66,11 @@ class ProjectModel(QObject):
         return self._file.results
 
     @property
+    def file(self) -> ProjectFile:
+        """Project and results, as they would be saved."""
+        return self._file
+
+    @property
     def is_open(self) -> bool:
         """Whether a project is open."""
         return self.folder is not None

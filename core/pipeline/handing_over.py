@@ -12,6 +12,7 @@ from core.files.csv_file import write_points_csv
 from core.files.pictures import read_bytes
 from core.files.ply import read_cloud, read_mesh
 from core.files.project_data import Project
+from core.files.project_rescue import can_be_saved
 from core.files.stl import write_stl
 from core.pipeline.project_steps import report_bytes, results_folder
 from core.pipeline.workspace import FILES
@@ -38,6 +39,8 @@ def preview_report(folder: Path, project: Project, width_px: int, progress: Prog
 def export(folder: Path, project: Project, kind: Kind, path: Path, progress: Progress = silent) -> Path:
     """Write a copy of a result to `path` and return it; the file appears whole or not at all.
 
+    The report of a project that cannot be written to is made on the way: it cannot be among the results.
+
     Raises
     ------
     InputError
@@ -45,7 +48,9 @@ def export(folder: Path, project: Project, kind: Kind, path: Path, progress: Pro
     """
     progress("writing", 0, 1)
     results = results_folder(folder)
-    if kind in _COPIED:
+    if kind == "pdf" and not can_be_saved(folder):
+        write_bytes(path, report_bytes(folder, project, progress))
+    elif kind in _COPIED:
         source = results / FILES[_COPIED[kind]]
         if not source.exists():
             raise InputError("is not there", where=source, todo="do the step that makes it first")

@@ -267,7 +267,8 @@ def make_report(folder: Path, project: Project, progress: Progress = silent) -> 
 
 def report_bytes(folder: Path, project: Project, progress: Progress = silent) -> bytes:
     """The report as `make_report` would write it, as the bytes of a PDF; nothing is written."""
-    content = report_content(_work(folder, project), progress, lambda content: _with_words(content, project))
+    work = Workspace(project_set(folder, project), results_folder(folder), _part(project))  # only read from
+    content = report_content(work, progress, lambda content: _with_words(content, project))
     return build_report(content, progress)
 
 

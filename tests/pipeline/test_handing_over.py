@@ -1,6 +1,7 @@
 """Looking at a report before it is made, and copies for others."""
 
 import json
+import os
 from dataclasses import replace
 
 import numpy as np
@@ -12,7 +13,7 @@ from core.files.atomic import write_bytes
 from core.files.ply import read_cloud, read_mesh
 from core.files.project import ReportChoices
 from core.pipeline.handing_over import export, preview_report
-from core.pipeline.project_steps import make_report, results_folder
+from core.pipeline.project_steps import make_report, report_bytes, results_folder
 from core.report.content import SECTIONS
 from tests.simulated import copy_of
 
@@ -81,6 +82,17 @@ def test_what_is_not_there_is_told_and_nothing_is_written(done, folder, tmp_path
     with pytest.raises(InputError, match=r"is not there|is missing"):
         export(folder, done.project, kind, tmp_path / "copy")
     assert not (tmp_path / "copy").exists()
+
+
+def test_the_report_of_a_project_that_cannot_be_written_to_is_exported_and_nothing_else_is_written(
+    done, folder, tmp_path, monkeypatch
+):
+    (results_folder(folder) / "report.pdf").unlink()
+    before = {path: path.stat().st_mtime_ns for path in folder.rglob("*")}
+    monkeypatch.setattr(os, "access", lambda *_: False)
+    path = export(folder, done.project, "pdf", tmp_path / "out.pdf")
+    assert path.read_bytes() == report_bytes(folder, done.project)
+    assert {path: path.stat().st_mtime_ns for path in folder.rglob("*")} == before
 
 
 def test_a_copy_that_cannot_be_written_leaves_an_older_one_whole(done, folder, tmp_path):

@@ -23,6 +23,7 @@ from core.files.project import (
 )
 from core.files.unfinished import Unfinished, forget_recording, unfinished_recording
 from workbench.bench import Bench
+from workbench.pages.copy_door import CopyDoor
 from workbench.pages.project_states import wanted_state
 from workbench.pages.sample_door import SampleDoor
 from workbench.pages.sources import put_source
@@ -40,6 +41,7 @@ class ProjectDoors(QObject):
         super().__init__(window)
         self.bench, self.model, self._window = bench, bench.model, window
         self.sample = SampleDoor(bench, self.open_project, self)
+        self.copy = CopyDoor(bench, window, self.save, self.close_project, self._open, self)
 
     def new_project(self) -> None:
         """Ask for a name and make an empty project."""
@@ -180,9 +182,7 @@ class ProjectDoors(QObject):
             return False
         self.bench.settings.remember(folder)
         if not can_be_saved(folder):
-            self.bench.notices.warning(
-                self.tr("{0} is read-only: what is changed or measured here cannot be saved.").format(folder)
-            )
+            self.copy.offer()
         if (unfinished := unfinished_recording(folder)) is not None:
             self._offer(folder, unfinished)
         return True

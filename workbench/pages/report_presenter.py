@@ -7,7 +7,7 @@ from enum import StrEnum
 from pathlib import Path
 from typing import Any
 
-from core.files.project import Project
+from core.files.project import Project, can_be_saved
 from core.files.project_keys import finished
 from core.report.section_names import SECTIONS
 from workbench import jobs
@@ -110,9 +110,20 @@ class ReportPresenter(StepPresenter):
 
     # ---- make and hand over
 
+    @property
+    def read_only(self) -> bool:
+        """Whether the project cannot be written to: then its report can be exported, but not kept with it."""
+        return self.model.folder is not None and not can_be_saved(self.model.folder)
+
     def why_not_make(self) -> str:
         """Why the report cannot be made now, or ""."""
-        return self.tr("The report is being made.") if self._making is not None else self.blocker()
+        if self._making is not None:
+            return self.tr("The report is being made.")
+        if self.ready() and self.read_only:
+            return self.tr(
+                "The project is read-only: export the report elsewhere, or go on in a copy (File, Save a copy)."
+            )
+        return self.blocker()
 
     def do_run(self) -> None:
         """Make the report into the project's results."""
@@ -122,7 +133,7 @@ class ReportPresenter(StepPresenter):
         """Write a copy for others, of a kind in ENDINGS; a report that is not up to date is made first."""
         path = path if path.suffix.lower() == ENDINGS[kind] else path.with_name(path.name + ENDINGS[kind])
         self.bench.settings.keep_text(EXPORT_FOLDER, str(path.parent))
-        if kind == "pdf" and self.stage is not Stage.MADE:
+        if kind == "pdf" and self.stage is not Stage.MADE and not self.read_only:
             self._make(path)
         else:
             self._export(kind, path)

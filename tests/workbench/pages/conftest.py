@@ -36,7 +36,10 @@ def hand_bench(qapp: QApplication, tmp_path: Path) -> Iterator[Bench]:
     lanes = [HandLane(name) for name in ("measuring", "quick", "live")]
     lanes[2].held = {jobs.RUN_LIVE}
     measuring, quick, live = (cast(Lane, lane) for lane in lanes)
-    yield Bench(ProjectModel(), Notices(), settings, measuring, quick, live)
+    bench = Bench(ProjectModel(), Notices(), settings, measuring, quick, live)
+    yield bench
+    bench.model.blockSignals(True)  # whoever listened may be gone
+    bench.model.close()
 
 
 @pytest.fixture(scope="session")

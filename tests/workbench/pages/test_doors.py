@@ -286,8 +286,63 @@ def test_a_read_only_project_can_be_looked_at_and_says_so(
     (notice,) = doors.bench.notices.all
     assert notice.level == "warning"
     assert "is read-only: what is changed or measured here cannot be saved" in notice.text
+    ((text, answers),) = asked.questions
+    assert "Go on in a copy?" in text and answers[0] == "Save a copy …"
     assert doors.close_project()
-    assert asked.questions == [], "nothing was changed, nothing is lost"
+    assert len(asked.questions) == 1, "nothing was changed, nothing is lost"
+
+
+def test_a_read_only_project_goes_on_in_a_copy_with_what_was_changed(
+    doors: ProjectDoors, asked: Asked, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, qtbot: Any
+) -> None:
+    folder = project(tmp_path / "block")
+    asked.answer = "Look at it"
+    with monkeypatch.context() as patched:
+        read_only(patched)
+        patched.setattr(ask, "ask_name_and_folder", lambda *_: ("Mine", tmp_path / "copies"))
+        doors.open_project(folder)
+        renamed(doors, "Changed")
+        doors.copy.save_copy()
+        qtbot.waitUntil(lambda: doors.model.folder == tmp_path / "copies" / "Mine")
+    assert doors.model.project.info.name == "Changed" and doors.model.is_modified
+    assert doors.save() and read_project(tmp_path / "copies" / "Mine").project.info.name == "Changed"
+    assert read_project(folder).project.info.name == "Block"
+    assert errors(doors) == []
+
+
+def test_the_offer_of_a_copy_is_taken_at_once(
+    doors: ProjectDoors, asked: Asked, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, qtbot: Any
+) -> None:
+    asked.answer = "Save a copy"
+    folder = project(tmp_path / "block")
+    monkeypatch.setattr(os, "access", lambda path, _: not Path(path).is_relative_to(folder))
+    monkeypatch.setattr(ask, "ask_name_and_folder", lambda *_: ("Mine", tmp_path))
+    doors.open_project(folder)
+    qtbot.waitUntil(lambda: doors.model.folder == tmp_path / "Mine")
+    assert not doors.model.is_modified and len(asked.questions) == 1
+
+
+def test_a_copy_of_a_project_that_can_be_saved_is_of_its_newest_state(
+    doors: ProjectDoors, asked: Asked, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, qtbot: Any
+) -> None:
+    folder = project(tmp_path / "block")
+    monkeypatch.setattr(ask, "ask_name_and_folder", lambda *_: ("Mine", tmp_path))
+    doors.open_project(folder)
+    renamed(doors, "Changed")
+    doors.copy.save_copy()
+    qtbot.waitUntil(lambda: doors.model.folder == tmp_path / "Mine")
+    for place in (folder, tmp_path / "Mine"):
+        assert read_project(place).project.info.name == "Changed"
+    assert asked.questions == []
+
+
+def test_a_copy_waits_for_the_end_of_a_recording(
+    doors: ProjectDoors, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    doors.open_project(project(tmp_path / "block"))
+    doors.bench.live.run(jobs.RUN_LIVE, None, label="live", on_done=lambda _: None)
+    doors.copy.save_copy()
+    assert "Stop the recording first" in errors(doors)[0]
 
 
 def test_changes_that_cannot_be_saved_are_told_once_and_asked_about_before_they_are_lost(

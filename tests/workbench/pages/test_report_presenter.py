@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, cast
@@ -279,6 +280,17 @@ def test_the_pdf_is_made_first_where_it_is_not_up_to_date(
     shown.export("pdf", tmp_path / "b.pdf")
     qtbot.waitUntil(lambda: len(drawing.exported) == 2)
     assert len(drawing.made) == 1, "it was up to date"
+
+
+def test_a_read_only_projects_report_is_exported_elsewhere_but_not_kept_with_it(
+    shown: ReportPresenter, drawing: Drawing, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, qtbot: Any
+) -> None:
+    monkeypatch.setattr(os, "access", lambda *_: False)
+    assert "go on in a copy (File, Save a copy)" in shown.why_not_make()
+    shown.do_run()
+    shown.export("pdf", tmp_path / "out.pdf")
+    qtbot.waitUntil(lambda: drawing.exported == [("pdf", tmp_path / "out.pdf")])
+    assert drawing.made == []
 
 
 def test_without_a_thickness_only_its_file_is_missing(report: ReportPresenter) -> None:

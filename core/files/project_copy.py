@@ -1,0 +1,50 @@
+"""A project copied to where it can be written."""
+
+from __future__ import annotations
+
+import secrets
+import shutil
+from pathlib import Path
+
+from core.errors import InputError
+from core.files.atomic import cannot_write
+from core.files.project_folder import AUTOSAVE
+from core.progress import Progress, silent, steps
+
+_LEFT_BEHIND = (AUTOSAVE, ".new")
+"""What belongs to a program that is at work, or was killed."""
+
+
+def copy_project(folder: Path, to: Path, progress: Progress = silent) -> Path:
+    """Copy the project in `folder` with its recordings and results, and return `to`.
+
+    The copy appears whole or not at all, and can be written to, whatever the original says. Folders of pictures outside
+    the project stay where they are.
+
+    Raises
+    ------
+    InputError
+        If `to` is there already or lies within the project, a file cannot be read, or nothing can be written there.
+    """
+    if to.exists():
+        raise InputError("is there already", where=to, todo="choose another name")
+    if to.resolve().is_relative_to(folder.resolve()):
+        raise InputError("lies within the project that is to be copied", where=to, todo="choose another folder")
+    beside = to.with_name(f".{to.name}.{secrets.token_hex(4)}.part")
+    try:
+        beside.mkdir(parents=True)
+        files = [path for path in sorted(folder.rglob("*")) if path.is_file() and not _left_behind(folder, path)]
+        for path in steps(files, progress, "copying", len(files)):
+            place = beside / path.relative_to(folder)
+            place.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(path, place)  # the content alone: the copy need not be read-only, too
+        beside.rename(to)
+    except OSError as error:
+        raise cannot_write(to, error) from error
+    finally:
+        shutil.rmtree(beside, ignore_errors=True)
+    return to
+
+
+def _left_behind(folder: Path, path: Path) -> bool:
+    return any(part in _LEFT_BEHIND for part in path.relative_to(folder).parts)
