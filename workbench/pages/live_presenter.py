@@ -54,6 +54,9 @@ STOP_WITHIN_MS = 5000
 
 DISPLAY_PX = 1280
 
+LOST_SHARE = 0.02
+"""From this share of lost frames on, the rate is too high."""
+
 
 class LivePresenter(QObject):
     """Starts, steers and ends the live recordings of one step.
@@ -167,6 +170,19 @@ class LivePresenter(QObject):
         if self.step == "scan":
             parts.append(self.tr("{0} lost").format(self.dropped))
         return " · ".join(parts)
+
+    def lost_text(self) -> str:
+        """What to do when frames are lost, or "": only a scan needs every frame, and one now and then does no harm."""
+        total = self.recorded + self.dropped
+        if self.step != "scan" or not self.dropped or self.dropped < LOST_SHARE * total:
+            return ""
+        text = self.tr("{0} of {1} pictures were lost on the way").format(self.dropped, total)
+        if not self.rate_hz > 0:
+            return self.tr("{0}: choose a lower rate.").format(text)
+        lower = f"{int(self.rate_hz)}" if self.rate_hz >= 1 else f"{0.9 * self.rate_hz:.1f}"
+        return self.tr("{0}; {1} a second are taken: choose a rate of {2}/s or lower.").format(
+            text, f"{self.rate_hz:.1f}", lower
+        )
 
     @property
     def can_add(self) -> bool:
@@ -359,10 +375,9 @@ class LivePresenter(QObject):
         self._deadline.stop()
         if ended.error:
             self.bench.notices.error(ended.error)
-        elif ended.dropped and self.step == "scan":
-            self.bench.notices.warning(
-                self.tr("{0} pictures were lost on the way; choose a lower rate.").format(ended.dropped)
-            )
+        self.recorded, self.dropped = ended.recorded, ended.dropped
+        if not ended.error and (lost := self.lost_text()):
+            self.bench.notices.warning(lost)
         asked, self._ask = self._ask, None
         project, self.stopping, self.paused, self.gone = self._project_folder, False, False, False
         if asked is not None:

@@ -15,7 +15,7 @@ KINDS = ("simulated", "opencv", "basler", "replay")
 """The kinds of sources, in the order of the list; the first is the one that is always there."""
 
 SETTINGS: dict[str, tuple[str, ...]] = {
-    "simulated": (),
+    "simulated": ("rate_hz",),
     "opencv": ("exposure_ms", "gain_db", "rate_hz"),
     "basler": ("exposure_ms", "gain_db", "rate_hz"),
     "replay": ("rate_hz",),

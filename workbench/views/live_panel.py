@@ -219,7 +219,7 @@ class LivePanel(QWidget):
 
 
 class LiveStrip(QWidget):
-    """What the recording asks of the technician, with the button that answers; and whether the source is gone.
+    """What the recording asks of the technician, with the button that answers; whether the source is gone or too fast.
 
     Hidden while there is nothing to say. For above the picture.
     """
@@ -228,24 +228,28 @@ class LiveStrip(QWidget):
         super().__init__(parent)
         self.live = live
         self.question, self.answer = QLabel(), QPushButton()
-        self.gone = QLabel()
-        self._signs = QToolButton(), QToolButton()
+        self.gone, self.lost = QLabel(), QLabel()
+        self._signs = QToolButton(), QToolButton(), QToolButton()
         self._ask = _card(self._signs[0], self.question, self.answer)
         self._gone = _card(self._signs[1], self.gone, None)
+        self._lost = _card(self._signs[2], self.lost, None)
         self.answer.setProperty("primary", True)
         self.answer.clicked.connect(lambda: live.answer())
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 4)
         column.setSpacing(4)
         column.addWidget(self._gone)
+        column.addWidget(self._lost)
         column.addWidget(self._ask)
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Maximum)
         live.changed.connect(self.refresh)
+        live.view.connect(lambda _: self._show_lost())
         self.refresh()
 
     def refresh(self) -> None:
         """Show what is asked and what is wrong now."""
-        for sign, symbol in zip(self._signs, ("mdi6.hand-pointing-right", "mdi6.power-plug-off-outline"), strict=True):
+        symbols = ("mdi6.hand-pointing-right", "mdi6.power-plug-off-outline", "mdi6.speedometer")
+        for sign, symbol in zip(self._signs, symbols, strict=True):
             sign.setIcon(icon(symbol, colour="warn"))
         sentence, button = self.live.question
         self.question.setText(sentence)
@@ -256,7 +260,15 @@ class LiveStrip(QWidget):
             self.tr("The source is unplugged. What is recorded is kept; plug it in again and the recording goes on.")
         )
         self._gone.setVisible(self.live.gone)
-        self.setVisible(bool(sentence) or self.live.gone)
+        self._show_lost()
+
+    def _show_lost(self) -> None:
+        """Frames that are lost while it runs: told while the rate can still be lowered."""
+        lost = self.live.lost_text() if self.live.running else ""
+        if lost != self.lost.text():
+            self.lost.setText(lost)
+        self._lost.setVisible(bool(lost))
+        self.setVisible(bool(lost) or bool(self.question.text()) or self.live.gone)
 
     def changeEvent(self, event: QEvent) -> None:
         super().changeEvent(event)

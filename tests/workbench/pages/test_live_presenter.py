@@ -124,6 +124,22 @@ def test_a_scan_says_how_many_frames_were_lost(camera_bench, lane):
     assert not scan.auto
 
 
+def test_a_scan_that_lost_frames_says_at_its_end_which_rate_can_be_followed(camera_bench, lane, tmp_path):
+    scan = LivePresenter(camera_bench, "scan")
+    scan.start()
+    lane.current.view.emit(view(recorded=40, dropped=10))
+    lane.finish(LiveEnded(tmp_path / "scan", 45, 15))
+    (notice,) = [one for one in camera_bench.notices.all if one.level == "warning"]
+    assert notice.text == (
+        "15 of 60 pictures were lost on the way; 12.0 a second are taken: choose a rate of 12/s or lower."
+    )
+
+
+def test_views_and_poses_need_not_every_frame(running, lane):
+    lane.current.view.emit(view(recorded=3, dropped=50))
+    assert running.lost_text() == ""
+
+
 def test_what_is_asked_is_answered_with_its_own_command(running, lane, qtbot):
     with qtbot.waitSignal(running.asked) as asked:
         lane.current.told.emit(LiveAsk("Switch the laser on.", "Continue", TakeReference()))

@@ -1,5 +1,6 @@
 """Controls of a live source, clicked."""
 
+from pathlib import Path
 from typing import cast
 
 import numpy as np
@@ -10,7 +11,18 @@ from PySide6.QtWidgets import QApplication, QLabel
 
 from core.acquire.source import SourceInfo
 from core.files.project import new_project
-from core.live.events import Auto, Capture, LiveAsk, LiveStarted, LiveUnplugged, LiveView, Pause, Resume, TakeReference
+from core.live.events import (
+    Auto,
+    Capture,
+    LiveAsk,
+    LiveEnded,
+    LiveStarted,
+    LiveUnplugged,
+    LiveView,
+    Pause,
+    Resume,
+    TakeReference,
+)
 from tests.workbench.hand_lane import HandLane
 from workbench import jobs
 from workbench.bench import Bench
@@ -90,7 +102,7 @@ def test_a_scan_takes_no_single_pictures(live, qtbot):
 
 
 def test_only_settings_the_kind_has_are_shown(panel, live):
-    assert panel.exposure.isHidden() and panel.rate.isHidden()
+    assert panel.exposure.isHidden() and not panel.rate.isHidden()
     panel.kind.setCurrentIndex(panel.kind.findData("opencv"))
     panel.kind.activated.emit(panel.kind.currentIndex())
     assert live.settings.kind == "opencv"
@@ -178,6 +190,25 @@ def test_the_strip_says_that_the_source_is_unplugged(live, lane, qtbot):
     open_source(lane)
     lane.current.told.emit(LiveUnplugged("gone"))
     assert not strip.isHidden() and "is unplugged" in strip.gone.text()
+
+
+def test_the_strip_says_while_it_runs_that_frames_are_lost_and_which_rate_will_do(live, qtbot):
+    scan = LivePresenter(live.bench, "scan")
+    strip = LiveStrip(scan)
+    qtbot.addWidget(strip)
+    lane = cast(HandLane, live.bench.live)
+    scan.start()
+    open_source(lane)
+    picture = np.zeros((4, 4), np.uint8)
+    lane.current.view.emit(LiveView(picture, 1, 9, 9.4, 99, 1, None))
+    assert strip.isHidden(), "one frame now and then does no harm"
+    lane.current.view.emit(LiveView(picture, 1, 12, 9.4, 90, 10, None))
+    assert not strip.isHidden() and strip._gone.isHidden()
+    assert strip.lost.text() == (
+        "10 of 100 pictures were lost on the way; 9.4 a second are taken: choose a rate of 9/s or lower."
+    )
+    lane.finish(LiveEnded(Path("nowhere"), 0, 0))
+    assert strip.isHidden()
 
 
 def test_everything_without_text_has_a_name(panel):
