@@ -1,0 +1,116 @@
+"""Renders and measures many scans side by side, keeping what each has shown: a campaign cut off goes on."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import tempfile
+import time
+from collections.abc import Iterable, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from itertools import groupby
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from core.errors import InputError
+from core.files.recording_set import open_set
+from core.inspect.sphere import fit_sphere
+from core.pipeline import Options, Workspace, gauge_step, scan_step
+from tests.accuracy.cases import Case, calibration_key
+from tests.accuracy.twin import Measured, measure
+
+Figures = dict[str, Any]
+
+PROCESSES = 2
+
+
+def run(cases: Sequence[Case], kept: Path, processes: int = PROCESSES) -> dict[str, Figures]:
+    """Figures of every case by its name; those found in the file `kept` (JSON lines) are not measured again."""
+    done = _read(kept)
+    waiting = [case for case in cases if case.name not in done]
+    batches = [list(batch) for _, batch in groupby(waiting, key=lambda case: calibration_key(case.scenario))]
+    kept.parent.mkdir(parents=True, exist_ok=True)
+    with ProcessPoolExecutor(processes, mp_context=get_context("spawn")) as pool, kept.open("a") as lines:
+        for finished in as_completed([pool.submit(_batch, batch) for batch in batches]):
+            for name, figures in finished.result():
+                done[name] = figures
+                lines.write(json.dumps({"name": name, **figures}) + "\n")
+                lines.flush()
+                print(name, json.dumps(figures), flush=True)
+    return {case.name: done[case.name] for case in cases}
+
+
+def _read(kept: Path) -> dict[str, Figures]:
+    if not kept.exists():
+        return {}
+    rows = [json.loads(line) for line in kept.read_text(encoding="utf-8").splitlines() if line]
+    return {row.pop("name"): row for row in rows}
+
+
+def _batch(cases: Iterable[Case]) -> list[tuple[str, Figures]]:
+    """Scans that share one calibration, in a folder that is gone afterwards."""
+    results: list[tuple[str, Figures]] = []
+    with tempfile.TemporaryDirectory(prefix="accuracy-") as folder:
+        first: Path | None = None
+        for number, case in enumerate(cases):
+            begun = time.perf_counter()
+            place = Path(folder) / str(number)
+            measured = measure(case.scenario, place, first)
+            figures = figures_of(measured)
+            if case.paper:
+                figures["paper"] = _paper(place, measured)
+            results.append((case.name, {**figures, "seconds": round(time.perf_counter() - begun, 1)}))
+            if first is None:
+                first = place
+                shutil.rmtree(place / "set" / "scan")
+            else:
+                shutil.rmtree(place)
+    return results
+
+
+def figures_of(measured: Measured) -> Figures:
+    """What one scan has shown, in mm, beside its truth."""
+    cloud, thing = measured.cloud, measured.truth.thing
+    errors = measured.depth_errors()
+    known = np.isfinite(errors)
+    on_thing = known & ~measured.truth.table[tuple(np.rint(cloud.uv[:, ::-1]).astype(int).T)]
+    stated = np.hypot(cloud.sigma, cloud.sigma_common)
+    figures: Figures = {
+        "points": len(cloud),
+        "median_depth": float(np.median(np.abs(errors[on_thing]))),
+        "within_2_sigma": float(np.mean(np.abs(errors[known]) <= 2 * stated[known])),
+        "within_2_own_sigma": float(np.mean(np.abs(errors[known]) <= 2 * cloud.sigma[known])),
+    }
+    if measured.gauge is not None:
+        figures["error"] = measured.gauge.thickness_mm - thing["thickness_mm"]
+        figures["u"] = measured.gauge.u_mm
+        figures["budget"] = {row.source: row.u_mm for row in measured.gauge.budget}
+    if thing["kind"] == "sphere":
+        fit = fit_sphere(cloud, errors=measured.errors)
+        figures["error"] = 2 * (fit.radius_mm - thing["radius_mm"])
+        figures["u"] = 2 * fit.u_mm
+        figures["form"] = fit.form_mm
+    return figures
+
+
+def _paper(place: Path, measured: Measured) -> Figures:
+    """The paper's procedure on the same pictures and calibration."""
+    shutil.copytree(place / "out", place / "paper")
+    work = Workspace.open(open_set(place / "set"), place / "paper")
+    try:
+        scan = scan_step(work, Options(method="three-crossings")).scan
+    except InputError as problem:
+        return {"why": str(problem)}
+    beside = Measured(measured.truth, measured.camera, scan.cloud, None, measured.errors)
+    errors = beside.depth_errors()
+    of_sweeps = np.isfinite(errors) & (scan.cloud.sweep >= 0)
+    figures: Figures = {"points": len(scan.cloud), "median_depth": float(np.median(np.abs(errors[of_sweeps])))}
+    if measured.gauge is not None:
+        try:
+            figures["error"] = gauge_step(work).thickness_mm - measured.truth.thing["thickness_mm"]
+        except InputError as problem:
+            figures["why"] = str(problem)
+    return figures

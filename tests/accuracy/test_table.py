@@ -1,0 +1,47 @@
+"""What the accuracy table says of given results."""
+
+from core.simulate.scenario import Scenario
+from tests.accuracy.cases import FULL, HEIGHTS, Case, cases
+from tests.accuracy.table import table
+
+SCANS = [Case("wide", Scenario(height_mm=height, scale=FULL), paper=height == 50.0) for height in HEIGHTS]
+
+
+def results(*errors, paper=None):
+    figures = [{"error": error, "u": 0.01, "within_2_sigma": 0.95, "median_depth": 0.01} for error in errors]
+    made = {scan.name: each for scan, each in zip(SCANS, figures, strict=True)}
+    made[SCANS[1].name]["paper"] = paper or {"why": "no faces"}
+    return made
+
+
+def line(lines, title):
+    (found,) = [each for each in lines if title in each]
+    return [cell.strip() for cell in found.strip("|").split("|")]
+
+
+def test_a_goal_that_is_kept_and_one_that_is_missed_are_told_apart():
+    lines = table(SCANS, results(0.02, -0.029, 0.0, 0.01))
+    assert line(lines, "largest thickness error")[-2:] == ["0.029 mm", "met"]
+    assert line(lines, "scatter")[-1] == "**missed**"
+
+
+def test_a_result_beyond_its_stated_uncertainty_counts_against_it():
+    lines = table(SCANS, results(0.021, 0.019, -0.019, 0.0))
+    assert line(lines, "≤ U")[-2:] == ["75.0%", "**missed**"]
+
+
+def test_what_the_papers_procedure_could_not_measure_is_said():
+    assert line(table(SCANS, results(0, 0, 0, 0)), "largest")[3] == "none in 1 scans"
+    told = line(table(SCANS, results(0, 0, 0, 0, paper={"error": -3.25})), "largest")[3]
+    assert told == "3.250 mm (1 of 1 scans)"
+
+
+def test_rows_without_scans_are_left_out():
+    assert not any("sphere" in each for each in table(SCANS, results(0, 0, 0, 0)))
+
+
+def test_every_scan_of_the_campaign_has_a_name_of_its_own_and_shares_its_calibration_with_its_neighbours():
+    chosen = cases(short=False)
+    assert len({case.name for case in chosen}) == len(chosen)
+    assert sum(case.group == "wide" and case.scenario.scale == FULL for case in chosen) == 20
+    assert sum(case.group == "replaced" for case in chosen) == 10
