@@ -13,10 +13,7 @@ test quick: export OMP_NUM_THREADS = 1
 # Windows are tested twice: without a screen, and on a virtual one with the real 3D view.
 SCREEN := $(shell command -v xvfb-run >/dev/null && echo 'xvfb-run -a -s "-screen 0 1920x1080x24"')
 
-# One after another: windows of two test processes on one screen would take the keyboard from each other.
-REAL_3D := $(wildcard tests/workbench/views/test_scene_view*.py) tests/workbench/test_whole_job.py
-
-.PHONY: demo app test quick check screenshots pictures wheel clean
+.PHONY: demo app test quick accuracy check screenshots pictures wheel clean
 
 demo: $(READY)            ## measure the embedded sample: cloud, mesh and report of a 50 mm gauge block in ./out
 	$(BIN)/trisect demo --out $(OUT)
@@ -26,11 +23,16 @@ app: $(READY)             ## open the workbench
 
 test: check               ## format, lint, types, rooms, and every test; windows offscreen and on a virtual screen
 	QT_QPA_PLATFORM=offscreen $(BIN)/pytest $(SIDE_BY_SIDE)
-	@if [ -n '$(SCREEN)' ]; then $(SCREEN) $(BIN)/pytest $(REAL_3D); \
-	else echo "xvfb-run is not installed: the windows were tested without a screen only"; fi
+	@if command -v Xvfb >/dev/null; then TRISECT_VIRTUAL_SCREEN=1 $(BIN)/pytest $(SIDE_BY_SIDE) tests/workbench; \
+	else echo "Xvfb is not installed: the windows were tested without a screen only"; fi
 
 quick: check              ## the same without the slow proofs
 	QT_QPA_PLATFORM=offscreen $(BIN)/pytest $(SIDE_BY_SIDE) -m "not slow"
+
+accuracy: export OPENBLAS_NUM_THREADS = 1
+accuracy: export OMP_NUM_THREADS = 1
+accuracy: $(READY)        ## measure the README's accuracy table anew: about 80 scans, an hour or more; goes on where it was cut off
+	$(BIN)/python -m tests.accuracy --readme
 
 screenshots: $(READY)     ## pictures of every page, both sizes, both themes, in ./screenshots
 	$(SCREEN) $(BIN)/python -m tests.workbench.screenshots screenshots

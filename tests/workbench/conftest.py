@@ -23,6 +23,7 @@ from PySide6.QtCore import QCoreApplication, QEvent, QTimer
 from PySide6.QtWidgets import QApplication, QWidget
 
 from tests.simulated import SMALL
+from tests.workbench import screen
 from tests.workbench.shared import made_once
 from tests.workbench.technician import Technician
 from workbench import jobs
@@ -37,6 +38,14 @@ from workbench.views import ask
 
 HANGS_AFTER_S = 180
 """A test that takes so long hangs: where every thread stands is told, and the test process ends."""
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """A screen of its own for every process that runs tests, if asked for; the one that hands them out needs none."""
+    runs_tests = hasattr(config, "workerinput") or config.getoption("dist", "no") == "no"
+    if os.environ.get(screen.WANTED) == "1" and runs_tests:
+        server = screen.open_screen()
+        config.add_cleanup(server.terminate)
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
@@ -210,4 +219,4 @@ def _children(listing: Path) -> Iterator[str]:
 
 
 def _is_known(line: str) -> bool:
-    return "multiprocessing" in line or "scene_view_probe" in line or "from execnet" in line
+    return any(known in line for known in ("multiprocessing", "scene_view_probe", "from execnet", "Xvfb"))

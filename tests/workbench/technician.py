@@ -157,14 +157,21 @@ class Technician:
 
     def type_in(self, editor: Any, text: str) -> None:
         """Replace what stands in an editor and leave it by Tab."""
+        self.activate()
         self.scroll_to(editor)
         editor.setFocus()
-        typed = QApplication.focusWidget()
-        assert typed is not None and (editor is typed or editor.isAncestorOf(typed)), f"{editor} takes no focus"
+        self.until(lambda: self._typing_in(editor) is not None, f"{editor} to take the focus")
+        typed = self._typing_in(editor)
         self.keys(typed, "a", Qt.KeyboardModifier.ControlModifier)
         self._qtbot.keyClicks(typed, text)
         self._qtbot.keyClick(typed, Qt.Key.Key_Tab)
         QApplication.processEvents()
+
+    @staticmethod
+    def _typing_in(editor: QWidget) -> QWidget | None:
+        """The widget of an editor that has the focus."""
+        typed = QApplication.focusWidget()
+        return typed if typed is not None and (editor is typed or editor.isAncestorOf(typed)) else None
 
     def write(self, text: str) -> None:
         """Type where the cursor is."""
