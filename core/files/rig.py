@@ -16,7 +16,7 @@ from pydantic import ValidationError
 from core.acquire.grey import Channel
 from core.errors import InputError
 from core.files.complaints import complaint
-from core.files.rig_tables import GaugeTable, RigTables, TargetTable
+from core.files.rig_tables import GaugeTable, PlannedRigTables, RigTables, TargetTable
 from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid, Target
 from core.model.arrays import Array, frozen_array, set_field
 
@@ -76,8 +76,31 @@ def read_rig(path: Path) -> Rig:
         If it is missing, is no TOML, has an unknown key, lacks one, or a value has the wrong type or is absurd.
         The sentence names the file, the field and what is allowed.
     """
+    tables = _toml(path)
     try:
-        tables = tomllib.loads(path.read_text(encoding="utf-8"))
+        rig = RigTables.model_validate(tables)
+    except ValidationError as error:
+        raise complaint(path, error, RigTables) from error
+    return rig_of(rig, path)
+
+
+def read_planned_rig(path: Path) -> PlannedRigTables:
+    """Read and check the rig.toml of a rig that is only planned; its tables as they are, those not there None.
+
+    Raises
+    ------
+    InputError
+        As `read_rig`, but no table need be there.
+    """
+    try:
+        return PlannedRigTables.model_validate(_toml(path))
+    except ValidationError as error:
+        raise complaint(path, error, PlannedRigTables) from error
+
+
+def _toml(path: Path) -> dict[str, Any]:
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
     except FileNotFoundError as error:
         raise InputError(
             "the file is missing; it says what the targets and the laser are",
@@ -88,11 +111,6 @@ def read_rig(path: Path) -> Rig:
         raise InputError(f"cannot be read as UTF-8 text ({error})", where=path) from error
     except tomllib.TOMLDecodeError as error:
         raise InputError(f"this is no valid TOML: {error}", where=path) from error
-    try:
-        rig = RigTables.model_validate(tables)
-    except ValidationError as error:
-        raise complaint(path, error, RigTables) from error
-    return rig_of(rig, path)
 
 
 def rig_of(tables: RigTables, path: Path, within: str = "") -> Rig:

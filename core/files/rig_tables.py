@@ -108,6 +108,46 @@ class GaugeTable(Table):
         return self
 
 
+_Above = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+_A_NUMBER = "a number above 0"
+_NOT_NEGATIVE = "a number not below 0"
+_Count1 = Annotated[int, Field(ge=1)]
+_A_COUNT = "a whole number above 0"
+
+
+class PlanTable(Table):
+    """[plan]: what `trisect plan` wants to know of a rig that is not built yet; other commands pass it by."""
+
+    pixels: list[_Count1] | None = Field(
+        None, min_length=2, max_length=2, description="two whole numbers, [width, height] of the pictures"
+    )
+    pixel_um: _Above | None = Field(None, description="the side of a pixel in µm, above 0")
+    focal_mm: _Above | None = Field(None, description="a focal length in mm above 0")
+    focal_px: _Above | None = Field(None, description="a focal length in pixels above 0")
+    distance_mm: _Length | None = Field(None, description=_A_LENGTH)
+    baseline_mm: _Length | None = Field(None, description=_A_LENGTH)
+    hand_baseline_mm: _Length | None = Field(None, description=_A_LENGTH)
+    heights_mm: list[_Length] | None = Field(None, min_length=1, max_length=20, description="a list of lengths in mm")
+    block_mm: list[_Length] | None = Field(
+        None, min_length=2, max_length=2, description="two lengths in mm, [along, across] of the blocks"
+    )
+    views: _Count1 | None = Field(None, description=_A_COUNT)
+    poses: _Count1 | None = Field(None, description=_A_COUNT)
+    sweeps: _Count1 | None = Field(None, description=_A_COUNT)
+    speckle: float | None = Field(None, ge=0, allow_inf_nan=False, description="a contrast not below 0")
+    stripe_grey: _Above | None = Field(None, description=_A_NUMBER)
+    stripe_sigma_mm: _Length | None = Field(None, description=_A_LENGTH)
+    electrons_per_grey: _Above | None = Field(None, description=_A_NUMBER)
+    read_noise_grey: float | None = Field(None, ge=0, allow_inf_nan=False, description=_NOT_NEGATIVE)
+    ambient_grey: float | None = Field(None, ge=0, allow_inf_nan=False, description=_NOT_NEGATIVE)
+
+    @model_validator(mode="after")
+    def _one_focal_length(self) -> PlanTable:
+        if self.focal_mm is not None and self.focal_px is not None:
+            raise Clash("focal_px", "is one focal length too many; give focal_mm or focal_px")
+        return self
+
+
 class RigTables(Table):
     """What rig.toml holds, and project.json under "rig"."""
 
@@ -116,3 +156,15 @@ class RigTables(Table):
     laser_fan: _LaserFan = Field(description="a table [laser_fan] with lines and angle_deg")
     gauge: GaugeTable | None = Field(None, description="a table [gauge]")
     channel: Literal["red", "green", "blue"] | None = Field(None, description='"red", "green" or "blue"')
+    plan: PlanTable | None = Field(None, description="a table [plan]")
+
+
+class PlannedRigTables(Table):
+    """The same of a rig that is only planned: nothing need be said, and then it is the paper's."""
+
+    camera_target: _CameraTarget | None = Field(None, description="a table [camera_target] with kind and sizes")
+    plane_target: TargetTable | None = Field(None, description="a table [plane_target] with kind and sizes")
+    laser_fan: _LaserFan | None = Field(None, description="a table [laser_fan] with lines and angle_deg")
+    gauge: GaugeTable | None = Field(None, description="a table [gauge]")
+    channel: Literal["red", "green", "blue"] | None = Field(None, description='"red", "green" or "blue"')
+    plan: PlanTable | None = Field(None, description="a table [plan]")

@@ -1,0 +1,168 @@
+"""The calibrations a plan will give: views and poses of the plates held as in the twin, solved by the real solvers."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.calibrate.camera import calibrate_camera
+from core.calibrate.fan import FanOptions, fit_fan
+from core.calibrate.pose_features import PoseFeatures
+from core.calibrate.results import CameraCalibration, FanCalibration
+from core.errors import InputError
+from core.image.centreline import Centreline
+from core.image.target_view import TargetView
+from core.image.targets import BlackSquare, Target
+from core.model import Camera, Pose
+from core.model.arrays import Array
+from core.plan.design import Design
+from core.plan.light_lines import FlatFace, LitLine, lit_lines, runs
+from core.plan.seen_stripes import SeenStripes
+from core.progress import Progress, silent
+from core.simulate.boards import WHITE, printed
+from core.simulate.calibration import PLANE_GREY
+from core.simulate.image import generator
+from core.simulate.laser import fan_sheets
+from core.simulate.patterns import Pattern
+from core.simulate.poses import camera_poses, plane_poses
+from core.simulate.stage import TABLE_DEPTH_MM
+from core.simulate.targets import fan_centres, room_shade
+
+CORNER_PX = 0.020
+"""Error in pixels per coordinate of a target's points: what the detectors leave on the twin's pictures, whatever their
+resolution."""
+EDGE_PX = 0.10
+"""Error in pixels of one pixel's length of a black square's edge; a straight line through the edge averages it."""
+STATED = 1.1
+"""What the detectors state is larger by this factor."""
+NEAREST_VIEW, NEAREST_POSE, FARTHEST_POSE = 450.0 / TABLE_DEPTH_MM, 430.0 / TABLE_DEPTH_MM, 620.0 / TABLE_DEPTH_MM
+"""Where the plates are held, over the distance of the table."""
+EDGE_IN_WIDTHS = 3.0
+"""Points nearer to an edge of the plate's print than this many σ of the stripe are left out, as the real ones are."""
+DARK = 0.4
+"""Darker print than this share of white carries no stripe of use."""
+
+
+def plan_camera(design: Design, seed: int, progress: Progress = silent) -> CameraCalibration:
+    """The camera's calibration from the planned number of views.
+
+    Raises
+    ------
+    InputError
+        If the target does not fit into the picture, or the views do not determine the camera.
+    """
+    camera, target = design.camera(), design.camera_target
+    rng = generator(seed, "camera poses")
+    nearest = NEAREST_VIEW * design.distance_mm
+    try:
+        poses = camera_poses(camera, printed(target).outline, design.views, rng, nearest_mm=nearest)
+    except ValueError as error:
+        raise InputError(
+            "the target does not fit into the picture at any distance up to three times the table's, so the camera "
+            "could not be calibrated",
+            where="[camera_target]",
+            todo="plan a smaller target, a shorter focal_mm or more pixels",
+        ) from error
+    noise = generator(seed, "corner noise")
+    views = [_view(f"view{i:02d}", camera, pose, target, noise) for i, pose in enumerate(poses)]
+    return calibrate_camera(views, camera.image_size, progress=progress)
+
+
+def plan_fan(design: Design, camera: Camera, seed: int, progress: Progress = silent) -> FanCalibration:
+    """The fan's calibration from the planned number of poses, solved with the calibrated `camera`.
+
+    Raises
+    ------
+    InputError
+        If the fan meets the target in too few poses to be calibrated.
+    """
+    rig, true, target = design.rig(), design.camera(), design.plane_target
+    plate = printed(target)
+    near, far = NEAREST_POSE * design.distance_mm, FARTHEST_POSE * design.distance_mm
+    poses = plane_poses(fan_centres(rig, design.poses, near, far), plate.outline, generator(seed, "plane poses"))
+    stripes = SeenStripes.of_plates(design)
+    lines = [
+        [
+            piece
+            for sheet in fan_sheets(rig, pose.translation)
+            for piece in _on_plate(
+                lit_lines(sheet, (_face(plate, pose),), np.empty((0, 3, 3)), true, rig.blur_px, stripes.filter_px),
+                plate,
+                pose,
+            )
+        ]
+        for pose in poses
+    ]
+    background = WHITE * float(np.mean([room_shade(pose, PLANE_GREY) for pose in poses]))
+    stripes = stripes.tried([piece for pieces in lines for piece in pieces], background)
+    noise = generator(seed, "plate noise")
+    features = []
+    for number, (pose, pieces) in enumerate(zip(poses, lines, strict=True)):
+        view = _view(f"pose{number:02d}", true, pose, target, noise)
+        centrelines = tuple(stripes.centreline(piece, noise) for piece in pieces)
+        features.append(_features(view, centrelines, true))
+    options = FanOptions(design.lines, np.radians(design.angle_deg) if design.lines > 1 else None)
+    return fit_fan(features, camera, options, progress)
+
+
+def _features(view: TargetView, centrelines: tuple[Centreline, ...], camera: Camera) -> PoseFeatures:
+    inside = ((view.uv > 0) & (view.uv < np.array(camera.image_size) - 1)).all()
+    if not inside:
+        return PoseFeatures(view.name, None, (), "the target would not be wholly in the picture")
+    return PoseFeatures(view.name, view, centrelines, "" if centrelines else "no stripe would fall on the target")
+
+
+def _view(name: str, camera: Camera, pose: Pose, target: Target, rng: np.random.Generator) -> TargetView:
+    """What the detector would find of a target; what it states is a little more than the errors drawn."""
+    uv = camera.project_pose(pose, target.points)
+    if isinstance(target, BlackSquare):
+        covariance = _square_covariance(uv)
+        error = (np.linalg.cholesky(covariance) @ rng.standard_normal(2 * len(uv))).reshape(-1, 2)
+        sigma = STATED * np.sqrt(np.diag(covariance).reshape(-1, 2).mean(axis=1))
+        return TargetView(target.points, uv + error, sigma, name, STATED**2 * covariance)
+    found = uv + CORNER_PX * rng.standard_normal(uv.shape)
+    return TargetView(target.points, found, np.full(len(uv), STATED * CORNER_PX), name)
+
+
+def _square_covariance(uv: Array) -> Array:
+    """(8, 8) of a square's corners `uv` (4, 2) in order round it, each where two straight edges meet.
+
+    A line fitted to n points of standard deviation s has variance 4 s²/n at its ends, and −2 s²/n between them.
+    """
+    following = np.roll(uv, -1, axis=0)
+    length = np.linalg.norm(following - uv, axis=1)
+    normals = np.column_stack([uv[:, 1] - following[:, 1], following[:, 0] - uv[:, 0]]) / length[:, None]
+    ends = np.zeros((8, 8))  # of edge k: its start in row 2k, its end in row 2k + 1
+    by_ends = np.zeros((8, 8))
+    for k in range(4):
+        ends[2 * k : 2 * k + 2, 2 * k : 2 * k + 2] = EDGE_PX**2 / length[k] * np.array([[4.0, -2.0], [-2.0, 4.0]])
+        meeting = np.linalg.inv(normals[[k - 1, k]])
+        by_ends[2 * k : 2 * k + 2, [2 * ((k - 1) % 4) + 1, 2 * k]] = meeting
+    return np.asarray(by_ends @ ends @ by_ends.T, dtype=np.float64)
+
+
+def _face(plate: Pattern, pose: Pose) -> FlatFace:
+    return FlatFace(pose.apply(plate.outline), -pose.rotation[:, 2], WHITE)
+
+
+def _on_plate(lines: tuple[LitLine, ...], plate: Pattern, pose: Pose) -> list[LitLine]:
+    """The stretches of stripes on the light parts of a printed plate."""
+    kept = []
+    for line in lines:
+        margin = int(np.ceil(EDGE_IN_WIDTHS * float(np.median(line.width))))
+        for first, last in runs(_light(plate, pose.inverse().apply(line.points)[:, :2])):
+            start, end = first + margin * (first > 0), last - margin * (last < len(line))
+            if end - start > 2 * margin:
+                kept.append(line.select(slice(start, end)))
+    return kept
+
+
+def _light(plate: Pattern, xy: Array) -> NDArray[np.bool_]:
+    """Whether the plate's print is light at places (N, 2) in mm on it."""
+    column = np.clip(np.searchsorted(plate.x_edges, xy[:, 0]) - 1, 0, plate.albedo.shape[1] - 1)
+    row = np.clip(np.searchsorted(plate.y_edges, xy[:, 1]) - 1, 0, plate.albedo.shape[0] - 1)
+    light = plate.albedo[row, column] > DARK * WHITE
+    if plate.dots is not None:
+        for dot in plate.dots:
+            light &= np.hypot(*(xy - dot).T) > plate.dot_radius
+    return np.asarray(light, dtype=np.bool_)

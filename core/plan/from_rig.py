@@ -1,0 +1,56 @@
+"""The plan that a rig.toml describes: its usual tables, and [plan]; what is not said is as in the paper's rig."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from core.errors import InputError
+from core.files.rig import read_planned_rig
+from core.files.rig_tables import PlannedRigTables, TargetTable
+from core.image.targets import Target
+from core.plan.design import PAPER_PIXEL_UM, Design
+
+
+def read_design(path: Path) -> Design:
+    """The design in the rig.toml at `path`, or in the recording set that holds it.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read, has an unknown key, or a quantity is impossible.
+    """
+    file = path / "rig.toml" if path.is_dir() else path
+    tables = read_planned_rig(file)
+    try:
+        design = Design(**_quantities(tables, file))
+        design.rig()  # what only camera, fan and work together can tell
+    except InputError as error:
+        raise InputError(error.what, where=f"{file}: {error.where}", todo=error.todo) from error
+    return design
+
+
+def _quantities(tables: PlannedRigTables, path: Path) -> dict[str, Any]:
+    given: dict[str, Any] = {} if tables.plan is None else tables.plan.model_dump(exclude_none=True)
+    if "focal_px" in given:
+        given["focal_mm"] = given.pop("focal_px") * given.get("pixel_um", PAPER_PIXEL_UM) * 1e-3
+    for name in ("pixels", "block_mm", "heights_mm"):
+        if name in given:
+            given[name] = tuple(given[name])
+    if "heights_mm" not in given and tables.gauge is not None and tables.gauge.nominal_mm is not None:
+        given["heights_mm"] = (tables.gauge.nominal_mm,)
+    if tables.laser_fan is not None:
+        given["lines"] = tables.laser_fan.lines
+        if tables.laser_fan.angle_deg is not None:
+            given["angle_deg"] = tables.laser_fan.angle_deg
+    for name, table in (("camera_target", tables.camera_target), ("plane_target", tables.plane_target)):
+        if table is not None:
+            given[name] = _target(table, name, path)
+    return given
+
+
+def _target(table: TargetTable, name: str, path: Path) -> Target:
+    try:
+        return table.target()
+    except ValueError as error:
+        raise InputError(f"{name}: {error}", where=path) from error

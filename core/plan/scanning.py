@@ -1,0 +1,103 @@
+"""The scan a plan will give: the stripes of all sweeps on a block, as features for the real solver."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+
+from core.errors import InputError
+from core.image.centreline import Centreline
+from core.image.stripe import WIDTH_IN_SIGMA, StripeSettings
+from core.model import Camera
+from core.plan.design import Design
+from core.plan.light_lines import FlatFace, LitLine, faces_of, lit_lines
+from core.plan.seen_stripes import SeenStripes
+from core.progress import Progress, silent, steps
+from core.scan.crossings import CrossingWindow
+from core.scan.features import NO_STRIPE, FrameFeatures, ScanFeatures, gather
+from core.simulate.image import generator
+from core.simulate.laser import Sheet, fan_sheets
+from core.simulate.rig import Rig
+from core.simulate.scan import LAMP
+
+_FAINT = 0.2  # quantile of the heights along all stripes that counts as their contrast
+
+
+def plan_scan(design: Design, height_mm: float, seed: int, progress: Progress = silent) -> ScanFeatures:
+    """What the pictures of a scan of a block of `height_mm` will show; `seed` draws hand and noise.
+
+    Raises
+    ------
+    InputError
+        If the camera would see no stripe of the fan or of the hand-held laser.
+    """
+    stage = _Stage(design, height_mm)
+    fan_lines = stage.lines(fan_sheets(stage.rig, design.work_point), SeenStripes.of_fan(design))
+    sheets = design.sweeps_over(stage.scene, seed)
+    hand = SeenStripes.of_hand(design)
+    sweep_lines = [stage.lines([sheet], hand) for sheet in steps(sheets, progress, "stripes", len(sheets))]
+    every = [line for lines in sweep_lines for line in lines]
+    _require(fan_lines, "the fan", "check baseline_mm, distance_mm and focal_mm")
+    _require(every, "the hand-held laser", "check hand_baseline_mm, distance_mm and focal_mm")
+    background = stage.background_grey()
+    fan_seen = SeenStripes.of_fan(design).tried(fan_lines, background)
+    hand = hand.tried(every, background)
+    noise = generator(seed, "scan noise")
+    fan = _longest_first(fan_seen.centreline(line, noise) for line in fan_lines)
+    frames = [_longest_first(hand.centreline(line, noise) for line in lines) for lines in sweep_lines]
+    return gather(
+        stage.camera.image_size,
+        fan,
+        [
+            FrameFeatures(index, f"sweep {index + 1}", pieces, "" if pieces else NO_STRIPE)
+            for index, pieces in enumerate(frames)
+        ],
+        (_settings(fan_lines), _settings(every)),
+        CrossingWindow(),
+        progress,
+    )
+
+
+class _Stage:
+    """A block under the rig, its flat faces listed once."""
+
+    def __init__(self, design: Design, height_mm: float) -> None:
+        self.rig: Rig = design.rig()
+        self.camera: Camera = self.rig.camera
+        self.scene = design.scene(height_mm)
+        self._ambient = design.ambient_grey
+        self._faces: tuple[FlatFace, ...] = faces_of(self.scene, design.table(), 2 * design.distance_mm)
+
+    def lines(self, sheets: Sequence[Sheet], seen: SeenStripes) -> list[LitLine]:
+        """The stripes of some sheets of light."""
+        return [
+            line
+            for sheet in sheets
+            for line in lit_lines(
+                sheet, self._faces, self.scene.occluders, self.camera, self.rig.blur_px, seen.filter_px
+            )
+        ]
+
+    def background_grey(self) -> float:
+        """The room's light on table and block, in the mean."""
+        lamp = LAMP / np.linalg.norm(LAMP)
+        table, *others = self._faces
+        top = min(others, key=lambda face: float(face.corners[:, 2].mean()))
+        facing = [max(float(face.normal @ lamp), 0.0) * 0.6 + 0.4 for face in (table, top)]
+        return self._ambient * float(np.mean([table.albedo * facing[0], top.albedo * facing[1]]))
+
+
+def _longest_first(pieces: Iterable[Centreline]) -> tuple[Centreline, ...]:
+    return tuple(sorted(pieces, key=len, reverse=True))
+
+
+def _settings(lines: Sequence[LitLine]) -> StripeSettings:
+    width = float(np.median(np.concatenate([line.width for line in lines])))
+    height = float(np.quantile(np.concatenate([line.height for line in lines]), _FAINT))
+    return StripeSettings(WIDTH_IN_SIGMA * width, height)
+
+
+def _require(lines: Sequence[LitLine], what: str, todo: str) -> None:
+    if not lines:
+        raise InputError(f"the camera would see no stripe of {what} on table and block", where="[plan]", todo=todo)
