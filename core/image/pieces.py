@@ -1,4 +1,4 @@
-"""From runs of line points to pieces on one smooth surface: ends cut, kinks and jumps split, curvature.
+"""From runs of line points to pieces on one smooth surface: ends cut, kinks and jumps split.
 
 Everything here works on the order of the points along the stripe; the picture is not looked at again.
 """
@@ -24,7 +24,7 @@ _BREAK_ARM = 8.0  # filter σ looked at on either side
 _SIGNIFICANT = 6.0  # standard uncertainties
 _SMALLEST_JUMP = 0.3  # px
 _SMALLEST_KINK = 0.06  # rad
-_NEIGHBOUR = 3.5
+NEIGHBOUR = 3.5
 """Lines nearer than this many filtered widths √(s² + g²) pull each other by more than 0.003 px."""
 
 
@@ -154,55 +154,12 @@ def _break_scores(
     return score, misfit
 
 
-@njit(cache=True, nogil=True)
-def curvature(run: Array, arc: Array, arm: float) -> Array:
-    """Signed curvature (N,) in 1/px of a run (N, ≥ 4), positive towards its normals, from a parabola over ±`arm`."""
-    count = len(run)
-    result = np.zeros(count)
-    left, right = 0, 0
-    for i in range(count):
-        middle = min(max(arc[i], arc[0] + arm), arc[-1] - arm)  # a whole window also at the ends
-        while arc[left] < middle - arm:
-            left += 1
-        while right + 1 < count and arc[right + 1] <= middle + arm:
-            right += 1
-        if right - left < 4:
-            continue
-        tu, tv = run[right, 0] - run[left, 0], run[right, 1] - run[left, 1]
-        length = math.hypot(tu, tv)
-        if length == 0.0:
-            continue
-        tu, tv = tu / length, tv / length
-        used = right - left + 1
-        moments = np.zeros(5)
-        values = np.zeros(3)
-        for k in range(left, right + 1):
-            du, dv = run[k, 0] - run[left, 0], run[k, 1] - run[left, 1]
-            x, y = (du * tu + dv * tv) / length - 0.5, dv * tu - du * tv
-            power = 1.0
-            for a in range(5):
-                moments[a] += power
-                if a < 3:
-                    values[a] += power * y
-                power *= x
-        normal = np.empty((3, 3))
-        for a in range(3):
-            for b in range(3):
-                normal[a, b] = moments[a + b]
-        if used < 5 or abs(np.linalg.det(normal)) < 1e-12:
-            continue
-        bend = 2 * np.linalg.solve(normal, values)[2] / (length * length)
-        result[i] = bend if run[i, 2] * -tv + run[i, 3] * tu > 0 else -bend
-    return result
-
-
-def beside_another(runs: list[Array], filtered_width: float) -> list[NDArray[np.bool_]]:
-    """For each run, which points lie so close beside or across another run that it pulls them.
+def beside_another(runs: list[Array], reach: float) -> list[Array]:
+    """For each run, how far in px each point is from another run beside or across it; infinite beyond `reach`.
 
     Another run that goes on where this one ends (ahead of it, not beside it) does not count.
     """
-    flags = [np.zeros(len(run), dtype=bool) for run in runs]
-    reach = _NEIGHBOUR * filtered_width
+    apart_px = [np.full(len(run), np.inf) for run in runs]
     boxes = [(run[:, :2].min(axis=0) - reach, run[:, :2].max(axis=0) + reach) for run in runs]
     trees: dict[int, cKDTree] = {}
     for i, run in enumerate(runs):
@@ -215,5 +172,6 @@ def beside_another(runs: list[Array], filtered_width: float) -> list[NDArray[np.
             apart = other[np.asarray(nearest)[near], :2] - run[near, :2]
             across = np.abs(np.sum(apart * run[near, 2:4], axis=1))
             along = np.abs(apart[:, 1] * run[near, 2] - apart[:, 0] * run[near, 3])
-            flags[i][near[across > along]] = True
-    return flags
+            beside = near[across > along]
+            apart_px[i][beside] = np.minimum(apart_px[i][beside], np.asarray(distance)[beside])
+    return apart_px

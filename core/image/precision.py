@@ -23,7 +23,7 @@ from core.image.profile import Profiles
 from core.image.ridge import ridge_response
 from core.model.arrays import Array
 
-_FLOOR_PX = 0.002
+FLOOR_PX = 0.002
 """What is left of all biases on a clean stripe."""
 _THIRD_DIFFERENCE = np.array([1.0, -3.0, 3.0, -1.0])
 _SATURATED_SHARE = 0.01
@@ -43,7 +43,7 @@ def noise_sigma(profiles: Profiles, noise: NoiseModel, filter_px: float) -> Arra
     slope_variance = (noise.variance(profiles.background) + shot) / (8 * math.pi * filter_px**4)
     bend = height * width / (width**2 + filter_px**2) ** 1.5
     sigma: Array = np.minimum(np.sqrt(slope_variance) / bend, 1.0)
-    return np.hypot(sigma, _FLOOR_PX)
+    return np.hypot(sigma, FLOOR_PX)
 
 
 def roughness(lines: list[tuple[Array, Array]], correlation: float) -> list[float]:

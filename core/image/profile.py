@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -30,6 +31,7 @@ _REACH = 3.2
 _PIXEL_VARIANCE = 1 / 12
 """What integrating over a pixel adds to the variance of a cross-section."""
 _UNKNOWNS = 5
+_LONG_STRETCH = 20.0  # filter σ
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -47,6 +49,29 @@ class Profiles:
         return Profiles(
             self.height[part], self.background[part], self.slope[part], self.slope_sigma[part], self.width[part]
         )
+
+
+class Sections(NamedTuple):
+    """The model of a stripe's light at every point, (N,) each: height and σ as pixels blur them, background, slope."""
+
+    height: Array
+    width: Array
+    background: Array
+    slope: Array
+
+
+def smooth_sections(profiles: Profiles, filter_px: float) -> Sections:
+    """Medians of the cross-sections along the stripe, over many grains of speckle, blurred by the pixel."""
+    stride = max(1, round(filter_px))
+    at = np.unique(np.append(np.arange(0, len(profiles.height), stride), len(profiles.height) - 1))
+    every = np.arange(len(profiles.height))
+    length = 2 * round(_LONG_STRETCH / 2 * filter_px / stride) + 1
+    height, background, width = (
+        np.interp(every, at, median_filter(values[at], length, mode="nearest"))
+        for values in (profiles.height, profiles.background, profiles.width)
+    )
+    blurred = np.sqrt(width**2 + _PIXEL_VARIANCE)
+    return Sections(height * width / blurred, blurred, background, profiles.slope)
 
 
 def measure_profiles(
@@ -68,7 +93,7 @@ def measure_profiles(
     height, background, slope, width = (median_filter(fits[good, k], 5, mode="nearest") for k in range(4))
     freed = np.sqrt(np.maximum(width**2 - _PIXEL_VARIANCE, 0.04))  # the pixel lowers what it widens
     # the slope moves the point itself, so it must be far less noisy than a point: average it over a long stretch
-    long = max(3, 2 * round(10 * filter_px / stride) + 1)
+    long = max(3, 2 * round(_LONG_STRETCH / 2 * filter_px / stride) + 1)
     slope, slope_sigma = _running_mean(fits[good, 2], long)
     return Profiles(
         np.interp(arc, where, height * width / freed),
@@ -148,7 +173,9 @@ def _fit(section: Array, stripe_px: float) -> Array:
             low, high = min(low, section[2, k]), max(high, section[2, k])
             left += section[1, k] < -0.25 * stripe_px
             right_side += section[1, k] > 0.25 * stripe_px
-    if min(left, right_side) < _UNKNOWNS or high <= low:  # both flanks are needed, the top may be saturated
+    if (
+        min(left, right_side) < 3 or left + right_side <= _UNKNOWNS or high <= low
+    ):  # both flanks are needed, the top may be saturated
         return failed
     x = np.array([low, 0.0, high - low, 0.0, stripe_px])  # background, slope, height, centre, width
     for _ in range(8):

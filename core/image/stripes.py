@@ -1,22 +1,27 @@
 """Stripe extraction: the sub-pixel centrelines of all stripes of light in one picture.
 
-Steger's detector, with what measuring needs on top of it: points at any sub-pixel place (no phase bias), pieces that
-end at kinks, jumps and depth edges, curvature and background corrections, and an honest standard uncertainty.
+Steger's detector finds them; the likelihood of every pixel of their cross-sections then says where they are. With that
+goes what measuring needs: points at any sub-pixel place, pieces that end at kinks, jumps and depth edges, and an honest
+standard uncertainty.
 
 =================================  ==========================================================================
 what pulls a point                 what is done about it
 =================================  ==========================================================================
-pixel phase                        the point is looked at again from its own place (`core.image.ridge`)
-curvature, radius R                (g² + 1/12)/(2R) towards the centre is taken off
-background slope b                 b·(s² + g²)^1.5/(A·s) is taken off where b is significant
+noise, speckle                     pixels are weighted by both (`core.image.influence`), the speckle measured on
+                                   the stripe itself (`core.image.speckle`): 1.04 of the Cramér–Rao bound
+pixel phase                        the model is compared with each pixel where it is: below 0.001 px
+curvature, radius R                distances are measured from the stripe's own curve (`core.image.guide`): below
+                                   0.003 px for R > 40 s
+background slope                   the weights do not see a slope: below 0.001 px for 0.1 grey/px
 end of a stripe, kink, jump        4 px (2.5 g) and 2 g are left out; a piece never crosses them
-neighbour, crossing line           points nearer than 3.5·√(s² + g²) are left out
-border of the picture              points nearer than 4 g are never found
-saturation                         flagged; stay in place
+neighbour, crossing line           points nearer than 3.5·√(s² + g²) are left out, nearer than 8.1 s they stay
+                                   Steger's, freed of the pull of curvature and background
+border of the picture              points nearer than 4 g are never found; cuts that leave the picture are not used
+saturation                         height and place from the pixels left: below 0.003 px; flagged
 =================================  ==========================================================================
 
-Here s is the stripe's σ, g the filter's, A the stripe's height. The noise of neighbouring points is correlated over
-2√π·g px (`correlation_length_px`): a mean over L px of stripe has σ·√(2√π·g/L), not σ/√L.
+Here s is the stripe's σ, g the filter's. The noise of neighbouring points is correlated over a little more than 2√π·g px
+(`Centreline.correlation_px`): a mean over L px of stripe has σ·√(correlation/L), not σ/√L.
 
 References
 ----------
@@ -32,19 +37,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.image.centreline import Centreline
+from core.image.guide import guide
+from core.image.influence import REACH
+from core.image.likelihood import Refined, refine, residuals
 from core.image.linking import IGNORED, SATURATED, Hysteresis, link
 from core.image.noise import NoiseModel
 from core.image.pieces import (
+    NEIGHBOUR,
     arc_length,
     beside_another,
     correlation_length,
-    curvature,
     cut_ends,
     fully_lit,
     split_at_breaks,
 )
-from core.image.precision import noise_sigma, response_noise, roughness, saturated_points
-from core.image.profile import Profiles, measure_profiles
+from core.image.precision import FLOOR_PX, noise_sigma, response_noise, roughness, saturated_points
+from core.image.profile import Profiles, Sections, measure_profiles, smooth_sections
+from core.image.speckle import Speckle, measure_speckle
 from core.image.stripe import StripeSettings
 from core.image.stripe_settings import choose_settings
 from core.model.arrays import Array
@@ -53,7 +62,8 @@ __all__ = ["StripeSettings", "choose_settings", "correlation_length_px", "extrac
 
 _HIGH, _LOW = 0.35, 0.12  # of the contrast: a run starts, a run goes on
 _HIGH_NOISE, _LOW_NOISE = 6.0, 3.0  # of the response's own noise, at least
-_CURVATURE_ARM = 6.0  # filter σ on either side
+_OTHER_TAIL = 3.6  # stripe σ that a neighbour's light reaches
+_CUTS_FOR_SPECKLE = 4000  # more tell nothing new
 _SHORTEST_PIECE = 7.0  # filter σ: two independent points
 
 
@@ -91,7 +101,6 @@ def extract_centrelines(
         If the picture is not a 2-D float32 array or a mask has another shape.
     """
     state = _state_map(picture, saturated, ignore)
-    correlation = correlation_length_px(settings)
     runs = link(picture, state, settings.stripe_px, settings.filter_px, _limits(settings, noise, saturated is not None))
     shortest = _SHORTEST_PIECE * settings.filter_px
     pieces = [
@@ -100,22 +109,28 @@ def extract_centrelines(
         for piece in _smooth_pieces(picture, state, run, settings, noise)
         if len(piece.run) >= shortest
     ]
-    crowded = beside_another([piece.run for piece in pieces], float(np.hypot(settings.stripe_px, settings.filter_px)))
-    pieces = [_corrected(piece, settings) for piece in pieces]
-    sigmas = [noise_sigma(piece.profiles, noise, settings.filter_px) for piece in pieces]
-    excess = roughness([piece.judged(s) for piece, s in zip(pieces, sigmas, strict=True)], correlation)
+    pulled = NEIGHBOUR * float(np.hypot(settings.stripe_px, settings.filter_px))
+    blended = (REACH + _OTHER_TAIL) * settings.stripe_px
+    apart = beside_another([piece.run for piece in pieces], max(pulled, blended))
+    speckle = _speckle(picture, state, pieces, settings)
+    placed = [
+        _placed(picture, state, piece, near > blended, settings, noise, speckle)
+        for piece, near in zip(pieces, apart, strict=True)
+    ]
+    correlation = max([line.correlation_px for line in placed], default=correlation_length_px(settings))
+    excess = roughness([p.judged(line.run, line.sigma) for p, line in zip(pieces, placed, strict=True)], correlation)
     found = [
         Centreline(
-            piece.run[:, :2],
-            piece.run[:, 2:4],
+            line.run[:, :2],
+            line.run[:, 2:4],
             piece.profiles.width,
             piece.profiles.height,
-            np.hypot(sigma, extra),
+            np.hypot(line.sigma, extra),
             piece.saturated,
-            correlation,
-        ).select(~near)
-        for piece, sigma, extra, near in zip(pieces, sigmas, excess, crowded, strict=True)
-        if np.count_nonzero(~near) >= shortest
+            line.correlation_px,
+        ).select(near > pulled)
+        for piece, line, extra, near in zip(pieces, placed, excess, apart, strict=True)
+        if np.count_nonzero(near > pulled) >= shortest
     ]
     return tuple(sorted(found, key=len, reverse=True))
 
@@ -128,14 +143,27 @@ class _Piece:
     profiles: Profiles
     saturated: NDArray[np.bool_]
 
+    def select(self, part: slice) -> _Piece:
+        """A part of the piece."""
+        return _Piece(self.run[part], self.profiles.select(part), self.saturated[part])
+
+    @property
+    def weight(self) -> Array:
+        """What each point counts for the smooth curve through them, (N,)."""
+        return self.usable.astype(np.float64)
+
+    def sections(self, settings: StripeSettings) -> Sections:
+        """What the cross-sections usually are, as a model of what the pixels show."""
+        return smooth_sections(self.profiles, settings.filter_px)
+
     @property
     def usable(self) -> NDArray[np.bool_]:
         """Points to judge the line by: those not saturated, or all where most of them are."""
         return ~self.saturated if np.mean(self.saturated) < 0.5 else np.ones_like(self.saturated)
 
-    def judged(self, sigma: Array) -> tuple[Array, Array]:
-        """Usable points and their standard uncertainty."""
-        return self.run[self.usable], sigma[self.usable]
+    def judged(self, run: Array, sigma: Array) -> tuple[Array, Array]:
+        """Those of the points `run`, and of their standard uncertainties, that are usable."""
+        return run[self.usable], sigma[self.usable]
 
 
 def _state_map(
@@ -173,7 +201,7 @@ def _smooth_pieces(
     saturated = saturated_points(state, run, g)
     whole = _Piece(run, measure_profiles(picture, state, run, settings.stripe_px, g), saturated)
     sigma = noise_sigma(whole.profiles, noise, g)
-    (extra,) = roughness([whole.judged(sigma)], correlation_length_px(settings))
+    (extra,) = roughness([whole.judged(run, sigma)], correlation_length_px(settings))
     pieces = []
     for part in split_at_breaks(run, whole.usable, g, np.hypot(sigma, extra)):
         piece, profiles = run[part], whole.profiles
@@ -184,17 +212,49 @@ def _smooth_pieces(
     return pieces
 
 
-def _corrected(piece: _Piece, settings: StripeSettings) -> _Piece:
-    """The piece freed of the curvature's and the background's pull."""
-    g, run, profiles = settings.filter_px, piece.run, piece.profiles
-    arc, usable = arc_length(run), piece.usable
-    bend = np.interp(arc, arc[usable], curvature(run[usable], arc[usable], _CURVATURE_ARM * g))
-    shift = bend * (g**2 + 1 / 12) / 2
+def _speckle(
+    picture: NDArray[np.float32], state: NDArray[np.uint8], pieces: list[_Piece], settings: StripeSettings
+) -> Speckle:
+    """The speckle that all stripes of the picture show, from the longest of them."""
+    cuts, left = [], _CUTS_FOR_SPECKLE
+    for piece in sorted(pieces, key=lambda piece: -len(piece.run)):
+        if left > 0:
+            part = piece.select(slice(0, left))
+            left -= len(part.run)
+            cuts.append(residuals(picture, state, part.run, part.weight, part.sections(settings), settings.filter_px))
+    return measure_speckle(cuts, 3 * settings.stripe_px)
+
+
+def _placed(
+    picture: NDArray[np.float32],
+    state: NDArray[np.uint8],
+    piece: _Piece,
+    clear: NDArray[np.bool_],
+    settings: StripeSettings,
+    noise: NoiseModel,
+    speckle: Speckle,
+) -> Refined:
+    """The points of a piece at their likeliest place; beside other light, Steger's freed of their known biases."""
+    g, profiles = settings.filter_px, piece.profiles
+    line = refine(picture, state, piece.run, piece.weight, clear, piece.sections(settings), noise, speckle, g)
+    there = np.isfinite(line.sigma)
+    if there.all():
+        return line._replace(sigma=np.hypot(line.sigma, FLOOR_PX))
+    run = np.where(there[:, None], line.run, _corrected(piece, settings))
+    return line._replace(
+        run=run, sigma=np.where(there, np.hypot(line.sigma, FLOOR_PX), noise_sigma(profiles, noise, g))
+    )
+
+
+def _corrected(piece: _Piece, settings: StripeSettings) -> Array:
+    """Steger's points freed of the curvature's and the background's pull, (N, 5)."""
+    g, profiles = settings.filter_px, piece.profiles
+    run = guide(piece.run, arc_length(piece.run), piece.weight, g)
+    shift = run[:, 4] * (g**2 + 1 / 12) / 2
     slope = np.where(np.abs(profiles.slope) > 3 * profiles.slope_sigma, profiles.slope, 0.0)
     visible = profiles.height > 0
     height = np.where(visible, profiles.height, 1.0)
     tilt = slope * (profiles.width**2 + g**2) ** 1.5 / (height * profiles.width)
     shift += np.where(visible, np.clip(tilt, -0.5, 0.5), 0.0)
-    corrected = run.copy()
-    corrected[:, :2] -= shift[:, None] * run[:, 2:4]
-    return _Piece(corrected, profiles, piece.saturated)
+    run[:, :2] = piece.run[:, :2] - shift[:, None] * run[:, 2:4]
+    return run

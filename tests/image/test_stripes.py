@@ -75,7 +75,7 @@ def test_curvature_bias_is_removed(radius: float) -> None:
     error = np.concatenate([errors(line, truth) for line in lines])
     bias_of_steger = SETTINGS.filter_px**2 / (2 * radius)
     assert bias_of_steger > 0.03
-    assert np.abs(error).max() < 0.1 * bias_of_steger + 0.003
+    assert np.abs(error).max() < 0.15 * bias_of_steger + 0.003
     assert len(error) > 0.75 * 2 * np.pi * radius
 
 

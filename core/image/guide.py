@@ -1,0 +1,98 @@
+"""The smooth curve a stripe follows: place, direction and curvature from a parabola around every point."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+
+from core.model.arrays import Array
+
+_ARM, _SHORTEST_ARM = 8.0, 3.0  # filter σ
+_LARGEST_ANGLE = 0.25  # rad from the middle of a parabola to its end: beyond, an arc is none
+
+
+def guide(run: Array, arc: Array, weight: Array, filter_px: float) -> Array:
+    """The curve through a run (N, ≥ 2) as `parabolas` of ± 8 filter σ give it, of fewer where the run is bent."""
+    curve: Array = parabolas(run, arc, weight, _ARM * filter_px)
+    bend = float(np.quantile(np.abs(curve[:, 4]), 0.9))
+    if bend * _ARM * filter_px > _LARGEST_ANGLE:
+        curve = parabolas(run, arc, weight, max(_LARGEST_ANGLE / bend, _SHORTEST_ARM * filter_px))
+    return curve
+
+
+@njit(cache=True, nogil=True)
+def parabolas(run: Array, arc: Array, weight: Array, arm: float) -> Array:
+    """Parabolas u(s), v(s) over ± `arm` px of arc around every point of a run, (N, 5): u, v, n_u, n_v, curvature.
+
+    Parameters
+    ----------
+    run
+        (N, ≥ 2) points, in pixels.
+    arc
+        (N,) length along the run.
+    weight
+        (N,) what each point counts.
+    arm
+        Half the length of a window; at the ends of the run it is not centred, but as long.
+
+    Notes
+    -----
+    The tangent is (−n_v, n_u) and runs along the points; curvature is in 1/px, positive towards the normal. Running
+    sums make the cost independent of `arm`. A window that holds too little for a parabola gives the point itself, the
+    chord's direction and no curvature.
+    """
+    count = len(run)
+    middle, centre_u, centre_v = 0.5 * (arc[0] + arc[-1]), np.mean(run[:, 0]), np.mean(run[:, 1])
+    sums = np.zeros((count + 1, 11))  # Σ w x⁰…⁴, Σ w x⁰…² u, Σ w x⁰…² v
+    for k in range(count):
+        x, power = (arc[k] - middle) / arm, weight[k]
+        for a in range(5):
+            sums[k + 1, a] = sums[k, a] + power
+            if a < 3:
+                sums[k + 1, 5 + a] = sums[k, 5 + a] + power * (run[k, 0] - centre_u)
+                sums[k + 1, 8 + a] = sums[k, 8 + a] + power * (run[k, 1] - centre_v)
+            power *= x
+    result = np.empty((count, 5))
+    left, right = 0, 0
+    for k in range(count):
+        at = min(max(arc[k], arc[0] + arm), arc[-1] - arm)
+        while left < count - 1 and arc[left] < at - arm:
+            left += 1
+        while right < count and arc[right] <= at + arm:
+            right += 1
+        ok, pu, du, eu, pv, dv, ev = _seen_from(sums[right] - sums[left], (arc[k] - middle) / arm)
+        if not ok:
+            before, behind = max(k - 1, 0), min(k + 1, count - 1)
+            pu, du, eu = run[k, 0] - centre_u, run[behind, 0] - run[before, 0], 0.0
+            pv, dv, ev = run[k, 1] - centre_v, run[behind, 1] - run[before, 1], 0.0
+        length = math.hypot(du, dv)
+        nu, nv = dv / length, -du / length
+        result[k, 0], result[k, 1], result[k, 2], result[k, 3] = pu + centre_u, pv + centre_v, nu, nv
+        result[k, 4] = (eu * nu + ev * nv) / (arm * arm)
+    return result
+
+
+@njit(cache=True, nogil=True)
+def _seen_from(m: Array, x: float) -> tuple[bool, float, float, float, float, float, float]:
+    """From a window's sums (11,), seen from `x`: whether they suffice; value, slope and bend of u and of v."""
+    s0 = m[0]
+    s1 = m[1] - x * m[0]
+    s2 = m[2] - x * (2 * m[1] - x * m[0])
+    s3 = m[3] - x * (3 * m[2] - x * (3 * m[1] - x * m[0]))
+    s4 = m[4] - x * (4 * m[3] - x * (6 * m[2] - x * (4 * m[1] - x * m[0])))
+    c00, c01, c02 = s2 * s4 - s3 * s3, s2 * s3 - s1 * s4, s1 * s3 - s2 * s2
+    c11, c12, c22 = s0 * s4 - s2 * s2, s1 * s2 - s0 * s3, s0 * s2 - s1 * s1
+    determinant = s0 * c00 + s1 * c01 + s2 * c02
+    if determinant <= 1e-6 * s0**3:
+        return False, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    fit = np.empty(6)
+    for axis in range(2):
+        t0, t1, t2 = m[5 + 3 * axis], m[6 + 3 * axis], m[7 + 3 * axis]
+        t2 -= x * (2 * t1 - x * t0)
+        t1 -= x * t0
+        fit[3 * axis] = (c00 * t0 + c01 * t1 + c02 * t2) / determinant
+        fit[3 * axis + 1] = (c01 * t0 + c11 * t1 + c12 * t2) / determinant
+        fit[3 * axis + 2] = 2 * (c02 * t0 + c12 * t1 + c22 * t2) / determinant
+    return True, fit[0], fit[1], fit[2], fit[3], fit[4], fit[5]

@@ -1,0 +1,92 @@
+"""Contrast and grain of the speckle on a stripe, measured from the stripe itself.
+
+What pixels differ from the smooth stripe, r, is white noise and grains of light. Neighbours share grains but no white
+noise, so products of neighbours, relative to the stripe's m there, show the speckle alone:
+
+    Σ r(i)·r(i + k) / Σ m(i)·m(i + k) = C²·exp(−k²/grain²)
+
+Products of pixels far apart along the stripe show what is no speckle: a section that is not quite the model's, or
+brightness that changes slowly. They are taken off.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from scipy.ndimage import median_filter
+
+from core.model.arrays import Array
+
+FAR_CUTS = 16
+"""Grains this many pixels apart along the stripe have nothing in common."""
+_LEVEL_CUTS = 41
+_OUTLIER = 6.0  # median deviations, four standard ones
+_SIGNIFICANT = 4.0
+_SMALLEST_GRAIN_PX = 0.8
+_LARGEST_CONTRAST = 1.0
+
+
+class Speckle(NamedTuple):
+    """Contrast (standard deviation over mean) as pixels see it; 1/e half-width of the grains' correlation in px."""
+
+    contrast: float
+    grain_px: float
+
+
+NO_SPECKLE = Speckle(0.0, 0.0)
+
+
+def measure_speckle(stripes: list[Array], largest_grain_px: float) -> Speckle:
+    """Speckle on stripes seen in cuts of neighbouring pixels.
+
+    Parameters
+    ----------
+    stripes
+        (2, K, W) for each stripe: residuals and model of K cuts in order, of W pixels; zeros where one is of no use.
+    largest_grain_px
+        Coarser structure is no speckle.
+    """
+    sums = np.zeros((3, 2, 2))
+    square, number = 0.0, 0.0
+    for seen, m in stripes:
+        if len(seen) <= 2 * FAR_CUTS:
+            continue
+        r = _levelled(seen, m)
+        for lag in range(3):
+            sums[lag] += _products(r, m, lag)
+        square += float(np.sum(r**2))
+        number += float(np.count_nonzero(m))
+    if not np.all(sums[:, :, 1] > 0):
+        return NO_SPECKLE
+    near, far = (sums[:, kind, 0] / sums[:, kind, 1] for kind in range(2))
+    share = near - far
+    error = square / number**0.5 / sums[1, 0, 1]  # of white noise
+    if not share[1] > _SIGNIFICANT * error:
+        return NO_SPECKLE
+    fall = math.log(share[1] / share[2]) if share[2] > 0 else math.inf
+    grain = math.sqrt(3 / fall) if fall > 0 else math.inf
+    grain = min(max(grain, _SMALLEST_GRAIN_PX), largest_grain_px)
+    contrast = math.sqrt(float(share[1])) * math.exp(0.5 / grain**2)
+    return Speckle(min(contrast, _LARGEST_CONTRAST), grain)
+
+
+def _levelled(r: Array, m: Array) -> Array:
+    """Residuals freed of brightness that changes along the stripe, slowly or in steps, and of what stands out."""
+    height = np.sum(r * m, axis=1) / np.maximum(np.sum(m**2, axis=1), 1e-9)
+    levelled = r - median_filter(height, _LEVEL_CUTS, mode="nearest")[:, None] * m
+    seen = m > 0
+    limit = _OUTLIER * float(np.median(np.abs(levelled[seen]) / m[seen])) * m if seen.any() else m
+    clipped: Array = np.clip(levelled, -limit, limit)
+    return clipped
+
+
+def _products(r: Array, m: Array, lag: int) -> Array:
+    """Sums of products (2, 2) of residuals and of models: of pixels `lag` apart in a cut; the same, far along."""
+    width = r.shape[1] - lag
+    a, b = slice(0, width), slice(lag, width + lag)
+    near = [float(np.sum(p[:, a] * p[:, b])) for p in (r, m)]
+    before, behind = slice(None, -FAR_CUTS), slice(FAR_CUTS, None)
+    far = [float(np.sum(p[before, a] * p[behind, b]) + np.sum(p[behind, a] * p[before, b])) for p in (r, m)]
+    return np.array([near, far])
