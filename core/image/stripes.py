@@ -20,7 +20,7 @@ border of the picture              points nearer than 4 g are never found; cuts 
 saturation                         height and place from the pixels left: below 0.003 px; flagged
 =================================  ==========================================================================
 
-Here s is the stripe's σ, g the filter's. The noise of neighbouring points is correlated over a little more than 2√π·g px
+Here s is the stripe's σ, g the filter's. Neighbouring points share their noise over a little more than 2√π·g px
 (`Centreline.correlation_px`): a mean over L px of stripe has σ·√(correlation/L), not σ/√L.
 
 References

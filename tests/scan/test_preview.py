@@ -117,7 +117,7 @@ def test_a_renewed_cloud_has_more_points_and_knows_them_better(flat):
     early = (cloud.frame >= 0) & (cloud.frame < 6)
     then = np.concatenate([frame.point_sigma for frame in flat.frames[:6]])
     assert np.count_nonzero(early) > len(then)
-    assert np.count_nonzero(cloud.sigma[early] < 0.4) > 1.3 * np.count_nonzero(then < 0.4)
+    assert np.count_nonzero(cloud.sigma[early] < 0.2) > 1.3 * np.count_nonzero(then < 0.2)
     rays = flat.camera.rays(cloud.uv[early])
     true = np.array([flat.planes[k].depths(ray[None])[0] for k, ray in zip(cloud.frame[early], rays, strict=True)])
     assert np.median(np.abs(cloud.points[early, 2] - true) / cloud.sigma[early]) < 1.5
