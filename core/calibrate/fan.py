@@ -17,6 +17,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from core.calibrate.fan_bundle import Bundle, BundlePose, solve
+from core.calibrate.fan_cross_validation import prediction_errors
 from core.calibrate.fan_summary import summarise
 from core.calibrate.fan_verdict import Constrained, judge
 from core.calibrate.line_assignment import NOT_SEEN, assign_lines
@@ -77,6 +78,7 @@ def fit_fan(
     options: FanOptions,
     progress: Progress = silent,
     excluded: Collection[str] = (),
+    camera_covariance: Array | None = None,
 ) -> FanCalibration:
     """Calibrate the fan.
 
@@ -91,6 +93,9 @@ def fit_fan(
         What is known of the laser.
     excluded
         Names of poses that are located, but have no part in the fit.
+    camera_covariance
+        (10, 10) in the order of CAMERA_PARAMETERS: then the poses correct the camera as far as they know better, and
+        the fan is calibrated with the corrected one, which the result holds. None: the camera stays as it is.
 
     Raises
     ------
@@ -106,8 +111,13 @@ def fit_fan(
     located, free = _solve_without_odd_poses(FreePlanes(rough), located, camera)
     volume = _points_by_line(located, free)
     verdict = judge(free, volume, options.angle, options.constrained)
-    used = free if isinstance(verdict.start, FreePlanes) else _solve(verdict.start, located, camera)
-    return summarise(located, free, used, verdict, further)
+    if camera_covariance is not None and camera_covariance.any():
+        joint = solve(verdict.start, _bundle_poses(located), camera, camera_covariance)
+        again = fit_fan(features, joint.camera, options, progress, excluded)
+        return replace(again, camera=joint.camera, camera_covariance=joint.camera_covariance)
+    used = free if isinstance(verdict.start, FreePlanes) else solve(verdict.start, _bundle_poses(located), camera)
+    errors = prediction_errors(used, _bundle_poses(located), camera)
+    return summarise(located, free, used, verdict, errors, further)
 
 
 def same_model(options: FanOptions, calibration: FanCalibration) -> FanOptions:
@@ -201,14 +211,13 @@ def _check_spread(located: Sequence[LocatedPose], lines: int) -> None:
             )
 
 
-def _solve(planes: PlaneSet, located: Sequence[LocatedPose], camera: Camera) -> Bundle:
-    """Solve planes and poses together; the bundle has one pose for each that is used."""
-    poses = [
+def _bundle_poses(located: Sequence[LocatedPose]) -> list[BundlePose]:
+    """The poses that are used."""
+    return [
         BundlePose(pose.features.view, pose.pose, pose.stripes)
         for pose in located
         if pose.used and pose.features.view is not None
     ]
-    return solve(planes, poses, camera)
 
 
 def _solve_without_odd_poses(
@@ -217,7 +226,7 @@ def _solve_without_odd_poses(
     """The fit; poses far worse than the others are left out one by one, at most a third of them."""
     dispensable = sum(pose.used for pose in located) // 3
     while True:
-        bundle = _solve(planes, located, camera)
+        bundle = solve(planes, _bundle_poses(located), camera)
         used = [index for index, pose in enumerate(located) if pose.used]
         worst = int(np.argmax(bundle.pose_errors))
         times = float(bundle.pose_errors[worst] / np.median(bundle.pose_errors))

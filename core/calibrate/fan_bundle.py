@@ -7,7 +7,7 @@ trust each is taken from the data: target points get a common factor on their st
 standard deviation in mm for their offset and another for their slope (a plate not quite flat, a lens not quite
 modelled), all such that residuals are as large as they should be.
 
-The poses are views of a flat target too. With a `CameraPrior` the camera's parameters are unknowns as well, held by
+The poses are views of a flat target too. With the camera's covariance its parameters are unknowns as well, held by
 what its own views know of them: a calibration with its covariance is the normal equations of all its views with their
 poses eliminated, so this is, to first order, the adjustment of all pictures in one.
 
@@ -91,7 +91,12 @@ class Bundle:
 
 
 def solve(
-    planes: PlaneSet, poses: Sequence[BundlePose], camera: Camera, camera_covariance: Array | None = None
+    planes: PlaneSet,
+    poses: Sequence[BundlePose],
+    camera: Camera,
+    camera_covariance: Array | None = None,
+    *,
+    rounds: int = ROUNDS,
 ) -> Bundle:
     """Solve planes and poses together, from `planes` near the answer, robustly (Huber per stripe).
 
@@ -103,8 +108,10 @@ def solve(
         The calibrated camera, with which the stripes were found.
     camera_covariance
         (10, 10) of its parameters: then the camera is corrected, too. None: it stays as it is.
+    rounds
+        How often the standard deviations are improved, at most.
     """
-    return _Problem(poses, camera, camera_covariance).solve(planes)
+    return _Problem(poses, camera, camera_covariance).solve(planes, rounds)
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -133,12 +140,12 @@ class _Problem:
         self.noise = np.ones(len(self.stripes))
         self.weight = np.ones(len(self.stripes))
 
-    def solve(self, planes: PlaneSet) -> Bundle:
+    def solve(self, planes: PlaneSet, rounds: int) -> Bundle:
         state = _State(planes, tuple(pose.pose for pose in self.known), np.zeros(PARAMETERS))
         self.noise = self.stripes.noise_mm(state.planes, state.poses)
         self.extra = np.median(np.abs(self._distances(state).mm), axis=0)
         solution = minimise(state, self._linearise, self._move)
-        for _ in range(ROUNDS):
+        for _ in range(rounds):
             before = np.array([self.corner_scale, *self.extra])
             self._reweight(solution)
             solution = minimise(solution.state, self._linearise, self._move)

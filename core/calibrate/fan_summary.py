@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -14,17 +15,33 @@ from core.calibrate.target_plane import on_target
 from core.model import LightPlane, Pose
 from core.model.arrays import Array
 
+ODDLY_PREDICTED = 4.0
+"""A pose that the others foretell this many times worse than the median pose is worth a word."""
+
+WORTH_A_WORD_MM = 0.05
+
 SATURATED_SHARE = 1 / 3
 """A share of saturated stripe points worth a warning."""
 
 
 def summarise(
-    located: Sequence[LocatedPose], free: Bundle, used: Bundle, verdict: Verdict, notes: Sequence[str]
+    located: Sequence[LocatedPose],
+    free: Bundle,
+    used: Bundle,
+    verdict: Verdict,
+    prediction_errors: Array,
+    notes: Sequence[str],
 ) -> FanCalibration:
-    """Put together the result of a free fit, the fit in use and the verdict between them, with `notes` in front."""
+    """Put together the result of a free fit, the fit in use and the verdict between them, with `notes` in front.
+
+    `prediction_errors` in mm are those of the poses that are used.
+    """
     pis = used.planes.pis
-    adjusted = iter(used.poses)
-    poses = tuple(_plane_pose(pose, next(adjusted) if pose.used else None, pis) for pose in located)
+    adjusted, errors = iter(used.poses), iter(prediction_errors.tolist())
+    poses = tuple(
+        _plane_pose(pose, next(adjusted), pis, next(errors)) if pose.used else _plane_pose(pose, None, pis)
+        for pose in located
+    )
     free_fan = fan_of(free.planes, free.covariance)
     return FanCalibration(
         fan=fan_of(used.planes, used.covariance),
@@ -36,15 +53,16 @@ def summarise(
         constraint_suits=verdict.suits,
         verdict=verdict.sentence,
         poses=poses,
-        notes=(*notes, *_notes(located)),
+        notes=(*notes, *_notes(located), *_notes_on_predictions(poses)),
         constraint_p=verdict.p,
         stripe_sd_mm=used.extra_mm,
         corner_scale=used.corner_scale,
         by_camera=used.by_camera,
+        cross_validation_mm=float(np.sqrt(np.mean(prediction_errors**2))),
     )
 
 
-def _plane_pose(located: LocatedPose, adjusted: Pose | None, pis: Array) -> PlanePose:
+def _plane_pose(located: LocatedPose, adjusted: Pose | None, pis: Array, prediction_mm: float = math.nan) -> PlanePose:
     points = [np.zeros((0, 3)) for _ in pis]
     if adjusted is not None:
         for line, stripe in located.stripes.items():
@@ -59,6 +77,7 @@ def _plane_pose(located: LocatedPose, adjusted: Pose | None, pis: Array) -> Plan
         rms_mm=_rms(distances),
         used=located.used,
         reason=located.reason,
+        prediction_mm=prediction_mm,
     )
 
 
@@ -80,3 +99,16 @@ def _notes(located: Sequence[LocatedPose]) -> tuple[str, ...]:
             "laser, or set channel in rig.toml to a colour in which the laser is weaker"
         )
     return tuple(notes)
+
+
+def _notes_on_predictions(poses: Sequence[PlanePose]) -> tuple[str, ...]:
+    known = [pose for pose in poses if np.isfinite(pose.prediction_mm)]
+    if not known:
+        return ()
+    usual = float(np.median([pose.prediction_mm for pose in known]))
+    return tuple(
+        f"the other poses foretell the stripes of {pose.name} to {pose.prediction_mm:.3f} mm only, those of a usual "
+        f"pose to {usual:.3f} mm: look at its pictures, or take more poses like it"
+        for pose in known
+        if pose.prediction_mm > max(ODDLY_PREDICTED * usual, WORTH_A_WORD_MM)
+    )

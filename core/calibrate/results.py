@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -82,6 +82,8 @@ class PlanePose:
     distances in mm from the plane in use; both empty for a line this pose does not show. `pose` is the target's pose
     after it was adjusted together with the fan, `target_rms_px` how well the target alone fits its own pose. A pose
     that was left out says why in `reason`; where none could be found it is the identity and the RMS are NaN.
+    `prediction_mm` is the RMS distance of its stripes from the light planes that the other poses give, the target where
+    its own points put it; NaN where that is not known.
     """
 
     name: str
@@ -92,6 +94,7 @@ class PlanePose:
     rms_mm: float
     used: bool
     reason: str = ""
+    prediction_mm: float = math.nan
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -107,7 +110,9 @@ class FanCalibration:
     (flatness of the plate, lens), `corner_scale` the factor by which the target's points scatter more than they state.
     `by_camera` (3N, 10) is how the stacked π of `fan` follow a change of the camera's parameters, the pictures the
     same; None where that is not known. `scale_sd` is the standard uncertainty of the target's size, as a share of it:
-    no picture shows it, and all lengths have it in common.
+    no picture shows it, and all lengths have it in common. `cross_validation_mm` is the RMS of the poses' prediction
+    errors. `camera` and `camera_covariance` are the camera that the target's poses have corrected, which belongs to
+    this fan; None where it was left as it is.
     """
 
     fan: Fan
@@ -125,3 +130,12 @@ class FanCalibration:
     corner_scale: float = math.nan
     by_camera: Array | None = None
     scale_sd: float = 0.0
+    cross_validation_mm: float = math.nan
+    camera: Camera | None = None
+    camera_covariance: Array | None = None
+
+    def camera_used(self, given: CameraCalibration) -> CameraCalibration:
+        """The camera this fan is to be used with: the `given` calibration, corrected if the poses did so."""
+        if self.camera is None or self.camera_covariance is None:
+            return given
+        return replace(given, camera=self.camera, covariance=self.camera_covariance)

@@ -62,6 +62,16 @@ Part = Annotated[str, typer.Option(metavar="NAME", help="Name of the part in the
 K3 = Annotated[bool, typer.Option("--k3", help="Free the third radial coefficient, for wide lenses.")]
 
 
+AdjustCamera = Annotated[
+    bool,
+    typer.Option(
+        "--adjust-camera",
+        help="Let the poses of the plane target correct the camera, in one adjustment with the fan: for a plane target "
+        "of many points, or a camera calibrated from few views.",
+    ),
+]
+
+
 StripeWidth = Annotated[
     float,
     typer.Option(
@@ -131,6 +141,7 @@ def run(
     contrast: Contrast = 0.0,
     no_skew: NoSkew = False,
     k3: K3 = False,
+    adjust_camera: AdjustCamera = False,
     part: Part = "",
     exclude: Exclude = None,
     json: Json = False,
@@ -146,6 +157,7 @@ def run(
         part=part,
         stripe_width=stripe_width,
         contrast=contrast,
+        adjust_camera=adjust_camera,
     )
     options = measuring.leaving_out(options, folder, exclude)
     with bars() as progress:
@@ -168,11 +180,14 @@ def camera(
 
 
 @app.command()
-def planes(folder: Set, out: Out, exclude: Exclude = None, json: Json = False) -> None:
+def planes(
+    folder: Set, out: Out, adjust_camera: AdjustCamera = False, exclude: Exclude = None, json: Json = False
+) -> None:
     """Calibrate the fan's light planes from SET/planes, with camera.json in DIR; writes planes.json."""
     from core.cli import measuring
 
-    options = measuring.leaving_out(measuring.options("network", 0.05), folder, exclude)
+    chosen = measuring.options("network", 0.05, adjust_camera=adjust_camera)
+    options = measuring.leaving_out(chosen, folder, exclude)
     with bars() as progress:
         shown = measuring.run_planes(folder, out, options, progress)
     shown.show(as_json=json)

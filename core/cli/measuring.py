@@ -58,6 +58,7 @@ def options(
     part: str = "",
     stripe_width: float = 0.0,
     contrast: float = 0.0,
+    adjust_camera: bool = False,
 ) -> Options:
     """The pipeline's options from the command line's; InputError if one is absurd."""
     if (stripe_width > 0) != (contrast > 0) or min(stripe_width, contrast) < 0:
@@ -67,7 +68,8 @@ def options(
             todo="give both, or neither to have them chosen from the pictures",
         )
     stripe = StripeSettings(stripe_width, contrast) if stripe_width > 0 else None
-    return Options(cast(Method, method), sigma_cut, CameraOptions(skew=skew, k3=k3), part, stripe)
+    camera = CameraOptions(skew=skew, k3=k3)
+    return Options(cast(Method, method), sigma_cut, camera, part, stripe, adjust_camera=adjust_camera)
 
 
 def leaving_out(chosen: Options, folder: Path, names: Sequence[str] | None) -> Options:

@@ -81,6 +81,8 @@ def fan_rows(calibration: FanCalibration) -> Rows:
         rows.append(("angles, free fit", free))
     used = sum(pose.used for pose in calibration.poses)
     rows.append(("poses", f"{used} of {count(len(calibration.poses), 'pose')} used"))
+    if math.isfinite(calibration.cross_validation_mm):
+        rows.append(("poses foretold", f"to {calibration.cross_validation_mm:.3f} mm RMS, each by the others"))
     return [*rows, ("verdict", calibration.verdict)] if calibration.verdict else rows
 
 
@@ -160,6 +162,7 @@ def fan_json(calibration: FanCalibration) -> dict[str, Any]:
     return {
         "pi": calibration.fan.pis,
         "rms_mm": calibration.rms_mm,
+        "cross_validation_mm": calibration.cross_validation_mm,
         "angles_deg": [math.degrees(angle) for angle in calibration.angles],
         "constraint_suits": calibration.constraint_suits,
         "poses_used": sum(pose.used for pose in calibration.poses),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import math
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from pydantic import Field, ValidationError, model_validator
@@ -50,9 +50,20 @@ class _Pose(ResultFile):
     used: bool
     reason: str = ""
     rms_mm: Maybe = None
+    prediction_mm: Maybe = None
     target_rms_px: Maybe = None
     rotation_vector: Row3
     translation_mm: Row3
+
+
+class _Camera(ResultFile):
+    """The camera that the poses have corrected."""
+
+    matrix: list[Row3] = Field(min_length=3, max_length=3)
+    distortion: list[Finite] = Field(min_length=5, max_length=5)
+    covariance: list[Annotated[list[Finite], Field(min_length=_PARAMETERS, max_length=_PARAMETERS)]] = Field(
+        min_length=_PARAMETERS, max_length=_PARAMETERS
+    )
 
 
 class _PlanesFile(ResultFile):
@@ -62,6 +73,8 @@ class _PlanesFile(ResultFile):
     covariance: list[list[Finite]] | None = Field(None, description="3N × 3N finite numbers for N planes")
     by_camera: list[list[Finite]] | None = Field(None, description="3N × 10 finite numbers for N planes")
     scale_sd: Finite = Field(0.0, ge=0, le=0.1, description="a share of the target's size from 0 to 0.1")
+    cross_validation_mm: Maybe = None
+    camera: _Camera | None = None
     pencil_gap_mm: Maybe = None
     constraint_suits: bool | None = None
     verdict: str = ""
@@ -101,6 +114,7 @@ def write_fan(path: Path, calibration: FanCalibration, camera: Camera) -> None:
                     for plane, rms in zip(calibration.fan.planes, calibration.rms_mm, strict=True)
                 ],
                 "angles_deg": degrees,
+                "cross_validation_mm": calibration.cross_validation_mm,
                 "pencil_gap_mm": calibration.pencil_gap_mm,
                 "constraint_suits": calibration.constraint_suits,
                 "verdict": calibration.verdict,
@@ -112,6 +126,7 @@ def write_fan(path: Path, calibration: FanCalibration, camera: Camera) -> None:
                 "covariance": calibration.fan.covariance,
                 "by_camera": calibration.by_camera,
                 "scale_sd": calibration.scale_sd,
+                "camera": _corrected_camera(calibration),
                 "poses": [_pose(pose) for pose in calibration.poses],
             }
         ),
@@ -157,7 +172,31 @@ def read_fan(path: Path, camera: Camera) -> FanCalibration:
         notes=tuple(file.notes),
         by_camera=None if file.by_camera is None else np.array(file.by_camera),
         scale_sd=file.scale_sd,
+        cross_validation_mm=number(file.cross_validation_mm),
+        camera=_camera(path, file.camera, camera.image_size),
+        camera_covariance=None if file.camera is None else np.array(file.camera.covariance),
     )
+
+
+def _corrected_camera(calibration: FanCalibration) -> dict[str, Any] | None:
+    camera = calibration.camera
+    if camera is None:
+        return None
+    return {
+        "matrix": camera.matrix,
+        "distortion": camera.distortion,
+        "covariance": calibration.camera_covariance,
+        "id": camera_id(camera),
+    }
+
+
+def _camera(path: Path, table: _Camera | None, image_size: tuple[int, int]) -> Camera | None:
+    if table is None:
+        return None
+    try:
+        return Camera(image_size, np.array(table.matrix), np.array(table.distortion))
+    except ValueError as error:
+        raise InputError(f"camera is none: {error}", where=path, todo="calibrate the fan again") from error
 
 
 def _plane(plane: LightPlane) -> dict[str, Any]:
@@ -171,6 +210,7 @@ def _pose(pose: PlanePose) -> dict[str, Any]:
         "used": pose.used,
         "reason": pose.reason,
         "rms_mm": pose.rms_mm,
+        "prediction_mm": pose.prediction_mm,
         "target_rms_px": pose.target_rms_px,
         "rotation_vector": vector[:3],
         "translation_mm": vector[3:],
@@ -187,5 +227,6 @@ def _plane_pose(pose: _Pose) -> PlanePose:
         distances=(),
         rms_mm=number(pose.rms_mm),
         used=pose.used,
+        prediction_mm=number(pose.prediction_mm),
         reason=pose.reason,
     )

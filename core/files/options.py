@@ -35,6 +35,9 @@ class Options:
         Pictures left out by hand, named as in a set: "camera/view03.png", "planes/pose02", "scan/frame0007.png".
     constrain_fan
         Hold the fan's planes to one pencil where that suits the laser; else they are free.
+    adjust_camera
+        Let the poses of the plane target correct the camera, in one adjustment with the fan; else it stays as its own
+        views gave it.
 
     Raises
     ------
@@ -49,6 +52,7 @@ class Options:
     stripe: StripeSettings | None = None
     excluded: frozenset[str] = frozenset()
     constrain_fan: bool = True
+    adjust_camera: bool = False
 
     def __post_init__(self) -> None:
         if self.method not in METHODS:

@@ -73,6 +73,7 @@ def _camera(project: Project) -> dict[str, str]:
 
 def _planes(project: Project) -> dict[str, str]:
     tables = rig_tables(project.rig)
+    adjusted = {"adjustment of the camera": str(True)} if project.options.adjust_camera else {}
     return {
         "camera calibration": project.accepted.camera,
         "pictures of the plane target": project.sources.planes,
@@ -81,6 +82,7 @@ def _planes(project: Project) -> dict[str, str]:
         "colour channel": project.rig.channel or "",
         "left-out poses": _left_out(project, "planes"),
         "constraint of the fan": str(project.options.constrain_fan),
+        **adjusted,
         "accepted laser planes": _whether(project.accepted.fan),
     }
 

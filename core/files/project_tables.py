@@ -87,6 +87,7 @@ class OptionsTable(Table):
         description='a list of pictures as "camera/view00.png", "planes/pose00", "scan/frame0000.png"',
     )
     constrain_fan: bool = True
+    adjust_camera: bool = False
 
 
 class AcceptedTable(Table):

@@ -14,6 +14,7 @@ from core.files.poses_file import write_poses
 from core.files.recording_set import PlanePair, RecordingSet, require_planes
 from core.files.rig import Rig
 from core.model import Camera
+from core.model.arrays import Array
 from core.pipeline.options import Options
 from core.pipeline.workspace import Workspace, check_size
 from core.progress import Progress, silent
@@ -33,11 +34,12 @@ def planes_step(work: Workspace, options: Options | None = None, progress: Progr
     """
     options = options or Options()
     require_planes(work.found)
-    camera = read_camera(work.path("camera")).camera
+    given = read_camera(work.path("camera"))
+    camera = given.camera
     with work.step("planes") as log:
         log.settings.update(planes_settings(work.found.rig, options))
         poses = measure_poses(work.found, camera, progress)
-        calibration = solve_planes(poses, camera, work.found.rig, options, progress)
+        calibration = solve_planes(poses, camera, work.found.rig, options, progress, given.covariance)
         log.notes.extend(note for pose in poses for note in pose.notes)
         log.notes.extend(calibration.notes)
         write_fan(work.path("planes"), calibration, camera)
@@ -83,8 +85,11 @@ def solve_planes(
     rig: Rig,
     options: Options | None = None,
     progress: Progress = silent,
+    camera_covariance: Array | None = None,
 ) -> FanCalibration:
     """The fan from what the pictures of all poses show, without those left out by hand.
+
+    The camera's covariance (10, 10) is needed where the options have the camera adjusted; without it, it is not.
 
     Raises
     ------
@@ -93,7 +98,8 @@ def solve_planes(
     """
     options = options or Options()
     excluded = {name.removeprefix(FOLDER) for name in options.excluded if name.startswith(FOLDER)}
-    return fit_fan(poses, camera, fan_options(rig, options), progress, excluded)
+    adjusted = camera_covariance if options.adjust_camera else None
+    return fit_fan(poses, camera, fan_options(rig, options), progress, excluded, adjusted)
 
 
 def fan_options(rig: Rig, options: Options) -> FanOptions:
@@ -104,5 +110,7 @@ def fan_options(rig: Rig, options: Options) -> FanOptions:
 def planes_settings(rig: Rig, options: Options) -> dict[str, object]:
     """What the fan's calibration is told, for run.json."""
     fan = fan_options(rig, options)
-    told = {"lines": fan.lines, "angle_rad": fan.angle, "constrained": fan.constrained}
+    told: dict[str, object] = {"lines": fan.lines, "angle_rad": fan.angle, "constrained": fan.constrained}
+    if options.adjust_camera:
+        told["camera"] = "adjusted"
     return {**told, **options.excluded_settings("planes")}

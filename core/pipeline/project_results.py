@@ -79,7 +79,8 @@ class _Reader:
 def _calibration(path: Path, camera: CameraCalibration | None) -> Calibration:
     if camera is None:
         raise InputError("the camera it rests on is not there", where=path, todo="measure the scan again")
-    return Calibration(camera, read_fan(path, camera.camera))
+    fan = read_fan(path, camera.camera)
+    return Calibration(fan.camera_used(camera), fan)
 
 
 def _cloud(path: Path, calibration: Calibration | None) -> CloudFile:

@@ -95,9 +95,13 @@ def project_set(folder: Path, project: Project) -> RecordingSet:
 
 def accepted_camera(folder: Path, project: Project) -> Camera:
     """The accepted camera; InputError if there is none, or it is damaged."""
+    return _accepted(folder, project).camera
+
+
+def _accepted(folder: Path, project: Project) -> CameraCalibration:
     if not project.accepted.camera:
         raise InputError("no calibration of the camera is accepted yet", todo="calibrate it, and accept the result")
-    return read_stored_camera(folder, project.accepted.camera).camera
+    return read_stored_camera(folder, project.accepted.camera)
 
 
 def find_views(folder: Path, project: Project, progress: Progress = silent) -> SeenViews:
@@ -162,7 +166,8 @@ def solve_poses(
     InputError
         If no camera is accepted, or the poses do not determine the fan.
     """
-    return solve_planes(poses, accepted_camera(folder, project), project.rig, project.options, progress)
+    camera = _accepted(folder, project)
+    return solve_planes(poses, camera.camera, project.rig, project.options, progress, camera.covariance)
 
 
 def accept_fan(

@@ -100,7 +100,8 @@ class Workspace:
     def calibration(self) -> Calibration:
         """Read camera.json and planes.json; InputError if they are missing, wrong, or not of each other."""
         camera = read_camera(self.path("camera"))
-        return Calibration(camera, read_fan(self.path("planes"), camera.camera))
+        fan = read_fan(self.path("planes"), camera.camera)
+        return Calibration(fan.camera_used(camera), fan)
 
     def record(self) -> RunRecord:
         """What run.json says so far; a fresh record where there is none."""

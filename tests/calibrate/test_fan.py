@@ -6,6 +6,7 @@ import pytest
 from core.calibrate.fan import FanOptions, fan_deviations, fit_fan, same_model
 from core.calibrate.pencil import Pencil, pencil_near, plane_distances
 from core.calibrate.plane_pose import PoseFeatures
+from core.calibrate.reprojection import camera_of, parameters_of
 from core.calibrate.results import LEFT_OUT
 from core.errors import InputError
 from core.image.target_view import TargetView
@@ -178,6 +179,40 @@ def test_a_pose_left_out_by_hand_is_located_but_has_no_part():
     rest = fit_fan([pose for i, pose in enumerate(seen) if i != 1], CAMERA, THREE)
     assert (without.fan.pis == rest.fan.pis).all()
     assert any(f"{seen[1].name} ({LEFT_OUT})" in note for note in without.notes)
+
+
+def test_poses_of_many_points_correct_a_camera_that_is_off():
+    """Views that know the focal length to 0.2 %, and poses of a checkerboard that know better."""
+    true = parameters_of(CAMERA)
+    sd = np.array([5.0, 5, 0.1, 2, 2, 2e-3, 1e-2, 1e-4, 1e-4, 0])
+    off = camera_of(true + sd * [1, 1, 0, 0.5, -0.5, 0, 0, 0, 0, 0], CAMERA.image_size)
+    seen = features(WHERE, Noise(), 19, points=GRID)
+    alone, joint = fit_fan(seen, off, THREE), fit_fan(seen, off, THREE, camera_covariance=np.diag(sd**2))
+    assert alone.camera is None
+    corrected = parameters_of(joint.camera)
+    corrected_sd = np.sqrt(np.diag(joint.camera_covariance))
+    assert (corrected_sd[:2] < 0.5 * sd[:2]).all()
+    assert (np.abs(corrected - true)[:5] < 3 * corrected_sd[:5]).all()
+    assert corrected[9] == 0
+    assert worst_mm(joint.fan.pis, PAPER) < 0.5 * worst_mm(alone.fan.pis, PAPER)
+    assert (fit_fan(seen, joint.camera, THREE).fan.pis == joint.fan.pis).all()
+
+
+def test_each_pose_is_foretold_by_the_others():
+    quiet, loud = (fit_fan(features(WHERE, Noise(px, px), 20), CAMERA, THREE) for px in (0.02, 0.1))
+    assert 3 < loud.cross_validation_mm / quiet.cross_validation_mm < 7
+    errors = np.array([pose.prediction_mm for pose in quiet.poses])
+    assert quiet.cross_validation_mm == pytest.approx(np.sqrt(np.mean(errors**2)))
+    assert np.isnan(fit_fan(features(WHERE[::3], Noise(), 20), CAMERA, THREE).cross_validation_mm)
+
+
+def test_a_pose_that_the_others_do_not_foretell_is_named():
+    """Its stripes agree with the planes only because the pose turned for them; its own points say another distance."""
+    seen = features(WHERE, Noise(), 21, points=GRID)
+    seen[2] = replace(seen[2], view=replace(seen[2].view, points=seen[2].view.points * 1.002))
+    result = fit_fan(seen, CAMERA, THREE)
+    assert max(result.poses, key=lambda pose: np.nan_to_num(pose.prediction_mm)).name == "p2"
+    assert any("foretell the stripes of p2" in note for note in result.notes)
 
 
 def test_more_lines_than_promised_is_noted():

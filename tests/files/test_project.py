@@ -42,7 +42,7 @@ def full_project():
             "green"),
         Sources("/data/set/camera", "recordings/planes-1", "C:/pictures/scan"),
         Options("three-crossings", 0.3, CameraOptions(False, frozenset({"p1", "k2"}), True, "all"), "my part",
-                StripeSettings(8.5, 120), frozenset({"camera/b.png", "planes/pose02", "scan/ä ö.png"}), False),
+                StripeSettings(8.5, 120), frozenset({"camera/b.png", "planes/pose02", "scan/ä ö.png"}), False, True),
         Accepted("0123456789ab", "ba9876543210"),
         frozenset({"deadbeef0123", "0123456789cd"}),
         (REPEAT, replace(REPEAT, thickness_mm=50.001)),

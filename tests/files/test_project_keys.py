@@ -57,6 +57,7 @@ def test_another_camera_calibration_makes_planes_and_scan_out_of_date_and_says_s
         (with_options(excluded=frozenset({"scan/frame0007.png"})), {"scan": ("left-out frames",)}),
         (with_options(sigma_cut_mm=0.1), {"scan": ("scan settings",)}),
         (with_options(constrain_fan=False), {"planes": ("constraint of the fan",)}),
+        (with_options(adjust_camera=True), {"planes": ("adjustment of the camera",)}),
         (with_options(camera=replace(START.options.camera, k3=True)), {"camera": ("camera settings",)}),
         (replace(START, sources=replace(START.sources, scan="recordings/scan-2")), {"scan": ("recording",)}),
         (replace(START, report=ReportChoices(frozenset({"inputs"}))), {"report": ("sections of the report",)}),

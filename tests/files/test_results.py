@@ -119,6 +119,29 @@ def test_fan_round_trip_is_exact_and_has_the_keys_of_the_design(tmp_path, camera
     assert back.poses[0].name == "p1"
 
 
+def test_what_the_fan_knows_of_its_camera_and_its_target_is_kept(tmp_path, camera, fan):
+    rng = np.random.default_rng(3)
+    path = tmp_path / "planes.json"
+    corrected = Camera(camera.camera.image_size, camera.camera.matrix * 1.0001, camera.camera.distortion)
+    known = replace(
+        fan,
+        by_camera=rng.normal(size=(9, 10)),
+        scale_sd=2e-4,
+        cross_validation_mm=0.02,
+        poses=(replace(fan.poses[0], prediction_mm=0.03),),
+        camera=corrected,
+        camera_covariance=0.5 * camera.covariance,
+    )
+    write_fan(path, known, camera.camera)
+    back = read_fan(path, camera.camera)
+    assert np.array_equal(back.by_camera, known.by_camera)
+    assert (back.scale_sd, back.cross_validation_mm, back.poses[0].prediction_mm) == (2e-4, 0.02, 0.03)
+    used = back.camera_used(camera)
+    assert camera_id(used.camera) == camera_id(corrected)
+    assert np.array_equal(used.covariance, 0.5 * camera.covariance)
+    assert fan.camera_used(camera) is camera
+
+
 def test_a_normal_that_contradicts_pi_is_refused(tmp_path, camera, fan):
     path = tmp_path / "planes.json"
     write_fan(path, fan, camera.camera)
@@ -144,6 +167,8 @@ def test_planes_of_another_camera_are_refused(tmp_path, camera, fan):
         (lambda t: t["planes"][0].pop("pi"), "planes[0].pi is missing"),
         (lambda t: t.__setitem__("planes", []), "planes is [], not a list of one or more"),
         (lambda t: t["covariance"].pop(), "covariance is not 9 × 9 numbers"),
+        (lambda t: t.__setitem__("by_camera", [[0.0]]), "by_camera is not 9 × 10 numbers"),
+        (lambda t: t.__setitem__("scale_sd", 2.0), "scale_sd is 2.0, not a share of the target's size"),
         (lambda t: t["free_planes"].pop(), "free_planes has 2 planes, not 3"),
     ],
 )
