@@ -42,7 +42,7 @@ class MainWindow(QMainWindow):
         super().__init__()
         self.bench, self.model = bench, bench.model
         self.setWindowTitle("Trisect")
-        self.setMinimumSize(1024, 680)
+        self.setMinimumHeight(680)  # how wide it must be, its pages know
         self.resize(1280, 800)
         self.setAcceptDrops(True)
         self.doors = ProjectDoors(bench, self)

@@ -109,6 +109,8 @@ class SurfaceChoices(QWidget):
 
     def _make_colours(self, bar: QHBoxLayout) -> None:
         self.colours.setAccessibleName(self.tr("Colour by"))
+        self.colours.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
+        self.colours.setMinimumContentsLength(10)
         self.colours.setToolTip(self.tr("What the colours of the surface mean"))
         for name, text in (
             ("faces", self.tr("points used")),

@@ -36,7 +36,8 @@ def quality_rows(calibration: FanCalibration | None) -> list[Row]:
     rows.append((_tr("Poses"), _tr("{0} of {1} count").format(used, total), _tr("Poses used, and all there are"), ""))
     if not math.isnan(calibration.stripe_sd_mm):
         tip = _tr("How far a whole stripe is off its plane beyond its own noise: flatness of the plate, the lens")
-        rows.append((_tr("Stripes, sd"), mm(calibration.stripe_sd_mm), tip, ""))
+        off = calibration.stripe_sd_mm
+        rows.append((_tr("Stripes beyond noise"), mm(off) if off >= 0.0005 else _tr("below 0.001 mm"), tip, ""))
     return rows
 
 

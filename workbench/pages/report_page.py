@@ -49,8 +49,9 @@ class ReportPage(StepPage):
         for name, title, shown in p.sections():
             box, why = self.boxes[name], p.empty_section(name)
             box.setChecked(shown)
-            box.setText(self.tr("{0} (nothing yet)").format(title) if why else title)
-            box.setToolTip(why or self.tr("What is left out is named on the last page."))
+            short = title.partition(",")[0]
+            box.setText(self.tr("{0} (nothing yet)").format(short) if why else short)
+            box.setToolTip(why or self.tr("{0}. What is left out is named on the last page.").format(title))
         self.paper.setCurrentText(p.project.report.paper)
         for kind, button in self.exports.items():
             missing = p.export_missing(kind)
@@ -98,8 +99,8 @@ class ReportPage(StepPage):
         inside = QWidget()
         column = QVBoxLayout(inside)
         column.setContentsMargins(0, 4, 0, 4)
-        for name, title, shown in self.presenter.sections():
-            box = QCheckBox(title)
+        for name, _, shown in self.presenter.sections():
+            box = QCheckBox()
             box.setChecked(shown)
             box.clicked.connect(lambda on, section=name: self.presenter.choose_section(section, on))
             self.boxes[name] = box

@@ -30,6 +30,7 @@ class FrameScrub(QObject):
     def forget(self) -> None:
         """Another recording."""
         self.current, self.problem = "", ""
+        self._chosen = False
         self.stages: FrameStages | None = None
         self._wanted: tuple[Any, ...] = ()
 
@@ -52,7 +53,7 @@ class FrameScrub(QObject):
     def choose(self, name: str) -> None:
         """Look at this frame."""
         if name in self._work.names and name != self.current:
-            self.current = name
+            self.current, self._chosen = name, True
             self.follow()
             self.changed.emit()
 
@@ -71,7 +72,8 @@ class FrameScrub(QObject):
         names = self._work.names
         if self.current not in names:
             self.forget()
-            self.current = names[len(names) // 2] if names else ""
+        if not self._chosen:
+            self.current = self._telling()
         wanted = self._key()
         if not self._active or not self.current or wanted == self._wanted:
             return
@@ -86,6 +88,14 @@ class FrameScrub(QObject):
             on_failed=lambda problem: self._seen(wanted, None, str(problem)),
             replace_waiting=True,
         )
+
+    def _telling(self) -> str:
+        """The frame to begin with: the one that meets most of the fan, as far as that is known; else the middle one."""
+        names, records = self._work.names, self._work.records()
+        used = [records[name] for name in names if name in records and records[name].used]
+        if not used:
+            return names[len(names) // 2] if names else ""
+        return max(used, key=lambda frame: (frame.fan_lines_met, frame.fan_crossings, frame.points)).name
 
     def _seen(self, wanted: tuple[Any, ...], stages: FrameStages | None, problem: str) -> None:
         if wanted[1:] == self._wanted[1:]:  # of this recording; also those passed on the way are shown

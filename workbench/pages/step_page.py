@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import Any
 
-from PySide6.QtCore import Qt
+from PySide6.QtCore import QEvent, QSize, Qt
 from PySide6.QtWidgets import QFrame, QLabel, QScrollArea, QSizePolicy, QSplitter, QVBoxLayout, QWidget
 from superqt import QCollapsible
 
 from workbench.pages.presenter import StepPresenter
 from workbench.theme import icon
 
-SIDE_WIDTH = 380
+SIDE_WIDTH, NARROWEST_SIDE = 380, 300
 
 
 class StepPage(QWidget):
@@ -77,14 +77,28 @@ class StepPage(QWidget):
         self.side.addStretch(1)
         inside = _holding(self.side)
         inside.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Preferred)
-        scroll = QScrollArea()
+        scroll = _SidePanel()
         scroll.setWidget(inside)
         scroll.setWidgetResizable(True)
         scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         scroll.setFrameShape(QFrame.Shape.NoFrame)
-        scroll.setMinimumWidth(300)
         scroll.setAccessibleName(self.tr("Settings and quality"))
         return scroll
+
+
+class _SidePanel(QScrollArea):
+    """Scrolls up and down only: it is never narrower than what is in it, else that would be cut off."""
+
+    def minimumSizeHint(self) -> QSize:
+        hint = super().minimumSizeHint()
+        inside = self.widget().minimumSizeHint().width() if self.widget() is not None else 0
+        needed = inside + self.verticalScrollBar().sizeHint().width()
+        return QSize(max(NARROWEST_SIDE, needed), hint.height())
+
+    def eventFilter(self, watched: Any, event: QEvent) -> bool:
+        if event.type() == QEvent.Type.LayoutRequest and watched is self.widget():
+            self.updateGeometry()
+        return super().eventFilter(watched, event)
 
 
 def heading(text: str) -> QLabel:

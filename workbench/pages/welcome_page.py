@@ -7,6 +7,7 @@ from collections.abc import Callable
 from PySide6.QtCore import QEvent, QSize, Qt, QTimer
 from PySide6.QtGui import QAction, QKeySequence
 from PySide6.QtWidgets import (
+    QApplication,
     QCommandLinkButton,
     QFrame,
     QGridLayout,
@@ -91,7 +92,7 @@ class WelcomePage(QWidget):
         card.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Maximum)
         inside = QVBoxLayout(card)
         inside.setContentsMargins(36, 28, 36, 28)
-        inside.addWidget(title)
+        inside.addLayout(_with_mark(title))
         inside.addWidget(claim)
         inside.addSpacing(18)
         columns = QHBoxLayout()
@@ -175,3 +176,14 @@ class WelcomePage(QWidget):
         link.clicked.connect(lambda: do())
         self._links.append((link, symbol))
         return link
+
+
+def _with_mark(title: QLabel) -> QHBoxLayout:
+    """The program's name after its icon."""
+    mark = QLabel()
+    mark.setPixmap(QApplication.windowIcon().pixmap(QSize(40, 40)))
+    row = QHBoxLayout()
+    row.setSpacing(14)
+    row.addWidget(mark)
+    row.addWidget(title, 1)
+    return row

@@ -269,7 +269,7 @@ def test_frames_are_looked_at_only_while_the_page_is_seen(measured, quick, qtbot
     assert jobs.SHOW_FRAME not in quick.ran
     measured.entered()
     qtbot.waitUntil(lambda: measured.scrub.up_to_date)
-    assert measured.scrub.index == cases.FRAMES // 2
+    assert measured.scrub.index == cases.FRAMES - 2, "the last one that is used meets most of the fan"
     measured.left()
     ran = quick.ran.count(jobs.SHOW_FRAME)
     measured.scrub.step(1)

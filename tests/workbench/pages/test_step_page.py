@@ -1,0 +1,27 @@
+"""What all pages share: the panel at the side."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from PySide6.QtWidgets import QCheckBox
+
+from workbench.bench import Bench
+from workbench.pages.presenter import StepPresenter
+from workbench.pages.step_page import StepPage
+
+
+def test_the_side_is_never_narrower_than_what_is_in_it_however_narrow_the_window(hand_bench: Bench, qtbot: Any) -> None:
+    page = StepPage(StepPresenter(hand_bench))
+    qtbot.addWidget(page)
+    page.resize(500, 400)
+    page.show()
+    side: Any = page.splitter.widget(1)
+    page.splitter.setSizes([500, 10])
+    assert side.width() >= 300
+    box = QCheckBox("a very long setting " * 4)
+    page.add_to_side(box)
+    qtbot.waitUntil(lambda: side.viewport().width() >= side.widget().minimumSizeHint().width() > 400)
+    page.splitter.setSizes([500, 10])
+    right = box.mapTo(side.viewport(), box.rect().topRight()).x()
+    assert right < side.viewport().width(), "nothing is cut off"
