@@ -42,6 +42,7 @@ class _Faces(ResultFile):
 class _Contribution(ResultFile):
     source: str
     u_mm: Finite
+    point_mm: Finite | None = None
 
 
 class _GaugeFile(ResultFile):
@@ -89,7 +90,7 @@ def write_gauge(path: Path, gauge: GaugeResult, calibration_id: str) -> None:
                 "notes": gauge.notes,
                 "points": dict(zip(("upper", "lower"), gauge.points_used, strict=True)),
                 "normal": gauge.normal,
-                "budget": [{"source": row.source, "u_mm": row.u_mm} for row in gauge.budget],
+                "budget": [_row(row, gauge.u_mm) for row in gauge.budget],
                 "faces": {"upper": _plane(gauge.upper), "lower": _plane(gauge.lower)},
                 "calibration_id": calibration_id,
                 "version": __version__,
@@ -119,7 +120,7 @@ def read_gauge(path: Path, cloud: Cloud) -> GaugeResult:
         upper=_face(file.faces.upper, members["upper"], file.flatness_mm.upper, cloud),
         lower=_face(file.faces.lower, members["lower"], file.flatness_mm.lower, cloud),
         parallelism=math.radians(file.parallelism_deg),
-        budget=tuple(Contribution(row.source, row.u_mm) for row in file.budget),
+        budget=tuple(Contribution(row.source, row.u_mm, row.point_mm) for row in file.budget),
         nominal_mm=file.nominal_mm,
         tolerance_mm=file.tolerance_mm,
         verdict=file.verdict,
@@ -127,6 +128,16 @@ def read_gauge(path: Path, cloud: Cloud) -> GaugeResult:
         rule=file.rule,
         notes=tuple(file.notes),
     )
+
+
+def _row(row: Contribution, u_mm: float) -> dict[str, Any]:
+    return {
+        "source": row.source,
+        "u_mm": row.u_mm,
+        "point_mm": row.point_mm,
+        "sensitivity": row.sensitivity,
+        "share": row.u_mm**2 / u_mm**2 if u_mm else 0.0,
+    }
 
 
 def _plane(face: Face) -> dict[str, Any]:

@@ -19,6 +19,7 @@ from core.model.arrays import Array
 from core.scan.cloud import Cloud
 from core.scan.surface import Mesh
 
+_COMMON = "sigma_common"
 _NORMALS = [("nx", "f4"), ("ny", "f4"), ("nz", "f4")]
 _CLOUD = [
     # Coordinates in double: 700 mm in single precision step by 0.06 µm, but rays and planes are fitted to them again.
@@ -26,6 +27,7 @@ _CLOUD = [
     *_NORMALS,
     *[("sigma", "f4"), ("intensity", "f4"), ("frame", "i4")],
     *[("sweep", "i4"), ("image_u", "f4"), ("image_v", "f4")],
+    (_COMMON, "f4"),
 ]
 _MESH = [("x", "f4"), ("y", "f4"), ("z", "f4"), *_NORMALS, ("sigma", "f4")]
 _CALIBRATION = "calibration "
@@ -40,7 +42,7 @@ class CloudFile:
 
 
 def write_cloud(path: Path, cloud: Cloud, calibration_id: str) -> None:
-    """Write cloud.ply: x y z nx ny nz sigma intensity frame, and sweep image_u image_v behind them.
+    """Write cloud.ply: x y z nx ny nz sigma intensity frame, and sweep image_u image_v sigma_common behind them.
 
     Raises
     ------
@@ -51,12 +53,13 @@ def write_cloud(path: Path, cloud: Cloud, calibration_id: str) -> None:
     _put(vertices, ("x", "y", "z"), cloud.points)
     _put(vertices, ("nx", "ny", "nz"), cloud.normals)
     _put(vertices, ("image_u", "image_v"), cloud.uv)
-    for name in ("sigma", "intensity", "frame", "sweep"):
+    for name in ("sigma", "intensity", "frame", "sweep", "sigma_common"):
         vertices[name] = getattr(cloud, name)
     comments = [
         "unit mm",
         "frame of reference: the camera, z forward, y down",
         "sigma: standard uncertainty of the depth in mm; frame -1: measured by the fan itself",
+        "sigma_common: what camera and fan calibration add to it, in mm, common to all points",
     ]
     _write(path, [PlyElement.describe(vertices, "vertex")], comments, calibration_id)
 
@@ -70,12 +73,13 @@ def read_cloud(path: Path) -> CloudFile:
         If it is missing, damaged, lacks a property or holds values that are not finite; names it.
     """
     data = _read(path, "measure the scan first: trisect scan SET --out DIR")
-    vertices = _element(data, "vertex", [name for name, _ in _CLOUD], path)
+    vertices = _element(data, "vertex", [name for name, _ in _CLOUD if name != _COMMON], path)
+    known = _COMMON in (vertices.dtype.names or ())  # files of earlier versions have none
 
     def columns(*names: str) -> Array:
         return np.column_stack([vertices[name] for name in names]).astype(np.float64)
 
-    for name in ("x", "y", "z", "sigma", "image_u", "image_v"):
+    for name in ("x", "y", "z", "sigma", "image_u", "image_v", *([_COMMON] if known else [])):
         wrong = int(np.count_nonzero(~np.isfinite(vertices[name])))
         if wrong:
             raise InputError(f"property {name} is not finite in {wrong} of {len(vertices)} points", where=path)
@@ -89,6 +93,7 @@ def read_cloud(path: Path) -> CloudFile:
         frame=np.asarray(vertices["frame"], dtype=np.int64),
         sweep=np.asarray(vertices["sweep"], dtype=np.int64),
         normals=columns("nx", "ny", "nz"),
+        sigma_common=columns(_COMMON)[:, 0] if known else np.zeros(len(vertices)),
     )
     ids = [line.removeprefix(_CALIBRATION) for line in data.comments if line.startswith(_CALIBRATION)]
     return CloudFile(cloud, ids[0] if ids else "")

@@ -24,11 +24,13 @@ from core.files.arrays_file import (
 )
 from core.image.stripe import StripeSettings
 from core.model.arrays import Array
+from core.scan.common_errors import CommonErrors
 from core.scan.crossings import CrossingTable
 from core.scan.features import FrameFeatures, ScanFeatures
 
 _TODO = "measure the scan first: trisect scan SET --out DIR"
 _NO_FRAME = -1
+_COMMON = ("sources", "cameras", "fans", "sweeps")
 _CROSSINGS = tuple(one.name for one in fields(CrossingTable))
 
 
@@ -54,6 +56,8 @@ class ScanFile:
         Index of the frame to show in the report, or None.
     calibration_id
         Names the calibration the scan was measured with.
+    common
+        What displaced calibrations do to the scan; None if not known.
     features_key
         Names what the features rest on: with the same key they need not be looked for again. Nothing if not known.
     """
@@ -67,12 +71,13 @@ class ScanFile:
     shown: int | None
     calibration_id: str
     features_key: str = ""
+    common: CommonErrors | None = None
 
 
 def write_scan(path: Path, scan: ScanFile) -> None:
     """Write scan.npz; the same scan gives the same bytes. InputError if it cannot be written."""
     features = scan.features
-    crossings = features.crossings
+    crossings, common = features.crossings, scan.common
     arrays: dict[str, NDArray[Any]] = {
         "calibration_id": np.array(scan.calibration_id),
         "features_key": np.array(scan.features_key),
@@ -88,6 +93,7 @@ def write_scan(path: Path, scan: ScanFile) -> None:
         "frame_shift_px": np.array([frame.shift_px for frame in features.frames], dtype=np.float64),
         "notes": pack_texts(features.notes),
         "stripes": _stripes(features.fan_stripe, features.sweep_stripe),
+        **({f"common_{name}": np.asarray(getattr(common, name)) for name in _COMMON} if common else {}),
         **{f"crossing_{name}": np.asarray(getattr(crossings, name)) for name in _CROSSINGS},
         **pack_centrelines("fan", [features.fan]),
         **pack_centrelines("sweep", [frame.centrelines for frame in features.frames]),
@@ -149,7 +155,19 @@ def _unpacked(arrays: Arrays) -> ScanFile:
         shown=None if shown == _NO_FRAME else shown,
         calibration_id=str(arrays["calibration_id"]),
         features_key=str(arrays.get("features_key", "")),
+        common=_common(arrays, (width, height)),
     )
+
+
+def _common(arrays: Arrays, image_size: tuple[int, int]) -> CommonErrors | None:
+    """What displaced calibrations do; ValueError if it is not of this scan's sweeps."""
+    if "common_sources" not in arrays:
+        return None
+    cameras, fans, sweeps = (arrays[f"common_{name}"] for name in _COMMON[1:])
+    common = CommonErrors(image_size, tuple(arrays["common_sources"].tolist()), cameras, fans, sweeps)
+    if common.sweeps.shape[1] != len(arrays["sweep_frames"]):
+        raise ValueError(f"common_sweeps holds {common.sweeps.shape[1]} sweeps, not {len(arrays['sweep_frames'])}")
+    return common
 
 
 def _stripes(fan: StripeSettings, sweep: StripeSettings | None) -> Array:

@@ -1,9 +1,9 @@
 """The thickness of a gauge block: distance of its two parallel faces.
 
 Baseline rule: **thickness is the distance of two parallel planes fitted jointly and robustly to the points of both
-faces**, one common normal and two distances; see `core.inspect.plane_fit`. No point of the table is extrapolated by
-itself, and no mean height is taken. Fitting is one step, uncertainty and verdict another, so that the thickness can be
-measured again with displaced calibrations in between.
+faces**, one common normal and two distances. `core.inspect.plane_fit` finds which points belong to them, as if points
+were independent; `core.inspect.parallel_faces` then fits the same planes with the points' true covariance. No point
+of the table is extrapolated by itself, and no mean height is taken.
 """
 
 from __future__ import annotations
@@ -16,15 +16,11 @@ from numpy.typing import ArrayLike, NDArray
 from core.errors import InputError
 from core.inspect.conformity import decide
 from core.inspect.faces import FacePair, faces_in_polygons, find_faces
-from core.inspect.plane_fit import ParallelPlanes, PlaneFit, fit_parallel_planes, fit_plane, refit_thickness
-from core.inspect.results import Face, GaugeResult
-from core.inspect.uncertainty import (
-    calibration_contributions,
-    combined,
-    form_contribution,
-    patches,
-    point_contributions,
-)
+from core.inspect.parallel_faces import FittedFaces, fit_faces
+from core.inspect.plane_fit import ParallelPlanes, PlaneFit, fit_parallel_planes, fit_plane
+from core.inspect.point_errors import PointErrors
+from core.inspect.results import Contribution, Face, GaugeResult
+from core.inspect.uncertainty import CAMERA, FAN_CALIBRATION, budget, combined
 from core.model import LightPlane
 from core.model.arrays import Array
 from core.progress import Progress, silent
@@ -43,29 +39,34 @@ RULE_LINE = (
 class GaugeFit:
     """The two faces and the planes fitted to them.
 
-    `planes` is the joint fit, over `pair.upper` and `pair.lower` (indices into the cloud, in the order of the fit's
-    weights and gains); `upper` and `lower` are each fitted freely, `parallelism` (rad) is the angle between them.
+    `faces` is the joint fit, over `pair.upper` and `pair.lower` (indices into the cloud); `robust` the same planes
+    fitted as if points were independent; `upper` and `lower` are each fitted freely, `parallelism` (rad) is the angle
+    between them. `budget` says what the uncertainty of the thickness is made of.
     """
 
-    planes: ParallelPlanes
+    faces: FittedFaces
+    robust: ParallelPlanes
     pair: FacePair
     upper: Face
     lower: Face
     parallelism: float
+    budget: tuple[Contribution, ...]
+
+    @property
+    def planes(self) -> ParallelPlanes:
+        """The joint fit's planes."""
+        return self.faces.planes
 
     @property
     def thickness_mm(self) -> float:
         """Distance of the two parallel planes."""
         return self.planes.thickness
 
-    def thickness_of(self, points: Array) -> float:
-        """Thickness in mm from the cloud's `points` (N, 3) measured again, faces and weights the same."""
-        return refit_thickness(self.planes, points[self.pair.upper], points[self.pair.lower])
-
 
 def fit_gauge(
     cloud: Cloud,
     *,
+    errors: PointErrors | None = None,
     regions: Polygons | FacePair | None = None,
     margin_mm: float = 1.5,
     tolerance_mm: float | None = None,
@@ -79,6 +80,8 @@ def fit_gauge(
     ----------
     cloud
         The measured points.
+    errors
+        How their errors hang together; None: each stretch of a stripe by itself.
     regions
         (upper, lower) polygons, each (n, 2) in pixels, or the points of the faces themselves; None: the two largest
         parallel faces are found.
@@ -100,42 +103,47 @@ def fit_gauge(
         pair = regions
     else:
         pair = faces_in_polygons(cloud, *regions, margin_mm=margin_mm, tolerance_mm=tolerance_mm, seed=seed)
+    errors = errors or PointErrors()
     upper, lower = cloud.select(pair.upper), cloud.select(pair.lower)
-    planes = fit_parallel_planes(
+    robust = fit_parallel_planes(
         upper.points, lower.points, upper.sigma, lower.sigma, reference_normal=reference_normal
     )
-    if planes.thickness <= 0:
+    if robust.thickness <= 0:
         raise InputError(
             "the upper face lies behind the lower one as the camera sees them",
             where="[gauge] upper_polygon_px",
             todo="exchange upper_polygon_px and lower_polygon_px",
         )
+    faces = fit_faces(upper, lower, robust, errors)
     free = [
-        fit_plane(face.points, face.sigma, reference_normal=None if planes.tilt_determined else planes.normal)
+        fit_plane(face.points, face.sigma, reference_normal=None if robust.tilt_determined else robust.normal)
         for face in (upper, lower)
     ]
     cross = np.linalg.norm(np.cross(free[0].normal, free[1].normal))
     return GaugeFit(
-        planes,
+        faces,
+        robust,
         pair,
         _face(free[0], pair.upper),
         _face(free[1], pair.lower),
         float(np.arctan2(cross, abs(free[0].normal @ free[1].normal))),
+        budget(
+            faces.gains,
+            faces.sources,
+            own=faces.fit.own,
+            form_mm=faces.fit.form_mm,
+            calibrations=() if errors.common is None else errors.common.sources,
+        ),
     )
 
 
 def measure_gauge(
     cloud: Cloud,
     *,
+    errors: PointErrors | None = None,
     regions: Polygons | FacePair | None = None,
-    fit: GaugeFit | None = None,
     nominal_mm: float | None = None,
     tolerance_mm: float | None = None,
-    sweep_covariance: Array | None = None,
-    camera_changes: Array | None = None,
-    fan_changes: Array | None = None,
-    correlation_px: float = 12.0,
-    speckle_px: float = 12.0,
     k: float = 2.0,
     seed: int = 0,
     progress: Progress = silent,
@@ -146,19 +154,12 @@ def measure_gauge(
     ----------
     cloud
         The measured points.
+    errors
+        How their errors hang together; what it does not know is not in the uncertainty, and a note says so.
     regions, seed
-        As for `fit_gauge`; not used when `fit` is given.
-    fit
-        The fit of this very cloud, when it has been made already.
+        As for `fit_gauge`.
     nominal_mm, tolerance_mm
         What the part should be, ±; without both of them there is no verdict.
-    sweep_covariance
-        (3S, 3S) of the network's stacked π in 1/mm²; None: not known.
-    camera_changes, fan_changes
-        Changes of the thickness in mm for one-σ displaced calibrations (`core.inspect.remeasure`); None: not known,
-        and then no row of the budget.
-    correlation_px, speckle_px
-        Lengths along a stripe over which centreline noise of the sweeps, and of the fan, is one and the same.
     k
         Coverage factor.
     progress
@@ -169,31 +170,9 @@ def measure_gauge(
     InputError
         As `fit_gauge`.
     """
-    fit = fit_gauge(cloud, regions=regions, seed=seed, progress=progress) if fit is None else fit
-    indices, gains, residuals, patch = _used_points(cloud, fit)
-    used = cloud.select(indices)
-    gradient = gains[:, None] * fit.planes.normal
-    rows = (
-        *point_contributions(
-            used,
-            gradient,
-            sweep_covariance=sweep_covariance,
-            correlation_px=correlation_px,
-            speckle_px=speckle_px,
-        ),
-        form_contribution(
-            used,
-            gradient,
-            gains,
-            residuals,
-            patch,
-            sweep_covariance=sweep_covariance,
-            correlation_px=correlation_px,
-            speckle_px=speckle_px,
-        ),
-        *calibration_contributions(camera_changes, fan_changes),
-    )
-    u = combined(rows)
+    errors = errors or PointErrors()
+    fit = fit_gauge(cloud, errors=errors, regions=regions, seed=seed, progress=progress)
+    u = combined(fit.budget)
     verdict = ""
     if nominal_mm is not None and tolerance_mm is not None:
         verdict = decide(fit.thickness_mm - nominal_mm, tolerance_mm, k * u)
@@ -204,13 +183,13 @@ def measure_gauge(
         upper=fit.upper,
         lower=fit.lower,
         parallelism=fit.parallelism,
-        budget=rows,
+        budget=fit.budget,
         nominal_mm=nominal_mm,
         tolerance_mm=tolerance_mm,
         verdict=verdict,
         normal=fit.planes.normal,
         rule=RULE if fit.planes.tilt_determined else RULE_LINE,
-        notes=_notes(sweep_covariance, camera_changes, fan_changes),
+        notes=_notes(errors),
     )
 
 
@@ -223,26 +202,9 @@ def _face(fit: PlaneFit, indices: NDArray[np.int64]) -> Face:
     return Face(plane, indices[kept], residuals, float(high - low), float(np.sqrt(np.mean(residuals**2))))
 
 
-def _used_points(cloud: Cloud, fit: GaugeFit) -> tuple[NDArray[np.int64], Array, Array, NDArray[np.int64]]:
-    """Indices of the points with weight in the joint fit, their gains, residuals along the normal and patches."""
-    axes = np.linalg.svd(fit.planes.normal[None, :])[2][1:].T
-    columns: list[tuple[NDArray[np.int64], Array, Array, NDArray[np.int64]]] = []
-    first = 0
-    for side, indices in enumerate((fit.pair.upper, fit.pair.lower)):
-        kept = fit.planes.weights[side] > 0
-        patch = patches(cloud.points[indices[kept]], axes) + first
-        first = int(patch.max()) + 1
-        # Residuals are positive towards the camera, gains count along the normal, away from it.
-        columns.append((indices[kept], fit.planes.gains[side][kept], -fit.planes.residuals[side][kept], patch))
-    indices, gains, residuals, patch = (np.concatenate(column) for column in zip(*columns, strict=True))
-    return indices, gains, residuals, patch
-
-
-def _notes(sweeps: Array | None, camera: Array | None, fan: Array | None) -> tuple[str, ...]:
+def _notes(errors: PointErrors) -> tuple[str, ...]:
     """Sentences on what the stated uncertainty does not hold."""
-    missing = [
-        name
-        for name, known in (("the sweeps' light planes", sweeps), ("the camera", camera), ("the fan", fan))
-        if known is None
-    ]
+    missing = [] if errors.sweep_covariance is not None else ["the sweeps' light planes"]
+    known = () if errors.common is None else errors.common.sources
+    missing += [name for name, source in (("the camera", CAMERA), ("the fan", FAN_CALIBRATION)) if source not in known]
     return (f"The stated uncertainty does not hold that of {', '.join(missing)}.",) if missing else ()

@@ -29,10 +29,20 @@ class Face:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Contribution:
-    """One row of the uncertainty of a thickness: what it comes from and its standard uncertainty in mm."""
+    """One row of the uncertainty of a thickness: what it comes from and its standard uncertainty in mm.
+
+    `point_mm` is the standard uncertainty in mm, across the surface, that the same cause gives to a typical point;
+    None where it is not known.
+    """
 
     source: str
     u_mm: float
+    point_mm: float | None = None
+
+    @property
+    def sensitivity(self) -> float | None:
+        """How much of a typical point's uncertainty from this cause arrives in the result, in mm per mm."""
+        return self.u_mm / self.point_mm if self.point_mm else None
 
 
 @dataclass(frozen=True, eq=False, slots=True)

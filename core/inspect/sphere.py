@@ -9,8 +9,10 @@ from numpy.typing import NDArray
 
 from core.errors import InputError
 from core.inspect.faces import find_planes, search_tolerance
+from core.inspect.generalised import GRAZING, Sources, generalised_fit
+from core.inspect.point_errors import PointErrors, patches
 from core.inspect.results import Contribution
-from core.inspect.uncertainty import combined, point_contributions
+from core.inspect.uncertainty import budget, combined
 from core.model.arrays import Array
 from core.progress import Progress, silent
 from core.scan.cloud import Cloud
@@ -19,8 +21,6 @@ from core.scan.normals import with_normals
 HYPOTHESES = 600
 SEARCH_POINTS = 4000
 TUKEY = 4.685
-GRAZING = 0.35
-"""|cos| of incidence below which a point's σ across the surface falls no further: its pixel is uncertain as well."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -28,7 +28,8 @@ class SphereFit:
     """A sphere: `centre` (3,) and `radius_mm` in mm, camera frame, with `u_mm` the radius's standard uncertainty.
 
     `indices` into the cloud of the points used; `residuals` (mm) of these, outwards positive; `form_mm` is the spread
-    of the residuals that holds 95 % of the points, their noise included; `budget` says what `u_mm` is made of.
+    of the residuals that holds 95 % of the points, their noise included, and `u_form_mm` the standard uncertainty of
+    that spread; `budget` says what `u_mm` is made of.
     """
 
     centre: Array
@@ -38,6 +39,12 @@ class SphereFit:
     indices: NDArray[np.int64]
     residuals: Array
     budget: tuple[Contribution, ...]
+    u_form_mm: float
+
+    @property
+    def diameter_mm(self) -> float:
+        """Twice the radius; its standard uncertainty is twice the radius's."""
+        return 2 * self.radius_mm
 
 
 def find_sphere(
@@ -94,12 +101,12 @@ def fit_sphere(
     cloud: Cloud,
     indices: NDArray[np.int64] | None = None,
     *,
-    sweep_covariance: Array | None = None,
-    correlation_px: float = 12.0,
-    speckle_px: float = 12.0,
+    errors: PointErrors | None = None,
     seed: int = 0,
 ) -> SphereFit:
-    """Robust orthogonal fit of a sphere, weights 1/σ² across the surface, Tukey's biweight.
+    """Robust fit of a sphere by least orthogonal distances, with the true covariance of its points.
+
+    Tukey's biweight says which points belong to it; the generalised fit of `core.inspect.generalised` follows.
 
     Parameters
     ----------
@@ -107,8 +114,8 @@ def fit_sphere(
         The measured points.
     indices
         Of the points on the sphere; None: found by `find_sphere`.
-    sweep_covariance, correlation_px, speckle_px
-        As for `core.inspect.uncertainty.point_contributions`; calibrations are not part of `u_mm`.
+    errors
+        How the points' errors hang together; None: each stretch of a stripe by itself.
     seed
         Of the search.
 
@@ -117,6 +124,7 @@ def fit_sphere(
     InputError
         If there is no sphere, or fewer than 12 points on it.
     """
+    errors = errors or PointErrors()
     indices = find_sphere(cloud, seed=seed) if indices is None else indices
     if len(indices) < 12:
         raise InputError(f"{len(indices)} points are too few for a sphere", where="point cloud")
@@ -126,30 +134,46 @@ def fit_sphere(
     centred = points - middle
     squares = (centred**2).sum(axis=1)
     start = np.linalg.lstsq(np.column_stack([2 * centred, np.ones(len(points))]), squares, rcond=None)[0][:3] + middle
-    centre, radius, weights = _robust(points, sigma, start)
-    outward = points - centre
-    distance = np.linalg.norm(outward, axis=1)
-    outward /= distance[:, None]
-    design = np.column_stack([outward, np.ones(len(points))])
-    normal_matrix = (design * weights[:, None]).T @ design
-    gain = np.linalg.solve(normal_matrix, (design * weights[:, None]).T)[3]  # ∂R/∂(shift outwards)
-    kept = weights > 0
-    used = cloud.select(indices[kept])
-    residuals = (distance - radius)[kept]
-    noise = sigma[kept] * _incidence(points[kept], centre)
-    excess = float(np.sqrt(max(np.mean((residuals / noise) ** 2), 1.0)))
-    rows = tuple(
-        Contribution(row.source, row.u_mm * excess)
-        for row in point_contributions(
-            used,
-            gain[kept, None] * outward[kept],
-            sweep_covariance=sweep_covariance,
-            correlation_px=correlation_px,
-            speckle_px=speckle_px,
-        )
+    centre, radius, robust = _robust(points, sigma, start)
+    kept = robust > 0
+    used, points = cloud.select(indices[kept]), points[kept]
+    one_face = np.zeros(len(points), dtype=np.int64)
+    sources = Sources.of(used, _outward(points, centre), robust[kept], one_face, patches(used.uv, one_face), errors)
+    for _ in range(3):
+        outward = _outward(points, centre)
+        misfit = np.linalg.norm(points - centre, axis=1) - radius
+        design = np.column_stack([outward, np.ones(len(points))])
+        fit = generalised_fit(sources.mean(design), sources.mean(misfit), sources)
+        centre, radius = centre + fit.estimate[:3], radius + float(fit.estimate[3])
+    rows = budget(
+        fit.gains[3],
+        sources,
+        own=fit.own,
+        form_mm=fit.form_mm,
+        calibrations=() if errors.common is None else errors.common.sources,
     )
+    residuals = np.linalg.norm(points - centre, axis=1) - radius
     low, high = np.quantile(residuals, [0.025, 0.975])
-    return SphereFit(centre, radius, combined(rows), float(high - low), indices[kept], residuals, rows)
+    form = float(high - low)
+    return SphereFit(centre, radius, combined(rows), form, indices[kept], residuals, rows, _u_form(form, sources))
+
+
+def _outward(points: Array, centre: Array) -> Array:
+    away = points - centre
+    unit: Array = away / np.linalg.norm(away, axis=1)[:, None]
+    return unit
+
+
+def _u_form(form: float, sources: Sources) -> float:
+    """Standard uncertainty of the range that holds 95 % of normal residuals, from as many draws as there are stretches.
+
+    A quantile q of n draws has the variance q (1 − q)/(n f²), f the density there; the two ends have the correlation
+    q/(1 − q) = 0.0256.
+    """
+    q, sd = 0.025, form / 3.92
+    density = float(np.exp(-0.5 * 1.96**2) / np.sqrt(2 * np.pi))
+    end = sd * np.sqrt(q * (1 - q) / len(sources.own)) / density
+    return float(end * np.sqrt(2 * (1 - q / (1 - q))))
 
 
 def _above_table(cloud: Cloud, tolerance: float, seed: int, progress: Progress) -> NDArray[np.int64]:
@@ -215,18 +239,19 @@ def _solve(points: Array, weights: Array, centre: Array) -> tuple[Array, float]:
 
 
 def _robust(points: Array, sigma: Array, centre: Array) -> tuple[Array, float, Array]:
-    """Iteratively reweighted fit: centre, radius and the weights, zero for points left out."""
+    """Iteratively reweighted fit: centre, radius and the robust weights (0 … 1), zero for points left out."""
     weights = np.maximum(sigma, 1e-6) ** -2.0
     weights /= np.median(weights)
     centre, radius = _solve(points, weights, centre)
+    robust = np.ones(len(points))
     for _ in range(30):
         noise = np.maximum(sigma, 1e-6) * _incidence(points, centre)
         residual = (np.linalg.norm(points - centre, axis=1) - radius) / noise
         scale = max(1.4826 * float(np.median(np.abs(residual))), 1e-9)
-        weights = np.clip(1 - (residual / (TUKEY * scale)) ** 2, 0, None) ** 2 / noise**2
-        weights /= np.median(noise) ** -2.0
+        robust = np.clip(1 - (residual / (TUKEY * scale)) ** 2, 0, None) ** 2
+        weights = robust * np.median(noise) ** 2 / noise**2
         previous = centre, radius
         centre, radius = _solve(points, weights, centre)
         if abs(radius - previous[1]) < 1e-7 and np.abs(centre - previous[0]).max() < 1e-7:
             break
-    return centre, radius, weights
+    return centre, radius, robust

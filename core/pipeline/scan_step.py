@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from core.calibrate.deviations import calibration_deviations
 from core.calibrate.results import LEFT_OUT
 from core.errors import InputError
 from core.files.pictures import Picture
@@ -19,6 +20,7 @@ from core.pipeline.kept_features import features_key, kept_features
 from core.pipeline.options import Options
 from core.pipeline.workspace import Calibration, Workspace, check_size
 from core.progress import Progress, silent, steps
+from core.scan.common_errors import solve_common
 from core.scan.features import (
     FeatureOptions,
     Frame,
@@ -86,13 +88,17 @@ def scan_step(
             features = _look(found, calibration, options, progress, watch)
         solving = ReconstructOptions(method=options.method, sigma_cut_mm=options.sigma_cut_mm)
         scan = reconstruct(features, camera, fan, solving, progress)
-        scan = replace(scan, cloud=with_normals(scan.cloud, progress=progress))
+        deviations = calibration_deviations(calibration.camera, calibration.fan)
+        common = solve_common(features, scan, camera, fan, deviations, options.method, progress)
+        cloud = replace(scan.cloud, sigma_common=common.sigma(scan.cloud))
+        scan = replace(scan, cloud=with_normals(cloud, progress=progress))
         log.frames.extend(scan.frames)
         log.notes.extend(left_out_sentences(scan.frames))
         log.notes.extend(scan.notes)
         surface = with_normals(fuse(scan.cloud, camera.image_size, progress=progress), progress=progress)
         mesh = build_mesh(surface, progress=progress)
-        _write(work, scan, mesh, _file(features, scan, calibration.id, features_key(found, options)))
+        file = _file(features, scan, calibration.id, features_key(found, options))
+        _write(work, scan, mesh, replace(file, common=common))
     return Measured(scan, mesh)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,6 +33,9 @@ class Cloud:
         (N,) index of the sweep in the network's covariance, or `FAN - k` for fan line k.
     normals
         (N, 3) unit normals towards the camera; zero where unknown.
+    sigma_common
+        (N,) standard uncertainty of the depth in mm that camera and fan have in common for the whole scan; not in
+        `sigma`. Zero where it is not known (and when left out).
     """
 
     points: Array
@@ -42,15 +45,19 @@ class Cloud:
     frame: NDArray[np.int64]
     sweep: NDArray[np.int64]
     normals: Array
+    sigma_common: Array = field(default_factory=lambda: np.zeros(0))
 
     def __post_init__(self) -> None:
         count = len(self.points)
+        if not len(self.sigma_common):
+            set_field(self, "sigma_common", np.zeros(count))
         for name, shape in (
             ("points", (count, 3)),
             ("uv", (count, 2)),
             ("sigma", (count,)),
             ("intensity", (count,)),
             ("normals", (count, 3)),
+            ("sigma_common", (count,)),
         ):
             set_field(self, name, frozen_array(getattr(self, name), shape, name))
         for name in ("frame", "sweep"):
@@ -71,4 +78,5 @@ class Cloud:
             self.frame[keep],
             self.sweep[keep],
             self.normals[keep],
+            self.sigma_common[keep],
         )

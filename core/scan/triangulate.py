@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import fields
+
 import numpy as np
 
 from core.image.centreline import Centreline
@@ -40,9 +42,4 @@ def join(clouds: list[Cloud]) -> Cloud:
     if not clouds:
         empty, index = np.zeros(0), np.zeros(0, dtype=np.int64)
         return Cloud(np.zeros((0, 3)), np.zeros((0, 2)), empty, empty, index, index, np.zeros((0, 3)))
-    return Cloud(
-        *(
-            np.concatenate([getattr(cloud, name) for cloud in clouds])
-            for name in ("points", "uv", "sigma", "intensity", "frame", "sweep", "normals")
-        )
-    )
+    return Cloud(*(np.concatenate([getattr(cloud, field.name) for cloud in clouds]) for field in fields(Cloud)))

@@ -21,7 +21,7 @@ def sphere(tmp_path_factory):
 
 def test_a_sphere_of_50_mm_has_its_radius(sphere):
     _, measured = sphere
-    fit = fit_sphere(measured.cloud, find_sphere(measured.cloud), sweep_covariance=measured.sweep_covariance)
+    fit = fit_sphere(measured.cloud, find_sphere(measured.cloud), errors=measured.errors)
     print(f"radius error {fit.radius_mm - 25.0:+.4f} mm, u {fit.u_mm:.4f} mm")
     assert abs(fit.radius_mm - 25.0) <= 0.10
     assert abs(fit.radius_mm - 25.0) <= 3 * fit.u_mm
@@ -30,7 +30,7 @@ def test_a_sphere_of_50_mm_has_its_radius(sphere):
 
 def test_a_sphere_has_its_radius_on_the_worst_of_five_seeds_too(tmp_path):
     measured = measure(Scenario(object="sphere", height_mm=50.0, seed=5, scale=0.5, frames=60), tmp_path)
-    fit = fit_sphere(measured.cloud, find_sphere(measured.cloud), sweep_covariance=measured.sweep_covariance)
+    fit = fit_sphere(measured.cloud, find_sphere(measured.cloud), errors=measured.errors)
     print(f"radius error {fit.radius_mm - 25.0:+.4f} mm, u {fit.u_mm:.4f} mm")
     assert abs(fit.radius_mm - 25.0) <= 0.10
     assert abs(fit.radius_mm - 25.0) <= 3 * fit.u_mm

@@ -14,6 +14,7 @@ FOCAL = 2495.0
 CENTRE = np.array([960.0, 687.0])
 NORMAL = np.array([0.05, 0.25, 1.0]) / np.linalg.norm([0.05, 0.25, 1.0])
 TABLE_MM = 540.0
+FAN_SOURCE = np.array([-200.0, 40.0, 60.0])
 LASER = np.array([260.0, -60.0, 80.0])
 HALF = 30.0
 SPACING = 0.45
@@ -49,14 +50,18 @@ class BlockScan:
     upper: np.ndarray = field(init=False)
     sweep: np.ndarray = field(init=False)
     factor: np.ndarray = field(init=False)
+    pis: np.ndarray = field(init=False)
+    fan_pis: np.ndarray = field(init=False)
 
     def __post_init__(self):
         rng = np.random.default_rng(self.seed)
         parts = [self._stripe(LASER, index, *self._ends(rng)) for index in range(self.sweeps)]
-        source = np.array([-200.0, 40.0, 60.0])
+        source = FAN_SOURCE
         for k, at in enumerate((-22.0, 3.0, 25.0)):
             ends = TABLE_MM * NORMAL + np.array([[at, -self.reach], [at, self.reach]]) @ axes()
             parts.append(self._stripe(source, FAN - k, *ends))
+        self.pis = np.array([part[3] for part in parts[: self.sweeps]])
+        self.fan_pis = np.array([part[3] for part in parts[self.sweeps :]])
         self.points = np.vstack([part[0] for part in parts])
         self.upper = np.concatenate([part[1] for part in parts])
         self.sweep = np.concatenate([part[2] for part in parts])
@@ -111,7 +116,7 @@ class BlockScan:
         return TABLE_MM * NORMAL + flat @ axes()
 
     def _stripe(self, source, index, a, b):
-        """Points of one light sheet on the table and on the block, which of them are on the block, their sweep."""
+        """Points of one light sheet on the table and on the block, which are on the block, their sweep, and its π."""
         pi = np.linalg.solve(np.array([source, a, b]), np.ones(3))
         found = []
         for distance, on_block in ((TABLE_MM, False), (TABLE_MM - self.height, True)):
@@ -126,7 +131,7 @@ class BlockScan:
             found.append((points[over if on_block else beside], on_block))
         points = np.vstack([part for part, _ in found])
         upper = np.repeat([on for _, on in found], [len(part) for part, _ in found])
-        return points, upper, np.full(len(points), index)
+        return points, upper, np.full(len(points), index), pi
 
     def _plane_error_factor(self, rng):
         """δπ = factor @ ξ: errors of each sweep's own, and a few that all sweeps share."""

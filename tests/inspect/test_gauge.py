@@ -6,8 +6,10 @@ import pytest
 from core.errors import InputError
 from core.inspect.faces import FacePair
 from core.inspect.gauge import RULE, fit_gauge, measure_gauge
+from core.inspect.point_errors import PointErrors
 from core.inspect.uncertainty import CAMERA, FAN_CALIBRATION, FORM, POINT_NOISE, SWEEP_PLANES
-from tests.inspect.block_scan import TABLE_MM, BlockScan, square
+from core.scan.common_errors import CommonErrors
+from tests.inspect.block_scan import CENTRE, FOCAL, TABLE_MM, BlockScan, square
 
 STRETCH_PX = 13.0  # six points of the synthetic stripes share their noise
 
@@ -21,6 +23,12 @@ def faces(scan):
     return FacePair(np.flatnonzero(scan.upper), np.flatnonzero(~scan.upper))
 
 
+def errors(scan, *, plane_errors=True, common=None):
+    """How the errors of the synthetic scan's points hang together."""
+    covariance = scan.covariance if plane_errors else np.zeros_like(scan.covariance)
+    return PointErrors(covariance, common, STRETCH_PX, STRETCH_PX)
+
+
 def rows(result):
     return {row.source: row.u_mm for row in result.budget}
 
@@ -29,7 +37,7 @@ def rows(result):
 def test_thickness_found_without_being_told_where(height):
     scan = BlockScan(height=height, sweeps=40)
     cloud = scan.measure(np.random.default_rng(0), outliers=0.05)
-    result = measure_gauge(cloud, sweep_covariance=scan.covariance, correlation_px=STRETCH_PX)
+    result = measure_gauge(cloud, errors=errors(scan))
     assert result.thickness_mm == pytest.approx(height, abs=0.03)
     assert abs(result.thickness_mm - height) < 3 * result.u_mm
     assert result.rule == RULE
@@ -40,7 +48,7 @@ def test_thickness_found_without_being_told_where(height):
 def test_thickness_in_polygons():
     scan = BlockScan(height=50.0, sweeps=40)
     cloud = scan.measure(np.random.default_rng(1), outliers=0.1)
-    result = measure_gauge(cloud, regions=scan.polygons, sweep_covariance=scan.covariance)
+    result = measure_gauge(cloud, regions=scan.polygons, errors=errors(scan))
     assert abs(result.thickness_mm - 50) < 3 * result.u_mm
 
 
@@ -59,20 +67,26 @@ def test_stated_uncertainty_is_the_scatter_over_scans(scan, plane_errors):
         measure_gauge(
             scan.measure(rng, plane_errors=plane_errors, noise=0.02),
             regions=faces(scan),
-            sweep_covariance=scan.covariance if plane_errors else np.zeros_like(scan.covariance),
-            correlation_px=STRETCH_PX,
-            speckle_px=STRETCH_PX,
+            errors=errors(scan, plane_errors=plane_errors),
         )
-        for _ in range(100)
+        for _ in range(60)
     ]
     thickness = np.array([result.thickness_mm for result in results])
     stated = np.sqrt(np.mean([result.u_mm**2 for result in results]))
     assert stated == pytest.approx(thickness.std(), rel=0.2)
-    assert thickness.mean() == pytest.approx(50.0, abs=4 * thickness.std() / 10)
+    assert thickness.mean() == pytest.approx(50.0, abs=4 * thickness.std() / np.sqrt(60))
     if plane_errors:
-        assert rows(results[0])[SWEEP_PLANES] > 2 * rows(results[0])[POINT_NOISE]
+        assert rows(results[0])[SWEEP_PLANES] > 0.3 * rows(results[0])[POINT_NOISE]
     else:
         assert rows(results[0])[SWEEP_PLANES] == 0
+
+
+def test_points_that_share_errors_weigh_less_than_points_that_do_not(scan):
+    rng = np.random.default_rng(3)
+    fits = [fit_gauge(scan.measure(rng, noise=0.02), regions=faces(scan), errors=errors(scan)) for _ in range(25)]
+    independent = np.array([fit.robust.thickness for fit in fits])
+    generalised = np.array([fit.thickness_mm for fit in fits])
+    assert generalised.std() < 0.6 * independent.std()
 
 
 def test_form_error_appears_in_the_budget(scan):
@@ -80,7 +94,7 @@ def test_form_error_appears_in_the_budget(scan):
     wave = 0.05 * np.sin(2 * np.pi * scan.points[:, 0] / 35.0 + 0.1 * flat)
     plain = scan.measure(np.random.default_rng(4), plane_errors=False)
     wavy = scan.measure(np.random.default_rng(4), plane_errors=False, shift=np.where(scan.upper, wave, 0.0))
-    settings = {"regions": faces(scan), "sweep_covariance": np.zeros_like(scan.covariance), "correlation_px": 13.0}
+    settings = {"regions": faces(scan), "errors": errors(scan, plane_errors=False)}
     assert rows(measure_gauge(plain, **settings))[FORM] < 0.0015
     waved = measure_gauge(wavy, **settings)
     assert rows(waved)[FORM] > 0.002
@@ -104,22 +118,31 @@ def test_parallelism_is_the_angle_of_the_free_fits(scan):
     assert measure_gauge(tilted, regions=faces(scan)).parallelism == pytest.approx(0.002, rel=0.15)
 
 
+def common_errors(scan, **scales):
+    """Calibrations, each called by its source, with which all of the scan comes out larger by a factor."""
+    camera = [FOCAL, FOCAL, 0.0, *CENTRE, 0.0, 0.0, 0.0, 0.0, 0.0]
+    return CommonErrors(
+        (1920, 1374),
+        tuple(scales),
+        [camera] * (1 + len(scales)),
+        [scan.fan_pis / scale for scale in (1.0, *scales.values())],
+        [scan.pis / scale for scale in (1.0, *scales.values())],
+    )
+
+
 def test_calibration_terms_and_verdicts(scan):
     cloud = scan.measure(np.random.default_rng(7))
-    base = measure_gauge(cloud, regions=faces(scan), sweep_covariance=scan.covariance)
+    base = measure_gauge(cloud, regions=faces(scan), errors=errors(scan))
+    common = common_errors(scan, **{CAMERA: 1.0004, FAN_CALIBRATION: 1.0002})
     full = measure_gauge(
-        cloud,
-        regions=faces(scan),
-        sweep_covariance=scan.covariance,
-        camera_changes=np.array([0.03, 0.04]),
-        fan_changes=np.array([0.0, -0.02]),
-        nominal_mm=50.0,
-        tolerance_mm=0.2,
+        cloud, regions=faces(scan), errors=errors(scan, common=common), nominal_mm=50.0, tolerance_mm=0.2
     )
-    assert rows(full)[CAMERA] == pytest.approx(0.05)
-    assert rows(full)[FAN_CALIBRATION] == pytest.approx(0.02)
-    assert full.u_mm == pytest.approx(np.sqrt(base.u_mm**2 + 0.05**2 + 0.02**2))
+    # No flatness of a face can tell a scale: it arrives in full.
+    assert rows(full)[CAMERA] == pytest.approx(0.0004 * 50, rel=0.02)
+    assert rows(full)[FAN_CALIBRATION] == pytest.approx(0.0002 * 50, rel=0.02)
+    assert full.u_mm == pytest.approx(np.sqrt(sum(u**2 for u in rows(full).values())))
     assert full.U_mm == pytest.approx(2 * full.u_mm)
+    assert full.u_mm > base.u_mm
     assert full.verdict == "conforming"
     assert full.notes == ()
     assert base.verdict == ""
@@ -128,13 +151,31 @@ def test_calibration_terms_and_verdicts(scan):
     assert off.verdict == "not conforming"
     assert off.deviation_mm == pytest.approx(1.0, abs=0.03)
     unsure = measure_gauge(
-        cloud, regions=faces(scan), nominal_mm=50.0, tolerance_mm=0.01, camera_changes=np.array([0.05])
+        cloud, regions=faces(scan), errors=errors(scan, common=common), nominal_mm=50.0, tolerance_mm=0.01
     )
     assert unsure.verdict == "not proven"
 
 
-def test_measured_again_with_all_points_scaled(scan):
-    cloud = scan.measure(np.random.default_rng(8))
-    fit = fit_gauge(cloud, regions=faces(scan))
-    assert fit.thickness_of(cloud.points) == pytest.approx(fit.thickness_mm, abs=1e-6)
-    assert fit.thickness_of(1.001 * cloud.points) == pytest.approx(1.001 * fit.thickness_mm, abs=1e-6)
+def test_an_error_that_would_bend_the_faces_is_told_by_their_flatness(scan):
+    """A displaced sweep cannot hide where the other stripes lie: little of it arrives in the thickness."""
+    camera = [FOCAL, FOCAL, 0.0, *CENTRE, 0.0, 0.0, 0.0, 0.0, 0.0]
+    shifted = scan.fan_pis + np.array([[0.0, 0.0, 2e-7], [0.0, 0.0, -2e-7], [0.0, 0.0, 2e-7]])
+    pis = [scan.pis, scan.pis]
+    common = CommonErrors((1920, 1374), (FAN_CALIBRATION,), [camera] * 2, [scan.fan_pis, shifted], pis)
+    cloud = scan.measure(np.random.default_rng(9))
+    row = next(
+        row
+        for row in measure_gauge(cloud, regions=faces(scan), errors=errors(scan, common=common)).budget
+        if row.source == FAN_CALIBRATION
+    )
+    assert row.u_mm < 0.1 * common.sigma(cloud)[cloud.sweep < 0].max()
+
+
+def test_every_row_says_how_much_of_a_typical_points_error_arrives(scan):
+    result = measure_gauge(scan.measure(np.random.default_rng(8)), regions=faces(scan), errors=errors(scan))
+    for row in result.budget:
+        assert row.point_mm is not None
+        assert row.sensitivity is None or row.sensitivity == pytest.approx(row.u_mm / row.point_mm)
+    noise = next(row for row in result.budget if row.source == POINT_NOISE)
+    assert noise.point_mm == pytest.approx(0.015, rel=0.15)
+    assert noise.sensitivity < 0.2  # hundreds of stretches are averaged

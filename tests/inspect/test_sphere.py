@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from core.errors import InputError
+from core.inspect.point_errors import PointErrors
 from core.inspect.sphere import find_sphere, fit_sphere
 from core.scan.cloud import Cloud
 from tests.inspect.block_scan import CENTRE, FOCAL
@@ -39,7 +40,7 @@ def scan(rng, noise=0.02, outliers=0.0, sphere=True):
 
 def test_radius_within_the_proof_among_wrong_points():
     cloud, hit = scan(np.random.default_rng(0), outliers=0.05)
-    fit = fit_sphere(cloud, correlation_px=2.0)
+    fit = fit_sphere(cloud, errors=PointErrors(correlation_px=2.0))
     assert fit.radius_mm == pytest.approx(RADIUS, abs=0.02)
     assert fit.centre == pytest.approx(MIDDLE, abs=0.02)
     assert hit[fit.indices].all()
@@ -49,11 +50,11 @@ def test_radius_within_the_proof_among_wrong_points():
 def test_stated_uncertainty_is_the_scatter_of_the_radius():
     rng = np.random.default_rng(1)
     _, hit = scan(rng)
-    fits = [fit_sphere(scan(rng)[0], np.flatnonzero(hit), correlation_px=2.0) for _ in range(80)]
+    fits = [fit_sphere(scan(rng)[0], np.flatnonzero(hit), errors=PointErrors(correlation_px=2.0)) for _ in range(40)]
     radii = np.array([fit.radius_mm for fit in fits])
     stated = np.mean([fit.u_mm for fit in fits])
     assert stated == pytest.approx(radii.std(), rel=0.25)
-    assert radii.mean() == pytest.approx(RADIUS, abs=5 * stated / np.sqrt(80) + 1e-4)
+    assert radii.mean() == pytest.approx(RADIUS, abs=5 * stated / np.sqrt(40) + 1e-4)
 
 
 def test_exact_points_give_the_exact_sphere():

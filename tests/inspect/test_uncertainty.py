@@ -1,13 +1,15 @@
-"""Each contribution against a case that can be worked out by hand."""
+"""Each row of a budget against a case that can be worked out by hand."""
 
 import numpy as np
 import pytest
 
 from core.inspect.conformity import decide
-from core.inspect.remeasure import calibration_changes, principal_deviations
-from core.inspect.uncertainty import FAN_SPECKLE, POINT_NOISE, SWEEP_PLANES, combined, point_contributions
-from core.model import Camera, Fan, LightPlane
+from core.inspect.generalised import Sources, generalised_fit
+from core.inspect.point_errors import PointErrors
+from core.inspect.uncertainty import FAN_SPECKLE, FORM, POINT_NOISE, SWEEP_PLANES, budget, combined
 from core.scan.cloud import FAN, Cloud
+from core.scan.common_errors import CommonErrors
+from core.scan.triangulate import join
 
 
 def stripe_cloud(sweep, count=100, sigma=0.02, v=0.0):
@@ -19,99 +21,119 @@ def stripe_cloud(sweep, count=100, sigma=0.02, v=0.0):
     return Cloud(points, uv, np.full(count, sigma), np.ones(count), index, index, np.zeros((count, 3)))
 
 
-def mean_depth(count):
-    """Gradient of the mean depth of `count` points."""
-    return np.tile([0.0, 0.0, 1.0 / count], (count, 1))
+def mean_depth(cloud, errors):
+    """Budget of the mean depth of all points of a cloud, by its rows."""
+    face = np.zeros(len(cloud), dtype=np.int64)
+    sources = Sources.of(cloud, np.array([0.0, 0.0, 1.0]), np.ones(len(cloud)), face, face, errors)
+    gains = np.bincount(sources.stretch) / len(cloud)
+    calibrations = errors.common.sources if errors.common else ()
+    return budget(gains, sources, form_mm=0.0, calibrations=calibrations)
+
+
+def u_of(rows):
+    return {row.source: row.u_mm for row in rows}
 
 
 def test_noise_correlated_over_a_stretch_averages_over_stretches():
-    (row,) = point_contributions(stripe_cloud(0), mean_depth(100), correlation_px=10.0)
-    assert row.source == POINT_NOISE
-    assert row.u_mm == pytest.approx(0.02 / np.sqrt(10), rel=0.06)
-    (row,) = point_contributions(stripe_cloud(0), mean_depth(100), correlation_px=0.5)
-    assert row.u_mm == pytest.approx(0.02 / np.sqrt(100), rel=1e-6)
+    rows = u_of(mean_depth(stripe_cloud(0), PointErrors(correlation_px=10.0)))
+    assert FAN_SPECKLE not in rows
+    assert rows[POINT_NOISE] == pytest.approx(0.02 / np.sqrt(10), rel=0.06)
+    rows = u_of(mean_depth(stripe_cloud(0), PointErrors(correlation_px=0.5)))
+    assert rows[POINT_NOISE] == pytest.approx(0.02 / np.sqrt(100), rel=1e-3)
 
 
 def test_fan_points_have_their_own_length():
-    (row,) = point_contributions(stripe_cloud(FAN - 1), mean_depth(100), correlation_px=1.0, speckle_px=25.0)
-    assert row.source == FAN_SPECKLE
-    assert row.u_mm == pytest.approx(0.02 / np.sqrt(4), rel=0.12)
+    rows = u_of(mean_depth(stripe_cloud(FAN - 1), PointErrors(correlation_px=1.0, speckle_px=25.0)))
+    assert rows[FAN_SPECKLE] == pytest.approx(0.02 / np.sqrt(4), rel=0.12)
+    assert POINT_NOISE not in rows
 
 
 def test_sweep_planes_are_carried_with_their_covariance():
     covariance = np.zeros((6, 6))
     covariance[5, 5] = 1e-14  # π_z of sweep 1: δz = −z² δπ_z, common to all of its points
-    rows = {
-        row.source: row.u_mm
-        for row in point_contributions(stripe_cloud(1), mean_depth(100), sweep_covariance=covariance)
-    }
-    assert rows[SWEEP_PLANES] == pytest.approx(500**2 * 1e-7, rel=1e-9)
-    rows = {
-        row.source: row.u_mm
-        for row in point_contributions(stripe_cloud(0), mean_depth(100), sweep_covariance=covariance)
-    }
+    rows = u_of(mean_depth(stripe_cloud(1, sigma=0.03), PointErrors(covariance)))
+    assert rows[SWEEP_PLANES] == pytest.approx(500**2 * 1e-7, rel=1e-6)
+    rows = u_of(mean_depth(stripe_cloud(0), PointErrors(covariance)))
     assert rows[SWEEP_PLANES] == 0
 
 
 def test_correlated_sweeps_do_not_average_out():
-    first, second = stripe_cloud(0), stripe_cloud(1, v=20.0)
-    both = Cloud(
-        *(np.concatenate([getattr(c, n) for c in (first, second)]) for n in ("points", "uv", "sigma", "intensity")),
-        np.repeat([0, 1], 100),
-        np.repeat([0, 1], 100),
-        np.zeros((200, 3)),
-    )
+    both = join([stripe_cloud(0, sigma=0.03), stripe_cloud(1, sigma=0.03, v=20.0)])
 
-    def u_of(correlation):
+    def of_planes(correlation):
         covariance = np.zeros((6, 6))
         covariance[2, 2] = covariance[5, 5] = 1e-14
         covariance[2, 5] = covariance[5, 2] = correlation * 1e-14
-        return point_contributions(both, mean_depth(200), sweep_covariance=covariance)[1].u_mm
+        return u_of(mean_depth(both, PointErrors(covariance)))[SWEEP_PLANES]
 
-    assert u_of(0.0) == pytest.approx(0.025 / np.sqrt(2), rel=1e-9)
-    assert u_of(1.0) == pytest.approx(0.025, rel=1e-9)
+    assert of_planes(0.0) == pytest.approx(0.025 / np.sqrt(2), rel=1e-6)
+    assert of_planes(1.0) == pytest.approx(0.025, rel=1e-6)
 
 
 def test_the_planes_share_of_sigma_is_not_counted_twice():
     covariance = np.zeros((3, 3))
     covariance[2, 2] = (0.015 / 500**2) ** 2
-    rows = point_contributions(
-        stripe_cloud(0, sigma=0.025), mean_depth(100), sweep_covariance=covariance, correlation_px=0.5
-    )
-    assert rows[0].u_mm == pytest.approx(0.02 / 10, rel=1e-6)  # √(0.025² − 0.015²) = 0.020
-    assert combined(rows) == pytest.approx(np.hypot(0.002, 0.015), rel=1e-6)
+    rows = mean_depth(stripe_cloud(0, sigma=0.025), PointErrors(covariance, correlation_px=0.5))
+    assert u_of(rows)[POINT_NOISE] == pytest.approx(0.02 / 10, rel=1e-3)  # √(0.025² − 0.015²) = 0.020
+    assert combined(rows) == pytest.approx(np.hypot(0.002, 0.015), rel=1e-3)
 
 
 def test_a_sweep_without_covariance_is_a_mistake():
     with pytest.raises(ValueError, match="holds 1 sweeps"):
-        point_contributions(stripe_cloud(1), mean_depth(100), sweep_covariance=np.zeros((3, 3)))
+        mean_depth(stripe_cloud(1), PointErrors(np.zeros((3, 3))))
 
 
-def test_principal_deviations_add_up_to_the_covariance():
+CAMERA_PARAMETERS = np.array([2500.0, 2500.0, 0.0, 50.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])
+FLAT = np.array([0.0, 0.0, 1 / 500])
+
+
+def common(*depths):
+    """Calibrations with which every point of `stripe_cloud` lies deeper by so many mm, all of them called "camera"."""
+    pis = np.array([[[0.0, 0.0, 1 / (500 + deeper)]] for deeper in (0.0, *depths)])
+    return CommonErrors((100, 100), ("camera",) * len(depths), [CAMERA_PARAMETERS] * len(pis), pis, pis)
+
+
+def test_a_calibrations_displacements_add_in_squares_and_never_average_out():
+    rows = u_of(mean_depth(stripe_cloud(0), PointErrors(common=common(0.03, -0.04))))
+    assert rows["camera"] == pytest.approx(0.05, rel=1e-6)
+    assert common(0.03, -0.04).sigma(stripe_cloud(0)) == pytest.approx(np.full(100, 0.05), rel=1e-6)
+
+
+def test_points_of_the_fan_and_of_the_sweeps_are_displaced_with_their_own_planes():
+    fans = np.array([[FLAT, FLAT], [[0.0, 0.0, 1 / 501], [0.0, 0.0, 1 / 502]]])
+    sweeps = np.array([[FLAT, FLAT], [[0.0, 0.0, 1 / 503], [0.0, 0.0, 1 / 504]]])
+    errors = CommonErrors((100, 100), ("camera",), [CAMERA_PARAMETERS] * 2, fans, sweeps)
+    (change,) = errors.changes(np.zeros((4, 2)), np.array([FAN, FAN - 1, 0, 1]))
+    assert change[:, 2] == pytest.approx([1.0, 2.0, 3.0, 4.0])
+
+
+def test_what_is_not_flat_is_found_from_the_residuals():
     rng = np.random.default_rng(0)
-    scale = np.array([3.0, 3.0, 0.0, 1.0, 1e-3, 1e-4])
-    factor = scale[:, None] * rng.normal(size=(6, 6))
-    covariance = factor @ factor.T
-    deviations = principal_deviations(covariance)
-    assert deviations.T @ deviations == pytest.approx(covariance, rel=1e-6, abs=1e-12)
-    assert len(deviations) == 5
-    assert principal_deviations(np.zeros((4, 4))).shape == (0, 4)
+    cloud = join([stripe_cloud(i, v=20.0 * i) for i in range(200)])
+    patch = np.minimum(cloud.sweep // 4, 49)
+    bumps = rng.normal(0, 0.05, 50)
+    noise = np.repeat(rng.normal(0, 0.02, (200, 10)), 10, axis=1).ravel()
+    face = np.zeros(len(cloud), dtype=np.int64)
+    errors = PointErrors(correlation_px=10.0)
+    sources = Sources.of(cloud, np.array([0.0, 0.0, 1.0]), np.ones(len(cloud)), face, patch, errors)
+    design = np.ones((len(sources.own), 1))
+    bumpy = generalised_fit(design, sources.mean(noise + bumps[patch]), sources)
+    assert bumpy.form_mm == pytest.approx(bumps.std(), rel=0.15)
+    row = u_of(budget(bumpy.gains[0], sources, own=bumpy.own, form_mm=bumpy.form_mm))[FORM]
+    assert row == pytest.approx(0.05 / np.sqrt(50), rel=0.25)
+    flat = generalised_fit(design, sources.mean(noise), sources)
+    assert flat.form_mm < 0.003
 
 
-def test_measuring_again_gives_the_first_order_variance():
-    camera = Camera((1920, 1374), np.array([[2495.0, 0, 960], [0, 2495, 687], [0, 0, 1]]))
-    factor = np.diag([2.0, 3.0, 0.0, 1.0, 1.0, 0, 0, 0, 0, 0])
-    factor[1, 0] = 2.0
-    fan_factor = 1e-7 * np.arange(9.0).reshape(3, 3)
-    fan = Fan((LightPlane(np.array([1e-3, 0, 2e-3])),), fan_factor @ fan_factor.T)
-
-    def measure(camera, fan):
-        return 0.01 * camera.matrix[0, 0] - 0.02 * camera.matrix[1, 1] + 1e4 * fan.pis[0, 2]
-
-    of_camera, of_fan = calibration_changes(measure, camera, factor @ factor.T, fan)
-    slope = np.array([0.01, -0.02])
-    assert of_camera @ of_camera == pytest.approx(slope @ (factor @ factor.T)[:2, :2] @ slope, rel=1e-6)
-    assert of_fan @ of_fan == pytest.approx(1e8 * (fan_factor @ fan_factor.T)[2, 2], rel=1e-6)
+def test_own_noise_larger_than_stated_is_counted_as_large_as_it_is():
+    rng = np.random.default_rng(1)
+    cloud = join([stripe_cloud(i, v=20.0 * i) for i in range(100)])
+    noise = np.repeat(rng.normal(0, 0.05, (100, 10)), 10, axis=1).ravel()  # stated: 0.02
+    face = np.zeros(len(cloud), dtype=np.int64)
+    errors = PointErrors(correlation_px=10.0)
+    sources = Sources.of(cloud, np.array([0.0, 0.0, 1.0]), np.ones(len(cloud)), face, face, errors)
+    fit = generalised_fit(np.ones((len(sources.own), 1)), sources.mean(noise), sources)
+    assert np.median(fit.own) == pytest.approx(0.05, rel=0.1)
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,211 @@
+"""Least squares with the true covariance of the points: stretches of stripes, sweep planes, calibrations, form.
+
+Points of a scan are not independent. The centreline's noise is one and the same over a stretch; all points of a sweep
+share the error of its light plane, and the sweeps share one network; camera and fan err in all points at once; a face
+that is not flat errs in patches. With J stretches instead of N points, observation j of a linear model reads::
+
+    misfit_j = x_j·β + a_jᵀ L ζ + d_j·ξ + σ_form f_j·η + ε_j
+
+L Lᵀ the network's covariance, ζ, ξ, η of unit variance, ε_j the stretch's own noise. Everything but ε is common to many
+stretches and few in number, so the generalised least-squares estimate of β comes from one small system in which the
+common errors are unknowns with a prior (the same as inverting the full covariance, by Woodbury's identity).
+
+How large the form is, and whether own noise is larger than stated, is found from the residuals: variance components,
+each by its sum of squares over its redundancy.
+
+References
+----------
+Henderson, C. R., Best linear unbiased estimation and prediction under a selection model, Biometrics 31 (1975),
+doi:10.2307/2529430.
+Förstner, W., Ein Verfahren zur Schätzung von Varianz- und Kovarianzkomponenten, AVN 86 (1979) 446.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import cho_factor, cho_solve
+
+from core.inspect.point_errors import PointErrors
+from core.model.arrays import Array
+from core.scan.cloud import Cloud
+
+TUKEY = 6.0
+"""A stretch this many of its own standard deviations off has no weight left."""
+ROUNDS = 10
+PRIOR_FREEDOM = 10.0
+"""Belief in the stated noise, counted in stretches: few of them cannot overthrow it."""
+SMALLEST_FORM_MM, LARGEST_FORM_MM = 1e-4, 0.5
+GRAZING = 0.35
+"""|cos| of incidence below which own noise across the surface falls no further: the pixel is uncertain as well."""
+FLOOR_MM = 2e-4
+"""No stretch is known better than this across the surface."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Sources:
+    """How strongly each cause of error acts on the J stretches, for unit variance each; see the module."""
+
+    stretch: NDArray[np.int64]  # (N,) of each point
+    share: Array  # (N,) weight of each point in its stretch, summing to 1
+    own: Array  # (J,) standard deviation in mm
+    of_fan: NDArray[np.bool_]  # (J,)
+    sweeps: Array  # (J, 3S)
+    common: Array  # (J, K)
+    form: Array  # (J, patches)
+
+    @classmethod
+    def of(
+        cls,
+        cloud: Cloud,
+        direction: Array,
+        weights: Array,
+        part: NDArray[np.int64],
+        patch: NDArray[np.int64],
+        errors: PointErrors,
+    ) -> Sources:
+        """The stretches of a cloud's points and what acts on them.
+
+        Parameters
+        ----------
+        cloud
+            The N points used.
+        direction
+            (3,) or (N, 3) ∂misfit/∂X_p.
+        weights
+            (N,) robust weights, above 0.
+        part
+            (N,) which face each point is on: stretches end there.
+        patch
+            (N,) number of the patch of a face each lies in, from 0.
+        errors
+            Of the points.
+        """
+        stretch = errors.stretches(cloud, part)
+        depth = cloud.points[:, 2]
+        rays = cloud.points / depth[:, None]
+        gain = np.asarray((direction * rays).sum(axis=1), dtype=np.float64)
+        own = np.maximum(np.abs(gain), GRAZING) * errors.own_sigma(cloud)
+        weight = weights / own**2
+        share = weight / np.bincount(stretch, weight)[stretch]
+        count = int(stretch.max()) + 1
+        first = np.zeros(count, dtype=np.int64)
+        first[stretch] = np.arange(len(stretch))
+
+        def mean(values: Array) -> Array:
+            return np.asarray(np.bincount(stretch, share * values, minlength=count))
+
+        # A stretch of which the robust fit has silenced most is known less well.
+        alive = np.clip(np.bincount(stretch, share * weights) / max(float(np.median(weights)), 1e-12), 0.05, 1.0)
+        lever = np.column_stack([mean(-gain * depth**2 * rays[:, axis]) for axis in range(3)])
+        form = np.zeros((count, int(patch.max()) + 1))
+        np.add.at(form, (stretch, patch), share)
+        return cls(
+            stretch,
+            share,
+            np.hypot(mean(own), FLOOR_MM) / np.sqrt(alive),
+            cloud.sweep[first] < 0,
+            _of_sweeps(cloud.sweep[first], lever, errors.sweep_covariance),
+            _of_common(cloud, direction, mean, errors, count),
+            form,
+        )
+
+    def mean(self, values: Array) -> Array:
+        """Weighted means over the stretches (J,) or (J, …) of `values` (N,) or (N, …)."""
+        columns = values.reshape(len(values), -1)
+        means = np.column_stack([np.bincount(self.stretch, self.share * column) for column in columns.T])
+        return np.asarray(means.reshape(len(self.own), *values.shape[1:]))
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Generalised:
+    """The solution.
+
+    Parameters
+    ----------
+    estimate
+        (p,) of β.
+    gains
+        (p, J) by which β follows the stretches' misfits.
+    own
+        (J,) standard deviations in mm of the stretches' own noise, as large as the residuals show.
+    form_mm
+        Standard deviation of a patch beyond all that is named.
+    residuals
+        (J,) misfits less model and common errors, in their own standard deviations.
+    """
+
+    estimate: Array
+    gains: Array
+    own: Array
+    form_mm: float
+    residuals: Array
+
+
+def generalised_fit(design: Array, misfit: Array, sources: Sources) -> Generalised:
+    """Robust generalised least squares of `misfit` (J,) = `design` (J, p) · β with the errors of `sources`."""
+    effects = np.hstack([sources.sweeps, sources.common, sources.form])
+    fixed, first_form = design.shape[1], effects.shape[1] - sources.form.shape[1]
+    weights, factor = np.ones(len(misfit)), np.ones(2)
+    group = sources.of_fan.astype(np.int64)
+    form = float(np.clip(np.median(sources.own), SMALLEST_FORM_MM, LARGEST_FORM_MM))
+    for _ in range(ROUNDS):
+        own = sources.own * np.sqrt(factor[group])
+        root = np.sqrt(weights) / own
+        effects[:, first_form:] = form * sources.form
+        columns = np.hstack([design, effects]) * root[:, None]
+        of_group = [columns[group == number].T @ columns[group == number] for number in range(2)]
+        information = of_group[0] + of_group[1]
+        information[np.diag_indices(len(information))] += np.repeat([0.0, 1.0], [fixed, effects.shape[1]])
+        inverse = cho_solve(cho_factor(information), np.eye(len(information)))
+        solution = inverse @ (columns.T @ (misfit * root))
+        residuals = (misfit - design @ solution[:fixed] - effects @ solution[fixed:]) / own
+        form_before, form = form, _form(form, solution[fixed + first_form :], inverse[fixed + first_form :])
+        for number in range(2):
+            mine = group == number
+            spent = float(np.sum(inverse * of_group[number]))
+            factor[number] = max(1.0, factor[number] * _variance_factor(weights[mine], residuals[mine], spent))
+        weights = np.clip(1 - (residuals / TUKEY) ** 2, 1e-3, None) ** 2
+        if abs(form - form_before) < 0.05 * form + SMALLEST_FORM_MM:
+            break
+    gains = inverse[:fixed] @ (columns * root[:, None]).T
+    return Generalised(solution[:fixed], gains, own, form_before, residuals)
+
+
+def _form(form: float, solution: Array, inverse: Array) -> float:
+    """The form's standard deviation again, from what the patches (in units of it) came out as and their redundancy."""
+    patches = len(solution)
+    known = patches - float(inverse[:, -patches:].trace())
+    grown = float(solution @ solution) / max(known, 1e-3)
+    return float(np.clip(form * np.sqrt(grown), SMALLEST_FORM_MM, LARGEST_FORM_MM))
+
+
+def _variance_factor(weights: Array, residuals: Array, spent: float) -> float:
+    """Sum of squares over redundancy, held to 1 by PRIOR_FREEDOM further residuals of expected size."""
+    freedom = max(float(weights.sum()) - spent, 0.0)
+    return (float(weights @ residuals**2) + PRIOR_FREEDOM) / (freedom + PRIOR_FREEDOM)
+
+
+def _of_sweeps(sweep: NDArray[np.int64], lever: Array, covariance: Array | None) -> Array:
+    """Effect (J, 3S) on each stretch of the sweeps' planes, uncorrelated and of unit variance."""
+    if covariance is None:
+        return np.zeros((len(sweep), 0))
+    values, vectors = np.linalg.eigh((covariance + covariance.T) / 2)
+    root = (vectors * np.sqrt(np.maximum(values, 0.0))).reshape(-1, 3, len(values))
+    effect = np.einsum("ji,jik->jk", lever, root[np.maximum(sweep, 0)])
+    effect[sweep < 0] = 0.0
+    return np.asarray(effect)
+
+
+def _of_common(
+    cloud: Cloud, direction: Array, mean: Callable[[Array], Array], errors: PointErrors, count: int
+) -> Array:
+    """Effect (J, K) on each stretch of each calibration displaced by one standard deviation."""
+    if errors.common is None:
+        return np.zeros((count, 0))
+    changes = errors.common.changes(cloud.uv, cloud.sweep)
+    columns = [mean((change * direction).sum(axis=1)) for change in changes]
+    return np.column_stack(columns) if columns else np.zeros((count, 0))

@@ -1,0 +1,105 @@
+"""What makes the points of a cloud wrong, and which of them are wrong together.
+
+Every point lies on the known ray r of its pixel, so noise can only move its depth: δX_p = r_p δz_p. Depths are wrong by
+
+- *own noise* of the centreline, one and the same over a stretch of a stripe, independent beyond: σ_p;
+- *sweep planes*: δz_p = −z_p² r_p·δπ_i for all points of sweep i, with the network's covariance of all π;
+- *common errors* of camera and fan: each calibration one standard deviation off moves all points at once.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.model.arrays import Array
+from core.scan.cloud import Cloud
+from core.scan.common_errors import CommonErrors
+
+PATCHES = 6
+"""Patches of a face along each of its sides, for its form."""
+OWN_SHARE = 0.1
+"""A point's own noise is never taken for less than this share of its σ."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class PointErrors:
+    """How the errors of a cloud's points hang together.
+
+    Parameters
+    ----------
+    sweep_covariance
+        (3S, 3S) of the network's stacked π in 1/mm²; `Cloud.sweep` counts its blocks. None: not known; then all of a
+        point's σ counts as its own noise, which makes u too small where sweeps dominate.
+    common
+        What displaced calibrations do to the points; None: not known.
+    correlation_px, speckle_px
+        Lengths along a stripe over which the centreline noise of the sweeps, and of the fan, is one and the same.
+    """
+
+    sweep_covariance: Array | None = None
+    common: CommonErrors | None = None
+    correlation_px: float = 12.0
+    speckle_px: float = 12.0
+
+    @property
+    def sweeps(self) -> int:
+        """How many sweeps the covariance holds."""
+        return 0 if self.sweep_covariance is None else len(self.sweep_covariance) // 3
+
+    def own_sigma(self, cloud: Cloud) -> Array:
+        """σ (N,) of each depth in mm less the share of its sweep's plane.
+
+        Raises
+        ------
+        ValueError
+            If the covariance has no block for a sweep of the cloud.
+        """
+        if self.sweep_covariance is None:
+            return cloud.sigma
+        blocks = self.sweep_covariance.reshape(self.sweeps, 3, -1, 3)
+        if cloud.sweep.max(initial=-1) >= len(blocks):
+            raise ValueError(f"the covariance holds {len(blocks)} sweeps, the cloud counts to {cloud.sweep.max()}")
+        swept = np.flatnonzero(cloud.sweep >= 0)
+        depth = cloud.points[swept, 2]
+        rays = cloud.points[swept] / depth[:, None]
+        diagonal = blocks[np.arange(len(blocks)), :, np.arange(len(blocks)), :]
+        plane = depth**4 * np.einsum("ni,nij,nj->n", rays, diagonal[cloud.sweep[swept]], rays)
+        own = cloud.sigma**2
+        own[swept] = np.maximum(own[swept] - plane, OWN_SHARE**2 * own[swept])
+        return np.asarray(np.sqrt(own), dtype=np.float64)
+
+    def stretches(self, cloud: Cloud, part: NDArray[np.int64]) -> NDArray[np.int64]:
+        """Number, from 0, of the stretch of a stripe that each point (N,) lies on; none holds two `part`s (N,)."""
+        _, stripe = np.unique((cloud.sweep - cloud.sweep.min()) * (part.max() + 1) + part, return_inverse=True)
+        length = np.where(cloud.sweep < 0, self.speckle_px, self.correlation_px)
+        along = np.floor(_along(cloud.uv, stripe) / length).astype(np.int64)
+        return pairs(stripe, along - along.min())
+
+
+def patches(flat: Array, face: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Number of the patch of its `face` (N,) each point (N, 2) lies in: PATCHES × PATCHES over each face's extent."""
+    number = np.zeros(len(flat), dtype=np.int64)
+    for index in range(int(face.max()) + 1):
+        mine = face == index
+        low, size = flat[mine].min(axis=0), np.maximum(np.ptp(flat[mine], axis=0), 1e-9)
+        column, row = np.minimum((flat[mine] - low) / size * PATCHES, PATCHES - 1).astype(np.int64).T
+        number[mine] = (index * PATCHES + row) * PATCHES + column
+    return number
+
+
+def pairs(first: NDArray[np.int64], second: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Number, from 0, of each different pair of numbers ≥ 0."""
+    return np.asarray(np.unique(first * (second.max() + 1) + second, return_inverse=True)[1], dtype=np.int64)
+
+
+def _along(uv: Array, stripe: NDArray[np.int64]) -> Array:
+    """Where (px) each point lies along the main direction of its stripe, from the middle of its points."""
+    count = np.bincount(stripe)
+    centred = uv - np.column_stack([np.bincount(stripe, uv[:, k]) / count for k in range(2)])[stripe]
+    u, v = centred.T
+    uu, vv, both = (np.bincount(stripe, product) for product in (u * u, v * v, u * v))
+    angle = 0.5 * np.arctan2(2 * both, uu - vv)
+    return np.asarray(u * np.cos(angle)[stripe] + v * np.sin(angle)[stripe], dtype=np.float64)

@@ -1,0 +1,118 @@
+"""What the uncertainty of camera and fan does to all points of a scan at once.
+
+A covariance is the sum of the outer products of its principal deviations. So the scan is solved again with camera and
+fan displaced along each of them, one standard deviation at a time, and every pixel triangulated again: to first order
+the variance of any quantity of the points is the sum of the squares of its changes. No derivative of the adjustment is
+needed, and what points have in common stays common.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.calibrate.deviations import Deviation
+from core.calibrate.reprojection import camera_of, parameters_of
+from core.model import Camera, Fan
+from core.model.arrays import Array, frozen_array, set_field
+from core.progress import Progress, Told, silent
+from core.scan.cloud import Cloud
+from core.scan.crossings import Index
+from core.scan.features import ScanFeatures
+from core.scan.locate import locate_each, locate_together, numbered
+from core.scan.method import Method
+from core.scan.results import ScanResult
+
+CAMERA = "camera calibration"
+FAN_CALIBRATION = "fan calibration"
+SCALE = "scale of the targets"
+NAMES: Mapping[str, str] = {"camera": CAMERA, "fan": FAN_CALIBRATION, "scale": SCALE}
+"""What budgets call the sources of `core.calibrate.deviations`."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class CommonErrors:
+    """A scan solved again with each of K displaced calibrations.
+
+    Parameters
+    ----------
+    image_size
+        (width, height) of the camera's picture in pixels.
+    sources
+        (K,) which calibration each displacement comes from.
+    cameras
+        (1 + K, 10) parameters in the order of `core.calibrate.results.CAMERA_PARAMETERS`; first those calibrated.
+    fans
+        (1 + K, L, 3) light planes of the fan in 1/mm, first those calibrated.
+    sweeps
+        (1 + K, S, 3) light planes of the sweeps, numbered as in the cloud, in 1/mm; first those of the scan itself.
+    """
+
+    image_size: tuple[int, int]
+    sources: tuple[str, ...]
+    cameras: Array
+    fans: Array
+    sweeps: Array
+
+    def __post_init__(self) -> None:
+        count = 1 + len(self.sources)
+        for name, shape in (("cameras", (count, 10)), ("fans", (count, None, 3)), ("sweeps", (count, None, 3))):
+            set_field(self, name, frozen_array(getattr(self, name), shape, name))
+
+    def changes(self, uv: Array, sweep: Index) -> Iterator[Array]:
+        """How far (N, 3), in mm, each displacement moves the points that pixels `uv` (N, 2) of `sweep` (N,) show."""
+        here = self._points(0, uv, sweep)
+        for row in range(1, 1 + len(self.sources)):
+            yield self._points(row, uv, sweep) - here
+
+    def sigma(self, cloud: Cloud) -> Array:
+        """Standard uncertainty (N,) in mm of the depth seen by each pixel of a cloud that calibrations cause."""
+        variance = np.zeros(len(cloud))
+        for change in self.changes(cloud.uv, cloud.sweep):
+            variance += change[:, 2] ** 2
+        return np.asarray(np.sqrt(variance), dtype=np.float64)
+
+    def _points(self, row: int, uv: Array, sweep: Index) -> Array:
+        rays = camera_of(self.cameras[row], self.image_size).rays(uv)
+        by_number = np.concatenate([self.fans[row][::-1], self.sweeps[row]])  # fan line k is sweep FAN − k = −1 − k
+        pis = by_number[sweep + len(self.fans[row])]
+        points: Array = rays / np.einsum("ni,ni->n", rays, pis)[:, None]
+        return points
+
+
+def solve_common(
+    features: ScanFeatures,
+    scan: ScanResult,
+    camera: Camera,
+    fan: Fan,
+    deviations: Sequence[Deviation],
+    method: Method = "network",
+    progress: Progress = silent,
+) -> CommonErrors:
+    """Solve `scan` again by the same `method` with each of the `deviations`, from the same `features`.
+
+    `camera` and `fan` are those it was solved with.
+
+    Raises
+    ------
+    InputError
+        If a scan cannot be solved with one of them.
+    """
+    told = Told(progress)
+    told("calibration uncertainty", 0, len(deviations))
+    solve = locate_together if method == "network" else locate_each
+    crossings, line = numbered(features.crossings, scan.fan_lines)
+    sweeps = [scan.pis]
+    for number, one in enumerate(deviations):
+        again = solve(crossings, line, one.camera, one.fan, told.again)
+        sweeps.append(again.pis[np.searchsorted(again.frames, scan.sweep_frames)])
+        told("calibration uncertainty", number + 1, len(deviations))
+    return CommonErrors(
+        features.image_size,
+        tuple(NAMES[one.source] for one in deviations),
+        np.array([parameters_of(camera), *(parameters_of(one.camera) for one in deviations)]),
+        np.array([fan.pis, *(one.fan.pis for one in deviations)]),
+        np.array(sweeps),
+    )
