@@ -17,6 +17,9 @@ from core.progress import Progress, silent
 
 Thumbnail = NDArray[np.uint8]
 
+LEAST_CONTRAST = 16.0
+"""Grey levels; what differs by less is not brightened to white."""
+
 
 def display_picture(
     path: Path, channel: Channel | None, width_px: int, progress: Progress = silent
@@ -32,13 +35,22 @@ def display_picture(
 
 
 def thumbnails(
-    paths: Sequence[Path], channel: Channel | None = None, width_px: int = 120, progress: Progress = silent
+    paths: Sequence[Path],
+    channel: Channel | None = None,
+    width_px: int = 120,
+    progress: Progress = silent,
+    *,
+    of_stripes: bool = False,
 ) -> tuple[Thumbnail | None, ...]:
-    """A small 8-bit picture (h, w ≤ `width_px`) of each of `paths`; None for one that cannot be read."""
+    """A small 8-bit picture (h, w ≤ `width_px`) of each of `paths`; None for one that cannot be read.
+
+    With `of_stripes` they are brightened until the stripes of light are, which a small picture makes faint.
+    """
 
     def small(path: Path) -> Thumbnail | None:
         try:
-            return Display(width_px).reduced(read_picture(path, channel))[0]
+            picture = Display(width_px).reduced(read_picture(path, channel))[0]
+            return brightened(picture) if of_stripes else picture
         except InputError:
             return None  # the step that measures it says why
 
@@ -47,3 +59,17 @@ def thumbnails(
         made.append(picture)
         progress("small pictures", len(made), len(paths))
     return tuple(made)
+
+
+def stripe_thumbnails(
+    paths: Sequence[Path], channel: Channel | None = None, progress: Progress = silent
+) -> tuple[Thumbnail | None, ...]:
+    """Small pictures of the frames of a scan: as `thumbnails`, with stripes that can be seen."""
+    return thumbnails(paths, channel, progress=progress, of_stripes=True)
+
+
+def brightened(picture: Thumbnail) -> Thumbnail:
+    """The picture from its background, black, to its stripes, white; noise alone is left dark."""
+    background, stripes = np.percentile(picture, (5.0, 99.8))
+    grey = (picture - background) * (255.0 / max(stripes - background, LEAST_CONTRAST))
+    return np.asarray(np.clip(grey, 0, 255), np.uint8)

@@ -66,7 +66,7 @@ class FrameThumbnails(QObject):
             self._make()
 
         self._bench.quick.run(
-            jobs.THUMBNAILS,
+            jobs.STRIPE_THUMBNAILS,
             [folder / short(name) for name in names],
             self._model.project.rig.channel,
             label=self.tr("Small pictures"),

@@ -91,8 +91,10 @@ class _SidePanel(QScrollArea):
 
     def minimumSizeHint(self) -> QSize:
         hint = super().minimumSizeHint()
-        inside = self.widget().minimumSizeHint().width() if self.widget() is not None else 0
-        needed = inside + self.verticalScrollBar().sizeHint().width()
+        inside = self.widget()
+        needed = (
+            inside.minimumSizeHint().width() if inside is not None else 0
+        ) + self.verticalScrollBar().sizeHint().width()
         return QSize(max(NARROWEST_SIDE, needed), hint.height())
 
     def eventFilter(self, watched: Any, event: QEvent) -> bool:

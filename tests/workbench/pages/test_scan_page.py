@@ -144,11 +144,11 @@ def test_frames_in_sight_get_small_pictures_which_are_made_once(recorded, qtbot)
     quick, thumbnails = recorded.presenter.bench.quick, recorded.presenter.thumbnails
     qtbot.waitUntil(lambda: len(thumbnails.pictures) >= 4)
     assert all(row.thumbnail is not None for row in recorded.frames.rows() if row.name in thumbnails.pictures)
-    made = quick.ran.count(jobs.THUMBNAILS)
+    made = quick.ran.count(jobs.STRIPE_THUMBNAILS)
     recorded.frames.table.viewport().repaint()
     recorded.presenter.scrub.step(1)
     qtbot.waitUntil(lambda: not quick.busy)
-    assert quick.ran.count(jobs.THUMBNAILS) == made
+    assert quick.ran.count(jobs.STRIPE_THUMBNAILS) == made
     recorded.presenter.use_folder(recorded.presenter.folder.parent)
     assert thumbnails.pictures == {}
 
