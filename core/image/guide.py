@@ -54,7 +54,7 @@ def parabolas(run: Array, arc: Array, weight: Array, arm: float) -> Array:
                 sums[k + 1, 5 + a] = sums[k, 5 + a] + power * (run[k, 0] - centre_u)
                 sums[k + 1, 8 + a] = sums[k, 8 + a] + power * (run[k, 1] - centre_v)
             power *= x
-    result = np.empty((count, 5))
+    result, window, fit = np.empty((count, 5)), np.empty(11), np.empty(6)
     left, right = 0, 0
     for k in range(count):
         at = min(max(arc[k], arc[0] + arm), arc[-1] - arm)
@@ -62,21 +62,22 @@ def parabolas(run: Array, arc: Array, weight: Array, arm: float) -> Array:
             left += 1
         while right < count and arc[right] <= at + arm:
             right += 1
-        ok, pu, du, eu, pv, dv, ev = _seen_from(sums[right] - sums[left], (arc[k] - middle) / arm)
-        if not ok:
+        for a in range(11):
+            window[a] = sums[right, a] - sums[left, a]
+        if not _solve(window, (arc[k] - middle) / arm, fit):
             before, behind = max(k - 1, 0), min(k + 1, count - 1)
-            pu, du, eu = run[k, 0] - centre_u, run[behind, 0] - run[before, 0], 0.0
-            pv, dv, ev = run[k, 1] - centre_v, run[behind, 1] - run[before, 1], 0.0
-        length = math.hypot(du, dv)
-        nu, nv = dv / length, -du / length
-        result[k, 0], result[k, 1], result[k, 2], result[k, 3] = pu + centre_u, pv + centre_v, nu, nv
-        result[k, 4] = (eu * nu + ev * nv) / (arm * arm)
+            fit[0], fit[1], fit[2] = run[k, 0] - centre_u, run[behind, 0] - run[before, 0], 0.0
+            fit[3], fit[4], fit[5] = run[k, 1] - centre_v, run[behind, 1] - run[before, 1], 0.0
+        length = math.hypot(fit[1], fit[4])
+        nu, nv = fit[4] / length, -fit[1] / length
+        result[k, 0], result[k, 1], result[k, 2], result[k, 3] = fit[0] + centre_u, fit[3] + centre_v, nu, nv
+        result[k, 4] = (fit[2] * nu + fit[5] * nv) / (arm * arm)
     return result
 
 
 @njit(cache=True, nogil=True)
-def _seen_from(m: Array, x: float) -> tuple[bool, float, float, float, float, float, float]:
-    """From a window's sums (11,), seen from `x`: whether they suffice; value, slope and bend of u and of v."""
+def _solve(m: Array, x: float, fit: Array) -> bool:
+    """Value, slope and bend of u and of v at `x` from a window's sums (11,), into `fit` (6,); False if too few."""
     s0 = m[0]
     s1 = m[1] - x * m[0]
     s2 = m[2] - x * (2 * m[1] - x * m[0])
@@ -86,8 +87,7 @@ def _seen_from(m: Array, x: float) -> tuple[bool, float, float, float, float, fl
     c11, c12, c22 = s0 * s4 - s2 * s2, s1 * s2 - s0 * s3, s0 * s2 - s1 * s1
     determinant = s0 * c00 + s1 * c01 + s2 * c02
     if determinant <= 1e-6 * s0**3:
-        return False, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    fit = np.empty(6)
+        return False
     for axis in range(2):
         t0, t1, t2 = m[5 + 3 * axis], m[6 + 3 * axis], m[7 + 3 * axis]
         t2 -= x * (2 * t1 - x * t0)
@@ -95,4 +95,4 @@ def _seen_from(m: Array, x: float) -> tuple[bool, float, float, float, float, fl
         fit[3 * axis] = (c00 * t0 + c01 * t1 + c02 * t2) / determinant
         fit[3 * axis + 1] = (c01 * t0 + c11 * t1 + c12 * t2) / determinant
         fit[3 * axis + 2] = 2 * (c02 * t0 + c12 * t1 + c22 * t2) / determinant
-    return True, fit[0], fit[1], fit[2], fit[3], fit[4], fit[5]
+    return True

@@ -39,7 +39,6 @@ from core.image.profile import Sections
 from core.image.speckle import Speckle
 from core.model.arrays import Array
 
-_ROUNDS = 2
 _CORE = 1.6  # stripe σ that speckle is looked for in
 _PIXEL_VARIANCE = 1 / 12
 _LARGEST_STEP = 2.5  # px between points; across larger gaps nothing is known
@@ -93,12 +92,12 @@ def refine(
     kind, tables, shares = _weights(sections, noise, speckle)
     model = np.column_stack(sections)
     law = (noise.read_grey**2, noise.grey_per_electron)
-    for last in range(_ROUNDS):
+    for last in (False, True):
         cuts = _cuts_of(curve, arc)
         sums = _sums(picture, state, curve, cuts, clear, model, kind, tables, law)
         offset, variance, support = _averages(arc, cuts[:, 0], sums, filter_px, _BELL)
         curve[:, :2] += offset[:, None] * curve[:, 2:4]
-        if last < _ROUNDS - 1:
+        if not last:
             curve = guide(curve, arc, weight, filter_px)
     curve[:, :2] += (_PIXEL_VARIANCE / 2 * curve[:, 4])[:, None] * curve[:, 2:4]  # an arc seen through square pixels
     # grains reach further along the stripe than the pixel: the window averages over fewer of them than of pixels

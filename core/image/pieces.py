@@ -116,7 +116,8 @@ def _break_scores(
     misfit = np.full(count, np.inf)
     row = np.empty(5)
     left, right = 0, 0
-    for i in range(count):
+    stride = max(1, round(gap / 4))
+    for i in range(0, count, stride):
         while arc[i] - arc[left] > arm:
             left += 1
         while right + 1 < count and arc[right + 1] - arc[i] <= arm:
@@ -150,7 +151,8 @@ def _break_scores(
         scatter = sigma[i] * math.sqrt(correlation)
         jump = max(_SIGNIFICANT * scatter * math.sqrt(inverse[3, 3]), _SMALLEST_JUMP)
         kink = max(_SIGNIFICANT * scatter * math.sqrt(inverse[4, 4]), _SMALLEST_KINK)
-        score[i] = max(abs(solution[3]) / jump, abs(solution[4]) / kink)
+        score[i : i + stride] = max(abs(solution[3]) / jump, abs(solution[4]) / kink)
+        misfit[i : i + stride] = misfit[i]
     return score, misfit
 
 

@@ -23,10 +23,11 @@ from core.image.profile import Profiles
 from core.image.ridge import ridge_response
 from core.model.arrays import Array
 
-FLOOR_PX = 0.002
+FLOOR_PX = 0.001
 """What is left of all biases on a clean stripe."""
 _THIRD_DIFFERENCE = np.array([1.0, -3.0, 3.0, -1.0])
 _SATURATED_SHARE = 0.01
+_BLOCK = 8  # points
 
 
 def response_noise(pixel_noise: float, stripe_px: float, filter_px: float) -> float:
@@ -84,18 +85,31 @@ def _excess(points: Array, sigma: Array, lag: int, correlation: float) -> tuple[
 @njit(cache=True, nogil=True, fastmath=True)
 def saturated_points(state: NDArray[np.uint8], points: Array, filter_px: float) -> NDArray[np.bool_]:
     """Which points (N, ≥ 2) have saturated pixels under more than 1 % of the filter's weight."""
-    height, width = state.shape
     reach = math.ceil(2.5 * filter_px)
     share = np.zeros(len(points), dtype=np.bool_)
     inverse = 0.5 / (filter_px * filter_px)
     limit = _SATURATED_SHARE * 2 * math.pi * filter_px * filter_px
-    for k in range(len(points)):
-        u, v = points[k, 0], points[k, 1]
-        column, row = int(u + 0.5), int(v + 0.5)
-        total = 0.0
-        for j in range(max(row - reach, 0), min(row + reach + 1, height)):
-            for i in range(max(column - reach, 0), min(column + reach + 1, width)):
-                if state[j, i] & SATURATED:
-                    total += math.exp(-((i - u) ** 2 + (j - v) ** 2) * inverse)
-        share[k] = total > limit
+    for start in range(0, len(points), _BLOCK):
+        end = min(start + _BLOCK, len(points))
+        if _weight_of_saturated(state, points[start:end], reach, 0.0) == 0.0:  # nearly always
+            continue
+        for k in range(start, end):
+            share[k] = _weight_of_saturated(state, points[k : k + 1], reach, inverse) > limit
     return share
+
+
+@njit(cache=True, nogil=True, fastmath=True)
+def _weight_of_saturated(state: NDArray[np.uint8], points: Array, reach: int, inverse: float) -> float:
+    """Σ exp(−inverse·d²) over the saturated pixels within `reach` of some points' box, d from the first of them."""
+    height, width = state.shape
+    u, v = points[0, 0], points[0, 1]
+    left, right, top, bottom = u, u, v, v
+    for k in range(1, len(points)):
+        left, right = min(left, points[k, 0]), max(right, points[k, 0])
+        top, bottom = min(top, points[k, 1]), max(bottom, points[k, 1])
+    total = 0.0
+    for j in range(max(int(top + 0.5) - reach, 0), min(int(bottom + 0.5) + reach + 1, height)):
+        for i in range(max(int(left + 0.5) - reach, 0), min(int(right + 0.5) + reach + 1, width)):
+            if state[j, i] & SATURATED:
+                total += math.exp(-((i - u) ** 2 + (j - v) ** 2) * inverse)
+    return total

@@ -63,7 +63,7 @@ __all__ = ["StripeSettings", "choose_settings", "correlation_length_px", "extrac
 _HIGH, _LOW = 0.35, 0.12  # of the contrast: a run starts, a run goes on
 _HIGH_NOISE, _LOW_NOISE = 6.0, 3.0  # of the response's own noise, at least
 _OTHER_TAIL = 3.6  # stripe σ that a neighbour's light reaches
-_CUTS_FOR_SPECKLE = 4000  # more tell nothing new
+_CUTS_FOR_SPECKLE = 3000  # more tell nothing new
 _SHORTEST_PIECE = 7.0  # filter σ: two independent points
 
 

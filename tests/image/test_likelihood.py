@@ -1,0 +1,179 @@
+"""Centrelines at the Cramér–Rao bound, with and without speckle, and what must not pull them."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from core.image.centreline import Centreline
+from core.image.influence import NODES, REACH, influence
+from core.image.noise import NoiseModel
+from core.image.speckle import NO_SPECKLE, Speckle
+from core.image.stripes import StripeSettings, extract_centrelines
+from tests.image.bound import Stripe, bound_of_mean, bound_per_root_px
+from tests.image.synthetic_stripes import Distance, circle, draw, expose, speckle, straight
+
+NOISE = NoiseModel(float(np.sqrt(1 + 1 / 12)), 0.02)
+"""Read noise of one grey level, rounding, and shot noise."""
+QUIET = NoiseModel(0.3)
+LENGTH = 60
+"""Stripe px that are averaged, much more than a grain."""
+
+PLAIN = [(Stripe(2.5, 150.0), NO_SPECKLE), (Stripe(1.5, 150.0), NO_SPECKLE), (Stripe(2.5, 30.0), NO_SPECKLE)]
+SPECKLED = [
+    (Stripe(2.5, 150.0), Speckle(0.2, 2.0)),
+    (Stripe(1.5, 150.0), Speckle(0.2, 2.0)),
+    (Stripe(2.5, 150.0), Speckle(0.18, 2.24)),  # the twin's, at full
+    (Stripe(1.5, 150.0), Speckle(0.18, 1.41)),  # and at half resolution
+    (Stripe(2.5, 150.0, 20.0, 0.1), Speckle(0.2, 2.0)),
+]
+
+
+def find(light: np.ndarray, stripe: Stripe, noise: NoiseModel = QUIET, **masks: np.ndarray) -> tuple[Centreline, ...]:
+    settings = StripeSettings(4 * stripe.width, stripe.height)
+    return extract_centrelines(light.astype(np.float32), settings, noise=noise, **masks)
+
+
+def errors(line: Centreline, truth: Distance) -> np.ndarray:
+    return truth(line.uv[:, 0], line.uv[:, 1])
+
+
+@cache
+def sampled(
+    stripe: Stripe, grains: Speckle, pictures: int = 14, length: int = 3000
+) -> list[tuple[np.ndarray, Centreline]]:
+    """Errors and centrelines of seeded pictures of a long slanting stripe."""
+    rng = np.random.default_rng(8)
+    found = []
+    for _ in range(pictures):
+        half = int(np.ceil(10 * stripe.width)) + 8
+        truth = straight((half + 26 + rng.random(), length / 2), np.radians(89.0))
+        v, u = np.mgrid[:length, : 2 * half + 52]
+        x = truth(u, v)
+        blurred = np.sqrt(stripe.width**2 + 1 / 12)
+        light = stripe.height * stripe.width / blurred * np.exp(-0.5 * (x / blurred) ** 2)
+        if grains.contrast > 0:
+            light *= speckle(light.shape, grains.contrast, grains.grain_px / np.sqrt(2), rng)
+        picture = np.round(expose(light + stripe.background + stripe.slope * x, rng))
+        (line,) = find(picture, stripe, NOISE)
+        found.append((errors(line, truth), line))
+    return found
+
+
+def means(error: np.ndarray, length: int) -> np.ndarray:
+    number = len(error) // length
+    return error[: number * length].reshape(number, length).mean(axis=1)
+
+
+def rms(values: np.ndarray) -> float:
+    return float(np.sqrt(np.mean(np.square(values))))
+
+
+def inefficiency(stripe: Stripe, grains: Speckle) -> float:
+    """Scatter of means over LENGTH px over their bound; means of averaged points reach a little over their ends."""
+    filter_px = StripeSettings(4 * stripe.width, stripe.height).filter_px
+    overlap = np.sqrt(1 - 2 / np.sqrt(np.pi) * filter_px / LENGTH)
+    scatter = rms(np.concatenate([means(error, LENGTH) for error, _ in sampled(stripe, grains)]))
+    return scatter * np.sqrt(LENGTH) / overlap / bound_per_root_px(stripe, NOISE, grains)
+
+
+@pytest.mark.parametrize(("stripe", "grains"), PLAIN)
+def test_without_speckle_the_bound_is_reached(stripe: Stripe, grains: Speckle) -> None:
+    assert inefficiency(stripe, grains) < 1.05
+
+
+@pytest.mark.parametrize(("stripe", "grains"), SPECKLED)
+def test_with_speckle_the_same_estimator_is_near_its_bound(stripe: Stripe, grains: Speckle) -> None:
+    assert inefficiency(stripe, grains) < 1.25
+
+
+@pytest.mark.parametrize(("stripe", "grains"), PLAIN + SPECKLED)
+def test_points_and_their_means_are_as_uncertain_as_stated(stripe: Stripe, grains: Speckle) -> None:
+    found = sampled(stripe, grains)
+    assert rms(np.concatenate([error / line.sigma for error, line in found])) == pytest.approx(1.0, abs=0.12)
+    for length in (LENGTH, 150):
+        stated = [np.median(line.sigma) * np.sqrt(line.correlation_px / length) for _, line in found]
+        normalised = [means(error, length) / s for (error, _), s in zip(found, stated, strict=True)]
+        assert rms(np.concatenate(normalised)) == pytest.approx(1.0, abs=0.12)
+
+
+@pytest.mark.parametrize("grains", [NO_SPECKLE, Speckle(0.2, 2.0)])
+@pytest.mark.parametrize("width", [1.5, 2.5])
+def test_a_sloping_background_does_not_pull(grains: Speckle, width: float) -> None:
+    found = sampled(Stripe(width, 150.0, 20.0, 0.1), grains, 7)
+    assert abs(np.concatenate([error for error, _ in found]).mean()) < 0.006
+
+
+def test_the_bound_of_a_long_stripe_is_the_one_per_root_px() -> None:
+    stripe, grains = Stripe(1.5, 150.0), Speckle(0.2, 1.4)
+    assert bound_of_mean(stripe, NOISE, None, 20) * np.sqrt(20) == pytest.approx(bound_per_root_px(stripe, NOISE))
+    of_forty = bound_of_mean(stripe, NOISE, grains, 40) * np.sqrt(40)
+    assert of_forty == pytest.approx(bound_per_root_px(stripe, NOISE, grains), rel=0.03)
+
+
+@pytest.mark.parametrize("width", [1.0, 1.5, 2.5])
+@pytest.mark.parametrize("angle_deg", [0.0, 30.0, 45.0, 90.0])
+def test_places_within_a_pixel_agree(width: float, angle_deg: float) -> None:
+    across = np.array([-np.sin(np.radians(angle_deg)), np.cos(np.radians(angle_deg))])
+    found = []
+    for place in np.linspace(0, 1, 7, endpoint=False):
+        truth = straight(tuple(np.array([70.0, 60.0]) + place * across), np.radians(angle_deg))
+        (line,) = find(draw((120, 140), truth, width, 150.0, samples=6), Stripe(width, 150.0))
+        found.append(errors(line, truth))
+    assert np.abs(np.concatenate(found)).max() < 0.002
+
+
+@pytest.mark.parametrize(("radius", "width"), [(60.0, 1.5), (120.0, 2.5), (400.0, 2.5)])
+def test_bent_stripes_are_where_they_are(radius: float, width: float) -> None:
+    truth = circle((110.2, radius + 30.4), radius)
+    lines = find(draw((160, 220), truth, width, 150.0), Stripe(width, 150.0))
+    assert np.abs(np.concatenate([errors(line, truth) for line in lines])).max() < 0.003
+
+
+@pytest.mark.parametrize("over", [1.5, 4.0])
+@pytest.mark.parametrize("angle_deg", [3.0, 30.0])
+def test_saturation_does_not_pull(over: float, angle_deg: float) -> None:
+    truth = straight((110.0, 80.3), np.radians(angle_deg))
+    light = draw((160, 220), truth, 2.5, 255.0 * over)
+    (line,) = find(np.minimum(light, 255.0), Stripe(2.5, 255.0), saturated=light >= 255)
+    assert line.saturated.all()
+    assert np.abs(errors(line, truth)).max() < 0.003
+
+
+@pytest.mark.parametrize("angle_deg", [20.0, 70.0])
+def test_the_border_of_the_picture_does_not_pull(angle_deg: float) -> None:
+    truth = straight((110.0, 80.3), np.radians(angle_deg))
+    (line,) = find(draw((160, 220), truth, 2.5, 150.0), Stripe(2.5, 150.0))
+    reach = 7 * StripeSettings(10.0, 150.0).filter_px  # of the filter, and what is cut from the end of a stripe
+    assert min(line.uv.min(), *(np.array([220, 160]) - 1 - line.uv.max(axis=0))) < reach
+    assert np.abs(errors(line, truth)).max() < 0.003
+
+
+def test_other_light_beside_a_stripe_pulls_little() -> None:
+    truth = straight((110.0, 80.3), 0.1)
+    v, u = np.mgrid[:160, :220]
+    spot = 120 * np.exp(-0.5 * ((u - 100) ** 2 + (truth(u, v) - 12) ** 2) / 1.5**2)
+    (line,) = find(draw((160, 220), truth, 2.5, 150.0) + spot, Stripe(2.5, 150.0))
+    assert np.abs(errors(line, truth)).max() < 0.02
+
+
+def test_without_speckle_the_weights_are_the_plain_ones() -> None:
+    found = influence(120.0, 10.0, 2.0, NOISE, NO_SPECKLE)
+    x = np.linspace(-REACH, REACH, 2 * NODES + 1) * 2.0
+    section = 120.0 * np.exp(-0.5 * (x / 2.0) ** 2)
+    variance = NOISE.variance(10.0 + section)
+    plain = section * x / 4.0 / variance
+    plain -= np.sum(plain * x) / np.sum(x**2 / variance) * x / variance
+    assert found.speckle_share == pytest.approx(0.0, abs=1e-9)
+    assert np.abs(found.weight - plain).max() < 0.05 * np.abs(plain).max()
+
+
+def test_speckle_moves_the_weight_to_the_flanks() -> None:
+    plain = influence(150.0, 0.0, 2.5, NOISE, NO_SPECKLE).weight
+    speckled = influence(150.0, 0.0, 2.5, NOISE, Speckle(0.2, 2.0))
+    x = np.linspace(-REACH, REACH, 2 * NODES + 1)
+    centre = [np.sum(np.abs(weight * x)) / np.sum(np.abs(weight)) for weight in (plain, speckled.weight)]
+    assert centre[1] > centre[0] + 0.3
+    assert 0.5 < speckled.speckle_share < 1
