@@ -13,8 +13,10 @@ from core.files.gauge_file import read_gauge
 from core.files.ply import read_cloud
 from core.files.recording_set import open_set
 from core.files.scan_file import read_scan
+from core.inspect.point_errors import PointErrors
 from core.inspect.results import GaugeResult
 from core.pipeline import Workspace, camera_step, gauge_step, planes_step, scan_step
+from core.pipeline.gauge_step import point_errors
 from core.scan.cloud import Cloud
 from core.simulate.recording import simulate_set
 from core.simulate.scenario import Scenario
@@ -29,7 +31,7 @@ class Measured:
     camera: CameraCalibration
     cloud: Cloud
     gauge: GaugeResult | None
-    sweep_covariance: np.ndarray
+    errors: PointErrors
 
     def depth_errors(self) -> np.ndarray:
         """Measured minus true depth of every point in mm; NaN within two pixels of a depth edge."""
@@ -78,5 +80,5 @@ def measure(scenario: Scenario, folder: Path, calibrated: Path | None = None) ->
         read_camera(work.path("camera")),
         cloud,
         read_gauge(work.path("gauge"), cloud) if gauged else None,
-        read_scan(work.path("scan")).covariance,
+        point_errors(read_scan(work.path("scan"))),
     )
