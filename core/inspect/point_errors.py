@@ -9,14 +9,17 @@ Every point lies on the known ray r of its pixel, so noise can only move its dep
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from core.image.centreline import Centreline
 from core.model.arrays import Array
 from core.scan.cloud import Cloud
 from core.scan.common_errors import CommonErrors
+from core.scan.features import ScanFeatures
 
 PATCHES = 6
 """Patches of a face along each of its sides, for its form."""
@@ -43,6 +46,12 @@ class PointErrors:
     common: CommonErrors | None = None
     correlation_px: float = 12.0
     speckle_px: float = 12.0
+
+    @classmethod
+    def of_scan(cls, features: ScanFeatures, sweep_covariance: Array, common: CommonErrors | None) -> PointErrors:
+        """Of the points of a scan with these features, its sweeps' covariance and what displaced calibrations do."""
+        swept = [piece for frame in features.frames for piece in frame.centrelines]
+        return cls(sweep_covariance, common, _correlation_px(swept), _correlation_px(features.fan))
 
     @property
     def sweeps(self) -> int:
@@ -77,6 +86,13 @@ class PointErrors:
         length = np.where(cloud.sweep < 0, self.speckle_px, self.correlation_px)
         along = np.floor(_along(cloud.uv, stripe) / length).astype(np.int64)
         return pairs(stripe, along - along.min())
+
+
+def _correlation_px(pieces: Sequence[Centreline]) -> float:
+    """Length in pixels over which the noise of a typical point counts as one: the median over all points."""
+    lengths = np.array([len(piece) for piece in pieces], dtype=np.int64)
+    correlations = np.array([piece.correlation_px for piece in pieces])
+    return float(np.median(np.repeat(correlations, lengths))) if len(pieces) else 1.0
 
 
 def patches(flat: Array, face: NDArray[np.int64]) -> NDArray[np.int64]:

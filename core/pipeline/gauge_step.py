@@ -2,16 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
-import numpy as np
-
 from core.errors import InputError
 from core.files.gauge_file import read_gauge, write_gauge
 from core.files.ply import read_cloud
 from core.files.rig import GaugeSpec
 from core.files.scan_file import ScanFile, read_scan
-from core.image.centreline import Centreline
 from core.inspect.gauge import measure_gauge
 from core.inspect.point_errors import PointErrors
 from core.inspect.results import GaugeResult
@@ -52,12 +47,7 @@ def gauge_step(work: Workspace, progress: Progress = silent) -> GaugeResult:
 
 def point_errors(scan: ScanFile) -> PointErrors:
     """How the errors of a scan's points hang together."""
-    return PointErrors(
-        scan.covariance,
-        scan.common,
-        _correlation([piece for frame in scan.features.frames for piece in frame.centrelines]),
-        _correlation(scan.features.fan),
-    )
+    return PointErrors.of_scan(scan.features, scan.covariance, scan.common)
 
 
 def gauge_if_possible(work: Workspace, progress: Progress = silent) -> tuple[GaugeResult | None, str]:
@@ -75,10 +65,3 @@ def _regions(spec: GaugeSpec) -> tuple[Array, Array] | None:
     if spec.upper_polygon_px is None or spec.lower_polygon_px is None:
         return None
     return spec.upper_polygon_px, spec.lower_polygon_px
-
-
-def _correlation(pieces: Sequence[Centreline]) -> float:
-    """Length in pixels over which the noise of a typical point counts as one: the median over all points."""
-    lengths = np.array([len(piece) for piece in pieces])
-    correlations = np.array([piece.correlation_px for piece in pieces])
-    return float(np.median(np.repeat(correlations, lengths))) if len(pieces) else 1.0

@@ -79,13 +79,19 @@ class ShareBar(Flowable):  # type: ignore[misc]
 
 
 def budget_table(gauge: GaugeResult, width: float) -> Table:
-    """Where the uncertainty comes from: each contribution, its share of the variance, the combination, k and U."""
+    """Where the uncertainty comes from: each contribution, its share of the variance, the combination, k and U.
+
+    With what the same cause does to a typical point, and how much of that arrives in the thickness.
+    """
     decimals = decimals_of(gauge.u_mm) + 1
     variance = sum(row.u_mm**2 for row in gauge.budget if math.isfinite(row.u_mm)) or 1.0
-    widths = [width - 78 * mm, 24 * mm, 20 * mm, 34 * mm]
+    widths = [width - 104 * mm, 24 * mm, 20 * mm, 18 * mm, 20 * mm, 22 * mm]
+    blank = text("", "small")
     rows: list[list[Flowable]] = [
         [
             text("Contribution", "head"),
+            text("of one point, mm", "head_number"),
+            text("sensitivity", "head_number"),
             text("u, mm", "head_number"),
             text("share of u², %", "head_number"),
             text("", "head"),
@@ -95,24 +101,25 @@ def budget_table(gauge: GaugeResult, width: float) -> Table:
         share = row.u_mm**2 / variance
         tiny = math.isfinite(row.u_mm) and 0 < row.u_mm < 0.5 * 10.0**-decimals
         shown = f"< {fixed(10.0**-decimals, decimals)}" if tiny else fixed(row.u_mm, decimals)
-        bar: Flowable = ShareBar(share, 32 * mm) if math.isfinite(share) else text("", "small")
+        bar: Flowable = ShareBar(share, 20 * mm) if math.isfinite(share) else blank
         rows.append(
             [
                 text(row.source[:1].upper() + row.source[1:], "small"),
+                blank if row.point_mm is None else text(fixed(row.point_mm, decimals), "number"),
+                blank if row.sensitivity is None else text(fixed(row.sensitivity, 2), "number"),
                 text(shown, "number"),
                 text(fixed(100 * share, 0), "number"),
                 bar,
             ]
         )
     U_row = f"Expanded uncertainty U = k·u, k = {gauge.k:g}"
-    blank = text("", "small")
     combined = text(fixed(gauge.u_mm, decimals), "number")
-    rows.append([text("Combined standard uncertainty u", "small"), combined, blank, blank])
+    rows.append([text("Combined standard uncertainty u", "small"), blank, blank, combined, blank, blank])
     U_shown = fixed(gauge.U_mm, decimals_of(gauge.U_mm))
-    rows.append([text(U_row, "small_strong"), text(U_shown, "number_strong"), blank, blank])
+    rows.append([text(U_row, "small_strong"), blank, blank, text(U_shown, "number_strong"), blank, blank])
     table = ruled_table(rows, widths)
     table.setStyle(
-        TableStyle([("LINEBELOW", (0, -3), (-1, -3), 0.6, color(MUTED)), ("LEFTPADDING", (3, 0), (3, -1), 4)])
+        TableStyle([("LINEBELOW", (0, -3), (-1, -3), 0.6, color(MUTED)), ("LEFTPADDING", (5, 0), (5, -1), 4)])
     )
     return table
 

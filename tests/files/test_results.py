@@ -19,8 +19,10 @@ from core.files.scan_file import ScanFile, read_scan, write_scan
 from core.image.centreline import Centreline
 from core.image.stripes import StripeSettings
 from core.image.target_view import TargetView
+from core.inspect.results import Contribution
 from core.model import Camera
 from core.scan.cloud import Cloud
+from core.scan.common_errors import CommonErrors
 from core.scan.crossings import CrossingTable
 from core.scan.features import FrameFeatures, ScanFeatures
 from core.scan.results import FrameRecord
@@ -196,6 +198,16 @@ def test_cloud_round_trip(tmp_path, cloud):
     assert (tmp_path / "again.ply").read_bytes() == path.read_bytes()
 
 
+def test_what_calibrations_add_to_sigma_is_a_property_behind_those_of_the_design(tmp_path, cloud):
+    path = tmp_path / "cloud.ply"
+    common = np.linspace(0.01, 0.02, len(cloud))
+    write_cloud(path, replace(cloud, sigma_common=common), "abc")
+    assert np.allclose(read_cloud(path).cloud.sigma_common, common, rtol=1e-6)
+    assert [p.name for p in PlyData.read(str(path))["vertex"].properties][-1] == "sigma_common"
+    path.write_bytes(path.read_bytes().replace(b"property float sigma_common", b"property float of_another_prog"))
+    assert not read_cloud(path).cloud.sigma_common.any()  # a file of an earlier version: not known
+
+
 def test_cloud_is_the_ply_of_the_design(tmp_path, cloud):
     write_cloud(tmp_path / "cloud.ply", cloud, "abc")
     data = PlyData.read(str(tmp_path / "cloud.ply"))
@@ -289,6 +301,23 @@ def test_scan_round_trip_gives_the_same_bytes(tmp_path, scan):
     assert (tmp_path / "again.npz").read_bytes() == path.read_bytes()
 
 
+def test_what_displaced_calibrations_do_is_kept_with_the_scan(tmp_path, scan):
+    rng = np.random.default_rng(6)
+    cameras = rng.normal(size=(3, 10))
+    common = CommonErrors((99, 88), ("camera", "fan"), cameras, rng.normal(size=(3, 3, 3)), rng.normal(size=(3, 2, 3)))
+    path = tmp_path / "scan.npz"
+    write_scan(path, scan)
+    assert read_scan(path).common is None
+    write_scan(path, replace(scan, common=common))
+    back = read_scan(path).common
+    assert (back.sources, back.image_size) == (("camera", "fan"), (99, 88))
+    for name in ("cameras", "fans", "sweeps"):
+        assert np.array_equal(getattr(back, name), getattr(common, name))
+    write_scan(path, replace(scan, common=replace(common, sweeps=rng.normal(size=(3, 4, 3)))))
+    with pytest.raises(InputError, match="4 sweeps, not 2"):
+        read_scan(path)
+
+
 def test_spoilt_scan_files_are_refused(tmp_path, scan):
     path = tmp_path / "scan.npz"
     write_scan(path, replace(scan, pis=np.full((2, 3), np.nan)))
@@ -347,6 +376,23 @@ def test_gauge_round_trip_and_the_keys_of_the_design(tmp_path, cloud, gauge):
     assert np.allclose(back.upper.residuals, gauge.upper.residuals)
     assert back.parallelism == pytest.approx(1e-4)
     assert (back.budget[0].source, back.rule, back.notes) == ("camera", "the rule", ("a note",))
+    assert (back.budget[0].point_mm, back.budget[0].sensitivity) == (None, None)
+
+
+def test_every_row_of_the_budget_has_its_sensitivity_and_its_share(tmp_path, cloud, gauge):
+    path = tmp_path / "gauge.json"
+    rows = (Contribution("camera", 0.006, 0.03), Contribution("network", 0.008, 0.04))
+    write_gauge(path, replace(gauge, u_mm=0.01, budget=rows), "abc")
+    first, second = json.loads(path.read_text())["budget"]
+    assert first == {
+        "source": "camera",
+        "u_mm": 0.006,
+        "point_mm": 0.03,
+        "sensitivity": pytest.approx(0.2),
+        "share": pytest.approx(0.36),
+    }
+    assert first["share"] + second["share"] == pytest.approx(1)
+    assert read_gauge(path, cloud).budget[0].sensitivity == pytest.approx(0.2)
 
 
 @pytest.mark.parametrize(

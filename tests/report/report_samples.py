@@ -63,8 +63,8 @@ def face(cloud, plane, indices):
 
 def gauge(cloud, block, **changes):
     budget = (
-        Contribution("Crossings and centrelines of this scan (network)", 0.0049),
-        Contribution("Fan's centrelines (static speckle)", 0.0082),
+        Contribution("Crossings and centrelines of this scan (network)", 0.0049, 0.0245),
+        Contribution("Fan's centrelines (static speckle)", 0.0082, 0.0410),
         Contribution("Light planes of the fan (calibration)", 0.0061),
         Contribution("Camera parameters (calibration)", 0.0033),
         Contribution("Form of the two faces", 0.00004),

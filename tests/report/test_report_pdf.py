@@ -68,7 +68,7 @@ def test_part_rig_calibrations_software_and_budget_are_named(data, content):
         "5.000 (4.929)",
         "0.034",
         "Trisect 0.1.0",
-        "Fan's centrelines (static speckle) 0.0082 48",
+        "Fan's centrelines (static speckle) 0.0410 0.20 0.0082 48",
         "Combined standard uncertainty u 0.0118",
         "stripe contrast automatic (38 grey levels)",
         "saturated on 0.8 %",
