@@ -11,7 +11,8 @@ from PySide6.QtWidgets import QTabWidget, QWidget
 from workbench.pages import planes_words as words
 from workbench.pages.planes_panels import PLATES, LaserForm, PlanesCard, PlanesLive, PlanesResult
 from workbench.pages.planes_picture import PoseTab
-from workbench.pages.planes_presenter import PlanesPresenter, Stage
+from workbench.pages.planes_presenter import PlanesPresenter
+from workbench.pages.planes_stage import Stage
 from workbench.pages.planes_tabs import HistoryTab, RigTab
 from workbench.pages.step_page import StepPage
 from workbench.pages.target_panel import TargetPanel

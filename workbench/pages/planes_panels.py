@@ -8,7 +8,8 @@ from typing import Any
 from PySide6.QtWidgets import QCheckBox, QVBoxLayout, QWidget
 
 from workbench.pages import planes_words as words
-from workbench.pages.planes_presenter import PlanesPresenter, Stage
+from workbench.pages.planes_presenter import PlanesPresenter
+from workbench.pages.planes_stage import Stage
 from workbench.pages.step_page import heading, muted
 from workbench.views.forms import SettingsForm
 from workbench.views.live_panel import LivePanel

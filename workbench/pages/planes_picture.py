@@ -10,7 +10,8 @@ from PySide6.QtWidgets import QLabel, QVBoxLayout, QWidget
 
 from core.live.events import LiveView, PlanesDetail
 from workbench.pages import planes_words as words
-from workbench.pages.planes_presenter import PlanesPresenter, Stage
+from workbench.pages.planes_presenter import PlanesPresenter
+from workbench.pages.planes_stage import Stage
 from workbench.views.colours import CORNER, EXCLUDED, fan_colour
 from workbench.views.image_view import ImageView
 from workbench.views.meters import HintBar

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from enum import StrEnum
 from pathlib import Path
 from typing import Any
 
@@ -22,34 +21,16 @@ from workbench.pages.live_presenter import LivePresenter
 from workbench.pages.planes_camera import PlanesCamera
 from workbench.pages.planes_history import PlanesHistory
 from workbench.pages.planes_look import PlanesLook
+from workbench.pages.planes_stage import Stage, missing, stage_of, why_not_accept, why_not_measure, why_not_reject
 from workbench.pages.planes_work import PlanesWork
 from workbench.pages.presenter import StepPresenter
 from workbench.pages.sources import folder_of, put_source
 from workbench.pages.target_choice import TargetChoice
-from workbench.step_state import State
 
 PART = "planes/"
 
 PAIRS = "live/planes/pairs"
 """The setting whether poses are taken with the laser on and off."""
-
-
-class Stage(StrEnum):
-    """How far the calibration of the laser planes is."""
-
-    NO_CAMERA = "no camera"
-    NONE = "none"
-    EMPTY = "empty"
-    FOUND = "found"
-    LIVE = "live"
-    MEASURING = "measuring"
-    SOLVING = "solving"
-    FAILED = "failed"
-    SOLVED = "solved"
-    REJECTED = "rejected"
-    ACCEPTED = "accepted"
-    OTHER = "other"
-    OUTDATED = "outdated"
 
 
 class PlanesPresenter(StepPresenter):
@@ -85,27 +66,7 @@ class PlanesPresenter(StepPresenter):
     @property
     def stage(self) -> Stage:
         """How far the calibration is."""
-        work, accepted = self.work, self.project.accepted.fan
-        if self.live.running:
-            return Stage.LIVE
-        if work.measuring:
-            return Stage.MEASURING
-        if work.poses is not None and work.solving:
-            return Stage.SOLVING
-        done = self.state.state is State.DONE
-        if accepted and self.candidate in ("", accepted):
-            return Stage.ACCEPTED if done else Stage.OUTDATED
-        if self.candidate:
-            if accepted and done:
-                return Stage.OTHER
-            return Stage.REJECTED if self.acceptance.is_rejected(self.candidate) else Stage.SOLVED
-        if not self.project.accepted.camera:
-            return Stage.NO_CAMERA
-        if work.problem:
-            return Stage.FAILED
-        if not self.project.sources.planes:
-            return Stage.NONE
-        return Stage.EMPTY if work.pictures == () else Stage.FOUND
+        return stage_of(self)
 
     @property
     def candidate(self) -> str:
@@ -113,23 +74,7 @@ class PlanesPresenter(StepPresenter):
         return fan_id(self.work.calibration.fan) if self.work.calibration is not None else ""
 
     def blocker(self) -> str:
-        return {
-            Stage.NO_CAMERA: self.tr("Accept a camera calibration first."),
-            Stage.NONE: self.tr("Record or choose pictures of the plate under the laser first."),
-            Stage.EMPTY: self.tr("Choose a folder that holds pictures of the plate under the laser."),
-            Stage.FOUND: self.tr("Calibrate the laser planes from their pictures first."),
-            Stage.LIVE: self.tr("Stop the live source when there are enough poses."),
-            Stage.MEASURING: self.tr("The pictures are being measured."),
-            Stage.SOLVING: self.tr("The laser planes are being solved."),
-            Stage.FAILED: self.tr("The laser planes could not be calibrated; record more poses or check the plate."),
-            Stage.SOLVED: self.tr("Accept the laser planes first."),
-            Stage.REJECTED: self.tr("The laser planes were rejected; accept better ones first."),
-            Stage.ACCEPTED: "",
-            Stage.OTHER: "",
-            Stage.OUTDATED: self.state.sentence
-            if self.candidate
-            else self.tr("The accepted laser planes are out of date; calibrate again."),
-        }[self.stage]
+        return missing(self)
 
     def busy(self) -> str:
         return self.live.busy()
@@ -137,37 +82,17 @@ class PlanesPresenter(StepPresenter):
     @property
     def can_measure(self) -> str:
         """Why the pictures cannot be measured now, or ""."""
-        if self.live.running:
-            return self.tr("Stop the live source first.")
-        if not self.project.accepted.camera:
-            return self.tr("Accept a camera calibration first.")
-        if not self.project.sources.planes:
-            return self.tr("Choose or record pictures first.")
-        if self.work.measuring:
-            return self.tr("The pictures are being measured.")
-        return ""
+        return why_not_measure(self)
 
     @property
     def can_accept(self) -> str:
         """Why nothing can be accepted now, or ""."""
-        if self.live.running:
-            return self.tr("Stop the live source first.")
-        if self.work.calibration is None or self.work.solving or self.acceptance.keeping:
-            return self.tr("There is no calibration yet.")
-        if self.candidate == self.project.accepted.fan and self.state.state is State.DONE:
-            return self.tr("These laser planes are accepted already.")
-        return ""
+        return why_not_accept(self)
 
     @property
     def can_reject(self) -> str:
         """Why nothing can be rejected now, or ""."""
-        if self.live.running:
-            return self.tr("Stop the live source first.")
-        if not self.candidate or self.work.solving:
-            return self.tr("There is no calibration yet.")
-        if self.acceptance.is_rejected(self.candidate) and self.candidate != self.project.accepted.fan:
-            return self.tr("This calibration is rejected already.")
-        return ""
+        return why_not_reject(self)
 
     # ---- pictures, plate, laser
 

@@ -19,7 +19,8 @@ from tests.workbench.pages.planes_cases import NO_PLATE, Planes, folder_with_pos
 from workbench import jobs
 from workbench.bench import Bench
 from workbench.pages.planes_page import PlanesPage
-from workbench.pages.planes_presenter import PlanesPresenter, Stage
+from workbench.pages.planes_presenter import PlanesPresenter
+from workbench.pages.planes_stage import Stage
 from workbench.views import ask
 
 LEFT = Qt.MouseButton.LeftButton

@@ -20,7 +20,8 @@ from tests.workbench.pages.planes_cases import NO_PLATE, Planes, folder_with_pos
 from workbench import jobs
 from workbench.bench import Bench
 from workbench.pages import planes_words as words
-from workbench.pages.planes_presenter import PlanesPresenter, Stage
+from workbench.pages.planes_presenter import PlanesPresenter
+from workbench.pages.planes_stage import Stage
 from workbench.step_state import State
 
 

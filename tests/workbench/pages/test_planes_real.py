@@ -9,7 +9,8 @@ import pytest
 
 from core.files.project import read_project
 from workbench.bench import Bench
-from workbench.pages.planes_presenter import PlanesPresenter, Stage
+from workbench.pages.planes_presenter import PlanesPresenter
+from workbench.pages.planes_stage import Stage
 
 
 @pytest.fixture
