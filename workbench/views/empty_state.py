@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from PySide6.QtCore import Qt
+from PySide6.QtCore import QSize, Qt
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QLabel, QPushButton, QVBoxLayout, QWidget
 
-_WIDEST = 440
+_WIDEST, _MARGIN = 440, 12
 
 
 class EmptyState(QWidget):
@@ -43,9 +43,14 @@ class EmptyState(QWidget):
         return self._label.text()
 
     def resizeEvent(self, event: QResizeEvent) -> None:
-        side = max(12, (event.size().width() - _WIDEST) // 2)
+        side = max(_MARGIN, (event.size().width() - _WIDEST) // 2)
         self._column.setContentsMargins(side, 8, side, 8)
         super().resizeEvent(event)
+
+    def minimumSizeHint(self) -> QSize:
+        """Without the margins: they follow the width, and must not keep a window as wide as it once was."""
+        hint, margins = super().minimumSizeHint(), self._column.contentsMargins()
+        return QSize(hint.width() - margins.left() - margins.right() + 2 * _MARGIN, hint.height())
 
     def _pressed(self) -> None:
         if self._on_button is not None:

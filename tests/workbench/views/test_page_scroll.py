@@ -126,3 +126,14 @@ def test_many_pages_and_a_window_pulled_to_and_fro_do_not_hold_the_window_up(scr
             scroll.zoom(1.2 if turn % 2 else 1 / 1.2)
             all_sharp(qtbot, scroll)
     assert watchdog.longest_ms < LIMIT_MS, watchdog.worst()
+
+
+def test_a_window_that_was_wide_can_be_made_narrow_again_in_one_go(qtbot: Any) -> None:
+    view = PageScroll()
+    qtbot.addWidget(view)
+    narrow = view.minimumSizeHint().width()
+    view.resize(1900, 900)
+    view.show()
+    view.set_message("Drawing the pages …")
+    QApplication.processEvents()
+    assert view.minimumSizeHint().width() <= narrow + 60
