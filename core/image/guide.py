@@ -10,7 +10,7 @@ from numba import njit
 from core.model.arrays import Array
 
 _ARM, _SHORTEST_ARM = 8.0, 3.0  # filter σ
-_LARGEST_ANGLE = 0.25  # rad from the middle of a parabola to its end: beyond, an arc is none
+_LARGEST_ANGLE = 0.2  # rad from the middle of a parabola to its end: beyond, an arc is none
 
 
 def guide(run: Array, arc: Array, weight: Array, filter_px: float) -> Array:

@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 
 from core.image.centreline import Centreline
 from core.image.local_arc import BIAS_ALLOWED, arc_bias_at
+from core.image.pieces import arc_length
 from core.model.arrays import Array
 
 WINDOWS = (9.0, 13.0, 19.0, 28.0, 41.0, 60.0, 88.0)
@@ -41,7 +42,7 @@ def smooth(centreline: Centreline, windows: tuple[float, ...] = WINDOWS) -> Cent
     """
     if len(centreline) < 3:
         return centreline
-    arc = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(centreline.uv, axis=0), axis=1))])
+    arc = arc_length(centreline.uv)
     best = _Fits.at(centreline, arc, windows[0])
     chosen = np.full(len(arc), windows[0])
     low, high = best.shift - AGREE * best.sigma, best.shift + AGREE * best.sigma

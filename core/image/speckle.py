@@ -5,8 +5,7 @@ noise, so products of neighbours, relative to the stripe's m there, show the spe
 
     Σ r(i)·r(i + k) / Σ m(i)·m(i + k) = C²·exp(−k²/grain²)
 
-Products of pixels far apart along the stripe show what is no speckle: a section that is not quite the model's, or
-brightness that changes slowly. They are taken off.
+A section that is not quite the model's, and brightness that changes along the stripe, are taken off before.
 """
 
 from __future__ import annotations
@@ -19,8 +18,7 @@ from scipy.ndimage import median_filter
 
 from core.model.arrays import Array
 
-FAR_CUTS = 16
-"""Grains this many pixels apart along the stripe have nothing in common."""
+_FEWEST_CUTS = 30
 _LEVEL_CUTS = 41
 _OUTLIER = 6.0  # median deviations, four standard ones
 _SIGNIFICANT = 4.0
@@ -48,21 +46,21 @@ def measure_speckle(stripes: list[Array], largest_grain_px: float) -> Speckle:
     largest_grain_px
         Coarser structure is no speckle.
     """
-    sums = np.zeros((3, 2, 2))
+    sums = np.zeros((3, 2))
     square, number = 0.0, 0.0
     for seen, m in stripes:
-        if len(seen) <= 2 * FAR_CUTS:
+        if len(seen) < _FEWEST_CUTS:
             continue
         r = _levelled(seen, m)
         for lag in range(3):
-            sums[lag] += _products(r, m, lag)
+            width = m.shape[1] - lag
+            sums[lag] += [float(np.sum(p[:, :width] * p[:, lag:])) for p in (r, m)]
         square += float(np.sum(r**2))
         number += float(np.count_nonzero(m))
-    if not np.all(sums[:, :, 1] > 0):
+    if not np.all(sums[:, 1] > 0):
         return NO_SPECKLE
-    near, far = (sums[:, kind, 0] / sums[:, kind, 1] for kind in range(2))
-    share = near - far
-    error = square / number**0.5 / sums[1, 0, 1]  # of white noise
+    share = sums[:, 0] / sums[:, 1]
+    error = square / number**0.5 / sums[1, 1]  # of white noise
     if not share[1] > _SIGNIFICANT * error:
         return NO_SPECKLE
     fall = math.log(share[1] / share[2]) if share[2] > 0 else math.inf
@@ -73,20 +71,11 @@ def measure_speckle(stripes: list[Array], largest_grain_px: float) -> Speckle:
 
 
 def _levelled(r: Array, m: Array) -> Array:
-    """Residuals freed of brightness that changes along the stripe, slowly or in steps, and of what stands out."""
+    """Residuals freed of brightness that changes along the stripe, of the section's shape, and of what stands out."""
     height = np.sum(r * m, axis=1) / np.maximum(np.sum(m**2, axis=1), 1e-9)
     levelled = r - median_filter(height, _LEVEL_CUTS, mode="nearest")[:, None] * m
+    levelled -= np.sum(levelled * m, axis=0) / np.maximum(np.sum(m**2, axis=0), 1e-9) * m
     seen = m > 0
     limit = _OUTLIER * float(np.median(np.abs(levelled[seen]) / m[seen])) * m if seen.any() else m
     clipped: Array = np.clip(levelled, -limit, limit)
     return clipped
-
-
-def _products(r: Array, m: Array, lag: int) -> Array:
-    """Sums of products (2, 2) of residuals and of models: of pixels `lag` apart in a cut; the same, far along."""
-    width = r.shape[1] - lag
-    a, b = slice(0, width), slice(lag, width + lag)
-    near = [float(np.sum(p[:, a] * p[:, b])) for p in (r, m)]
-    before, behind = slice(None, -FAR_CUTS), slice(FAR_CUTS, None)
-    far = [float(np.sum(p[before, a] * p[behind, b]) + np.sum(p[behind, a] * p[before, b])) for p in (r, m)]
-    return np.array([near, far])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cache
 
 import numpy as np
@@ -9,8 +10,10 @@ import pytest
 
 from core.image.centreline import Centreline
 from core.image.influence import NODES, REACH, influence
+from core.image.likelihood import residuals
 from core.image.noise import NoiseModel
-from core.image.speckle import NO_SPECKLE, Speckle
+from core.image.profile import Sections
+from core.image.speckle import NO_SPECKLE, Speckle, measure_speckle
 from core.image.stripes import StripeSettings, extract_centrelines
 from tests.image.bound import Stripe, bound_of_mean, bound_per_root_px
 from tests.image.synthetic_stripes import Distance, circle, draw, expose, speckle, straight
@@ -177,3 +180,39 @@ def test_speckle_moves_the_weight_to_the_flanks() -> None:
     centre = [np.sum(np.abs(weight * x)) / np.sum(np.abs(weight)) for weight in (plain, speckled.weight)]
     assert centre[1] > centre[0] + 0.3
     assert 0.5 < speckled.speckle_share < 1
+
+
+@pytest.mark.parametrize("grains", [Speckle(0.1, 2.0), Speckle(0.2, 1.41), Speckle(0.2, 2.24)])
+@pytest.mark.parametrize("angle_deg", [88.0, 40.0])
+def test_speckle_is_measured_on_the_stripe(grains: Speckle, angle_deg: float) -> None:
+    found = _residuals_of(grains, angle_deg, lambda x: np.exp(-0.5 * (x / 2.0) ** 2))
+    assert found.contrast == pytest.approx(grains.contrast, rel=0.15)
+    assert found.grain_px == pytest.approx(grains.grain_px, rel=0.2)
+
+
+def test_neither_noise_nor_a_section_of_another_shape_is_speckle() -> None:
+    assert _residuals_of(NO_SPECKLE, 88.0, lambda x: np.exp(-0.5 * (x / 2.0) ** 2)) == NO_SPECKLE
+    assert _residuals_of(NO_SPECKLE, 88.0, lambda x: np.exp(-((np.abs(x) / 2.8) ** 2.4))).contrast < 0.02
+
+
+def _residuals_of(grains: Speckle, angle_deg: float, section: Callable[[np.ndarray], np.ndarray]) -> Speckle:
+    """What is measured on a noisy stripe of this cross-section."""
+    rng = np.random.default_rng(4)
+    angle = np.radians(angle_deg)
+    length = 1500
+    shape = (int(length * np.sin(angle)) + 40, int(length * np.cos(angle)) + 40)
+    truth = straight((shape[1] / 2, shape[0] / 2), angle)
+    v, u = np.mgrid[: shape[0], : shape[1]]
+    light = 120.0 * section(truth(u, v))
+    if grains.contrast > 0:
+        light *= speckle(light.shape, grains.contrast, grains.grain_px / np.sqrt(2), rng)
+    picture = np.round(expose(light, rng)).astype(np.float32)
+    along = np.linspace(-length / 2 + 60, length / 2 - 60, length - 120)
+    across = np.array([-np.sin(angle), np.cos(angle)])
+    run = np.column_stack([shape[1] / 2 + along * np.cos(angle), shape[0] / 2 + along * np.sin(angle)])
+    flat = np.ones(len(run))
+    width = np.hypot(2.0, 12**-0.5)
+    sections = Sections(120.0 * 2.0 / width * flat, width * flat, 0 * flat, 0 * flat)
+    state = np.zeros(shape, dtype=np.uint8)
+    normals = np.column_stack([run, np.tile(across, (len(run), 1))])
+    return measure_speckle([residuals(picture, state, normals, flat, sections, 2.8)], 6.0)
