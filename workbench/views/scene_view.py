@@ -14,12 +14,10 @@ from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from PySide6.QtCore import QBuffer, QEvent, QIODevice, QPointF, Signal
-from PySide6.QtGui import QCloseEvent, QImage, QPainter
-from PySide6.QtWidgets import QFileDialog, QVBoxLayout, QWidget
+from PySide6.QtCore import QEvent, QPointF, Signal
+from PySide6.QtGui import QCloseEvent, QPainter
+from PySide6.QtWidgets import QVBoxLayout, QWidget
 
-from core.errors import InputError
-from core.files import atomic
 from core.model.arrays import Array
 from workbench.views import scene_view_choice as choice
 from workbench.views.scene_view_backing import Backing
@@ -30,10 +28,8 @@ from workbench.views.scene_view_contents import GRID, Scene, as_points
 from workbench.views.scene_view_grid import ground_grid
 from workbench.views.scene_view_navigator import Navigator
 from workbench.views.scene_view_overlay import Look, bar_width, paint_marker, paint_overlay
-from workbench.views.scene_view_painter import PainterSurface
-from workbench.views.scene_view_picture_widget import image_pixels, pixels_image
-from workbench.views.scene_view_pieces import whole
 from workbench.views.scene_view_shown import ColourLike, ColourMap, SceneShown
+from workbench.views.scene_view_snapshot import Snapshot
 from workbench.views.scene_view_tools import Lasso, Navigate, Pick, Polygon
 
 __all__ = ["ColourLike", "ColourMap", "SceneView", "ViewName", "warm_up"]
@@ -81,6 +77,9 @@ class SceneView(SceneShown):
         self._navigator = Navigator(self._scene, self._size, self._margin, lambda: self._pyramid, self)
         self._chooser = Chooser(self._scene, lambda: self._navigator.camera, self._size, self)
         self._backing = Backing(self._scene, self._canvas, lambda: self._navigator.camera, self)
+        self._snapshot = Snapshot(
+            self._scene, self._backing, lambda: self._navigator.camera, self._size, self._paint_overlay, self
+        )
         self._overlay = Overlay(self._canvas, Navigate(self), self._paint_overlay)
         self._canvas.put_above(self._overlay)
         self._overlay.setAccessibleName(self.tr("3D view"))
@@ -101,7 +100,7 @@ class SceneView(SceneShown):
         self._buttons.fit_asked.connect(self.fit)
         self._buttons.parallel_asked.connect(self._navigator.set_parallel)
         self._buttons.grid_asked.connect(self._toggle_grid)
-        self._buttons.save_asked.connect(self._ask_and_save)
+        self._buttons.save_asked.connect(self._snapshot.ask_and_save)
         self._canvas.shown.connect(self._on_shown)
         self._canvas.hidden.connect(self._on_hidden)
         self._canvas.resized.connect(self._navigator.resized)
@@ -111,6 +110,7 @@ class SceneView(SceneShown):
         self._chooser.selected.connect(self._on_selected)
         self._overlay.cancelled.connect(self.stop_drawing)
         self._backing.notice.connect(self.notice)
+        self._snapshot.failed.connect(self.notice)
         self._backing.presented.connect(self._overlay.update)
         self._backing.waiting.connect(self._show_message)
 
@@ -167,31 +167,11 @@ class SceneView(SceneShown):
 
     def picture(self) -> NDArray[np.uint8]:
         """What is shown, whole, with colour bar and labels: (h, w, 3). Waits until everything is drawn."""
-        surface, pace = self._backing.surface, self._backing.pace
-        if surface is not None and pace is not None and surface.ready and surface.widget.isVisible():
-            pace.finish_now()
-            pixels = surface.pixels()
-        else:
-            pixels = self._painted()
-        image = pixels_image(pixels).convertToFormat(QImage.Format.Format_RGB32)
-        painter = QPainter(image)
-        painter.scale(image.width() / self._size()[0], image.height() / self._size()[1])
-        self._paint_overlay(painter)
-        painter.end()
-        return image_pixels(image)
+        return self._snapshot.picture()
 
     def save_picture(self, path: Path) -> None:
-        """Write the picture as PNG.
-
-        Raises
-        ------
-        InputError
-            If the file cannot be written.
-        """
-        buffer = QBuffer()
-        buffer.open(QIODevice.OpenModeFlag.WriteOnly)
-        pixels_image(self.picture()).save(buffer, "PNG")  # type: ignore[call-overload]
-        atomic.write_bytes(path, bytes(buffer.data().data()))
+        """Write the picture as PNG; InputError if the file cannot be written."""
+        self._snapshot.save(path)
 
     def state(self) -> dict[str, Any]:
         """How the scene is drawn, for messages and tests.
@@ -326,27 +306,6 @@ class SceneView(SceneShown):
             x, y = camera.project(self._chooser.marked, size)[0][0]
             if np.isfinite([x, y]).all():
                 paint_marker(painter, QPointF(float(x), float(y)), _place(self._chooser.marked), look)
-
-    def _painted(self) -> NDArray[np.uint8]:
-        """The picture of a view that nobody has seen yet."""
-        hidden = QWidget()
-        surface = PainterSurface(hidden, lambda: None)
-        surface.widget.resize(*self._size())
-        ground = Look.of(self.palette()).ground
-        surface.set_look((ground.red(), ground.green(), ground.blue()), self._point_size)
-        surface.draw(self._scene, self._navigator.camera, whole(self._scene), first=True, last=True, smooth=True)
-        return surface.pixels()
-
-    def _ask_and_save(self) -> None:
-        name, _ = QFileDialog.getSaveFileName(
-            self, self.tr("Save this picture"), "scene.png", self.tr("Pictures (*.png)")
-        )
-        if not name:
-            return
-        try:
-            self.save_picture(Path(name).with_suffix(".png"))
-        except InputError as error:
-            self.notice.emit(str(error))
 
 
 def _place(point: Array) -> str:
