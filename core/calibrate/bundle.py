@@ -138,14 +138,23 @@ def residuals(camera: Camera, pose: Pose, view: Observed) -> Array:
     return np.asarray(view.uv - camera.project(position), dtype=np.float64)
 
 
-def normal_equations(bundle: Bundle, views: Sequence[Observed], free: NDArray[np.intp]) -> Normal:
-    """The reduced normal equations at `bundle`."""
+def normal_equations(
+    bundle: Bundle, views: Sequence[Observed], free: NDArray[np.intp], target_changes: Sequence[Array] | None = None
+) -> Normal:
+    """The reduced normal equations at `bundle`.
+
+    `target_changes`, (N, 3, B) for each view, are the derivatives of its target points by B further unknowns common to
+    all views, which stand behind the camera's.
+    """
     information, gradients = [], []
-    for pose, view in zip(bundle.poses, views, strict=True):
-        by_camera, by_pose, missing = _weighted(bundle.camera, pose, view, free)
-        alone = by_camera - by_pose @ np.linalg.lstsq(by_pose, by_camera, rcond=None)[0]
+    for index, (pose, view) in enumerate(zip(bundle.poses, views, strict=True)):
+        unknowns, by_pose, missing = _weighted(bundle.camera, pose, view, free)
+        if target_changes is not None:
+            by_target = by_pose.reshape(-1, 2, 6)[..., 3:] @ pose.rotation @ target_changes[index]
+            unknowns = np.hstack([unknowns, by_target.reshape(len(unknowns), -1)])
+        alone = unknowns - by_pose @ np.linalg.lstsq(by_pose, unknowns, rcond=None)[0]
         information.append(alone.T @ alone)
-        gradients.append((alone * missing[:, None]).reshape(-1, 2, len(free)).sum(axis=1))
+        gradients.append((alone * missing[:, None]).reshape(-1, 2, alone.shape[1]).sum(axis=1))
     return Normal(np.array(information), tuple(gradients), _cost(bundle, views))
 
 

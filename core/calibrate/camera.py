@@ -19,16 +19,17 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
+from core.calibrate.board_fit import BoardFit
+from core.calibrate.board_shape import SHAPE_PARAMETERS, Board, BoardShape, BoardTolerance
 from core.calibrate.bundle import (
     NO_PARAMETERS,
     Bundle,
     Observed,
-    normal_equations,
     refine,
     refine_robustly,
     residuals,
 )
-from core.calibrate.camera_covariance import Widening, free_covariance, principal_deviations
+from core.calibrate.camera_covariance import Widening, principal_deviations
 from core.calibrate.camera_notes import notes_on
 from core.calibrate.camera_quality import cross_validation_mm, rms_and_mean, view_qualities, view_without_part
 from core.calibrate.coverage import coverage, tilt_range
@@ -48,6 +49,8 @@ _MIN_TILT = np.deg2rad(3.0)
 _LOOSE_FOCAL = 0.05
 _LOOSE_CENTRE = 0.1
 _MAX_JUDGEMENTS = 8
+_SHAPE_STEPS = 4
+_SHAPE_SETTLED = 1e-4
 _STEP = "Calibrating the camera"
 _STAGES = 5
 _MORE_VIEWS = "take 10 to 15 pictures of the whole target, tilted by up to 30° in different directions"
@@ -95,11 +98,13 @@ def calibrate_camera(
     options: CameraOptions | None = None,
     progress: Progress = silent,
     excluded: Collection[str] = (),
+    tolerance: BoardTolerance | None = None,
 ) -> CameraCalibration:
     """Calibrate the camera that took `views` of a flat target, in pictures of `image_size` (width, height).
 
     Corners are weighted by their `sigma` relative to each other; how large it really is, the residuals tell. Views
-    whose name is in `excluded` have no part in the solution; they come back with their residuals under it.
+    whose name is in `excluded` have no part in the solution; they come back with their residuals under it. The target's
+    shape is solved for, too, within its `tolerance`.
 
     Raises
     ------
@@ -109,13 +114,16 @@ def calibrate_camera(
         When a `sigma` is not positive.
     """
     options = options or CameraOptions()
-    calibration = _calibrated([view for view in views if view.name not in excluded], image_size, options, progress)
+    taken = [view for view in views if view.name not in excluded]
+    calibration = _calibrated(taken, image_size, options, tolerance or BoardTolerance(), progress)
     left_out = [view for view in views if view.name in excluded]
     if not left_out:
         return calibration
     solved = iter(calibration.views)
     qualities = tuple(
-        view_without_part(view, calibration.camera, LEFT_OUT) if view.name in excluded else next(solved)
+        view_without_part(view, calibration.camera, LEFT_OUT, calibration.board)
+        if view.name in excluded
+        else next(solved)
         for view in views
     )
     note = f"{len(left_out)} of {len(views)} views are left out by hand: {', '.join(view.name for view in left_out)}."
@@ -123,7 +131,11 @@ def calibrate_camera(
 
 
 def _calibrated(
-    views: Sequence[TargetView], image_size: tuple[int, int], options: CameraOptions, progress: Progress
+    views: Sequence[TargetView],
+    image_size: tuple[int, int],
+    options: CameraOptions,
+    tolerance: BoardTolerance,
+    progress: Progress,
 ) -> CameraCalibration:
     """The camera from those of `views` that fit together."""
     progress(_STEP, 0, _STAGES)
@@ -140,18 +152,19 @@ def _calibrated(
         bundle = refine_robustly(bundle, observed, options.free)
     progress(_STEP, 2, _STAGES)
     bundle, verdicts = _solve(bundle, observed, options)
+    fit, bundle, verdicts = _with_shape(bundle, verdicts, observed, options, tolerance)
     reasons |= {index: v.reason for index, v in zip(usable, verdicts, strict=True) if not v.used}
     _require_views(views, [index for index in usable if index not in reasons], reasons)
 
     progress(_STEP, 3, _STAGES)
     used = [i for i, verdict in enumerate(verdicts) if verdict.used]
-    solved = Bundle(bundle.camera, tuple(bundle.poses[i] for i in used))
+    solved = _of_views(bundle, used)
     counted = [_select(observed[i], verdicts[i].counted) for i in used]
-    covariance, widening = _covariance(solved, counted, options.free)
+    covariance, shape, widening = _covariance(solved, counted, options.free, fit)
     progress(_STEP, 4, _STAGES)
     fits = {index: (pose, verdict) for index, pose, verdict in zip(usable, bundle.poses, verdicts, strict=True)}
-    qualities = view_qualities(views, [reason for _, reason in screened], bundle.camera, fits)
-    calibration = _summary(qualities, solved, counted, covariance, options.free)
+    qualities = view_qualities(views, [reason for _, reason in screened], bundle.camera, fits, shape)
+    calibration = replace(_summary(qualities, solved, fit.shaped(counted), covariance, options.free), board=shape)
     progress(_STEP, _STAGES, _STAGES)
     return replace(calibration, notes=notes_on(calibration, widening))
 
@@ -233,8 +246,58 @@ def _fit(start: Bundle, observed: Sequence[Observed], verdicts: Sequence[Verdict
     return Bundle(solved.camera, tuple(poses[i] for i in range(len(observed))))
 
 
-def _covariance(bundle: Bundle, counted: Sequence[Observed], free: NDArray[np.intp]) -> tuple[Array, Widening]:
-    """Covariance (10, 10) and how it was widened; InputError where the views do not determine the camera."""
+def _with_shape(
+    flat: Bundle,
+    verdicts: list[Verdict],
+    observed: Sequence[Observed],
+    options: CameraOptions,
+    tolerance: BoardTolerance,
+) -> tuple[BoardFit, Bundle, list[Verdict]]:
+    """The board's shape beside the camera, from the solution with a `flat` board; the views are judged once more."""
+    fit = BoardFit(Board.of([view.points for view in observed]), tolerance, np.zeros(len(SHAPE_PARAMETERS)))
+    used = [i for i, verdict in enumerate(verdicts) if verdict.used]
+    if not len(fit.free) or len(used) < MIN_VIEWS:
+        return fit, flat, verdicts
+    counted = [_select(observed[i], verdicts[i].counted) for i in used]
+    freedom = _freedom(counted, options.free)
+    bundle = flat
+    try:
+        for _ in range(_SHAPE_STEPS):
+            before = fit.values
+            fit = fit.step(_of_views(bundle, used), counted, options.free, freedom)
+            bundle = _fit(bundle, fit.shaped(observed), verdicts, options.free)
+            if (np.abs(fit.values - before)[fit.free] < _SHAPE_SETTLED * tolerance.sd[fit.free]).all():
+                break
+        unsure = (
+            tolerance.flatness_mm is None
+            and not fit.shape(
+                fit.covariance(_of_views(bundle, used), counted, options.free, freedom)[0], len(options.free)
+            ).surely_bowed
+        )
+    except np.linalg.LinAlgError:
+        unsure = True
+    if unsure:
+        return _with_shape(flat, verdicts, observed, options, replace(tolerance, flatness_mm=0.0))
+    bundle, verdicts = _solve(bundle, fit.shaped(observed), options)
+    return fit, bundle, verdicts
+
+
+def _of_views(bundle: Bundle, used: Sequence[int]) -> Bundle:
+    return Bundle(bundle.camera, tuple(bundle.poses[i] for i in used))
+
+
+def _freedom(counted: Sequence[Observed], free: NDArray[np.intp]) -> int:
+    """Observations less unknowns of camera and poses."""
+    return 2 * sum(len(view.points) for view in counted) - len(free) - 6 * len(counted)
+
+
+def _covariance(
+    bundle: Bundle, counted: Sequence[Observed], free: NDArray[np.intp], fit: BoardFit
+) -> tuple[Array, BoardShape, Widening]:
+    """Covariance (10, 10) of the camera, the board's shape with its own, and how both were widened.
+
+    InputError where the views do not determine the camera.
+    """
     range_of_tilt = tilt_range(bundle.poses)
     if range_of_tilt < _MIN_TILT:
         raise InputError(
@@ -242,14 +305,10 @@ def _covariance(bundle: Bundle, counted: Sequence[Observed], free: NDArray[np.in
             f"(tilted by at most {np.rad2deg(range_of_tilt):.1f}° against each other)",
             todo=_MORE_VIEWS,
         )
-    corners = sum(len(view.points) for view in counted)
     covariance = np.zeros((10, 10))
     try:
-        covariance[np.ix_(free, free)], widening = free_covariance(
-            normal_equations(bundle, counted, free),
-            [view.points for view in counted],
-            2 * corners - len(free) - 6 * len(counted),
-        )
+        both, widening = fit.covariance(bundle, counted, free, _freedom(counted, free))
+        covariance[np.ix_(free, free)] = both[: len(free), : len(free)]
     except np.linalg.LinAlgError:
         raise InputError("the views do not determine the camera: too much alike", todo=_MORE_VIEWS) from None
     deviation = np.sqrt(np.maximum(np.diag(covariance), 0))
@@ -262,7 +321,7 @@ def _covariance(bundle: Bundle, counted: Sequence[Observed], free: NDArray[np.in
             f"centre of its picture by {100 * loose_centre:.0f} % of the picture",
             todo=_MORE_VIEWS,
         )
-    return covariance, widening
+    return covariance, fit.shape(both, len(free)), widening
 
 
 def _summary(

@@ -47,13 +47,16 @@ class Widening:
         return float(np.sqrt(self.within_views**2 + self.across_views**2 - 1))
 
 
-def free_covariance(normal: Normal, points: Sequence[Array], degrees_of_freedom: int) -> tuple[Array, Widening]:
+def free_covariance(
+    normal: Normal, points: Sequence[Array], degrees_of_freedom: int, precision: Array | None = None
+) -> tuple[Array, Widening]:
     """Covariance (F, F) of the free parameters, widened for errors that corners share.
 
     The scale of the residuals is measured, not assumed. Where corners of a view err together, the views' gradients g
     scatter more than independent corners would make them: for these E[Σ gᵀ S⁻¹ g] = σ² (F − Σ tr(S⁻¹ S_v S⁻¹ S_v)).
     The ratio of both, where above 1, widens the covariance. The same is done over the target's corners, known by
-    their `points` (N, 3) in each view (clusters in two ways).
+    their `points` (N, 3) in each view (clusters in two ways). `precision` (F,) is what is known of the parameters
+    beforehand, as in the information's diagonal.
 
     Raises
     ------
@@ -61,6 +64,8 @@ def free_covariance(normal: Normal, points: Sequence[Array], degrees_of_freedom:
         When the views do not determine the parameters.
     """
     information = normal.information.sum(axis=0)
+    prior = np.zeros(len(information)) if precision is None else precision
+    information = information + np.diag(prior)
     scale = 1 / np.sqrt(np.maximum(np.diag(information), 1e-300))
     eigenvalues, vectors = np.linalg.eigh(information * np.outer(scale, scale))
     if eigenvalues[0] < _SINGULAR * eigenvalues[-1]:
@@ -68,14 +73,15 @@ def free_covariance(normal: Normal, points: Sequence[Array], degrees_of_freedom:
     inverse = (vectors / eigenvalues) @ vectors.T * np.outer(scale, scale)
     variance = normal.cost / max(degrees_of_freedom, 1)
 
-    free, views = len(inverse), len(normal.information)
+    free = len(inverse) - float(np.diag(inverse) @ prior)  # parameters that the views, not the prior, tell
+    views = len(normal.information)
     of_views = np.array([gradients.sum(axis=0) for gradients in normal.gradients])
     shares = inverse @ normal.information
     independent = free - float(np.einsum("vij,vji->", shares, shares))
     within = _scatter(of_views, inverse) / max(variance * independent, 1e-300)
 
     corner = np.unique(np.round(np.concatenate(points), 6), axis=0, return_inverse=True)[1].ravel()
-    of_corners = np.zeros((corner.max() + 1, free))
+    of_corners = np.zeros((corner.max() + 1, len(inverse)))
     np.add.at(of_corners, corner, np.concatenate(normal.gradients))
     across = _scatter(of_corners, inverse) / max(variance * free * (1 - 1 / len(of_corners)), 1e-300)
     widening = Widening(

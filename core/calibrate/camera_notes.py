@@ -12,6 +12,7 @@ _ENOUGH_VIEWS = 8
 _ENOUGH_TILT = np.deg2rad(25.0)
 _WORSE_VIEW = 3.0
 _MUCH_WIDER = 1.5
+_BOWED_MM = 0.05
 
 
 def notes_on(calibration: CameraCalibration, widening: Widening) -> tuple[str, ...]:
@@ -39,6 +40,12 @@ def notes_on(calibration: CameraCalibration, widening: Widening) -> tuple[str, .
         )
     if np.isnan(calibration.cross_validation_mm):
         notes.append("With fewer than six views two halves of them cannot be checked against each other.")
+    shape = calibration.board
+    if shape.surely_bowed and shape.departure_mm > _BOWED_MM:
+        notes.append(
+            f"The target is bowed by {shape.departure_mm:.2f} mm from its lowest to its highest place, which is taken "
+            "into account: better fix it to something flat."
+        )
     limit = max(_MUCH_WIDER, 1 + 3 * widening.chance)
     if widening.within_views > limit:
         notes.append(

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from core.calibrate.board_shape import BoardShape
 from core.calibrate.bundle import NO_PARAMETERS, Bundle, Observed, refine, refine_robustly
 from core.calibrate.coverage import disagreement_mm, tilt
 from core.calibrate.results import ViewQuality
@@ -17,9 +18,9 @@ from core.model import Camera, Pose
 from core.model.arrays import Array
 
 
-def fitted_view(view: TargetView, camera: Camera, pose: Pose, verdict: Verdict) -> ViewQuality:
-    """How `view` fits `camera` at `pose`."""
-    errors = view.uv - camera.project_pose(pose, view.points)
+def fitted_view(view: TargetView, camera: Camera, pose: Pose, verdict: Verdict, board: BoardShape) -> ViewQuality:
+    """How `view` of a `board` fits `camera` at `pose`."""
+    errors = view.uv - camera.project_pose(pose, board.shaped(view.points))
     rms, mean = rms_and_mean(errors[verdict.counted])
     return ViewQuality(view, pose, errors, rms, mean, tilt(pose), verdict.used, verdict.reason, verdict.counted)
 
@@ -30,7 +31,7 @@ def unfitted_view(view: TargetView, reason: str) -> ViewQuality:
     return ViewQuality(view, Pose.identity(), nowhere, np.nan, np.nan, np.nan, False, reason, none)
 
 
-def view_without_part(view: TargetView, camera: Camera, reason: str) -> ViewQuality:
+def view_without_part(view: TargetView, camera: Camera, reason: str, board: BoardShape) -> ViewQuality:
     """How a view that had no part in calibrating `camera` fits it, at the pose that suits the view best.
 
     Where it does not even look like the target there is no pose, and it says so after the `reason`.
@@ -39,17 +40,21 @@ def view_without_part(view: TargetView, camera: Camera, reason: str) -> ViewQual
     if homography is None:
         return unfitted_view(view, f"{reason}; {doubt}")
     alone = Bundle(camera, (pose_from_homography(camera.matrix, homography),))
-    seen = Observed(view.points, view.uv, (float(np.median(view.sigma)) / view.sigma) ** 2)
+    seen = Observed(board.shaped(view.points), view.uv, (float(np.median(view.sigma)) / view.sigma) ** 2)
     (pose,) = refine_robustly(alone, [seen], NO_PARAMETERS).poses
-    return fitted_view(view, camera, pose, Verdict(False, np.ones(len(view.uv), dtype=np.bool_), reason))
+    return fitted_view(view, camera, pose, Verdict(False, np.ones(len(view.uv), dtype=np.bool_), reason), board)
 
 
 def view_qualities(
-    views: Sequence[TargetView], reasons: Sequence[str], camera: Camera, fits: Mapping[int, tuple[Pose, Verdict]]
+    views: Sequence[TargetView],
+    reasons: Sequence[str],
+    camera: Camera,
+    fits: Mapping[int, tuple[Pose, Verdict]],
+    board: BoardShape,
 ) -> tuple[ViewQuality, ...]:
     """Qualities of all `views`: those of index in `fits` with pose and verdict, the others with their reason."""
     return tuple(
-        fitted_view(view, camera, *fits[index]) if index in fits else unfitted_view(view, reasons[index])
+        fitted_view(view, camera, *fits[index], board) if index in fits else unfitted_view(view, reasons[index])
         for index, view in enumerate(views)
     )
 

@@ -54,6 +54,8 @@ class FanOptions:
     constrained
         "always" holds the planes to one pencil with that angle, "axis" to a pencil with any angles, "never" to
         nothing; "auto" takes the first of these that suits the laser.
+    scale_sd
+        Standard uncertainty of the target's size as a share of it.
 
     Raises
     ------
@@ -64,6 +66,7 @@ class FanOptions:
     lines: int = 3
     angle: float | None = None
     constrained: Constrained = "auto"
+    scale_sd: float = 0.0
 
     def __post_init__(self) -> None:
         if self.lines < 1:
@@ -117,7 +120,7 @@ def fit_fan(
         return replace(again, camera=joint.camera, camera_covariance=joint.camera_covariance)
     used = free if isinstance(verdict.start, FreePlanes) else solve(verdict.start, _bundle_poses(located), camera)
     errors = prediction_errors(used, _bundle_poses(located), camera)
-    return summarise(located, free, used, verdict, errors, further)
+    return replace(summarise(located, free, used, verdict, errors, further), scale_sd=options.scale_sd)
 
 
 def same_model(options: FanOptions, calibration: FanCalibration) -> FanOptions:

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from core.calibrate.board_shape import BoardShape
 from core.image.target_view import TargetView
 from core.model import Camera, Fan, Pose
 from core.model.arrays import Array
@@ -50,7 +51,8 @@ class CameraCalibration:
     (the paper judges by this one). `coverage` is the share (0…1) of the picture's cells that hold a corner;
     `tilt_range` the largest angle in rad between two views' target normals. `cross_validation_mm` is the RMS
     distance between the points that cameras solved from odd and from even views give over the work volume, NaN when
-    there are too few views for two cameras. `notes` are sentences for the technician.
+    there are too few views for two cameras. `notes` are sentences for the technician. `board` is the shape of the
+    target as all views together tell it, which the residuals have taken into account.
     """
 
     camera: Camera
@@ -62,6 +64,7 @@ class CameraCalibration:
     tilt_range: float
     cross_validation_mm: float
     notes: tuple[str, ...] = ()
+    board: BoardShape = field(default_factory=BoardShape)
 
     @property
     def sd(self) -> Mapping[str, float]:

@@ -11,6 +11,7 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from core import __version__
+from core.calibrate.board_shape import SHAPE_PARAMETERS, Board, BoardShape
 from core.calibrate.results import CAMERA_PARAMETERS, CameraCalibration, ViewQuality
 from core.files.atomic import write_text
 from core.files.complaints import Clash, complaint
@@ -55,6 +56,17 @@ class _View(ResultFile):
     counted: list[bool] = Field(default_factory=list)
 
 
+class _Board(ResultFile):
+    """The shape of the target."""
+
+    shape: list[Finite] = Field(min_length=4, max_length=4, description="four finite numbers")
+    covariance: list[Annotated[list[Finite], Field(min_length=4, max_length=4)]] = Field(
+        min_length=4, max_length=4, description="4 × 4 finite numbers"
+    )
+    middle_mm: Row2
+    half_mm: Row2
+
+
 class _CameraFile(ResultFile):
     image_size: list[Annotated[int, Field(ge=1, le=100_000)]] = Field(
         min_length=2, max_length=2, description="[width, height] in pixels"
@@ -67,6 +79,7 @@ class _CameraFile(ResultFile):
     coverage: Maybe = None
     tilt_range_deg: Maybe = None
     cross_validation_mm: Maybe = None
+    board: _Board | None = None
     views: list[_View] = Field(default_factory=list)
     notes: list[str] = Field(default_factory=list)
 
@@ -110,6 +123,7 @@ def write_camera(path: Path, calibration: CameraCalibration) -> None:
                 "version": __version__,
                 "parameters": CAMERA_PARAMETERS,
                 "covariance": calibration.covariance,
+                "board": _board(calibration.board),
                 "views": [_view(quality) for quality in calibration.views],
             }
         ),
@@ -146,12 +160,30 @@ def read_camera(path: Path) -> CameraCalibration:
         tilt_range=math.radians(number(file.tilt_range_deg)),
         cross_validation_mm=number(file.cross_validation_mm),
         notes=tuple(file.notes),
+        board=BoardShape() if file.board is None else _shape(file.board),
     )
 
 
 def number(value: float | None) -> float:
     """A number of a file, NaN where the file has none."""
     return math.nan if value is None else value
+
+
+def _board(shape: BoardShape) -> dict[str, Any]:
+    return {
+        "parameters": SHAPE_PARAMETERS,
+        "shape": shape.values,
+        "sd": shape.sd,
+        "covariance": shape.covariance,
+        "middle_mm": shape.board.middle,
+        "half_mm": shape.board.half,
+        "departure_mm": shape.departure_mm,
+    }
+
+
+def _shape(table: _Board) -> BoardShape:
+    board = Board(np.array(table.middle_mm), np.array(table.half_mm))
+    return BoardShape(board, np.array(table.shape), np.array(table.covariance))
 
 
 def _view(quality: ViewQuality) -> dict[str, Any]:

@@ -6,7 +6,7 @@ import json
 import math
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +14,7 @@ import numpy as np
 from pydantic import ValidationError
 
 from core.acquire.grey import Channel
+from core.calibrate.board_shape import BoardTolerance
 from core.errors import InputError
 from core.files.complaints import complaint
 from core.files.rig_tables import GaugeTable, PlannedRigTables, RigTables, TargetTable
@@ -52,7 +53,11 @@ class GaugeSpec:
 
 @dataclass(frozen=True, slots=True)
 class Rig:
-    """What rig.toml says. `angle` between neighbouring lines is in rad (0 with one line)."""
+    """What rig.toml says. `angle` between neighbouring lines is in rad (0 with one line).
+
+    `camera_board` says how true the camera's target is, `plane_scale_sd` how sure the size of the plane target: its
+    standard uncertainty as a share of it.
+    """
 
     camera_target: Target
     plane_target: Target
@@ -60,6 +65,8 @@ class Rig:
     angle: float
     gauge: GaugeSpec | None = None
     channel: Channel | None = None
+    camera_board: BoardTolerance = field(default_factory=BoardTolerance)
+    plane_scale_sd: float = 0.0
 
 
 def default_rig() -> Rig:
@@ -123,6 +130,8 @@ def rig_of(tables: RigTables, path: Path, within: str = "") -> Rig:
         angle,
         _gauge(tables.gauge) if tables.gauge else None,
         tables.channel,
+        _tolerance(tables.camera_target),
+        tables.plane_target.scale_sd,
     )
 
 
@@ -130,8 +139,8 @@ def rig_tables(rig: Rig) -> dict[str, Any]:
     """The tables of `rig` as rig.toml has them, without those that are not there; `RigTables` checks them."""
     tables = {
         "channel": rig.channel,
-        "camera_target": _target_table(rig.camera_target),
-        "plane_target": _target_table(rig.plane_target),
+        "camera_target": _target_table(rig.camera_target) | _tolerance_table(rig.camera_board),
+        "plane_target": _target_table(rig.plane_target) | _tolerance_table(BoardTolerance(scale_sd=rig.plane_scale_sd)),
         "laser_fan": _present({"lines": rig.lines, "angle_deg": _in_degrees(rig.angle) if rig.angle else None}),
         "gauge": None if rig.gauge is None else _gauge_table(rig.gauge),
     }
@@ -154,6 +163,14 @@ def _target(path: Path, name: str, table: TargetTable) -> Target:
         return table.target()
     except ValueError as error:  # what only the target itself can judge, as a dictionary of markers
         raise InputError(f"{name}: {error}", where=path) from error
+
+
+def _tolerance(table: TargetTable) -> BoardTolerance:
+    return BoardTolerance(getattr(table, "flatness_mm", None), table.scale_sd)
+
+
+def _tolerance_table(tolerance: BoardTolerance) -> dict[str, Any]:
+    return _present({"flatness_mm": tolerance.flatness_mm, "scale_sd": tolerance.scale_sd or None})
 
 
 def _target_table(target: Target) -> dict[str, Any]:

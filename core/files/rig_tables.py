@@ -25,7 +25,21 @@ class Table(BaseModel):
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
 
 
-class _Checkerboard(Table):
+class _Printed(Table):
+    """What any target may say of how it was made."""
+
+    scale_sd: float = Field(
+        0.0, ge=0, le=0.1, allow_inf_nan=False, description="a standard uncertainty as a share of the size, 0 to 0.1"
+    )
+
+
+class _Board(_Printed):
+    """Of a target with many points."""
+
+    flatness_mm: float | None = Field(None, ge=0, le=100, allow_inf_nan=False, description="a length in mm, 0 to 100")
+
+
+class _Checkerboard(_Board):
     kind: Literal["checkerboard"]
     inner_corners: list[_Count] = Field(min_length=2, max_length=2, description=_TWO_COUNTS)
     square_mm: _Length = Field(description=_A_LENGTH)
@@ -35,7 +49,7 @@ class _Checkerboard(Table):
         return Checkerboard(columns, rows, self.square_mm)
 
 
-class _Charuco(Table):
+class _Charuco(_Board):
     kind: Literal["charuco"]
     squares: list[_Count] = Field(min_length=2, max_length=2, description=_TWO_COUNTS)
     square_mm: _Length = Field(description=_A_LENGTH)
@@ -55,7 +69,7 @@ class _Charuco(Table):
         return Charuco(columns, rows, self.square_mm, self.marker_mm, self.dictionary)
 
 
-class _CircleGrid(Table):
+class _CircleGrid(_Board):
     kind: Literal["circle_grid"]
     circles: list[_Count] = Field(min_length=2, max_length=2, description=_TWO_COUNTS)
     pitch_mm: _Length = Field(description=_A_LENGTH)
@@ -66,7 +80,7 @@ class _CircleGrid(Table):
         return CircleGrid(columns, rows, self.pitch_mm, self.asymmetric)
 
 
-class _BlackSquare(Table):
+class _BlackSquare(_Printed):
     kind: Literal["black_square"]
     side_mm: _Length = Field(description=_A_LENGTH)
 
@@ -157,6 +171,15 @@ class RigTables(Table):
     gauge: GaugeTable | None = Field(None, description="a table [gauge]")
     channel: Literal["red", "green", "blue"] | None = Field(None, description='"red", "green" or "blue"')
     plan: PlanTable | None = Field(None, description="a table [plan]")
+
+    @model_validator(mode="after")
+    def _flatness_where_it_counts(self) -> RigTables:
+        if getattr(self.plane_target, "flatness_mm", None) is not None:
+            raise Clash(
+                "plane_target.flatness_mm",
+                "is for the camera target only; how flat the plane target is, the stripes on it tell",
+            )
+        return self
 
 
 class PlannedRigTables(Table):

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from core.calibrate.board_shape import BoardTolerance
 from core.calibrate.camera import calibrate_camera
 from core.calibrate.results import CameraCalibration, ViewQuality
 from core.calibrate.seen_views import SeenView, SeenViews
@@ -37,7 +38,7 @@ def camera_step(work: Workspace, options: Options | None = None, progress: Progr
     options = options or Options()
     with work.step("camera") as log:
         log.settings.update(options.camera_settings)
-        calibration = solve_camera(see_views(work.found, progress), options, progress)
+        calibration = solve_camera(see_views(work.found, progress), options, progress, work.found.rig.camera_board)
         log.notes.extend(calibration.notes)
         write_camera(work.path("camera"), calibration)
     return read_camera(work.path("camera"))
@@ -72,8 +73,15 @@ def see_views(found: RecordingSet, progress: Progress = silent) -> SeenViews:
     return SeenViews(tuple(seen), str(found.where("camera")))
 
 
-def solve_camera(seen: SeenViews, options: Options | None = None, progress: Progress = silent) -> CameraCalibration:
+def solve_camera(
+    seen: SeenViews,
+    options: Options | None = None,
+    progress: Progress = silent,
+    tolerance: BoardTolerance | None = None,
+) -> CameraCalibration:
     """The camera from what the pictures show, without those left out by hand: they are judged by the solution.
+
+    `tolerance` is what is known of how true the target is.
 
     Raises
     ------
@@ -91,7 +99,7 @@ def solve_camera(seen: SeenViews, options: Options | None = None, progress: Prog
             where="camera",
             todo="take some of them in again, or record more",
         )
-    return _with_lost(calibrate_camera(found, size, options.camera, progress, options.excluded), seen)
+    return _with_lost(calibrate_camera(found, size, options.camera, progress, options.excluded, tolerance), seen)
 
 
 def _too_few(seen: SeenViews) -> InputError:

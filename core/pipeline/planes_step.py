@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from core.calibrate.fan import FanOptions, fit_fan
+from core.calibrate.fan_verdict import Constrained
 from core.calibrate.plane_pose import PoseFeatures, measure_plane_pose
 from core.calibrate.results import FanCalibration
 from core.errors import InputError
@@ -104,13 +105,16 @@ def solve_planes(
 
 def fan_options(rig: Rig, options: Options) -> FanOptions:
     """What is known of the laser, and whether its planes may be held to one pencil."""
-    return FanOptions(rig.lines, rig.angle or None, "auto" if options.constrain_fan else "never")
+    constrained: Constrained = "auto" if options.constrain_fan else "never"
+    return FanOptions(rig.lines, rig.angle or None, constrained, rig.plane_scale_sd)
 
 
 def planes_settings(rig: Rig, options: Options) -> dict[str, object]:
     """What the fan's calibration is told, for run.json."""
     fan = fan_options(rig, options)
     told: dict[str, object] = {"lines": fan.lines, "angle_rad": fan.angle, "constrained": fan.constrained}
+    if fan.scale_sd:
+        told["scale_sd"] = fan.scale_sd
     if options.adjust_camera:
         told["camera"] = "adjusted"
     return {**told, **options.excluded_settings("planes")}

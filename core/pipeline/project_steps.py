@@ -122,7 +122,7 @@ def found_views(folder: Path, project: Project, progress: Progress = silent) -> 
 
 def solve_views(folder: Path, project: Project, seen: SeenViews, progress: Progress = silent) -> CameraCalibration:
     """The camera from what the pictures show, without the views left out; InputError if they do not determine it."""
-    return solve_camera(seen, project.options, progress)
+    return solve_camera(seen, project.options, progress, project.rig.camera_board)
 
 
 def accept_camera(folder: Path, project: Project, calibration: CameraCalibration, progress: Progress = silent) -> str:

@@ -18,6 +18,14 @@ def board(columns: int = 17, rows: int = 12, square_mm: float = 10.0) -> np.ndar
     return np.column_stack([x.ravel(), y.ravel(), np.zeros(x.size)]) * square_mm
 
 
+def shaped(points: np.ndarray, bow_x: float, bow_y: float, twist: float, aspect: float) -> np.ndarray:
+    """The flat board bowed and drawn out."""
+    off = points[:, :2] - points[:, :2].mean(axis=0)
+    x, y = (off / off.max(axis=0)).T
+    z = bow_x * x**2 + bow_y * y**2 + twist * x * y
+    return points + np.column_stack([0.5 * aspect * off[:, 0], -0.5 * aspect * off[:, 1], z])
+
+
 def random_pose(rng: np.random.Generator, points: np.ndarray, max_tilt: float) -> Pose:
     """The board's middle on a ray in the middle of the picture, 450 to 650 mm away, tilted in any direction."""
     direction = rng.uniform(0, 2 * np.pi)
@@ -36,15 +44,20 @@ def synthetic_views(
     noise_px: float = 0.03,
     max_tilt_deg: float = 35.0,
     bend_px: float = 0.0,
+    shape: tuple[float, float, float, float] | None = None,
 ) -> list[TargetView]:
-    """Views with independent corner noise, and with `bend_px` of a smooth error common to a view's corners."""
+    """Views with independent corner noise, and with `bend_px` of a smooth error common to a view's corners.
+
+    `shape` of the board that is seen: mm it bows along x and y at its edges, mm of twist, and its aspect.
+    """
     rng = np.random.default_rng(seed)
     points = board()
     x, y = ((points[:, :2] - points[:, :2].mean(axis=0)) / 80).T
     bends = np.column_stack([x * x, y * y, x * y, x**3, y**3])
+    seen = points if shape is None else shaped(points, *shape)
     views: list[TargetView] = []
     while len(views) < count:
-        uv = TRUTH.project_pose(random_pose(rng, points, np.deg2rad(max_tilt_deg)), points)
+        uv = TRUTH.project_pose(random_pose(rng, points, np.deg2rad(max_tilt_deg)), seen)
         if (uv < 5).any() or (uv > np.array(TRUTH.image_size) - 5).any():
             continue
         uv = uv + rng.normal(0, noise_px, uv.shape) + bend_px * bends @ rng.normal(size=(5, 2))

@@ -7,6 +7,7 @@ from datetime import UTC, datetime, timedelta, timezone
 import numpy as np
 import pytest
 
+from core.calibrate.board_shape import BoardTolerance
 from core.calibrate.camera import CameraOptions
 from core.errors import InputError
 from core.files import project_json
@@ -39,7 +40,7 @@ def full_project():
     return Project(
         ProjectInfo("Block 50", "gauge", "S/N 7", "Ö. Ärzt", "ACME", "Lab 3", 20.5, 21, 'quotes " and\nlines — σ'),
         Rig(Charuco(9, 7, 20, 15), CircleGrid(7, 6, 37.5), 2, math.radians(4.0), GaugeSpec(50, 0.2, POLYGON, POLYGON),
-            "green"),
+            "green", BoardTolerance(0.1, 2e-4), 3e-4),
         Sources("/data/set/camera", "recordings/planes-1", "C:/pictures/scan"),
         Options("three-crossings", 0.3, CameraOptions(False, frozenset({"p1", "k2"}), True, "all"), "my part",
                 StripeSettings(8.5, 120), frozenset({"camera/b.png", "planes/pose02", "scan/ä ö.png"}), False, True),

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from plyfile import PlyData
 
+from core.calibrate.board_shape import Board, BoardShape
 from core.calibrate.plane_pose import PoseFeatures
 from core.errors import InputError
 from core.files.camera_file import camera_id, read_camera, write_camera
@@ -104,6 +105,18 @@ def test_missing_and_broken_files_say_what_to_do(tmp_path):
     (tmp_path / "camera.json").write_text("[1, 2, 3]")
     with pytest.raises(InputError, match=r"camera\.json"):
         read_camera(tmp_path / "camera.json")
+
+
+def test_the_shape_of_the_board_is_kept(tmp_path, camera):
+    board = Board(np.array([80.0, 55.0]), np.array([80.0, 55.0]))
+    bowed = BoardShape(board, np.array([0.2, -0.1, 0.05, 1e-4]), np.diag([1e-6, 1e-6, 1e-6, 1e-9]))
+    path = tmp_path / "camera.json"
+    write_camera(path, replace(camera, board=bowed))
+    back = read_camera(path).board
+    assert np.array_equal(back.values, bowed.values)
+    assert np.array_equal(back.covariance, bowed.covariance)
+    assert np.array_equal(back.shaped(np.ones((1, 3))), bowed.shaped(np.ones((1, 3))))
+    assert json.loads(path.read_text())["board"]["departure_mm"] == bowed.departure_mm
 
 
 def test_fan_round_trip_is_exact_and_has_the_keys_of_the_design(tmp_path, camera, fan):

@@ -4,6 +4,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from core.calibrate.board_shape import BoardTolerance
 from core.errors import InputError
 from core.files.rig import GaugeSpec, Rig, default_rig, read_rig, rig_of, rig_tables, rig_to_toml
 from core.files.rig_tables import RigTables
@@ -85,6 +86,23 @@ def test_every_kind_of_target_channel_and_polygons(tmp_path):
     assert np.array_equal(rig.gauge.lower_polygon_px[-1], [20.5, 10])
 
 
+def test_how_true_the_targets_are_can_be_said(tmp_path):
+    said = GOOD.replace("square_mm = 10.0", "square_mm = 10.0\nflatness_mm = 0.05\nscale_sd = 1e-4", 1)
+    path = tmp_path / "rig.toml"
+    path.write_text(said.replace("side_mm = 60.0", "side_mm = 60.0\nscale_sd = 2e-4", 1))
+    rig = read_rig(path)
+    assert rig.camera_board == BoardTolerance(0.05, 1e-4)
+    assert rig.plane_scale_sd == 2e-4
+    assert written(tmp_path, rig) == rig
+    assert default_rig().camera_board == BoardTolerance()
+
+
+def test_flatness_of_a_plane_target_is_not_asked_for(tmp_path):
+    boards = 'kind = "checkerboard"\ninner_corners = [9, 7]\nsquare_mm = 8.0\nflatness_mm = 0.1'
+    sentence = complaint(tmp_path, GOOD.replace('kind = "black_square"\nside_mm = 60.0', boards, 1))
+    assert "plane_target.flatness_mm is for the camera target only" in sentence
+
+
 def test_without_gauge(tmp_path):
     assert read(tmp_path, GOOD.partition("[gauge]")[0]).gauge is None
 
@@ -116,6 +134,8 @@ def test_text_in_another_encoding_is_refused(tmp_path):
         ("square_mm = 10.0", "square_mm = nan", ["camera_target.square_mm is NaN", "above 0"]),
         ("square_mm = 10.0", "square_mm = 1e9", ["camera_target.square_mm is 1000000000.0", "at most 5000"]),
         ("square_mm = 10.0", "square_mm = true", ["camera_target.square_mm is true"]),
+        ("square_mm = 10.0", "square_mm = 10.0\nflatness_mm = -1", ["camera_target.flatness_mm is -1", "0 to 100"]),
+        ("side_mm = 60.0", "side_mm = 60.0\nscale_sd = 2", ["plane_target.scale_sd is 2", "0 to 0.1"]),
         ("[17, 12]", "[17]", ["camera_target.inner_corners is [17]", "[columns, rows]"]),
         ("[17, 12]", "[17, 12.5]", ["camera_target.inner_corners[1] is 12.5", "whole numbers from 3 to 500"]),
         ("[17, 12]", "[17, 0]", ["camera_target.inner_corners[1] is 0", "whole numbers from 3 to 500"]),

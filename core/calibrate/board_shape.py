@@ -1,0 +1,135 @@
+"""A board that is not as it should be: bowed, twisted, or printed longer one way than the other.
+
+The shape is common to all views and unknown; views from different sides tell it. It is a second-degree surface
+z = a x² + b y² + c x y over the board, in units of half its size, so that a, b and c are millimetres at its edges, and
+an aspect, the share by which it is longer in x and shorter in y. What a technician knows of the board is a prior on
+each. The board's size itself no view tells: it scales all lengths alike and leaves the camera as it is.
+
+References
+----------
+Strobl, K. H. & Hirzinger, G., More accurate pinhole camera calibration with imperfect planar target, ICCV Workshops
+(2011) 1068–1075, doi:10.1109/ICCVW.2011.6130369.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.stats import chi2
+
+from core.model.arrays import Array
+
+SHAPE_PARAMETERS = ("bow_x", "bow_y", "twist", "aspect")
+"""Names and order of a shape's parameters: mm, mm, mm and a share."""
+
+SUSPECTED_MM = 0.2
+"""How far from flat a board may be of which nothing is known."""
+
+SURE = 1e-4
+"""It is bowed for sure if a flat one would look so bowed more rarely than this."""
+
+
+@dataclass(frozen=True, slots=True)
+class BoardTolerance:
+    """What is known of a printed board.
+
+    Parameters
+    ----------
+    flatness_mm
+        Standard deviation of how far its edges may be off the plane through its middle; 0: it is flat. None: nothing is
+        known; it is taken as flat unless the views surely show otherwise.
+    scale_sd
+        Standard uncertainty of its size as a share of it, in x and in y on their own; 0: it is true.
+
+    Raises
+    ------
+    ValueError
+        If either is negative or absurd.
+    """
+
+    flatness_mm: float | None = None
+    scale_sd: float = 0.0
+
+    def __post_init__(self) -> None:
+        if self.flatness_mm is not None and not 0 <= self.flatness_mm <= 100:
+            raise ValueError(f"a flatness of {self.flatness_mm} mm is not between 0 and 100 mm")
+        if not 0 <= self.scale_sd <= 0.1:
+            raise ValueError(f"a relative uncertainty of {self.scale_sd} of the size is not between 0 and 0.1")
+
+    @property
+    def sd(self) -> Array:
+        """Standard deviations (4,) of the shape's parameters before any view is seen; 0 where they are known."""
+        flatness = SUSPECTED_MM if self.flatness_mm is None else self.flatness_mm
+        aspect = self.scale_sd * np.sqrt(2)  # the difference of two independent sizes
+        return np.array([flatness, flatness, flatness, aspect])
+
+    @property
+    def free(self) -> NDArray[np.intp]:
+        """Indices of the parameters that are unknown."""
+        return np.flatnonzero(self.sd)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Board:
+    """The points of a flat board: their `middle` (2,) and `half` their extent (2,), in mm."""
+
+    middle: Array = field(default_factory=lambda: np.zeros(2))
+    half: Array = field(default_factory=lambda: np.ones(2))
+
+    @classmethod
+    def of(cls, points: Sequence[Array]) -> Board:
+        """The board on which all of `points`, (N, 3) in each view, are."""
+        joined = np.concatenate(points)[:, :2]
+        low, high = joined.min(axis=0), joined.max(axis=0)
+        return cls((low + high) / 2, np.maximum((high - low) / 2, 1e-9))
+
+    def changes(self, points: Array) -> Array:
+        """∂(x, y, z)/∂(shape) of flat `points` (N, 3): (N, 3, 4)."""
+        off = points[:, :2] - self.middle
+        x, y = (off / self.half).T
+        derivative = np.zeros((len(points), 3, 4))
+        derivative[:, 2, :3] = np.column_stack([x * x, y * y, x * y])
+        derivative[:, 0, 3], derivative[:, 1, 3] = 0.5 * off[:, 0], -0.5 * off[:, 1]
+        return derivative
+
+    def shaped(self, points: Array, values: Array) -> Array:
+        """Flat `points` (N, 3) where a board of a shape of these `values` (4,) has them."""
+        return np.asarray(points + self.changes(points) @ values, dtype=np.float64)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class BoardShape:
+    """A board's shape: `values` (4,) in the order of SHAPE_PARAMETERS and their `covariance` (4, 4)."""
+
+    board: Board = field(default_factory=Board)
+
+    values: Array = field(default_factory=lambda: np.zeros(4))
+    covariance: Array = field(default_factory=lambda: np.zeros((4, 4)))
+
+    @property
+    def sd(self) -> Array:
+        """Standard deviations (4,)."""
+        return np.asarray(np.sqrt(np.maximum(np.diag(self.covariance), 0)), dtype=np.float64)
+
+    @property
+    def departure_mm(self) -> float:
+        """Largest less smallest z of the board, its corners included."""
+        grid = np.linspace(-1, 1, 21)
+        x, y = (axis.ravel() for axis in np.meshgrid(grid, grid))
+        return float(np.ptp(self.values[0] * x * x + self.values[1] * y * y + self.values[2] * x * y))
+
+    @property
+    def surely_bowed(self) -> bool:
+        """Whether chance alone hardly bows a flat board so much."""
+        bow = self.values[:3]
+        if not bow.any():
+            return False
+        chance = float(chi2.sf(bow @ np.linalg.pinv(self.covariance[:3, :3], hermitian=True) @ bow, len(bow)))
+        return chance < SURE
+
+    def shaped(self, points: Array) -> Array:
+        """Flat `points` (N, 3) where this board has them."""
+        return self.board.shaped(points, self.values)
