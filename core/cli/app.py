@@ -275,6 +275,27 @@ def target(
 
 
 @app.command()
+def plan(
+    rig: Annotated[Path, typer.Argument(metavar="RIG", help="A rig.toml, or the recording set that holds it.")],
+    out: Annotated[
+        Path | None, typer.Option("--out", "-o", metavar="DIR", help="Write plan.json and sigma.png there.")
+    ] = None,
+    scans: Annotated[int, typer.Option(help="Scans drawn for the prediction.")] = 2,
+    no_changes: Annotated[
+        bool, typer.Option("--no-changes", help="Do not try which change of the rig helps most: sooner done.")
+    ] = False,
+    sigma_cut: SigmaCut = 0.05,
+    json: Json = False,
+) -> None:
+    """Predict what a rig will measure, before anything is bolted down: U of a thickness, σ, what helps most."""
+    from core.cli import planning
+
+    with bars() as progress:
+        shown = planning.run_plan(rig, out, scans=scans, changes=not no_changes, sigma_cut=sigma_cut, progress=progress)
+    shown.show(as_json=json)
+
+
+@app.command()
 def simulate(
     thing: Annotated[str, typer.Argument(metavar="OBJECT", help=f"What stands on the table: {', '.join(OBJECTS)}.")],
     out: Annotated[Path, typer.Option("--out", "-o", metavar="SET", help="Folder of the new recording set.")],

@@ -93,14 +93,12 @@ def plan_fan(design: Design, camera: Camera, seed: int, progress: Progress = sil
         ]
         for pose in poses
     ]
-    background = WHITE * float(np.mean([room_shade(pose, PLANE_GREY) for pose in poses]))
-    stripes = stripes.tried([piece for pieces in lines for piece in pieces], background)
     noise = generator(seed, "plate noise")
     features = []
     for number, (pose, pieces) in enumerate(zip(poses, lines, strict=True)):
         view = _view(f"pose{number:02d}", true, pose, target, noise)
-        centrelines = tuple(stripes.centreline(piece, noise) for piece in pieces)
-        features.append(_features(view, centrelines, true))
+        tried = stripes.tried(pieces, WHITE * float(room_shade(pose, PLANE_GREY)))  # each pose has its own sharpness
+        features.append(_features(view, tuple(tried.centreline(piece, noise) for piece in pieces), true))
     options = FanOptions(design.lines, np.radians(design.angle_deg) if design.lines > 1 else None)
     return fit_fan(features, camera, options, progress)
 

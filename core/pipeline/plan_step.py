@@ -1,0 +1,123 @@
+"""From the rig.toml of a rig that is only planned to what it will measure, and which change of it helps most."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from core import __version__
+from core.files.atomic import make_folder, write_bytes, write_text
+from core.files.json_text import rounded, to_json
+from core.plan.changes import Effect, advice, compare
+from core.plan.design import Design
+from core.plan.from_rig import read_design
+from core.plan.predict import Planner, Prediction
+from core.progress import Progress, silent
+from core.report.plan_map import plan_map_png
+
+PLAN_FILE, MAP_FILE = "plan.json", "sigma.png"
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class PlanResult:
+    """What a plan will give: one prediction for each height, and what changes do to that of the largest height.
+
+    `advice` is empty when no changes were tried.
+    """
+
+    design: Design
+    predictions: tuple[Prediction, ...]
+    effects: tuple[Effect, ...]
+    advice: str
+
+    @property
+    def largest(self) -> Prediction:
+        """The prediction that changes are judged by."""
+        return max(self.predictions, key=lambda prediction: prediction.height_mm)
+
+
+def plan(
+    rig: Path, *, scans: int = 2, changes: bool = True, sigma_cut_mm: float = 0.05, progress: Progress = silent
+) -> PlanResult:
+    """Predict what the rig in the rig.toml at `rig` (or in that folder) will measure.
+
+    Parameters
+    ----------
+    scans
+        How many scans are drawn for the prediction; changes are compared on the first of them.
+    changes
+        Whether to try which change helps most.
+    sigma_cut_mm
+        Points with a larger σ are left out, as in a scan.
+
+    Raises
+    ------
+    InputError
+        If rig.toml is wrong, or the rig cannot measure.
+    """
+    design = read_design(rig)
+    planner = Planner(progress, sigma_cut_mm)
+    predictions = tuple(planner.predict(design, height, scans) for height in design.heights_mm)
+    base = max(predictions, key=lambda prediction: prediction.height_mm)
+    effects = compare(planner, design, base, progress=progress) if changes else ()
+    return PlanResult(design, predictions, effects, advice(effects) if changes else "")
+
+
+def write_plan(result: PlanResult, folder: Path) -> Mapping[str, Path]:
+    """Write plan.json and sigma.png into `folder` and return where they are.
+
+    Raises
+    ------
+    InputError
+        If the folder cannot be made or written to.
+    """
+    make_folder(folder)
+    files = {"plan": folder / PLAN_FILE, "sigma": folder / MAP_FILE}
+    shown = result.largest
+    title = f"Standard uncertainty of depth, block of {shown.height_mm:g} mm"
+    picture = plan_map_png(shown.sigma.own, shown.sigma.common, result.design.pixels, title)
+    write_bytes(files["sigma"], picture)
+    write_text(files["plan"], to_json({**plan_values(result), "sigma_map": _sigma_map(shown)}))
+    return files
+
+
+def plan_values(result: PlanResult) -> dict[str, Any]:
+    """The plan and its figures for machines; lengths in mm, angles in degrees as rig.toml has them."""
+    return {
+        "version": __version__,
+        "design": {name: value for name, value in asdict(result.design).items() if not name.endswith("_target")},
+        "thickness": [_prediction(prediction) for prediction in result.predictions],
+        "advice": result.advice,
+        "changes": [
+            {"change": effect.change, "to": effect.to, "U_mm": effect.U_mm, "reason": effect.reason}
+            for effect in result.effects
+        ],
+    }
+
+
+def _prediction(prediction: Prediction) -> dict[str, Any]:
+    return {
+        "height_mm": prediction.height_mm,
+        "u_mm": prediction.u_mm,
+        "U_mm": prediction.U_mm,
+        "k": prediction.k,
+        "budget": [{"source": row.source, "u_mm": row.u_mm} for row in prediction.budget],
+        "sigma_own_mm": float(np.nanmedian(prediction.sigma.own)),
+        "sigma_common_mm": float(np.nanmedian(prediction.sigma.common)),
+        "sweeps_used": prediction.sweeps_used,
+        "points": prediction.points,
+    }
+
+
+def _sigma_map(prediction: Prediction) -> dict[str, Any]:
+    sigma = prediction.sigma
+    return {
+        "height_mm": prediction.height_mm,
+        "cell_px": sigma.cell_px,
+        "own_mm": rounded(sigma.own, 5),
+        "common_mm": rounded(sigma.common, 5),
+    }

@@ -1,0 +1,213 @@
+"""The uncertainty a planned rig will state of a thickness, and the σ of every place it will see.
+
+The real calibrations, the real network and the real gauge solve simulated features: exact geometry, and noise such as
+the extraction leaves. So the prediction is their own covariance, and follows them when they become better. As one scan
+is lucky and another is not, a few are drawn and the root mean square of their u is what to expect.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from typing import TypeVar
+
+import numpy as np
+
+from core.calibrate.deviations import calibration_deviations
+from core.calibrate.results import CameraCalibration, FanCalibration
+from core.errors import InputError
+from core.image.centreline import Centreline
+from core.inspect.gauge import measure_gauge
+from core.inspect.point_errors import PointErrors
+from core.inspect.results import Contribution, GaugeResult
+from core.model.arrays import Array
+from core.plan.calibrating import plan_camera, plan_fan
+from core.plan.design import Design
+from core.plan.scanning import plan_scan
+from core.progress import Progress, Told, silent
+from core.scan.cloud import Cloud
+from core.scan.common_errors import solve_common
+from core.scan.features import ScanFeatures
+from core.scan.reconstruct import ReconstructOptions, reconstruct
+
+MAP_COLUMNS = 48
+"""Cells of the σ map across the picture."""
+FIRST_SEED = 1
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class SigmaMap:
+    """σ of the depth over the picture, in mm: (rows, columns) cells of `cell_px`, NaN where nothing is measured.
+
+    `own` differs from point to point (median of a cell), `common` is what camera and fan do to the whole scan.
+    """
+
+    own: Array
+    common: Array
+    cell_px: float
+
+    @property
+    def total(self) -> Array:
+        """Both together."""
+        return np.asarray(np.hypot(self.own, self.common))
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Prediction:
+    """What a plan will give for one block.
+
+    Parameters
+    ----------
+    height_mm
+        Its thickness.
+    u_mm
+        Expected standard uncertainty of the thickness: root mean square over the scans drawn.
+    each_u_mm, errors_mm
+        (D,) what each of them states, and how far off each is.
+    budget
+        What u consists of, in the same mean.
+    sigma
+        Of the first scan.
+    sweeps_used
+        Sweeps of the first scan that give points.
+    points
+        Points of the first scan within the σ cut.
+    """
+
+    height_mm: float
+    u_mm: float
+    k: float
+    each_u_mm: tuple[float, ...]
+    errors_mm: tuple[float, ...]
+    budget: tuple[Contribution, ...]
+    sigma: SigmaMap
+    sweeps_used: int
+    points: int
+
+    @property
+    def U_mm(self) -> float:
+        """Expanded uncertainty U = k u."""
+        return self.k * self.u_mm
+
+
+@dataclass(slots=True)
+class Planner:
+    """Predicts, and remembers what plans that differ in little have in common."""
+
+    progress: Progress = silent
+    sigma_cut_mm: float = ReconstructOptions().sigma_cut_mm
+    _known: dict[tuple[object, ...], object] = field(default_factory=dict)
+
+    def predict(self, design: Design, height_mm: float, scans: int = 1) -> Prediction:
+        """The prediction for a block of `height_mm` from `scans` drawn scans, each with calibrations of its own.
+
+        Raises
+        ------
+        InputError
+            If the plan cannot measure: something is not seen, not found or not determined.
+        """
+        drawn = []
+        for number in range(scans):
+            self.progress("scans drawn", number, scans)
+            drawn.append(self._draw(design, height_mm, FIRST_SEED + number))
+        self.progress("scans drawn", scans, scans)
+        gauges = [gauge for gauge, _ in drawn]
+        cloud = drawn[0][1]
+        each = tuple(gauge.u_mm for gauge in gauges)
+        return Prediction(
+            height_mm,
+            _rms(each),
+            gauges[0].k,
+            each,
+            tuple(gauge.thickness_mm - height_mm for gauge in gauges),
+            _mean_budget(gauges),
+            _sigma_map(cloud, design.pixels),
+            len(np.unique(cloud.sweep[cloud.sweep >= 0])),
+            len(cloud),
+        )
+
+    def _draw(self, design: Design, height_mm: float, seed: int) -> tuple[GaugeResult, Cloud]:
+        told = Told(self.progress)
+        camera, fan = self._calibrations(design, seed)
+        features = self._features(design, height_mm, seed)
+        scan = reconstruct(
+            features, camera.camera, fan.fan, ReconstructOptions(sigma_cut_mm=self.sigma_cut_mm), told.again
+        )
+        deviations = calibration_deviations(camera, fan)
+        common = solve_common(features, scan, camera.camera, fan.fan, deviations, progress=told.again)
+        cloud = replace(scan.cloud, sigma_common=common.sigma(scan.cloud))
+        swept = [piece for frame in features.frames for piece in frame.centrelines]
+        errors = PointErrors(scan.covariance, common, _correlation(swept), _correlation(features.fan))
+        gauge = measure_gauge(cloud, errors=errors, progress=told.again)
+        if abs(gauge.thickness_mm / height_mm - 1) > 0.1:
+            raise InputError(
+                f"the block's upper face ({height_mm:g} mm) would not be found among the points seen",
+                where="[plan]",
+                todo="plan more sweeps, a larger block, or a fan that falls on it",
+            )
+        return gauge, cloud
+
+    def _calibrations(self, design: Design, seed: int) -> tuple[CameraCalibration, FanCalibration]:
+        told = Told(self.progress)
+        known = replace(design, poses=Design().poses, **_SCAN_ONLY)
+        camera = self._remembered(("camera", known, seed), lambda: plan_camera(known, seed, told.again))
+        whole = replace(design, **_SCAN_ONLY)
+        return camera, self._remembered(("fan", whole, seed), lambda: plan_fan(design, camera.camera, seed, told.again))
+
+    def _features(self, design: Design, height_mm: float, seed: int) -> ScanFeatures:
+        known = replace(
+            design,
+            views=Design().views,
+            poses=Design().poses,
+            camera_target=Design().camera_target,
+            plane_target=Design().plane_target,
+        )
+        return self._remembered(
+            ("scan", known, height_mm, seed), lambda: plan_scan(design, height_mm, seed, Told(self.progress).again)
+        )
+
+    def _remembered(self, key: tuple[object, ...], make: Callable[[], T]) -> T:
+        if key not in self._known:
+            self._known[key] = make()
+        made: T = self._known[key]  # type: ignore[assignment]
+        return made
+
+
+_SCAN_ONLY = {
+    name: getattr(Design(), name) for name in ("sweeps", "hand_baseline_mm", "heights_mm", "block_mm", "ambient_grey")
+}
+"""Quantities that calibrations do not feel, at their defaults."""
+
+
+def _correlation(pieces: list[Centreline] | tuple[Centreline, ...]) -> float:
+    """Length in pixels over which the noise of a typical point counts as one."""
+    lengths = [len(piece) for piece in pieces]
+    return float(np.median(np.repeat([piece.correlation_px for piece in pieces], lengths)))
+
+
+def _mean_budget(gauges: list[GaugeResult]) -> tuple[Contribution, ...]:
+    sources = list(dict.fromkeys(row.source for gauge in gauges for row in gauge.budget))
+    shares = {
+        source: _rms(tuple(sum(row.u_mm for row in gauge.budget if row.source == source) for gauge in gauges))
+        for source in sources
+    }
+    return tuple(Contribution(source, u) for source, u in shares.items())
+
+
+def _rms(values: tuple[float, ...]) -> float:
+    return float(np.sqrt(np.mean(np.square(values))))
+
+
+def _sigma_map(cloud: Cloud, pixels: tuple[int, int]) -> SigmaMap:
+    cell = pixels[0] / MAP_COLUMNS
+    rows = int(np.ceil(pixels[1] / cell))
+    column, row = (np.floor((cloud.uv + 0.5) / cell).astype(np.int64)).T
+    flat = np.clip(row, 0, rows - 1) * MAP_COLUMNS + np.clip(column, 0, MAP_COLUMNS - 1)
+    own, common = np.full(rows * MAP_COLUMNS, np.nan), np.full(rows * MAP_COLUMNS, np.nan)
+    order = np.argsort(flat, kind="stable")
+    for cell_points in np.split(order, np.flatnonzero(np.diff(flat[order])) + 1):
+        own[flat[cell_points[0]]] = np.median(cloud.sigma[cell_points])
+        common[flat[cell_points[0]]] = np.median(cloud.sigma_common[cell_points])
+    return SigmaMap(own.reshape(rows, -1), common.reshape(rows, -1), cell)

@@ -1,0 +1,113 @@
+import json
+import numpy as np
+import pytest
+
+from core.errors import InputError
+from core.files.pictures import read_picture
+from core.pipeline.plan_step import plan, write_plan
+from core.report.plan_map import plan_map_png
+from tests.plan.small import CUT_MM, SMALL
+from tests.simulated import trisect
+
+TOML = f"""[plan]
+pixels = [960, 687]
+pixel_um = 6.68
+views = {SMALL.views}
+poses = {SMALL.poses}
+sweeps = {SMALL.sweeps}
+heights_mm = [40, 50]
+"""
+
+
+@pytest.fixture(scope="module")
+def rig(tmp_path_factory):
+    path = tmp_path_factory.mktemp("plan") / "rig.toml"
+    path.write_text(TOML, encoding="utf-8")
+    return path
+
+
+@pytest.fixture(scope="module")
+def told(rig):
+    out = rig.parent / "out"
+    said = trisect("plan", rig, "--out", out, "--scans", 1, "--no-changes", "--json", "--sigma-cut", CUT_MM)
+    return said, out
+
+
+@pytest.fixture(scope="module")
+def result(rig):
+    return plan(rig, scans=1, changes=False, sigma_cut_mm=CUT_MM)
+
+
+def test_every_height_gets_its_u_and_a_budget(told):
+    said, _ = told
+    values = json.loads(said.out)
+
+    assert said.code == 0
+    assert [row["height_mm"] for row in values["thickness"]] == [40.0, 50.0]
+    for row in values["thickness"]:
+        assert row["U_mm"] == pytest.approx(row["k"] * row["u_mm"])
+        assert row["u_mm"] == pytest.approx(np.sqrt(sum(part["u_mm"] ** 2 for part in row["budget"])))
+    assert values["design"]["sweeps"] == SMALL.sweeps
+    assert values["changes"] == []
+
+
+def test_plan_json_and_the_map_are_written(told):
+    said, out = told
+    written = json.loads((out / "plan.json").read_text(encoding="utf-8"))
+    picture = read_picture(out / "sigma.png")
+
+    assert written["thickness"] == json.loads(said.out)["thickness"]
+    own = np.array(written["sigma_map"]["own_mm"], dtype=float)
+    assert own.shape == (35, 48)
+    assert np.isfinite(own).any() and np.isnan(own).any()
+    assert np.ptp(picture) > 100
+
+
+def test_the_same_plan_writes_the_same_bytes(rig, told, result):
+    _, out = told
+    write_plan(result, rig.parent / "again")
+
+    for name in ("plan.json", "sigma.png"):
+        assert (rig.parent / "again" / name).read_bytes() == (out / name).read_bytes()
+
+
+def test_people_are_told_in_lines(rig):
+    said = trisect("plan", rig, "--scans", 1, "--no-changes", "--sigma-cut", CUT_MM)
+
+    assert said.code == 0
+    assert "block 40 mm" in said.out and "U = 0." in said.out
+    assert "common to the scan" in said.out
+
+
+@pytest.mark.parametrize(
+    ("words", "part"),
+    [
+        (["--scans", 0], "--scans"),
+        (["--sigma-cut", 0], "--sigma-cut"),
+    ],
+)
+def test_an_absurd_option_is_refused_in_one_sentence(rig, words, part):
+    said = trisect("plan", rig, *words)
+
+    assert said.code == 2
+    assert part in said.sentence
+
+
+def test_a_wrong_plan_is_refused_in_one_sentence(tmp_path):
+    (tmp_path / "rig.toml").write_text("[plan]\nposses = 3\n", encoding="utf-8")
+    said = trisect("plan", tmp_path)
+
+    assert said.code == 2
+    assert "did you mean poses" in said.sentence
+
+
+def test_an_out_that_is_a_file_is_told(rig, result):
+    (rig.parent / "taken").write_text("", encoding="utf-8")
+    with pytest.raises(InputError, match="taken"):
+        write_plan(result, rig.parent / "taken")
+
+
+def test_a_map_without_any_value_still_is_a_picture():
+    nothing = np.full((4, 6), np.nan)
+
+    assert plan_map_png(nothing, nothing, (96, 64), "nothing").startswith(b"\x89PNG")

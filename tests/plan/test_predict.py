@@ -1,0 +1,98 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from core.errors import Cancelled, InputError
+from core.plan.changes import CHANGES, Change, Effect, advice, compare
+from core.plan.predict import Planner
+from tests.plan.small import CUT_MM, SMALL
+
+HEIGHT = 50.0
+
+
+@pytest.fixture(scope="module")
+def planner():
+    return Planner(sigma_cut_mm=CUT_MM)
+
+
+@pytest.fixture(scope="module")
+def base(planner):
+    return planner.predict(SMALL, HEIGHT, scans=2)
+
+
+def test_u_is_the_sum_of_its_budget_and_holds_the_errors_drawn(base):
+    total = np.sqrt(sum(row.u_mm**2 for row in base.budget))
+
+    assert base.u_mm == pytest.approx(total, rel=1e-6)
+    assert base.U_mm == pytest.approx(base.k * base.u_mm)
+    assert np.all(np.abs(base.errors_mm) < 5 * np.array(base.each_u_mm))
+    assert 0.01 < base.u_mm < 0.15
+
+
+def test_the_map_shows_sigma_where_block_and_table_are_seen(base):
+    seen = np.isfinite(base.sigma.own)
+
+    assert 0.2 < seen.mean() < 1.0
+    assert np.array_equal(seen, np.isfinite(base.sigma.common))
+    assert 0 < np.nanmax(base.sigma.own) <= CUT_MM
+    assert np.allclose(base.sigma.total[seen] ** 2, (base.sigma.own**2 + base.sigma.common**2)[seen])
+
+
+def test_the_same_plan_gives_the_same_figures(base):
+    again = Planner(sigma_cut_mm=CUT_MM).predict(SMALL, HEIGHT, scans=2)
+
+    assert again.each_u_mm == base.each_u_mm
+    assert np.array_equal(again.sigma.own, base.sigma.own, equal_nan=True)
+
+
+def test_more_poses_leave_less_of_the_fans_share(planner, base):
+    many = planner.predict(replace(SMALL, poses=4 * SMALL.poses), HEIGHT, scans=2)
+
+    def fan(prediction):
+        return next(row.u_mm for row in prediction.budget if "fan calibration" in row.source)
+
+    assert fan(many) < 0.75 * fan(base)
+    assert many.u_mm < base.u_mm
+
+
+def test_without_speckle_a_thickness_is_surer(planner, base):
+    assert planner.predict(replace(SMALL, speckle=0.0), HEIGHT, scans=1).u_mm < 0.85 * base.u_mm
+
+
+def test_changes_come_with_the_most_helpful_first_and_say_why_one_cannot_be_made(planner, base):
+    impossible = Change("no views", lambda design: "1", lambda design: replace(design, views=1))
+    chosen = (*[change for change in CHANGES if "poses" in change.name or "shorter" in change.name], impossible)
+    effects = compare(planner, SMALL, base, changes=chosen)
+
+    assert [effect.share for effect in effects] == sorted(effect.share for effect in effects)
+    assert {effect.change for effect in effects} == {change.name for change in chosen}
+    assert all(effect.before_mm == base.U_mm for effect in effects)
+    failed = effects[-1]
+    assert (failed.change, failed.U_mm) == ("no views", None)
+    assert "impossible" in failed.reason
+    by_name = {effect.change: effect for effect in effects}
+    assert by_name["baseline of the fan 20 % shorter"].share > 1, "the light planes meet the rays at smaller angles"
+
+
+def test_advice_names_the_best_change_or_says_that_none_helps():
+    good, none = Effect("poses doubled", "18", 0.031, 0.024), Effect("views doubled", "28", 0.031, 0.0309)
+    failed = Effect("longer lens", "10 mm", 0.031, None, "the target does not fit")
+
+    assert advice((good, none)) == "Most helps: poses doubled (18): U 0.031 → 0.024 mm."
+    assert "None" in advice((none, failed))
+    assert "None" in advice((failed,))
+
+
+def test_a_rig_whose_fan_misses_the_picture_is_told():
+    with pytest.raises(InputError):
+        Planner().predict(replace(SMALL, focal_mm=60.0), HEIGHT)
+
+
+def test_a_plan_can_be_cancelled():
+    def cancel(step, done, total):
+        if step == "stripes" or done > 0:
+            raise Cancelled
+
+    with pytest.raises(Cancelled):
+        Planner(cancel).predict(SMALL, HEIGHT)
