@@ -151,7 +151,7 @@ def mm(value: float, digits: int = 3) -> str:
 def with_sd(value: float, sd: float, unit: str) -> str:
     """A value ± its standard deviation, to two digits of it."""
     text = f"{value:.{_digits(sd)}f}" + (f" ± {sd:.{_digits(sd)}f}" if sd > 0 else "")
-    return f"{text} {unit}".strip()
+    return f"{text} {unit}".strip().replace("-", "−")
 
 
 def _digits(sd: float) -> int:

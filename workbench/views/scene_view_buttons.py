@@ -5,7 +5,7 @@ from __future__ import annotations
 import qtawesome
 from PySide6.QtCore import QCoreApplication, QPointF, QSize, Qt, Signal
 from PySide6.QtGui import QAction, QColor, QIcon, QKeySequence, QPainter, QPalette, QPen, QPixmap, QPolygonF
-from PySide6.QtWidgets import QToolBar, QWidget
+from PySide6.QtWidgets import QToolBar, QToolButton, QWidget
 
 ICON = 20
 
@@ -91,6 +91,11 @@ class SceneButtons(QToolBar):
                 action.setIcon(_cube_icon(name, text, accent, self.devicePixelRatioF()))
             else:
                 action.setIcon(qtawesome.icon(library[name], color=text, color_on=accent))
+
+        more = self.findChild(QToolButton, "qt_toolbar_ext_button")
+        if more is not None:  # what there is no room for is behind it; the style draws it black on any theme
+            more.setIcon(qtawesome.icon("mdi6.chevron-double-right", color=text))
+            more.setToolTip(self.tr("More buttons"))
 
     def _add(self, name: str, text: str, key: str, *, checkable: bool = False) -> QAction:
         action = QAction(text, self)
