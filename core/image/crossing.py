@@ -1,16 +1,13 @@
 """Crossings: where the centrelines of two pictures meet.
 
-Each line is fitted close to the meeting by a parabola y = a + b·x + c·x² in a frame laid along it, within one piece, so
-a fit never reaches across a kink or a depth edge. The window is as long as the line stays a parabola, found by Lepski's
-rule. Over ±2h it knows the line's place as well, within 6 %, as a straight line over ±h. The two curves are met by
-Newton's method.
+Each line is fitted near the meeting by kriging (`core.image.kriging`) over a window that ends where the piece does, at
+kinks and at jumps (`core.image.local_fit`): as a straight line where it is one, and where it bends as far as its bend
+can be foretold. The two curves are met by Newton's method.
 
 With ε_a, ε_b the errors of the fits along the lines' normals n_a, n_b, the meeting moves by M·ε, M = [n_a; n_b]⁻¹, so
 its covariance is M·diag(σ_a², σ_b²)·Mᵀ: errors grow with 1/sin θ.
 
-References
-----------
-Lepski, O., Asymptotically minimax adaptive estimation, Theory Probab. Appl. 36 (1992), doi:10.1137/1136085.
+How near that comes to the bound, and how honest σ is, is measured in tests/image/test_crossing_bound.py.
 """
 
 from __future__ import annotations
@@ -18,19 +15,19 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from core.image.centreline import Centreline
-from core.image.local_arc import BIAS_ALLOWED, arc_bias
-from core.image.segments import Stack, meeting_segments
+from core.image.local_fit import BEND, FIT, PLACE, REACH, SIGMA, SLOPE, T_U, T_V, local_fit
+from core.image.segments import CELL_REACH, CELLS, Stack, meeting_segments
 from core.model.arrays import Array, frozen_array, set_field
 
 _REASONS = ("angle too small", "arm too short", "lines do not meet")
 _SHORTEST_ARM = 0.75  # of the correlation length
-_AGREE = 2.5  # standard uncertainties
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -42,7 +39,7 @@ class Crossing:
     uv
         (2,) in pixels, distorted image coordinates.
     tangent_a, tangent_b
-        (2,) unit tangents of the lines there.
+        (2,) unit tangents of the lines there, the way their points run.
     angle
         Angle θ between the lines in rad, 0 < θ ≤ π/2.
     sigma_a, sigma_b
@@ -51,6 +48,10 @@ class Crossing:
         (2, 2) of `uv` in px².
     curved
         Whether the bend of either line matters: a straight fit would be off by three standard uncertainties.
+    along_a, along_b
+        Where on each line, as length along it from its first point, in pixels.
+    cell_a, cell_b, share_a, share_b
+        What each fit has in common with others on the same line: see `core.scan.crossings.CrossingTable`.
     """
 
     uv: Array
@@ -61,6 +62,12 @@ class Crossing:
     sigma_b: float
     covariance: Array
     curved: bool
+    along_a: float = 0.0
+    along_b: float = 0.0
+    cell_a: int = 0
+    cell_b: int = 0
+    share_a: Array = field(default_factory=lambda: np.zeros(CELLS))
+    share_b: Array = field(default_factory=lambda: np.zeros(CELLS))
 
     def __post_init__(self) -> None:
         for name in ("uv", "tangent_a", "tangent_b"):
@@ -80,165 +87,147 @@ class CrossingSearch:
     left_out: tuple[tuple[Array, str], ...] = ()
 
 
+Lines = Sequence[Centreline] | Stack
+"""The centrelines of one picture; made ready if they are to be crossed more than once."""
+
+
 def cross_centrelines(
-    a: Sequence[Centreline], b: Sequence[Centreline], half_length_px: float = 40.0, min_angle: float = math.radians(15)
+    a: Lines, b: Lines, half_length_px: float = 40.0, min_angle: float = math.radians(15)
 ) -> list[tuple[int, int, Crossing]]:
     """All crossings of the pieces `a` of one picture with the pieces `b` of another; see `search_crossings`."""
     return list(search_crossings(a, b, half_length_px, min_angle).found)
 
 
 def search_crossings(
-    a: Sequence[Centreline], b: Sequence[Centreline], half_length_px: float = 40.0, min_angle: float = math.radians(15)
+    a: Lines, b: Lines, half_length_px: float = 40.0, min_angle: float = math.radians(15)
 ) -> CrossingSearch:
     """All crossings of the pieces `a` of one picture with the pieces `b` of another.
 
     Parameters
     ----------
     a, b
-        Centrelines of the two pictures.
+        Centrelines of the two pictures; a `Stack` must have been made with cells of `half_length_px`.
     half_length_px
-        How far along the line on either side it may be expected to be nearly straight; the local fit reaches from half
-        to twice as far, see above.
+        A third of how far along the line on either side the local fit may reach.
     min_angle
         Lines that meet at a smaller angle in rad are left out.
     """
     rejected: Counter[str] = Counter()
     found: list[tuple[int, int, Crossing]] = []
     left_out: list[tuple[Array, str]] = []
-    if not a or not b:
+    if not len(a) or not len(b):
         return CrossingSearch((), rejected)
-    lines_a, lines_b = Stack(a), Stack(b)
-    met = meeting_segments(lines_a.points, lines_a.starts, lines_b.points, lines_b.starts)
+    of_a, of_b = _stack(a, half_length_px), _stack(b, half_length_px)
+    met = meeting_segments(of_a.points, of_a.starts, of_a.boxes, of_b.points, of_b.starts, of_b.boxes)
     for i, k, j, m in met:
-        row = _cross(
-            lines_a.points[lines_a.starts[i] : lines_a.starts[i + 1]],
-            k,
-            a[i].correlation_px,
-            lines_b.points[lines_b.starts[j] : lines_b.starts[j + 1]],
-            m,
-            b[j].correlation_px,
-            half_length_px,
-            min_angle,
-        )
-        if row[0] > 0:
-            reason = _REASONS[int(row[0]) - 1]
+        reason, crossing = _cross_at(of_a, i, k, of_b, j, m, min_angle)
+        if crossing is None:
             rejected[reason] += 1
-            left_out.append((lines_a.points[lines_a.starts[i] + k, :2].copy(), reason))
-            continue
-        crossing = _crossing(row)
-        if not any(  # one meeting of two rough lines may be met twice
+            left_out.append((of_a.points[of_a.starts[i] + k, :2].copy(), reason))
+        elif not any(  # one meeting of two rough lines may be met twice
             (i, j) == (p, q) and np.hypot(*(c.uv - crossing.uv)) < half_length_px / 2 for p, q, c in found
         ):
             found.append((int(i), int(j), crossing))
     return CrossingSearch(tuple(found), rejected, tuple(left_out))
 
 
-def _crossing(row: Array) -> Crossing:
-    _, u, v, tau, tav, tbu, tbv, sigma_a, sigma_b, curved = row
+def _stack(lines: Lines, cell_px: float) -> Stack:
+    if not isinstance(lines, Stack):
+        return Stack(lines, cell_px)
+    if lines.cell_px != cell_px:
+        raise ValueError(f"lines made ready with cells of {lines.cell_px} px cannot be fitted with {cell_px} px")
+    return lines
+
+
+def _cross_at(
+    of_a: Stack, i: int, k: int, of_b: Stack, j: int, m: int, min_angle: float
+) -> tuple[str, Crossing | None]:
+    """The crossing of the segments k of piece i and m of piece j, or the reason there is none."""
+    piece_a, piece_b = of_a.piece(i), of_b.piece(j)
+    cell = of_a.cell_px
+    arc_a, arc_b = 0.5 * (piece_a.arc[k] + piece_a.arc[k + 1]), 0.5 * (piece_b.arc[m] + piece_b.arc[m + 1])
+    cell_a, cell_b = (max(0, math.floor(arc / cell) - CELL_REACH) for arc in (arc_a, arc_b))
+    share = np.zeros((2, CELLS))
+    row = _cross(
+        piece_a.points, k, piece_a.bins, piece_a.broken, arc_a, piece_a.correlation_px, cell_a,
+        piece_b.points, m, piece_b.bins, piece_b.broken, arc_b, piece_b.correlation_px, cell_b,
+        cell, min_angle, share,
+    )  # fmt: skip
+    if row[0] > 0:
+        return _REASONS[int(row[0]) - 1], None
+    _, u, v, tau, tav, tbu, tbv, sigma_a, sigma_b, curved = row.tolist()
     normals = np.array([[-tav, tau], [-tbv, tbu]])
     spread = np.linalg.inv(normals) * np.array([sigma_a, sigma_b])
     sine, cosine = abs(tau * tbv - tav * tbu), abs(tau * tbu + tav * tbv)
-    return Crossing(
+    crossing = Crossing(
         uv=np.array([u, v]),
         tangent_a=np.array([tau, tav]),
         tangent_b=np.array([tbu, tbv]),
         angle=math.atan2(sine, cosine),
-        sigma_a=float(sigma_a),
-        sigma_b=float(sigma_b),
+        sigma_a=sigma_a,
+        sigma_b=sigma_b,
         covariance=spread @ spread.T,
         curved=bool(curved),
+        along_a=float(arc_a),
+        along_b=float(arc_b),
+        cell_a=cell_a,
+        cell_b=cell_b,
+        share_a=share[0],
+        share_b=share[1],
     )
+    return "", crossing
 
 
 @njit(cache=True, nogil=True)
-def _parabola(line: Array, first: int, last: int, frame: Array) -> Array:
-    """Weighted parabola through points first … last: a, b, c, variance of a, weighted points behind and ahead.
-
-    `frame` is the origin, the unit tangent and a unit of length.
-    """
-    unit = frame[4]
-    normal, right = np.zeros((3, 3)), np.zeros(3)
-    powers = np.empty(3)
-    powers[0] = 1.0
+def _arm_too_short(points: Array, at: int, origin: Array, half: float, correlation: float) -> bool:
+    """Whether there is too little to either side of the segment `at` within `half` px of it."""
+    least = max(3.0, _SHORTEST_ARM * correlation)
     behind, ahead = 0, 0
-    for k in range(first, last + 1):
-        du, dv, weight = line[k, 0] - frame[0], line[k, 1] - frame[1], line[k, 2]
-        x, y = (du * frame[2] + dv * frame[3]) / unit, dv * frame[2] - du * frame[3]
-        powers[1], powers[2] = x, x * x
-        for p in range(3):
-            right[p] += weight * powers[p] * y
-            for q in range(3):
-                normal[p, q] += weight * powers[p] * powers[q]
-        if weight > 0:
-            behind += x < 0
-            ahead += x > 0
-    result = np.array([0.0, 0.0, 0.0, np.inf, float(behind), float(ahead)])
-    if min(behind, ahead) < 3:
-        return result
-    covariance = np.linalg.inv(normal)
-    for p in range(3):
-        result[p] = np.sum(covariance[p] * right) / unit**p
-    result[3] = covariance[0, 0]
-    return result
-
-
-@njit(cache=True, nogil=True)
-def _local_fit(line: Array, at: int, origin: Array, half: float, correlation: float) -> Array:
-    """Local curve around `origin`: ok, t_u, t_v, a, b, c, σ of a, whether its bend matters.
-
-    A parabola over ± half / 2, and over twice and four times that as long as it agrees with the shorter ones
-    (Lepski's rule) and an arc of the bend found so far still is a parabola: the longest window over which the line is.
-    """
-    result = np.zeros(8)
-    spread = max(correlation, 1.0)  # points within one correlation length share their error
-    first, last = at, at + 1
-    frame = np.array([origin[0], origin[1], 0.0, 0.0, half])
-    for level in range(3):
-        reach = half * 0.5 * 2**level
-        while first > 0 and _distance(line[first - 1], origin) <= reach:
-            first -= 1
-        while last + 1 < len(line) and _distance(line[last + 1], origin) <= reach:
-            last += 1
-        if level == 0:
-            frame[2], frame[3] = line[last, 0] - line[first, 0], line[last, 1] - line[first, 1]
-            frame[2:4] /= math.hypot(frame[2], frame[3])
-        fit = _parabola(line, first, last, frame)
-        if min(fit[4], fit[5]) < _SHORTEST_ARM * correlation or not fit[3] < np.inf:
-            continue
-        sigma = math.sqrt(fit[3] * spread)
-        if result[0] > 0 and (fit[3] * spread > result[6] ** 2 or _disagree(result, fit[0], sigma)):
+    for k in range(at, -1, -1):
+        if math.hypot(points[k, 0] - origin[0], points[k, 1] - origin[1]) > half or behind >= least:
             break
-        if result[0] > 0 and arc_bias(2 * abs(result[5]), reach) > BIAS_ALLOWED * sigma:
+        behind += points[k, 2] > 0
+    for k in range(at + 1, len(points)):
+        if math.hypot(points[k, 0] - origin[0], points[k, 1] - origin[1]) > half or ahead >= least:
             break
-        bent = abs(fit[2]) * reach * reach / 3 > 3 * sigma
-        result[:] = np.array([1.0, frame[2], frame[3], fit[0], fit[1], fit[2], sigma, 1.0 if bent else 0.0])
-    return result
-
-
-@njit(cache=True, nogil=True)
-def _disagree(shorter: Array, a: float, sigma: float) -> bool:
-    """Whether the fit `a` over a longer window is further from the shorter window's than noise explains."""
-    return bool(abs(a - shorter[3]) > _AGREE * math.sqrt(shorter[6] ** 2 - sigma**2))
-
-
-@njit(cache=True, nogil=True)
-def _distance(p: Array, q: Array) -> float:
-    return math.hypot(p[0] - q[0], p[1] - q[1])
+        ahead += points[k, 2] > 0
+    return bool(min(behind, ahead) < least)
 
 
 @njit(cache=True, nogil=True)
 def _cross(
-    a: Array, k: int, correlation_a: float, b: Array, m: int, correlation_b: float, half: float, min_angle: float
+    a: Array,
+    k: int,
+    bins_a: Array,
+    broken_a: NDArray[np.bool_],
+    arc_a: float,
+    correlation_a: float,
+    cell_a: int,
+    b: Array,
+    m: int,
+    bins_b: Array,
+    broken_b: NDArray[np.bool_],
+    arc_b: float,
+    correlation_b: float,
+    cell_b: int,
+    half: float,
+    min_angle: float,
+    share: Array,
 ) -> Array:
     """Meeting of two lines near the segments k and m.
 
-    Returns (10,): 0 or the number of a reason, u, v, both tangents, σ_a, σ_b, whether curved.
+    Returns (10,): 0 or the number of a reason, u, v, both tangents, σ_a, σ_b, whether curved; and what cells share.
     """
     result = np.zeros(10)
+    fits = np.zeros((2, FIT))
     origin = 0.25 * (a[k, :2] + a[k + 1, :2] + b[m, :2] + b[m + 1, :2])
-    fit_a = _local_fit(a, k, origin, half, correlation_a)
-    fit_b = _local_fit(b, m, origin, half, correlation_b)
-    if fit_a[0] == 0 or fit_b[0] == 0:
+    reach = CELL_REACH * half
+    if (
+        _arm_too_short(a, k, origin, reach, correlation_a)
+        or _arm_too_short(b, m, origin, reach, correlation_b)
+        or not local_fit(bins_a, broken_a, arc_a, origin, reach, half, cell_a, fits[0], share[0])
+        or not local_fit(bins_b, broken_b, arc_b, origin, reach, half, cell_b, fits[1], share[1])
+    ):
         result[0] = 2
         return result
     u, v = 0.0, 0.0  # from the origin
@@ -246,11 +235,11 @@ def _cross(
     step = np.inf
     for _ in range(10):
         normals, heights = np.empty((2, 2)), np.empty(2)
-        for i, fit in enumerate((fit_a, fit_b)):
-            tu, tv = fit[1], fit[2]
+        for i, fit in enumerate(fits):
+            tu, tv = fit[T_U], fit[T_V]
             x, y = u * tu + v * tv, v * tu - u * tv
-            slope = fit[4] + 2 * fit[5] * x
-            heights[i] = y - (fit[3] + fit[4] * x + fit[5] * x * x)
+            slope = fit[SLOPE] + 2 * fit[BEND] * x
+            heights[i] = y - (fit[PLACE] + fit[SLOPE] * x + fit[BEND] * x * x)
             normals[i, 0], normals[i, 1] = -tv - slope * tu, tu - slope * tv
             norm = math.hypot(1.0, slope)
             tangents[i, 0], tangents[i, 1] = (tu - slope * tv) / norm, (tv + slope * tu) / norm
@@ -271,6 +260,10 @@ def _cross(
         return result
     result[1], result[2] = origin[0] + u, origin[1] + v
     result[3:5], result[5:7] = tangents[0], tangents[1]
-    result[7], result[8] = fit_a[6], fit_b[6]
-    result[9] = max(fit_a[7], fit_b[7])
+    for i, fit in enumerate(fits):
+        along_normal = 1 / math.hypot(1.0, fit[SLOPE])
+        result[7 + i] = fit[SIGMA] * along_normal
+        share[i] *= along_normal
+        if abs(fit[BEND]) * fit[REACH] ** 2 / 3 > 3 * fit[SIGMA]:
+            result[9] = 1.0
     return result

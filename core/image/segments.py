@@ -1,4 +1,4 @@
-"""Where polylines cut each other: the coarse part of the search for crossings.
+"""Centrelines made ready to be crossed with many others, and where their polylines cut each other.
 
 Runs of 16 segments share a bounding box; only segments of overlapping boxes are compared one by one.
 """
@@ -6,28 +6,91 @@ Runs of 16 segments share a bounding box; only segments of overlapping boxes are
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from core.image.breaks import breaks
 from core.image.centreline import Centreline
+from core.image.line_bins import bin_length, binned
+from core.image.pieces import arc_length
 from core.model.arrays import Array
 
 _CHUNK = 16
 
 
+CELL_REACH = 3
+"""A local fit reaches so many cells to either side, if the line goes on so far."""
+CELLS = 2 * CELL_REACH + 1
+"""Most cells that a local fit can touch."""
+
+
+class StackedPiece(NamedTuple):
+    """One piece of a `Stack`: its points (N, 3), the length along it (N,), its bins and which of them are broken."""
+
+    points: Array
+    arc: Array
+    bins: Array
+    broken: NDArray[np.bool_]
+    correlation_px: float
+
+
 class Stack:
-    """Several centrelines in one array: `points` (N, 3) u, v, weight; piece i is starts[i] … starts[i + 1]."""
+    """The centrelines of one picture, ready to be crossed with those of others.
 
-    __slots__ = ("points", "starts")
+    Parameters
+    ----------
+    lines
+        The centrelines; piece i of them has the points starts[i] … starts[i + 1] and bins[i].
+    cell_px
+        Length of a cell in pixels, see `core.image.line_bins`.
 
-    def __init__(self, lines: Sequence[Centreline]) -> None:
+    Attributes
+    ----------
+    points, arc
+        (N, 3) u, v, 1/σ² (0 where saturated) and (N,) the length along the centreline in pixels.
+    boxes
+        Bounding boxes of runs of segments, see `meeting_segments`.
+    bins, broken
+        For each piece (B, 5) and (B,) bins, and True for those with a kink or a jump in them.
+    """
+
+    __slots__ = ("arc", "bins", "boxes", "broken", "cell_px", "lines", "points", "starts")
+
+    def __init__(self, lines: Sequence[Centreline], cell_px: float) -> None:
+        self.lines, self.cell_px = lines, cell_px
         self.starts = np.cumsum([0, *map(len, lines)])
         self.points = np.empty((int(self.starts[-1]), 3))
+        self.arc = np.empty(len(self.points))
+        self.bins: list[Array] = []
+        self.broken: list[NDArray[np.bool_]] = []
         for line, start, end in zip(lines, self.starts[:-1], self.starts[1:], strict=True):
             self.points[start:end, :2] = line.uv
             self.points[start:end, 2] = np.where(line.saturated, 0.0, 1 / line.sigma**2)
+            self.arc[start:end] = arc_length(line.uv)
+            correlation = line.correlation_px
+            length = bin_length(cell_px, correlation)
+            bins = binned(self.points[start:end], self.arc[start:end], length, correlation)
+            self.bins.append(bins)
+            self.broken.append(breaks(bins, CELL_REACH * cell_px))
+        self.boxes = _chunks(self.points, self.starts)
+
+    def __len__(self) -> int:
+        return len(self.lines)
+
+    def point_at(self, i: int, along: float) -> int:
+        """The point of piece i nearest to the length `along` it."""
+        arc = self.arc[self.starts[i] : self.starts[i + 1]]
+        after = min(int(np.searchsorted(arc, along)), len(arc) - 1)
+        return after - 1 if after > 0 and along - arc[after - 1] < arc[after] - along else after
+
+    def piece(self, i: int) -> StackedPiece:
+        """All that is known of piece i."""
+        part = slice(self.starts[i], self.starts[i + 1])
+        correlation = self.lines[i].correlation_px
+        return StackedPiece(self.points[part], self.arc[part], self.bins[i], self.broken[i], correlation)
 
 
 @njit(cache=True, nogil=True)
@@ -49,9 +112,10 @@ def _chunks(points: Array, starts: NDArray[np.int64]) -> Array:
 
 
 @njit(cache=True, nogil=True)
-def meeting_segments(a: Array, starts_a: NDArray[np.int64], b: Array, starts_b: NDArray[np.int64]) -> NDArray[np.int64]:
+def meeting_segments(
+    a: Array, starts_a: NDArray[np.int64], boxes_a: Array, b: Array, starts_b: NDArray[np.int64], boxes_b: Array
+) -> NDArray[np.int64]:
     """Segments that cut each other: (K, 4) piece and first point within it, of a and of b."""
-    boxes_a, boxes_b = _chunks(a, starts_a), _chunks(b, starts_b)
     found = np.empty((16, 4), dtype=np.int64)
     count = 0
     for p in range(len(boxes_a)):

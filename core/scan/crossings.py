@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from core.image.centreline import Centreline
 from core.image.crossing import Crossing, cross_centrelines
+from core.image.segments import CELLS, Stack
 from core.image.shading import shading_sigma
 from core.model.arrays import Array, set_field
 from core.progress import Progress, silent, steps
@@ -113,7 +114,7 @@ class CrossingTable:
 
 @dataclass(frozen=True, slots=True)
 class CrossingWindow:
-    """How crossings are fitted: half the length of the local fit in pixels, smallest angle (rad) accepted."""
+    """How crossings are fitted: a third of how far a local fit reaches in px, smallest angle (rad) accepted."""
 
     half_length_px: float = 40.0
     min_angle: float = float(np.deg2rad(15.0))
@@ -127,8 +128,8 @@ def all_crossings(
 ) -> CrossingTable:
     """Every crossing of each sweep with the fan and with each later sweep."""
     rows: list[Meeting] = []
-    stripes = [shaded(pieces) for pieces in sweeps]
-    fixed = shaded(fan)
+    stripes = [shaded(pieces, window) for pieces in sweeps]
+    fixed = shaded(fan, window)
     for a, pieces in steps(enumerate(stripes), progress, "crossings", len(sweeps)):
         rows.extend(meetings(pieces, fixed, a, -1, window))
         for b in range(a + 1, len(sweeps)):
@@ -138,34 +139,30 @@ def all_crossings(
 
 @dataclass(frozen=True, eq=False, slots=True)
 class ShadedLines:
-    """The centrelines of one picture, with what uneven brightness adds to their σ, and the length along them."""
+    """The centrelines of one picture, what uneven brightness adds to their σ, and both made ready to be crossed."""
 
     pieces: Sequence[Centreline]
     shading: Sequence[Array]
-    arc: Sequence[Array]
+    stack: Stack
 
 
-def shaded(pieces: Sequence[Centreline]) -> ShadedLines:
+def shaded(pieces: Sequence[Centreline], window: CrossingWindow) -> ShadedLines:
     """Centrelines made ready to be crossed with many others."""
-    arcs = [np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(p.uv, axis=0), axis=1))]) for p in pieces]
-    return ShadedLines(pieces, [shading_sigma(piece) for piece in pieces], arcs)
+    return ShadedLines(pieces, [shading_sigma(piece) for piece in pieces], Stack(pieces, window.half_length_px))
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Meeting:
-    """One crossing: (a, b, piece of a, piece of b); where along, and the σ of, each centreline."""
+    """One crossing: (a, b, piece of a, piece of b), and the σ of each centreline."""
 
     index: tuple[int, int, int, int]
-    along: tuple[float, float]
     sigma: tuple[float, float]
     crossing: Crossing
 
 
 def meetings(of_a: ShadedLines, of_b: ShadedLines, a: int, b: int, window: CrossingWindow) -> list[Meeting]:
     """The crossings of one picture's centrelines with another's, which are called frame `a` and frame `b`."""
-    found = cross_centrelines(
-        of_a.pieces, of_b.pieces, half_length_px=window.half_length_px, min_angle=window.min_angle
-    )
+    found = cross_centrelines(of_a.stack, of_b.stack, window.half_length_px, window.min_angle)
     return meetings_at(found, of_a, of_b, a, b)
 
 
@@ -175,11 +172,10 @@ def meetings_at(
     """Crossings (piece of a, piece of b, crossing) that were `found` by a search, with what the table wants of them."""
     rows = []
     for i, j, crossing in found:
-        at_a, at_b = _nearest(of_a.pieces[i], crossing.uv), _nearest(of_b.pieces[j], crossing.uv)
+        at_a, at_b = of_a.stack.point_at(i, crossing.along_a), of_b.stack.point_at(j, crossing.along_b)
         rows.append(
             Meeting(
                 (a, b, i, j),
-                (float(of_a.arc[i][at_a]), float(of_b.arc[j][at_b])),
                 (
                     float(np.hypot(crossing.sigma_a, of_a.shading[i][at_a])),
                     float(np.hypot(crossing.sigma_b, of_b.shading[j][at_b])),
@@ -190,30 +186,29 @@ def meetings_at(
     return rows
 
 
-def _nearest(piece: Centreline, uv: Array) -> int:
-    return int(np.argmin(np.sum((piece.uv - uv) ** 2, axis=1)))
-
-
 def crossing_table(rows: Sequence[Meeting], window: CrossingWindow) -> CrossingTable:
     """The crossings as arrays, in their order."""
 
-    def vectors(name: str) -> Array:
-        return np.array([getattr(row.crossing, name) for row in rows], dtype=np.float64).reshape(-1, 2)
+    def of_crossings(name: str, *shape: int) -> Array:
+        return np.array([getattr(row.crossing, name) for row in rows], dtype=np.float64).reshape(-1, *shape)
 
     index = np.array([row.index for row in rows], dtype=np.int64).reshape(-1, 4)
-    along = np.array([row.along for row in rows], dtype=np.float64).reshape(-1, 2)
     sigma = np.array([row.sigma for row in rows], dtype=np.float64).reshape(-1, 2)
     return CrossingTable(
-        uv=vectors("uv"),
-        tangent_a=vectors("tangent_a"),
-        tangent_b=vectors("tangent_b"),
+        uv=of_crossings("uv", 2),
+        tangent_a=of_crossings("tangent_a", 2),
+        tangent_b=of_crossings("tangent_b", 2),
         sigma_a=sigma[:, 0],
         sigma_b=sigma[:, 1],
         a=index[:, 0],
         b=index[:, 1],
         piece_a=index[:, 2],
         piece_b=index[:, 3],
-        along_a=along[:, 0],
-        along_b=along[:, 1],
+        along_a=of_crossings("along_a"),
+        along_b=of_crossings("along_b"),
         half_length_px=window.half_length_px,
+        cell_a=of_crossings("cell_a").astype(np.int64),
+        cell_b=of_crossings("cell_b").astype(np.int64),
+        share_a=of_crossings("share_a", CELLS),
+        share_b=of_crossings("share_b", CELLS),
     )

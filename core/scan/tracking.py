@@ -77,7 +77,7 @@ class SweepTracker:
         stride_px: float = 6.0,
         lines: FanLines | None = None,
     ) -> None:
-        self._fixed = shaded(fan_pieces)
+        self._fixed = shaded(fan_pieces, window)
         self._camera, self._fan, self._window = camera, fan, window
         self._numberings = (lines,) if lines else possible_fan_lines(fan_pieces, camera, fan)
         self.lines: FanLines = self._numberings[0]
@@ -91,9 +91,9 @@ class SweepTracker:
 
     def add(self, frame: int, pieces: Sequence[Centreline]) -> tuple[TrackedSweep, bool]:
         """Locate the sweep of `frame`; True if all sweeps before it were located anew as well."""
-        lines = shaded(pieces)
         window = self._window
-        search = search_crossings(pieces, self._fixed.pieces, window.half_length_px, window.min_angle)
+        lines = shaded(pieces, window)
+        search = search_crossings(lines.stack, self._fixed.stack, window.half_length_px, window.min_angle)
         rows: list[Meeting] = meetings_at(search.found, lines, self._fixed, frame, -1)
         for anchor, others in self._anchors.items():
             rows.extend(meetings(lines, others, frame, anchor, window))

@@ -1,0 +1,117 @@
+"""Where a line has a kink or a jump: what no local fit may cross.
+
+Extraction cuts a stripe at the kinks and jumps that a few points show. Seen over a hundred pixels much smaller ones
+matter, and they are looked for here, bin by bin: first by least squares, with and without a jump and a kink in a
+parabola on either side, which is quick; and where that finds one, by the likelihoods of two lines and of one, of any
+curvature (`core.image.kriging`), so that a bend is not taken for a kink.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from core.image.kriging import log_odds_of_break
+from core.image.line_bins import ARC, INFORMATION, U, V, in_frame
+from core.model.arrays import Array
+
+_ARMS = (4, 10)
+"""Bins looked at on either side by least squares."""
+_FEWEST = 3
+"""Bins on either side of a break that can be judged."""
+_SUSPECT = 16.0
+"""χ² that a jump and a kink must explain to be looked at."""
+_PRIOR = math.log(1 / 50 / (0.6 * 0.15))
+"""Log of: a break in one bin of 50, jump and kink spread over 0.6 px and 0.15 rad. Larger ones are cut before."""
+_NEAR = 4
+"""Bins: of neighbouring suspects only the likeliest is one."""
+
+
+@njit(cache=True, nogil=True)
+def breaks(bins: Array, reach: float) -> NDArray[np.bool_]:
+    """(B,) True for those of a line's `bins` in which it has a kink or a jump, judged from ± `reach` px."""
+    count = len(bins)
+    broken = np.zeros(count, dtype=np.bool_)
+    best = np.full(count, np.inf)  # misfit of the broken curve where a break explains much
+    for at in range(_FEWEST, count - _FEWEST):
+        for arm in _ARMS:
+            explained, misfit = _explained(bins, at, arm, reach)
+            if explained > _SUSPECT:
+                best[at] = min(best[at], misfit)
+    for at in np.argsort(best):
+        if not best[at] < np.inf:
+            break
+        # a fit beside the break is spoilt by it too: the break is where the broken curve fits best
+        first, end = max(_FEWEST, at - _NEAR), min(count - _FEWEST, at + _NEAR + 1)
+        if best[at] > best[first:end].min() or broken[max(0, at - _FEWEST) : at + _FEWEST + 1].any():
+            continue
+        for place in range(max(_FEWEST, at - 1), min(count - _FEWEST, at + 2)):
+            broken[at] |= _is_break(bins, place, broken, reach)
+    return broken
+
+
+@njit(cache=True, nogil=True)
+def _is_break(bins: Array, at: int, broken: NDArray[np.bool_], reach: float) -> bool:
+    first, last = at, at
+    while first > 0 and not broken[first - 1] and bins[at, ARC] - bins[first - 1, ARC] <= reach:
+        first -= 1
+    while last + 1 < len(bins) and not broken[last + 1] and bins[last + 1, ARC] - bins[at, ARC] <= reach:
+        last += 1
+    frame = _frame(bins, first, last, at)
+    left = in_frame(bins, np.arange(at - 1, first - 1, -1), frame)
+    right = in_frame(bins, np.arange(at + 1, last + 1), frame)
+    left, right = left[: _outwards(-left[:, 0])], right[: _outwards(right[:, 0])]
+    if min(len(left), len(right)) < _FEWEST:
+        return False
+    widest = max(right[-1, 0], -left[-1, 0])
+    return bool(log_odds_of_break(right, left, widest) + _PRIOR - math.log(widest) > 0)
+
+
+@njit(cache=True, nogil=True)
+def _outwards(x: Array) -> int:
+    """How many of the first `x` grow from 0 on: beyond, the line has turned back."""
+    before = 0.0
+    for k in range(len(x)):
+        if x[k] <= before:
+            return k
+        before = x[k]
+    return len(x)
+
+
+@njit(cache=True, nogil=True)
+def _frame(bins: Array, first: int, last: int, at: int) -> Array:
+    first, last = max(first, at - _FEWEST), min(last, at + _FEWEST)
+    tu, tv = bins[last, U] - bins[first, U], bins[last, V] - bins[first, V]
+    length = math.hypot(tu, tv)
+    return np.array([bins[at, U], bins[at, V], tu / length, tv / length])
+
+
+@njit(cache=True, nogil=True)
+def _explained(bins: Array, at: int, arm: int, reach: float) -> tuple[float, float]:
+    """χ² that a jump and a kink in bin `at` take off a parabola over ± `arm` bins, and χ² per bin that is left."""
+    first, last = max(0, at - arm), min(len(bins) - 1, at + arm)
+    frame = _frame(bins, first, last, at)
+    normal, rhs, row = np.zeros((5, 5)), np.zeros(5), np.empty(5)
+    square, used = 0.0, 0
+    for k in range(first, last + 1):
+        if k == at or abs(bins[k, ARC] - bins[at, ARC]) > reach:
+            continue
+        du, dv = bins[k, U] - frame[0], bins[k, V] - frame[1]
+        x, y = (du * frame[2] + dv * frame[3]) / reach, dv * frame[2] - du * frame[3]
+        side = 0.5 if k > at else -0.5
+        row[0], row[1], row[2], row[3], row[4] = 1.0, x, x * x, side, side * x
+        square += bins[k, INFORMATION] * y * y
+        used += 1
+        for i in range(5):
+            rhs[i] += bins[k, INFORMATION] * row[i] * y
+            for j in range(5):
+                normal[i, j] += bins[k, INFORMATION] * row[i] * row[j]
+    for i in range(5):
+        normal[i, i] *= 1 + 1e-9
+    with_break = np.linalg.solve(normal, rhs)
+    without = np.linalg.solve(normal[:3, :3].copy(), rhs[:3].copy())
+    by_both = np.sum(with_break * rhs)
+    return float(by_both - np.sum(without * rhs[:3])), float(square - by_both) / max(1, used - 5)

@@ -1,0 +1,201 @@
+"""Where a line is, from all of it that is near: kriging with a curvature that is learned from the line itself.
+
+Over a window of ± `reach` the line is y(x) in a frame laid along it. Place and direction are free; the curvature y''
+is a random process that has the standard deviation κ at x = 0 and is renewed on its way outwards, with standard
+deviation δ and correlation length ℓ. κ = δ = 0 is a straight line, δ = 0 a parabola, and what else there is a
+smoothing spline, as stiff as κ, δ and ℓ say. For given (κ, δ, ℓ) the answer at x = 0 has the least variance there is,
+and that variance counts what the curvature may hide. They are not given. So every choice of a grid is weighed with the
+(restricted) likelihood of the window's bins, and mean and variance are taken over all: a flat face gives the whole
+window as a straight line, a bent surface as much of it as is of use, and the standard uncertainty says which.
+
+Both sides of x = 0 are Markov chains that start there. An information filter that comes in from the far end reduces
+each to a normal likelihood of (y, y'·reach, y''·reach²) at x = 0: ten numbers, called a side below: Λ (upper triangle,
+row by row), η, and the logarithm of the likelihood.
+
+References
+----------
+Wahba, G., Improper priors, spline smoothing and the problem of guarding against model errors in regression, J. R.
+Statist. Soc. B 40 (1978), doi:10.1111/j.2517-6161.1978.tb01050.x.
+Kohn, R., Ansley, C. F., A new algorithm for spline smoothing based on smoothing a stochastic process, SIAM J. Sci.
+Stat. Comput. 8 (1987), doi:10.1137/0908004.
+Hoeting, J. A. et al., Bayesian model averaging: a tutorial, Statistical Science 14 (1999), doi:10.1214/ss/1009212519.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+
+from core.model.arrays import Array
+
+X, Y, INFORMATION, SPREAD = 0, 1, 2, 3
+"""Columns of a bin: its place in the frame, 1/σ² of y in px⁻², the variance in px² of its points along the line."""
+
+_STRAIGHT, _FIRST, _FACTOR, _STEPS = 0.5, 4.0, 3.0, 11
+"""κ·reach²/σ that counts as straight, the least that does not, by what it grows and how often; σ of a straight line
+through the window. δ goes the same way, from 0."""
+_LENGTHS = (0.5, 0.12)
+"""ℓ/reach."""
+_CHANGES = 1 + len(_LENGTHS) * _STEPS
+_BENDS = 1 + _STEPS
+_PRIOR_STRAIGHT, _PRIOR_EVEN = 0.4, 0.9
+"""Probability that κ counts as straight, and that δ = 0, before the line is seen."""
+_LEARNED = 1.25
+"""Where the curvature changes the variance is raised by this: a window shows κ and δ by a few bends only."""
+_HOPELESS = 15.0
+"""A log-likelihood so far below the best has no weight, nor have those of still larger δ."""
+
+
+@njit(cache=True, nogil=True)
+def krige(right: Array, left: Array, reach: float) -> Array:
+    """(7,): y, y', y'' at x = 0, variance of y; of the likeliest choice the numbers of (δ, ℓ) and κ, and the variance.
+
+    `right` (N, 4) and `left` (M, 4) are the bins at x ≥ 0 and x < 0, each from 0 outwards; with three at least.
+    """
+    sigma = straight_sigma(right, left)
+    score = np.full((_CHANGES, _BENDS), -np.inf)
+    found = np.zeros((_CHANGES, _BENDS, 4))
+    best = -np.inf
+    for length in range(len(_LENGTHS)):
+        for step in range(_STEPS + 1):
+            change = 0 if step == 0 else length * _STEPS + step
+            if change == 0 and length > 0:
+                continue
+            delta, correlation = _change(change, reach, sigma)
+            ahead, behind = _side(right, reach, delta, correlation), _side(left, -reach, delta, correlation)
+            _solve(_joined(ahead, behind), sigma, score[change], found[change])
+            score[change] += _log_prior(change)
+            top = score[change].max()
+            if top < best - _HOPELESS and step > 1 and top < score[change - 1].max():
+                break
+            best = max(best, top)
+    weight = np.exp(score - best)
+    weight /= weight.sum()
+    result = np.zeros(7)
+    for i in range(3):
+        result[i] = np.sum(weight * found[:, :, i]) / reach**i
+    variance = weight * (found[:, :, 3] + (found[:, :, 0] - result[0]) ** 2)
+    result[3] = variance[0].sum() + _LEARNED * variance[1:].sum()
+    flat = int(np.argmax(score))
+    result[4], result[5] = flat // _BENDS, flat % _BENDS
+    result[6] = found[flat // _BENDS, flat % _BENDS, 3]
+    return result
+
+
+@njit(cache=True, nogil=True)
+def influence(right: Array, left: Array, reach: float, sigma: float, change: int, bend: int) -> float:
+    """What y at x = 0 is with the choice (`change`, `bend`) of `krige`, which is linear in the bins' y."""
+    delta, correlation = _change(change, reach, sigma)
+    score, found = np.zeros(_BENDS), np.zeros((_BENDS, 4))
+    _solve(
+        _joined(_side(right, reach, delta, correlation), _side(left, -reach, delta, correlation)), sigma, score, found
+    )
+    return float(found[bend, 0])
+
+
+@njit(cache=True, nogil=True)
+def log_odds_of_break(right: Array, left: Array, reach: float) -> float:
+    """How much likelier two lines are, ending at x = 0, than one: logarithm of the ratio, per px² of jump·kink·reach.
+
+    At least three bins on each side.
+    """
+    sigma = straight_sigma(right, left)
+    scores = np.full((3, _CHANGES, _BENDS), -np.inf)
+    found = np.zeros((_BENDS, 4))
+    for change in range(_CHANGES):
+        delta, correlation = _change(change, reach, sigma)
+        ahead, behind = _side(right, reach, delta, correlation), _side(left, -reach, delta, correlation)
+        for which, side in enumerate((_joined(ahead, behind), ahead, behind)):
+            _solve(side, sigma, scores[which, change], found)
+            scores[which, change] += _log_prior(change)
+    whole, one, other = scores[0].max(), scores[1].max(), scores[2].max()
+    odds = one + other - whole
+    odds += math.log(np.exp(scores[1] - one).sum()) + math.log(np.exp(scores[2] - other).sum())
+    return float(odds - math.log(np.exp(scores[0] - whole).sum()))
+
+
+@njit(cache=True, nogil=True)
+def straight_sigma(right: Array, left: Array) -> float:
+    """Standard uncertainty in px of a straight line in its middle."""
+    return 1 / math.sqrt(right[:, INFORMATION].sum() + left[:, INFORMATION].sum())
+
+
+@njit(cache=True, nogil=True)
+def _change(change: int, reach: float, sigma: float) -> tuple[float, float]:
+    """δ·reach² in px and ℓ in px of a number."""
+    if change == 0:
+        return 0.0, reach
+    step, length = (change - 1) % _STEPS, (change - 1) // _STEPS
+    return _FIRST * _FACTOR**step * sigma, _LENGTHS[length] * reach
+
+
+@njit(cache=True, nogil=True)
+def _log_prior(change: int) -> float:
+    return math.log(_PRIOR_EVEN if change == 0 else (1 - _PRIOR_EVEN) / (_CHANGES - 1))
+
+
+@njit(cache=True, nogil=True)
+def _joined(ahead: Array, behind: Array) -> Array:
+    """Both sides as one; x runs outwards in each, so y' counts the other way on the left."""
+    side = ahead + behind
+    for odd in (1, 4, 7):
+        side[odd] = ahead[odd] - behind[odd]
+    return side
+
+
+@njit(cache=True, nogil=True)
+def _solve(side: Array, sigma: float, score: Array, found: Array) -> None:
+    """For each κ the log-likelihood into `score`, and y, y'·reach, y''·reach² and the variance of y into `found`."""
+    l00, l01, l02, l11, l12 = side[0], side[1], side[2], side[3], side[4]
+    e0, e1, e2 = side[6], side[7], side[8]
+    for bend in range(_BENDS):
+        kappa = sigma * (_STRAIGHT if bend == 0 else _FIRST * _FACTOR ** (bend - 1))
+        prior = _PRIOR_STRAIGHT if bend == 0 else (1 - _PRIOR_STRAIGHT) / _STEPS
+        l22 = side[5] + 1 / kappa**2
+        c00, c01, c02 = l11 * l22 - l12 * l12, l02 * l12 - l01 * l22, l01 * l12 - l02 * l11
+        c11, c12, c22 = l00 * l22 - l02 * l02, l01 * l02 - l00 * l12, l00 * l11 - l01 * l01
+        determinant = l00 * c00 + l01 * c01 + l02 * c02
+        y = (c00 * e0 + c01 * e1 + c02 * e2) / determinant
+        slope = (c01 * e0 + c11 * e1 + c12 * e2) / determinant
+        curvature = (c02 * e0 + c12 * e1 + c22 * e2) / determinant
+        found[bend, 0], found[bend, 1], found[bend, 2], found[bend, 3] = y, slope, curvature, c00 / determinant
+        score[bend] = (
+            side[9] + 0.5 * (y * e0 + slope * e1 + curvature * e2 - math.log(determinant)) + math.log(prior / kappa)
+        )
+
+
+@njit(cache=True, nogil=True)
+def _side(bins: Array, reach: float, delta: float, length: float) -> Array:
+    """What one side says about (y, y'·reach, y''·reach²) at x = 0; `reach` is negative on the left.
+
+    From bin to bin y'' is autoregressive and runs straight: x_k = F x_{k−1} + g w with F = [[1, d, d²(1/3 + ρ/6)],
+    [0, 1, d(1 + ρ)/2], [0, 0, ρ]], g = (d²/6, d/2, 1) and w of variance δ²(1 − ρ²).
+    """
+    l00 = l01 = l02 = l11 = l12 = l22 = e0 = e1 = e2 = score = 0.0
+    for k in range(len(bins) - 1, -1, -1):
+        w, y, h = bins[k, INFORMATION], bins[k, Y], 0.5 * bins[k, SPREAD] / reach**2
+        l00, l02, l22 = l00 + w, l02 + w * h, l22 + w * h * h
+        e0, e2 = e0 + w * y, e2 + w * h * y
+        d = (bins[k, X] - (bins[k - 1, X] if k > 0 else 0.0)) / reach
+        rho = 1.0
+        if delta > 0.0:
+            rho = math.exp(-d * abs(reach) / length)
+            q = delta * delta * (1 - rho * rho)
+            g0, g1 = d * d / 6, 0.5 * d
+            p0, p1, p2 = l00 * g0 + l01 * g1 + l02, l01 * g0 + l11 * g1 + l12, l02 * g0 + l12 * g1 + l22
+            pe = e0 * g0 + e1 * g1 + e2
+            s = 1 + q * (g0 * p0 + g1 * p1 + p2)
+            score += 0.5 * (q * pe * pe / s - math.log(s))
+            gain = q / s
+            e0, e1, e2 = e0 - gain * p0 * pe, e1 - gain * p1 * pe, e2 - gain * p2 * pe
+            l00, l01, l02 = l00 - gain * p0 * p0, l01 - gain * p0 * p1, l02 - gain * p0 * p2
+            l11, l12, l22 = l11 - gain * p1 * p1, l12 - gain * p1 * p2, l22 - gain * p2 * p2
+        f0, f1 = d * d * (1 / 3 + rho / 6), 0.5 * d * (1 + rho)
+        a01, a02 = l00 * d + l01, l00 * f0 + l01 * f1 + l02 * rho
+        a11, a12, a22 = l01 * d + l11, l01 * f0 + l11 * f1 + l12 * rho, l02 * f0 + l12 * f1 + l22 * rho
+        l22 = f0 * a02 + f1 * a12 + rho * a22
+        l12, l11, l01, l02 = d * a02 + a12, d * a01 + a11, a01, a02
+        e1, e2 = d * e0 + e1, f0 * e0 + f1 * e1 + rho * e2
+    return np.array([l00, l01, l02, l11, l12, l22, e0, e1, e2, score])

@@ -1,0 +1,69 @@
+"""Centrelines reduced to bins, as a local fit wants them: few, and each with an error of its own.
+
+A bin is the weighted mean of the points within a stretch of the line that is as long as their noise is correlated, or
+eight pixels. Each bin's error is taken as independent with the variance that a mean over its length has; their own
+variance is a little smaller and their neighbours' errors a little alike, which comes to the same over a few bins.
+
+Bins tile cells of equal length, which start at the first point of each line: see `core.scan.crossings.CrossingTable`.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from core.model.arrays import Array
+
+ARC, U, V, INFORMATION, SPREAD = 0, 1, 2, 3, 4
+"""Columns of a bin: length along the line, place, 1/σ² across it in px⁻², variance of its points along it in px²."""
+
+_SHORTEST_PX = 8.0
+_WIDEST_GAP_PX = 3.0
+
+
+def bin_length(cell_px: float, correlation_px: float) -> float:
+    """Length of a line's bins in px: a whole number of them is a cell."""
+    return cell_px / max(1, math.floor(cell_px / max(correlation_px, _SHORTEST_PX)))
+
+
+@njit(cache=True, nogil=True)
+def binned(points: Array, arc: Array, length: float, correlation: float) -> Array:
+    """Bins (B, 5) of `length` px of one line: `points` (N, 3) u, v, 1/σ² and `arc` (N,); only those with a weight."""
+    count = len(points)
+    bins = np.zeros((int(arc[-1] / length) + 1, 5))
+    for k in range(count):
+        before = min(arc[k] - arc[k - 1], _WIDEST_GAP_PX) if k > 0 else 0.0
+        after = min(arc[k + 1] - arc[k], _WIDEST_GAP_PX) if k + 1 < count else 0.0
+        # a point stands for as much of the line as its share of the correlation length
+        weight = points[k, 2] * min(1.0, 0.5 * (before + after) / max(correlation, 1e-9))
+        row = bins[min(int(arc[k] / length), len(bins) - 1)]
+        row[ARC] += weight * arc[k]
+        row[U] += weight * points[k, 0]
+        row[V] += weight * points[k, 1]
+        row[INFORMATION] += weight
+        row[SPREAD] += weight * arc[k] * arc[k]
+    kept = 0
+    for k in range(len(bins)):
+        weight = bins[k, INFORMATION]
+        if weight <= 0.0:
+            continue
+        for column in (ARC, U, V, SPREAD):
+            bins[kept, column] = bins[k, column] / weight
+        bins[kept, INFORMATION] = weight
+        bins[kept, SPREAD] = max(0.0, bins[kept, SPREAD] - bins[kept, ARC] ** 2)
+        kept += 1
+    return bins[:kept].copy()
+
+
+@njit(cache=True, nogil=True)
+def in_frame(bins: Array, rows: NDArray[np.int64], frame: Array) -> Array:
+    """The bins `rows` as `core.image.kriging` wants them: x, y in the `frame` (u, v, t_u, t_v), 1/σ², spread."""
+    found = np.empty((len(rows), 4))
+    for k, row in enumerate(rows):
+        du, dv = bins[row, U] - frame[0], bins[row, V] - frame[1]
+        found[k, 0], found[k, 1] = du * frame[2] + dv * frame[3], dv * frame[2] - du * frame[3]
+        found[k, 2], found[k, 3] = bins[row, INFORMATION], bins[row, SPREAD]
+    return found

@@ -1,0 +1,114 @@
+"""The local fit of a centreline where another crosses it: its window, which ends at kinks and jumps, and its curve."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from core.image.kriging import INFORMATION, X, influence, krige, straight_sigma
+from core.image.line_bins import ARC, U, V, in_frame
+from core.model.arrays import Array
+
+T_U, T_V, PLACE, SLOPE, BEND, SIGMA, REACH = 0, 1, 2, 3, 4, 5, 6
+"""Of a fit: unit tangent of its frame; y, y' and y''/2 at the origin; σ of y; how far its window reaches. In pixels."""
+FIT = 7
+
+_CHORD = 2
+"""Bins on either side that say which way the frame lies."""
+_STEEPEST = 0.6
+"""A line that leaves its frame more steeply is no function of x any more: the window ends there."""
+
+
+@njit(cache=True, nogil=True)
+def local_fit(
+    bins: Array,
+    broken: NDArray[np.bool_],
+    arc: float,
+    origin: Array,
+    reach: float,
+    cell: float,
+    first_cell: int,
+    fit: Array,
+    share: Array,
+) -> bool:
+    """Fit the line within ± `reach` px of the length `arc` along it, in a frame at `origin` (2,); False if none can be.
+
+    The curve goes into `fit` (FIT,); into `share` (K,) what the errors of the cells from `first_cell` on do to its
+    place, in pixels for one standard deviation of the mean of a cell's bins.
+    """
+    count = len(bins)
+    middle = min(max(int(np.searchsorted(bins[:, ARC], arc)), 1), count - 1) if count > 1 else 0
+    if count < 2 or broken[middle if bins[middle, ARC] - arc < arc - bins[middle - 1, ARC] else middle - 1]:
+        return False
+    low, high = _window(bins, broken, arc, middle, reach)
+    start, end = max(low, middle - _CHORD), min(high, middle - 1 + _CHORD)
+    tu, tv = bins[end, U] - bins[start, U], bins[end, V] - bins[start, V]
+    chord = math.hypot(tu, tv)
+    if high - low < 1 or chord == 0.0:
+        return False
+    frame = np.array([origin[0], origin[1], tu / chord, tv / chord])
+    rows = np.arange(low, high + 1)
+    placed = in_frame(bins, rows, frame)
+    split = int(np.searchsorted(placed[:, X], 0.0))
+    right, left = placed[split:], placed[:split][::-1].copy()
+    right, left = right[: _graph(right)].copy(), left[: _graph(left)].copy()
+    if min(len(right), len(left)) == 0:
+        return False
+    widest = max(right[-1, X], -left[-1, X])
+    found = krige(right, left, widest)
+    fit[T_U], fit[T_V], fit[PLACE], fit[SLOPE], fit[BEND] = frame[2], frame[3], found[0], found[1], 0.5 * found[2]
+    fit[SIGMA], fit[REACH] = math.sqrt(found[3]), widest
+    cells = np.floor(bins[rows, ARC] / cell).astype(np.int64) - first_cell
+    ends = (split, split + len(right), split - len(left))
+    _share(right, left, cells[ends[0] : ends[1]], cells[ends[2] : ends[0]][::-1].copy(), found, widest, share)
+    return True
+
+
+@njit(cache=True, nogil=True)
+def _window(bins: Array, broken: NDArray[np.bool_], arc: float, middle: int, reach: float) -> tuple[int, int]:
+    """First and last of the bins within `reach` and on this side of every kink and jump."""
+    low, high = middle, middle - 1
+    while low > 0 and not broken[low - 1] and arc - bins[low - 1, ARC] <= reach:
+        low -= 1
+    while high + 1 < len(bins) and not broken[high + 1] and bins[high + 1, ARC] - arc <= reach:
+        high += 1
+    return low, high
+
+
+@njit(cache=True, nogil=True)
+def _graph(bins: Array) -> int:
+    """How many of the bins from the origin outwards are the graph of a function of x."""
+    for k in range(1, len(bins)):
+        dx, dy = abs(bins[k, X]) - abs(bins[k - 1, X]), abs(bins[k, 1] - bins[k - 1, 1])
+        if dx <= 0.0 or dy > _STEEPEST * dx:
+            return k
+    return len(bins)
+
+
+@njit(cache=True, nogil=True)
+def _share(
+    right: Array,
+    left: Array,
+    cells_right: NDArray[np.int64],
+    cells_left: NDArray[np.int64],
+    found: Array,
+    reach: float,
+    share: Array,
+) -> None:
+    """How far the error of each cell moves the place: its influence times the standard deviation of its mean.
+
+    What the place owes to the choice and to the curvature is as common to neighbours as the noise: it is shared alike.
+    """
+    sigma = straight_sigma(right, left)
+    change, bend = int(found[4]), int(found[5])
+    whole = math.sqrt(found[3] / found[6])
+    for cell in range(len(share)):
+        one, other = right.copy(), left.copy()
+        one[:, 1], other[:, 1] = np.where(cells_right == cell, 1.0, 0.0), np.where(cells_left == cell, 1.0, 0.0)
+        information = np.sum(one[:, 1] * one[:, INFORMATION]) + np.sum(other[:, 1] * other[:, INFORMATION])
+        share[cell] = 0.0
+        if information > 0:
+            share[cell] = whole * influence(one, other, reach, sigma, change, bend) / math.sqrt(information)
