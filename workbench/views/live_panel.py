@@ -147,7 +147,7 @@ class LivePanel(QWidget):
             (self._device_label, self.device),
             (QLabel(self.tr("Exposure")), self.exposure),
             (QLabel(self.tr("Gain")), self.gain),
-            (QLabel(self.tr("Frames")), self.rate),
+            (QLabel(self.tr("Rate")), self.rate),
         ):
             label.setBuddy(field)
             self._form.addRow(label, field)
