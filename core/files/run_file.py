@@ -89,6 +89,7 @@ class _Frame(ResultFile):
     condition: Maybe = None
     points: int = 0
     sigma_mm: Maybe = None
+    left_out_reasons: list[tuple[str, int]] = Field(default_factory=list)
 
 
 class _RunFile(ResultFile):
@@ -162,4 +163,5 @@ def _record(frame: _Frame) -> FrameRecord:
     values = frame.model_dump()
     values["condition"] = math.inf if frame.condition is None else frame.condition
     values["sigma_mm"] = math.nan if frame.sigma_mm is None else frame.sigma_mm
+    values["left_out_reasons"] = tuple(frame.left_out_reasons)
     return FrameRecord(**values)

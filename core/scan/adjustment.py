@@ -102,7 +102,7 @@ class Adjustment:
         Taken at the observed crossings they would pull all planes together, because noise in the rays costs less the
         less the planes differ.
         """
-        difference = self._differences(before.pis)
+        difference = self.differences(before.pis)
         gradient = floored(self.gradient(before.pis), GRADIENT_FLOOR * self.typical_gradient)
         gains = np.column_stack(noise_gains(self.crossings, gradient))
         adjusted = self.geometry.rays - self._noise_of_rays(before, gains, difference)
@@ -111,12 +111,7 @@ class Adjustment:
 
     def covariance(self, solution: Solution) -> tuple[Array, float]:
         """(3S, 3S) of the planes from the crossings' whole covariance, and the expected `Solution.misfit`."""
-        root = diags_array(solution.weights / solution.sigma**2)
-        gain_a, gain_b = solution.gains.T
-        errors = self.errors
-        rest = np.sqrt(gain_a**2 * errors.rest_a + gain_b**2 * errors.rest_b)
-        shared = diags_array(gain_a) @ errors.sweep_a + diags_array(gain_b) @ errors.sweep_b
-        noise = solution.design.T @ (root @ hstack([shared, diags_array(rest)], format="csr"))
+        noise = solution.design.T @ (diags_array(solution.weights / solution.sigma**2) @ self.noise(solution))
         middle = (noise @ noise.T).toarray()
         middle[np.diag_indices(len(middle))] += self._prior()
         gained = cho_solve(solution.factor, middle, check_finite=False)
@@ -124,9 +119,17 @@ class Adjustment:
         expected = np.sum(solution.weights) + len(solution.cells) - np.trace(gained)
         return np.asarray((covariance + covariance.T) / 2), float(expected)
 
+    def noise(self, solution: Solution) -> csr_array:
+        """(M, …) that turns independent standard normal numbers into the misclosures in 1/mm, less the fan's cells."""
+        gain_a, gain_b = solution.gains.T
+        errors = self.errors
+        rest = np.sqrt(gain_a**2 * errors.rest_a + gain_b**2 * errors.rest_b)
+        shared = diags_array(gain_a) @ errors.sweep_a + diags_array(gain_b) @ errors.sweep_b
+        return csr_array(hstack([shared, diags_array(rest)], format="csr"))
+
     def gradient(self, pis: Array) -> Array:
         """D (M, 2) in 1/(mm px) at every crossing of sweeps `pis` (S, 3)."""
-        return inverse_depth_gradient(self._differences(pis), self.geometry.jacobians)
+        return inverse_depth_gradient(self.differences(pis), self.geometry.jacobians)
 
     @property
     def typical_gradient(self) -> float:
@@ -180,7 +183,7 @@ class Adjustment:
         """Weight of the prior on each unknown."""
         return np.concatenate([np.full(3 * self.sweeps, 1 / PRIOR_SD**2), np.ones(self.errors.fan.shape[1])])
 
-    def _differences(self, pis: Array) -> Array:
+    def differences(self, pis: Array) -> Array:
         """π_a − π_b (M, 3) of every crossing."""
         table = self.crossings
         other = np.where(table.with_fan[:, None], self._fan_pis(), pis[table.b])

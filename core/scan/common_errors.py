@@ -104,6 +104,7 @@ def solve_common(
     told("calibration uncertainty", 0, len(deviations))
     solve = locate_together if method == "network" else locate_each
     crossings, line = numbered(features.crossings, scan.fan_lines)
+    crossings, line = crossings.select(scan.of_solved), line[scan.of_solved]
     sweeps = [scan.pis]
     for number, one in enumerate(deviations):
         again = solve(crossings, line, one.camera, one.fan, told.again)

@@ -10,7 +10,8 @@ class FrameRecord:
     """What became of one frame.
 
     `stripes` centrelines of `stripe_px` points in all; `fan_crossings` with the fan on `fan_lines_met` different lines
-    and `sweep_crossings` with other sweeps, of which `left_out` disagreed; `condition` of the fan crossings alone
+    and `sweep_crossings` with other sweeps, of which `left_out` did not count, for `left_out_reasons` (reason, how
+    many); `condition` of the fan crossings alone
     (ratio of singular values); `sigma_mm` the median σ of its points. A frame that gave no points says why in `reason`.
     """
 
@@ -27,3 +28,4 @@ class FrameRecord:
     condition: float = float("inf")
     points: int = 0
     sigma_mm: float = float("nan")
+    left_out_reasons: tuple[tuple[str, int], ...] = ()

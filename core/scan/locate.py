@@ -104,7 +104,22 @@ def locate_together(
             "Many crossings with the fan disagree with the sweeps; none was left out: check the fan's calibration, "
             "and that object and camera stood still.",
         )
+    if network.collapsed:
+        notes += (
+            "The sweeps' light planes have fallen together into one: no depth can be trusted. Move and tilt the "
+            "hand-held laser more between frames, and cross the fan on object and table.",
+        )
     return LocatedSweeps(frames, network.pis, network.covariance, network.weights, network.scale, notes)
+
+
+def sweeping_frames(crossings: CrossingTable) -> NDArray[np.int64]:
+    """The frames (S,) that cross anything, in order."""
+    return np.unique(np.concatenate([crossings.a, crossings.b[~crossings.with_fan]]))
+
+
+def by_sweep(crossings: CrossingTable, frames: NDArray[np.int64]) -> CrossingTable:
+    """The crossings with each of these `frames` (S,), in order, called by its place among them."""
+    return crossings.renumber(np.searchsorted(frames, np.arange(frames[-1] + 1)))
 
 
 def locate_each(

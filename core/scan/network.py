@@ -125,10 +125,15 @@ def _adjust(equations: Adjustment, progress: Progress, *, redescend: bool) -> So
         if redescend and (settled or step >= ROUNDS // 2):
             weights = np.clip(1 - (size / REJECT_AT) ** 2, 0, None) ** 2
         else:
-            weights = np.minimum(1.0, HUBER / np.maximum(size, 1e-9))
+            weights = huber_weights(size)
         before, solution = solution, equations.improve(solution, weights)
         settled += bool(np.abs(solution.residuals - before.residuals).max() < _SETTLED)
     return solution
+
+
+def huber_weights(residuals: Array) -> Array:
+    """Weights (M,) that let a residual in standard deviations pull no harder than one of HUBER."""
+    return np.asarray(np.minimum(1.0, HUBER / np.maximum(np.abs(residuals), 1e-9)))
 
 
 def _robust_scale(residuals: Array) -> float:

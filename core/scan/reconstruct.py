@@ -5,7 +5,7 @@ No picture is needed here, so a scan can be solved again in a second with anothe
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,16 +13,19 @@ from numpy.typing import NDArray
 
 from core.errors import InputError
 from core.model import Camera, Fan
+from core.model.arrays import Array
 from core.progress import Progress, Told, silent
 from core.scan.cloud import FAN, Cloud
 from core.scan.crossings import CrossingTable
+from core.scan.datum import Datum, datum_of
 from core.scan.fan_lines import UNASSIGNED, FanLines
 from core.scan.features import ScanFeatures
-from core.scan.locate import LocatedSweeps, locate_each, locate_together, number_fan_lines, numbered
+from core.scan.left_out import reasons_of
+from core.scan.locate import LocatedSweeps, by_sweep, locate_each, locate_together, number_fan_lines, numbered
 from core.scan.method import Method
-from core.scan.network import SILENCED
-from core.scan.results import FrameRecord, ScanResult
-from core.scan.sweep_plane import plane_condition
+from core.scan.records import frame_records
+from core.scan.results import ScanResult
+from core.scan.still_part import still_part
 from core.scan.triangulate import join, triangulate
 
 
@@ -56,7 +59,6 @@ def reconstruct(
     options = options or ReconstructOptions()
     progress = told = Told(progress)
     progress("network", 0, 3)
-    solve = locate_together if options.method == "network" else locate_each
     lines = fan_lines or number_fan_lines(features.fan, features.crossings, camera, fan, told.again)
     crossings, line = numbered(features.crossings, lines)
     if not np.any(crossings.with_fan):
@@ -65,7 +67,8 @@ def reconstruct(
             where="scan",
             todo="sweep the single line across the fan's lines, and check that the fan was on",
         )
-    sweeps = solve(crossings, line, camera, fan, told.again)
+    solved = _solve(options.method, crossings, line, camera, fan, [frame.name for frame in features.frames], told.again)
+    sweeps = solved.sweeps
     progress("network", 1, 3)
     clouds = _fan_clouds(features, lines, camera, fan) + _sweep_clouds(features, sweeps, camera)
     cloud = _cut(join(clouds), options.sigma_cut_mm)
@@ -77,7 +80,7 @@ def reconstruct(
             todo="cross more of the fan with each sweep and tilt the laser between sweeps, check laser_fan.lines in "
             "rig.toml, or raise the σ cut",
         )
-    records = _records(features, crossings, line, sweeps, cloud, camera)
+    records = frame_records(features, crossings, line, solved.reasons, sweeps.frames, cloud, camera)
     progress("network", 3, 3)
     return ScanResult(
         cloud=cloud,
@@ -86,10 +89,54 @@ def reconstruct(
         sweep_frames=sweeps.frames,
         frames=records,
         crossings=crossings,
-        crossing_weights=sweeps.weights,
+        crossing_weights=solved.weights,
         fan_lines=lines,
         scale=sweeps.scale,
-        notes=features.notes + sweeps.notes + _fan_notes(lines),
+        notes=features.notes + solved.notes + _fan_notes(lines),
+        datum=solved.datum,
+        crossing_reasons=solved.reasons,
+    )
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class _Solved:
+    """Solved sweeps; weight and reason (M,) of every crossing, those of other frames included."""
+
+    sweeps: LocatedSweeps
+    weights: Array
+    reasons: NDArray[np.int64]
+    notes: tuple[str, ...]
+    datum: Datum | None = None
+
+
+def _solve(
+    method: Method,
+    crossings: CrossingTable,
+    line: NDArray[np.int64],
+    camera: Camera,
+    fan: Fan,
+    names: Sequence[str],
+    progress: Progress,
+) -> _Solved:
+    if method != "network":
+        sweeps = locate_each(crossings, line, camera, fan, progress)
+        everywhere = np.ones(len(crossings), dtype=np.bool_)
+        located = np.isin(crossings.a, sweeps.frames) & crossings.with_fan
+        reasons = reasons_of(crossings.with_fan, sweeps.weights, everywhere, located)
+        return _Solved(sweeps, sweeps.weights, reasons, sweeps.notes)
+    part = still_part(crossings, line, camera, fan, names, progress)
+    kept = part.kept
+    among = crossings.select(kept)
+    sweeps = locate_together(among, line[kept], camera, fan, progress)
+    weights = np.zeros(len(crossings))
+    weights[kept] = sweeps.weights
+    datum = datum_of(sweeps.pis, sweeps.covariance, by_sweep(among, sweeps.frames), sweeps.weights, camera)
+    return _Solved(
+        sweeps,
+        weights,
+        reasons_of(crossings.with_fan, weights, kept, np.ones(len(crossings), dtype=np.bool_)),
+        part.note(names, len(sweeps.frames)) + sweeps.notes + (datum.sentence,),
+        datum,
     )
 
 
@@ -119,51 +166,6 @@ def _cut(cloud: Cloud, sigma_cut_mm: float) -> Cloud:
     own = depth[cloud.sweep <= FAN]
     near, far = (0.6 * own.min(), 1.5 * own.max()) if len(own) else (0.0, np.inf)
     return cloud.select((cloud.sigma <= sigma_cut_mm) & (depth > near) & (depth < far))
-
-
-def _records(
-    features: ScanFeatures,
-    crossings: CrossingTable,
-    line: NDArray[np.int64],
-    sweeps: LocatedSweeps,
-    cloud: Cloud,
-    camera: Camera,
-) -> tuple[FrameRecord, ...]:
-    rays = camera.rays(crossings.uv)
-    solved = set(sweeps.frames.tolist())
-    count: Callable[[NDArray[np.bool_]], int] = np.count_nonzero
-    records = []
-    for frame in features.frames:
-        mine = (crossings.a == frame.index) | (crossings.b == frame.index)
-        with_fan = mine & crossings.with_fan
-        points = cloud.frame == frame.index
-        number = count(points)
-        records.append(
-            FrameRecord(
-                index=frame.index,
-                name=frame.name,
-                used=number > 0,
-                reason="" if number else frame.reason or _why_no_points(count(mine), frame.index in solved),
-                stripes=len(frame.centrelines),
-                stripe_px=sum(len(piece) for piece in frame.centrelines),
-                fan_crossings=count(with_fan),
-                fan_lines_met=len(np.unique(line[with_fan])),
-                sweep_crossings=count(mine & ~crossings.with_fan),
-                left_out=count(mine & (sweeps.weights < SILENCED)),
-                condition=plane_condition(rays[with_fan]),
-                points=number,
-                sigma_mm=float(np.median(cloud.sigma[points])) if number else float("nan"),
-            )
-        )
-    return tuple(records)
-
-
-def _why_no_points(crossings: int, solved: bool) -> str:
-    if not crossings:
-        return "its stripe crosses neither the fan nor another sweep"
-    if not solved:
-        return "fewer than three crossings with the fan"
-    return "its light plane is too uncertain for any point to pass the σ cut"
 
 
 def _fan_notes(lines: FanLines) -> tuple[str, ...]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from core.model.arrays import Array
 from core.scan.cloud import Cloud
 from core.scan.crossings import CrossingTable
+from core.scan.datum import Datum
 from core.scan.fan_lines import FanLines
 from core.scan.frame_record import FrameRecord
 
@@ -34,12 +35,16 @@ class ScanResult:
         One record for every frame of the recording.
     crossings, crossing_weights
         All crossings, and the weight (0 left out … 1) each had.
+    crossing_reasons
+        (M,) why a crossing was left out: index into `core.scan.left_out.REASONS`, 0 where it was not.
     fan_lines
         The number given to each of the fan's centrelines.
     scale
         Standard deviation of unit weight of the adjustment; 1 where the noise model is true.
     notes
         Sentences for the technician.
+    datum
+        How strongly the fan fixes scale and place; None when frames were solved each on its own.
     """
 
     cloud: Cloud
@@ -52,3 +57,11 @@ class ScanResult:
     fan_lines: FanLines
     scale: float
     notes: tuple[str, ...] = ()
+    datum: Datum | None = None
+    crossing_reasons: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+
+    @property
+    def of_solved(self) -> NDArray[np.bool_]:
+        """(M,) True for the crossings of solved sweeps; frames after a movement are not solved."""
+        table = self.crossings
+        return np.isin(table.a, self.sweep_frames) & (table.with_fan | np.isin(table.b, self.sweep_frames))

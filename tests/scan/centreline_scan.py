@@ -23,8 +23,11 @@ from core.image.pieces import END_TRIM_PX
 from core.image.stripe import StripeSettings
 from core.model import Pose
 from core.progress import silent
-from core.scan.crossings import CrossingWindow
+from core.scan.crossings import CrossingTable, CrossingWindow
+from core.scan.fan_lines import FanLines
 from core.scan.features import FrameFeatures, ScanFeatures, gather
+from core.scan.line_errors import LineErrors
+from core.scan.locate import numbered
 from core.simulate.image import generator
 from core.simulate.laser import Sheet, fan_sheets
 from core.simulate.recording import scenario_rig
@@ -78,7 +81,7 @@ class Curve:
             self.normal,
             np.full(count, 1.5),
             np.full(count, 100.0),
-            np.full(count, max(sigma_px, 1e-4)),
+            np.full(count, max(sigma_px, 1e-9)),
             np.zeros(count, dtype=bool),
             correlation_px,
         )
@@ -149,6 +152,39 @@ class ExactScan:
         return gather(
             self.rig.camera.image_size, fan, frames, (stripe, stripe), window or CrossingWindow(), silent, smoothed
         )
+
+
+@dataclass(frozen=True)
+class ExactCrossings:
+    """The crossings of a scan as they truly are, to be given errors as their table says: hundreds of scans a minute.
+
+    `table` is exact; its σ and how errors hang together along lines are those of `noise`. `line` (M,) is the fan's.
+    """
+
+    scan: ExactScan
+    table: CrossingTable
+    line: np.ndarray
+
+    @classmethod
+    def of(cls, scan: ExactScan, noise: Noise | None = None) -> ExactCrossings:
+        noise = noise or Noise.of_twin(scan.rig.scale)
+        tiny = 1e-5
+        features = scan.measured(
+            0, Noise(tiny * noise.sweep_px, tiny * noise.fan_px, noise.correlation_px), smoothed=False
+        )
+        table, line = numbered(features.crossings, FanLines.settled_as(scan.fan_line))
+        scaled = {name: getattr(table, name) / tiny for name in ("sigma_a", "sigma_b", "share_a", "share_b")}
+        return cls(scan, replace(table, **scaled), line)
+
+    def drawn(self, seed: int) -> CrossingTable:
+        """The crossings with errors of this seed."""
+        rng, table, errors = np.random.default_rng([seed, 4]), self.table, LineErrors.of(self.table)
+        cells, fan = rng.normal(size=errors.sweep_a.shape[1]), rng.normal(size=errors.fan.shape[1])
+        rest_a, rest_b = (np.sqrt(rest) * rng.normal(size=len(table)) for rest in (errors.rest_a, errors.rest_b))
+        off_a, off_b = errors.sweep_a @ cells + rest_a, errors.sweep_b @ cells + errors.fan @ fan + rest_b
+        t_a, t_b = table.tangent_a, table.tangent_b
+        sine = t_a[:, 0] * t_b[:, 1] - t_a[:, 1] * t_b[:, 0]
+        return replace(table, uv=table.uv + t_b * (off_a / -sine)[:, None] + t_a * (off_b / sine)[:, None])
 
 
 def _scene(scenario: Scenario, rig: Rig) -> tuple[Scene, dict, list[Sheet]]:

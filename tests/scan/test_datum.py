@@ -1,0 +1,80 @@
+"""How well the fan fixes the scale: stated from the covariance, and true."""
+
+import numpy as np
+import pytest
+
+from core.scan.datum import datum_of
+from core.scan.locate import by_sweep, locate_together
+from core.scan.reconstruct import reconstruct
+from core.simulate.scenario import Scenario
+from tests.scan.centreline_scan import ExactCrossings, ExactScan
+
+
+def datum(scan, seed=1):
+    exact = ExactCrossings.of(scan)
+    return solved_datum(exact, seed)[0]
+
+
+def solved_datum(exact, seed):
+    sweeps = locate_together(exact.drawn(seed), exact.line, exact.scan.rig.camera, exact.scan.rig.fan)
+    table = by_sweep(exact.table, sweeps.frames)
+    return datum_of(sweeps.pis, sweeps.covariance, table, sweeps.weights, exact.scan.rig.camera), sweeps
+
+
+def test_more_relief_fixes_the_scale_better():
+    found = [datum(ExactScan.of(Scenario(height_mm=height, scale=0.5))) for height in (10.0, 25.0, 60.0)]
+    assert found[0].scale > 1.5 * found[1].scale > 2.5 * found[2].scale
+    assert [one.relief_mm for one in found] == pytest.approx([10.0, 25.0, 60.0], rel=0.1)
+    assert all(one.depth_mm < 0.03 for one in found)
+
+
+def test_a_block_under_the_fan_needs_no_advice():
+    scan = ExactScan.of(Scenario(scale=0.5))
+    result = reconstruct(scan.measured(1), scan.rig.camera, scan.rig.fan)
+    assert not result.datum.weak
+    assert result.datum.scale < 0.001
+    sentence = f"The relief under the fan fixes the scale to {100 * result.datum.scale:.2g} %."
+    assert sentence in result.notes
+
+
+def test_a_flat_scene_is_advised_to_put_a_step_beside_the_part():
+    scan = ExactScan.of(Scenario(object="plane", scale=0.5))
+    result = reconstruct(scan.measured(1), scan.rig.camera, scan.rig.fan)
+    assert result.datum.weak
+    assert result.datum.depth_mm < 0.05  # its place is known all the same
+    assert "nothing fixes the scale of heights; put a step beside the part" in " ".join(result.notes)
+
+
+def test_few_sweeps_across_low_relief_are_weak():
+    scan = ExactScan.of(Scenario(height_mm=6.0, scale=0.25, frames=14))
+    found = datum(scan)
+    assert found.weak
+    assert "fixes the scale only to" in found.sentence
+    assert "put a step beside the part" in found.sentence
+
+
+def test_the_stated_scale_is_that_of_repeated_scans():
+    """The block's height, 50 mm, from the sweeps' planes alone, on 60 scans."""
+    exact = ExactCrossings.of(ExactScan.of(Scenario(scale=0.5)))
+    scan, stated, found = exact.scan, [], []
+    up, foot = scan.scene.pose_cam_table.rotation[:, 2], scan.scene.pose_cam_table.translation
+    frame, rays, top = [], [], []
+    for index, curves in enumerate(scan.sweeps):
+        for curve in curves:
+            if np.ptp(curve.points @ up) < 0.1:  # on a level face
+                some = scan.rig.camera.rays(curve.uv[::40])
+                frame.append(np.full(len(some), index))
+                rays.append(some)
+                top.append(np.full(len(some), (curve.points[0] - foot) @ up > 25))
+    frame, rays, top = (np.concatenate(parts) for parts in (frame, rays, top))
+    for seed in range(60):
+        datum, sweeps = solved_datum(exact, seed)
+        place = np.searchsorted(sweeps.frames, frame)
+        pis = sweeps.pis[place]
+        blocks = np.array([sweeps.covariance[3 * i : 3 * i + 3, 3 * i : 3 * i + 3] for i in range(len(sweeps.frames))])
+        weight = 1 / np.einsum("ni,nij,nj->n", rays, blocks[place], rays)
+        heights = (rays / np.einsum("ni,ni->n", rays, pis)[:, None] - foot) @ up
+        means = [np.average(heights[side], weights=weight[side]) for side in (top, ~top)]
+        found.append((means[0] - means[1]) / 50 - 1)
+        stated.append(datum.scale)
+    assert np.sqrt(np.mean(np.square(found))) == pytest.approx(np.mean(stated), rel=0.25)
