@@ -6,7 +6,8 @@ import cv2
 import numpy as np
 import pytest
 
-from core.image.targets import Checkerboard, TargetNotFound, detect
+from core.image.targets import Checkerboard, TargetNotFound, checkerboard, detect
+from core.model import Camera
 from tests.image.rendered_targets import checkers, pose, render, rig
 
 BOARD = Checkerboard(9, 6, 10.0)
@@ -38,6 +39,29 @@ def test_large_squares_are_smoothed_and_twice_as_true():
     where = pose(20, -10, 5, (40, 25), 270)
     view = detect(BOARD, render(camera, where, checkers(9, 6, 10.0), blur=0.8, samples=5))
     assert np.sqrt(np.mean((view.uv - camera.project_pose(where, BOARD.points)) ** 2)) < 0.02
+
+
+def test_windows_grow_with_the_squares_and_bring_truer_corners(monkeypatch):
+    where = pose(20, -10, 5, (40, 25), 200)
+    picture = render(CAMERA, where, checkers(9, 6, 10.0), blur=0.9, noise=4, samples=3, seed=1)
+    errors = []
+    for largest in (checkerboard.HALF_WINDOW, checkerboard.LARGEST_HALF_WINDOW):
+        monkeypatch.setattr(checkerboard, "LARGEST_HALF_WINDOW", largest)
+        view = detect(BOARD, picture)
+        errors.append(np.sqrt(np.mean((view.uv - CAMERA.project_pose(where, BOARD.points)) ** 2)))
+        assert 0.6 < errors[-1] / np.sqrt(np.mean(view.sigma**2)) < 1.6
+    assert errors[1] < 0.8 * errors[0]
+
+
+def test_windows_stay_small_where_the_lens_bends_edges():
+    def window(k1):
+        camera = Camera(CAMERA.image_size, CAMERA.matrix, [k1, 0, 0, 0])
+        return checkerboard.half_window(camera.project_pose(where, BOARD.points).reshape(6, 9, 2))
+
+    where = pose(20, -10, 5, (40, 25), 200)
+    assert window(0.0) == 27
+    assert window(-0.3) < 27
+    assert window(-3.0) == checkerboard.HALF_WINDOW
 
 
 def test_sigma_is_the_size_of_the_errors_under_noise():
