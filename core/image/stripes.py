@@ -17,8 +17,9 @@ end of a stripe, kink, jump        4 px (2.5 g) and 2 g are left out; a piece ne
 neighbour, crossing line           points nearer than 3.5·√(s² + g²) are left out, nearer than 8.1 s they stay
                                    Steger's, freed of the pull of curvature and background
 border of the picture              points nearer than 4 g are never found; cuts that leave the picture are not used
-skewed section                     by up to 0.15 px for flanks that differ by 10 %, 0.28 px with the weights that
-                                   speckle asks for: any estimator is; it is the same in calibration and scan
+skewed section, halo               0.1 to 0.2 px for flanks that differ by 10 %, whatever the estimator, and twice
+                                   that with the weights that speckle asks for; so where flanks differ from a
+                                   Gaussian's by more than 1.5 % of the height all points stay Steger's, as below
 saturation                         height and place from the pixels left: below 0.003 px; flagged
 =================================  ==========================================================================
 
@@ -55,7 +56,7 @@ from core.image.pieces import (
 )
 from core.image.precision import FLOOR_PX, noise_sigma, response_noise, roughness, saturated_points
 from core.image.profile import Profiles, Sections, measure_profiles, smooth_sections
-from core.image.speckle import Speckle, measure_speckle
+from core.image.speckle import Speckle, measure_misfit, measure_speckle
 from core.image.stripe import StripeSettings
 from core.image.stripe_settings import choose_settings
 from core.model.arrays import Array
@@ -66,6 +67,7 @@ _HIGH, _LOW = 0.35, 0.12  # of the contrast: a run starts, a run goes on
 _HIGH_NOISE, _LOW_NOISE = 6.0, 3.0  # of the response's own noise, at least
 _OTHER_TAIL = 3.6  # stripe σ that a neighbour's light reaches
 _CUTS_FOR_SPECKLE = 3000  # more tell nothing new
+_LARGEST_MISFIT = 0.015  # of the height, in the flanks: there the likelihood looks for the place of a speckled stripe
 _SHORTEST_PIECE = 7.0  # filter σ: two independent points
 
 
@@ -216,15 +218,15 @@ def _smooth_pieces(
 
 def _speckle(
     picture: NDArray[np.float32], state: NDArray[np.uint8], pieces: list[_Piece], settings: StripeSettings
-) -> Speckle:
-    """The speckle that all stripes of the picture show, from the longest of them."""
+) -> Speckle | None:
+    """The speckle that all stripes of the picture show, from the longest of them; None if they are not Gaussian."""
     cuts, left = [], _CUTS_FOR_SPECKLE
     for piece in sorted(pieces, key=lambda piece: -len(piece.run)):
         if left > 0:
             part = piece.select(slice(0, left))
             left -= len(part.run)
             cuts.append(residuals(picture, state, part.run, part.weight, part.sections(settings), settings.filter_px))
-    return measure_speckle(cuts, 3 * settings.stripe_px)
+    return measure_speckle(cuts, settings.stripe_px) if measure_misfit(cuts) < _LARGEST_MISFIT else None
 
 
 def _placed(
@@ -234,18 +236,18 @@ def _placed(
     clear: NDArray[np.bool_],
     settings: StripeSettings,
     noise: NoiseModel,
-    speckle: Speckle,
+    speckle: Speckle | None,
 ) -> Refined:
-    """The points of a piece at their likeliest place; beside other light, Steger's freed of their known biases."""
-    g, profiles = settings.filter_px, piece.profiles
+    """The points of a piece at their likeliest place; Steger's, freed of their biases, where the model has no say."""
+    g = settings.filter_px
+    if speckle is None or not clear.any():
+        return Refined(_corrected(piece, settings), noise_sigma(piece.profiles, noise, g), correlation_length(g))
     line = refine(picture, state, piece.run, piece.weight, clear, piece.sections(settings), noise, speckle, g)
-    there = np.isfinite(line.sigma)
+    sigma, there = np.hypot(line.sigma, FLOOR_PX), np.isfinite(line.sigma)
     if there.all():
-        return line._replace(sigma=np.hypot(line.sigma, FLOOR_PX))
+        return line._replace(sigma=sigma)
     run = np.where(there[:, None], line.run, _corrected(piece, settings))
-    return line._replace(
-        run=run, sigma=np.where(there, np.hypot(line.sigma, FLOOR_PX), noise_sigma(profiles, noise, g))
-    )
+    return line._replace(run=run, sigma=np.where(there, sigma, noise_sigma(piece.profiles, noise, g)))
 
 
 def _corrected(piece: _Piece, settings: StripeSettings) -> Array:
