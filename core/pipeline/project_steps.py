@@ -7,6 +7,7 @@ All of them can be called in another process: their arguments and results can be
 from __future__ import annotations
 
 import hashlib
+import json
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -24,6 +25,7 @@ from core.files.calibration_store import (
     read_stored_camera,
 )
 from core.files.fan_file import fan_id
+from core.files.json_text import to_json
 from core.files.pictures import read_bytes
 from core.files.project_data import Project
 from core.files.project_folder import source_folder
@@ -206,8 +208,8 @@ def measure_scan(
     """Measure surface and thickness with the accepted calibrations; a part without two parallel faces is no error.
 
     New results take the place of the old ones when all is done; until then, and if it is cancelled, the old ones stay.
-    Where the scan among them is of the same pictures (another σ cut, method or calibration was chosen), these are not
-    looked at again, and there is nothing to watch.
+    Where the scan among them is of the same pictures and another σ cut, method or calibration is to be used, the
+    pictures are not looked at again, and there is nothing to watch.
 
     Parameters
     ----------
@@ -230,7 +232,7 @@ def measure_scan(
         put_in_place(folder, project.accepted, beside)
         work = Workspace.open(found, beside, _part(project))
         _record_calibrations(work, folder, project)
-        measured = scan_step(work, project.options, progress, watch, earlier=results / FILES["scan"])
+        measured = scan_step(work, project.options, progress, watch, earlier=_earlier(found, results, project))
         gauge, no_gauge = gauge_if_possible(work, progress)
         notes, calibration_id = work.record().all_notes, work.calibration().id
     return ScanSummary(
@@ -284,6 +286,18 @@ def _part(project: Project) -> str:
 
 def _work(folder: Path, project: Project) -> Workspace:
     return Workspace.open(project_set(folder, project), results_folder(folder), _part(project))
+
+
+def _earlier(found: RecordingSet, results: Path, project: Project) -> Path | None:
+    """The scan whose features will do; None where nothing has changed since: then the pictures are to be looked at."""
+    before = Workspace(found, results)
+    try:
+        settings, calibration = before.record().settings.get("scan"), before.calibration().id
+    except InputError:
+        return None
+    now = json.loads(to_json(dict(project.options.scan_settings)))
+    same = settings == now and calibration == f"{project.accepted.camera}-{project.accepted.fan}"
+    return None if same else before.path("scan")
 
 
 def _hashes(found: RecordingSet, paths: Iterable[Path]) -> dict[str, str]:

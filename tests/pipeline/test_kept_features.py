@@ -68,12 +68,19 @@ def test_the_record_of_a_quick_run_names_the_same_pictures_notes_and_frames(done
 def test_a_frame_that_was_changed_on_the_disk_is_looked_at_again(own):
     folder, project = own
     measure_scan(folder, project)
-    assert "frames" not in stages_of(folder, project)
+    finer, coarser = (replace(project, options=replace(project.options, sigma_cut_mm=cut)) for cut in (0.2, 0.25))
+    assert "frames" not in stages_of(folder, finer)
     frame = sorted((folder / "recordings" / "scan").glob("frame*.png"))[2]
     picture = read_picture(frame).copy()
     picture[0, 0] += np.uint8(1)
     write_picture(frame, picture)
-    assert "frames" in stages_of(folder, project)
+    assert "frames" in stages_of(folder, coarser)
+
+
+def test_measured_again_with_nothing_changed_the_pictures_are_looked_at_again(done, tmp_path):
+    folder = copy_of(done.folder, tmp_path / "project")
+    assert "frames" in stages_of(folder, done.project)
+    assert contents(folder) == contents(done.folder)
 
 
 @pytest.mark.parametrize(
@@ -91,5 +98,4 @@ def test_a_damaged_or_older_scan_file_is_passed_over(done, tmp_path):
     folder = copy_of(done.folder, tmp_path / "project")
     scan = results_folder(folder) / "scan.npz"
     scan.write_bytes(scan.read_bytes()[:1000])
-    assert "frames" in stages_of(folder, done.project)
-    assert contents(folder) == contents(done.folder)
+    assert "frames" in stages_of(folder, done.with_options(sigma_cut_mm=0.2))

@@ -77,6 +77,18 @@ def test_measuring_is_cancelled_within_a_second_and_the_result_stays(page, qtbot
     idle(page, qtbot)
 
 
+def test_another_cut_is_solved_without_going_through_the_frames_again(page, qtbot):
+    p, told = page.presenter, []
+    p.bench.measuring.task_started.connect(lambda task: task.progressed.connect(lambda stage, *_: told.append(stage)))
+    p.set_setting("sigma_cut_mm", 0.25)
+    p.do_run()
+    qtbot.waitUntil(lambda: p.stage is Stage.MEASURED, timeout=120_000)
+    idle(page, qtbot)
+    assert "comparing the pictures" in told and "frames" not in told
+    assert p.run.seen == {} and p.work.look.sigma.max() <= 0.25
+    assert p.scrubbing and page.picture.image.has_picture
+
+
 @pytest.mark.slow
 def test_a_live_scan_of_the_simulated_rig_becomes_a_measured_one(page, qtbot):
     p = page.presenter
