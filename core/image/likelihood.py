@@ -39,6 +39,7 @@ from core.image.profile import Sections
 from core.image.speckle import Speckle
 from core.model.arrays import Array
 
+_CORE = 1.6  # stripe σ that speckle is looked for in
 _PIXEL_VARIANCE = 1 / 12
 _LARGEST_STEP = 2.5  # px between points; across larger gaps nothing is known
 _HEIGHT_CLASS = 0.1  # sections alike within this share of their height use one weight
@@ -114,13 +115,13 @@ def residuals(
     sections: Sections,
     filter_px: float,
 ) -> Array:
-    """By how much pixels differ from the model, and the model's light there: (2, K, W) of K cuts, the crest amidst.
+    """By how much pixels near the crest differ from the model, and the model's light there: (2, K, W) of K cuts.
 
     Zeros where a pixel cannot be used. The other arguments are those of `refine`.
     """
     arc = arc_length(run)
     curve = guide(run, arc, weight, filter_px)
-    half = max(4, int(REACH * float(np.median(sections.width))))
+    half = max(2, int(_CORE * float(np.median(sections.width))))
     found: Array = _residuals(picture, state, curve, _cuts_of(curve, arc), np.column_stack(sections), half)
     return found
 

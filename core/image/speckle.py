@@ -18,9 +18,8 @@ from scipy.ndimage import median_filter
 
 from core.model.arrays import Array
 
-_CORE, _COARSEST = 1.6, 3.0  # stripe σ
+_COARSEST = 3.0  # stripe σ
 _FEWEST_CUTS = 30
-_FLANK = 0.2  # of the height
 _LEVEL_CUTS = 41
 _OUTLIER = 6.0  # median deviations, four standard ones
 _SIGNIFICANT = 4.0
@@ -46,16 +45,13 @@ def measure_speckle(stripes: list[Array], width_px: float) -> Speckle:
     stripes
         (2, K, W) for each stripe: residuals and model of K cuts in order, of W pixels; zeros where one is of no use.
     width_px
-        σ of the stripes; speckle is looked for in their middle, and is not much coarser than they are wide.
+        σ of the stripes; speckle is not much coarser than they are wide.
     """
     sums = np.zeros((3, 2))
     square, number = 0.0, 0.0
-    core = max(2, int(_CORE * width_px))
-    for stripe in stripes:
-        if stripe.shape[1] < _FEWEST_CUTS:
+    for seen, m in stripes:
+        if len(seen) < _FEWEST_CUTS:
             continue
-        middle = stripe.shape[2] // 2
-        seen, m = stripe[:, :, middle - core : middle + core + 1]
         r = _levelled(seen, m)
         for lag in range(3):
             width = m.shape[1] - lag
@@ -73,25 +69,6 @@ def measure_speckle(stripes: list[Array], width_px: float) -> Speckle:
     grain = min(max(grain, _SMALLEST_GRAIN_PX), _COARSEST * width_px)
     contrast = math.sqrt(float(share[1])) * math.exp(0.5 / grain**2)
     return Speckle(min(contrast, _LARGEST_CONTRAST), grain)
-
-
-def measure_misfit(stripes: list[Array]) -> float:
-    """By how much, as a share of the height, the flanks of stripes usually differ from their model's.
-
-    An offset and a slope of the background are no misfit. The arguments are those of `measure_speckle`.
-    """
-    square, number = 0.0, 0
-    for seen, m in stripes:
-        section = m.mean(axis=0)
-        flank = section < _FLANK * section.max()
-        if len(seen) < _FEWEST_CUTS or np.count_nonzero(flank) < 4:
-            continue
-        left = np.median(seen[:, flank], axis=0) / section.max()
-        sides = np.column_stack([np.ones(len(left)), np.flatnonzero(flank)])
-        left -= sides @ np.linalg.lstsq(sides, left)[0]
-        square += float(np.mean(left**2)) * len(seen)
-        number += len(seen)
-    return math.sqrt(square / number) if number else 0.0
 
 
 def _levelled(r: Array, m: Array) -> Array:

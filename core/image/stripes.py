@@ -18,8 +18,8 @@ neighbour, crossing line           points nearer than 3.5·√(s² + g²) are le
                                    Steger's, freed of the pull of curvature and background
 border of the picture              points nearer than 4 g are never found; cuts that leave the picture are not used
 skewed section, halo               0.1 to 0.2 px for flanks that differ by 10 %, whatever the estimator, and twice
-                                   that with the weights that speckle asks for; so where flanks differ from a
-                                   Gaussian's by more than 1.5 % of the height all points stay Steger's, as below
+                                   that with the weights that speckle asks for; so where they disagree by more than
+                                   0.03 px on the whole all points of the picture stay Steger's, as below
 saturation                         height and place from the pixels left: below 0.003 px; flagged
 =================================  ==========================================================================
 
@@ -56,7 +56,7 @@ from core.image.pieces import (
 )
 from core.image.precision import FLOOR_PX, noise_sigma, response_noise, roughness, saturated_points
 from core.image.profile import Profiles, Sections, measure_profiles, smooth_sections
-from core.image.speckle import Speckle, measure_misfit, measure_speckle
+from core.image.speckle import Speckle, measure_speckle
 from core.image.stripe import StripeSettings
 from core.image.stripe_settings import choose_settings
 from core.model.arrays import Array
@@ -67,7 +67,7 @@ _HIGH, _LOW = 0.35, 0.12  # of the contrast: a run starts, a run goes on
 _HIGH_NOISE, _LOW_NOISE = 6.0, 3.0  # of the response's own noise, at least
 _OTHER_TAIL = 3.6  # stripe σ that a neighbour's light reaches
 _CUTS_FOR_SPECKLE = 3000  # more tell nothing new
-_LARGEST_MISFIT = 0.015  # of the height, in the flanks: there the likelihood looks for the place of a speckled stripe
+_LARGEST_PULL_PX = 0.03  # of Steger's points against the likelihood's
 _SHORTEST_PIECE = 7.0  # filter σ: two independent points
 
 
@@ -116,11 +116,8 @@ def extract_centrelines(
     pulled = NEIGHBOUR * float(np.hypot(settings.stripe_px, settings.filter_px))
     blended = (REACH + _OTHER_TAIL) * settings.stripe_px
     apart = beside_another([piece.run for piece in pieces], max(pulled, blended))
-    speckle = _speckle(picture, state, pieces, settings)
-    placed = [
-        _placed(picture, state, piece, near > blended, settings, noise, speckle)
-        for piece, near in zip(pieces, apart, strict=True)
-    ]
+    clear = [near > blended for near in apart]
+    placed = _placed(picture, state, pieces, clear, settings, noise)
     correlation = max([line.correlation_px for line in placed], default=correlation_length_px(settings))
     excess = roughness([p.judged(line.run, line.sigma) for p, line in zip(pieces, placed, strict=True)], correlation)
     found = [
@@ -216,42 +213,72 @@ def _smooth_pieces(
     return pieces
 
 
+def _placed(
+    picture: NDArray[np.float32],
+    state: NDArray[np.uint8],
+    pieces: list[_Piece],
+    clear: list[NDArray[np.bool_]],
+    settings: StripeSettings,
+    noise: NoiseModel,
+) -> list[Refined]:
+    """The points of all pieces at their likeliest place.
+
+    Steger's, freed of their biases, stay where the likelihood has no say: beside other light, and everywhere if it
+    looks for the stripes elsewhere than Steger. Both are right for a Gaussian; a skewed section pulls both, and the
+    flanks that a likelihood with speckle listens to pull more.
+    """
+    g = settings.filter_px
+    lines = [_stegers(piece, settings, noise) for piece in pieces]
+    speckle = _speckle(picture, state, pieces, settings)
+    refined = [
+        refine(picture, state, piece.run, piece.weight, ok, piece.sections(settings), noise, speckle, g)
+        for piece, ok in zip(pieces, clear, strict=True)
+    ]
+    differences = [_difference(*three) for three in zip(pieces, lines, refined, strict=True)]
+    if _apart_px(differences, correlation_length(g)) > _LARGEST_PULL_PX:
+        return lines
+    return [_joined(line, better) for line, better in zip(lines, refined, strict=True)]
+
+
 def _speckle(
     picture: NDArray[np.float32], state: NDArray[np.uint8], pieces: list[_Piece], settings: StripeSettings
-) -> Speckle | None:
-    """The speckle that all stripes of the picture show, from the longest of them; None if they are not Gaussian."""
+) -> Speckle:
+    """The speckle that all stripes of the picture show, from the longest of them."""
     cuts, left = [], _CUTS_FOR_SPECKLE
     for piece in sorted(pieces, key=lambda piece: -len(piece.run)):
         if left > 0:
             part = piece.select(slice(0, left))
             left -= len(part.run)
             cuts.append(residuals(picture, state, part.run, part.weight, part.sections(settings), settings.filter_px))
-    return measure_speckle(cuts, settings.stripe_px) if measure_misfit(cuts) < _LARGEST_MISFIT else None
+    return measure_speckle(cuts, settings.stripe_px)
 
 
-def _placed(
-    picture: NDArray[np.float32],
-    state: NDArray[np.uint8],
-    piece: _Piece,
-    clear: NDArray[np.bool_],
-    settings: StripeSettings,
-    noise: NoiseModel,
-    speckle: Speckle | None,
-) -> Refined:
-    """The points of a piece at their likeliest place; Steger's, freed of their biases, where the model has no say."""
-    g = settings.filter_px
-    if speckle is None or not clear.any():
-        return Refined(_corrected(piece, settings), noise_sigma(piece.profiles, noise, g), correlation_length(g))
-    line = refine(picture, state, piece.run, piece.weight, clear, piece.sections(settings), noise, speckle, g)
-    sigma, there = np.hypot(line.sigma, FLOOR_PX), np.isfinite(line.sigma)
-    if there.all():
-        return line._replace(sigma=sigma)
-    run = np.where(there[:, None], line.run, _corrected(piece, settings))
-    return line._replace(run=run, sigma=np.where(there, sigma, noise_sigma(piece.profiles, noise, g)))
+def _difference(piece: _Piece, line: Refined, better: Refined) -> Array:
+    """How far across the stripe the usable points of two lines are apart, in px."""
+    both = piece.usable & np.isfinite(better.sigma)
+    across: Array = np.sum((better.run[both, :2] - line.run[both, :2]) * better.run[both, 2:4], axis=1)
+    return across
 
 
-def _corrected(piece: _Piece, settings: StripeSettings) -> Array:
-    """Steger's points freed of the curvature's and the background's pull, (N, 5)."""
+def _apart_px(differences: list[Array], correlation: float) -> float:
+    """How far two kinds of lines usually are apart on the whole, beyond what their points' scatter explains."""
+    found = [(len(d), float(np.mean(d)) ** 2 - float(np.var(d)) * correlation / len(d)) for d in differences if len(d)]
+    number = sum(n for n, _ in found)
+    return max(0.0, sum(n * square for n, square in found) / number) ** 0.5 if number else 0.0
+
+
+def _joined(line: Refined, better: Refined) -> Refined:
+    """The better line, and the other one where that has no points."""
+    there = np.isfinite(better.sigma)
+    return Refined(
+        np.where(there[:, None], better.run, line.run),
+        np.where(there, np.hypot(better.sigma, FLOOR_PX), line.sigma),
+        better.correlation_px,
+    )
+
+
+def _stegers(piece: _Piece, settings: StripeSettings, noise: NoiseModel) -> Refined:
+    """Steger's points freed of the curvature's and the background's pull."""
     g, profiles = settings.filter_px, piece.profiles
     run = guide(piece.run, arc_length(piece.run), piece.weight, g)
     shift = run[:, 4] * (g**2 + 1 / 12) / 2
@@ -261,4 +288,4 @@ def _corrected(piece: _Piece, settings: StripeSettings) -> Array:
     tilt = slope * (profiles.width**2 + g**2) ** 1.5 / (height * profiles.width)
     shift += np.where(visible, np.clip(tilt, -0.5, 0.5), 0.0)
     run[:, :2] = piece.run[:, :2] - shift[:, None] * run[:, 2:4]
-    return run
+    return Refined(run, noise_sigma(profiles, noise, g), correlation_length(g))
