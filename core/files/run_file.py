@@ -89,7 +89,7 @@ class _Frame(ResultFile):
     condition: Maybe = None
     points: int = 0
     sigma_mm: Maybe = None
-    left_out_reasons: list[tuple[str, int]] = Field(default_factory=list)
+    left_out_reasons: dict[str, int] = Field(default_factory=dict)
 
 
 class _RunFile(ResultFile):
@@ -156,12 +156,13 @@ def _versions() -> dict[str, str]:
 
 
 def _frame(frame: FrameRecord) -> dict[str, Any]:
-    return {one.name: getattr(frame, one.name) for one in fields(frame)}
+    values = {one.name: getattr(frame, one.name) for one in fields(frame)}
+    return values | {"left_out_reasons": dict(frame.left_out_reasons)}
 
 
 def _record(frame: _Frame) -> FrameRecord:
     values = frame.model_dump()
     values["condition"] = math.inf if frame.condition is None else frame.condition
     values["sigma_mm"] = math.nan if frame.sigma_mm is None else frame.sigma_mm
-    values["left_out_reasons"] = tuple(frame.left_out_reasons)
+    values["left_out_reasons"] = tuple(frame.left_out_reasons.items())
     return FrameRecord(**values)

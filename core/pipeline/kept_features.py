@@ -19,6 +19,7 @@ from core.errors import InputError
 from core.files.pictures import read_bytes
 from core.files.recording_set import RecordingSet
 from core.files.scan_file import read_scan
+from core.model import Camera
 from core.pipeline.options import Options
 from core.progress import Progress, silent, steps
 from core.scan.features import ScanFeatures
@@ -28,9 +29,9 @@ _SEES = ("acquire", "image", "scan")
 
 
 def kept_features(
-    scan: Path, found: RecordingSet, options: Options, progress: Progress = silent
+    scan: Path, found: RecordingSet, options: Options, camera: Camera, progress: Progress = silent
 ) -> ScanFeatures | None:
-    """The features that `scan`, an earlier scan.npz, holds, if they are those of these very pictures and settings.
+    """The features that `scan`, an earlier scan.npz, holds, if they are those of these pictures, settings and camera.
 
     Takes the hashes of the pictures, as reading them would.
     """
@@ -43,15 +44,19 @@ def kept_features(
     if not earlier.features_key:
         return None
     take_hashes(found, _pictures(found, options), progress)
-    return earlier.features if earlier.features_key == features_key(found, options) else None
+    return earlier.features if earlier.features_key == features_key(found, options, camera) else None
 
 
-def features_key(found: RecordingSet, options: Options) -> str:
-    """What the features of a scan rest on, in 16 hex digits; the hashes of its pictures must have been taken."""
+def features_key(found: RecordingSet, options: Options, camera: Camera) -> str:
+    """What the features of a scan rest on, in 16 hex digits; the hashes of its pictures must have been taken.
+
+    The camera's distortion is one of it: centrelines are crossed without it.
+    """
     pictures = [(found.name_of(path), found.hashes.get(found.name_of(path), "")) for path in _pictures(found, options)]
     rests_on = {
         "program": program_text(_SEES),
         "channel": found.rig.channel,
+        "camera": [camera.matrix.tolist(), camera.distortion.tolist()],
         "stripe": asdict(options.stripe) if options.stripe else None,
         "frames": [found.name_of(path) for path in found.frames],
         "pictures": pictures,

@@ -83,7 +83,7 @@ def scan_step(
     camera, fan = calibration.camera.camera, calibration.fan.fan
     with work.step("scan") as log:
         log.settings.update(options.scan_settings)
-        features = kept_features(earlier, found, options, progress) if earlier is not None else None
+        features = kept_features(earlier, found, options, camera, progress) if earlier is not None else None
         if features is None or features.image_size != camera.image_size:
             features = _look(found, calibration, options, progress, watch)
         solving = ReconstructOptions(method=options.method, sigma_cut_mm=options.sigma_cut_mm)
@@ -97,7 +97,7 @@ def scan_step(
         log.notes.extend(scan.notes)
         surface = with_normals(fuse(scan.cloud, camera.image_size, progress=progress), progress=progress)
         mesh = build_mesh(surface, progress=progress)
-        file = _file(features, scan, calibration.id, features_key(found, options))
+        file = _file(features, scan, calibration.id, features_key(found, options, camera))
         _write(work, scan, mesh, replace(file, common=common))
     return Measured(scan, mesh)
 
@@ -110,7 +110,8 @@ def _look(
     watch: Callable[[FramePreview], None] | None,
 ) -> ScanFeatures:
     """What the reference and all frames show."""
-    camera, looking = calibration.camera.camera, feature_options(options)
+    camera = calibration.camera.camera
+    looking = replace(feature_options(options), camera=camera)
     progress("reference", 0, 1)
     picture, note = reference_picture(found, camera, options, progress)
     reference = read_reference(picture, looking)

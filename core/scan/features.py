@@ -21,9 +21,11 @@ from core.image.smoothing import smooth
 from core.image.stripe import StripeSettings
 from core.image.stripe_settings import choose_settings
 from core.image.stripes import extract_centrelines
+from core.model import Camera
 from core.progress import Progress, Told, silent, steps
 from core.scan.crossings import CrossingTable, CrossingWindow, all_crossings
 from core.scan.reference import Picture, check_reference
+from core.scan.straightening import bent_back, straightened
 from core.threads import ordered_map
 
 MOVED = "object or camera moved during the scan: the fan's light lies elsewhere than in the reference"
@@ -41,13 +43,15 @@ LOOK_AHEAD = 8
 class FeatureOptions:
     """How pictures become features; None means chosen from the pictures.
 
-    A frame in which a stretch of the fan has moved by more than `move_limit_px` since the reference is left out.
+    A frame in which a stretch of the fan has moved by more than `move_limit_px` since the reference is left out. With
+    a `camera`, centrelines are crossed as they would be without its distortion.
     """
 
     sweep_stripe: StripeSettings | None = None
     fan_stripe: StripeSettings | None = None
     window: CrossingWindow = field(default_factory=CrossingWindow)
     move_limit_px: float = 0.3
+    camera: Camera | None = None
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -127,7 +131,8 @@ def extract_features(
             watch(features)
     progress("frames", len(found), total)
     _require_sweeps(found)
-    return gather(seen.image_size, seen.fan, found, (seen.stripe, sweep_stripe), options.window, progress)
+    stripes = seen.stripe, sweep_stripe
+    return gather(seen.image_size, seen.fan, found, stripes, options.window, progress, camera=options.camera)
 
 
 def gather(
@@ -138,12 +143,19 @@ def gather(
     window: CrossingWindow,
     progress: Progress = silent,
     smoothed: bool = True,
+    camera: Camera | None = None,
 ) -> ScanFeatures:
     """Centrelines as they were extracted to a scan's features: crossed, and then averaged along themselves.
 
-    `stripes` are the fan's and the sweeps'; without `smoothed` the centrelines stay as they are.
+    `stripes` are the fan's and the sweeps'; without `smoothed` the centrelines stay as they are; `camera` as in
+    FeatureOptions.
     """
-    crossings = all_crossings(fan, [frame.centrelines for frame in frames], window, progress)
+    lines = [frame.centrelines for frame in frames]
+    if camera is None:
+        crossings = all_crossings(fan, lines, window, progress)
+    else:
+        straight = [straightened(pieces, camera) for pieces in lines]
+        crossings = bent_back(all_crossings(straightened(fan, camera), straight, window, progress), camera)
     if smoothed:
         fan = _refined(fan)
         frames = [

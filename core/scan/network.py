@@ -110,7 +110,7 @@ def solve_network(
         solution.weights,
         scale,
         silenced,
-        _collapsed(equations, solution),
+        has_collapsed(equations, solution.pis),
     )
 
 
@@ -144,9 +144,10 @@ def _share_silenced(crossings: CrossingTable, weights: Array) -> float:
     return float(np.mean(weights[crossings.with_fan] < SILENCED))
 
 
-def _collapsed(equations: Adjustment, solution: Solution) -> bool:
+def has_collapsed(equations: Adjustment, pis: Array) -> bool:
+    """Whether sweeps `pis` (S, 3) have fallen together, so that their crossings say nothing any more."""
     between = ~equations.crossings.with_fan
     if not np.any(between):
         return False
-    length = np.linalg.norm(equations.gradient(solution.pis)[between], axis=1)
+    length = np.linalg.norm(equations.gradient(pis)[between], axis=1)
     return float(np.mean(length < GRADIENT_FLOOR * equations.typical_gradient)) > COLLAPSED

@@ -149,8 +149,9 @@ class ExactScan:
             for index, curves in enumerate(self.sweeps)
         ]
         stripe = StripeSettings(width_px=3.5, contrast=100.0)
+        camera = self.rig.camera
         return gather(
-            self.rig.camera.image_size, fan, frames, (stripe, stripe), window or CrossingWindow(), silent, smoothed
+            camera.image_size, fan, frames, (stripe, stripe), window or CrossingWindow(), silent, smoothed, camera
         )
 
 
