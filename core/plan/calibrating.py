@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -55,7 +56,7 @@ def plan_camera(design: Design, seed: int, progress: Progress = silent) -> Camer
     rng = generator(seed, "camera poses")
     nearest = NEAREST_VIEW * design.distance_mm
     try:
-        poses = camera_poses(camera, printed(target).outline, design.views, rng, nearest_mm=nearest)
+        poses = camera_poses(camera, _plate(target, "[camera_target]").outline, design.views, rng, nearest_mm=nearest)
     except ValueError as error:
         raise InputError(
             "the target does not fit into the picture at any distance up to three times the table's, so the camera "
@@ -77,7 +78,7 @@ def plan_fan(design: Design, camera: Camera, seed: int, progress: Progress = sil
         If the fan meets the target in too few poses to be calibrated.
     """
     rig, true, target = design.rig(), design.camera(), design.plane_target
-    plate = printed(target)
+    plate = _plate(target, "[plane_target]")
     near, far = NEAREST_POSE * design.distance_mm, FARTHEST_POSE * design.distance_mm
     poses = plane_poses(fan_centres(rig, design.poses, near, far), plate.outline, generator(seed, "plane poses"))
     stripes = SeenStripes.of_plates(design)
@@ -101,6 +102,15 @@ def plan_fan(design: Design, camera: Camera, seed: int, progress: Progress = sil
         features.append(_features(view, tuple(tried.centreline(piece, noise) for piece in pieces), true))
     options = FanOptions(design.lines, np.radians(design.angle_deg) if design.lines > 1 else None)
     return fit_fan(features, camera, options, progress)
+
+
+def _plate(target: Target, where: str) -> Pattern:
+    try:
+        return printed(target)
+    except cv2.error as error:  # OpenCV's way of saying so
+        raise InputError(
+            "its dictionary has fewer markers than the board needs", where=where, todo="name a larger dictionary"
+        ) from error
 
 
 def _features(view: TargetView, centrelines: tuple[Centreline, ...], camera: Camera) -> PoseFeatures:

@@ -7,7 +7,8 @@ is lucky and another is not, a few are drawn and the root mean square of their u
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from typing import TypeVar
 
@@ -111,7 +112,8 @@ class Planner:
         drawn = []
         for number in range(scans):
             self.progress("scans drawn", number, scans)
-            drawn.append(self._draw(design, height_mm, FIRST_SEED + number))
+            with _told_of_a_plan():
+                drawn.append(self._draw(design, height_mm, FIRST_SEED + number))
         self.progress("scans drawn", scans, scans)
         gauges = [gauge for gauge, _ in drawn]
         cloud = drawn[0][1]
@@ -179,6 +181,20 @@ _SCAN_ONLY = {
     name: getattr(Design(), name) for name in ("sweeps", "hand_baseline_mm", "heights_mm", "block_mm", "ambient_grey")
 }
 """Quantities that calibrations do not feel, at their defaults."""
+
+
+@contextmanager
+def _told_of_a_plan() -> Iterator[None]:
+    """What the solvers say of pictures, said of a rig that has none yet; complaints about the plan pass as they are."""
+    try:
+        yield
+    except InputError as error:
+        if error.where.startswith("["):
+            raise
+        what = f"a recording with this rig could not be measured ({error.what})"
+        raise InputError(
+            what, where="[plan]", todo="go back to the paper's values one by one to see which of yours it is"
+        ) from error
 
 
 def _correlation(pieces: list[Centreline] | tuple[Centreline, ...]) -> float:

@@ -5,7 +5,7 @@ import pytest
 
 from core.calibrate.results import CAMERA_PARAMETERS
 from core.errors import InputError
-from core.image.targets import Checkerboard
+from core.image.targets import Charuco, Checkerboard, CircleGrid
 from core.plan.calibrating import EDGE_PX, _square_covariance, plan_camera, plan_fan
 from tests.plan.small import SMALL
 
@@ -76,6 +76,19 @@ def test_corners_of_a_square_scatter_as_lines_fitted_to_its_edges():
 def test_a_target_that_does_not_fit_is_told():
     with pytest.raises(InputError, match="does not fit into the picture"):
         plan_camera(replace(SMALL, camera_target=Checkerboard(17, 12, 300.0)), seed=1)
+
+
+def test_a_board_with_more_markers_than_its_dictionary_is_told():
+    with pytest.raises(InputError, match="fewer markers"):
+        plan_camera(replace(SMALL, camera_target=Charuco(12, 9, 15.0, 11.25, "DICT_4X4_50")), seed=1)
+
+
+@pytest.mark.parametrize("target", [Checkerboard(17, 12, 10.0), CircleGrid(13, 10, 14.0)])
+def test_any_target_can_carry_the_fans_stripes(camera, target):
+    fan = plan_fan(replace(SMALL, plane_target=target), camera.camera, seed=1)
+
+    assert fan.fan.lines == SMALL.lines
+    assert np.all(np.isfinite(fan.rms_mm))
 
 
 def test_a_target_the_fan_misses_is_told(camera):

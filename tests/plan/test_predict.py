@@ -89,6 +89,12 @@ def test_a_rig_whose_fan_misses_the_picture_is_told():
         Planner().predict(replace(SMALL, focal_mm=60.0), HEIGHT)
 
 
+def test_what_a_solver_says_is_told_of_the_plan():
+    with pytest.raises(InputError, match="could not be measured") as told:
+        Planner(sigma_cut_mm=CUT_MM).predict(replace(SMALL, block_mm=(8.0, 8.0)), HEIGHT)
+    assert str(told.value).startswith("[plan]")
+
+
 def test_a_plan_can_be_cancelled():
     def cancel(step, done, total):
         if step == "stripes" or done > 0:
