@@ -1,8 +1,8 @@
 """Crossings: where the centrelines of two pictures meet.
 
 Each line is fitted near the meeting by kriging (`core.image.kriging`) over a window that ends where the piece does, at
-kinks and at jumps (`core.image.local_fit`): as a straight line where it is one, and where it bends as far as its bend
-can be foretold. The two curves are met by Newton's method.
+kinks and at jumps (`core.image.local_fit`): as a parabola over all of it where it is one, and elsewhere as far as its
+bend can be foretold. The two curves are met by Newton's method.
 
 With ε_a, ε_b the errors of the fits along the lines' normals n_a, n_b, the meeting moves by M·ε, M = [n_a; n_b]⁻¹, so
 its covariance is M·diag(σ_a², σ_b²)·Mᵀ: errors grow with 1/sin θ.

@@ -1,12 +1,16 @@
 """Where a line is, from all of it that is near: kriging with a curvature that is learned from the line itself.
 
-Over a window of ± `reach` the line is y(x) in a frame laid along it. Place and direction are free; the curvature y''
-is a random process that has the standard deviation κ at x = 0 and is renewed on its way outwards, with standard
-deviation δ and correlation length ℓ. κ = δ = 0 is a straight line, δ = 0 a parabola, and what else there is a
-smoothing spline, as stiff as κ, δ and ℓ say. For given (κ, δ, ℓ) the answer at x = 0 has the least variance there is,
-and that variance counts what the curvature may hide. They are not given. So every choice of a grid is weighed with the
-(restricted) likelihood of the window's bins, and mean and variance are taken over all: a flat face gives the whole
-window as a straight line, a bent surface as much of it as is of use, and the standard uncertainty says which.
+Over a window of ± `reach` the line is y(x) in a frame laid along it. Place, direction and curvature at x = 0 are free,
+and on its way outwards the curvature is renewed at random, with standard deviation δ and correlation length ℓ: δ = 0
+is a parabola, and what else there is a smoothing spline, as stiff as δ and ℓ say. For given (δ, ℓ) the answer at x = 0
+has the least variance there is, and that variance counts what the curvature may hide. They are not given. So every
+choice of a grid is weighed with the (restricted) likelihood of the window's bins, and mean and variance are taken over
+all: a flat face gives the whole window as a parabola, a bent surface as much of it as is of use, and the standard
+uncertainty says which.
+
+A straight line is not among the choices. It would be a third better where lines are straight, but a lens bends them all
+the same way, by less than one window shows and by more than the many windows of a scan can bear: taken for straight
+they are all off to one side.
 
 Both sides of x = 0 are Markov chains that start there. An information filter that comes in from the far end reduces
 each to a normal likelihood of (y, y'·reach, y''·reach²) at x = 0: ten numbers, called a side below: Λ (upper triangle,
@@ -33,30 +37,31 @@ from core.model.arrays import Array
 X, Y, INFORMATION, SPREAD = 0, 1, 2, 3
 """Columns of a bin: its place in the frame, 1/σ² of y in px⁻², the variance in px² of its points along the line."""
 
-_STRAIGHT, _FIRST, _FACTOR, _STEPS = 0.5, 4.0, 3.0, 11
-"""κ·reach²/σ that counts as straight, the least that does not, by what it grows and how often; σ of a straight line
-through the window. δ goes the same way, from 0."""
+_FIRST, _FACTOR, _STEPS = 4.0, 3.0, 11
+"""The least δ·reach²/σ that is not 0, by what it grows and how often; σ of a straight line through the window."""
 _LENGTHS = (0.5, 0.12)
 """ℓ/reach."""
 _CHANGES = 1 + len(_LENGTHS) * _STEPS
-_BENDS = 1 + _STEPS
-_PRIOR_STRAIGHT, _PRIOR_EVEN = 0.4, 0.9
-"""Probability that κ counts as straight, and that δ = 0, before the line is seen."""
-_LEARNED = 1.25
-"""Where the curvature changes the variance is raised by this: a window shows κ and δ by a few bends only."""
+_PRIOR_EVEN = 0.9
+"""Probability that δ = 0 before the line is seen."""
+_BENT = 0.02
+"""Standard deviation in 1/px that a curvature has before the line is seen: free, unless the window is very short."""
+_LEARNED = 1.1
+"""Where the curvature changes the variance is raised by this: a window shows δ by a few bends only."""
 _HOPELESS = 15.0
 """A log-likelihood so far below the best has no weight, nor have those of still larger δ."""
 
 
 @njit(cache=True, nogil=True)
 def krige(right: Array, left: Array, reach: float) -> Array:
-    """(7,): y, y', y'' at x = 0, variance of y; of the likeliest choice the numbers of (δ, ℓ) and κ, and the variance.
+    """(6,): y, y', y'' at x = 0 and the variance of y; of the likeliest choice the number of (δ, ℓ) and the variance.
 
-    `right` (N, 4) and `left` (M, 4) are the bins at x ≥ 0 and x < 0, each from 0 outwards; with three at least.
+    `right` (N, 4) and `left` (M, 4) are the bins at x ≥ 0 and x < 0, each from 0 outwards.
     """
     sigma = straight_sigma(right, left)
-    score = np.full((_CHANGES, _BENDS), -np.inf)
-    found = np.zeros((_CHANGES, _BENDS, 4))
+    kappa = _BENT * reach**2
+    score = np.full(_CHANGES, -np.inf)
+    found = np.zeros((_CHANGES, 4))
     best = -np.inf
     for length in range(len(_LENGTHS)):
         for step in range(_STEPS + 1):
@@ -65,51 +70,52 @@ def krige(right: Array, left: Array, reach: float) -> Array:
                 continue
             delta, correlation = _change(change, reach, sigma)
             ahead, behind = _side(right, reach, delta, correlation), _side(left, -reach, delta, correlation)
-            _solve(_joined(ahead, behind), sigma, score[change], found[change])
-            score[change] += _log_prior(change)
-            top = score[change].max()
-            if top < best - _HOPELESS and step > 1 and top < score[change - 1].max():
+            score[change] = _solve(_joined(ahead, behind), kappa, found[change]) + _log_prior(change)
+            if score[change] < best - _HOPELESS and step > 1 and score[change] < score[change - 1]:
                 break
-            best = max(best, top)
+            best = max(best, score[change])
     weight = np.exp(score - best)
     weight /= weight.sum()
-    result = np.zeros(7)
+    result = np.zeros(6)
     for i in range(3):
-        result[i] = np.sum(weight * found[:, :, i]) / reach**i
-    variance = weight * (found[:, :, 3] + (found[:, :, 0] - result[0]) ** 2)
-    result[3] = variance[0].sum() + _LEARNED * variance[1:].sum()
-    flat = int(np.argmax(score))
-    result[4], result[5] = flat // _BENDS, flat % _BENDS
-    result[6] = found[flat // _BENDS, flat % _BENDS, 3]
+        result[i] = np.sum(weight * found[:, i]) / reach**i
+    variance = weight * (found[:, 3] + (found[:, 0] - result[0]) ** 2)
+    result[3] = variance[0] + _LEARNED * variance[1:].sum()
+    result[4] = np.argmax(score)
+    result[5] = found[int(result[4]), 3]
     return result
 
 
 @njit(cache=True, nogil=True)
-def influence(right: Array, left: Array, reach: float, sigma: float, change: int, bend: int) -> float:
-    """What y at x = 0 is with the choice (`change`, `bend`) of `krige`, which is linear in the bins' y."""
+def influence(right: Array, left: Array, reach: float, sigma: float, change: int) -> float:
+    """What y at x = 0 is with the choice `change` of `krige`, which is linear in the bins' y."""
     delta, correlation = _change(change, reach, sigma)
-    score, found = np.zeros(_BENDS), np.zeros((_BENDS, 4))
+    found = np.zeros(4)
     _solve(
-        _joined(_side(right, reach, delta, correlation), _side(left, -reach, delta, correlation)), sigma, score, found
+        _joined(_side(right, reach, delta, correlation), _side(left, -reach, delta, correlation)),
+        _BENT * reach**2,
+        found,
     )
-    return float(found[bend, 0])
+    return float(found[0])
 
 
 @njit(cache=True, nogil=True)
 def log_odds_of_break(right: Array, left: Array, reach: float) -> float:
     """How much likelier two lines are, ending at x = 0, than one: logarithm of the ratio, per px² of jump·kink·reach.
 
-    At least three bins on each side.
+    At least three bins on each side. The standard deviation of the curvature at x = 0 is tried like δ here: two lines
+    must not be the less likely for having two curvatures.
     """
     sigma = straight_sigma(right, left)
-    scores = np.full((3, _CHANGES, _BENDS), -np.inf)
-    found = np.zeros((_BENDS, 4))
+    scores = np.full((3, _CHANGES, _STEPS), -np.inf)
+    found = np.zeros(4)
     for change in range(_CHANGES):
         delta, correlation = _change(change, reach, sigma)
         ahead, behind = _side(right, reach, delta, correlation), _side(left, -reach, delta, correlation)
         for which, side in enumerate((_joined(ahead, behind), ahead, behind)):
-            _solve(side, sigma, scores[which, change], found)
-            scores[which, change] += _log_prior(change)
+            for step in range(_STEPS):
+                kappa = _FIRST * _FACTOR**step * sigma
+                scores[which, change, step] = _solve(side, kappa, found) + _log_prior(change) - math.log(_STEPS)
     whole, one, other = scores[0].max(), scores[1].max(), scores[2].max()
     odds = one + other - whole
     odds += math.log(np.exp(scores[1] - one).sum()) + math.log(np.exp(scores[2] - other).sum())
@@ -146,24 +152,20 @@ def _joined(ahead: Array, behind: Array) -> Array:
 
 
 @njit(cache=True, nogil=True)
-def _solve(side: Array, sigma: float, score: Array, found: Array) -> None:
-    """For each κ the log-likelihood into `score`, and y, y'·reach, y''·reach² and the variance of y into `found`."""
+def _solve(side: Array, kappa: float, found: Array) -> float:
+    """Log-likelihood if y''·reach² has the standard deviation κ; into `found` y, y'·reach, y''·reach², var y."""
     l00, l01, l02, l11, l12 = side[0], side[1], side[2], side[3], side[4]
     e0, e1, e2 = side[6], side[7], side[8]
-    for bend in range(_BENDS):
-        kappa = sigma * (_STRAIGHT if bend == 0 else _FIRST * _FACTOR ** (bend - 1))
-        prior = _PRIOR_STRAIGHT if bend == 0 else (1 - _PRIOR_STRAIGHT) / _STEPS
-        l22 = side[5] + 1 / kappa**2
-        c00, c01, c02 = l11 * l22 - l12 * l12, l02 * l12 - l01 * l22, l01 * l12 - l02 * l11
-        c11, c12, c22 = l00 * l22 - l02 * l02, l01 * l02 - l00 * l12, l00 * l11 - l01 * l01
-        determinant = l00 * c00 + l01 * c01 + l02 * c02
-        y = (c00 * e0 + c01 * e1 + c02 * e2) / determinant
-        slope = (c01 * e0 + c11 * e1 + c12 * e2) / determinant
-        curvature = (c02 * e0 + c12 * e1 + c22 * e2) / determinant
-        found[bend, 0], found[bend, 1], found[bend, 2], found[bend, 3] = y, slope, curvature, c00 / determinant
-        score[bend] = (
-            side[9] + 0.5 * (y * e0 + slope * e1 + curvature * e2 - math.log(determinant)) + math.log(prior / kappa)
-        )
+    l22 = side[5] + 1 / kappa**2
+    c00, c01, c02 = l11 * l22 - l12 * l12, l02 * l12 - l01 * l22, l01 * l12 - l02 * l11
+    c11, c12, c22 = l00 * l22 - l02 * l02, l01 * l02 - l00 * l12, l00 * l11 - l01 * l01
+    determinant = l00 * c00 + l01 * c01 + l02 * c02
+    found[0] = (c00 * e0 + c01 * e1 + c02 * e2) / determinant
+    found[1] = (c01 * e0 + c11 * e1 + c12 * e2) / determinant
+    found[2] = (c02 * e0 + c12 * e1 + c22 * e2) / determinant
+    found[3] = c00 / determinant
+    fit = found[0] * e0 + found[1] * e1 + found[2] * e2
+    return float(side[9] + 0.5 * (fit - math.log(determinant)) - math.log(kappa))
 
 
 @njit(cache=True, nogil=True)

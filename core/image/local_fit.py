@@ -103,12 +103,11 @@ def _share(
     What the place owes to the choice and to the curvature is as common to neighbours as the noise: it is shared alike.
     """
     sigma = straight_sigma(right, left)
-    change, bend = int(found[4]), int(found[5])
-    whole = math.sqrt(found[3] / found[6])
+    whole = math.sqrt(found[3] / found[5])
     for cell in range(len(share)):
         one, other = right.copy(), left.copy()
         one[:, 1], other[:, 1] = np.where(cells_right == cell, 1.0, 0.0), np.where(cells_left == cell, 1.0, 0.0)
         information = np.sum(one[:, 1] * one[:, INFORMATION]) + np.sum(other[:, 1] * other[:, INFORMATION])
         share[cell] = 0.0
         if information > 0:
-            share[cell] = whole * influence(one, other, reach, sigma, change, bend) / math.sqrt(information)
+            share[cell] = whole * influence(one, other, reach, sigma, int(found[4])) / math.sqrt(information)

@@ -48,8 +48,8 @@ def test_straight_lines_are_not_called_curved_and_sigma_shrinks_with_the_window(
     assert (i, j) == (0, 0) and not long.curved
     np.testing.assert_allclose(long.uv, [50, 50], atol=1e-6)
     assert short.sigma_a / long.sigma_a == pytest.approx(np.sqrt(100 / 30), rel=0.1)
-    # ±100 px of line, a mean over 201 points that are worth 201/7; a little more for what it might bend
-    assert 1.0 < long.sigma_a / (0.02 * np.sqrt(7 / 201)) < 1.15
+    # a parabola over ±100 px: 9/4 of a mean over 201 points that are worth 201/7; a little more for what it might bend
+    assert 1.0 < long.sigma_a / (0.02 * np.sqrt(9 / 4 * 7 / 201)) < 1.1
 
 
 def test_covariance_belongs_to_the_normals() -> None:

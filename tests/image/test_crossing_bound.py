@@ -91,18 +91,18 @@ def bent(x: np.ndarray) -> np.ndarray:
     return 2e-5 * x**2
 
 
-@pytest.mark.parametrize(("shape", "degree", "least_honest"), [(flat, 1, 0.85), (bent, 2, 0.93)])
-def test_lines_cross_at_the_bound(shape: Shape, degree: int, least_honest: float) -> None:
-    """Straight lines at the bound of straight lines, bent ones at that of parabolas, at any angle."""
+@pytest.mark.parametrize("shape", [flat, bent])
+def test_lines_cross_at_the_bound(shape: Shape) -> None:
+    """At that of parabolas, at any angle: whether a line is straight is not known before."""
     ratios, honest = [], []
     for angle_deg in ANGLES:
         found = sampled(shape, angle_deg, 300, seed=int(angle_deg))
-        ratios.append(rms_error(found) / best(angle_deg, degree))
+        ratios.append(rms_error(found) / best(angle_deg, 2))
         honest.append(normalised_error(found))
         print(f"{shape.__name__} {angle_deg:3.0f}°: {ratios[-1]:.3f} × the bound, normalised error {honest[-1]:.3f}")
     assert np.sqrt(np.mean(np.square(ratios))) < 1.1
     assert max(ratios) < 1.2
-    assert least_honest < np.sqrt(np.mean(np.square(honest))) < 1.06
+    assert 0.95 < np.sqrt(np.mean(np.square(honest))) < 1.05
 
 
 @pytest.mark.parametrize(("curvature", "length"), [(1e-4, 100.0), (1e-3, 40.0), (1e-3, 20.0)])
@@ -154,8 +154,8 @@ def crossings_near_a_break(shape: Shape, at: float, count: int = 150) -> tuple[f
 
 
 def one_sided(at: float) -> float:
-    """Bound of a straight line that ends a bin beyond `at`."""
-    line = Line(DENSITY, -ARM, at)
+    """Bound of a parabola that ends at `at`."""
+    line = Line(DENSITY, -ARM, at, 2)
     return float(np.sqrt(crossing_bound(line, Line(1e-6, -ARM, ARM), np.pi / 2)[1, 1]))
 
 
@@ -167,7 +167,7 @@ def test_a_fit_does_not_cross_the_ridge_of_a_roof(kink: float, at: float) -> Non
         f"kink of {kink} rad {at:.0f} px away: {error:.4f} px, {error / one_sided(at):.2f} × one side's bound, "
         f"normalised error {normalised:.2f}"
     )
-    assert error < 2.2 * one_sided(at)
+    assert error < 1.6 * one_sided(at)
     assert normalised < 1.5
 
 
@@ -179,7 +179,7 @@ def test_a_fit_does_not_cross_a_step(step: float, at: float) -> None:
         f"step of {step} px {at:.0f} px away: {error:.4f} px, {error / one_sided(at):.2f} × one side's bound, "
         f"normalised error {normalised:.2f}"
     )
-    assert error < 2.2 * one_sided(at)
+    assert error < 1.6 * one_sided(at)
     assert normalised < 1.5
 
 
@@ -235,11 +235,11 @@ def rendered(angle_deg: float, contrast: float, count: int) -> tuple[tuple[np.nd
 def test_rendered_stripes_cross_near_the_bound_of_their_pixels(angle_deg: float) -> None:
     found = rendered(angle_deg, 0.0, 40)
     assert len(found) >= 39
-    line = Line(section_density(HEIGHT, WIDTH, 1.0, 0.02), -105.0, 105.0)
+    line = Line(section_density(HEIGHT, WIDTH, 1.0, 0.02), -105.0, 105.0, 2)
     limit = np.sqrt(np.trace(crossing_bound(line, line, np.radians(angle_deg))))
     ratio = np.sqrt(np.mean([e @ e for e, _ in found])) / limit
     honest = np.sqrt(np.mean([e @ np.linalg.solve(c.covariance, e) / 2 for e, c in found]))
-    print(f"rendered  {angle_deg:3.0f}°: {ratio:.3f} × the bound of straight stripes, normalised error {honest:.3f}")
+    print(f"rendered  {angle_deg:3.0f}°: {ratio:.3f} × the bound, normalised error {honest:.3f}")
     assert ratio < 1.5
     assert 0.65 < honest < 1.3
 
