@@ -27,7 +27,7 @@ from core.calibrate.plane_pose import PoseFeatures
 from core.calibrate.results import LEFT_OUT, FanCalibration
 from core.calibrate.target_plane import on_target
 from core.errors import InputError
-from core.model import Camera, Fan, LightPlane
+from core.model import Camera
 from core.model.arrays import Array
 from core.progress import Progress, silent, steps
 
@@ -121,31 +121,6 @@ def fit_fan(
     used = free if isinstance(verdict.start, FreePlanes) else solve(verdict.start, _bundle_poses(located), camera)
     errors = prediction_errors(used, _bundle_poses(located), camera)
     return replace(summarise(located, free, used, verdict, errors, further), scale_sd=options.scale_sd)
-
-
-def same_model(options: FanOptions, calibration: FanCalibration) -> FanOptions:
-    """`options` that repeat what was chosen for `calibration`, so that repeated fits differ only by their input."""
-    if calibration.constraint_suits is None or options.constrained != "auto":
-        return options
-    free = np.array_equal(calibration.fan.pis, calibration.free.pis)
-    if calibration.constraint_suits and not free:  # free all the same where that was asked for
-        return replace(options, constrained="always")
-    return replace(options, constrained="never" if free else "axis")
-
-
-def fan_deviations(calibration: FanCalibration) -> tuple[Fan, ...]:
-    """Fans displaced by one standard deviation along each principal axis of the calibration's covariance.
-
-    The squares of what they change in a result, summed, are its variance due to the fan.
-    """
-    fan = calibration.fan
-    values, vectors = np.linalg.eigh(np.asarray(fan.covariance))
-    fans = []
-    for value, vector in zip(values, vectors.T, strict=True):
-        if value > 1e-12 * values[-1]:
-            pis = fan.pis + np.sqrt(value) * vector.reshape(-1, 3)
-            fans.append(Fan(tuple(LightPlane(pi) for pi in pis), fan.covariance))
-    return tuple(fans)
 
 
 def _check_poses(located: Sequence[LocatedPose]) -> None:

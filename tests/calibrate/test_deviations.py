@@ -11,8 +11,9 @@ from core.calibrate.deviations import calibration_deviations, fan_behind
 from core.calibrate.fan import FanOptions, fit_fan
 from core.calibrate.reprojection import parameters_of
 from core.calibrate.results import CameraCalibration, FanCalibration
+from core.model import Camera
 from tests.calibrate.camera_views import synthetic_views
-from tests.calibrate.fan_scenes import ALPHA, CAMERA, Noise, features, poses
+from tests.calibrate.fan_scenes import ALPHA, CAMERA, PAPER, Noise, features, poses
 
 THREE = FanOptions(3, ALPHA, "always")
 SEEN = features(poses(7, 1), Noise(), 2)
@@ -68,3 +69,33 @@ def test_a_fan_of_another_program_stays_where_it_is(camera, fan):
     foreign = replace(fan, by_camera=None)
     moved = [one for one in calibration_deviations(camera, foreign) if one.source == "camera"]
     assert all((one.fan.pis == fan.fan.pis).all() for one in moved)
+
+
+def depths(camera: Camera, pis: np.ndarray) -> np.ndarray:
+    """Depths (3, 2, 5) that camera and fan give to points on the true lines, 490 and 540 mm away."""
+    x, z = np.meshgrid(np.linspace(-40, 40, 5), [490.0, 540.0])
+    found = []
+    for true, pi in zip(PAPER, pis, strict=True):
+        points = np.stack([x, (1 - true[0] * x - true[2] * z) / true[1], z], axis=-1)
+        rays = camera.rays(CAMERA.project(points.reshape(-1, 3)))
+        found.append((1 / (rays @ pi)).reshape(2, 5))
+    return np.array(found)
+
+
+@pytest.mark.slow
+def test_deviations_carry_the_uncertainty_that_repeated_calibrations_show():
+    """Of the mean depth, for which the camera counts most, and of a difference of depths, for which the fan does."""
+
+    def quantities(camera, fan):
+        z = depths(camera, fan.pis)
+        return np.array([z.mean(), (z[:, 1] - z[:, 0]).mean()])
+
+    ratios = []
+    for seed in range(40):
+        camera = calibrate_camera(synthetic_views(500 + seed), CAMERA.image_size)
+        fan = fit_fan(features(poses(8, 500 + seed), Noise(), 500 + seed), camera.camera, THREE)
+        found = quantities(camera.camera, fan.fan)
+        changes = [quantities(one.camera, one.fan) - found for one in calibration_deviations(camera, fan)]
+        ratios.append((found - [515.0, 50.0]) / np.linalg.norm(changes, axis=0))
+    assert (np.sqrt(np.mean(np.square(ratios), axis=0)) > 0.75).all()
+    assert (np.sqrt(np.mean(np.square(ratios), axis=0)) < 1.25).all()

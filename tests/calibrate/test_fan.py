@@ -3,7 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from core.calibrate.fan import FanOptions, fan_deviations, fit_fan, same_model
+from core.calibrate.fan import FanOptions, fit_fan
 from core.calibrate.pencil import Pencil, pencil_near, plane_distances
 from core.calibrate.plane_pose import PoseFeatures
 from core.calibrate.reprojection import camera_of, parameters_of
@@ -144,31 +144,6 @@ def test_a_pose_with_a_misfound_corner_is_left_out_and_named():
     assert result.poses[3].reason
     assert any("p3" in note for note in result.notes)
     assert worst_mm(result.fan.pis, PAPER) < 0.02
-
-
-def test_deviations_rebuild_the_covariance():
-    result = fit_fan(features(WHERE, Noise(), 12), CAMERA, THREE)
-    fans = fan_deviations(result)
-    assert len(fans) == 5
-    steps = np.array([(fan.pis - result.fan.pis).ravel() for fan in fans])
-    assert steps.T @ steps == pytest.approx(result.fan.covariance, rel=1e-6, abs=1e-9 * result.fan.covariance.max())
-
-
-def test_repeated_fits_keep_the_model_that_was_chosen():
-    options = replace(THREE, constrained="auto")
-    assert same_model(options, fit_fan(features(WHERE, Noise(), 2), CAMERA, options)).constrained == "always"
-    wider = pencil_near(PUBLISHED, np.deg2rad(4.8)).pis
-    axis = fit_fan(features(WHERE, Noise(), 8, pis=wider), CAMERA, options)
-    assert same_model(options, axis).constrained == "axis"
-    again = fit_fan(features(WHERE, Noise(), 8, pis=wider), CAMERA, same_model(options, axis))
-    assert (again.fan.pis == axis.fan.pis).all()
-
-
-def test_planes_left_free_by_hand_stay_free_in_repeated_fits():
-    options = replace(THREE, constrained="auto")
-    free = fit_fan(features(WHERE, Noise(), 2), CAMERA, replace(options, constrained="never"))
-    assert free.constraint_suits
-    assert same_model(options, free).constrained == "never"
 
 
 def test_a_pose_left_out_by_hand_is_located_but_has_no_part():
