@@ -64,7 +64,7 @@ class Refined(NamedTuple):
 def refine(
     picture: NDArray[np.float32],
     state: NDArray[np.uint8],
-    run: Array,
+    curve: Array,
     weight: Array,
     clear: NDArray[np.bool_],
     sections: Sections,
@@ -72,7 +72,7 @@ def refine(
     speckle: Speckle,
     filter_px: float,
 ) -> Refined:
-    """Move the points of a `run` (N, ≥ 2) to the likeliest place of the stripe.
+    """Move the points of a `curve` (N, 5), as `core.image.guide` gives it, to the likeliest place of the stripe.
 
     Parameters
     ----------
@@ -87,8 +87,7 @@ def refine(
     filter_px
         σ in px of the window along the stripe.
     """
-    arc = arc_length(run)
-    curve = guide(run, arc, weight, filter_px)
+    curve, arc = curve.copy(), arc_length(curve)
     kind, tables, shares = _weights(sections, noise, speckle)
     model = np.column_stack(sections)
     law = (noise.read_grey**2, noise.grey_per_electron)
@@ -110,19 +109,17 @@ def refine(
 def residuals(
     picture: NDArray[np.float32],
     state: NDArray[np.uint8],
-    run: Array,
-    weight: Array,
+    curve: Array,
     sections: Sections,
-    filter_px: float,
 ) -> Array:
     """By how much pixels near the crest differ from the model, and the model's light there: (2, K, W) of K cuts.
 
     Zeros where a pixel cannot be used. The other arguments are those of `refine`.
     """
-    arc = arc_length(run)
-    curve = guide(run, arc, weight, filter_px)
     half = max(2, int(_CORE * float(np.median(sections.width))))
-    found: Array = _residuals(picture, state, curve, _cuts_of(curve, arc), np.column_stack(sections), half)
+    found: Array = _residuals(
+        picture, state, curve, _cuts_of(curve, arc_length(curve)), np.column_stack(sections), half
+    )
     return found
 
 

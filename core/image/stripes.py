@@ -34,15 +34,11 @@ Sun et al., Sensors 2023, 23, 13, §4, doi:10.3390/s23010013.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
 from core.image.centreline import Centreline
-from core.image.guide import guide
 from core.image.influence import REACH
-from core.image.likelihood import Refined, refine, residuals
 from core.image.linking import IGNORED, SATURATED, Hysteresis, link
 from core.image.noise import NoiseModel
 from core.image.pieces import (
@@ -54,9 +50,9 @@ from core.image.pieces import (
     fully_lit,
     split_at_breaks,
 )
-from core.image.precision import FLOOR_PX, noise_sigma, response_noise, roughness, saturated_points
-from core.image.profile import Profiles, Sections, measure_profiles, smooth_sections
-from core.image.speckle import Speckle, measure_speckle
+from core.image.placing import Piece, place
+from core.image.precision import noise_sigma, response_noise, roughness, saturated_points
+from core.image.profile import measure_profiles
 from core.image.stripe import StripeSettings
 from core.image.stripe_settings import choose_settings
 from core.model.arrays import Array
@@ -66,8 +62,6 @@ __all__ = ["StripeSettings", "choose_settings", "correlation_length_px", "extrac
 _HIGH, _LOW = 0.35, 0.12  # of the contrast: a run starts, a run goes on
 _HIGH_NOISE, _LOW_NOISE = 6.0, 3.0  # of the response's own noise, at least
 _OTHER_TAIL = 3.6  # stripe σ that a neighbour's light reaches
-_CUTS_FOR_SPECKLE = 3000  # more tell nothing new
-_LARGEST_PULL_PX = 0.03  # of Steger's points against the likelihood's
 _SHORTEST_PIECE = 7.0  # filter σ: two independent points
 
 
@@ -117,7 +111,7 @@ def extract_centrelines(
     blended = (REACH + _OTHER_TAIL) * settings.stripe_px
     apart = beside_another([piece.run for piece in pieces], max(pulled, blended))
     clear = [near > blended for near in apart]
-    placed = _placed(picture, state, pieces, clear, settings, noise)
+    placed = place(picture, state, pieces, clear, settings, noise)
     correlation = max([line.correlation_px for line in placed], default=correlation_length_px(settings))
     excess = roughness([p.judged(line.run, line.sigma) for p, line in zip(pieces, placed, strict=True)], correlation)
     found = [
@@ -134,37 +128,6 @@ def extract_centrelines(
         if np.count_nonzero(near > pulled) >= shortest
     ]
     return tuple(sorted(found, key=len, reverse=True))
-
-
-@dataclass(frozen=True, eq=False, slots=True)
-class _Piece:
-    """Line points (N, ≥ 4) on one smooth surface, their cross-sections, and which are saturated (N,)."""
-
-    run: Array
-    profiles: Profiles
-    saturated: NDArray[np.bool_]
-
-    def select(self, part: slice) -> _Piece:
-        """A part of the piece."""
-        return _Piece(self.run[part], self.profiles.select(part), self.saturated[part])
-
-    @property
-    def weight(self) -> Array:
-        """What each point counts for the smooth curve through them, (N,)."""
-        return self.usable.astype(np.float64)
-
-    def sections(self, settings: StripeSettings) -> Sections:
-        """What the cross-sections usually are, as a model of what the pixels show."""
-        return smooth_sections(self.profiles, settings.filter_px)
-
-    @property
-    def usable(self) -> NDArray[np.bool_]:
-        """Points to judge the line by: those not saturated, or all where most of them are."""
-        return ~self.saturated if np.mean(self.saturated) < 0.5 else np.ones_like(self.saturated)
-
-    def judged(self, run: Array, sigma: Array) -> tuple[Array, Array]:
-        """Those of the points `run`, and of their standard uncertainties, that are usable."""
-        return run[self.usable], sigma[self.usable]
 
 
 def _state_map(
@@ -193,14 +156,14 @@ def _limits(settings: StripeSettings, noise: NoiseModel, knows_saturation: bool)
 
 def _smooth_pieces(
     picture: NDArray[np.float32], state: NDArray[np.uint8], run: Array, settings: StripeSettings, noise: NoiseModel
-) -> list[_Piece]:
+) -> list[Piece]:
     """One run cut at its ends, kinks and jumps, with the cross-sections of each piece."""
     g = settings.filter_px
     run = cut_ends(run, g)
     if len(run) < _SHORTEST_PIECE * g:
         return []
     saturated = saturated_points(state, run, g)
-    whole = _Piece(run, measure_profiles(picture, state, run, settings.stripe_px, g), saturated)
+    whole = Piece(run, measure_profiles(picture, state, run, settings.stripe_px, g), saturated)
     sigma = noise_sigma(whole.profiles, noise, g)
     (extra,) = roughness([whole.judged(run, sigma)], correlation_length_px(settings))
     pieces = []
@@ -209,83 +172,5 @@ def _smooth_pieces(
         if len(piece) < len(run):  # the running median must not reach across the break
             profiles = measure_profiles(picture, state, piece, settings.stripe_px, g)
         lit = fully_lit(arc_length(piece), profiles.height, profiles.width, g)
-        pieces.append(_Piece(piece[lit], profiles.select(lit), saturated[part][lit]))
+        pieces.append(Piece(piece[lit], profiles.select(lit), saturated[part][lit]))
     return pieces
-
-
-def _placed(
-    picture: NDArray[np.float32],
-    state: NDArray[np.uint8],
-    pieces: list[_Piece],
-    clear: list[NDArray[np.bool_]],
-    settings: StripeSettings,
-    noise: NoiseModel,
-) -> list[Refined]:
-    """The points of all pieces at their likeliest place.
-
-    Steger's, freed of their biases, stay where the likelihood has no say: beside other light, and everywhere if it
-    looks for the stripes elsewhere than Steger. Both are right for a Gaussian; a skewed section pulls both, and the
-    flanks that a likelihood with speckle listens to pull more.
-    """
-    g = settings.filter_px
-    lines = [_stegers(piece, settings, noise) for piece in pieces]
-    speckle = _speckle(picture, state, pieces, settings)
-    refined = [
-        refine(picture, state, piece.run, piece.weight, ok, piece.sections(settings), noise, speckle, g)
-        for piece, ok in zip(pieces, clear, strict=True)
-    ]
-    differences = [_difference(*three) for three in zip(pieces, lines, refined, strict=True)]
-    if _apart_px(differences, correlation_length(g)) > _LARGEST_PULL_PX:
-        return lines
-    return [_joined(line, better) for line, better in zip(lines, refined, strict=True)]
-
-
-def _speckle(
-    picture: NDArray[np.float32], state: NDArray[np.uint8], pieces: list[_Piece], settings: StripeSettings
-) -> Speckle:
-    """The speckle that all stripes of the picture show, from the longest of them."""
-    cuts, left = [], _CUTS_FOR_SPECKLE
-    for piece in sorted(pieces, key=lambda piece: -len(piece.run)):
-        if left > 0:
-            part = piece.select(slice(0, left))
-            left -= len(part.run)
-            cuts.append(residuals(picture, state, part.run, part.weight, part.sections(settings), settings.filter_px))
-    return measure_speckle(cuts, settings.stripe_px)
-
-
-def _difference(piece: _Piece, line: Refined, better: Refined) -> Array:
-    """How far across the stripe the usable points of two lines are apart, in px."""
-    both = piece.usable & np.isfinite(better.sigma)
-    across: Array = np.sum((better.run[both, :2] - line.run[both, :2]) * better.run[both, 2:4], axis=1)
-    return across
-
-
-def _apart_px(differences: list[Array], correlation: float) -> float:
-    """How far two kinds of lines usually are apart on the whole, beyond what their points' scatter explains."""
-    found = [(len(d), float(np.mean(d)) ** 2 - float(np.var(d)) * correlation / len(d)) for d in differences if len(d)]
-    number = sum(n for n, _ in found)
-    return max(0.0, sum(n * square for n, square in found) / number) ** 0.5 if number else 0.0
-
-
-def _joined(line: Refined, better: Refined) -> Refined:
-    """The better line, and the other one where that has no points."""
-    there = np.isfinite(better.sigma)
-    return Refined(
-        np.where(there[:, None], better.run, line.run),
-        np.where(there, np.hypot(better.sigma, FLOOR_PX), line.sigma),
-        better.correlation_px,
-    )
-
-
-def _stegers(piece: _Piece, settings: StripeSettings, noise: NoiseModel) -> Refined:
-    """Steger's points freed of the curvature's and the background's pull."""
-    g, profiles = settings.filter_px, piece.profiles
-    run = guide(piece.run, arc_length(piece.run), piece.weight, g)
-    shift = run[:, 4] * (g**2 + 1 / 12) / 2
-    slope = np.where(np.abs(profiles.slope) > 3 * profiles.slope_sigma, profiles.slope, 0.0)
-    visible = profiles.height > 0
-    height = np.where(visible, profiles.height, 1.0)
-    tilt = slope * (profiles.width**2 + g**2) ** 1.5 / (height * profiles.width)
-    shift += np.where(visible, np.clip(tilt, -0.5, 0.5), 0.0)
-    run[:, :2] = piece.run[:, :2] - shift[:, None] * run[:, 2:4]
-    return Refined(run, noise_sigma(profiles, noise, g), correlation_length(g))

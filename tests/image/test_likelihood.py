@@ -214,8 +214,8 @@ def _residuals_of(grains: Speckle, angle_deg: float, section: Callable[[np.ndarr
     width = np.hypot(2.0, 12**-0.5)
     sections = Sections(120.0 * 2.0 / width * flat, width * flat, 0 * flat, 0 * flat)
     state = np.zeros(shape, dtype=np.uint8)
-    normals = np.column_stack([run, np.tile(across, (len(run), 1))])
-    return measure_speckle([residuals(picture, state, normals, flat, sections, 2.8)], 2.0)
+    curve = np.column_stack([run, np.tile(across, (len(run), 1)), 0 * flat])
+    return measure_speckle([residuals(picture, state, curve, sections)], 2.0)
 
 
 def test_where_the_section_is_no_gaussian_speckle_does_not_move_the_place() -> None:
