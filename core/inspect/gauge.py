@@ -8,7 +8,7 @@ of the table is extrapolated by itself, and no mean height is taken.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -33,6 +33,14 @@ RULE_LINE = (
     "distance of two parallel lines fitted jointly and robustly to one light profile, "
     "at right angles to them and along the reference normal"
 )
+
+
+FAN_LINES = 2
+"""The fan's own points can only know the common tilt of two faces if so many of its lines lie on each."""
+FAN_POINTS = 60
+"""A line of the fan lies on a face if it has so many points there."""
+FAN_SUFFICES = 1.6
+"""The fan's own points are taken alone unless u is larger by more than this factor without the sweeps'."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -114,7 +122,7 @@ def fit_gauge(
             where="[gauge] upper_polygon_px",
             todo="exchange upper_polygon_px and lower_polygon_px",
         )
-    faces = fit_faces(upper, lower, robust, errors)
+    faces = _best_fit(upper, lower, robust, errors)
     free = [
         fit_plane(face.points, face.sigma, reference_normal=None if robust.tilt_determined else robust.normal)
         for face in (upper, lower)
@@ -127,13 +135,7 @@ def fit_gauge(
         _face(free[0], pair.upper),
         _face(free[1], pair.lower),
         float(np.arctan2(cross, abs(free[0].normal @ free[1].normal))),
-        budget(
-            faces.gains,
-            faces.sources,
-            own=faces.fit.own,
-            form_mm=faces.fit.form_mm,
-            calibrations=() if errors.common is None else errors.common.sources,
-        ),
+        _budget(faces, errors),
     )
 
 
@@ -190,6 +192,40 @@ def measure_gauge(
         normal=fit.planes.normal,
         rule=RULE if fit.planes.tilt_determined else RULE_LINE,
         notes=_notes(errors),
+    )
+
+
+def _best_fit(upper: Cloud, lower: Cloud, robust: ParallelPlanes, errors: PointErrors) -> FittedFaces:
+    """The joint fit to all points, or to those that the fan measured itself if they know the thickness well enough.
+
+    The sweeps' metric comes from the fan through the network, speckle and all: they know nothing of the thickness that
+    the fan's own points do not know, and what is wrong with the network is wrong with them alone.
+    """
+    everything = fit_faces(upper, lower, robust, errors)
+    own = [_fan_lines(face, weights) for face, weights in zip((upper, lower), robust.weights, strict=True)]
+    if not robust.tilt_determined or min(own) < FAN_LINES:
+        return everything
+    alone = [
+        np.where(face.sweep < 0, weights, 0.0) for face, weights in zip((upper, lower), robust.weights, strict=True)
+    ]
+    fan = fit_faces(upper, lower, replace(robust, weights=(alone[0], alone[1])), errors)
+    suffices = combined(_budget(fan, errors)) <= FAN_SUFFICES * combined(_budget(everything, errors))
+    return fan if suffices else everything
+
+
+def _fan_lines(face: Cloud, weights: Array) -> int:
+    """How many of the fan's lines lie on a face with FAN_POINTS points or more."""
+    lines = face.sweep[(face.sweep < 0) & (weights > 0)]
+    return int(np.count_nonzero(np.unique(lines, return_counts=True)[1] >= FAN_POINTS))
+
+
+def _budget(faces: FittedFaces, errors: PointErrors) -> tuple[Contribution, ...]:
+    return budget(
+        faces.gains,
+        faces.sources,
+        own=faces.fit.own,
+        form_mm=faces.fit.form_mm,
+        calibrations=() if errors.common is None else errors.common.sources,
     )
 
 
