@@ -54,14 +54,3 @@ def test_the_twin_delivers_the_uncertainty_that_was_planned(name, tmp_path):
     print(f"{name}: planned σ of a depth {own:.3f} mm, delivered {sigma:.3f} mm")
 
     assert planned.u_mm == pytest.approx(u, rel=WITHIN)
-
-
-@pytest.mark.slow
-def test_errors_of_scans_drawn_scatter_as_their_u_says():
-    """The plan's scans have a truth, too: what their measurements state is how far they are off."""
-    scans = 16
-    drawn = Planner(sigma_cut_mm=CUT_MM).predict(replace(PAPER, sweeps=24), HEIGHT, scans=scans)
-    ratio = float(np.sqrt(np.mean(np.square(np.array(drawn.errors_mm) / drawn.each_u_mm))))
-    print(f"errors of {scans} scans drawn: {ratio:.2f} u")
-
-    assert ratio == pytest.approx(1.0, abs=WITHIN + 2 / np.sqrt(2 * scans)), "the sampling error of so many scans"
