@@ -23,12 +23,12 @@ def box(low: ArrayLike, high: ArrayLike, albedo: float = OBJECT_ALBEDO) -> Mesh:
     return Mesh(np.array(triangles), albedo)
 
 
-def turned(mesh: Mesh, angle: float, shift: Sequence[float] = (0.0, 0.0)) -> Mesh:
+def turned(mesh: Mesh, angle: float, shift: ArrayLike = (0.0, 0.0)) -> Mesh:
     """The mesh turned by `angle` (rad) about the table's normal, then shifted along the table."""
     cosine, sine = np.cos(angle), np.sin(angle)
     rotation = np.array([[cosine, -sine, 0], [sine, cosine, 0], [0, 0, 1]])
     normals = None if mesh.normals is None else mesh.normals @ rotation.T
-    return Mesh(mesh.triangles @ rotation.T + [*shift, 0.0], mesh.albedo, normals)
+    return Mesh(mesh.triangles @ rotation.T + np.append(shift, 0.0), mesh.albedo, normals)
 
 
 def gauge_block(height_mm: float, size_mm: Sequence[float] = (70.0, 60.0)) -> Mesh:
