@@ -154,6 +154,19 @@ def test_pictures_are_left_out_by_name(simulated, measured, tmp_path):
         assert [row for row in found.values() if row[1] == reason] == [(False, reason)]
 
 
+def test_a_camera_adjusted_with_the_fan_is_the_one_the_scan_uses(simulated, measured, tmp_path):
+    out = copy_of(measured, tmp_path / "out")
+    assert trisect("planes", simulated, "--out", out, "--adjust-camera").code == 0
+    camera, planes = (json.loads((out / name).read_text()) for name in ("camera.json", "planes.json"))
+    adjusted = planes["camera"]
+    assert planes["camera_id"] == camera["id"] != adjusted["id"]
+    assert 0 < abs(adjusted["matrix"][0][0] - camera["matrix"][0][0]) < 3 * camera["sd"]["alpha"]
+    assert adjusted["covariance"][0][0] < camera["sd"]["alpha"] ** 2
+    assert json.loads((out / "run.json").read_text())["settings"]["planes"]["camera"] == "adjusted"
+    assert trisect("scan", simulated, "--out", out, *CUT).code == 0
+    assert f"{adjusted['id']}-{planes['id']}".encode() in (out / "cloud.ply").read_bytes()[:2000]
+
+
 def test_a_picture_that_is_not_there_cannot_be_left_out_and_no_result_is_touched(simulated, measured, tmp_path):
     out = copy_of(measured, tmp_path / "out")
     view = first_name(simulated, "camera")
