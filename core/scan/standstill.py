@@ -43,6 +43,9 @@ FEWEST_SWEEPS, FEWEST_ACROSS = 5, 20
 """A movement is looked for between so many sweeps on either side that have so many crossings."""
 
 _ROUNDS = 5
+_TRIED = 40
+"""About so many places are tried in a long scan, and then those about the best."""
+
 _NEIGHBOURS = 12
 TAKEN_UP = 1e-3
 """A movement of whose effect on the crossings less than this share (of the squares) is left by the sweeps' planes,
@@ -76,8 +79,11 @@ def find_movement(crossings: CrossingTable, line: Index, camera: Camera, fan: Fa
     for _ in range(_ROUNDS):
         solution = equations.improve(solution, huber_weights(solution.residuals))
     scores = _Scores.of(equations, solution)
-    found = [(scores.at(k), k) for k in range(FEWEST_SWEEPS, len(frames) - FEWEST_SWEEPS + 1)]
-    score, k = max(found)
+    first, last = FEWEST_SWEEPS, len(frames) - FEWEST_SWEEPS
+    stride = max(1, len(frames) // _TRIED)
+    _, about = max((scores.at(k), k) for k in range(first, last + 1, stride))
+    near = range(max(first, about - stride + 1), min(last, about + stride - 1) + 1)
+    score, k = max((scores.at(k), k) for k in near)
     return Movement(int(frames[k - 1]), int(frames[k]), score) if score > SURE else None
 
 
