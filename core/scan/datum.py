@@ -5,7 +5,7 @@ meets relief. Of their covariance two things matter to who measures. With w = 1/
 depth moves the surface at depth z on ray r by −(s·z + z² c·r), and stretches small heights there by −(s + 2 z c·r).
 
 The four numbers of an error δπ of all sweeps are those that come nearest to it where the sweeps are crossed: the
-S-transformation of geodesy with every crossing's ray as a datum point.
+S-transformation of geodesy with every crossing's ray as a datum point, weighted by how well the sweep is known there.
 
 References
 ----------
@@ -75,20 +75,21 @@ class Datum:
         )
 
 
-def datum_of(pis: Array, covariance: Array, crossings: CrossingTable, weights: Array, camera: Camera) -> Datum:
+def datum_of(pis: Array, covariance: Array, crossings: CrossingTable, camera: Camera) -> Datum:
     """The datum of sweeps `pis` (S, 3) with their `covariance` (3S, 3S).
 
-    `crossings` are numbered by sweep, and count with their `weights` (M,).
+    `crossings` are numbered by sweep.
     """
     rays = camera.rays(crossings.uv)
     inverse_depths = np.einsum("mi,mi->m", rays, pis[crossings.a])
     unit = float(np.abs(pis).mean())  # brings s and c to one size
     gauge = np.concatenate([pis[:, :, None] / unit, np.tile(np.eye(3), (len(pis), 1, 1))], axis=2)
+    blocks = np.array([covariance[i : i + 3, i : i + 3] for i in range(0, len(covariance), 3)])
     datum_points = np.zeros((len(pis), 3, 3))
-    squares = weights[:, None, None] * rays[:, :, None] * rays[:, None, :]
     between = ~crossings.with_fan
-    np.add.at(datum_points, crossings.a, squares)
-    np.add.at(datum_points, crossings.b[between], squares[between])
+    for sweep, ray in ((crossings.a, rays), (crossings.b[between], rays[between])):
+        variance = np.einsum("mi,mij,mj->m", ray, blocks[sweep], ray)
+        np.add.at(datum_points, sweep, ray[:, :, None] * ray[:, None, :] / variance[:, None, None])
     pulled = datum_points @ gauge
     normal = np.einsum("sij,sik->jk", gauge, pulled)
     normal += _RIDGE * np.trace(normal) * np.eye(4)

@@ -130,7 +130,7 @@ def _solve(
     sweeps = locate_together(among, line[kept], camera, fan, progress)
     weights = np.zeros(len(crossings))
     weights[kept] = sweeps.weights
-    datum = datum_of(sweeps.pis, sweeps.covariance, by_sweep(among, sweeps.frames), sweeps.weights, camera)
+    datum = datum_of(sweeps.pis, sweeps.covariance, by_sweep(among, sweeps.frames), camera)
     return _Solved(
         sweeps,
         weights,

@@ -114,7 +114,7 @@ class ExactScan:
         shots = shots if sheets is None else sheets
         scenes = [stage_scene] * len(shots)
         if moved is not None:
-            later = _shifted(stage_scene, np.array(moved[1]))
+            later = shifted(stage_scene, moved[1])
             scenes[moved[0] :] = [later] * (len(shots) - moved[0])
         eyes = {id(scene): _Eye(rig, scene) for scene in {id(one): one for one in [stage_scene, *scenes]}.values()}
         fan = [eyes[id(stage_scene)].curves(sheet) for sheet in fan_sheets(rig, WORK_POINT)]
@@ -194,7 +194,7 @@ def _scene(scenario: Scenario, rig: Rig) -> tuple[Scene, dict, list[Sheet]]:
     return scene, figures, hand_sweeps(rig, reach, scenario.frames, generator(scenario.seed, "sweeps"))
 
 
-def _shifted(scene: Scene, shift: np.ndarray) -> Scene:
+def shifted(scene: Scene, shift) -> Scene:
     """The scene with its objects, but not the table, moved."""
     motion = Pose(np.eye(3), shift)
     return replace(

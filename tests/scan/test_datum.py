@@ -18,7 +18,7 @@ def datum(scan, seed=1):
 def solved_datum(exact, seed):
     sweeps = locate_together(exact.drawn(seed), exact.line, exact.scan.rig.camera, exact.scan.rig.fan)
     table = by_sweep(exact.table, sweeps.frames)
-    return datum_of(sweeps.pis, sweeps.covariance, table, sweeps.weights, exact.scan.rig.camera), sweeps
+    return datum_of(sweeps.pis, sweeps.covariance, table, exact.scan.rig.camera), sweeps
 
 
 def test_more_relief_fixes_the_scale_better():

@@ -1,0 +1,37 @@
+"""A mask pushed aside by three tenths of a millimetre half way through a rendered scan."""
+
+import pytest
+
+from core.scan.features import MOVED, FeatureOptions, extract_features
+from core.scan.reconstruct import ReconstructOptions, reconstruct
+from core.scan.records import MOVED_FRAME
+from core.simulate.image import Sensor
+from core.simulate.recording import scan_of
+from core.simulate.scan import ScanStage
+from core.simulate.scenario import Scenario
+from core.simulate.stage import WORK_POINT
+from tests.scan.centreline_scan import shifted
+
+FRAMES, AT = 48, 30
+
+
+@pytest.mark.slow
+def test_frames_after_the_push_are_not_used():
+    scenario = Scenario(object="mask", scale=0.4, frames=FRAMES)
+    stage, sheets, _ = scan_of(scenario)
+    pushed = ScanStage(
+        stage.rig,
+        shifted(stage.scene, [0.3, 0.0, 0.0]),
+        Sensor(stage.rig.optics, scenario.bits, scenario.noise),
+        seed=scenario.seed,
+        texture=scenario.texture,
+        aim=WORK_POINT,
+    )
+    pictures = ((f"frame{i:04d}", (stage if i < AT else pushed).frame(i, sheet)) for i, sheet in enumerate(sheets))
+    camera = stage.rig.camera
+    features = extract_features(stage.reference(), pictures, FRAMES, FeatureOptions(camera=camera))
+    result = reconstruct(features, camera, stage.rig.fan, ReconstructOptions(sigma_cut_mm=0.2))
+    assert {frame.reason for frame in result.frames[AT + 2 :]} <= {MOVED, MOVED_FRAME}
+    assert sum(frame.used for frame in result.frames[:AT]) > 0.8 * AT
+    assert result.datum.scale < 0.003
+    assert "moved" in " ".join(result.notes)
