@@ -1,0 +1,71 @@
+"""`make accuracy`: measure the accuracy table anew. Long: hours; `--short` takes a few minutes."""
+
+from __future__ import annotations
+
+import argparse
+import subprocess
+from datetime import UTC, datetime
+from pathlib import Path
+
+from core.files.atomic import write_text
+from tests.accuracy import coverage
+from tests.accuracy.campaign import PROCESSES, run
+from tests.accuracy.cases import Case, cases
+from tests.accuracy.table import table
+
+ROOT = Path(__file__).parents[2]
+BEGIN, END = "<!-- accuracy table: make accuracy -->", "<!-- end of the accuracy table -->"
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(prog="python -m tests.accuracy", description=__doc__)
+    parser.add_argument("--short", action="store_true", help="one scan of each kind, at half resolution")
+    parser.add_argument("--readme", action="store_true", help="put the table into README.md")
+    parser.add_argument("--out", type=Path, default=ROOT / "build" / "accuracy", help="where the figures go")
+    parser.add_argument("--processes", type=int, default=PROCESSES)
+    chosen = parser.parse_args()
+    commit = _commit()
+    kept = chosen.out / f"{commit}{'-short' if chosen.short else ''}.jsonl"
+    scans = cases(short=chosen.short)
+    results = run(scans, kept, chosen.processes)
+    simulated = coverage.run(60 if chosen.short else 200, seed=1, workers=chosen.processes)
+    lines = [*table(scans, results), *_coverage_rows(simulated), "", _origin(scans, commit)]
+    print("\n".join(lines))
+    write_text(chosen.out / "table.md", "\n".join(lines) + "\n")
+    if chosen.readme:
+        _into_readme(lines)
+
+
+def _coverage_rows(found: coverage.Coverage) -> list[str]:
+    """What the simulated centrelines have shown; their calibrations are drawn anew for every scan."""
+    scans = len(found.errors_mm)
+    within = "met" if 0.93 <= found.within_U <= 0.97 else "**missed**"
+    points = "met" if 0.93 <= found.points_within <= 0.97 else "**missed**"
+    return [
+        f"| simulated lines, &#124;error&#124; ≤ U | {scans} | – | – | 93–97 % | {found.within_U:.1%} | {within} |",
+        f"| simulated lines, points within 2σ | {scans} | – | – | 93–97 % | {found.points_within:.1%} | {points} |",
+        f"| simulated lines, RMS of error / u | {scans} | – | – | about 1 | {found.normalised:.2f} | |",
+    ]
+
+
+def _origin(scans: list[Case], commit: str) -> str:
+    seeds = sorted({case.scenario.seed for case in scans})
+    return f"Measured {datetime.now(UTC).date().isoformat()} at commit {commit}, seeds {', '.join(map(str, seeds))}."
+
+
+def _commit() -> str:
+    found = subprocess.run(
+        ["git", "rev-parse", "--short", "HEAD"], cwd=ROOT, capture_output=True, text=True, check=False
+    )
+    return found.stdout.strip() or "unknown"
+
+
+def _into_readme(lines: list[str]) -> None:
+    path = ROOT / "README.md"
+    before, _, rest = path.read_text(encoding="utf-8").partition(BEGIN)
+    _, _, after = rest.partition(END)
+    write_text(path, "\n".join([before + BEGIN, "", *lines, "", END + after]))
+
+
+if __name__ == "__main__":
+    main()
