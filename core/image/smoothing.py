@@ -37,14 +37,13 @@ AGREE = 1.0
 def smooth(centreline: Centreline, windows: tuple[float, ...] = WINDOWS) -> Centreline:
     """The centreline moved across itself onto local parabolas, with the σ that leaves.
 
-    Normals, widths and strengths stay. `correlation_px` becomes the typical length of the windows chosen; saturated
-    points have no weight but are moved like the others.
+    Normals, widths and strengths stay. `correlation_px` grows by as much as the variances fall, for a mean along the
+    line gains nothing by it; saturated points have no weight but are moved like the others.
     """
     if len(centreline) < 3:
         return centreline
     arc = arc_length(centreline.uv)
     best = _Fits.at(centreline, arc, windows[0])
-    chosen = np.full(len(arc), windows[0])
     low, high = best.shift - AGREE * best.sigma, best.shift + AGREE * best.sigma
     growing = np.isfinite(best.shift)
     for window in windows[1:]:
@@ -54,16 +53,16 @@ def smooth(centreline: Centreline, windows: tuple[float, ...] = WINDOWS) -> Cent
         straight = arc_bias_at(best.curvature, window) <= BIAS_ALLOWED * fits.sigma
         growing &= (low <= high) & np.isfinite(fits.shift) & straight
         best = best.replaced(fits, growing)
-        chosen[growing] = window
     moved = np.isfinite(best.shift)
+    sigma = np.where(moved, best.sigma, centreline.sigma)
     return Centreline(
         centreline.uv + np.where(moved, best.shift, 0.0)[:, None] * centreline.normal,
         centreline.normal,
         centreline.width,
         centreline.strength,
-        np.where(moved, best.sigma, centreline.sigma),
+        sigma,
         centreline.saturated,
-        max(centreline.correlation_px, float(np.median(chosen))),
+        centreline.correlation_px * max(1.0, float(np.median((centreline.sigma / sigma) ** 2))),
     )
 
 

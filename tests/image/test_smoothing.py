@@ -89,3 +89,16 @@ def test_too_few_points_stay_as_they_are():
     line, _ = noisy(straight()[:25], 3)
     short = line.select(slice(0, 2))
     assert smooth(short) is short
+
+
+@pytest.mark.parametrize("length", [150, 400])
+def test_a_mean_along_the_line_is_as_certain_as_the_correlation_length_says(length):
+    means, stated = [], []
+    for seed in range(300):
+        line, normal = noisy(straight(), seed)
+        moved = smooth(line)
+        middle = slice((len(line) - length) // 2, (len(line) + length) // 2)
+        offset = np.sum((moved.uv - straight()) * normal, axis=1)
+        means.append(offset[middle].mean())
+        stated.append(np.median(moved.sigma[middle]) * np.sqrt(moved.correlation_px / length))
+    assert np.std(means) / np.mean(stated) == pytest.approx(1.0, abs=0.1)
