@@ -191,7 +191,7 @@ def measure_gauge(
         verdict=verdict,
         normal=fit.planes.normal,
         rule=RULE if fit.planes.tilt_determined else RULE_LINE,
-        notes=_notes(errors),
+        notes=(*_basis(fit, cloud), *_notes(errors)),
     )
 
 
@@ -236,6 +236,17 @@ def _face(fit: PlaneFit, indices: NDArray[np.int64]) -> Face:
     low, high = np.quantile(residuals, [0.025, 0.975])
     plane = LightPlane.from_normal(fit.normal, fit.distance)
     return Face(plane, indices[kept], residuals, float(high - low), float(np.sqrt(np.mean(residuals**2))))
+
+
+def _basis(fit: GaugeFit, cloud: Cloud) -> tuple[str, ...]:
+    """Which points the thickness rests on, where it is not all of them."""
+    on_faces = cloud.sweep[np.concatenate([fit.pair.upper, fit.pair.lower])]
+    if not fit.faces.sources.of_fan.all() or np.all(on_faces < 0):
+        return ()
+    return (
+        f"The thickness rests on the {len(fit.faces.sources.stretch)} points that the fan measured itself; those of the "
+        "sweeps, whose metric comes from the fan, show the form of the faces.",
+    )
 
 
 def _notes(errors: PointErrors) -> tuple[str, ...]:
