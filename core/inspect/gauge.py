@@ -244,8 +244,8 @@ def _basis(fit: GaugeFit, cloud: Cloud) -> tuple[str, ...]:
     if not fit.faces.sources.of_fan.all() or np.all(on_faces < 0):
         return ()
     return (
-        f"The thickness rests on the {len(fit.faces.sources.stretch)} points that the fan measured itself; those of the "
-        "sweeps, whose metric comes from the fan, show the form of the faces.",
+        f"The thickness rests on the {len(fit.faces.sources.stretch)} points that the fan measured itself; "
+        "those of the sweeps, whose metric comes from the fan, show the form of the faces.",
     )
 
 
