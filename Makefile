@@ -10,7 +10,8 @@ SIDE_BY_SIDE := -n 2 --dist loadscope
 test quick: export OPENBLAS_NUM_THREADS = 1
 test quick: export OMP_NUM_THREADS = 1
 
-# Windows are tested twice: without a screen, and on a virtual one with the real 3D view.
+# Windows are tested twice: all without a screen, and on a virtual one with the real 3D view what a technician does there.
+ON_SCREEN := $(wildcard tests/workbench/test_behaviour_*.py tests/workbench/test_whole_job*.py tests/workbench/views/test_scene_view*.py)
 SCREEN := $(shell command -v xvfb-run >/dev/null && echo 'xvfb-run -a -s "-screen 0 1920x1080x24"')
 
 .PHONY: demo app test quick accuracy check screenshots pictures wheel clean
@@ -23,7 +24,7 @@ app: $(READY)             ## open the workbench
 
 test: check               ## format, lint, types, rooms, and every test; windows offscreen and on a virtual screen
 	QT_QPA_PLATFORM=offscreen $(BIN)/pytest $(SIDE_BY_SIDE)
-	@if command -v Xvfb >/dev/null; then TRISECT_VIRTUAL_SCREEN=1 $(BIN)/pytest $(SIDE_BY_SIDE) tests/workbench; \
+	@if command -v Xvfb >/dev/null; then TRISECT_VIRTUAL_SCREEN=1 $(BIN)/pytest $(SIDE_BY_SIDE) $(ON_SCREEN); \
 	else echo "Xvfb is not installed: the windows were tested without a screen only"; fi
 
 quick: check              ## the same without the slow proofs
