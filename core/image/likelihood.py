@@ -136,7 +136,8 @@ def _weights(sections: Sections, noise: NoiseModel, speckle: Speckle) -> tuple[N
 def _cuts_of(run: Array, arc: Array) -> Array:
     """Where rows or columns of the picture cut a `run` (N, ≥ 4).
 
-    (K, 5): length along the run; number of the row (column); the place in it; the nearest point; 1 for a row.
+    (K, 5), in order along the run: length along it; number of the row (column); the place in it; the nearest point;
+    1 for a row.
     """
     cuts = np.empty((2 * len(run) + 8, 5))
     count = 0
@@ -148,14 +149,14 @@ def _cuts_of(run: Array, arc: Array) -> Array:
             continue
         start, step = (run[k, 1], dv) if upright else (run[k, 0], du)
         place, drift = (run[k, 0], du) if upright else (run[k, 1], dv)
-        line = math.ceil(min(start, start + step))
-        while line < max(start, start + step) and count < len(cuts):
+        first, behind = math.ceil(min(start, start + step)), math.ceil(max(start, start + step))
+        for number in range(min(behind - first, len(cuts) - count)):
+            line = first + number if step > 0 else behind - 1 - number
             share = (line - start) / step
             cuts[count, 0] = arc[k] + share * (arc[k + 1] - arc[k])
             cuts[count, 1], cuts[count, 2] = line, place + share * drift
             cuts[count, 3], cuts[count, 4] = k + (share > 0.5), upright
             count += 1
-            line += 1
     return cuts[:count]
 
 

@@ -10,7 +10,7 @@ import pytest
 
 from core.image.centreline import Centreline
 from core.image.influence import NODES, REACH, influence
-from core.image.likelihood import residuals
+from core.image.likelihood import _cuts_of, residuals
 from core.image.noise import NoiseModel
 from core.image.profile import Sections
 from core.image.speckle import NO_SPECKLE, Speckle, measure_speckle
@@ -231,3 +231,15 @@ def test_where_the_section_is_no_gaussian_speckle_does_not_move_the_place() -> N
         lines = [find(np.round(expose(light * grains, rng)), Stripe(2.5, 150.0), NOISE) for _ in range(2)]
         places.append(np.mean([errors(line, truth).mean() for (line,) in lines]))
     assert np.ptp(places) < 0.06
+
+
+@pytest.mark.parametrize("spacing", [0.7, 1.0, 2.4])
+@pytest.mark.parametrize("angle_deg", range(0, 360, 15))
+def test_rows_and_columns_cut_a_line_in_order_whichever_way_it_runs(angle_deg: int, spacing: float) -> None:
+    angle = np.radians(angle_deg + 1.0)
+    along = np.arange(0, 60, spacing)
+    tangent = np.array([np.cos(angle), np.sin(angle)])
+    run = np.column_stack([np.outer(along, tangent) + 100.3, np.full((len(along), 2), [tangent[1], -tangent[0]])])
+    cuts = _cuts_of(run, along)
+    assert np.all(np.diff(cuts[:, 0]) > 0)
+    assert len(cuts) == pytest.approx(along[-1] * np.abs(tangent).max(), abs=1)
