@@ -60,7 +60,7 @@ class Canceller:
         ("scan", "Measure again", "network"),
         ("scan", "Measure again", "mesh"),
         ("scan", "Measure again", "calibration uncertainty"),
-        ("inspect", "Measure again", "calibration uncertainty"),
+        ("inspect", "Measure again", "faces"),
         ("report", "Make it again", "report"),
     ],
 )
