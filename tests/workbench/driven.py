@@ -52,10 +52,14 @@ def start_when_possible(live: Any) -> None:
 
 
 def tell_of_start(window: MainWindow, *_: str) -> None:
-    """The window is there and answers: how long that took, and what had to be imported for it."""
+    """The window is there and answers: how long that took."""
     say("seconds", round(time.time() - float(os.environ["STARTED_AT"]), 2))
-    say("modules", *sorted(name for name in sys.modules if name in HEAVY or name.startswith("core.pipeline")))
     window.close()
+
+
+def tell_of_modules() -> None:
+    """What had to be imported for the window."""
+    say("modules", *sorted(name for name in sys.modules if name in HEAVY or name.startswith("core.pipeline")))
 
 
 DEEDS = {"edit": edit, "record": record, "start": tell_of_start}
@@ -67,6 +71,8 @@ def main() -> int:
     after_start = program._after_start
 
     def then(window: MainWindow, path: Path | None) -> None:
+        if deed is tell_of_start:
+            tell_of_modules()  # before the program begins, in idle time, with what can wait
         after_start(window, path)
         deed(window, *more)
 

@@ -183,6 +183,8 @@ class Technician:
 
     def shortcut(self, key: Any, modifier: Any = Qt.KeyboardModifier.ControlModifier) -> None:
         """A key of the window, given to whatever has the focus."""
+        if QApplication.activeWindow() is None:
+            self.activate()
         self._qtbot.keyClick(QApplication.focusWidget() or self.window, key, modifier)
         QApplication.processEvents()
 

@@ -29,7 +29,7 @@ def focused() -> QWidget:
 
 def named(widget: QWidget) -> str:
     """What the technician sees the focus is on."""
-    text = widget.text() if hasattr(widget, "text") else ""
+    text = widget.text() if callable(getattr(widget, "text", None)) else ""
     return str(text).replace("&", "") or widget.accessibleName()
 
 
