@@ -5,12 +5,12 @@ a slope g = ∂ln I/∂n has its crest moved by s² g, and no estimator can see 
 the stripe g is not known, but along it the brightness can be read off, and on a bent surface the two are alike. So
 s² |∂ln I/∂s| is what the crest may be off by, and it counts as uncertainty. On an evenly lit face it vanishes.
 
-It is a bound on the safe side: what counts is the width of the light on the surface, and the lens, which blurs what is
-shaded already, is in s as well. On a sphere of 50 mm seen at half resolution (s = 1.44 px, of that 1.07 px the lens)
+It is a bound on the safe side: what counts is the width of the light on the surface, and the lens, which blurs what
+is shaded already, is in s as well. On a sphere of 50 mm seen at half resolution (s = 1.44 px, of that 1.07 px the lens)
 the crest is truly off by 0.008 px in the mean and by 0.03 px at the rim, to either side. It is not corrected: which way
-it goes hangs on where in its plane the emitter is, and that is not known. For a sweep that is nothing (its points on the
-true planes have the sphere's radius within 0.008 mm), but the fan's planes meet the rays at 7° only, 0.03 px are 0.05 mm
-of depth there, and the network follows the fan: such a sphere comes out 0.07 to 0.10 mm too small in radius.
+it goes hangs on where in its plane the emitter is, and that is not known. For a sweep that is nothing (its points on
+the true planes have the sphere's radius within 0.008 mm), but the fan's planes meet the rays at 7° only, 0.03 px are
+0.05 mm of depth there, and the network follows the fan: such a sphere comes out 0.07 to 0.10 mm too small in radius.
 """
 
 from __future__ import annotations
