@@ -29,6 +29,7 @@ class _Interactor(QtInteractor):
     def __init__(self, parent: QWidget) -> None:
         super().__init__(parent, auto_update=False, multi_samples=0)
         self.setAcceptDrops(False)
+        self.setAccessibleName(self.tr("3D view"))
         self.iren.interactor.EnableRenderOff()
         self.started = False
         self.before_paint: Callable[[], None] | None = None
