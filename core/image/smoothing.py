@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.image.centreline import Centreline
-from core.image.local_arc import BIAS_ALLOWED, arc_bias_at
+from core.image.local_arc import BIAS_ALLOWED, arc_bias
 from core.image.pieces import arc_length
 from core.model.arrays import Array
 
@@ -50,7 +50,7 @@ def smooth(centreline: Centreline, windows: tuple[float, ...] = WINDOWS) -> Cent
         fits = _Fits.at(centreline, arc, window)
         low = np.fmax(low, fits.shift - AGREE * fits.sigma)
         high = np.fmin(high, fits.shift + AGREE * fits.sigma)
-        straight = arc_bias_at(best.curvature, window) <= BIAS_ALLOWED * fits.sigma
+        straight = arc_bias(best.curvature, window) <= BIAS_ALLOWED * fits.sigma
         growing &= (low <= high) & np.isfinite(fits.shift) & straight
         best = best.replaced(fits, growing)
     moved = np.isfinite(best.shift)

@@ -26,8 +26,9 @@ from core.simulate.rig import (
     fan_axis,
     pencil_fan,
 )
+from core.simulate.scenario import YAW_DEG
 from core.simulate.scene import Scene
-from core.simulate.stage import TABLE_DEPTH_MM, WORK_POINT, YAW_DEG, aim_of, table_pose
+from core.simulate.stage import TABLE_DEPTH_MM, WORK_POINT, aim_of, table_pose
 from core.simulate.sweep import hand_course, sweep_range
 
 PAPER_PIXEL_UM = 1.67

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from core.image.pieces import arc_length
 from core.model import Camera, Pose
 from core.model.arrays import Array
 from core.simulate.laser import Sheet
@@ -180,7 +181,7 @@ def _even_steps(camera: Camera, ends: Array) -> Array:
     if np.count_nonzero(near) < 2:
         return np.zeros(0)
     coarse, uv = coarse[near], camera.project(points[near])
-    arc = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(uv, axis=0), axis=1))])
+    arc = arc_length(uv)
     return np.asarray(np.interp(np.arange(0.0, arc[-1]), arc, coarse), dtype=np.float64)
 
 

@@ -11,7 +11,6 @@ from core.model import Pose
 from core.model.arrays import Array
 from core.simulate.mask import face_mask
 from core.simulate.objects import gauge_block, step_block, stl, turned
-from core.simulate.scenario import YAW_DEG as YAW_DEG
 from core.simulate.scenario import Scenario
 from core.simulate.scene import Mesh, Scene, Sphere
 
