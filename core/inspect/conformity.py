@@ -41,10 +41,28 @@ def decide(deviation_mm: float, tolerance_mm: float, U_mm: float) -> str:
     >>> decide(0.05, 0.20, 0.10), decide(0.15, 0.20, 0.10), decide(-0.35, 0.20, 0.10)
     ('conforming', 'not proven', 'not conforming')
     """
-    if not tolerance_mm > 0 or not U_mm >= 0 or deviation_mm != deviation_mm:
-        raise ValueError(f"no decision from deviation {deviation_mm}, tolerance {tolerance_mm} and U {U_mm}")
-    if abs(deviation_mm) + U_mm <= tolerance_mm:
+    if not tolerance_mm > 0:
+        raise ValueError(f"no decision from a tolerance of {tolerance_mm}")
+    return decide_between(deviation_mm, -tolerance_mm, tolerance_mm, U_mm)
+
+
+def decide_between(deviation: float, lower: float, upper: float, U: float) -> str:
+    """Conformity with deviations permitted from `lower` to `upper` (±inf: no limit), by the same rule, in any one unit.
+
+    Raises
+    ------
+    ValueError
+        If the limits are not in order, U is negative, or a value is not a number.
+
+    Examples
+    --------
+    >>> decide_between(0.03, -0.01, 0.05, 0.01), decide_between(0.045, float("-inf"), 0.05, 0.01)
+    ('conforming', 'not proven')
+    """
+    if not lower <= upper or not U >= 0 or deviation != deviation:
+        raise ValueError(f"no decision from deviation {deviation}, limits {lower} to {upper} and U {U}")
+    if lower + U <= deviation <= upper - U:
         return CONFORMING
-    if abs(deviation_mm) - U_mm > tolerance_mm:
+    if deviation < lower - U or deviation > upper + U:
         return NOT_CONFORMING
     return NOT_PROVEN

@@ -1,0 +1,88 @@
+"""One measured characteristic of a part: the row every table, export and verdict of an inspection is made of."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal, TypeAlias
+
+from core.inspect.conformity import decide_between
+from core.inspect.results import Contribution
+
+Quantity: TypeAlias = Literal["length", "angle"]
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """What is asked of a characteristic: its nominal value and the deviations permitted from it, `lower` ≤ `upper`.
+
+    Values in mm or rad; −inf or inf where a side has no limit. A deviation of form has the nominal value 0, no lower limit
+    and its tolerance as the upper one: it cannot be too small.
+
+    Raises
+    ------
+    ValueError
+        If the limits are not in order.
+    """
+
+    nominal: float
+    lower: float
+    upper: float
+
+    def __post_init__(self) -> None:
+        if not self.lower <= self.upper:
+            raise ValueError(f"the lower limit {self.lower} is not below the upper limit {self.upper}")
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Characteristic:
+    """What was measured, how sure it is, and what that proves.
+
+    Parameters
+    ----------
+    name
+        As the technician calls it; unique within an inspection.
+    kind
+        What it is: "thickness", "step height", "flatness", "diameter", "form", "distance", "angle", …
+    value
+        In mm, or in rad if `quantity` is "angle".
+    u
+        Standard uncertainty of the value, in the same unit.
+    k
+        Coverage factor of U = k·u.
+    limits
+        What is asked of it; None: no verdict.
+    budget
+        What u is made of.
+    rule
+        In words, what exactly was measured.
+    notes
+        Whole sentences.
+    """
+
+    name: str
+    kind: str
+    value: float
+    u: float
+    quantity: Quantity = "length"
+    k: float = 2.0
+    limits: Limits | None = None
+    budget: tuple[Contribution, ...] = ()
+    rule: str = ""
+    notes: tuple[str, ...] = ()
+
+    @property
+    def U(self) -> float:
+        """Expanded uncertainty."""
+        return self.k * self.u
+
+    @property
+    def deviation(self) -> float | None:
+        """Measured − nominal, or None without limits."""
+        return None if self.limits is None else self.value - self.limits.nominal
+
+    @property
+    def verdict(self) -> str:
+        """Decision by ISO 14253-1: "conforming", "not conforming", "not proven", or "" without limits."""
+        if self.limits is None:
+            return ""
+        return decide_between(self.value - self.limits.nominal, self.limits.lower, self.limits.upper, self.U)
