@@ -1,0 +1,1 @@
+"""Verdicts about a way of measuring: repeats, gauge studies, uncertainty budgets, acceptance checks."""
