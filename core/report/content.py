@@ -15,12 +15,12 @@ from numpy.typing import NDArray
 from core.calibrate.results import CameraCalibration, FanCalibration
 from core.image.centreline import Centreline
 from core.inspect.results import GaugeResult
-from core.inspect.study import RepeatStatistics, repeat_statistics
 from core.model.arrays import Array, frozen_array, set_field
 from core.report.section_names import SECTIONS
 from core.scan.cloud import Cloud
 from core.scan.results import FrameRecord
 from core.scan.surface import Mesh
+from core.study.repeats import RepeatStatistics, repeat_statistics
 
 Paper: TypeAlias = Literal["A4", "Letter"]
 """What a report is printed on."""

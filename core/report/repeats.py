@@ -5,11 +5,11 @@ from __future__ import annotations
 from reportlab.lib.units import mm
 from reportlab.platypus import Flowable
 
-from core.inspect.study import RepeatStatistics
 from core.report import tables
 from core.report.content import RepeatLine, ReportContent
 from core.report.style import text
 from core.report.wording import count, decimals_of, fixed
+from core.study.repeats import RepeatStatistics
 
 WIDTHS = [shares * mm for shares in (7, 45, 29, 21, 17, 9, 18, 24)]
 """Number, scan, time, thickness, U, k, error, calibration."""

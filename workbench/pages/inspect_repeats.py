@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject
 
 from core.files.project import Repeat
-from core.inspect.study import RepeatStatistics, repeat_statistics
+from core.study.repeats import RepeatStatistics, repeat_statistics
 from workbench.step_state import State
 
 if TYPE_CHECKING:

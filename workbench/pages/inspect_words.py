@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QCoreApplication
 
 from core.files.project import Repeat
-from core.inspect.study import RepeatStatistics
 from core.report.wording import decimals_of, fixed, grouped, with_uncertainty
+from core.study.repeats import RepeatStatistics
 from workbench.pages.inspect_picks import Pick, Span
 from workbench.views.colours import Level
 

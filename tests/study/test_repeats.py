@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from core.inspect.study import RepeatStatistics, repeat_statistics
+from core.study.repeats import RepeatStatistics, repeat_statistics
 
 TABLE_1 = {
     70: (69.920, 70.101, 70.063, 70.042, 69.929, 69.918, 69.892, 70.102, 70.097, 70.114),
