@@ -18,6 +18,7 @@ JCGM 100:2008, Guide to the expression of uncertainty in measurement, 5.2 (corre
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -26,7 +27,20 @@ from core.inspect.results import Contribution
 from core.model.arrays import Array
 from core.scan.common_errors import CAMERA, FAN_CALIBRATION, SCALE
 
-__all__ = ["CAMERA", "FAN_CALIBRATION", "FAN_SPECKLE", "FORM", "POINT_NOISE", "SCALE", "SWEEP_PLANES"]
+__all__ = [
+    "CAMERA",
+    "FAN_CALIBRATION",
+    "FAN_SPECKLE",
+    "FORM",
+    "POINT_NOISE",
+    "SCALE",
+    "SWEEP_PLANES",
+    "Effect",
+    "budget",
+    "budget_of",
+    "combined",
+    "effects",
+]
 
 POINT_NOISE = "centreline noise of the sweeps' points"
 SWEEP_PLANES = "light planes of the sweeps (network)"
@@ -37,6 +51,29 @@ FORM = "form of the faces beyond the stated noise"
 def combined(contributions: Iterable[Contribution]) -> float:
     """Combined standard uncertainty in mm of independent contributions."""
     return float(np.sqrt(sum(row.u_mm**2 for row in contributions)))
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Effect:
+    """What one cause does to p quantities measured in one scan: their errors are factor·ζ, ζ of unit variance.
+
+    Parameters
+    ----------
+    source
+        The cause.
+    factor
+        (p, n).
+    shared
+        Whether the same ζ acts on everything measured in the scan (light planes, calibrations); else it is the
+        quantities' own (noise of their points, form of their surface).
+    point_mm
+        Standard uncertainty in mm that the cause gives to a typical point, across the surface.
+    """
+
+    source: str
+    factor: Array
+    shared: bool
+    point_mm: float
 
 
 def budget(
@@ -57,21 +94,61 @@ def budget(
     calibrations
         (K,) which calibration each of the common errors comes from.
     """
+    of_q = effects(gains[None, :], sources, own=own, form_mm=form_mm, calibrations=calibrations)
+    return budget_of([(np.ones(1), of_q)])
+
+
+def effects(
+    gains: Array, sources: Sources, *, own: Array | None = None, form_mm: float = 0.0, calibrations: Sequence[str] = ()
+) -> tuple[Effect, ...]:
+    """What each cause does to p quantities that follow the stretches' misfits with `gains` (p, J); else as `budget`."""
     own = sources.own if own is None else own
-    rows = [_row(POINT_NOISE, gains[~sources.of_fan], np.diag(own[~sources.of_fan]))]
-    if sources.sweeps.shape[1]:
-        rows.append(_row(SWEEP_PLANES, gains[~sources.of_fan], sources.sweeps[~sources.of_fan]))
-    rows.append(_row(FAN_SPECKLE, gains[sources.of_fan], np.diag(own[sources.of_fan])))
-    rows.append(_row(FORM, gains, form_mm * sources.form))
+    swept, of_fan = ~sources.of_fan, sources.of_fan
+    found = []
+    if swept.any():
+        found.append(_noise(POINT_NOISE, gains[:, swept], own[swept]))
+        if sources.sweeps.shape[1]:
+            found.append(_effect(SWEEP_PLANES, gains[:, swept], sources.sweeps[swept], shared=True))
+    if of_fan.any():
+        found.append(_noise(FAN_SPECKLE, gains[:, of_fan], own[of_fan]))
+    found.append(_effect(FORM, gains, form_mm * sources.form, shared=False))
     for source in dict.fromkeys(calibrations):
         mine = np.array([one == source for one in calibrations])
-        rows.append(_row(source, gains, sources.common[:, mine]))
-    return tuple(row for row in rows if row is not None)
+        found.append(_effect(source, gains, sources.common[:, mine], shared=True))
+    return tuple(found)
 
 
-def _row(source: str, gains: Array, effects: Array) -> Contribution | None:
-    """One row, or None where nothing measured is touched by it; `effects` (J, n) for n independent unit causes."""
-    if not len(gains):
-        return None
-    typical = float(np.median(np.sqrt((effects**2).sum(axis=1))))
-    return Contribution(source, float(np.linalg.norm(gains @ effects)), typical)
+def budget_of(parts: Sequence[tuple[Array, Sequence[Effect]]]) -> tuple[Contribution, ...]:
+    """What each cause contributes to a quantity that follows several groups of quantities of one scan.
+
+    Parameters
+    ----------
+    parts
+        Of each group the gradient (p,) by which the quantity follows it, and what acts on it. Groups rest on
+        different points, so what is not shared is independent between them.
+
+    Returns
+    -------
+    tuple of Contribution
+        One a cause; `point_mm` is the largest of the groups'.
+    """
+    rows = []
+    for source in dict.fromkeys(effect.source for _, of_part in parts for effect in of_part):
+        mine = [(gradient, one) for gradient, of_part in parts for one in of_part if one.source == source]
+        moved = [gradient @ one.factor for gradient, one in mine]
+        together = sum(moved[1:], start=moved[0]) if mine[0][1].shared else np.concatenate(moved)
+        rows.append(Contribution(source, float(np.linalg.norm(together)), max(one.point_mm for _, one in mine)))
+    return tuple(rows)
+
+
+def _noise(source: str, gains: Array, own: Array) -> Effect:
+    """Of noise independent between stretches: any root of its covariance does."""
+    scaled = gains * own
+    values, vectors = np.linalg.eigh(scaled @ scaled.T)
+    return Effect(source, vectors * np.sqrt(np.maximum(values, 0.0)), shared=False, point_mm=float(np.median(own)))
+
+
+def _effect(source: str, gains: Array, acting: Array, *, shared: bool) -> Effect:
+    """Of n independent unit causes, `acting` (J, n) on the stretches."""
+    typical = float(np.median(np.sqrt((acting**2).sum(axis=1))))
+    return Effect(source, gains @ acting, shared, typical)
