@@ -43,6 +43,14 @@ class _Contribution(ResultFile):
     source: str
     u_mm: Finite
     point_mm: Finite | None = None
+    distribution: str = "normal"
+    dof: Finite | None = Field(default=None, ge=1, description="a number of at least 1, or null for infinitely many")
+    value: Finite | None = None
+    unit: str = "mm"
+
+    def row(self) -> Contribution:
+        dof = math.inf if self.dof is None else self.dof
+        return Contribution(self.source, self.u_mm, self.point_mm, self.distribution, dof, self.value, self.unit)
 
 
 class _GaugeFile(ResultFile):
@@ -120,7 +128,7 @@ def read_gauge(path: Path, cloud: Cloud) -> GaugeResult:
         upper=_face(file.faces.upper, members["upper"], file.flatness_mm.upper, cloud),
         lower=_face(file.faces.lower, members["lower"], file.flatness_mm.lower, cloud),
         parallelism=math.radians(file.parallelism_deg),
-        budget=tuple(Contribution(row.source, row.u_mm, row.point_mm) for row in file.budget),
+        budget=tuple(row.row() for row in file.budget),
         nominal_mm=file.nominal_mm,
         tolerance_mm=file.tolerance_mm,
         verdict=file.verdict,
@@ -135,6 +143,10 @@ def _row(row: Contribution, u_mm: float) -> dict[str, Any]:
         "source": row.source,
         "u_mm": row.u_mm,
         "point_mm": row.point_mm,
+        "distribution": row.distribution,
+        "dof": row.dof,
+        "value": row.value,
+        "unit": row.unit,
         "sensitivity": row.sensitivity,
         "share": row.u_mm**2 / u_mm**2 if u_mm else 0.0,
     }

@@ -2,6 +2,12 @@
 
 from __future__ import annotations
 
+import math
+from dataclasses import dataclass
+from functools import partial
+
+from scipy.special import ndtr, stdtr
+
 CONFORMING = "conforming"
 NOT_CONFORMING = "not conforming"
 NOT_PROVEN = "not proven"
@@ -46,23 +52,118 @@ def decide(deviation_mm: float, tolerance_mm: float, U_mm: float) -> str:
     return decide_between(deviation_mm, -tolerance_mm, tolerance_mm, U_mm)
 
 
-def decide_between(deviation: float, lower: float, upper: float, U: float) -> str:
+def decide_between(deviation: float, lower: float, upper: float, U: float, *, r: float = 1.0) -> str:
     """Conformity with deviations permitted from `lower` to `upper` (±inf: no limit), by the same rule, in any one unit.
 
     Raises
     ------
     ValueError
-        If the limits are not in order, U is negative, or a value is not a number.
+        As :class:`Zones`, or if the deviation is not a number.
 
     Examples
     --------
     >>> decide_between(0.03, -0.01, 0.05, 0.01), decide_between(0.045, float("-inf"), 0.05, 0.01)
     ('conforming', 'not proven')
     """
-    if not lower <= upper or not U >= 0 or deviation != deviation:
+    if math.isnan(deviation):
         raise ValueError(f"no decision from deviation {deviation}, limits {lower} to {upper} and U {U}")
-    if lower + U <= deviation <= upper - U:
-        return CONFORMING
-    if deviation < lower - U or deviation > upper + U:
-        return NOT_CONFORMING
-    return NOT_PROVEN
+    return Zones(lower, upper, U, r).verdict(deviation)
+
+
+@dataclass(frozen=True, slots=True)
+class Zones:
+    """The zones of a decision: where a measured value proves conformity, nonconformity, or nothing.
+
+    Parameters
+    ----------
+    lower, upper
+        The limits of the tolerance; −inf or inf where a side has none.
+    U
+        Expanded uncertainty of the measured value.
+    r
+        The guard band is g = r·U to both sides of a limit. 1: as strict as U itself; 0.83: at most 5 % risk at a limit
+        with k = 2 (1.65 u), the rule of ISO 14253-1:2017 where nothing is agreed; 0: shared risk, every value decides.
+
+    Raises
+    ------
+    ValueError
+        If the limits are not in order, or U or r is negative or not a number.
+
+    References
+    ----------
+    ISO 14253-1:2017, 5. JCGM 106:2012, 8.3 (guard bands). ILAC-G8:09/2019, table 1 (r of the usual rules).
+
+    Examples
+    --------
+    >>> zones = Zones(-0.2, 0.2, 0.1)
+    >>> zones.conformance, zones.uncertainty
+    ((-0.1, 0.1), ((-0.30000000000000004, -0.1), (0.1, 0.30000000000000004)))
+    """
+
+    lower: float
+    upper: float
+    U: float
+    r: float = 1.0
+
+    def __post_init__(self) -> None:
+        if not self.lower <= self.upper or not self.U >= 0 or not self.r >= 0:
+            raise ValueError(f"no decision from limits {self.lower} to {self.upper}, U {self.U} and r {self.r}")
+
+    @property
+    def guard_band(self) -> float:
+        """g, to both sides of each limit."""
+        return self.r * self.U
+
+    @property
+    def conformance(self) -> tuple[float, float] | None:
+        """Values that prove conformity, both ends included; None if the guard bands leave none."""
+        low, high = self.lower + self.guard_band, self.upper - self.guard_band
+        return (low, high) if low <= high else None
+
+    @property
+    def nonconformance(self) -> tuple[float, float]:
+        """Values below the first or above the second prove nonconformity."""
+        return self.lower - self.guard_band, self.upper + self.guard_band
+
+    @property
+    def uncertainty(self) -> tuple[tuple[float, float], ...]:
+        """The zones in which nothing is proven: about each limit there is, or all at once where they meet."""
+        low, high = self.nonconformance
+        if self.conformance is None:
+            return ((low, high),)
+        below, above = self.conformance
+        return tuple(zone for zone in ((low, below), (above, high)) if math.isfinite(zone[0]))
+
+    def verdict(self, value: float) -> str:
+        """CONFORMING, NOT_CONFORMING or NOT_PROVEN."""
+        if self.conformance is not None and self.conformance[0] <= value <= self.conformance[1]:
+            return CONFORMING
+        low, high = self.nonconformance
+        return NOT_CONFORMING if value < low or value > high else NOT_PROVEN
+
+
+def probability_of_conformity(value: float, u: float, lower: float, upper: float, dof: float = math.inf) -> float:
+    """How probable it is that the true value lies within the limits, given what was measured and no more.
+
+    Parameters
+    ----------
+    value, u
+        Measured value and its standard uncertainty, above 0.
+    lower, upper
+        Limits, in the same unit; −inf or inf where a side has none.
+    dof
+        Degrees of freedom of u: Student's t with them, scaled by u; inf: the normal distribution.
+
+    References
+    ----------
+    JCGM 106:2012, 7.3 and 7.4, equations (8) to (11): p_c = Φ((T_U − y)/u) − Φ((T_L − y)/u).
+
+    Examples
+    --------
+    >>> round(probability_of_conformity(13.6, 1.8, 12.5, 16.3), 2)
+    0.66
+    """
+    if not u > 0 or not lower <= upper:
+        raise ValueError(f"no probability of conformity from u {u} and limits {lower} to {upper}")
+    below = ndtr if math.isinf(dof) else partial(stdtr, dof)
+    return float(below((upper - value) / u) - below((lower - value) / u))

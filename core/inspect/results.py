@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -29,19 +30,38 @@ class Face:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Contribution:
-    """One row of the uncertainty of a thickness: what it comes from and its standard uncertainty in mm.
+    """One row of an uncertainty budget: what it comes from and how much it contributes to the result's uncertainty.
 
-    `point_mm` is the standard uncertainty in mm, across the surface, that the same cause gives to a typical point;
-    None where it is not known.
+    Parameters
+    ----------
+    source
+        What it comes from.
+    u_mm
+        Its contribution |c| u(x) to the result, in the result's unit: mm, or rad for an angle.
+    point_mm
+        Standard uncertainty u(x) of the input itself, in `unit`: for the causes within a scan, what the cause gives to
+        a typical point, in mm across the surface. None where it is not known.
+    distribution
+        "normal", "rectangular", "triangular", "arcsine" or "t".
+    dof
+        Degrees of freedom of u(x); inf where it is known as well as that.
+    value
+        Estimate of the input, in `unit`; None where the causes have the expectation zero, or the estimate says nothing.
+    unit
+        Of the input.
     """
 
     source: str
     u_mm: float
     point_mm: float | None = None
+    distribution: str = "normal"
+    dof: float = math.inf
+    value: float | None = None
+    unit: str = "mm"
 
     @property
     def sensitivity(self) -> float | None:
-        """How much of a typical point's uncertainty from this cause arrives in the result, in mm per mm."""
+        """How much of the input's standard uncertainty arrives in the result: |c|, in the result's unit per `unit`."""
         return self.u_mm / self.point_mm if self.point_mm else None
 
 

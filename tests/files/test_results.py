@@ -1,4 +1,5 @@
 import json
+import math
 from dataclasses import replace
 from datetime import UTC, datetime
 
@@ -392,20 +393,31 @@ def test_gauge_round_trip_and_the_keys_of_the_design(tmp_path, cloud, gauge):
     assert (back.budget[0].point_mm, back.budget[0].sensitivity) == (None, None)
 
 
-def test_every_row_of_the_budget_has_its_sensitivity_and_its_share(tmp_path, cloud, gauge):
+def test_every_row_of_the_budget_has_its_input_its_sensitivity_and_its_share(tmp_path, cloud, gauge):
     path = tmp_path / "gauge.json"
-    rows = (Contribution("camera", 0.006, 0.03), Contribution("network", 0.008, 0.04))
+    rows = (Contribution("camera", 0.006, 0.03), Contribution("α", 0.008, 1e-6, "rectangular", 50.0, 11.5e-6, "1/K"))
     write_gauge(path, replace(gauge, u_mm=0.01, budget=rows), "abc")
     first, second = json.loads(path.read_text())["budget"]
     assert first == {
         "source": "camera",
         "u_mm": 0.006,
         "point_mm": 0.03,
+        "distribution": "normal",
+        "dof": None,
+        "value": None,
+        "unit": "mm",
         "sensitivity": pytest.approx(0.2),
         "share": pytest.approx(0.36),
     }
     assert first["share"] + second["share"] == pytest.approx(1)
-    assert read_gauge(path, cloud).budget[0].sensitivity == pytest.approx(0.2)
+    camera, expansion = read_gauge(path, cloud).budget
+    assert (camera.sensitivity, camera.dof) == (pytest.approx(0.2), math.inf)
+    assert (expansion.distribution, expansion.dof, expansion.value, expansion.unit) == (
+        "rectangular",
+        50,
+        11.5e-6,
+        "1/K",
+    )
 
 
 @pytest.mark.parametrize(
