@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
-from core.inspect.conformity import decide_between
+from core.inspect.conformity import NOT_PROVEN, decide_between
 from core.inspect.results import Contribution
 
 Quantity: TypeAlias = Literal["length", "angle"]
@@ -82,7 +83,12 @@ class Characteristic:
 
     @property
     def verdict(self) -> str:
-        """Decision by ISO 14253-1: "conforming", "not conforming", "not proven", or "" without limits."""
+        """Decision by ISO 14253-1: "conforming", "not conforming", "not proven", or "" without limits.
+
+        A value or an uncertainty that is not known proves nothing.
+        """
         if self.limits is None:
             return ""
+        if math.isnan(self.value) or math.isnan(self.u):
+            return NOT_PROVEN
         return decide_between(self.value - self.limits.nominal, self.limits.lower, self.limits.upper, self.U)
