@@ -1,15 +1,16 @@
-"""How the window looks: light and dark palettes, a little style, and icons that follow them."""
+"""How the window looks: light and dark palettes, and icons that follow them."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from importlib.resources import files
-from pathlib import Path
+from functools import lru_cache
 
 import qtawesome
-from PySide6.QtCore import Qt
-from PySide6.QtGui import QColor, QIcon, QPalette
+from PySide6.QtCore import QRect, QSize, Qt
+from PySide6.QtGui import QColor, QIcon, QIconEngine, QPainter, QPalette, QPixmap
 from PySide6.QtWidgets import QApplication
+
+from workbench.style_sheet import SHEET, polish_again
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,15 +55,41 @@ def apply_theme(app: QApplication, name: str) -> None:
     if name == "system":
         name = "dark" if app.styleHints().colorScheme() == Qt.ColorScheme.Dark else "light"
     chosen = DARK if name == "dark" else LIGHT
-    app.setPalette(_palette(chosen))
-    app.setStyleSheet(_style(chosen))
     qtawesome.reset_cache()
+    app.setPalette(_palette(chosen))
+    if not app.styleSheet():
+        app.setStyleSheet(SHEET)
+    else:
+        polish_again(app)
 
 
 def icon(name: str, *, colour: str = "") -> QIcon:
     """An icon by its qtawesome name, in the text colour of the theme or in `colour` (a field of Shades)."""
     shade = shades()
-    return QIcon(qtawesome.icon(name, color=getattr(shade, colour or "text"), color_disabled=shade.line))
+    return _drawn(name, getattr(shade, colour or "text"), shade.line)
+
+
+@lru_cache(maxsize=512)
+def _drawn(name: str, colour: str, disabled: str) -> QIcon:
+    return QIcon(_RememberedIcon(qtawesome.icon(name, color=colour, color_disabled=disabled)))
+
+
+class _RememberedIcon(QIconEngine):
+    """Draws an icon once a size: qtawesome's own are drawn by Python each time anything near them is painted."""
+
+    def __init__(self, drawn: QIcon) -> None:
+        super().__init__()
+        self._drawn = drawn
+        self._pixmaps: dict[tuple[int, int, QIcon.Mode, QIcon.State], QPixmap] = {}
+
+    def pixmap(self, size: QSize, mode: QIcon.Mode, state: QIcon.State) -> QPixmap:
+        key = size.width(), size.height(), mode, state
+        if key not in self._pixmaps:
+            self._pixmaps[key] = self._drawn.pixmap(size, 1.0, mode, state)
+        return self._pixmaps[key]
+
+    def paint(self, painter: QPainter, rect: QRect, mode: QIcon.Mode, state: QIcon.State) -> None:
+        painter.drawPixmap(rect, self.pixmap(rect.size() * painter.device().devicePixelRatioF(), mode, state))
 
 
 def _palette(s: Shades) -> QPalette:
@@ -90,56 +117,3 @@ def _palette(s: Shades) -> QPalette:
     for which in (role.WindowText, role.Text, role.ButtonText):
         palette.setColor(QPalette.ColorGroup.Disabled, which, QColor(s.muted))
     return palette
-
-
-def _style(s: Shades) -> str:
-    check = Path(str(files("resources"))) / "icons" / f"check-{'dark' if s is DARK else 'light'}.svg"
-    return f"""
-QToolTip {{ color: {s.text}; background: {s.panel}; border: 1px solid {s.line}; padding: 4px; }}
-QFrame#card {{ background: {s.panel}; border: 1px solid {s.line}; border-radius: 6px; }}
-QLabel#title {{ font-size: 17px; font-weight: 600; }}
-QLabel#heading {{ font-weight: 600; }}
-QLabel#muted, QLabel#help {{ color: {s.muted}; }}
-QLabel#help {{ font-size: 11px; }}
-QPushButton {{ padding: 5px 12px; border: 1px solid {s.line}; border-radius: 4px; background: {s.panel}; }}
-QPushButton:hover {{ border-color: {s.accent}; }}
-QPushButton:pressed {{ background: {s.window}; }}
-QPushButton:focus {{ border: 1px solid {s.accent}; }}
-QPushButton:disabled {{ color: {s.muted}; background: {s.window}; }}
-QPushButton[primary="true"] {{ background: {s.accent}; color: {s.on_accent}; border-color: {s.accent};
-    font-weight: 600; }}
-QPushButton[primary="true"]:disabled {{ background: {s.window}; color: {s.muted}; border-color: {s.line}; }}
-QPushButton:checked {{ border-color: {s.accent}; color: {s.accent}; }}
-QLineEdit, QPlainTextEdit {{ padding: 3px 5px; border: 1px solid {s.line};
-    border-radius: 4px; background: {s.panel}; selection-background-color: {s.accent}; }}
-QLineEdit:focus, QPlainTextEdit:focus {{ border-color: {s.accent}; }}
-QCheckBox {{ spacing: 6px; }}
-QCheckBox::indicator, QTableView::indicator {{ width: 14px; height: 14px; border: 1px solid {s.muted};
-    border-radius: 3px; background: {s.panel}; }}
-QCheckBox::indicator:hover, QCheckBox::indicator:focus {{ border-color: {s.accent}; }}
-QCheckBox::indicator:checked, QTableView::indicator:checked {{ background: {s.accent}; border-color: {s.accent};
-    image: url("{check.as_posix()}"); }}
-QTableView::indicator:selected {{ border-color: {s.on_accent}; }}
-QCheckBox::indicator:disabled {{ background: {s.window}; border-color: {s.line}; }}
-QCheckBox::indicator:checked:disabled {{ background: {s.muted}; }}
-QAbstractSpinBox, QComboBox {{ min-height: 20px; }}
-QHeaderView::section {{ background: {s.window}; color: {s.muted}; border: none; border-bottom: 1px solid {s.line};
-    padding: 4px 7px; }}
-QTableView {{ border: 1px solid {s.line}; }}
-DataTable QTableView::item {{ padding: 0 7px; }}
-QProgressBar {{ border: 1px solid {s.line}; border-radius: 3px; text-align: center; height: 14px; }}
-QProgressBar::chunk {{ background: {s.accent}; border-radius: 2px; }}
-QSplitter::handle {{ background: {s.line}; }}
-QSplitter::handle:horizontal {{ width: 1px; }}
-QSplitter::handle:vertical {{ height: 1px; }}
-QScrollArea {{ border: none; background: transparent; }}
-StepRail {{ background: {s.panel}; border: none; border-right: 1px solid {s.line}; }}
-StepRail QToolButton {{ border: 1px solid transparent; border-radius: 5px; padding: 6px 8px; text-align: left; }}
-StepRail QToolButton:hover {{ background: {s.window}; }}
-StepRail QToolButton:focus {{ border-color: {s.line}; }}
-StepRail QToolButton:checked {{ background: {s.window}; color: {s.accent}; font-weight: 600; }}
-Banner {{ background: {s.panel}; border: 1px solid {s.line}; border-left: 4px solid {s.accent}; }}
-Banner[level="warning"] {{ border-left-color: {s.warn}; }}
-Banner[level="error"] {{ border-left-color: {s.bad}; }}
-QTabWidget::pane {{ border: 1px solid {s.line}; border-radius: 4px; }}
-"""

@@ -18,7 +18,8 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from workbench.theme import icon
+from workbench.theme import icon, shades
+from workbench.views.dressing import dress
 
 SYMBOLS = {
     "info": ("mdi6.information-outline", "accent"),
@@ -112,9 +113,6 @@ class Banner(QFrame):
     def show_notice(self, level: str, text: str, details: str) -> None:
         """Show a message."""
         self._level, self._text, self._more = level, text, details
-        self.setProperty("level", level)
-        self.style().unpolish(self)
-        self.style().polish(self)
         self._label.setText(text)
         self._copy.setVisible(bool(details))
         self._dress()
@@ -131,4 +129,10 @@ class Banner(QFrame):
 
     def _dress(self) -> None:
         symbol, colour = SYMBOLS[self._level]
+        s = shades()
+        dress(
+            self,
+            f"Banner {{ background: {s.panel}; border: 1px solid {s.line};"
+            f" border-left: 4px solid {getattr(s, colour)}; }}",
+        )
         self._symbol.setPixmap(icon(symbol, colour=colour).pixmap(QSize(18, 18)))

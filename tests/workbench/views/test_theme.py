@@ -1,0 +1,71 @@
+"""The style sheet is set once; a theme is a palette that every widget takes its colours from, seen or not."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+from PySide6.QtCore import QSize
+from PySide6.QtGui import QColor
+from PySide6.QtWidgets import QApplication, QFrame, QHBoxLayout, QWidget
+
+from workbench.theme import DARK, LIGHT, Shades, icon
+
+
+def card_in(parent: QWidget) -> QFrame:
+    card = QFrame(parent)
+    card.setObjectName("card")
+    layout = parent.layout()
+    assert layout is not None
+    layout.addWidget(card)
+    return card
+
+
+def colours(card: QFrame) -> tuple[str, str]:
+    """Ground and edge as they are painted."""
+    image = card.grab().toImage()
+    return image.pixelColor(image.rect().center()).name(), image.pixelColor(0, image.height() // 2).name()
+
+
+@pytest.mark.parametrize(("name", "shades"), [("dark", DARK), ("light", LIGHT)])
+def test_a_theme_dresses_what_is_seen_at_once_and_what_is_hidden_soon(
+    qtbot: Any, qapp: QApplication, theme: Callable[[str], None], name: str, shades: Shades
+) -> None:
+    theme("light" if name == "dark" else "dark")
+    window = QWidget()
+    qtbot.addWidget(window)
+    QHBoxLayout(window)
+    seen, hidden = card_in(window), card_in(window)
+    hidden.hide()
+    window.resize(200, 80)
+    window.show()
+    colours(hidden)
+    sheet = qapp.styleSheet()
+    theme(name)
+    assert colours(seen) == (shades.panel, shades.line)
+    qtbot.waitUntil(lambda: colours(hidden) == (shades.panel, shades.line))
+    assert qapp.styleSheet() == sheet
+
+
+def test_a_widget_that_is_gone_before_its_turn_is_passed_over(
+    qtbot: Any, qapp: QApplication, theme: Callable[[str], None]
+) -> None:
+    theme("light")
+    windows = [QWidget() for _ in range(400)]
+    theme("dark")
+    windows.clear()
+    qtbot.wait(50)
+    assert not [widget for widget in qapp.allWidgets() if type(widget) is QWidget and widget.isWindow()]
+
+
+def test_an_icon_has_the_colour_of_the_theme_and_is_drawn_once_a_size(qtbot: Any, theme: Callable[[str], None]) -> None:
+    drawn = {}
+    for name, shades in (("light", LIGHT), ("dark", DARK)):
+        theme(name)
+        pixmap = icon("mdi6.square").pixmap(QSize(24, 24))
+        assert pixmap.toImage().pixelColor(12, 12) == QColor(shades.text)
+        assert icon("mdi6.square", colour="bad").pixmap(QSize(9, 9)).toImage().pixelColor(4, 4) == QColor(shades.bad)
+        drawn[name] = pixmap.cacheKey()
+        assert icon("mdi6.square").pixmap(QSize(24, 24)).cacheKey() == drawn[name]
+    assert drawn["light"] != drawn["dark"]
