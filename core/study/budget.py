@@ -20,7 +20,6 @@ from scipy.sparse.csgraph import connected_components
 
 from core.inspect.coverage import COVERAGE, coverage_factor, effective_dof
 from core.inspect.results import Contribution
-from core.inspect.uncertainty import combined
 from core.model.arrays import Array
 
 HALF_WIDTHS = {"rectangular": math.sqrt(3), "triangular": math.sqrt(6), "arcsine": math.sqrt(2)}
@@ -92,8 +91,8 @@ def dof_of_doubt(relative: float) -> float:
 
     Examples
     --------
-    >>> dof_of_doubt(0.25), dof_of_doubt(0.1)
-    (8.0, 50.0)
+    >>> dof_of_doubt(0.25), dof_of_doubt(0.5)
+    (8.0, 2.0)
     """
     return 0.5 / relative**2 if relative else math.inf
 
@@ -152,7 +151,13 @@ def budget_of(
     """
     dof = effective_dof(rows)
     return UncertaintyBudget(
-        tuple(rows), combined(rows), dof, coverage, coverage_factor(max(dof, 1.0), coverage), value, unit=unit
+        tuple(rows),
+        math.hypot(*(row.u_mm for row in rows)),
+        dof,
+        coverage,
+        coverage_factor(max(dof, 1.0), coverage),
+        value,
+        unit=unit,
     )
 
 

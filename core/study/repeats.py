@@ -1,16 +1,31 @@
-"""Several measurements of one thickness: how they scatter, and how far they are from the nominal value.
+"""Several measurements of one quantity: how they scatter, how far they are from the nominal value, and what they prove.
+
+The scan is the independent unit, not the point: n repeats are n scans.
 
 References
 ----------
 Sun et al., Sensors 2023, 23, 13, §5.3.2, Tables 1 and 2, doi:10.3390/s23010013.
+ISO 7870-2:2013 (control chart of individual values).
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
+
+from core.inspect.conformity import NOT_PROVEN, Zones
+from core.model.arrays import Array
+
+if TYPE_CHECKING:  # a window shows statistics long before it shows a budget
+    from core.study.budget import UncertaintyBudget
+
+MOST_BINS = 20
+TO_LIMITS = 2.66
+"""3/d₂ with d₂ = 1.128 of two values: from the mean moving range to three standard deviations (ISO 7870-2)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,3 +63,162 @@ def repeat_statistics(thicknesses: Sequence[float], nominal_mm: float | None = N
     errors = values - nominal_mm
     rmse, largest = float(np.sqrt(np.mean(errors**2))), float(np.abs(errors).max())
     return RepeatStatistics(len(values), mean, mean - nominal_mm, rmse, std, largest)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class RunChart:
+    """What a chart of the values in their order needs.
+
+    Parameters
+    ----------
+    centre
+        Their mean.
+    lower, upper
+        centre ∓ 2.66 mean moving range: limits that a steady measurement seldom leaves.
+    outside
+        Indices of the values beyond them.
+    """
+
+    centre: float
+    lower: float
+    upper: float
+    outside: tuple[int, ...]
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Histogram:
+    """How many values (`counts`, B) lie between the `edges` (B + 1)."""
+
+    edges: Array
+    counts: NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class RepeatStudy:
+    """Repeats of one quantity, and what they prove.
+
+    Parameters
+    ----------
+    name
+        Of the quantity.
+    labels
+        (n,) of the scans, in the order of measuring.
+    values
+        (n,) in `unit`.
+    U
+        (n,) expanded uncertainties that the scans state themselves, NaN where one does not.
+    statistics
+        Of the values, in `unit` whatever the names of its fields say.
+    run
+        The run chart; None for one value alone.
+    histogram
+        Of the values.
+    budget
+        Of the mean of the repeats.
+    complete
+        Whether the budget holds what is common to all repeats as well, and not their scatter alone.
+    nominal
+        None if there is none.
+    zones
+        Of the deviation of the mean from the nominal value; None without a nominal value and a tolerance.
+    unit
+        "mm" or "deg".
+    """
+
+    name: str
+    labels: tuple[str, ...]
+    values: Array
+    U: Array
+    statistics: RepeatStatistics
+    run: RunChart | None
+    histogram: Histogram
+    budget: UncertaintyBudget
+    complete: bool
+    nominal: float | None = None
+    zones: Zones | None = None
+    unit: str = "mm"
+
+    @property
+    def verdict(self) -> str:
+        """By ISO 14253-1, of the mean; "not proven" while its uncertainty is not complete, "" without limits."""
+        if self.zones is None or self.nominal is None:
+            return ""
+        return self.zones.verdict(self.statistics.mean_mm - self.nominal) if self.complete else NOT_PROVEN
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What to know about the figures: whole sentences."""
+        said = []
+        if not self.complete:
+            said.append(
+                "U of the mean holds the scatter of the repeats alone: no scan states its own uncertainty, so what is "
+                "common to all of them (calibration) is not in it, and nothing is proven."
+            )
+        if self.run is not None and self.run.outside:
+            names = ", ".join(self.labels[place] for place in self.run.outside)
+            said.append(f"Beyond the limits of the run chart: {names}; look for what changed there.")
+        return tuple(said)
+
+
+def repeat_study(
+    values: Sequence[float],
+    budget: UncertaintyBudget,
+    *,
+    complete: bool,
+    name: str = "thickness",
+    labels: Sequence[str] = (),
+    U: Sequence[float] = (),
+    nominal: float | None = None,
+    limits: tuple[float, float] | None = None,
+    r: float = 1.0,
+    unit: str = "mm",
+) -> RepeatStudy:
+    """Study of n ≥ 1 repeats.
+
+    Parameters
+    ----------
+    values, labels, U, name, nominal, unit
+        See `RepeatStudy`; without labels "1", "2", …
+    budget, complete
+        Of the mean: `core.study.repeats_budget`.
+    limits
+        Deviations permitted from the nominal value, the lower first; ±inf for none.
+    r
+        Guard band over U, see `Zones`.
+
+    Raises
+    ------
+    ValueError
+        If there is no value, one is not finite, or the limits are not in order.
+    """
+    statistics = repeat_statistics(values, nominal)
+    measured = np.array(values, dtype=np.float64)
+    stated = np.array(U, dtype=np.float64) if len(U) else np.full(len(measured), np.nan)
+    measured.setflags(write=False)
+    stated.setflags(write=False)
+    names = tuple(labels) or tuple(str(number) for number in range(1, len(measured) + 1))
+    zones = None if limits is None or nominal is None else Zones(*limits, budget.U, r)
+    return RepeatStudy(
+        name, names, measured, stated, statistics, run_chart(measured), histogram(measured), budget, complete, nominal,
+        zones, unit,
+    )  # fmt: skip
+
+
+def run_chart(values: Array) -> RunChart | None:
+    """Centre line and limits of `values` (n,) in their order; None if n < 2."""
+    if len(values) < 2:
+        return None
+    centre = float(values.mean())
+    reach = TO_LIMITS * float(np.abs(np.diff(values)).mean())
+    outside = np.flatnonzero(np.abs(values - centre) > reach * (1 + 1e-9))
+    return RunChart(centre, centre - reach, centre + reach, tuple(int(place) for place in outside))
+
+
+def histogram(values: Array) -> Histogram:
+    """Counts of `values` (n,) in at most MOST_BINS bins of one width (Freedman, Diaconis 1981, or Sturges 1926)."""
+    if not np.ptp(values):
+        counts, edges = np.histogram(values, 1)
+    else:
+        bins = min(len(np.histogram_bin_edges(values, "auto")) - 1, MOST_BINS)
+        counts, edges = np.histogram(values, bins)
+    return Histogram(np.asarray(edges, dtype=np.float64), np.asarray(counts, dtype=np.int64))

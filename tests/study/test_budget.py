@@ -52,7 +52,7 @@ def test_the_end_gauge_has_the_printed_uncertainty_freedom_and_expanded_uncertai
     assert found.u**2 == pytest.approx(1002, abs=2)
     assert found.dof == pytest.approx(16.7, abs=0.1)
     assert found.k == pytest.approx(2.92, abs=0.005)  # t_99(16)
-    assert found.U == pytest.approx(92.5, abs=0.05)
+    assert (found.U, found.unit) == (pytest.approx(92.5, abs=0.05), "nm")
     assert round(found.k * round(found.u)) == 93  # the GUM multiplies the rounded 32 nm
     assert sum(found.share(row) for row in found.rows) == pytest.approx(1)
 

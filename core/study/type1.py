@@ -1,0 +1,184 @@
+"""The type-1 gauge study: one reference part measured again and again; is the gauge fit for a tolerance?
+
+References
+----------
+ISO 22514-7:2021, 7.1 (bias and repeatability on a standard). Bosch, Booklet 10, Capability of measurement and test
+processes, procedure 1 (Cg, Cgk, limit 1.33, resolution ≤ 5 % of T). AIAG, Measurement systems analysis, 4th ed.,
+chapter III-B (t-test on the bias).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import chdtri, stdtr, stdtrit
+
+from core.model.arrays import Array
+
+CAPABLE, NOT_CAPABLE = "capable", "not capable"
+LIMIT = 1.33
+"""What Cg and Cgk must reach."""
+RESOLUTION_SHARE = 0.05
+"""Of the tolerance: what the resolution may be at most."""
+SIGNIFICANCE = 0.05
+FEW = 25
+"""Repeats below which a study says little; 50 are usual."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Type1Study:
+    """How well a reference part is measured, against a tolerance of full width T.
+
+    Parameters
+    ----------
+    values
+        (n,) in the order of measuring.
+    reference
+        The part's calibrated value.
+    tolerance
+        T = upper − lower limit: the full width, twice a ± tolerance.
+    mean, s
+        Of the values; s over n − 1.
+    bias
+        mean − reference.
+    cg, cgk
+        0.2 T / (6 s) and (0.1 T − |bias|) / (3 s); inf if all values are the same.
+    cg_interval
+        95 % confidence interval of Cg, from χ² of s.
+    t, p
+        Statistic of the bias against zero, and how probable one as large is without any bias (two-sided).
+    bias_interval
+        95 % confidence interval of the bias.
+    resolution
+        Of the gauge; None if it is not stated.
+    unit
+        Of all values.
+    """
+
+    values: Array
+    reference: float
+    tolerance: float
+    mean: float
+    s: float
+    bias: float
+    cg: float
+    cgk: float
+    cg_interval: tuple[float, float]
+    t: float
+    p: float
+    bias_interval: tuple[float, float]
+    resolution: float | None = None
+    unit: str = "mm"
+
+    @property
+    def n(self) -> int:
+        """Number of repeats."""
+        return len(self.values)
+
+    @property
+    def dof(self) -> int:
+        """Degrees of freedom of s."""
+        return self.n - 1
+
+    @property
+    def bias_is_significant(self) -> bool:
+        """Whether the t-test finds a bias, at 5 %."""
+        return self.p < SIGNIFICANCE
+
+    @property
+    def resolution_share(self) -> float | None:
+        """Resolution over T."""
+        return None if self.resolution is None else self.resolution / self.tolerance
+
+    @property
+    def resolution_suffices(self) -> bool | None:
+        """Whether the resolution is 5 % of T or less; None if it is not stated."""
+        return None if self.resolution_share is None else self.resolution_share <= RESOLUTION_SHARE * (1 + 1e-9)
+
+    @property
+    def band(self) -> tuple[float, float]:
+        """Reference ± 0.1 T: the lines of the run chart."""
+        return self.reference - 0.1 * self.tolerance, self.reference + 0.1 * self.tolerance
+
+    @property
+    def smallest_tolerance(self) -> float:
+        """Smallest T for which Cgk, and so Cg, reaches the limit: 10 (|bias| + 3 · 1.33 s)."""
+        return 10 * (abs(self.bias) + 3 * LIMIT * self.s)
+
+    @property
+    def verdict(self) -> str:
+        """CAPABLE if Cg and Cgk reach the limit and the resolution, if stated, suffices; else NOT_CAPABLE."""
+        suffices = min(self.cg, self.cgk) >= LIMIT and self.resolution_suffices is not False
+        return CAPABLE if suffices else NOT_CAPABLE
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What to know about the figures: whole sentences."""
+        said = []
+        if self.n < FEW:
+            said.append(f"{self.n} repeats say little about the spread: {FEW} or more are asked for, 50 are usual.")
+        if self.cgk < LIMIT <= self.cg:
+            said.append("The spread would suffice; the bias does not: correct it, or calibrate anew.")
+        if self.bias_is_significant:
+            said.append(f"The bias differs from zero (t-test, p = {self.p:.2g}).")
+        if self.s == 0:
+            said.append("All values are the same: the resolution hides the spread.")
+        return tuple(said)
+
+
+def type1_study(
+    values: Sequence[float], reference: float, tolerance: float, *, resolution: float | None = None, unit: str = "mm"
+) -> Type1Study:
+    """Study of n ≥ 2 repeats of a reference part.
+
+    Parameters
+    ----------
+    values
+        In the order of measuring.
+    reference
+        The part's calibrated value.
+    tolerance
+        T, the full width of the tolerance to be measured against, above 0.
+    resolution
+        Of the gauge, if known.
+    unit
+        Of all these.
+
+    Raises
+    ------
+    ValueError
+        If there are fewer than two values, one is not finite, or the tolerance or the resolution is not above 0.
+    """
+    measured = np.array(values, dtype=np.float64)
+    if measured.ndim != 1 or len(measured) < 2 or not np.isfinite(measured).all():
+        raise ValueError("a type-1 study needs two finite values or more")
+    if not tolerance > 0 or not math.isfinite(tolerance) or not math.isfinite(reference):
+        raise ValueError(
+            f"a type-1 study needs a reference value and a tolerance above 0, not {reference}, {tolerance}"
+        )
+    if resolution is not None and not resolution > 0:
+        raise ValueError(f"a resolution of {resolution} is none")
+    measured.setflags(write=False)
+    n, mean = len(measured), float(measured.mean())
+    s = float(measured.std(ddof=1)) if np.ptp(measured) else 0.0
+    bias = mean - reference
+    cg = 0.2 * tolerance / (6 * s) if s else math.inf
+    cgk = (0.1 * tolerance - abs(bias)) / (3 * s) if s else math.copysign(math.inf, 0.1 * tolerance - abs(bias))
+    low, high = (math.sqrt(chdtri(n - 1, tail) / (n - 1)) for tail in (1 - SIGNIFICANCE / 2, SIGNIFICANCE / 2))
+    t, p, half = _t_test(bias, s, n)
+    return Type1Study(
+        measured, reference, tolerance, mean, s, bias, cg, cgk, (cg * low, cg * high), t, p, (bias - half, bias + half),
+        resolution, unit,
+    )  # fmt: skip
+
+
+def _t_test(bias: float, s: float, n: int) -> tuple[float, float, float]:
+    """The statistic t = bias √n / s, its two-sided p, and half the width of the bias's 95 % interval."""
+    if not s:
+        return (math.copysign(math.inf, bias), 0.0, 0.0) if bias else (0.0, 1.0, 0.0)
+    error = s / math.sqrt(n)
+    t = bias / error
+    return t, 2 * float(stdtr(n - 1, -abs(t))), float(stdtrit(n - 1, 1 - SIGNIFICANCE / 2)) * error
