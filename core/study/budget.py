@@ -140,7 +140,7 @@ class UncertaintyBudget:
         return row.u_mm**2 / self.u**2 if self.u else 0.0
 
 
-def budget_of(
+def add_up(
     rows: Sequence[Contribution], *, value: float | None = None, coverage: float = COVERAGE, unit: str = "mm"
 ) -> UncertaintyBudget:
     """The budget of independent contributions: u_c² = Σ u_i², ν_eff by Welch–Satterthwaite, k = t_p(ν_eff).
@@ -199,7 +199,7 @@ def combine(
     """
     rows = tuple(one.row() for one in inputs)
     if correlation is None:
-        return budget_of(rows, value=value, coverage=coverage, unit=unit)
+        return add_up(rows, value=value, coverage=coverage, unit=unit)
     r = _checked(np.asarray(correlation, dtype=np.float64), len(inputs))
     signed = np.array([one.contribution for one in inputs])
     covariance = signed[:, None] * r * signed
@@ -211,7 +211,7 @@ def combine(
         joined.append(
             Contribution("", together, dof=min(one.dof for one, is_in in zip(inputs, mine, strict=True) if is_in))
         )
-    whole = budget_of(joined, value=value, coverage=coverage, unit=unit)
+    whole = add_up(joined, value=value, coverage=coverage, unit=unit)
     return replace(whole, rows=rows, correlation=r)
 
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from core.inspect.results import Contribution
 from core.inspect.uncertainty import POINT_NOISE, SWEEP_PLANES
-from core.study.budget import UncertaintyBudget, budget_of
+from core.study.budget import UncertaintyBudget, add_up
 
 OF_EACH_SCAN = (POINT_NOISE, SWEEP_PLANES)
 """Causes drawn anew with each scan. Calibrations are not, nor are speckle and form while the part lies still."""
@@ -53,7 +53,7 @@ def from_budgets(
     if scatter is not None:
         beyond = math.sqrt(max(scatter**2 - noise2, 0.0))
         rows.append(Contribution(BEYOND, beyond / math.sqrt(n), beyond, "t", n - 1, unit=unit))
-    return budget_of(rows, value=float(np.mean(values)), unit=unit)
+    return add_up(rows, value=float(np.mean(values)), unit=unit)
 
 
 def from_stated(values: Sequence[float], u: Sequence[float] | float | None, *, unit: str = "mm") -> UncertaintyBudget:
@@ -85,7 +85,7 @@ def from_stated(values: Sequence[float], u: Sequence[float] | float | None, *, u
         rows.append(Contribution(REPEATABILITY, scatter / math.sqrt(n), scatter, "t", n - 1, unit=unit))
     if not rows:
         raise ValueError("one value alone, with no stated uncertainty, has no budget")
-    return budget_of(rows, value=float(np.mean(values)), unit=unit)
+    return add_up(rows, value=float(np.mean(values)), unit=unit)
 
 
 def _scatter(values: Sequence[float]) -> float | None:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from core.inspect.results import Contribution
-from core.study.budget import Input, budget_of, combine, covariance_of, dof_of_doubt, of_observations, within
+from core.study.budget import Input, add_up, combine, covariance_of, dof_of_doubt, of_observations, within
 
 LENGTH, ALPHA, OFF = 50.000623e6, 11.5e-6, -0.1
 """Of the standard in nm, its expansion in 1/K, and the temperature's deviation from 20 °C."""
@@ -115,11 +115,11 @@ def test_freedom_of_correlated_inputs_is_that_of_the_least_known_and_of_independ
 
 def test_known_contributions_give_k_of_two_and_guessed_ones_more():
     known, few = Contribution("camera", 0.003), Contribution("form", 0.004, dof=4)
-    assert budget_of([known]).k == pytest.approx(2)
-    found = budget_of([known, few])
+    assert add_up([known]).k == pytest.approx(2)
+    found = add_up([known, few])
     assert (found.u, found.dof) == (pytest.approx(0.005), pytest.approx(0.005**4 / (0.004**4 / 4)))
     assert found.k == pytest.approx(2.32, abs=0.005)  # t_95.45(9), table G.2
-    assert budget_of([Contribution("nothing", 0.0)]).U == 0
+    assert add_up([Contribution("nothing", 0.0)]).U == 0
 
 
 @pytest.mark.parametrize(

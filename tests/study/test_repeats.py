@@ -2,9 +2,13 @@
 
 import math
 
+import numpy as np
 import pytest
 
-from core.study.repeats import RepeatStatistics, repeat_statistics
+from core.inspect.results import Contribution
+from core.inspect.uncertainty import CAMERA, POINT_NOISE, SWEEP_PLANES
+from core.study.repeats import RepeatStatistics, histogram, repeat_statistics, repeat_study, run_chart
+from core.study.repeats_budget import BEYOND, from_budgets, from_stated
 
 TABLE_1 = {
     70: (69.920, 70.101, 70.063, 70.042, 69.929, 69.918, 69.892, 70.102, 70.097, 70.114),
@@ -63,3 +67,74 @@ def test_without_a_nominal_value_there_is_no_error():
 def test_nothing_and_unknown_thicknesses_are_refused(values):
     with pytest.raises(ValueError, match="finite thickness"):
         repeat_statistics(values, 50.0)
+
+
+def test_the_run_chart_has_the_limits_of_individual_values_and_names_what_leaves_them():
+    steady = [50.0, 50.1, 50.0, 50.1, 50.0, 50.1]
+    chart = run_chart(np.array(steady))
+    assert (chart.lower, chart.upper) == pytest.approx((50.05 - 2.66 * 0.1, 50.05 + 2.66 * 0.1))
+    assert chart.outside == ()
+    values = np.array([50.0, 50.01, 50.0, 50.01, 50.0, 50.01, 50.0, 50.01, 50.0, 50.2])
+    assert run_chart(values).outside == (9,)
+    assert run_chart(np.array([50.0])) is None
+
+
+@pytest.mark.parametrize("values", [TABLE_1[70], [50.0] * 4, list(np.random.default_rng(0).normal(0, 1, 5000))])
+def test_the_histogram_counts_every_value_once_in_few_bins(values):
+    found = histogram(np.array(values))
+    assert found.counts.sum() == len(values)
+    assert len(found.edges) == len(found.counts) + 1 <= 21
+
+
+def study(values, u, **more):
+    return repeat_study(values, from_stated(values, u), complete=u is not None, **more)
+
+
+def test_the_verdict_is_that_of_the_mean_with_its_own_uncertainty():
+    values = [50.02, 50.04, 50.03, 50.03]
+    good = study(values, 0.01, nominal=50.0, limits=(-0.1, 0.1))
+    assert good.verdict == "conforming"
+    assert good.budget.u == pytest.approx(math.hypot(0.01, np.std(values, ddof=1) / 2))
+    assert study(values, 0.04, nominal=50.0, limits=(-0.1, 0.1)).verdict == "not proven"
+    assert study(values, 0.04, nominal=50.0, limits=(-0.1, 0.1), r=0).verdict == "conforming"
+    assert study(values, 0.01, nominal=49.0, limits=(-0.1, 0.1)).verdict == "not conforming"
+    assert study(values, 0.01).verdict == ""
+
+
+def test_scatter_alone_proves_nothing_because_what_is_common_is_not_in_it():
+    found = study([50.0, 50.001, 50.0], None, nominal=50.0, limits=(-1, 1))
+    assert found.verdict == "not proven"
+    assert any("nothing is proven" in note for note in found.notes)
+
+
+def test_what_is_common_to_all_repeats_does_not_average_out_and_their_own_noise_does():
+    budget = (Contribution(CAMERA, 0.003), Contribution(POINT_NOISE, 0.02), Contribution(SWEEP_PLANES, 0.01))
+    rng = np.random.default_rng(0)
+    values = rng.normal(50, math.hypot(0.02, 0.01) / 2, 100)  # no more scatter than stated
+    rows = {row.source: row for row in from_budgets(values, [budget] * 100).rows}
+    assert rows[CAMERA].u_mm == pytest.approx(0.003)
+    assert rows[POINT_NOISE].u_mm == pytest.approx(0.002)
+    assert rows[SWEEP_PLANES].u_mm == pytest.approx(0.001)
+    assert rows[BEYOND].u_mm == 0
+
+
+def test_scatter_beyond_the_stated_noise_counts_once():
+    budget = (Contribution(CAMERA, 0.003), Contribution(POINT_NOISE, 0.006))
+    values = 50 + 0.01 * np.array([-1, 1, -1, 1, -1, 1, -1, 1]) * math.sqrt(7 / 8)  # s is 0.01
+    found = from_budgets(values, [budget] * 8)
+    beyond = next(row for row in found.rows if row.source == BEYOND)
+    assert (beyond.point_mm, beyond.dof) == (pytest.approx(0.008), 7)
+    assert found.u == pytest.approx(math.sqrt(0.003**2 + 0.01**2 / 8))
+    assert found.value == pytest.approx(50)
+
+
+def test_budgets_that_differ_from_scan_to_scan_enter_by_their_quadratic_mean():
+    found = from_budgets([1.0, 1.0], [(Contribution(CAMERA, 0.3),), (Contribution(CAMERA, 0.4, dof=5),)])
+    assert found.rows[0].u_mm == pytest.approx(math.sqrt((0.09 + 0.16) / 2))
+    assert found.rows[0].dof == 5
+
+
+def test_one_value_of_unknown_uncertainty_has_no_budget():
+    with pytest.raises(ValueError, match="one value alone"):
+        from_stated([50.0], None)
+    assert from_stated([50.0], 0.01).u == pytest.approx(0.01)

@@ -1,0 +1,83 @@
+"""Decisions against the published examples of JCGM 106 and the rules of ISO 14253-1."""
+
+import math
+
+import numpy as np
+import pytest
+
+from core.inspect.conformity import Zones, decide_between, probability_of_conformity
+from core.inspect.coverage import coverage_factor, effective_dof
+from core.inspect.results import Contribution
+
+
+@pytest.mark.parametrize(
+    ("value", "u", "lower", "upper", "printed"),
+    [
+        (-5.47, 0.05, -math.inf, -5.40, 0.92),  # breakdown voltage of a Zener diode, one upper limit
+        (509.7, 8.6, 490.0, math.inf, 0.989),  # burst strength of a container, one lower limit
+        (13.6, 1.8, 12.5, 16.3, 0.66),  # viscosity of an oil, both limits
+    ],
+)
+def test_the_examples_of_jcgm_106_have_their_printed_probability_of_conformity(value, u, lower, upper, printed):
+    digits = len(str(printed)) - 2
+    assert round(probability_of_conformity(value, u, lower, upper), digits) == printed
+
+
+def test_few_degrees_of_freedom_make_conformity_less_probable():
+    known, guessed = (probability_of_conformity(0.0, 0.1, -0.2, 0.2, dof) for dof in (math.inf, 3))
+    assert guessed < known == pytest.approx(math.erf(math.sqrt(2)))
+
+
+@pytest.mark.parametrize(("r", "risk"), [(1.0, 0.023), (0.83, 0.05), (0.0, 0.5)])
+def test_at_the_edge_of_the_conformance_zone_the_risk_is_that_of_ilac_g8(r, risk):
+    zones = Zones(-math.inf, 0.2, 0.1, r)  # U = 0.1 of k = 2
+    edge = zones.conformance[1]
+    assert zones.verdict(edge) == "conforming"
+    assert 1 - probability_of_conformity(edge, 0.05, -math.inf, 0.2) == pytest.approx(risk, abs=0.002)
+
+
+def test_the_zones_join_without_gap_and_decide_as_the_verdict_does():
+    zones = Zones(-0.2, 0.3, 0.05, 0.8)
+    assert zones.guard_band == pytest.approx(0.04)
+    assert zones.conformance == pytest.approx((-0.16, 0.26))
+    assert zones.nonconformance == pytest.approx((-0.24, 0.34))
+    assert np.ravel(zones.uncertainty) == pytest.approx([-0.24, -0.16, 0.26, 0.34])
+    for value, verdict in [(0.26, "conforming"), (0.27, "not proven"), (0.35, "not conforming"), (-0.17, "not proven")]:
+        assert zones.verdict(value) == decide_between(value, -0.2, 0.3, 0.05, r=0.8) == verdict
+
+
+def test_one_limit_has_one_zone_of_uncertainty():
+    assert np.ravel(Zones(-math.inf, 0.1, 0.02).uncertainty) == pytest.approx([0.08, 0.12])
+    assert np.ravel(Zones(0.1, math.inf, 0.02).uncertainty) == pytest.approx([0.08, 0.12])
+
+
+def test_an_uncertainty_wider_than_the_tolerance_proves_no_conformity_at_all():
+    zones = Zones(-0.1, 0.1, 0.15)
+    assert zones.conformance is None
+    assert zones.uncertainty == (pytest.approx((-0.25, 0.25)),)
+    assert [zones.verdict(value) for value in (0.0, 0.2, 0.3)] == ["not proven", "not proven", "not conforming"]
+
+
+@pytest.mark.parametrize(
+    ("lower", "upper", "U", "r"), [(0.1, -0.1, 0.0, 1), (0, 1, -1, 1), (0, 1, math.nan, 1), (0, 1, 1, -1)]
+)
+def test_no_zones_of_nonsense(lower, upper, U, r):
+    with pytest.raises(ValueError, match="no decision"):
+        Zones(lower, upper, U, r)
+
+
+@pytest.mark.parametrize(
+    ("dof", "k95", "k9545", "k99"),
+    [(1, 12.71, 13.97, 63.66), (10, 2.23, 2.28, 3.17), (50, 2.01, 2.05, 2.68), (math.inf, 1.960, 2.000, 2.576)],
+)
+def test_the_coverage_factor_is_that_of_table_G_2(dof, k95, k9545, k99):
+    found = [coverage_factor(dof, p) for p in (0.95, 0.9545, 0.99)]
+    assert found == pytest.approx([k95, k9545, k99], abs=0.0051)
+
+
+def test_freedom_of_known_contributions_is_infinite_and_of_one_its_own():
+    assert effective_dof([Contribution("a", 0.1), Contribution("b", 0.2)]) == math.inf
+    assert effective_dof([Contribution("a", 0.1, dof=7)]) == pytest.approx(7)
+    assert effective_dof([]) == math.inf
+    with pytest.raises(ValueError, match="no coverage factor"):
+        coverage_factor(0.5)
