@@ -7,11 +7,12 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from core.image.linking import IGNORED, SATURATED, Hysteresis, coarse_crests, link
+from core.image.linking import IGNORED, SATURATED, Hysteresis, link
 from core.image.noise import estimate_noise
 from core.image.pieces import cut_ends
 from core.image.precision import response_noise
 from core.image.profile import measure_profiles
+from core.image.seeds import coarse_crests
 from core.image.stripe import WIDTH_IN_SIGMA, StripeSettings, filter_for
 from core.model.arrays import Array
 
@@ -61,7 +62,10 @@ def choose_settings(
         faintest = max(_ABOVE_NOISE * response_noise(noise, stripe_px, filter_px), _FAINTEST * full_scale, noise)
         if height < faintest:
             return None
-        sections = _sections(picture, state, stripe_px, filter_px, max(faintest, _SHARE_OF_STRONGEST * height))
+        faintest = max(faintest, _SHARE_OF_STRONGEST * height)
+        sections = _sections(
+            picture, state, stripe_px, filter_px, Hysteresis(faintest, 0.4 * faintest, 3 * filter_px, 0.0, noise)
+        )
         if sections.shape[1] < 2 * _LONG * filter_px:
             return None
         width = float(np.median(sections[1]))
@@ -90,10 +94,9 @@ def _first_guess(picture: NDArray[np.float32], noise: float) -> tuple[float, flo
 
 
 def _sections(
-    picture: NDArray[np.float32], state: NDArray[np.uint8], stripe_px: float, filter_px: float, height: float
+    picture: NDArray[np.float32], state: NDArray[np.uint8], stripe_px: float, filter_px: float, limits: Hysteresis
 ) -> Array:
-    """Heights and widths (2, N) along all long stripes that are higher than `height`."""
-    limits = Hysteresis(height, 0.4 * height, 3 * filter_px, 0.0)
+    """Heights and widths (2, N) along all long stripes within the `limits`."""
     sections = [np.empty((2, 0))]
     for traced in link(picture, state.copy(), stripe_px, filter_px, limits):
         if len(traced) < _LONG * filter_px:

@@ -151,6 +151,7 @@ def _limits(settings: StripeSettings, noise: NoiseModel, knows_saturation: bool)
         low=max(_LOW * settings.contrast, _LOW_NOISE * scatter),
         hold_px=3 * settings.filter_px,
         saturated_hold_px=4 * settings.width_px if knows_saturation else 0.0,
+        noise_grey=noise.read_grey,
     )
 
 

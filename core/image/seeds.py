@@ -1,0 +1,166 @@
+"""Where to look for stripes: a coarse look at a picture.
+
+A stripe that stands out of the noise pixel by pixel shows in a few rows and columns, so only those are read
+(`sparse_crests`): the cost is that of a tenth of the picture. A fainter one shows in the picture averaged over blocks
+(`coarse_crests`), which reads all of it. Neither says more than that a closer look is worth while.
+"""
+
+from __future__ import annotations
+
+import math
+
+import cv2
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from core.image.ridge import ridge_response
+from core.model.arrays import Array
+
+Picture = NDArray[np.float32] | NDArray[np.int16]
+
+_COARSE_BLUR = 1.0  # blocks
+_COARSE_SHARE = 0.55  # a crest between two blocks keeps at least this share of its response
+_BOX, _STEP, _APART = 1.5, 1.5, 3.5  # stripe σ: mean over, rows apart, the background beside a stripe
+_EVERY = 4.0  # filter σ: the shortest run that counts crosses two rows or columns that far apart
+_SPARSE_SHARE = 0.4  # a stripe between two rows, blurred by the box, keeps at least this share of its height
+_SPARSE_NOISE = 5.0  # times the noise of a second difference of single pixels' means
+_SEGMENT = 32
+
+
+def seeds(picture: Picture, stripe_px: float, filter_px: float, high: float, noise_grey: float) -> Array:
+    """Places (K, 2) in pixels worth a closer look, strongest first.
+
+    Stripes of σ `stripe_px` and at least `high` grey levels are among them; `noise_grey` is the scatter of a pixel.
+    """
+    box = max(1, round(_BOX * stripe_px))
+    if _SPARSE_SHARE * high >= _SPARSE_NOISE * noise_grey / math.sqrt(box):
+        found = sparse_crests(picture, stripe_px, filter_px, _SPARSE_SHARE * high)
+    else:
+        block = max(1, round(stripe_px))
+        expected = ridge_response(high, stripe_px / block, math.hypot(_COARSE_BLUR, 12**-0.5))
+        found = coarse_crests(picture, block, _COARSE_SHARE * expected)
+        found[:, :2] = (found[:, :2] + 0.5) * block - 0.5
+    order = np.argsort(-found[:, 2], kind="stable")
+    return np.asarray(found[order, :2])
+
+
+def sparse_crests(picture: Picture, stripe_px: float, filter_px: float, threshold: float) -> Array:
+    """Crests higher than `threshold` grey levels on a few rows and columns: (K, 3) u, v in pixels, height."""
+    box, apart = max(1, round(_BOX * stripe_px)), math.ceil(_APART * stripe_px)
+    every = max(box, int(_EVERY * filter_px))
+    step = max(1, round(_STEP * stripe_px))
+    limit = np.float32(2 * box * threshold)
+    upright = _on_rows(picture, every, box, apart, limit)
+    flat = _on_columns(picture, every, box, step, math.ceil(apart / step), limit)
+    return np.concatenate([upright, flat])
+
+
+def coarse_crests(picture: Picture, block: int, threshold: float) -> Array:
+    """Crests of the picture averaged over blocks of `block` px and blurred by one: (K, 3) column, row, response."""
+    height, width = (size // block for size in picture.shape)
+    whole = picture[: height * block, : width * block].astype(np.float32, copy=False)
+    blocks = np.asarray(cv2.resize(whole, (width, height), interpolation=cv2.INTER_AREA), dtype=np.float32)
+    blocks = np.asarray(cv2.GaussianBlur(blocks, (0, 0), _COARSE_BLUR), dtype=np.float32)
+    crests: Array = _crests(blocks, np.float32(threshold))
+    return crests
+
+
+@njit(cache=True, nogil=True, fastmath=True)
+def _on_rows(picture: Picture, every: int, box: int, apart: int, limit: np.float32) -> Array:
+    """Crests along every `every`-th row of means over `box` px, less those `apart` px to either side."""
+    height, width = picture.shape
+    count, last = 0, width - box + 1 - apart
+    found = np.empty((1024, 3))
+    sums, crest = np.empty(width, np.float32), np.zeros(width + _SEGMENT, np.float32)
+    inner = max(0, last - apart)
+    left, middle, right = sums[:inner], sums[apart : apart + inner], sums[2 * apart : 2 * apart + inner]
+    of_inner = crest[apart : apart + inner]
+    for row in range(every // 2, height, every):
+        for i in range(width):
+            sums[i] = picture[row, i]
+        for k in range(1, box):
+            shifted = picture[row, k:]
+            for i in range(width - k):
+                sums[i] += np.float32(shifted[i])
+        for i in range(inner):
+            of_inner[i] = 2 * middle[i] - left[i] - right[i]
+        for start in range(apart, last, _SEGMENT):
+            highest = np.float32(0)
+            for value in crest[start : start + _SEGMENT]:
+                highest = max(highest, value)
+            if highest <= limit:
+                continue
+            for i in range(start, min(start + _SEGMENT, last)):
+                if crest[i] > limit and crest[i] >= crest[i - 1] and crest[i] > crest[i + 1]:
+                    if count == len(found):
+                        found = np.concatenate((found, np.empty_like(found)))
+                    found[count, 0], found[count, 1], found[count, 2] = i + 0.5 * (box - 1), row, crest[i]
+                    count += 1
+    return found[:count]
+
+
+@njit(cache=True, nogil=True, fastmath=True)
+def _on_columns(picture: Picture, every: int, box: int, step: int, apart: int, limit: np.float32) -> Array:
+    """Crests down every `every`-th column, `box` px wide, read every `step` px, less those `apart` steps away."""
+    height, width = picture.shape
+    rows, columns = (height - 1) // step + 1, max(0, (width - box) // every)
+    sums, crest = np.zeros((rows, columns), np.float32), np.zeros((rows, columns), np.float32)
+    for j in range(rows):
+        here = sums[j]
+        for i in range(box):
+            line = picture[j * step, i:]
+            for k in range(columns):
+                here[k] += np.float32(line[k * every])
+    for j in range(apart, rows - apart):
+        above, here, below, out = sums[j - apart], sums[j], sums[j + apart], crest[j]
+        for k in range(columns):
+            out[k] = 2 * here[k] - above[k] - below[k]
+    count = 0
+    found = np.empty((1024, 3))
+    for j in range(1, rows - 1):
+        above, middle, below = crest[j - 1], crest[j], crest[j + 1]
+        highest = np.float32(0)
+        for value in middle:
+            highest = max(highest, value)
+        if highest <= limit:
+            continue
+        for k in range(columns):
+            if middle[k] > limit and middle[k] >= above[k] and middle[k] > below[k]:
+                if count == len(found):
+                    found = np.concatenate((found, np.empty_like(found)))
+                found[count, 0], found[count, 1], found[count, 2] = k * every + 0.5 * (box - 1), j * step, middle[k]
+                count += 1
+    return found[:count]
+
+
+@njit(cache=True, nogil=True, fastmath=True)
+def _crests(blocks: NDArray[np.float32], threshold: np.float32) -> Array:
+    """Blocks that are a ridge stronger than `threshold` and a maximum across it: (K, 3) column, row, response."""
+    height, width = blocks.shape
+    found = np.empty((1024, 3))
+    count = 0
+    for j in range(1, height - 1):
+        for i in range(1, width - 1):
+            here = blocks[j, i]
+            uu = blocks[j, i - 1] + blocks[j, i + 1] - 2 * here
+            vv = blocks[j - 1, i] + blocks[j + 1, i] - 2 * here
+            if uu + vv > -threshold:
+                continue
+            uv = 0.25 * (blocks[j - 1, i - 1] + blocks[j + 1, i + 1] - blocks[j - 1, i + 1] - blocks[j + 1, i - 1])
+            half = 0.5 * (uu - vv)
+            response = math.sqrt(half * half + uv * uv) - 0.5 * (uu + vv)
+            if response < threshold:
+                continue
+            if uu < vv:  # the line is closer to upright
+                if blocks[j, i - 1] > here or blocks[j, i + 1] > here:
+                    continue
+            elif blocks[j - 1, i] > here or blocks[j + 1, i] > here:
+                continue
+            if count == len(found):
+                found = np.concatenate((found, np.empty_like(found)))
+            found[count, 0] = i
+            found[count, 1] = j
+            found[count, 2] = response
+            count += 1
+    return found[:count]
