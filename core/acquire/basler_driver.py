@@ -1,20 +1,20 @@
-"""How pypylon is spoken to: its cameras, their settings, their grey levels."""
+"""Basler cameras through pypylon, an optional extra."""
 
 from __future__ import annotations
 
+import contextlib
 import importlib
+from collections.abc import Callable, Iterator
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
-from core.acquire.source import Picture
+from core.acquire.features import TRIGGER, Features
+from core.acquire.genicam import BUFFERS, DriverError, Grabbed
 from core.errors import InputError
 
 MODULE = "pypylon"
 INSTALL = "Basler cameras need pypylon: install it with pip install 'trisect[basler]'."
 
-_BITS = {"Mono8": 8, "Mono10": 10, "Mono12": 12, "Mono16": 16}
+READY_MS = 200
 
 
 def list_cameras() -> list[tuple[str, str, str]]:
@@ -26,7 +26,45 @@ def list_cameras() -> list[tuple[str, str, str]]:
         If pypylon is not installed, or its drivers cannot look.
     """
     pylon = pylon_module()
-    return [(one.GetSerialNumber(), one.GetFriendlyName(), one.GetDeviceClass()) for one in devices(pylon)]
+    return [(one.GetSerialNumber(), one.GetFriendlyName(), one.GetDeviceClass()) for one in _devices(pylon)]
+
+
+def connect(serial: str, setup: Callable[[Any], None] | None = None) -> PylonDriver:
+    """Open the camera with a serial number; "" is the first one found.
+
+    Parameters
+    ----------
+    serial
+        Serial number.
+    setup
+        Called with the open pylon camera before anything is read from it.
+
+    Raises
+    ------
+    InputError
+        If pypylon is not installed, there is no such camera, or it cannot be opened.
+    """
+    pylon = pylon_module()
+    found = [one for one in _devices(pylon) if serial in ("", one.GetSerialNumber())]
+    if not found:
+        todo = "plug it in, and see that it shows in the pylon Viewer"
+        what = f"there is no camera with the serial number {serial}" if serial else "no camera is found"
+        raise InputError(what, where="Basler", todo=todo)
+    name = found[0].GetFriendlyName()
+    camera = None
+    try:
+        with _telling():
+            camera = pylon.InstantCamera(pylon.TlFactory.GetInstance().CreateDevice(found[0]))
+            camera.Open()
+            if setup is not None:
+                setup(camera)
+            return PylonDriver(pylon, camera, name)
+    except BaseException as problem:
+        _let_go(camera)
+        if not isinstance(problem, DriverError):
+            raise
+        todo = "see that no other program uses it, then try again"
+        raise InputError(f"the camera cannot be opened ({problem})", where=name, todo=todo) from problem
 
 
 def pylon_module() -> Any:
@@ -37,61 +75,134 @@ def pylon_module() -> Any:
         raise InputError(INSTALL.removesuffix(".")) from missing
 
 
-def devices(pylon: Any) -> list[Any]:
+class PylonDriver:
+    """One open Basler camera (:class:`core.acquire.genicam.Driver`)."""
+
+    def __init__(self, pylon: Any, camera: Any, name: str) -> None:
+        self.name, self.camera = name, camera
+        self.features: Features = PylonFeatures(camera)
+        self._pylon = pylon
+        self._format = ""
+        self._number = -1
+
+    def start(self) -> None:
+        with _telling():
+            self._format, self._number = self.features.entry("PixelFormat"), -1
+            self.camera.OutputQueueSize.SetValue(BUFFERS)
+            self.camera.StartGrabbing(self._pylon.GrabStrategy_LatestImages)
+
+    def stop(self) -> None:
+        with _telling():
+            self.camera.StopGrabbing()
+
+    def grab(self, timeout_s: float) -> Grabbed | None:
+        with _telling():
+            result = self.camera.RetrieveResult(round(1000 * timeout_s), self._pylon.TimeoutHandling_Return)
+            return self._grabbed(result) if result.IsValid() else None
+
+    def gone(self) -> bool:
+        with _telling():
+            return self.camera.IsCameraDeviceRemoved() or not self.camera.IsGrabbing()
+
+    def close(self) -> None:
+        _let_go(self.camera)
+
+    def _grabbed(self, result: Any) -> Grabbed:
+        """What a grab result holds; a camera that does not number its frames is counted for by its driver."""
+        try:
+            self._number = max(int(result.GetBlockID()), self._number + 1 + int(result.GetNumberOfSkippedImages()))
+            if not result.GrabSucceeded():
+                return Grabbed(None, number=self._number)
+            picture = result.GetArray()
+            height, width = picture.shape[:2]
+            return Grabbed(picture.ravel(), self._format, width, height, self._number)
+        finally:
+            result.Release()
+
+
+class PylonFeatures:
+    """The nodes of a camera (:class:`core.acquire.features.Features`)."""
+
+    def __init__(self, camera: Any) -> None:
+        self._camera = camera
+
+    def has(self, name: str) -> bool:
+        with _telling():
+            try:
+                node = self._node(name)
+            except _genicam().LogicalErrorException:
+                return False
+            return node is not None and bool(_genicam().IsAvailable(node))
+
+    def number(self, name: str) -> float:
+        with _telling():
+            return float(self._node(name).GetValue())
+
+    def limits(self, name: str) -> tuple[float, float, float]:
+        with _telling():
+            node = self._node(name)
+            whole = isinstance(node.GetValue(), int)
+            return float(node.GetMin()), float(node.GetMax()), float(node.GetInc()) if whole else 0.0
+
+    def set_number(self, name: str, value: float) -> None:
+        with _telling():
+            node = self._node(name)
+            node.SetValue(type(node.GetValue())(value))
+
+    def entries(self, name: str) -> tuple[str, ...]:
+        with _telling():
+            return tuple(self._node(name).GetSymbolics())
+
+    def entry(self, name: str) -> str:
+        with _telling():
+            return str(self._node(name).GetValue())
+
+    def choose(self, name: str, entry: str) -> None:
+        with _telling():
+            self._node(name).SetValue(entry)
+
+    def run(self, name: str) -> None:
+        with _telling():
+            if name == TRIGGER and self._camera.CanWaitForFrameTriggerReady():
+                pylon = pylon_module()  # a trigger that comes too early is lost
+                self._camera.WaitForFrameTriggerReady(READY_MS, pylon.TimeoutHandling_Return)
+            self._node(name).Execute()
+
+    def _node(self, name: str) -> Any:
+        return self._camera.GetNodeMap().GetNode(name)
+
+
+def _genicam() -> Any:
+    return importlib.import_module(f"{MODULE}.genicam")
+
+
+def _devices(pylon: Any) -> list[Any]:
     """What the driver knows of each camera that is plugged in."""
     try:
-        return list(pylon.TlFactory.GetInstance().EnumerateDevices())
-    except pylon.GenericException as problem:
-        raise InputError(f"the drivers cannot look for cameras ({said(problem)})", where="Basler") from problem
+        with _telling():
+            return list(pylon.TlFactory.GetInstance().EnumerateDevices())
+    except DriverError as problem:
+        raise InputError(f"the drivers cannot look for cameras ({problem})", where="Basler") from problem
 
 
-def writable_node(camera: Any, name: str) -> Any:
-    """A camera's node that can be written to, or None."""
-    genicam = importlib.import_module(f"{MODULE}.genicam")
-    try:
-        node = camera.GetNodeMap().GetNode(name)
-        return node if node is not None and genicam.IsWritable(node) else None
-    except genicam.GenericException:
-        return None
-
-
-def choose(camera: Any, name: str, value: str) -> None:
-    """Set an enumeration, where the camera has it and this entry of it."""
-    node = writable_node(camera, name)
-    if node is not None and value in node.GetSymbolics():
-        node.SetValue(value)
-
-
-def depth(camera: Any, name: str) -> int:
-    """Bits of the camera's grey levels; its pixel format is made grey first."""
-    node = camera.GetNodeMap().GetNode("PixelFormat")
-    if node.GetValue() not in _BITS:
-        choose(camera, "PixelFormat", "Mono8")
-    if node.GetValue() not in _BITS:
-        raise InputError(f"the camera gives {node.GetValue()} and no grey levels", where=name, todo="set it to Mono8")
-    return _BITS[node.GetValue()]
-
-
-def full_range(grey: NDArray[Any], bits: int) -> Picture:
-    """Grey levels as they came with 8 or 16 bit; 10 and 12 bit spread over 16, white to white."""
-    if bits in (8, 16):
-        return np.array(grey)
-    wide = grey.astype(np.uint16)
-    spread: Picture = (wide << np.uint16(16 - bits)) | (wide >> np.uint16(2 * bits - 16))
-    return spread
-
-
-def let_go(pylon: Any, camera: Any) -> None:
+def _let_go(camera: Any) -> None:
     """Stop and close a camera, also one that is gone; None is none."""
     if camera is None:
         return
     try:
-        camera.StopGrabbing()
-        camera.Close()
-    except pylon.GenericException:
+        with _telling():
+            camera.StopGrabbing()
+            camera.Close()
+    except DriverError:
         camera.DetachDevice()  # it is gone already
 
 
-def said(problem: Exception) -> str:
-    """The first sentence of what a driver says, without where in its source it was said."""
-    return str(problem).split(" : ")[0].strip().removesuffix(".")
+@contextlib.contextmanager
+def _telling() -> Iterator[None]:
+    """What pylon raises, as DriverError: its first sentence, without where in its source it was said."""
+    try:
+        yield
+    except DriverError:
+        raise
+    except _genicam().GenericException as problem:
+        raise DriverError(str(problem).split(" : ")[0].strip().removesuffix(".")) from problem

@@ -15,7 +15,7 @@ import numpy as np
 from core.acquire.grey import Channel, to_grey
 from core.acquire.opencv_devices import Capture, capture_of, exposure_of, opencv_name
 from core.acquire.pace import Pace
-from core.acquire.source import Ended, Frame, Lasers, Picture, SourceSettings, Step, Unplugged
+from core.acquire.source import Capabilities, Ended, Frame, Lasers, Picture, SourceSettings, Step, Unplugged
 from core.errors import InputError
 
 WAITING = 3
@@ -23,6 +23,9 @@ WAITING = 3
 
 JOIN_S = 3.0
 FILE_RATE_HZ = 25.0
+
+CAMERA = Capabilities(exposure_ms=(0.001, 60_000.0), gain_db=(-40.0, 80.0), rate_hz=(0.0, 10_000.0))
+FILE = Capabilities(rate_hz=(0.0, 10_000.0))
 
 
 class OpenCVSource:
@@ -62,6 +65,11 @@ class OpenCVSource:
         self._count = 0
         self._origin = 0.0
 
+    @property
+    def capabilities(self) -> Capabilities:
+        """Rate, and of a camera exposure and gain; what OpenCV's driver really takes it says when it is told."""
+        return FILE if self._is_file else CAMERA
+
     def open(self) -> None:
         """Open it; InputError says what to do when it cannot be opened."""
         self.close()
@@ -81,6 +89,7 @@ class OpenCVSource:
 
     def configure(self, settings: SourceSettings) -> None:
         """Set exposure, gain (in the driver's own unit where it knows no dB) and rate, now or when it is opened."""
+        self.capabilities.check(settings, self.name)
         if self._capture is not None:
             self._apply(settings)
         self._wanted = self._wanted.updated(settings)
@@ -136,11 +145,11 @@ class OpenCVSource:
             self._pace.rate_hz = settings.rate_hz
         elif settings.rate_hz:
             self._set(cv2.CAP_PROP_FPS, settings.rate_hz, "frame rate")
-        if settings.exposure_ms is not None and not self._is_file:
+        if settings.exposure_ms is not None:
             manual, value = exposure_of(self._capture, settings.exposure_ms)
             self._set(cv2.CAP_PROP_AUTO_EXPOSURE, manual, "exposure time")
             self._set(cv2.CAP_PROP_EXPOSURE, value, "exposure time")
-        if settings.gain_db is not None and not self._is_file:
+        if settings.gain_db is not None:
             self._set(cv2.CAP_PROP_GAIN, settings.gain_db, "gain")
 
     def _set(self, key: int, value: float, what: str) -> None:

@@ -7,10 +7,11 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from core.acquire.pace import Pace
-from core.acquire.source import Ended, Frame, Lasers, Picture, SourceSettings, Step, Unplugged
+from core.acquire.source import Capabilities, Ended, Frame, Lasers, Picture, SourceSettings, Step, Unplugged
 from core.errors import InputError
 
 RATE_HZ = 10.0
+ANY_RATE_HZ = (0.0, 10_000.0)
 
 HOLDS: dict[Step, int] = {"camera": 12, "planes": 25, "scan": 1}
 """For how many frames a picture of a recording is shown: in a recording of targets each one was held still."""
@@ -65,6 +66,11 @@ class ReplaySource:
         self._at = self._shown = self._count = 0
         self._decoded: tuple[Path, Picture] | None = None
 
+    @property
+    def capabilities(self) -> Capabilities:
+        """The rate alone."""
+        return Capabilities(rate_hz=ANY_RATE_HZ)
+
     def open(self) -> None:
         """See that the folder is there; frames are counted anew."""
         if not self._folder.is_dir():
@@ -76,6 +82,7 @@ class ReplaySource:
 
     def configure(self, settings: SourceSettings) -> None:
         """Set the rate (usual: 10 Hz; 0: as fast as it is read); there is nothing else to set."""
+        self.capabilities.check(settings, self.name)
         if settings.rate_hz is not None:
             self._pace.rate_hz = settings.rate_hz
 

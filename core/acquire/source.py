@@ -6,13 +6,29 @@ of the source's own. A source that is unplugged raises :class:`Unplugged` once a
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass
 from typing import Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from core.acquire.settings import Capabilities, Region, SourceSettings
 from core.errors import InputError
+
+__all__ = [
+    "Capabilities",
+    "Ended",
+    "Frame",
+    "FrameSource",
+    "Lasers",
+    "Picture",
+    "Region",
+    "SourceChoice",
+    "SourceInfo",
+    "SourceSettings",
+    "Step",
+    "Unplugged",
+]
 
 Step = Literal["camera", "planes", "scan"]
 """What is being recorded, named as the part of the recording set it becomes."""
@@ -30,53 +46,17 @@ class Lasers:
 
 
 @dataclass(frozen=True, slots=True)
-class SourceSettings:
-    """What a camera can be told; None leaves it as it is.
-
-    Parameters
-    ----------
-    exposure_ms
-        Exposure time in ms.
-    gain_db
-        Amplification in dB.
-    rate_hz
-        Frames per second; for a replay, 0 means as fast as they are read.
-
-    Raises
-    ------
-    InputError
-        If a value is out of any camera's range.
-    """
-
-    exposure_ms: float | None = None
-    gain_db: float | None = None
-    rate_hz: float | None = None
-
-    def __post_init__(self) -> None:
-        if self.exposure_ms is not None and not 0 < self.exposure_ms <= 60_000:
-            raise InputError(f"{self.exposure_ms:g} ms is not above 0 and at most 60 000 ms", where="exposure")
-        if self.gain_db is not None and not -40 <= self.gain_db <= 80:
-            raise InputError(f"{self.gain_db:g} dB is not between -40 and 80 dB", where="gain")
-        if self.rate_hz is not None and not 0 <= self.rate_hz <= 10_000:
-            raise InputError(f"{self.rate_hz:g} Hz is not between 0 and 10 000 Hz", where="frame rate")
-
-    def updated(self, newer: SourceSettings) -> SourceSettings:
-        """These settings with what `newer` says instead."""
-        said = {name: value for name, value in asdict(newer).items() if value is not None}
-        return replace(self, **said)
-
-
-@dataclass(frozen=True, slots=True)
 class SourceChoice:
     """Which source: its kind by name, and which of that kind.
 
     Parameters
     ----------
     kind
-        "simulated", "opencv", "replay" or "basler"; see :data:`core.pipeline.sources.SOURCES`.
+        "simulated", "opencv", "replay", "basler", "genicam" or "aravis"; see :data:`core.pipeline.sources.SOURCES`.
     id
-        Number or address of an OpenCV camera, folder of a replay, serial number of a Basler camera, scenario of the
-        simulated rig (TOML, or the path of a TOML file). "" is the first or usual one.
+        Number or address of an OpenCV camera, folder of a replay, serial number of a Basler camera, a GenTL producer's
+        or Aravis's name of a camera, scenario of the simulated rig (TOML, or the path of a TOML file). "" is the first
+        or usual one.
     """
 
     kind: str
@@ -129,11 +109,15 @@ class FrameSource(Protocol):
     def name(self) -> str:
         """What a person calls it."""
 
+    @property
+    def capabilities(self) -> Capabilities:
+        """Which settings it has; exact limits only while it is open."""
+
     def open(self) -> None:
         """Make it ready to be read, also again after `close` or `Unplugged`; InputError says what to do if it fails."""
 
     def configure(self, settings: SourceSettings) -> None:
-        """Set what is not None, before `open` or after it; InputError if the source refuses a value."""
+        """Set what is not None, before `open` or after it; InputError if it has no such setting or value."""
 
     def prepare(self, step: Step) -> None:
         """Say what will be recorded. Only what knows its own scene (simulated rig, replay) acts on it."""

@@ -9,7 +9,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from core.acquire.source import Lasers, SourceChoice, SourceSettings, Step
+from core.acquire.source import Capabilities, Lasers, SourceChoice, SourceSettings, Step
 from core.files.options import Options
 from core.files.rig import Rig
 from core.image.centreline import Centreline
@@ -211,10 +211,11 @@ Detail = CameraDetail | PlanesDetail | ScanDetail
 
 @dataclass(frozen=True, slots=True)
 class LiveStarted:
-    """The first picture is there: the source's name, and the full (width, height) of its pictures."""
+    """The first picture is there: the source's name, the full (width, height) of its pictures, what it can be told."""
 
     name: str
     image_size: tuple[int, int]
+    capabilities: Capabilities = field(default_factory=Capabilities)
 
 
 @dataclass(frozen=True, eq=False, slots=True)

@@ -6,7 +6,8 @@ import time
 from collections import deque
 from collections.abc import Callable
 
-from core.acquire.source import Ended, Frame, FrameSource, Unplugged
+from core.acquire.settings import TITLES
+from core.acquire.source import Capabilities, Ended, Frame, FrameSource, Unplugged
 from core.errors import InputError
 from core.live.events import (
     Command,
@@ -52,6 +53,7 @@ class LiveLoop:
         self._desk, self._step, self._commands, self._ready = desk, step, commands, ready
         self._source: FrameSource = desk.source
         self._settings = desk.request.settings
+        self._capabilities = Capabilities()
         self._display = Display(desk.request.display_px)
         self._stopping = self._started = False
         self._waiting: deque[Command] = deque()
@@ -96,8 +98,13 @@ class LiveLoop:
             self._wait_for_source(str(gone))
 
     def _open(self) -> None:
-        self._source.configure(self._settings)
+        """Open the source, and tell it what it can be told."""
         self._source.open()
+        self._capabilities = self._source.capabilities
+        told = self._settings.only(self._capabilities.names)
+        if left := [TITLES[name][0] for name in self._settings.told if name not in told.told]:
+            self._desk.notice(f"{self._source.name} has no {' and no '.join(left)} to set: what it has is used.")
+        self._source.configure(told)
 
     def _read(self) -> Frame | None:
         """The next frame; one that is damaged is told and left out, unless all are."""
@@ -119,7 +126,7 @@ class LiveLoop:
         if not self._started:
             self._started = True
             height, width = frame.picture.shape
-            self._desk.emit(LiveStarted(self._source.name, (width, height)))
+            self._desk.emit(LiveStarted(self._source.name, (width, height), self._capabilities))
         self._newest, self._dropped_now = frame, frame.dropped
         self._times.append(frame.time_s)
         while len(self._times) > 2 and frame.time_s - self._times[0] > _RATE_OVER_S:

@@ -11,8 +11,8 @@ from pathlib import Path
 
 import numpy as np
 
-from core.acquire import basler_driver
-from core.acquire.basler import BaslerSource
+from core.acquire import aravis_driver, basler_driver, gentl_driver
+from core.acquire.genicam import Driver, GenICamSource
 from core.acquire.opencv_camera import OpenCVSource
 from core.acquire.opencv_devices import list_cameras, opencv_name
 from core.acquire.replay import HOLDS, ReplaySource
@@ -43,8 +43,11 @@ class SourceKind:
         One line: what it is, and what its `id` is.
     make, list
         Makes a source of a choice; lists the choices that can be found without asking.
-    needs
-        Module that must be installed for it; "" if nothing is missing ever.
+    settings
+        Names of :class:`core.acquire.source.SourceSettings` that sources of this kind may have; which of them one
+        really has it says when it is open.
+    is_missing
+        Whether its driver is not installed.
     install
         One sentence: what to install if it is missing.
     """
@@ -53,15 +56,14 @@ class SourceKind:
     help: str
     make: Made
     list: Listed
-    needs: str = ""
+    settings: tuple[str, ...] = ("rate_hz",)
+    is_missing: Callable[[], bool] = bool
     install: str = ""
 
     @property
     def missing(self) -> str:
         """Why this kind cannot be used on this computer, and what to install; "" if it can."""
-        if not self.needs or importlib.util.find_spec(self.needs) is not None:
-            return ""
-        return self.install
+        return self.install if self.is_missing() else ""
 
 
 def list_sources(kind: str) -> tuple[SourceInfo, ...]:
@@ -143,8 +145,20 @@ def _make_replay(choice: SourceChoice, rig: Rig | None) -> ReplaySource:
     return ReplaySource(folder.name, folder, listing, read, holds=HOLDS if listing.is_set else {})
 
 
-def _make_basler(choice: SourceChoice, rig: Rig | None) -> BaslerSource:
-    return BaslerSource(choice.id)
+def _make_basler(choice: SourceChoice, rig: Rig | None) -> GenICamSource:
+    return _genicam(f"Basler {choice.id}", partial(basler_driver.connect, choice.id), rig)
+
+
+def _make_genicam(choice: SourceChoice, rig: Rig | None) -> GenICamSource:
+    return _genicam(choice.id or "GenICam camera", partial(gentl_driver.connect, choice.id), rig)
+
+
+def _make_aravis(choice: SourceChoice, rig: Rig | None) -> GenICamSource:
+    return _genicam(choice.id or "Aravis camera", partial(aravis_driver.connect, choice.id), rig)
+
+
+def _genicam(name: str, connect: Callable[[], Driver], rig: Rig | None) -> GenICamSource:
+    return GenICamSource(name.strip(), connect, None if rig is None else rig.channel)
 
 
 def _list_simulated() -> tuple[SourceInfo, ...]:
@@ -164,12 +178,19 @@ def _list_opencv() -> tuple[SourceInfo, ...]:
     )
 
 
-def _list_basler() -> tuple[SourceInfo, ...]:
-    return tuple(
-        SourceInfo(SourceChoice("basler", serial), name, connection)
-        for serial, name, connection in basler_driver.list_cameras()
+def _list_by(kind: str, list_cameras: Callable[[], list[tuple[str, str, str]]]) -> Listed:
+    """Lists what a driver finds: identifier, name and what else is known of each camera."""
+    return lambda: tuple(
+        SourceInfo(SourceChoice(kind, identifier), name, detail) for identifier, name, detail in list_cameras()
     )
 
+
+def _is_not_installed(module: str) -> bool:
+    return importlib.util.find_spec(module) is None
+
+
+_CAMERA = ("exposure_ms", "gain_db", "rate_hz")
+_GENICAM = (*_CAMERA, "trigger", "pixel_format", "region")
 
 SOURCES: Mapping[str, SourceKind] = {
     "simulated": SourceKind(
@@ -177,12 +198,14 @@ SOURCES: Mapping[str, SourceKind] = {
         "A camera and lasers that exist only in this program, moved by hand in real time.",
         _make_simulated,
         _list_simulated,
+        settings=_CAMERA,
     ),
     "opencv": SourceKind(
         "Camera or video",
         "A camera of this computer by its number, a network camera by its address, or a video file.",
         _make_opencv,
         _list_opencv,
+        settings=_CAMERA,
     ),
     "replay": SourceKind(
         "Folder of pictures",
@@ -194,9 +217,28 @@ SOURCES: Mapping[str, SourceKind] = {
         "Basler camera",
         "An industrial camera of Basler, by its serial number.",
         _make_basler,
-        _list_basler,
-        needs=basler_driver.MODULE,
+        _list_by("basler", basler_driver.list_cameras),
+        settings=_GENICAM,
+        is_missing=partial(_is_not_installed, basler_driver.MODULE),
         install=basler_driver.INSTALL,
+    ),
+    "genicam": SourceKind(
+        "GenICam camera",
+        "An industrial camera of any maker, by its GenTL producer (.cti).",
+        _make_genicam,
+        _list_by("genicam", gentl_driver.list_cameras),
+        settings=_GENICAM,
+        is_missing=partial(_is_not_installed, gentl_driver.MODULE),
+        install=gentl_driver.INSTALL,
+    ),
+    "aravis": SourceKind(
+        "GigE or USB3 camera",
+        "An industrial camera of any maker, by Aravis, by its name or network address.",
+        _make_aravis,
+        _list_by("aravis", aravis_driver.list_cameras),
+        settings=_GENICAM,
+        is_missing=aravis_driver.is_missing,
+        install=aravis_driver.INSTALL,
     ),
 }
 """Kinds of live sources by name, the usual one first."""

@@ -12,12 +12,14 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from core.acquire.source import Frame, Lasers, SourceSettings, Step
+from core.acquire.source import Capabilities, Frame, Lasers, SourceSettings, Step
 from core.simulate.exposure_timer import ExposureTimer
 from core.simulate.live_scene import LiveScene, LiveTruth, Moment
 
 EXPOSURE_MS = 8.0
 """Exposure time of the pictures as the twin makes them; another one makes them brighter or darker."""
+
+CAPABILITIES = Capabilities(exposure_ms=(0.01, 1000.0), gain_db=(-40.0, 80.0), rate_hz=(0.0, 10_000.0))
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,6 +74,11 @@ class SimulatedSource:
         self._delivered = self._lost = self._orders = 0
 
     @property
+    def capabilities(self) -> Capabilities:
+        """Exposure, gain and rate."""
+        return CAPABILITIES
+
+    @property
     def truth(self) -> LiveTruth:
         """What really is before the camera."""
         return self._scene.truth
@@ -89,6 +96,7 @@ class SimulatedSource:
 
     def configure(self, settings: SourceSettings) -> None:
         """Set exposure (usual: 8 ms), gain (usual: 0 dB) and rate (usual: 12 Hz; 0: as fast as it is read)."""
+        CAPABILITIES.check(settings, self.name)
         with self._changed:
             if settings.exposure_ms is not None:
                 self._exposure = settings.exposure_ms / EXPOSURE_MS

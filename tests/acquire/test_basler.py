@@ -2,19 +2,25 @@
 
 import sys
 import time
+from functools import partial
 from itertools import pairwise
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from core.acquire.basler import BaslerSource
-from core.acquire.basler_driver import full_range, list_cameras
-from core.acquire.source import Lasers, SourceSettings, Unplugged
+from core.acquire.basler_driver import connect, list_cameras
+from core.acquire.genicam import GenICamSource
+from core.acquire.pixel_formats import full_range
+from core.acquire.source import Lasers, Region, SourceSettings, Unplugged
 from core.errors import InputError
 from core.files.pictures import write_picture
 
 EMULATED = "0815-0000"
+
+
+def basler(serial=EMULATED, setup=None):
+    return GenICamSource("Basler", partial(connect, serial, setup))
 
 
 @pytest.fixture
@@ -50,7 +56,7 @@ def pictures(tmp_path):
 
 @pytest.fixture
 def source(pylon, pictures):
-    source = BaslerSource(EMULATED, setup=shows(pictures[0]))
+    source = basler(setup=shows(pictures[0]))
     yield source
     source.close()
 
@@ -83,7 +89,7 @@ def test_a_late_reader_gets_the_newest_frames_and_the_exact_number_of_lost_ones(
 
 
 def test_the_first_camera_found_is_taken_without_a_number(pylon):
-    source = BaslerSource()
+    source = basler("")
     source.open()
     assert source.read(2).picture.ndim == 2
     source.close()
@@ -92,7 +98,7 @@ def test_the_first_camera_found_is_taken_without_a_number(pylon):
 
 @pytest.mark.parametrize(("pixel_format", "bits"), [("Mono12", 12), ("Mono16", 16)])
 def test_deeper_pictures_fill_16_bits(pylon, pixel_format, bits):
-    source = BaslerSource(EMULATED, setup=lambda camera: camera.PixelFormat.SetValue(pixel_format))
+    source = basler(setup=lambda camera: camera.PixelFormat.SetValue(pixel_format))
     source.open()
     picture = source.read(2).picture
     source.close()
@@ -107,7 +113,7 @@ def test_twelve_bits_are_spread_over_sixteen_white_to_white():
 
 
 def test_colour_formats_are_made_grey(pylon):
-    source = BaslerSource(EMULATED, setup=lambda camera: camera.PixelFormat.SetValue("BGR8Packed"))
+    source = basler(setup=lambda camera: camera.PixelFormat.SetValue("BGR8Packed"))
     source.open()
     assert source.read(2).picture.ndim == 2
     source.close()
@@ -117,15 +123,50 @@ def test_exposure_gain_and_rate_reach_the_camera(source):
     source.configure(SourceSettings(exposure_ms=3.0))
     source.open()
     source.configure(SourceSettings(gain_db=6.0, rate_hz=40.0))
-    assert source._camera.ExposureTime.GetValue() == pytest.approx(3000)
-    assert source._camera.Gain.GetValue() == pytest.approx(6.0, abs=0.1)
-    assert source._camera.AcquisitionFrameRate.GetValue() == pytest.approx(40)
+    assert source._driver.camera.ExposureTime.GetValue() == pytest.approx(3000)
+    assert source._driver.camera.Gain.GetValue() == pytest.approx(6.0, abs=0.1)
+    assert source._driver.camera.AcquisitionFrameRate.GetValue() == pytest.approx(40)
 
 
 def test_a_value_the_camera_does_not_take_says_what_it_does(source):
     source.open()
     with pytest.raises(InputError, match=r"gain of 60 dB is not between 0 and 48 dB"):
         source.configure(SourceSettings(gain_db=60))
+
+
+def test_the_camera_says_what_it_can_be_told(source):
+    assert source.capabilities.names == ()
+    source.open()
+    can = source.capabilities
+    assert can.gain_db == (0, pytest.approx(48, abs=0.2))
+    assert can.exposure_ms[0] < 1 < can.exposure_ms[1]
+    assert {"Off", "Software"} <= set(can.triggers)
+    assert {"Mono8", "Mono12"} <= set(can.pixel_formats)
+    assert can.sensor[0] >= 64
+
+
+def test_region_and_pixel_format_change_while_pictures_come(source):
+    source.configure(SourceSettings(rate_hz=50))
+    source.open()
+    first = source.read(2)
+    source.configure(SourceSettings(region=Region(8, 4, 32, 16), pixel_format="Mono12"))
+    frame = source.read(2)
+    assert frame.picture.shape == (16, 32)
+    assert frame.picture.dtype == np.uint16
+    assert frame.index > first.index
+    assert frame.dropped == 0
+
+
+def test_a_picture_that_is_asked_for_comes_and_no_other(source):
+    source.configure(SourceSettings(trigger="Software", rate_hz=50))
+    source.open()
+    frames = [source.read(2) for _ in range(3)]
+    time.sleep(0.2)
+    frames.append(source.read(2))
+    assert [frame.index for frame in frames] == [0, 1, 2, 3]
+    assert frames[-1].dropped == 0
+    source.configure(SourceSettings(trigger="Off"))
+    assert source.read(2).index == 4
 
 
 def test_no_frame_within_the_time_gives_none(source):
@@ -137,7 +178,7 @@ def test_no_frame_within_the_time_gives_none(source):
 
 def test_a_camera_that_is_not_plugged_in_says_so(pylon):
     with pytest.raises(InputError, match=r"serial number 12345.*plug it in"):
-        BaslerSource("12345").open()
+        basler("12345").open()
 
 
 def test_a_camera_in_use_says_so(pylon):
@@ -145,7 +186,7 @@ def test_a_camera_in_use_says_so(pylon):
         raise pylon.RuntimeException("The device is controlled by another application. : thrown here")
 
     with pytest.raises(InputError, match=r"controlled by another application\).*no other program uses it"):
-        BaslerSource(EMULATED, setup=in_use).open()
+        basler(setup=in_use).open()
 
 
 def test_a_camera_pulled_out_is_unplugged_and_can_be_opened_again(source, monkeypatch):
@@ -155,10 +196,10 @@ def test_a_camera_pulled_out_is_unplugged_and_can_be_opened_again(source, monkey
         RetrieveResult=lambda *_: SimpleNamespace(IsValid=lambda: False),
         IsCameraDeviceRemoved=lambda: True,
         IsGrabbing=lambda: True,
-        StopGrabbing=source._camera.StopGrabbing,
-        Close=source._camera.Close,
+        StopGrabbing=source._driver.camera.StopGrabbing,
+        Close=source._driver.camera.Close,
     )
-    monkeypatch.setattr(source, "_camera", gone)
+    monkeypatch.setattr(source._driver, "camera", gone)
     with pytest.raises(Unplugged, match="pulled out"):
         source.read(0.1)
     with pytest.raises(Unplugged):
@@ -169,7 +210,7 @@ def test_a_camera_pulled_out_is_unplugged_and_can_be_opened_again(source, monkey
 
 def test_a_driver_that_fails_while_reading_counts_as_unplugged(source):
     source.open()
-    source._camera.DetachDevice()
+    source._driver.camera.DetachDevice()
     with pytest.raises(Unplugged):
         for _ in range(10):
             source.read(0.1)
@@ -181,19 +222,19 @@ def test_a_frame_the_connection_broke_is_counted(source):
         GetNumberOfSkippedImages=lambda: 2, GetBlockID=lambda: 0, GrabSucceeded=lambda: False, Release=lambda: None
     )
     index = source.read(2).index
-    assert source._frame(broken) is None
+    assert source._frame(source._driver._grabbed(broken)) is None
     frame = source.read(2)
     assert frame.index >= index + 4
     assert frame.dropped >= 3
 
 
 def test_lasers_are_a_persons_business():
-    assert BaslerSource().lasers(Lasers(fan=True, hand=False)) is False
+    assert basler("").lasers(Lasers(fan=True, hand=False)) is False
 
 
 def test_without_pypylon_one_sentence_says_what_to_install(monkeypatch):
     monkeypatch.setitem(sys.modules, "pypylon", None)
     monkeypatch.setitem(sys.modules, "pypylon.pylon", None)
-    for wanted in (list_cameras, BaslerSource().open):
+    for wanted in (list_cameras, basler("").open):
         with pytest.raises(InputError, match=r"pip install 'trisect\[basler\]'"):
             wanted()

@@ -5,7 +5,7 @@ import time
 from collections import deque
 from pathlib import Path
 
-from core.acquire.source import Ended, Frame, Lasers, SourceChoice, SourceSettings, Unplugged
+from core.acquire.source import Capabilities, Ended, Frame, Lasers, SourceChoice, SourceSettings, Unplugged
 from core.errors import InputError
 from core.files.rig import Rig
 from core.live.events import LiveRequest, LiveView
@@ -29,6 +29,10 @@ class ScriptedSource:
         self.counts = counts or (lambda lasers: True)
         self.is_open = False
         self.calls = []
+
+    @property
+    def capabilities(self):
+        return Capabilities(exposure_ms=(0.1, 100.0))
 
     def open(self):
         if self.missing:

@@ -25,7 +25,7 @@ def rig(tmp_path):
 
 
 def test_every_kind_has_a_title_and_one_line_of_help():
-    assert list(SOURCES) == ["simulated", "opencv", "replay", "basler"]
+    assert list(SOURCES) == ["simulated", "opencv", "replay", "basler", "genicam", "aravis"]
     for kind in SOURCES.values():
         assert kind.title
         assert kind.help.endswith(".")

@@ -49,7 +49,7 @@ class LiveSettings(QObject):
     @property
     def values(self) -> SourceSettings:
         """What the source is told; None leaves it as it is."""
-        told = {name: self._number(name) for name in SETTINGS[self.kind]}
+        told: dict[str, Any] = {name: self._number(name) for name in SETTINGS[self.kind]}
         try:
             return SourceSettings(**told)
         except InputError:

@@ -1,0 +1,231 @@
+"""GigE Vision and USB3 Vision cameras through Aravis, which the system's packages bring."""
+
+from __future__ import annotations
+
+import contextlib
+import importlib
+import importlib.util
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+
+from core.acquire.features import Features
+from core.acquire.genicam import BUFFERS, DriverError, Grabbed
+from core.errors import InputError
+
+VERSION = "0.8"
+INSTALL = (
+    "Aravis is not installed: on Debian and Ubuntu, apt install gir1.2-aravis-0.8 python3-gi, "
+    "and run Trisect with the system's own version of Python."
+)
+
+SYSTEM_PACKAGES = Path("/usr/lib/python3/dist-packages")
+"""Where the system's packages put Python's link to Aravis; it can be loaded by a Python of the same version only."""
+
+
+def is_missing() -> bool:
+    """Whether Aravis cannot be used on this computer."""
+    try:
+        aravis()
+    except InputError:
+        return True
+    return False
+
+
+def aravis() -> Any:
+    """Aravis's module.
+
+    Raises
+    ------
+    InputError
+        If it is not installed, or not for this version of Python.
+    """
+    try:
+        gi = _introspection()
+        gi.require_version("Aravis", VERSION)
+        return importlib.import_module("gi.repository.Aravis")
+    except (ImportError, ValueError) as missing:
+        raise InputError(INSTALL.removesuffix(".")) from missing
+
+
+def list_cameras() -> list[tuple[str, str, str]]:
+    """Identifier, name, and kind of connection of each camera that answers; InputError if Aravis is missing."""
+    module = aravis()
+    module.update_device_list()
+    return [
+        (
+            module.get_device_id(number),
+            f"{module.get_device_vendor(number)} {module.get_device_model(number)}",
+            f"{module.get_device_protocol(number)} {module.get_device_address(number)}",
+        )
+        for number in range(module.get_n_devices())
+    ]
+
+
+def connect(identifier: str) -> AravisDriver:
+    """Open the camera Aravis calls `identifier`, or that has this network address; "" is the first one found.
+
+    Raises
+    ------
+    InputError
+        If Aravis is missing, or there is no such camera, or it cannot be opened.
+    """
+    module = aravis()
+    if not identifier and not list_cameras():
+        raise InputError("no camera is found", where="Aravis", todo="plug it in, and see that it has a network address")
+    try:
+        with _telling():
+            return AravisDriver(module, module.Camera.new(identifier or None))
+    except DriverError as problem:
+        what = f"the camera {identifier}".rstrip()
+        todo = "see that it is plugged in and no other program uses it, then try again"
+        raise InputError(f"{what} cannot be opened ({problem})", where="Aravis", todo=todo) from problem
+
+
+class AravisDriver:
+    """One camera of Aravis (:class:`core.acquire.genicam.Driver`)."""
+
+    def __init__(self, module: Any, camera: Any) -> None:
+        self._module, self._camera = module, camera
+        self._device = camera.get_device()
+        self.name = f"{camera.get_vendor_name()} {camera.get_model_name()}"
+        self.features: Features = DeviceFeatures(module, self._device)
+        self._stream: Any = None
+        self._format = ""
+        self._lost = False
+        self._device.connect("control-lost", self._lose)
+
+    def start(self) -> None:
+        with _telling():
+            self._camera.set_acquisition_mode(self._module.AcquisitionMode.CONTINUOUS)
+            self._format = self.features.entry("PixelFormat")
+            self._stream = self._camera.create_stream(None, None)
+            payload = self._camera.get_payload()
+            for _ in range(BUFFERS):
+                self._stream.push_buffer(self._module.Buffer.new_allocate(payload))
+            self._camera.start_acquisition()
+
+    def stop(self) -> None:
+        with _telling():
+            self._camera.stop_acquisition()
+        self._stream = None
+
+    def grab(self, timeout_s: float) -> Grabbed | None:
+        with _telling():
+            buffer = self._stream.timeout_pop_buffer(max(round(timeout_s * 1e6), 1))
+            if buffer is None:
+                return None
+            try:
+                return self._grabbed(buffer)
+            finally:
+                self._stream.push_buffer(buffer)
+
+    def gone(self) -> bool:
+        return self._lost
+
+    def close(self) -> None:
+        self._stream = None
+        with contextlib.suppress(DriverError), _telling():
+            if not self._lost:
+                self._camera.stop_acquisition()
+        self._camera = self._device = self.features = None  # type: ignore[assignment]  # Aravis lets go of it then
+
+    def _grabbed(self, buffer: Any) -> Grabbed:
+        number = buffer.get_frame_id()
+        if buffer.get_status() != self._module.BufferStatus.SUCCESS:
+            return Grabbed(None, number=number)
+        return Grabbed(
+            data=np.frombuffer(buffer.get_data(), np.uint8),
+            pixel_format=self._format,
+            width=buffer.get_image_width(),
+            height=buffer.get_image_height(),
+            number=number,
+            time_s=buffer.get_timestamp() * 1e-9 or None,
+        )
+
+    def _lose(self, device: Any) -> None:
+        self._lost = True
+
+
+class DeviceFeatures:
+    """The features of a device (:class:`core.acquire.features.Features`)."""
+
+    def __init__(self, module: Any, device: Any) -> None:
+        self._module, self._device = module, device
+
+    def has(self, name: str) -> bool:
+        with _telling():
+            return bool(self._device.is_feature_available(name))
+
+    def number(self, name: str) -> float:
+        with _telling():
+            whole = self._is_whole(name)
+            read = self._device.get_integer_feature_value if whole else self._device.get_float_feature_value
+            return float(read(name))
+
+    def limits(self, name: str) -> tuple[float, float, float]:
+        with _telling():
+            if self._is_whole(name):
+                bounds = self._device.get_integer_feature_bounds(name)
+                return bounds[0], bounds[1], self._device.get_integer_feature_increment(name)
+            bounds = self._device.get_float_feature_bounds(name)
+            return bounds[0], bounds[1], 0.0
+
+    def set_number(self, name: str, value: float) -> None:
+        with _telling():
+            if isinstance(self._device.get_feature(name), self._module.GcBoolean):
+                self._device.set_boolean_feature_value(name, bool(value))
+            elif self._is_whole(name):
+                self._device.set_integer_feature_value(name, round(value))
+            else:
+                self._device.set_float_feature_value(name, value)
+
+    def entries(self, name: str) -> tuple[str, ...]:
+        with _telling():
+            return tuple(self._device.dup_available_enumeration_feature_values_as_strings(name))
+
+    def entry(self, name: str) -> str:
+        with _telling():
+            return str(self._device.get_string_feature_value(name))
+
+    def choose(self, name: str, entry: str) -> None:
+        with _telling():
+            self._device.set_string_feature_value(name, entry)
+
+    def run(self, name: str) -> None:
+        with _telling():
+            self._device.execute_command(name)
+
+    def _is_whole(self, name: str) -> bool:
+        return isinstance(self._device.get_feature(name), self._module.GcInteger)
+
+
+def _introspection() -> ModuleType:
+    """Python's link to the system's libraries: installed beside us, or else the system's, if it is for this version."""
+    if importlib.util.find_spec("gi") is None and _is_for_us(SYSTEM_PACKAGES):
+        sys.path.append(str(SYSTEM_PACKAGES))
+        try:
+            return importlib.import_module("gi")
+        finally:
+            sys.path.remove(str(SYSTEM_PACKAGES))
+    return importlib.import_module("gi")
+
+
+def _is_for_us(packages: Path) -> bool:
+    version = f"cpython-{sys.version_info.major}{sys.version_info.minor}"
+    return any(packages.glob(f"gi/_gi.{version}*"))
+
+
+@contextlib.contextmanager
+def _telling() -> Iterator[None]:
+    """What Aravis raises, as DriverError."""
+    try:
+        yield
+    except Exception as problem:
+        if type(problem).__module__.split(".")[0] != "gi":
+            raise
+        raise DriverError(getattr(problem, "message", str(problem)).strip().removesuffix(".")) from problem

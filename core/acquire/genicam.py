@@ -1,0 +1,222 @@
+"""GenICam cameras, whichever driver speaks to them: a GenTL producer through harvesters, or Aravis."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+from numpy.typing import NDArray
+
+from core.acquire.features import TRIGGER, Features, apply, capabilities_of, is_asked_for, make_grey
+from core.acquire.frame_numbers import FrameNumbers
+from core.acquire.grey import Channel
+from core.acquire.pixel_formats import decode
+from core.acquire.source import Capabilities, Frame, Lasers, SourceSettings, Step, Unplugged
+from core.errors import InputError
+
+BUFFERS = 8
+"""Frames that a driver keeps for a reader that is a little late; it counts those it has no room for."""
+
+ASK_AGAIN_S = 5.0
+"""A picture that was asked for and has not come for so long is asked for again."""
+
+
+class DriverError(Exception):
+    """What a driver complains of, in its own words."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Grabbed:
+    """What a driver hands over.
+
+    Parameters
+    ----------
+    data
+        The buffer, flat, no longer the driver's; None if a part of it was lost on the way.
+    pixel_format, width, height
+        What it holds.
+    number
+        The camera's own number of the frame; None if it does not count.
+    time_s
+        When the camera exposed it, by a clock of its own; None if it does not say.
+    """
+
+    data: NDArray[Any] | None
+    pixel_format: str = ""
+    width: int = 0
+    height: int = 0
+    number: int | None = None
+    time_s: float | None = None
+
+
+class Driver(Protocol):
+    """One open camera of a driver. All but `close` may raise DriverError."""
+
+    name: str
+    """What a person calls the camera."""
+    features: Features
+
+    def start(self) -> None:
+        """Let it take pictures."""
+
+    def stop(self) -> None:
+        """Let it rest, so that its picture can change in kind."""
+
+    def grab(self, timeout_s: float) -> Grabbed | None:
+        """The next frame; None if there is none within the time."""
+
+    def gone(self) -> bool:
+        """Whether the camera is away; asked when no frame comes."""
+
+    def close(self) -> None:
+        """Let go of it, also when it is gone."""
+
+
+class GenICamSource:
+    """A GenICam camera behind :class:`core.acquire.source.FrameSource`.
+
+    The camera's own settings are kept where nothing else is said; colour is reduced to grey, where the camera gives no
+    grey itself.
+
+    Parameters
+    ----------
+    name
+        What it is called until it is open.
+    connect
+        Finds the camera and opens it; InputError says what to do if there is none.
+    channel
+        Which colour to take.
+    clock
+        Time in s that only runs forward, for cameras that do not tell theirs.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        connect: Callable[[], Driver],
+        channel: Channel | None = None,
+        *,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        self.name = name
+        self._connect, self._channel, self._clock = connect, channel, clock
+        self._wanted = SourceSettings()
+        self._driver: Driver | None = None
+        self._numbers = FrameNumbers()
+        self._index = self._dropped = 0
+        self._ask, self._ask_again_s = False, float("-inf")
+        self._origin: float | None = None
+
+    @property
+    def capabilities(self) -> Capabilities:
+        """What the open camera can be told; nothing while it is closed."""
+        if self._driver is None:
+            return Capabilities()
+        try:
+            return capabilities_of(self._driver.features)
+        except DriverError as problem:
+            raise self._gone(str(problem)) from problem
+
+    def open(self) -> None:
+        """Find the camera, open it and let it run."""
+        self.close()
+        driver = self._connect()
+        self.name = driver.name
+        self._index = self._dropped = 0
+        self._origin = None
+        try:
+            make_grey(driver.features, self.name)
+            apply(driver.features, self._wanted, self.name)
+            self._start(driver)
+        except DriverError as problem:
+            driver.close()
+            todo = "see that no other program uses it, then try again"
+            raise InputError(f"the camera cannot be opened ({problem})", where=self.name, todo=todo) from problem
+        except BaseException:
+            driver.close()
+            raise
+        self._driver = driver
+
+    def configure(self, settings: SourceSettings) -> None:
+        """Set what the camera has, now or when it is opened; it rests a moment where it must."""
+        driver = self._driver
+        if driver is not None:
+            try:
+                self._tell(driver, settings)
+            except DriverError as problem:
+                if driver.gone():
+                    raise self._gone(str(problem)) from problem
+                raise InputError(f"the camera does not take this setting ({problem})", where=self.name) from problem
+        self._wanted = self._wanted.updated(settings)
+
+    def prepare(self, step: Step) -> None:
+        """A camera sees what is before it."""
+
+    def lasers(self, lasers: Lasers) -> bool:
+        """A person must switch them."""
+        return False
+
+    def read(self, timeout_s: float) -> Frame | None:
+        """The next frame, None if there is none within the time; Unplugged when the camera is gone."""
+        driver = self._driver
+        if driver is None:
+            raise self._unplugged("it is not open")
+        try:
+            if self._ask and self._clock() >= self._ask_again_s:
+                driver.features.run(TRIGGER)
+                self._ask_again_s = self._clock() + ASK_AGAIN_S
+            grabbed = driver.grab(timeout_s)
+            if grabbed is None:
+                if driver.gone():
+                    raise self._gone("it was pulled out")
+                return None
+        except DriverError as problem:
+            raise self._gone(str(problem)) from problem
+        self._ask_again_s = float("-inf")
+        return self._frame(grabbed)
+
+    def close(self) -> None:
+        """Stop the camera and let go of it."""
+        driver, self._driver = self._driver, None
+        if driver is not None:
+            driver.close()
+
+    def _tell(self, driver: Driver, settings: SourceSettings) -> None:
+        if not settings.stops_the_stream:
+            apply(driver.features, settings, self.name)
+            return
+        driver.stop()
+        try:
+            apply(driver.features, settings, self.name)
+        finally:
+            self._start(driver)
+
+    def _start(self, driver: Driver) -> None:
+        self._numbers.restart()
+        self._ask, self._ask_again_s = is_asked_for(driver.features), float("-inf")
+        driver.start()
+
+    def _frame(self, grabbed: Grabbed) -> Frame | None:
+        """The picture, or None if the connection lost a part of it."""
+        lost = 0 if grabbed.number is None else self._numbers.missing_before(grabbed.number)
+        self._dropped += lost + (grabbed.data is None)
+        index = self._index + lost
+        self._index = index + 1
+        time_s = self._clock() if grabbed.time_s is None else grabbed.time_s
+        self._origin = time_s if self._origin is None else self._origin
+        if grabbed.data is None:
+            return None
+        try:
+            picture = decode(grabbed.data, grabbed.pixel_format, grabbed.width, grabbed.height, self._channel)
+        except ValueError as wrong:
+            raise InputError(f"the picture is damaged ({wrong})", where=self.name) from wrong
+        return Frame(picture, index, time_s - self._origin, self._dropped)
+
+    def _gone(self, why: str) -> Unplugged:
+        self.close()
+        return self._unplugged(why)
+
+    def _unplugged(self, why: str) -> Unplugged:
+        return Unplugged(f"the camera sends no pictures any more ({why})", where=self.name, todo="plug it in again")

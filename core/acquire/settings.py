@@ -1,0 +1,195 @@
+"""What a camera can be told, and what one of them lets itself be told."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
+from typing import Any
+
+from core.errors import InputError
+
+LARGEST_REGION_PX = 65_536
+
+FREE_RUNNING = "Off"
+"""The trigger of a camera that takes pictures by itself."""
+SOFTWARE = "Software"
+"""The trigger by which whoever reads a picture also asks for it."""
+
+TITLES = {
+    "exposure_ms": ("exposure time", "ms"),
+    "gain_db": ("gain", "dB"),
+    "rate_hz": ("frame rate", "Hz"),
+    "trigger": ("trigger", ""),
+    "pixel_format": ("pixel format", ""),
+    "region": ("region", ""),
+}
+"""What each setting is called, and its unit."""
+
+Limits = tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Region:
+    """The part of the sensor that is read: column and row of its first pixel, width and height, in pixels.
+
+    Calibrations hold for the region their pictures were taken with.
+
+    Raises
+    ------
+    InputError
+        If it is empty, or not within any sensor.
+    """
+
+    left: int
+    top: int
+    width: int
+    height: int
+
+    def __post_init__(self) -> None:
+        ends = (self.left + self.width, self.top + self.height)
+        if min(self.left, self.top) < 0 or min(self.width, self.height) < 1 or max(ends) > LARGEST_REGION_PX:
+            raise InputError(f"{self} is not within a sensor", where="region", todo="give columns and rows of it")
+
+    def __str__(self) -> str:
+        return f"{self.width} × {self.height} pixels from column {self.left}, row {self.top}"
+
+
+@dataclass(frozen=True, slots=True)
+class SourceSettings:
+    """What a camera can be told; None leaves it as it is.
+
+    Parameters
+    ----------
+    exposure_ms
+        Exposure time in ms.
+    gain_db
+        Amplification in dB.
+    rate_hz
+        Frames per second; for a replay, 0 means as fast as they are read.
+    trigger
+        "Off": pictures are taken by themselves. "Software": whoever reads a picture asks for it. Else the camera's own
+        name of a line, such as "Line1": each pulse there takes one.
+    pixel_format
+        GenICam's name, such as "Mono8" or "Mono12".
+    region
+        The part of the sensor that is read.
+
+    Raises
+    ------
+    InputError
+        If a value is out of any camera's range.
+    """
+
+    exposure_ms: float | None = None
+    gain_db: float | None = None
+    rate_hz: float | None = None
+    trigger: str | None = None
+    pixel_format: str | None = None
+    region: Region | None = None
+
+    def __post_init__(self) -> None:
+        if self.exposure_ms is not None and not 0 < self.exposure_ms <= 60_000:
+            raise InputError(f"{self.exposure_ms:g} ms is not above 0 and at most 60 000 ms", where="exposure")
+        if self.gain_db is not None and not -40 <= self.gain_db <= 80:
+            raise InputError(f"{self.gain_db:g} dB is not between -40 and 80 dB", where="gain")
+        if self.rate_hz is not None and not 0 <= self.rate_hz <= 10_000:
+            raise InputError(f"{self.rate_hz:g} Hz is not between 0 and 10 000 Hz", where="frame rate")
+        for name in ("trigger", "pixel_format"):
+            word = getattr(self, name)
+            if word is not None and not (word.isascii() and word.isalnum()):
+                raise InputError(f"{word!r} is no {TITLES[name][0]}", where=TITLES[name][0])
+
+    @property
+    def told(self) -> dict[str, Any]:
+        """What is not left as it is, by name."""
+        pairs = ((field.name, getattr(self, field.name)) for field in fields(self))
+        return {name: value for name, value in pairs if value is not None}
+
+    @property
+    def stops_the_stream(self) -> bool:
+        """Whether a camera must stop taking pictures to be told this."""
+        return not (self.trigger is None and self.pixel_format is None and self.region is None)
+
+    def only(self, names: Sequence[str]) -> SourceSettings:
+        """What of it has one of these names."""
+        return SourceSettings(**{name: value for name, value in self.told.items() if name in names})
+
+    def updated(self, newer: SourceSettings) -> SourceSettings:
+        """These settings with what `newer` says instead."""
+        return replace(self, **newer.told)
+
+
+@dataclass(frozen=True, slots=True)
+class Capabilities:
+    """Which settings a source has.
+
+    Parameters
+    ----------
+    exposure_ms, gain_db, rate_hz
+        Smallest and largest value; None if it cannot be told.
+    triggers, pixel_formats
+        What can be chosen; () if nothing can.
+    sensor
+        (width, height) within which a region can be chosen; None if it cannot.
+    """
+
+    exposure_ms: Limits | None = None
+    gain_db: Limits | None = None
+    rate_hz: Limits | None = None
+    triggers: tuple[str, ...] = ()
+    pixel_formats: tuple[str, ...] = ()
+    sensor: tuple[int, int] | None = None
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names of SourceSettings that can be told."""
+        there = {
+            "exposure_ms": self.exposure_ms is not None,
+            "gain_db": self.gain_db is not None,
+            "rate_hz": self.rate_hz is not None,
+            "trigger": bool(self.triggers),
+            "pixel_format": bool(self.pixel_formats),
+            "region": self.sensor is not None,
+        }
+        return tuple(name for name, can in there.items() if can)
+
+    def check(self, settings: SourceSettings, where: str) -> None:
+        """InputError with one sentence unless a source called `where` can be told all of `settings`."""
+        for name, value in settings.told.items():
+            if name not in self.names:
+                raise no_such_setting(name, where)
+            match name:
+                case "exposure_ms" | "gain_db" | "rate_hz":
+                    check_number(name, value, getattr(self, name), where)
+                case "trigger":
+                    check_choice(name, value, self.triggers, where)
+                case "pixel_format":
+                    check_choice(name, value, self.pixel_formats, where)
+                case "region" if self.sensor is not None:
+                    check_region(value, self.sensor, where)
+
+
+def no_such_setting(name: str, where: str) -> InputError:
+    """The sentence for a setting that a source does not have."""
+    return InputError(f"the source does not let its {TITLES[name][0]} be set", where=where, todo="leave it as it is")
+
+
+def check_number(name: str, value: float, limits: Limits, where: str) -> None:
+    """InputError unless `value` is within `limits`."""
+    title, unit = TITLES[name]
+    if not limits[0] <= value <= limits[1]:
+        raise InputError(
+            f"the {title} of {value:g} {unit} is not between {limits[0]:g} and {limits[1]:g} {unit}", where=where
+        )
+
+
+def check_choice(name: str, value: str, choices: tuple[str, ...], where: str) -> None:
+    """InputError unless `value` is one of `choices`."""
+    if value not in choices:
+        raise InputError(f"the {TITLES[name][0]} {value} is not one of {', '.join(choices)}", where=where)
+
+
+def check_region(region: Region, sensor: tuple[int, int], where: str) -> None:
+    """InputError unless `region` lies within a sensor of (width, height)."""
+    if region.left + region.width > sensor[0] or region.top + region.height > sensor[1]:
+        raise InputError(f"{region} is not within its {sensor[0]} × {sensor[1]}", where=where)

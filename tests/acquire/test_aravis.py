@@ -1,0 +1,170 @@
+"""Cameras through Aravis: a GigE Vision camera that only exists on the loopback, spoken to by the real protocol."""
+
+import os
+import shutil
+import signal
+import subprocess
+import time
+from functools import partial
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from core.acquire import aravis_driver
+from core.acquire.aravis_driver import connect, list_cameras
+from core.acquire.genicam import GenICamSource
+from core.acquire.source import Region, SourceSettings, Unplugged
+from core.errors import InputError
+
+FAKE = "arv-fake-gv-camera-0.8"
+pytestmark = pytest.mark.xdist_group("the loopback has one GigE Vision port")
+
+
+def start_camera(*options):
+    return subprocess.Popen([FAKE, "-i", "127.0.0.1", *options], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+
+def wait_for_camera():
+    for _ in range(10):
+        try:
+            connect("127.0.0.1").close()
+        except InputError:
+            continue
+        return
+    pytest.skip("the fake camera does not answer on the loopback")
+
+
+@pytest.fixture
+def camera():
+    """A camera process on the loopback."""
+    if shutil.which(FAKE) is None:
+        pytest.skip(f"{FAKE} is not installed (apt install aravis-tools)")
+    if aravis_driver.is_missing():
+        pytest.skip(aravis_driver.INSTALL)
+    process = start_camera()
+    wait_for_camera()
+    yield process
+    process.kill()
+    process.wait()
+
+
+@pytest.fixture
+def source(camera):
+    source = GenICamSource("Aravis", partial(connect, "127.0.0.1"))
+    source.configure(SourceSettings(rate_hz=50, region=Region(0, 0, 128, 96)))
+    source.open()
+    yield source
+    source.close()
+
+
+def test_pictures_come_through_the_network_with_the_cameras_own_times(source):
+    frames = [source.read(2) for _ in range(10)]
+    assert {frame.picture.shape for frame in frames} == {(96, 128)}
+    assert frames[0].picture.dtype == np.uint8
+    assert [frame.index for frame in frames] == list(range(10))
+    assert all(0 < b.time_s - a.time_s < 0.5 for a, b in pairwise(frames))
+    assert np.ptp(frames[0].picture) > 50
+    assert source.name == "Aravis Fake"
+
+
+def test_what_the_camera_has_can_be_set_while_it_runs(source):
+    can = source.capabilities
+    assert can.sensor == (2048, 2048)
+    assert can.gain_db is None
+    assert {"Off", "Software"} <= set(can.triggers)
+    before = source.read(2)
+    source.configure(SourceSettings(region=Region(16, 8, 64, 32), pixel_format="Mono16", exposure_ms=2.0))
+    frame = source.read(2)
+    assert frame.picture.shape == (32, 64)
+    assert frame.picture.dtype == np.uint16
+    assert frame.index == before.index + 1
+    assert source._driver.features.number("ExposureTimeAbs") == pytest.approx(2000)
+    with pytest.raises(InputError, match="does not let its gain be set"):
+        source.configure(SourceSettings(gain_db=3.0))
+    assert source.read(2) is not None
+
+
+def test_a_late_reader_knows_exactly_how_many_frames_it_lost(source):
+    source.read(2)
+    time.sleep(0.6)
+    frames = [source.read(2) for _ in range(20)]
+    assert frames[-1].dropped > 3
+    assert frames[-1].index + 1 == 21 + frames[-1].dropped
+    spent = frames[-1].time_s * 50
+    assert frames[-1].index == pytest.approx(spent, rel=0.25)
+
+
+def test_a_picture_is_asked_for_by_software(source):
+    source.configure(SourceSettings(trigger="Software"))
+    assert [source.read(2).picture.shape for _ in range(3)] == [(96, 128)] * 3
+    source.configure(SourceSettings(trigger="Off"))
+    assert source.read(2) is not None
+
+
+@pytest.mark.slow
+def test_a_camera_that_falls_silent_is_unplugged_and_comes_back(source, camera):
+    source.read(2)
+    os.kill(camera.pid, signal.SIGKILL)
+    camera.wait()
+    began = time.monotonic()
+    with pytest.raises(Unplugged, match="plug it in again"):
+        while time.monotonic() - began < 15:
+            source.read(0.2)
+    with pytest.raises(InputError):
+        source.open()
+    again = start_camera()
+    try:
+        wait_for_camera()
+        source.open()
+        frame = source.read(2)
+        assert (frame.index, frame.dropped) == (0, 0)
+        assert frame.picture.shape == (96, 128)
+        source.close()
+    finally:
+        again.kill()
+        again.wait()
+
+
+def test_broken_frames_are_counted_and_not_shown(camera):
+    camera.kill()
+    camera.wait()
+    lossy = start_camera("-r", "20")
+    source = GenICamSource("Aravis", partial(connect, "127.0.0.1"))
+    try:
+        wait_for_camera()
+        source.configure(SourceSettings(rate_hz=50, region=Region(0, 0, 200, 200)))
+        source.open()
+        frames = [frame for _ in range(60) if (frame := source.read(1)) is not None]
+        assert len(frames) > 5
+        assert frames[-1].dropped > 0
+        assert frames[-1].index + 1 == len(frames) + frames[-1].dropped
+    finally:
+        source.close()
+        lossy.kill()
+        lossy.wait()
+
+
+def test_cameras_that_answer_are_listed(camera):
+    assert ("Aravis-Fake-GV01", "Aravis Fake", "GigEVision 127.0.0.1") in list_cameras()
+
+
+def test_a_camera_that_is_not_there_says_so(camera):
+    with pytest.raises(InputError, match=r"Nobody cannot be opened.*plugged in"):
+        connect("Nobody")
+
+
+def test_without_aravis_one_sentence_says_what_to_install(monkeypatch):
+    def missing():
+        raise ImportError("gi")
+
+    monkeypatch.setattr(aravis_driver, "_introspection", missing)
+    assert aravis_driver.is_missing()
+    with pytest.raises(InputError, match=r"apt install gir1\.2-aravis-0\.8 python3-gi"):
+        list_cameras()
+
+
+def test_another_pythons_packages_are_left_alone(tmp_path):
+    (tmp_path / "gi").mkdir()
+    (tmp_path / "gi" / "_gi.cpython-27-x86_64-linux-gnu.so").touch()
+    assert not aravis_driver._is_for_us(tmp_path)
