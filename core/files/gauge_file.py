@@ -17,6 +17,7 @@ from core.files.atomic import write_text
 from core.files.camera_file import Finite, ResultFile, Row3
 from core.files.complaints import complaint
 from core.files.json_text import read_json, to_json
+from core.inspect.characteristic import Characteristic, Limits
 from core.inspect.results import Contribution, Face, GaugeResult
 from core.model import LightPlane
 from core.scan.cloud import Cloud
@@ -115,11 +116,7 @@ def read_gauge(path: Path, cloud: Cloud) -> GaugeResult:
     InputError
         If a file is missing, a value is not finite or absurd, or the faces' points are not in the cloud.
     """
-    tables = read_json(path, todo=_TODO)
-    try:
-        file = _GaugeFile.model_validate(tables)
-    except ValidationError as error:
-        raise complaint(path, error, _GaugeFile) from error
+    file = _read(path)
     members = _members(path.with_suffix(".npz"), len(cloud))
     return GaugeResult(
         thickness_mm=file.thickness_mm,
@@ -136,6 +133,25 @@ def read_gauge(path: Path, cloud: Cloud) -> GaugeResult:
         rule=file.rule,
         notes=tuple(file.notes),
     )
+
+
+def read_thickness(path: Path) -> Characteristic:
+    """Read gauge.json alone, without the points its faces rest on; InputError as `read_gauge`."""
+    file = _read(path)
+    known = file.nominal_mm is not None and file.tolerance_mm is not None
+    limits = Limits(file.nominal_mm or 0.0, -(file.tolerance_mm or 0.0), file.tolerance_mm or 0.0) if known else None
+    return Characteristic(
+        "thickness", "thickness", file.thickness_mm, file.u_mm, k=file.k, limits=limits,
+        budget=tuple(row.row() for row in file.budget), rule=file.rule, notes=tuple(file.notes),
+    )  # fmt: skip
+
+
+def _read(path: Path) -> _GaugeFile:
+    tables = read_json(path, todo=_TODO)
+    try:
+        return _GaugeFile.model_validate(tables)
+    except ValidationError as error:
+        raise complaint(path, error, _GaugeFile) from error
 
 
 def _row(row: Contribution, u_mm: float) -> dict[str, Any]:

@@ -1,0 +1,140 @@
+"""`trisect study`: what each study takes. Light to import; the work is in `core.cli.studying`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+EPILOG = (
+    "Exit code: 0 done, and conforming, capable or acceptable if a limit was given; 1 measured, but not so, or not "
+    "proven; 2 bad input, 130 interrupted."
+)
+
+studies = typer.Typer(
+    help="Judge a way of measuring: repeats, type-1 study, gauge R&R, acceptance check.",
+    epilog=EPILOG,
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+)
+
+Files = Annotated[
+    list[Path],
+    typer.Argument(metavar="FILE...", help="One CSV table, or several folders of results (trisect run, inspect)."),
+]
+Characteristic = Annotated[
+    str,
+    typer.Option("--characteristic", metavar="NAME", help="Which result of the folders, as inspection.json calls it."),
+]
+Nominal = Annotated[
+    float | None, typer.Option("--nominal", metavar="VALUE", help="Nominal value; else the one the folders agree on.")
+]
+Tolerance = Annotated[
+    float | None,
+    typer.Option("--tolerance", metavar="VALUE", help="Largest permitted deviation, to either side: T is twice that."),
+]
+Out = Annotated[Path | None, typer.Option("--out", "-o", metavar="DIR", help="Write study.json there.")]
+Json = Annotated[bool, typer.Option("--json", help="Print one JSON object for machines instead of a table.")]
+
+
+@studies.command(epilog=EPILOG)
+def repeats(
+    files: Files,
+    characteristic: Characteristic = "thickness",
+    nominal: Nominal = None,
+    tolerance: Tolerance = None,
+    u: Annotated[
+        float | None,
+        typer.Option("--u", metavar="VALUE", help="Standard uncertainty common to all repeats; else what they state."),
+    ] = None,
+    guard: Annotated[
+        float,
+        typer.Option("--guard", metavar="R", help="Guard band as R times U: 1, or 0.83 for 5 % risk, or 0 for none."),
+    ] = 1.0,
+    out: Out = None,
+    json: Json = False,
+) -> None:
+    """Statistics of repeated scans of one part, U of their mean, and the decision by ISO 14253-1.
+
+    Columns of a table: value, and if you like scan, u_mm (or U_mm and k).
+    """
+    from core.cli import studying
+
+    study = studying.repeats(files, characteristic, nominal, tolerance, u, guard)
+    studying.finish(study, out, as_json=json)
+
+
+@studies.command(epilog=EPILOG)
+def type1(
+    files: Files,
+    characteristic: Characteristic = "thickness",
+    nominal: Nominal = None,
+    tolerance: Tolerance = None,
+    resolution: Annotated[
+        float | None, typer.Option("--resolution", metavar="VALUE", help="Of the gauge: at most 5 % of T.")
+    ] = None,
+    out: Out = None,
+    json: Json = False,
+) -> None:
+    """Type-1 gauge study of a reference part: bias, Cg and Cgk (1.33 or more), t-test on the bias.
+
+    --nominal is the calibrated value of the part. Columns of a table: value, and if you like scan.
+    """
+    from core.cli import studying
+
+    study = studying.type1(files, characteristic, nominal, tolerance, resolution)
+    studying.finish(study, out, as_json=json)
+
+
+@studies.command(epilog=EPILOG)
+def grr(
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="A CSV table of part, operator, and value or result.")],
+    characteristic: Characteristic = "thickness",
+    tolerance: Tolerance = None,
+    out: Out = None,
+    json: Json = False,
+) -> None:
+    """Gauge R&R by analysis of variance: parts × operators × repeats.
+
+    Columns of the table: part, operator, and value, or result: the folder of results, seen from the table.
+    """
+    from core.cli import studying
+
+    studying.finish(studying.grr(file, characteristic, tolerance), out, as_json=json)
+
+
+def _limit(what: str) -> object:
+    return typer.Option(f"--{what}", metavar="MM", help=f"Largest permitted {what} error.")
+
+
+@studies.command(epilog=EPILOG)
+def acceptance(
+    files: Files,
+    artefact: Annotated[
+        str, typer.Option(metavar="KIND", help="In folders: sphere, bar (two spheres) or plane stands there.")
+    ] = "sphere",
+    nominal: Annotated[
+        float | None,
+        typer.Option("--nominal", metavar="MM", help="Calibrated diameter of the sphere, or distance of a bar's two."),
+    ] = None,
+    u: Annotated[float, typer.Option("--u", metavar="MM", help="Standard uncertainty of that.")] = 0.0,
+    form: Annotated[float | None, _limit("form")] = None,
+    size: Annotated[float | None, _limit("size")] = None,
+    spacing: Annotated[float | None, _limit("spacing")] = None,
+    flatness: Annotated[float | None, _limit("flatness")] = None,
+    out: Out = None,
+    json: Json = False,
+) -> None:
+    """Acceptance check after the pattern of VDI/VDE 2634 part 2, in several positions; not a certificate.
+
+    Columns of a table: quantity (form, size, spacing, flatness), position, measured_mm, and if you like calibrated_mm,
+    u_mm. Or a folder of results for each position.
+    """
+    from core.cli import studying
+    from core.cli.bars import bars
+
+    limits = {"form": form, "size": size, "spacing": spacing, "flatness": flatness}
+    with bars() as progress:
+        study = studying.acceptance(files, artefact, nominal, u, limits, progress)
+    studying.finish(study, out, as_json=json)

@@ -1,0 +1,194 @@
+"""What a study is made of, read from a table or from folders of results.
+
+Columns (others are passed over):
+
+- repeats, type1: `value` (or value_mm, thickness_mm), and if you like `scan`, `u_mm` or `U_mm` with `k` (else k = 2);
+- grr: `part`, `operator`, and `value`, or `result`: the folder of results of that measurement, seen from the table;
+- acceptance: `quantity` (form, size, spacing, flatness), `position`, `measured_mm`, and if you like `calibrated_mm`,
+  `u_mm`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import cast
+
+import numpy as np
+
+from core.errors import InputError
+from core.files.study_results import Measured, measured_in
+from core.files.study_table import Table, read_table
+from core.inspect.characteristic import Limits
+from core.inspect.results import Contribution
+from core.model.arrays import Array
+from core.study.acceptance import QUANTITIES, Quantity, Reading
+
+VALUE = ("value", "value_mm", "thickness_mm", "value_deg")
+THICKNESS = "thickness"
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Repeats:
+    """Repeated measurements of one quantity.
+
+    Parameters
+    ----------
+    name
+        Of the quantity.
+    labels
+        Of the scans.
+    values
+        In `unit`.
+    u
+        Standard uncertainties; None if they are not stated.
+    U
+        Expanded ones; empty if they are not stated.
+    budgets
+        One a scan, where the scans have them; else empty.
+    unit
+        "mm" or "deg".
+    limits
+        Asked of the quantity by all scans alike, in `unit`; else None.
+    """
+
+    name: str
+    labels: tuple[str, ...]
+    values: tuple[float, ...]
+    u: tuple[float, ...] | None
+    U: tuple[float, ...]
+    budgets: tuple[tuple[Contribution, ...], ...]
+    unit: str
+    limits: Limits | None = None
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Crossed:
+    """A crossed study: `values` (p, o, r) in `unit`, and the names of parts and operators."""
+
+    values: Array
+    parts: tuple[str, ...]
+    operators: tuple[str, ...]
+    unit: str
+
+
+def read_repeats(paths: Sequence[Path], name: str = THICKNESS) -> Repeats:
+    """Repeats from one table, or from folders of results that have a characteristic `name`.
+
+    Raises
+    ------
+    InputError
+        If a file is missing or has something wrong in it, or a folder has no such characteristic.
+    """
+    table = _table_among(paths)
+    if table is None:
+        return _of_results([measured_in(path, name) for path in paths], name)
+    column = table.name_of(VALUE) or VALUE[0]
+    values = table.numbers(column)
+    labels = table.texts("scan") if "scan" in table.columns else tuple(str(row + 1) for row in range(len(table)))
+    u, expanded = table.numbers_if_any("u_mm", "u", "u_deg"), table.numbers_if_any("U_mm", "U", "U_deg")
+    if expanded is not None:
+        factors = table.numbers_if_any("k") or (2.0,) * len(table)
+        _above_zero(table, "k", factors)
+        u = u or tuple(one / k for one, k in zip(expanded, factors, strict=True))
+    if u is not None:
+        _not_negative(table, "u_mm", u)
+    return Repeats(name, labels, values, u, expanded or (), (), "deg" if column == "value_deg" else "mm")
+
+
+def read_crossed(path: Path, name: str = THICKNESS) -> Crossed:
+    """A gauge R&R study from a table, every part measured as often by every operator.
+
+    Raises
+    ------
+    InputError
+        As `read_repeats`, or if a part was measured more or less often by one operator than by another.
+    """
+    if path.is_dir():
+        raise InputError("a gauge R&R study needs a table of part, operator and value", where=path)
+    table = read_table(path)
+    parts, operators = table.texts("part"), table.texts("operator")
+    unit = "mm"
+    if "result" in table.columns:
+        measured = [measured_in(path.parent / folder, name) for folder in table.texts("result")]
+        values, unit = [one.value for one in measured], measured[0].unit
+    else:
+        values = list(table.numbers(*VALUE))
+    names = tuple(dict.fromkeys(parts)), tuple(dict.fromkeys(operators))
+    cells: dict[tuple[str, str], list[float]] = {(part, operator): [] for part in names[0] for operator in names[1]}
+    for part, operator, value in zip(parts, operators, values, strict=True):
+        cells[part, operator].append(value)
+    most = max(len(cell) for cell in cells.values())
+    for (part, operator), cell in cells.items():
+        if len(cell) != most:
+            raise InputError(
+                f"part {part} was measured {len(cell)} times by operator {operator}, others {most} times",
+                where=path,
+                todo="a crossed study needs every part as often by every operator",
+            )
+    if len(names[0]) < 2 or most < 2:
+        raise InputError(
+            f"{len(names[0])} parts and {most} repeats are too few", where=path, todo="measure 2 or more of each"
+        )
+    shaped = np.array([[cells[part, operator] for operator in names[1]] for part in names[0]])
+    return Crossed(shaped, *names, unit)
+
+
+def read_readings(path: Path) -> tuple[Reading, ...]:
+    """Readings of an acceptance check from a table; InputError as `read_repeats`."""
+    table = read_table(path)
+    quantities = table.texts("quantity")
+    for line, quantity in zip(table.lines, quantities, strict=True):
+        if quantity not in QUANTITIES:
+            raise InputError(
+                f'line {line}, column quantity is "{quantity}", not {", ".join(QUANTITIES[:-1])} or {QUANTITIES[-1]}',
+                where=path,
+            )
+    positions, measured = table.texts("position"), table.numbers("measured_mm", "measured")
+    calibrated = table.numbers_or(0.0, "calibrated_mm", "calibrated")
+    u = table.numbers_or(0.0, "u_mm", "u")
+    _not_negative(table, "u_mm", u)
+    for line, quantity, value in zip(table.lines, quantities, calibrated, strict=True):
+        if quantity in ("size", "spacing") and not value > 0:
+            raise InputError(f"line {line}, column calibrated_mm must be above 0 for {quantity}", where=path)
+    return tuple(map(Reading, cast(tuple[Quantity, ...], quantities), positions, measured, calibrated, u))
+
+
+def _table_among(paths: Sequence[Path]) -> Table | None:
+    """The one table given, None for folders of results; InputError if it is neither."""
+    files = [path for path in paths if not path.is_dir()]
+    if not files:
+        return None
+    if len(paths) > 1:
+        raise InputError("a study takes one table, or folders of results", where=files[0], todo="give it alone")
+    return read_table(files[0])
+
+
+def _of_results(found: Sequence[Measured], name: str) -> Repeats:
+    units = {one.unit for one in found}
+    if len(units) > 1:
+        raise InputError(f"{name} is a length in one folder and an angle in another")
+    labels = tuple(one.label for one in found)
+    return Repeats(
+        name,
+        labels,
+        tuple(one.value for one in found),
+        tuple(one.u for one in found),
+        tuple(one.k * one.u for one in found),
+        tuple(one.budget for one in found) if all(one.budget for one in found) else (),
+        units.pop(),
+        found[0].limits if all(one.limits == found[0].limits for one in found) else None,
+    )
+
+
+def _not_negative(table: Table, name: str, values: Sequence[float]) -> None:
+    for line, value in zip(table.lines, values, strict=True):
+        if value < 0:
+            raise InputError(f"line {line}, column {name} is {value:g}, not a length of 0 or more", where=table.path)
+
+
+def _above_zero(table: Table, name: str, values: Sequence[float]) -> None:
+    for line, value in zip(table.lines, values, strict=True):
+        if not value > 0:
+            raise InputError(f"line {line}, column {name} is {value:g}, not a number above 0", where=table.path)

@@ -1,0 +1,82 @@
+"""One characteristic of a folder of results, as a study takes it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from core.errors import InputError
+from core.files.gauge_file import read_thickness
+from core.inspect.characteristic import Characteristic, Limits
+from core.inspect.results import Contribution
+
+GAUGE, INSPECTION = "gauge.json", "inspection.json"
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Measured:
+    """A characteristic of one scan.
+
+    Parameters
+    ----------
+    label
+        Name of the folder.
+    value, u
+        With its standard uncertainty, in `unit`: "mm", or "deg" for an angle.
+    k
+        Coverage factor.
+    budget
+        What u is made of.
+    limits
+        What was asked of it, in `unit`; None for nothing.
+    """
+
+    label: str
+    value: float
+    u: float
+    k: float
+    budget: tuple[Contribution, ...]
+    unit: str
+    limits: Limits | None = None
+
+
+def measured_in(folder: Path, name: str) -> Measured:
+    """The characteristic `name` of a folder: the thickness of gauge.json, or one of inspection.json.
+
+    Raises
+    ------
+    InputError
+        If there are no results, or none of that name, or its value or uncertainty is not known.
+    """
+    found = _find(folder, name)
+    if not math.isfinite(found.value) or not math.isfinite(found.u):
+        raise InputError(f"the {name} is not known", where=folder)
+    if found.quantity == "length":
+        return Measured(folder.name, found.value, found.u, found.k, found.budget, "mm", found.limits)
+    degree = math.degrees(1.0)
+    rows = tuple(replace(row, u_mm=row.u_mm * degree) for row in found.budget)
+    asked = found.limits
+    limits = None if asked is None else Limits(asked.nominal * degree, asked.lower * degree, asked.upper * degree)
+    return Measured(folder.name, found.value * degree, found.u * degree, found.k, rows, "deg", limits)
+
+
+def _find(folder: Path, name: str) -> Characteristic:
+    if not folder.is_dir():
+        raise InputError("there is no such folder of results", where=folder)
+    known = list(_characteristics(folder))
+    found = [one for one in known if one.name == name]
+    if not found:
+        names = ", ".join(one.name for one in known)
+        raise InputError(
+            f'no result is called "{name}"' + (f"; there are {names}" if names else ""),
+            where=folder,
+            todo="choose another --characteristic" if names else "measure first: trisect run SET --out DIR",
+        )
+    return found[0]
+
+
+def _characteristics(folder: Path) -> tuple[Characteristic, ...]:
+    """All of a folder: those of inspection.json, and the thickness of gauge.json where the inspection has none."""
+    gauge = folder / GAUGE
+    return (read_thickness(gauge),) if gauge.is_file() else ()

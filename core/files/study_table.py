@@ -1,0 +1,122 @@
+"""A table of numbers as spreadsheets write it: CSV with a head line, checked cell by cell.
+
+Commas, semicolons or tabs between the cells; where it is not commas, a number may have a decimal comma. Empty lines and
+lines that begin with # are passed over.
+"""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from difflib import get_close_matches
+from pathlib import Path
+
+from core.errors import InputError
+
+SEPARATORS = ";\t,"
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """Cells as text, by column; `lines` are the numbers of the rows in the file, from 1."""
+
+    path: Path
+    lines: tuple[int, ...]
+    columns: Mapping[str, tuple[str, ...]]
+    decimal_comma: bool
+
+    def __len__(self) -> int:
+        return len(self.lines)
+
+    def name_of(self, names: Sequence[str]) -> str | None:
+        """Which of `names` the table has; None if none of them. InputError if it has several."""
+        found = [name for name in names if name in self.columns]
+        if len(found) > 1:
+            raise InputError(
+                f"the columns {' and '.join(found)} say the same", where=self.path, todo="keep one of them"
+            )
+        return found[0] if found else None
+
+    def texts(self, *names: str) -> tuple[str, ...]:
+        """Of the column called by one of `names`; InputError if there is none, or a cell is empty."""
+        name = self._needed(names)
+        for line, cell in zip(self.lines, self.columns[name], strict=True):
+            if not cell:
+                raise InputError(f"line {line}, column {name} is empty", where=self.path, todo="fill it in")
+        return self.columns[name]
+
+    def numbers(self, *names: str) -> tuple[float, ...]:
+        """Of the column called by one of `names`; InputError if there is none, or a cell is no finite number."""
+        name = self._needed(names)
+        return tuple(self._number(name, row) for row in range(len(self)))
+
+    def numbers_if_any(self, *names: str) -> tuple[float, ...] | None:
+        """As `numbers`, or None if there is no such column, or nothing is in it."""
+        name = self.name_of(names)
+        return None if name is None or not any(self.columns[name]) else self.numbers(name)
+
+    def numbers_or(self, default: float, *names: str) -> tuple[float, ...]:
+        """As `numbers`, with `default` where the cell is empty or there is no such column."""
+        name = self.name_of(names)
+        if name is None:
+            return (default,) * len(self)
+        cells = self.columns[name]
+        return tuple(self._number(name, row) if cells[row] else default for row in range(len(self)))
+
+    def _needed(self, names: Sequence[str]) -> str:
+        name = self.name_of(names)
+        if name is None:
+            near = [hit for one in names for hit in get_close_matches(one, self.columns, n=1, cutoff=0.75)]
+            hint = f"did you mean {near[0]}?" if near else f"its columns are {', '.join(self.columns)}"
+            raise InputError(f"the column {names[0]} is missing ({hint})", where=self.path)
+        return name
+
+    def _number(self, name: str, row: int) -> float:
+        cell = self.columns[name][row]
+        try:
+            value = float(cell.replace(",", ".") if self.decimal_comma else cell)
+        except ValueError:
+            value = math.nan
+        if not math.isfinite(value):
+            shown = f'is "{cell}", not a finite number' if cell else "is empty, not a number"
+            raise InputError(f"line {self.lines[row]}, column {name} {shown}", where=self.path)
+        return value
+
+
+def read_table(path: Path) -> Table:
+    """Read a table.
+
+    Raises
+    ------
+    InputError
+        If the file is missing or no text, has no rows, a column twice, or a row with more or fewer cells than the head.
+    """
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+    except FileNotFoundError as error:
+        raise InputError("the file is missing", where=path) from error
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"cannot be read as UTF-8 text ({error})", where=path) from error
+    lines = [
+        (number, line)
+        for number, line in enumerate(text.splitlines(), start=1)
+        if line.strip() and not line.lstrip().startswith("#")
+    ]
+    if len(lines) < 2:
+        raise InputError("the table has no rows below its head", where=path)
+    head = lines[0][1]
+    separator = next((one for one in SEPARATORS if one in head), ",")
+    names, *rows = (
+        [cell.strip() for cell in row] for row in csv.reader((line for _, line in lines), delimiter=separator)
+    )
+    twice = next((name for name in names if names.count(name) > 1), None)
+    if twice is not None:
+        raise InputError(f'the column "{twice}" is there twice', where=path)
+    numbers = tuple(number for number, _ in lines[1:])
+    for number, row in zip(numbers, rows, strict=True):
+        if len(row) != len(names):
+            raise InputError(f"line {number} has {len(row)} cells, but the head has {len(names)}", where=path)
+    columns = {name: tuple(row[place] for row in rows) for place, name in enumerate(names)}
+    return Table(path, numbers, columns, decimal_comma=separator != ",")

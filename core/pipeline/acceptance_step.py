@@ -1,0 +1,96 @@
+"""Readings of an acceptance check from the clouds of several results: one artefact, a folder for each position."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Literal, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.errors import InputError
+from core.files.ply import read_cloud
+from core.inspect.faces import find_planes
+from core.inspect.sphere import find_sphere
+from core.model.arrays import Array
+from core.pipeline.workspace import FILES
+from core.progress import Progress, silent
+from core.scan.cloud import Cloud
+from core.scan.normals import with_normals
+from core.study.acceptance import Reading
+from core.study.acceptance_points import ProbedSphere, probed_flatness, probed_sphere
+
+Artefact: TypeAlias = Literal["sphere", "bar", "plane"]
+RADII = (3.0, 150.0)
+"""In mm: spheres looked for where the diameter is not known."""
+
+
+def read_positions(
+    folders: Sequence[Path], artefact: Artefact, *, calibrated_mm: float = 0.0, u_mm: float = 0.0,
+    progress: Progress = silent,
+) -> tuple[Reading, ...]:  # fmt: skip
+    """Form and size of the sphere, spacing of the two of a bar, or flatness of the largest plane of each cloud.
+
+    Parameters
+    ----------
+    folders
+        With a cloud.ply each: the positions.
+    artefact
+        What stands there.
+    calibrated_mm
+        Diameter of the sphere, or distance of the two centres of a bar; nothing for a plane.
+    u_mm
+        Standard uncertainty of that.
+
+    Raises
+    ------
+    InputError
+        If there is no cloud, or nothing of that shape in it.
+    """
+    found: list[Reading] = []
+    for number, folder in enumerate(folders):
+        progress("positions", number, len(folders))
+        path = folder / FILES["cloud"]
+        if not path.is_file():
+            raise InputError(
+                f"there is no {FILES['cloud']} in it", where=folder, todo="measure first: trisect run SET --out DIR"
+            )
+        try:
+            found += _readings(read_cloud(path).cloud, folder.name, artefact, calibrated_mm, u_mm)
+        except (InputError, ValueError) as error:
+            raise InputError(f"no {artefact} was found: {_of(error)}", where=path) from error
+    progress("positions", len(folders), len(folders))
+    return tuple(found)
+
+
+def _of(error: Exception) -> str:
+    return error.what if isinstance(error, InputError) else str(error)
+
+
+def _readings(cloud: Cloud, position: str, artefact: Artefact, calibrated: float, u: float) -> list[Reading]:
+    if artefact == "plane":
+        planes = find_planes(cloud, most=1)
+        if not planes:
+            raise ValueError("the points lie on no plane")
+        return [Reading("flatness", position, probed_flatness(cloud.points[planes[0].region.indices])[0], u=u)]
+    cloud = cloud if cloud.normals.any() else with_normals(cloud)
+    if artefact == "sphere":
+        sphere, _ = _sphere(cloud, calibrated / 2)
+        size = Reading("size", position, sphere.diameter, calibrated, u)
+        return [Reading("form", position, sphere.form), size]
+    first, members = _sphere(cloud, None)
+    rest = cloud.select(np.setdiff1d(np.arange(len(cloud)), members))
+    second, _ = _sphere(rest, None)
+    return [Reading("spacing", position, float(np.linalg.norm(_between(first, second))), calibrated, u)]
+
+
+def _sphere(cloud: Cloud, radius: float | None) -> tuple[ProbedSphere, NDArray[np.int64]]:
+    """The sphere that explains most points, of about that radius, and which points those are."""
+    span = RADII if radius is None else (0.9 * radius, 1.1 * radius)
+    members = find_sphere(cloud, radius_range_mm=span)
+    return probed_sphere(cloud.points[members]), members
+
+
+def _between(first: ProbedSphere, second: ProbedSphere) -> Array:
+    return first.centre - second.centre
