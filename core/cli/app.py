@@ -19,6 +19,7 @@ from typer.core import TyperGroup
 
 from core import __version__
 from core.cli.bars import bars
+from core.cli.study_commands import studies
 from core.errors import Cancelled, InputError
 from core.simulate.scenario import CAMERA_TARGETS, OBJECTS, PLANE_TARGETS, Scenario
 
@@ -114,6 +115,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
+app.add_typer(studies, name="study")
 
 
 def _say_version(wanted: bool) -> None:
