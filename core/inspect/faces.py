@@ -130,7 +130,7 @@ def faces_in_polygons(
         if corners.ndim != 2 or corners.shape[1:] != (2,) or len(corners) < 3 or not np.isfinite(corners).all():
             raise InputError("a polygon needs at least three corners [u, v]", where=f"[gauge] {name}")
         inside = inside_polygon(cloud.uv, corners)
-        indices = _face_inside(cloud, inside, tolerance_mm, margin_mm, seed)
+        indices = face_inside(cloud, inside, tolerance_mm=tolerance_mm, margin_mm=margin_mm, seed=seed)
         if len(indices) < FEWEST_POINTS:
             raise InputError(
                 f"the polygon holds {inside.sum()} measured points but no plane face",
@@ -147,8 +147,13 @@ def faces_in_polygons(
     return FacePair(chosen[0], chosen[1])
 
 
-def _face_inside(
-    cloud: Cloud, inside: NDArray[np.bool_], tolerance_mm: float | None, margin_mm: float, seed: int
+def face_inside(
+    cloud: Cloud,
+    inside: NDArray[np.bool_],
+    *,
+    tolerance_mm: float | None = None,
+    margin_mm: float = 1.5,
+    seed: int = 0,
 ) -> NDArray[np.int64]:
     """Indices of the points of the largest plane among the points `inside`, less the margin of the whole face."""
     part = cloud.select(inside)
@@ -188,6 +193,14 @@ def find_planes(
         left = left[~near]
     progress("faces", most, most)
     return planes
+
+
+def above_table(cloud: Cloud, tolerance: float, seed: int, progress: Progress) -> NDArray[np.int64]:
+    """Indices of the points in front of the largest plane, or all of them when there is no plane."""
+    planes = find_planes(cloud, seed=seed, progress=progress, most=1)
+    if not planes:
+        return np.arange(len(cloud))
+    return np.flatnonzero(cloud.points @ planes[0].normal < planes[0].distance - 3 * tolerance)
 
 
 def points_on(cloud: Cloud, plane: FoundPlane, tolerance_mm: float) -> NDArray[np.int64]:

@@ -8,11 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.errors import InputError
-from core.inspect.faces import find_planes, search_tolerance
-from core.inspect.generalised import GRAZING, Sources, generalised_fit
-from core.inspect.point_errors import PointErrors, patches
+from core.inspect.faces import above_table, search_tolerance
+from core.inspect.point_errors import PointErrors
 from core.inspect.results import Contribution
-from core.inspect.uncertainty import budget, combined
+from core.inspect.shapes import Ball
+from core.inspect.surface_fit import FEWEST, SurfaceFit, fit_surface
+from core.inspect.uncertainty import combined
 from core.model.arrays import Array
 from core.progress import Progress, silent
 from core.scan.cloud import Cloud
@@ -20,7 +21,6 @@ from core.scan.normals import with_normals
 
 HYPOTHESES = 600
 SEARCH_POINTS = 4000
-TUKEY = 4.685
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -29,7 +29,7 @@ class SphereFit:
 
     `indices` into the cloud of the points used; `residuals` (mm) of these, outwards positive; `form_mm` is the spread
     of the residuals that holds 95 % of the points, their noise included, and `u_form_mm` the standard uncertainty of
-    that spread; `budget` says what `u_mm` is made of.
+    that spread; `budget` says what `u_mm` is made of, and `fit` all that is known of the fitted surface.
     """
 
     centre: Array
@@ -40,6 +40,7 @@ class SphereFit:
     residuals: Array
     budget: tuple[Contribution, ...]
     u_form_mm: float
+    fit: SurfaceFit[Ball]
 
     @property
     def diameter_mm(self) -> float:
@@ -51,10 +52,11 @@ def find_sphere(
     cloud: Cloud,
     *,
     radius_range_mm: tuple[float, float] = (3.0, 150.0),
+    on_table: bool = True,
     seed: int = 0,
     progress: Progress = silent,
 ) -> NDArray[np.int64]:
-    """Indices of the points on the sphere that explains most of a cloud once its largest plane (the table) is gone.
+    """Indices of the points on the sphere that explains most of a cloud.
 
     Two points and their normals make a hypothesis: the centre is where the two normals meet.
 
@@ -64,6 +66,8 @@ def find_sphere(
         Normals are estimated when it has none.
     radius_range_mm
         Spheres outside are not taken.
+    on_table
+        Whether the largest plane is a table, and the sphere in front of it.
     seed
         Of the random search.
     progress
@@ -76,7 +80,7 @@ def find_sphere(
     """
     cloud = cloud if cloud.normals.any() else with_normals(cloud, progress=progress)
     tolerance = search_tolerance(cloud, None)
-    above = _above_table(cloud, tolerance, seed, progress)
+    above = above_table(cloud, tolerance, seed, progress) if on_table else np.arange(len(cloud))
     points, normals = cloud.points[above], cloud.normals[above]
     rng = np.random.default_rng(seed)
     known = np.flatnonzero(normals.any(axis=1))
@@ -93,7 +97,8 @@ def find_sphere(
         on = _on_sphere(points, normals, centre, radius, tolerance)
         if on.sum() < 12:
             break
-        centre, radius = _solve(points[on], np.ones(int(on.sum())), centre)
+        ball = through(points[on])
+        centre, radius = ball.centre, ball.radius
     return above[_on_sphere(points, normals, centre, radius, tolerance)]
 
 
@@ -124,64 +129,24 @@ def fit_sphere(
     InputError
         If there is no sphere, or fewer than 12 points on it.
     """
-    errors = errors or PointErrors()
     indices = find_sphere(cloud, seed=seed) if indices is None else indices
-    if len(indices) < 12:
+    if len(indices) < FEWEST:
         raise InputError(f"{len(indices)} points are too few for a sphere", where="point cloud")
-    points, sigma = cloud.points[indices], cloud.sigma[indices]
-    # The start: the sphere of least algebraic distance, |X|² = 2 c·X + (R² − |c|²), linear in its unknowns.
+    fit = fit_surface(cloud, indices, through(cloud.points[indices]), errors or PointErrors())
+    rows = fit.budget(np.array([0.0, 0.0, 0.0, 1.0]))
+    ball = fit.shape
+    return SphereFit(
+        ball.centre, ball.radius, combined(rows), fit.form.value, fit.indices, fit.residuals, rows, fit.form.u, fit
+    )
+
+
+def through(points: Array) -> Ball:
+    """The sphere through points (N, 3) of least algebraic distance: |X|² = 2 c·X + (R² − |c|²) is linear."""
     middle = points.mean(axis=0)
     centred = points - middle
     squares = (centred**2).sum(axis=1)
-    start = np.linalg.lstsq(np.column_stack([2 * centred, np.ones(len(points))]), squares, rcond=None)[0][:3] + middle
-    centre, radius, robust = _robust(points, sigma, start)
-    kept = robust > 0
-    used, points = cloud.select(indices[kept]), points[kept]
-    one_face = np.zeros(len(points), dtype=np.int64)
-    sources = Sources.of(used, _outward(points, centre), robust[kept], one_face, patches(used.uv, one_face), errors)
-    for _ in range(3):
-        outward = _outward(points, centre)
-        misfit = np.linalg.norm(points - centre, axis=1) - radius
-        design = np.column_stack([outward, np.ones(len(points))])
-        fit = generalised_fit(sources.mean(design), sources.mean(misfit), sources)
-        centre, radius = centre + fit.estimate[:3], radius + float(fit.estimate[3])
-    rows = budget(
-        fit.gains[3],
-        sources,
-        own=fit.own,
-        form_mm=fit.form_mm,
-        calibrations=() if errors.common is None else errors.common.sources,
-    )
-    residuals = np.linalg.norm(points - centre, axis=1) - radius
-    low, high = np.quantile(residuals, [0.025, 0.975])
-    form = float(high - low)
-    return SphereFit(centre, radius, combined(rows), form, indices[kept], residuals, rows, _u_form(form, sources))
-
-
-def _outward(points: Array, centre: Array) -> Array:
-    away = points - centre
-    unit: Array = away / np.linalg.norm(away, axis=1)[:, None]
-    return unit
-
-
-def _u_form(form: float, sources: Sources) -> float:
-    """Standard uncertainty of the range that holds 95 % of normal residuals, from as many draws as there are stretches.
-
-    A quantile q of n draws has the variance q (1 − q)/(n f²), f the density there; the two ends have the correlation
-    q/(1 − q) = 0.0256.
-    """
-    q, sd = 0.025, form / 3.92
-    density = float(np.exp(-0.5 * 1.96**2) / np.sqrt(2 * np.pi))
-    end = sd * np.sqrt(q * (1 - q) / len(sources.own)) / density
-    return float(end * np.sqrt(2 * (1 - q / (1 - q))))
-
-
-def _above_table(cloud: Cloud, tolerance: float, seed: int, progress: Progress) -> NDArray[np.int64]:
-    """Indices of the points in front of the largest plane, or all of them when there is no plane."""
-    planes = find_planes(cloud, seed=seed, progress=progress, most=1)
-    if not planes:
-        return np.arange(len(cloud))
-    return np.flatnonzero(cloud.points @ planes[0].normal < planes[0].distance - 3 * tolerance)
+    solved = np.linalg.lstsq(np.column_stack([2 * centred, np.ones(len(points))]), squares, rcond=None)[0]
+    return Ball(middle + solved[:3], float(np.sqrt(max(solved[3] + solved[:3] @ solved[:3], 1e-12))))
 
 
 def _best_hypothesis(
@@ -214,44 +179,3 @@ def _on_sphere(points: Array, normals: Array, centre: Array, radius: float, tole
     alike = (normals * outward).sum(axis=1) > 0.85 * distance
     on: NDArray[np.bool_] = (np.abs(distance - radius) < tolerance) & (alike | ~normals.any(axis=1))
     return on
-
-
-def _incidence(points: Array, centre: Array) -> Array:
-    """|n·r| of each point: how much of an error of depth lies across the surface."""
-    outward = points - centre
-    cosine = np.abs((outward * points).sum(axis=1)) / np.linalg.norm(outward, axis=1) / points[:, 2]
-    return np.asarray(np.maximum(cosine, GRAZING), dtype=np.float64)
-
-
-def _solve(points: Array, weights: Array, centre: Array) -> tuple[Array, float]:
-    """Weighted least orthogonal distances by Gauss–Newton from `centre`."""
-    radius = 0.0
-    for _ in range(50):
-        outward = points - centre
-        distance = np.linalg.norm(outward, axis=1)
-        design = np.column_stack([outward / distance[:, None], np.ones(len(points))])
-        scaled = design * weights[:, None]
-        step = np.linalg.solve(scaled.T @ design, scaled.T @ distance)
-        centre, radius = centre + step[:3], float(step[3])
-        if np.abs(step[:3]).max() < 1e-9:
-            break
-    return centre, radius
-
-
-def _robust(points: Array, sigma: Array, centre: Array) -> tuple[Array, float, Array]:
-    """Iteratively reweighted fit: centre, radius and the robust weights (0 … 1), zero for points left out."""
-    weights = np.maximum(sigma, 1e-6) ** -2.0
-    weights /= np.median(weights)
-    centre, radius = _solve(points, weights, centre)
-    robust = np.ones(len(points))
-    for _ in range(30):
-        noise = np.maximum(sigma, 1e-6) * _incidence(points, centre)
-        residual = (np.linalg.norm(points - centre, axis=1) - radius) / noise
-        scale = max(1.4826 * float(np.median(np.abs(residual))), 1e-9)
-        robust = np.clip(1 - (residual / (TUKEY * scale)) ** 2, 0, None) ** 2
-        weights = robust * np.median(noise) ** 2 / noise**2
-        previous = centre, radius
-        centre, radius = _solve(points, weights, centre)
-        if abs(radius - previous[1]) < 1e-7 and np.abs(centre - previous[0]).max() < 1e-7:
-            break
-    return centre, radius, robust

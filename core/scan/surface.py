@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -115,9 +115,23 @@ class Mesh:
     triangles
         (T, 3) indices into the vertices; seen from the camera each runs the same way round, so that
         (b − a) × (c − a) points towards the camera.
+    filled
+        (T,) True for triangles over a hole, where nothing was measured: they are shown, and never measured on.
     """
 
     vertices: Array
     normals: Array
     sigma: Array
     triangles: NDArray[np.int64]
+    filled: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, dtype=np.bool_))
+
+    def __post_init__(self) -> None:
+        if len(self.filled) != len(self.triangles):
+            set_field(self, "filled", np.zeros(len(self.triangles), dtype=np.bool_))
+
+    @property
+    def measured(self) -> NDArray[np.bool_]:
+        """(V,) whether a vertex is a corner of a triangle that was measured."""
+        on = np.zeros(len(self.vertices), dtype=np.bool_)
+        on[self.triangles[~self.filled]] = True
+        return on

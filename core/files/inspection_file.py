@@ -1,0 +1,221 @@
+"""inspection.json: every characteristic with uncertainty, budget and verdict; inspection.npz beside it: points used."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field, ValidationError
+
+from core import __version__
+from core.errors import InputError
+from core.files.arrays_file import read_arrays, write_arrays
+from core.files.atomic import write_text
+from core.files.camera_file import Finite, ResultFile
+from core.files.complaints import complaint
+from core.files.json_text import read_json, to_json
+from core.inspect.characteristic import Characteristic, Limits
+from core.inspect.evaluate import Inspection
+from core.inspect.features.measured import FeatureResult
+from core.inspect.results import Contribution
+from core.inspect.shapes import Ball, Levels, Tube
+
+SCHEMA = 1
+_TODO = "inspect the scan first: trisect inspect SET --plan plan.toml --out DIR"
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class InspectionFile:
+    """What inspection.json holds of an inspection.
+
+    Parameters
+    ----------
+    characteristics
+        As they were measured.
+    kinds
+        Kind of the feature each comes from, by the feature's name.
+    problems, notes
+        Whole sentences.
+    points
+        Indices of the points of the cloud that each feature used, by its name.
+    calibration_id
+        Of the scan.
+    """
+
+    characteristics: tuple[Characteristic, ...]
+    kinds: dict[str, str]
+    problems: tuple[str, ...]
+    notes: tuple[str, ...]
+    points: dict[str, NDArray[np.int64]]
+    calibration_id: str
+
+
+class _Limits(ResultFile):
+    nominal: Finite
+    lower: Finite | None = None
+    upper: Finite | None = None
+
+
+class _Contribution(ResultFile):
+    source: str
+    u: Finite
+    point_mm: Finite | None = None
+
+
+class _Characteristic(ResultFile):
+    name: str
+    feature: str
+    kind: str
+    value: Finite = Field(description="a finite number")
+    u: Finite = Field(ge=0, description="a number not below 0")
+    k: Finite = Field(gt=0, description="a number above 0")
+    quantity: Literal["length", "angle"] = "length"
+    limits: _Limits | None = None
+    rule: str = ""
+    notes: list[str] = Field(default_factory=list)
+    budget: list[_Contribution] = Field(default_factory=list)
+
+
+class _Feature(ResultFile):
+    name: str
+    kind: str
+    problem: str = ""
+
+
+class _InspectionFile(ResultFile):
+    schema_version: Literal[1] = Field(description="1: this file is of another version of Trisect")
+    characteristics: list[_Characteristic] = Field(description="a list of characteristics")
+    features: list[_Feature] = Field(default_factory=list)
+    notes: list[str] = Field(default_factory=list)
+    calibration_id: str = ""
+
+
+def inspection_values(inspection: Inspection) -> dict[str, Any]:
+    """All of an inspection but its points, by the names used in the file and on the command line."""
+    pose = inspection.pose_camera_part
+    return {
+        "schema_version": SCHEMA,
+        "verdict": inspection.verdict,
+        "characteristics": [
+            _row(row, result.spec.name) for result in inspection.results for row in result.characteristics
+        ],
+        "features": [_feature(result) for result in inspection.results],
+        "pose_camera_part": None if pose is None else {"rotation": pose.rotation, "translation_mm": pose.translation},
+        "notes": inspection.notes,
+    }
+
+
+def write_inspection(path: Path, inspection: Inspection, calibration_id: str = "") -> None:
+    """Write inspection.json at `path`, and inspection.npz beside it; InputError if they cannot be written."""
+    arrays: dict[str, NDArray[Any]] = {}
+    for number, result in enumerate(inspection.results):
+        arrays[f"points_{number}"] = result.indices
+        arrays[f"residuals_{number}"] = result.residuals
+        if result.profile is not None:
+            arrays[f"profile_{number}"] = np.column_stack([result.profile.position, result.profile.height])
+        if result.deviations is not None:
+            arrays[f"deviation_{number}"] = np.column_stack([result.deviations.points, result.deviations.deviation])
+    write_arrays(path.with_suffix(".npz"), arrays)
+    values = inspection_values(inspection) | {"calibration_id": calibration_id, "version": __version__}
+    write_text(path, to_json(values))
+
+
+def read_inspection(path: Path) -> InspectionFile:
+    """Read inspection.json, and the points from inspection.npz if it is there.
+
+    Raises
+    ------
+    InputError
+        If it is missing, damaged or a value is absurd; names it.
+    """
+    tables = read_json(path, todo=_TODO)
+    try:
+        file = _InspectionFile.model_validate(tables)
+    except ValidationError as error:
+        raise complaint(path, error, _InspectionFile) from error
+    members = path.with_suffix(".npz")
+    arrays = read_arrays(members, (), todo=_TODO) if members.exists() else {}
+    points = {
+        feature.name: np.asarray(arrays[f"points_{number}"], dtype=np.int64)
+        for number, feature in enumerate(file.features)
+        if f"points_{number}" in arrays
+    }
+    return InspectionFile(
+        characteristics=tuple(_characteristic(row, path) for row in file.characteristics),
+        kinds={feature.name: feature.kind for feature in file.features},
+        problems=tuple(feature.problem for feature in file.features if feature.problem),
+        notes=tuple(file.notes),
+        points=points,
+        calibration_id=file.calibration_id,
+    )
+
+
+def _row(row: Characteristic, feature: str) -> dict[str, Any]:
+    limits = row.limits
+    return {
+        "name": row.name,
+        "feature": feature,
+        "kind": row.kind,
+        "quantity": row.quantity,
+        "value": row.value,
+        "u": row.u,
+        "U": row.U,
+        "k": row.k,
+        "limits": None
+        if limits is None
+        else {"nominal": limits.nominal, "lower": limits.lower, "upper": limits.upper},  # infinite: null
+        "deviation": row.deviation,
+        "verdict": row.verdict,
+        "rule": row.rule,
+        "notes": row.notes,
+        "budget": [
+            {"source": one.source, "u": one.u_mm, "point_mm": one.point_mm, "sensitivity": one.sensitivity}
+            for one in row.budget
+        ],
+    }
+
+
+def _feature(result: FeatureResult) -> dict[str, Any]:
+    return {
+        "name": result.spec.name,
+        "kind": result.spec.kind,
+        "problem": result.problem,
+        "points": len(result.indices),
+        "rms_mm": float(np.sqrt(np.mean(result.residuals**2))) if len(result.residuals) else None,
+        "shape": None if result.shape is None else _shape(result.shape),
+    }
+
+
+def _shape(shape: Levels | Ball | Tube) -> dict[str, Any]:
+    """The fitted surface in the camera frame, mm."""
+    if isinstance(shape, Ball):
+        return {"centre": shape.centre, "radius_mm": shape.radius}
+    if isinstance(shape, Tube):
+        return {"centre": shape.centre, "direction": shape.direction, "radius_mm": shape.radius}
+    return {"normal": shape.outward_normal, "centres": shape.centres}
+
+
+def _characteristic(row: _Characteristic, path: Path) -> Characteristic:
+    limits = None
+    if row.limits is not None:
+        lower = -math.inf if row.limits.lower is None else row.limits.lower
+        upper = math.inf if row.limits.upper is None else row.limits.upper
+        if lower > upper:
+            raise InputError(f"the limits of {row.name} are not in order", where=path, todo=_TODO)
+        limits = Limits(row.limits.nominal, lower, upper)
+    return Characteristic(
+        name=row.name,
+        kind=row.kind,
+        value=row.value,
+        u=row.u,
+        quantity=row.quantity,
+        k=row.k,
+        limits=limits,
+        budget=tuple(Contribution(one.source, one.u, one.point_mm) for one in row.budget),
+        rule=row.rule,
+        notes=tuple(row.notes),
+    )

@@ -1,0 +1,172 @@
+"""How a part's coordinates lie in the camera frame: by 3-2-1 from features, or by the best fit to a nominal surface.
+
+The best fit moves the measured points onto the surface by least squares of their distances along its normals, nearest
+place by nearest place, wrong points and those of other things losing their weight. It needs a start near the truth:
+every side of the nominal part up, turned in steps about the upward direction, each tried with few points.
+
+References
+----------
+Chen, Medioni, Object modelling by registration of multiple range images, Image and Vision Computing 10 (1992),
+doi:10.1016/0262-8856(92)90066-C.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from core.errors import InputError
+from core.inspect.elements import Element
+from core.inspect.shapes import square_to
+from core.inspect.triangles import Surroundings, Triangles
+from core.model import Pose
+from core.model.arrays import Array
+from core.progress import Progress, silent
+
+TURNS = 24
+"""Starts about the upward direction."""
+TRIED, REFINED = 250, 4000
+"""Points of each start, and of the final fit."""
+ROUGH_ROUNDS, ROUNDS = 12, 60
+TUKEY = 4.685
+NEAR_SHARE = 0.7
+"""A start is judged by this share of its points that lie nearest."""
+HELD = 0.02
+"""A fit holds if the median distance left is less than this share of the part's size."""
+
+
+def three_two_one(primary: Element, secondary: Element, tertiary: Element | None) -> Pose:
+    """Part coordinates into the camera frame; see `core.inspect.inspection_plan.PartFrame`.
+
+    Raises
+    ------
+    InputError
+        If the primary feature is no plane, the secondary one a point or parallel to it, or the tertiary one parallel to
+        either.
+    """
+    if primary.kind != "plane" or secondary.kind == "point":
+        raise InputError(
+            "part coordinates rest on a plane, and on a second plane or an axis",
+            where="frame",
+            todo="name other features",
+        )
+    z = primary.direction
+    x = secondary.direction - z * (z @ secondary.direction)
+    if np.linalg.norm(x) < np.sin(np.radians(5.0)):
+        raise InputError("primary and secondary feature point in one direction", where="frame", todo="name others")
+    x = x / np.linalg.norm(x)
+    y = np.cross(z, x)
+    on_secondary = secondary.direction if secondary.kind == "plane" else y
+    remaining = y if secondary.kind == "plane" else x
+    third, place = remaining, secondary.position if tertiary is None else tertiary.position
+    if tertiary is not None and tertiary.kind == "plane":
+        third = tertiary.direction
+    rows = np.array([z, on_secondary, third])
+    if abs(np.linalg.det(rows)) < 0.05:
+        raise InputError("the tertiary plane fixes no third direction", where="frame", todo="name another one")
+    asked = np.array([z @ primary.position, on_secondary @ secondary.position, third @ place])
+    return Pose(np.column_stack([x, y, z]), np.linalg.solve(rows, asked))
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Aligned:
+    """The nominal surface's coordinates into the camera frame, and the median distance in mm that is left."""
+
+    pose_camera_nominal: Pose
+    left_mm: float
+
+
+def best_fit(points: Array, up: Array, nominal: Triangles, progress: Progress = silent, *, seed: int = 0) -> Aligned:
+    """Lay a nominal surface on measured points.
+
+    Parameters
+    ----------
+    points
+        (N, 3) in mm, camera frame, of the part and as little else as can be.
+    up
+        (3,) unit: about the direction the camera sees the part from, or that of the table it stands on.
+    nominal
+        The surface.
+    progress
+        Told how far it is.
+    seed
+        Of the choice of points.
+
+    Raises
+    ------
+    InputError
+        If no start leads to a fit: the part is another one, or seen too little of.
+    """
+    rng = np.random.default_rng(seed)
+    sample = points[rng.permutation(len(points))[:REFINED]]
+    few = sample[:TRIED]
+    around = Surroundings(nominal)
+    starts = _starts(few, up, nominal)
+    tried: list[tuple[float, Pose]] = []
+    for number, start in enumerate(starts):
+        progress("alignment", number, len(starts))
+        pose, _ = _fitted(few, start, around, ROUGH_ROUNDS)
+        tried.append((_left(few, pose, around), pose))
+    best = sorted(tried, key=lambda one: one[0])[:3]
+    fits = [_fitted(sample, pose, around, ROUNDS) for _, pose in best]
+    pose, left = min(fits, key=lambda one: _left(sample, one[0], around))
+    progress("alignment", len(starts), len(starts))
+    if left > HELD * nominal.size_mm:
+        raise InputError(
+            f"the nominal surface cannot be laid on the scan: half of the points stay {left:.2f} mm and more off",
+            where=f"alignment of {len(points)} points",
+            todo="check that it is the file of this part, in mm, or align by features",
+        )
+    return Aligned(pose.inverse(), left)
+
+
+def _starts(points: Array, up: Array, nominal: Triangles) -> list[Pose]:
+    """Camera into nominal coordinates: each side up, turned about it, the visible tops and middles in one place."""
+    corners = nominal.corners.reshape(-1, 3)
+    basis = np.column_stack([square_to(up), up])
+    if np.linalg.det(basis) < 0:
+        basis = basis[:, [1, 0, 2]]
+    starts = []
+    for axis in (*np.eye(3), *-np.eye(3)):
+        sides = np.column_stack([square_to(axis), axis])
+        if np.linalg.det(sides) < 0:
+            sides = sides[:, [1, 0, 2]]
+        for turn in range(TURNS):
+            rotation = sides @ Rotation.from_rotvec([0, 0, 2 * np.pi * turn / TURNS]).as_matrix() @ basis.T
+            mine, whole = points @ rotation.T @ sides, corners @ sides
+            low, high = np.quantile(mine, [0.02, 0.98], axis=0)
+            shift = (whole.min(axis=0) + whole.max(axis=0)) / 2 - (low + high) / 2
+            shift[2] = whole[:, 2].max() - high[2]  # the tops are seen for sure, the feet may not be
+            starts.append(Pose(rotation, sides @ shift))
+    return starts
+
+
+def _fitted(points: Array, pose: Pose, around: Surroundings, rounds: int) -> tuple[Pose, float]:
+    """Iterated closest places: the pose into nominal coordinates, and the robust scale of the distances left."""
+    scale = np.inf
+    for _ in range(rounds):
+        moved = pose.apply(points)
+        near = around.nearest(moved)
+        scale = max(1.4826 * float(np.median(np.abs(near.distance))), 1e-6)
+        away = moved - near.foot
+        length = np.linalg.norm(away, axis=1)
+        direction = np.where(length[:, None] > 1e-6, away / np.maximum(length, 1e-6)[:, None], near.normal)
+        weight = np.clip(1 - (length / (TUKEY * scale)) ** 2, 0, None) ** 2
+        middle = moved.mean(axis=0)
+        design = np.hstack([direction, np.cross(moved - middle, direction)])
+        scaled = design * weight[:, None]
+        damped = scaled.T @ design + 1e-9 * np.diag(np.maximum((design**2).sum(axis=0), 1e-9))
+        step = -np.linalg.solve(damped, scaled.T @ length)
+        turn = Rotation.from_rotvec(step[3:]).as_matrix()
+        pose = Pose(turn, middle + step[:3] - turn @ middle) @ pose
+        if np.abs(step[:3]).max() < 1e-6 and np.abs(step[3:]).max() < 1e-8:
+            break
+    return pose, scale / 1.4826
+
+
+def _left(points: Array, pose: Pose, around: Surroundings) -> float:
+    """Mean distance in mm of the points that lie nearest."""
+    away = np.sort(np.abs(around.nearest(pose.apply(points)).distance))
+    return float(away[: max(1, int(NEAR_SHARE * len(away)))].mean())

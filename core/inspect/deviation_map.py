@@ -1,0 +1,80 @@
+"""The deviation of a measured surface from the nominal one, in classes that can be told apart without colours."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.model import Pose
+from core.model.arrays import Array
+
+MARKS = ("", "+", "++", "+++", "+!")
+"""Of deviations outwards up to a quarter, a half, three quarters and all of the tolerance, and beyond it."""
+QUARTERS = (0.25, 0.5, 0.75, 1.0)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class DeviationMap:
+    """Deviations of N places of the surface, measured − nominal, outwards positive.
+
+    Parameters
+    ----------
+    points
+        (N, 3) in mm in the camera frame: the mesh's vertices, or points of the cloud.
+    vertices
+        (N,) which vertices of the mesh they are, or which points of the cloud.
+    on_mesh
+        Whether they are vertices of the mesh.
+    deviation
+        (N,) in mm.
+    sigma
+        (N,) its standard uncertainty in mm, without what is common to the whole scan.
+    tolerance_mm
+        What the classes are shares of.
+    pose_camera_nominal
+        The nominal surface's coordinates into the camera frame: how it was aligned.
+    """
+
+    points: Array
+    vertices: NDArray[np.int64]
+    on_mesh: bool
+    deviation: Array
+    sigma: Array
+    tolerance_mm: float
+    pose_camera_nominal: Pose
+
+    @property
+    def classes(self) -> NDArray[np.int8]:
+        """(N,) −4 … 4; see `mark`."""
+        return classes_of(self.deviation, self.tolerance_mm)
+
+    @property
+    def outside(self) -> float:
+        """Share of the places beyond the tolerance."""
+        return float(np.mean(np.abs(self.deviation) > self.tolerance_mm)) if len(self.deviation) else 0.0
+
+    def histogram(self, bins: int = 40) -> tuple[Array, NDArray[np.int64]]:
+        """Edges (bins + 1,) in mm and how many places lie between them; the outermost hold all beyond."""
+        widest = max(1.5 * self.tolerance_mm, float(np.quantile(np.abs(self.deviation), 0.99)))
+        edges = np.linspace(-widest, widest, bins + 1)
+        return edges, np.histogram(np.clip(self.deviation, -widest, widest), edges)[0].astype(np.int64)
+
+
+def classes_of(deviation: Array, tolerance_mm: float) -> NDArray[np.int8]:
+    """Classes −4 … 4 of deviations (N,) by quarters of the tolerance; ±4 is beyond it.
+
+    Examples
+    --------
+    >>> [mark(one) for one in classes_of(np.array([0.01, 0.03, -0.06, 0.2, -0.2]), 0.1)]
+    ['', '+', '−−', '+!', '−!']
+    """
+    size = np.searchsorted(np.array(QUARTERS) * tolerance_mm, np.abs(deviation), side="left")
+    return np.asarray(np.sign(deviation) * size, dtype=np.int8)
+
+
+def mark(number: int) -> str:
+    """The sign drawn for a class: + ++ +++ outwards, − −− −−− inwards, with ! beyond the tolerance."""
+    outwards = MARKS[abs(int(number))]
+    return outwards if number >= 0 else outwards.replace("+", "−")

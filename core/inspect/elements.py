@@ -1,0 +1,113 @@
+"""Points, planes and axes that features are derived from: their place and direction, and how sure they are.
+
+Of each the gradient by the fitted parameters is kept with what acts on these, so that a distance or an angle of two
+features of one scan has its true uncertainty: light planes and calibrations err in both at once.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from core.inspect.results import Contribution
+from core.inspect.shapes import Ball, Levels, Tube, square_to
+from core.inspect.surface_fit import SurfaceFit
+from core.inspect.uncertainty import Effect, budget_of
+from core.model.arrays import Array
+
+PARALLEL = 1e-9
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Element:
+    """One of them.
+
+    Parameters
+    ----------
+    kind
+        "plane": position amid its points, direction outwards. "axis": position amid its points, direction along it.
+        "point": its direction is that of the surface it was taken from.
+    position, direction
+        (3,) in mm in the camera frame; unit.
+    position_gradient, direction_gradient
+        (3, p) by the fitted parameters.
+    effects
+        What acts on these.
+    """
+
+    kind: Literal["plane", "axis", "point"]
+    position: Array
+    direction: Array
+    position_gradient: Array
+    direction_gradient: Array
+    effects: tuple[Effect, ...]
+
+    @classmethod
+    def of_face(cls, fit: SurfaceFit[Levels], kind: Literal["plane", "point"] = "plane") -> Element:
+        """The plane of one face, or the point amid it; along the face its place is taken as known."""
+        levels = fit.shape
+        gradient = levels.normal_gradient
+        along = np.zeros_like(gradient)
+        along[:, 0] = levels.outward_normal
+        return cls(kind, levels.centres[0], levels.outward_normal, along, gradient, fit.effects)
+
+    @classmethod
+    def of_ball(cls, fit: SurfaceFit[Ball]) -> Element:
+        """A sphere's centre."""
+        gradient = np.hstack([np.eye(3), np.zeros((3, 1))])
+        away = fit.shape.centre / np.linalg.norm(fit.shape.centre)
+        return cls("point", fit.shape.centre, -away, gradient, np.zeros((3, 4)), fit.effects)
+
+    @classmethod
+    def of_tube(cls, fit: SurfaceFit[Tube]) -> Element:
+        """A cylinder's axis."""
+        tube = fit.shape
+        return cls("axis", tube.centre, tube.direction, tube.centre_gradient, tube.direction_gradient, fit.effects)
+
+
+def distance(a: Element, b: Element) -> tuple[float, tuple[Contribution, ...], str]:
+    """Distance in mm of the place of `a` from `b`, its budget, and in words what it is.
+
+    From a plane square to it, from an axis square to it, from a point straight. Of two of which one is a plane (else an
+    axis), the distance is that of the other's place from it; of two planes, of the first one's middle from the second.
+    """
+    rank = {"plane": 2, "axis": 1, "point": 0}
+    if rank[a.kind] > rank[b.kind]:
+        a, b = b, a
+    between = a.position - b.position
+    of_direction = np.zeros(3)
+    if b.kind == "plane":
+        length = float(between @ b.direction)
+        sign = 1.0 if length >= 0 else -1.0
+        length, towards, of_direction = abs(length), sign * b.direction, sign * between
+        rule = "distance square to the plane"
+    else:
+        along = float(between @ b.direction) if b.kind == "axis" else 0.0
+        across = between - along * b.direction if b.kind == "axis" else between
+        length = float(np.linalg.norm(across))
+        towards = across / length if length > PARALLEL else square_to(b.direction)[:, 0]
+        of_direction = -along * towards
+        rule = "distance square to the axis" if b.kind == "axis" else "distance of two points"
+    second = -towards @ b.position_gradient + of_direction @ b.direction_gradient
+    rows = budget_of([(towards @ a.position_gradient, a.effects), (second, b.effects)])
+    return length, rows, rule
+
+
+def angle(a: Element, b: Element) -> tuple[float, tuple[Contribution, ...], str]:
+    """Angle in rad, 0 to π/2, of two planes, two axes, or an axis and a plane; its budget, and in words what it is."""
+    first, second = a.direction, b.direction
+    second = second if first @ second >= 0 else -second
+    flip = 1.0 if second is b.direction else -1.0
+    cosine = float(np.clip(first @ second, -1.0, 1.0))
+    across = second - cosine * first
+    sine = float(np.linalg.norm(across))
+    turn_a = across / sine if sine > PARALLEL else square_to(first)[:, 0]
+    turn_b = first - cosine * second
+    turn_b = turn_b / sine if sine > PARALLEL else -turn_a
+    rows = budget_of([(-turn_a @ a.direction_gradient, a.effects), (-flip * turn_b @ b.direction_gradient, b.effects)])
+    value = float(np.arctan2(sine, cosine))
+    if {a.kind, b.kind} == {"plane", "axis"}:
+        return np.pi / 2 - value, rows, "angle of an axis and a plane"
+    return value, rows, f"angle of two {'planes' if a.kind == 'plane' else 'axes'}, 0 to 90°"

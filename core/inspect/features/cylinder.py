@@ -1,0 +1,38 @@
+"""A cylinder: diameter and form."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from core.inspect.cylinder import find_cylinder
+from core.inspect.elements import Element
+from core.inspect.features.measured import FeatureResult, Scene
+from core.inspect.features.regions import points_in
+from core.inspect.inspection_plan import Auto, FeatureSpec
+from core.inspect.surface_fit import fit_surface
+
+
+def measure_cylinder(spec: FeatureSpec, scene: Scene) -> FeatureResult:
+    """Fit a cylinder to the points of the region that lie on one; InputError if they do not."""
+    scene.know_normals()
+    region, cloud = spec.regions[0], scene.cloud
+    indices = points_in(region, spec.filters, scene)
+    on, start = find_cylinder(cloud.select(indices), on_table=isinstance(region, Auto), progress=scene.progress)
+    filters = spec.filters
+    fit = fit_surface(cloud, indices[on], start, scene.errors, tukey=filters.outliers, cell_mm=filters.cell_mm)
+    tube = fit.shape
+    rule = "diameter of the cylinder of least squares, by the points' covariance"
+    rows = fit.budget(np.array([0.0, 0.0, 0.0, 0.0, 2.0]))
+    form_rule = "range that holds 95 % of the deviations from the cylinder"
+    return FeatureResult(
+        spec,
+        characteristics=(
+            scene.characteristic(spec, "diameter", 2 * tube.radius, rows, rule=rule),
+            scene.characteristic(spec, "form", fit.form.value, fit.form.budget, rule=form_rule),
+        ),
+        indices=fit.indices,
+        residuals=fit.residuals,
+        part=fit.part,
+        element=Element.of_tube(fit),
+        shape=tube,
+    )

@@ -1,0 +1,158 @@
+"""The deviation of a part from its nominal surface: a map, and what it comes to."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.errors import InputError
+from core.inspect.alignment import best_fit
+from core.inspect.characteristic import Characteristic
+from core.inspect.deviation_map import DeviationMap
+from core.inspect.faces import search_tolerance
+from core.inspect.features.measured import FeatureResult, Scene
+from core.inspect.features.regions import points_in
+from core.inspect.generalised import GRAZING, Sources
+from core.inspect.inspection_plan import Deviation, FeatureSpec
+from core.inspect.point_errors import patches
+from core.inspect.results import Contribution
+from core.inspect.spread import SAMPLING, u_of_quantiles
+from core.inspect.triangles import Nearest, Surroundings, Triangles
+from core.inspect.uncertainty import budget
+from core.model import Pose
+from core.model.arrays import Array
+from core.scan.cloud import Cloud
+
+MOST_POINTS = 40_000
+"""Points of the cloud that the figures rest on, spread evenly over it."""
+TABLE = 1.2
+"""A plane larger than the part by this factor is what it stands on."""
+LARGEST = 0.95
+"""Share of the points whose deviations a profile deviation holds."""
+
+
+def measure_deviation(spec: FeatureSpec, scene: Scene) -> FeatureResult:
+    """Lay the nominal surface on the scan and compare; InputError if it does not fit or is not there."""
+    if spec.deviation is None or spec.deviation.nominal not in scene.nominals:
+        raise InputError("its nominal surface was not read", todo="name an STL file in mm")
+    asked, nominal = spec.deviation, scene.nominals[spec.deviation.nominal]
+    indices = points_in(spec.regions[0], spec.filters, scene)
+    pose = _pose(asked, nominal, indices, scene)
+    around = Surroundings(nominal)
+    step = max(1, len(indices) // MOST_POINTS)
+    used = indices[::step]
+    cloud = scene.cloud.select(used)
+    near = around.nearest(pose.inverse().apply(cloud.points))
+    kept = _facing(cloud.normals, near, pose) & (np.abs(near.distance) <= asked.reach_mm)
+    if kept.sum() < 12:
+        raise InputError(
+            f"{kept.sum()} measured points lie within {asked.reach_mm:g} mm of the nominal surface",
+            todo="check the alignment, or allow a larger reach_mm",
+        )
+    used, cloud, deviation = used[kept], cloud.select(kept), near.distance[kept]
+    normals = near.normal[kept] @ pose.rotation.T
+    rows = _characteristics(spec, scene, cloud, deviation, normals)
+    return FeatureResult(
+        spec,
+        characteristics=rows,
+        indices=used,
+        residuals=deviation,
+        part=np.zeros(len(used), dtype=np.int64),
+        deviations=_map(asked, scene, around, pose, (used, cloud, deviation, normals)),
+    )
+
+
+def _pose(asked: Deviation, nominal: Triangles, indices: NDArray[np.int64], scene: Scene) -> Pose:
+    """The nominal surface's coordinates into the camera frame."""
+    if asked.align == "as measured":
+        return Pose.identity()
+    if asked.align == "frame":
+        if scene.pose_camera_part is None:
+            raise InputError("there are no part coordinates to align it by", todo="give the plan a frame")
+        return scene.pose_camera_part
+    planes = scene.planes(0.0)
+    up = -planes[0].normal if planes else np.array([0.0, 0.0, -1.0])
+    points = scene.cloud.points[indices]
+    if planes:
+        table = scene.cloud.points[planes[0].region.indices]
+        if np.linalg.norm(np.ptp(table, axis=0)) > TABLE * nominal.size_mm:
+            above = planes[0].distance - points @ planes[0].normal
+            points = points[above > 3 * search_tolerance(scene.cloud, None)]
+    if len(points) < 12:
+        raise InputError("nothing but a plane was scanned, so there is no part to lay the nominal surface on")
+    return best_fit(points, up, nominal, scene.progress).pose_camera_nominal
+
+
+def _facing(normals: Array, near: Nearest, pose: Pose) -> NDArray[np.bool_]:
+    """Which points' surfaces do not face elsewhere than the nominal one does; unknown normals face anywhere."""
+    cosine = (normals * (near.normal @ pose.rotation.T)).sum(axis=1)
+    return np.asarray((cosine > 0) | ~normals.any(axis=1))
+
+
+def _characteristics(
+    spec: FeatureSpec, scene: Scene, cloud: Cloud, deviation: Array, normals: Array
+) -> tuple[Characteristic, ...]:
+    """Profile deviation and mean deviation, with what the alignment cannot see taken out of their uncertainty."""
+    one = np.zeros(len(cloud), dtype=np.int64)
+    sources = Sources.of(cloud, normals, np.ones(len(cloud)), one, patches(cloud.uv, one), scene.errors)
+    calibrations = () if scene.errors.common is None else scene.errors.common.sources
+    fitted = spec.deviation is not None and spec.deviation.align == "best fit"
+    size = np.abs(deviation)
+    largest = float(np.quantile(size, LARGEST))
+    ranks = np.argsort(np.argsort(size)) / max(len(size) - 1, 1)
+    at_end = np.abs(ranks - LARGEST) <= 0.01
+    gains = {
+        "profile": 2 * np.where(at_end, np.sign(deviation), 0.0) / max(int(at_end.sum()), 1),
+        "mean": np.full(len(deviation), 1 / len(deviation)),
+    }
+    rows = {}
+    for name, gain in gains.items():
+        of_stretch = np.asarray(np.bincount(sources.stretch, gain, minlength=len(sources.own)), dtype=np.float64)
+        if fitted:
+            of_stretch = _without_alignment(of_stretch, sources, cloud, normals)
+        rows[name] = budget(of_stretch, sources, calibrations=calibrations)
+    stripe = np.unique(cloud.sweep, return_inverse=True)[1]
+    sampling = Contribution(SAMPLING, u_of_quantiles(size, (LARGEST,), (2.0,), stripe))
+    rows["profile"] = (sampling, *(row for row in rows["profile"] if row.source in calibrations))
+    rule = "twice the deviation from the nominal surface that 95 % of the points do not exceed"
+    return (
+        scene.characteristic(spec, "profile", 2 * largest, rows["profile"], rule=rule),
+        scene.characteristic(
+            spec, "mean", float(np.mean(deviation)), rows["mean"], rule="mean deviation from the nominal surface"
+        ),
+    )
+
+
+def _without_alignment(gain: Array, sources: Sources, cloud: Cloud, normals: Array) -> Array:
+    """Gains (J,) after the part has been moved as a whole to where it fits best: such errors do no harm."""
+    middle = cloud.points.mean(axis=0)
+    design = sources.mean(np.hstack([normals, np.cross(cloud.points - middle, normals)]))
+    design = design / np.maximum(np.linalg.norm(design, axis=0), 1e-12)
+    weight = np.bincount(sources.stretch, minlength=len(sources.own)).astype(np.float64)
+    moved = np.linalg.lstsq((design * weight[:, None]).T @ design, design.T @ gain, rcond=None)[0]
+    return np.asarray(gain - weight * (design @ moved))
+
+
+def _map(
+    asked: Deviation,
+    scene: Scene,
+    around: Surroundings,
+    pose: Pose,
+    points: tuple[NDArray[np.int64], Cloud, Array, Array],
+) -> DeviationMap:
+    """Over the mesh's measured vertices, or over the points where there is no mesh."""
+    if scene.mesh is None or not len(scene.mesh.vertices):
+        used, cloud, deviation, normals = points
+        sigma = cloud.sigma * _slant(cloud.points, normals)
+        return DeviationMap(cloud.points, used, False, deviation, sigma, asked.tolerance_mm, pose)
+    mesh = scene.mesh
+    near = around.nearest(pose.inverse().apply(mesh.vertices))
+    kept = np.flatnonzero(_facing(mesh.normals, near, pose) & (np.abs(near.distance) <= asked.reach_mm) & mesh.measured)
+    normals = near.normal[kept] @ pose.rotation.T
+    sigma = mesh.sigma[kept] * _slant(mesh.vertices[kept], normals)
+    return DeviationMap(mesh.vertices[kept], kept, True, near.distance[kept], sigma, asked.tolerance_mm, pose)
+
+
+def _slant(points: Array, normals: Array) -> Array:
+    """How much of an error of depth lies across the surface."""
+    return np.asarray(np.maximum(np.abs((normals * points).sum(axis=1)) / points[:, 2], GRAZING))

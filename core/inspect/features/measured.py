@@ -1,0 +1,144 @@
+"""What measuring a feature gives, and what it may look at."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.inspect.characteristic import Characteristic
+from core.inspect.deviation_map import DeviationMap
+from core.inspect.elements import Element
+from core.inspect.faces import FoundPlane, find_planes
+from core.inspect.inspection_plan import FeatureSpec
+from core.inspect.point_errors import PointErrors
+from core.inspect.profile import Profile
+from core.inspect.results import Contribution, GaugeResult
+from core.inspect.shapes import Ball, Levels, Tube
+from core.inspect.triangles import Triangles
+from core.inspect.uncertainty import combined
+from core.model import Pose
+from core.model.arrays import Array
+from core.progress import Progress, silent
+from core.scan.cloud import Cloud
+from core.scan.normals import with_normals
+from core.scan.surface import Mesh
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class FeatureResult:
+    """A feature as it was measured.
+
+    Parameters
+    ----------
+    spec
+        What was asked for.
+    key
+        Names all it rests on: the same key, the same result.
+    characteristics
+        Its rows for tables, exports and verdicts.
+    indices
+        (M,) into the cloud, ascending: the points used.
+    residuals
+        (M,) in mm of these from the fitted surface, outwards positive; empty where nothing was fitted.
+    part
+        (M,) which face of several (levels, lowest first; of a thickness the upper one first) each point is on.
+    element
+        Of what others can be derived from; else None.
+    shape
+        The fitted surface in the camera frame, if there is one.
+    gauge, profile, deviations
+        Of a thickness, a section, a deviation map.
+    problem
+        Why it could not be measured: one whole sentence; then there are no characteristics.
+    """
+
+    spec: FeatureSpec
+    key: str = ""
+    characteristics: tuple[Characteristic, ...] = ()
+    indices: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    residuals: Array = field(default_factory=lambda: np.zeros(0))
+    part: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    element: Element | None = None
+    shape: Levels | Ball | Tube | None = None
+    gauge: GaugeResult | None = None
+    profile: Profile | None = None
+    deviations: DeviationMap | None = None
+    problem: str = ""
+
+
+@dataclass(eq=False, slots=True)
+class Scene:
+    """What features are measured in: one scan, what was found in it so far, and the part's frame.
+
+    Parameters
+    ----------
+    cloud
+        The points.
+    mesh
+        The surface over them, for comparisons; None: the points themselves.
+    errors
+        How the points' errors hang together.
+    k
+        Coverage factor.
+    nominals
+        Nominal surfaces by their names.
+    pose_camera_part
+        Part coordinates into the camera frame.
+    found
+        Features measured already, by name.
+    progress
+        Told how far a search is.
+    """
+
+    cloud: Cloud
+    mesh: Mesh | None
+    errors: PointErrors
+    k: float
+    nominals: Mapping[str, Triangles]
+    pose_camera_part: Pose | None = None
+    found: dict[str, FeatureResult] = field(default_factory=dict)
+    progress: Progress = silent
+    _planes: dict[float, list[FoundPlane]] = field(default_factory=dict)
+
+    def planes(self, margin_mm: float) -> list[FoundPlane]:
+        """The plane faces of the cloud, found once."""
+        if margin_mm not in self._planes:
+            self.know_normals()
+            self._planes[margin_mm] = find_planes(self.cloud, margin_mm=margin_mm, progress=self.progress)
+        return self._planes[margin_mm]
+
+    def know_normals(self) -> None:
+        """Normals of the cloud, estimated where the file had none."""
+        if len(self.cloud) >= 3 and not self.cloud.normals.any():
+            self.cloud = with_normals(self.cloud, progress=self.progress)
+
+    def characteristic(
+        self,
+        spec: FeatureSpec,
+        kind: str,
+        value: float,
+        budget: tuple[Contribution, ...],
+        *,
+        result: str = "",
+        rule: str,
+        angle: bool = False,
+    ) -> Characteristic:
+        """A row for `result` (its kind if nothing else is said) of a feature: "ball diameter"."""
+        result = result or kind
+        return Characteristic(
+            name=f"{spec.name} {result}",
+            kind=kind,
+            value=value,
+            u=combined(budget),
+            quantity="angle" if angle else "length",
+            k=self.k,
+            limits=spec.limits_of(result),
+            budget=budget,
+            rule=rule,
+        )
+
+
+Measure = Callable[[FeatureSpec, Scene], FeatureResult]

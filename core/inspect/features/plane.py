@@ -1,0 +1,59 @@
+"""A plane face, its flatness; and a point, the place amid a small piece of surface."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.inspect.characteristic import Characteristic
+from core.inspect.elements import Element
+from core.inspect.features.measured import FeatureResult, Scene
+from core.inspect.features.regions import face_in, points_in
+from core.inspect.inspection_plan import FeatureSpec, InBox, InSphere
+from core.inspect.plane_fit import fit_plane
+from core.inspect.shapes import Levels
+from core.inspect.surface_fit import SurfaceFit, fit_surface
+
+
+def measure_plane(spec: FeatureSpec, scene: Scene) -> FeatureResult:
+    """Fit a plane to the face of the region; InputError if there is none."""
+    fit = _fitted(spec, scene, face_in(spec.regions[0], spec.filters, scene))
+    of = f"means over cells of {spec.filters.cell_mm:g} mm" if spec.filters.cell_mm else "points, their noise included"
+    rule = f"range that holds 95 % of the deviations from the plane: {of}"
+    flatness = scene.characteristic(spec, "flatness", fit.form.value, fit.form.budget, rule=rule)
+    return _result(spec, fit, (flatness,), Element.of_face(fit))
+
+
+def measure_point(spec: FeatureSpec, scene: Scene) -> FeatureResult:
+    """The place amid the points of a small region, on the plane through them."""
+    region = spec.regions[0]
+    whole = isinstance(region, InSphere | InBox)
+    indices = points_in(region, spec.filters, scene) if whole else face_in(region, spec.filters, scene)
+    fit = _fitted(spec, scene, indices)
+    return _result(spec, fit, (), Element.of_face(fit, "point"))
+
+
+def _fitted(spec: FeatureSpec, scene: Scene, indices: NDArray[np.int64]) -> SurfaceFit[Levels]:
+    points = scene.cloud.points[indices]
+    centre = points.mean(axis=0)
+    if len(points) >= 3:
+        plane = fit_plane(points, scene.cloud.sigma[indices])
+        start = Levels.through(-plane.normal, centre - plane.normal * (plane.normal @ centre - plane.distance))
+    else:
+        start = Levels.through(-centre / np.linalg.norm(centre), centre)
+    filters = spec.filters
+    return fit_surface(scene.cloud, indices, start, scene.errors, tukey=filters.outliers, cell_mm=filters.cell_mm)
+
+
+def _result(
+    spec: FeatureSpec, fit: SurfaceFit[Levels], characteristics: tuple[Characteristic, ...], element: Element
+) -> FeatureResult:
+    return FeatureResult(
+        spec,
+        characteristics=characteristics,
+        indices=fit.indices,
+        residuals=fit.residuals,
+        part=fit.part,
+        element=element,
+        shape=fit.shape,
+    )

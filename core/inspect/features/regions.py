@@ -1,0 +1,88 @@
+"""Which points of a scan a region holds."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.errors import InputError
+from core.inspect.face_region import inside_polygon
+from core.inspect.faces import FEWEST_POINTS, face_inside
+from core.inspect.features.measured import Scene
+from core.inspect.inspection_plan import Auto, Filters, InSphere, PointsOf, Polygon, Region
+from core.model.arrays import Array
+
+Indices = NDArray[np.int64]
+
+
+def points_in(region: Region, filters: Filters, scene: Scene) -> Indices:
+    """Indices of the points of a region that pass the filter by σ; all of the cloud's where it is to be found.
+
+    Raises
+    ------
+    InputError
+        If it holds none.
+    """
+    inside = _inside(region, scene)
+    if filters.sigma_max_mm is not None:
+        inside = inside & (scene.cloud.sigma <= filters.sigma_max_mm)
+    indices = np.flatnonzero(inside)
+    if not len(indices):
+        raise InputError(
+            "its region holds no measured point", todo="draw it over what the scan covers, or allow a larger σ"
+        )
+    return indices
+
+
+def face_in(region: Region, filters: Filters, scene: Scene) -> Indices:
+    """Indices of the points of the plane face in a region, less its margin.
+
+    Raises
+    ------
+    InputError
+        If there is no plane face.
+    """
+    if isinstance(region, Auto):
+        planes = scene.planes(filters.margin_mm)
+        if region.number > len(planes):
+            raise InputError(
+                f"the scan shows {len(planes)} plane faces, so there is none of number {region.number}",
+                todo="draw a region on the face",
+            )
+        found = planes[region.number - 1].region.indices
+        allowed = np.inf if filters.sigma_max_mm is None else filters.sigma_max_mm
+        return np.sort(found[scene.cloud.sigma[found] <= allowed])
+    indices = points_in(region, filters, scene)
+    if isinstance(region, PointsOf):
+        return indices
+    scene.know_normals()
+    inside = np.zeros(len(scene.cloud), dtype=np.bool_)
+    inside[indices] = True
+    face = face_inside(scene.cloud, inside, margin_mm=filters.margin_mm)
+    if len(face) < FEWEST_POINTS:
+        raise InputError(
+            f"its region holds {len(indices)} measured points but no plane face",
+            todo="draw it over a face that the scan covers",
+        )
+    return np.sort(face)
+
+
+def in_part(points: Array, scene: Scene) -> Array:
+    """Points (N, 3) of the camera frame in part coordinates."""
+    return points if scene.pose_camera_part is None else scene.pose_camera_part.inverse().apply(points)
+
+
+def _inside(region: Region, scene: Scene) -> NDArray[np.bool_]:
+    cloud = scene.cloud
+    if isinstance(region, Auto):
+        return np.ones(len(cloud), dtype=np.bool_)
+    if isinstance(region, Polygon):
+        return inside_polygon(cloud.uv, np.array(region.corners_px, dtype=np.float64))
+    if isinstance(region, PointsOf):
+        inside = np.zeros(len(cloud), dtype=np.bool_)
+        inside[scene.found[region.feature].indices] = True
+        return inside
+    points = in_part(cloud.points, scene)
+    if isinstance(region, InSphere):
+        return np.asarray(np.linalg.norm(points - np.array(region.centre_mm), axis=1) <= region.radius_mm)
+    return np.asarray(np.all((points >= region.low_mm) & (points <= region.high_mm), axis=1))

@@ -1,0 +1,152 @@
+"""A cross-section: the profile of the points near a plane, with heights, distances and radii in it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.errors import InputError
+from core.inspect.characteristic import Characteristic
+from core.inspect.features.measured import FeatureResult, Scene
+from core.inspect.features.regions import points_in
+from core.inspect.inspection_plan import Cut, FeatureSpec, Pixel, Section
+from core.inspect.profile import Profile, averaged
+from core.inspect.shapes import Levels, Tube
+from core.inspect.surface_fit import fit_surface
+from core.model.arrays import Array
+from core.scan.cloud import Cloud
+
+NEAREST = 0.05
+"""Share of the points, the nearest to a pixel, from which its ray is known; at least FEWEST."""
+FEWEST = 100
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class _Plane:
+    """The section's plane: a place in it, and the direction its positions run in."""
+
+    origin: Array
+    along: Array
+    up: Array
+
+
+def measure_section(spec: FeatureSpec, scene: Scene) -> FeatureResult:
+    """Lay out the profile and measure the cuts asked for."""
+    if spec.section is None:
+        raise InputError("it does not say where to cut", todo="give a line in the picture, or a plane")
+    section = spec.section
+    plane = _plane(section, scene)
+    profile = _profile(spec, section, plane, scene)
+    rows = tuple(_cut(spec, cut, profile, scene) for cut in section.cuts)
+    used = [profile.between(ends) for cut in section.cuts for ends in _stretches(cut)]
+    shown = np.unique(np.concatenate(used)) if used else np.arange(len(profile.indices))
+    return FeatureResult(spec, characteristics=rows, indices=np.sort(profile.indices[shown]), profile=profile)
+
+
+def _plane(section: Section, scene: Scene) -> _Plane:
+    if section.line_px is not None:
+        first, second = (_ray(scene.cloud, pixel) for pixel in section.line_px)
+        normal = np.cross(first, second)
+        origin = np.zeros(3)
+        towards = second / second[2] - first / first[2]
+    else:
+        pose = scene.pose_camera_part
+        rotation, shift = (np.eye(3), np.zeros(3)) if pose is None else (pose.rotation, pose.translation)
+        normal, origin = rotation @ np.array(section.normal), rotation @ np.array(section.point_mm) + shift
+        towards = np.cross(rotation[:, 2], normal)
+    if np.linalg.norm(normal) < 1e-9 or np.linalg.norm(towards) < 1e-9:
+        raise InputError("its line or plane has no direction", todo="draw a line between two different places")
+    normal = normal / np.linalg.norm(normal)
+    planes = scene.planes(0.0)
+    facing = -planes[0].normal if planes else np.array([0.0, 0.0, -1.0])
+    up = facing - normal * (normal @ facing)
+    if np.linalg.norm(up) < 0.1:
+        up = np.array([0.0, 0.0, -1.0]) + normal * normal[2]
+    up = up / np.linalg.norm(up)
+    along = np.cross(up, normal)
+    return _Plane(origin, along if along @ towards >= 0 else -along, up)
+
+
+def _ray(cloud: Cloud, pixel: Pixel) -> Array:
+    """The ray (x, y, 1) of a pixel, from those of the measured points around it: linear in the pixel."""
+    order = np.argsort(((cloud.uv - np.array(pixel)) ** 2).sum(axis=1))[: max(FEWEST, int(NEAREST * len(cloud)))]
+    near = cloud.uv[order]
+    rays = cloud.points[order, :2] / cloud.points[order, 2:]
+    design = np.column_stack([near - np.array(pixel), np.ones(len(near))])
+    return np.append(np.linalg.lstsq(design, rays, rcond=None)[0][2], 1.0)
+
+
+def _profile(spec: FeatureSpec, section: Section, plane: _Plane, scene: Scene) -> Profile:
+    """The points near the plane; heights and positions are measured from where the profile begins at its lowest."""
+    cloud = scene.cloud
+    indices = points_in(spec.regions[0], spec.filters, scene)
+    away = cloud.points[indices] - plane.origin
+    indices = indices[np.abs(away @ np.cross(plane.along, plane.up)) <= section.half_width_mm]
+    if len(indices) < 2:
+        raise InputError(
+            f"{len(indices)} measured points lie within {section.half_width_mm:g} mm of its plane",
+            todo="cut where the scan covers the part, or take more points in",
+        )
+    away = cloud.points[indices] - plane.origin
+    position, height = away @ plane.along, away @ plane.up
+    order = np.argsort(position, kind="stable")
+    indices, position, height = indices[order], position[order], height[order]
+    start = np.array([position[0], float(np.quantile(height, 0.02))])
+    depth = cloud.points[indices]
+    sigma = cloud.sigma[indices] * np.abs((depth / depth[:, 2:]) @ plane.up)
+    position, height = position - start[0], height - start[1]
+    origin = plane.origin + start[0] * plane.along + start[1] * plane.up
+    means = averaged(position, height, section.step_mm)
+    return Profile(origin, plane.along, plane.up, indices, position, height, sigma, *means)
+
+
+def _stretches(cut: Cut) -> tuple[tuple[float, float], ...]:
+    return (cut.first,) if cut.kind == "radius" else (cut.first, cut.second)
+
+
+def _cut(spec: FeatureSpec, cut: Cut, profile: Profile, scene: Scene) -> Characteristic:
+    """One measurement in the profile."""
+    chosen = [profile.between(ends) for ends in _stretches(cut)]
+    part = np.repeat(np.arange(len(chosen)), [len(one) for one in chosen])
+    indices = profile.indices[np.concatenate(chosen)]
+    if any(len(one) < 3 for one in chosen):
+        raise InputError(f"a stretch of {cut.name} holds too few points", todo="make it longer")
+    tukey = spec.filters.outliers
+    if cut.kind == "radius":
+        round_ = fit_surface(scene.cloud, indices, _circle(profile, chosen[0]), scene.errors, tukey=tukey)
+        rows = round_.budget(np.array([0.0, 0.0, 1.0]))
+        value, rule = round_.shape.radius, "radius of the circle of least squares in the section"
+    else:
+        points = scene.cloud.points
+        centres = np.array([points[profile.indices[one]].mean(axis=0) for one in chosen])
+        start = Levels(profile.up, centres, profile.along[:, None])
+        lines = fit_surface(scene.cloud, indices, start, scene.errors, part=part, tukey=tukey)
+        value, gradient, rule = _between(lines.shape, profile, cut)
+        rows = lines.budget(gradient)
+    return scene.characteristic(spec, cut.kind, value, rows, result=cut.name, rule=rule)
+
+
+def _between(lines: Levels, profile: Profile, cut: Cut) -> tuple[float, Array, str]:
+    """Height or distance of the second stretch from the first, and its gradient."""
+    height, gradient = lines.height(1, 0)
+    if cut.kind == "height":
+        return height, gradient, "distance of two parallel lines fitted jointly to two stretches of the section"
+    aside = float((lines.centres[1] - lines.centres[0]) @ np.cross(profile.normal, lines.outward_normal))
+    length = float(np.hypot(height, aside))
+    of_heights = np.array([-1.0, 1.0, 0.0]) * height / max(length, 1e-9)
+    return length, of_heights, "distance of the middles of two stretches of the section"
+
+
+def _circle(profile: Profile, chosen: NDArray[np.int64]) -> Tube:
+    """The circle through a stretch of the profile by least algebraic distance."""
+    flat = np.column_stack([profile.position[chosen], profile.height[chosen]])
+    middle = flat.mean(axis=0)
+    centred = flat - middle
+    design = np.column_stack([2 * centred, np.ones(len(flat))])
+    solved = np.linalg.lstsq(design, (centred**2).sum(axis=1), rcond=None)[0]
+    at = middle + solved[:2]
+    centre = profile.origin + at[0] * profile.along + at[1] * profile.up
+    radius = float(np.sqrt(max(solved[2] + solved[:2] @ solved[:2], 1e-12)))
+    return Tube.along(centre, profile.normal, radius, turns=False)

@@ -1,0 +1,41 @@
+"""A sphere: diameter and form."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from core.inspect.elements import Element
+from core.inspect.features.measured import FeatureResult, Scene
+from core.inspect.features.regions import points_in
+from core.inspect.inspection_plan import Auto, FeatureSpec, PointsOf
+from core.inspect.sphere import find_sphere, through
+from core.inspect.surface_fit import fit_surface
+
+
+def measure_sphere(spec: FeatureSpec, scene: Scene) -> FeatureResult:
+    """Fit a sphere to the points of the region that lie on one; InputError if they do not."""
+    scene.know_normals()
+    region, cloud = spec.regions[0], scene.cloud
+    indices = points_in(region, spec.filters, scene)
+    if not isinstance(region, PointsOf):
+        part = cloud.select(indices)
+        indices = indices[find_sphere(part, on_table=isinstance(region, Auto), progress=scene.progress)]
+    start = through(cloud.points[indices])
+    filters = spec.filters
+    fit = fit_surface(cloud, np.sort(indices), start, scene.errors, tukey=filters.outliers, cell_mm=filters.cell_mm)
+    ball = fit.shape
+    rule = "diameter of the sphere of least squares, by the points' covariance"
+    rows = fit.budget(np.array([0.0, 0.0, 0.0, 2.0]))
+    form_rule = "range that holds 95 % of the deviations from the sphere"
+    return FeatureResult(
+        spec,
+        characteristics=(
+            scene.characteristic(spec, "diameter", 2 * ball.radius, rows, rule=rule),
+            scene.characteristic(spec, "form", fit.form.value, fit.form.budget, rule=form_rule),
+        ),
+        indices=fit.indices,
+        residuals=fit.residuals,
+        part=fit.part,
+        element=Element.of_ball(fit),
+        shape=ball,
+    )

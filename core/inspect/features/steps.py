@@ -1,0 +1,99 @@
+"""Step heights: many parallel levels fitted jointly, one common normal and a height for each."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from core.errors import InputError
+from core.inspect.characteristic import Limits
+from core.inspect.faces import PARALLEL, search_tolerance
+from core.inspect.features.measured import FeatureResult, Scene
+from core.inspect.features.regions import Indices, face_in
+from core.inspect.inspection_plan import Auto, FeatureSpec
+from core.inspect.shapes import Levels
+from core.inspect.surface_fit import fit_surface
+
+SMALLEST_MM2 = 60.0
+"""A level found by itself is at least this large inside its margin."""
+
+
+def measure_steps(spec: FeatureSpec, scene: Scene) -> FeatureResult:
+    """Heights of the levels, the lowest being the farthest from the camera; InputError if there is but one."""
+    faces = _levels(spec, scene)
+    indices = np.concatenate(faces)
+    part = np.repeat(np.arange(len(faces)), [len(face) for face in faces])
+    order = np.argsort(indices, kind="stable")
+    indices, part = indices[order], part[order]
+    points = scene.cloud.points
+    centres = np.array([points[face].mean(axis=0) for face in faces])
+    largest = max(faces, key=len)
+    normal = np.linalg.svd(points[largest] - points[largest].mean(axis=0), full_matrices=False)[2][2]
+    start = Levels.through(normal if normal @ centres[0] < 0 else -normal, centres)
+    fit = fit_surface(
+        scene.cloud,
+        indices,
+        start,
+        scene.errors,
+        part=part,
+        tukey=spec.filters.outliers,
+        cell_mm=spec.filters.cell_mm,
+    )
+    rows = []
+    for upper in range(1, len(faces)):
+        lower = 0 if spec.over == "lowest" else upper - 1
+        height, gradient = fit.shape.height(upper, lower)
+        rule = f"distance of level {upper + 1} from level {lower + 1}, parallel planes fitted jointly to all levels"
+        row = scene.characteristic(spec, "height", height, fit.budget(gradient), result=f"height {upper}", rule=rule)
+        rows.append(replace(row, limits=_limits(spec, upper)))
+    return FeatureResult(
+        spec,
+        characteristics=tuple(rows),
+        indices=fit.indices,
+        residuals=fit.residuals,
+        part=fit.part,
+        shape=fit.shape,
+    )
+
+
+def _levels(spec: FeatureSpec, scene: Scene) -> list[Indices]:
+    """Points of each level, the lowest first."""
+    if len(spec.regions) == 1 and isinstance(spec.regions[0], Auto):
+        faces = _found(spec, scene)
+    else:
+        faces = [face_in(region, spec.filters, scene) for region in spec.regions]
+    if len(faces) < 2:
+        raise InputError(
+            f"{len(faces)} level was found, and a step has two",
+            todo="scan the other ones too, or draw a region on each",
+        )
+    points = scene.cloud.points
+    largest = points[max(faces, key=len)]
+    normal = np.linalg.svd(largest - largest.mean(axis=0), full_matrices=False)[2][2]
+    normal = normal if normal @ largest.mean(axis=0) > 0 else -normal
+    return sorted(faces, key=lambda face: -float(np.median(points[face] @ normal)))
+
+
+def _found(spec: FeatureSpec, scene: Scene) -> list[Indices]:
+    """All faces of the cloud that are parallel to the largest one."""
+    allowed = np.inf if spec.filters.sigma_max_mm is None else spec.filters.sigma_max_mm
+    planes = [plane for plane in scene.planes(spec.filters.margin_mm) if plane.region.area_mm2 >= SMALLEST_MM2]
+    faces: list[Indices] = []
+    heights: list[float] = []
+    for plane in planes:
+        height = plane.distance
+        apart = all(abs(height - other) > 2 * search_tolerance(scene.cloud, None) for other in heights)
+        if abs(plane.normal @ planes[0].normal) > np.cos(PARALLEL) and apart:
+            found = plane.region.indices
+            faces.append(np.sort(found[scene.cloud.sigma[found] <= allowed]))
+            heights.append(height)
+    return faces
+
+
+def _limits(spec: FeatureSpec, step: int) -> Limits | None:
+    """What is asked of a step (from 1): the limits of all, about its own nominal height."""
+    limits = spec.limits_of("height")
+    if limits is None or step > len(spec.nominal_heights):
+        return None
+    return replace(limits, nominal=spec.nominal_heights[step - 1])

@@ -1,0 +1,57 @@
+"""The thickness of a part: distance of two parallel faces, as `core.inspect.gauge` measures it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from core.errors import InputError
+from core.inspect.faces import FacePair, find_faces
+from core.inspect.features.measured import FeatureResult, Scene
+from core.inspect.features.regions import face_in
+from core.inspect.gauge import measure_gauge
+from core.inspect.inspection_plan import Auto, FeatureSpec
+from core.inspect.results import GaugeResult
+
+
+def measure_thickness(spec: FeatureSpec, scene: Scene) -> FeatureResult:
+    """Thickness between the faces of two regions (upper, lower), or between the two largest parallel faces."""
+    scene.know_normals()
+    gauge = measure_gauge(
+        scene.cloud, errors=scene.errors, regions=_faces(spec, scene), k=scene.k, progress=scene.progress
+    )
+    row = scene.characteristic(spec, "thickness", gauge.thickness_mm, gauge.budget, rule=gauge.rule)
+    faces = (gauge.upper, gauge.lower)
+    indices = np.concatenate([face.indices for face in faces])
+    part = np.repeat([0, 1], [len(face.indices) for face in faces])
+    order = np.argsort(indices, kind="stable")
+    return FeatureResult(
+        spec,
+        characteristics=(replace(row, notes=gauge.notes),),
+        indices=indices[order],
+        residuals=np.concatenate([face.residuals for face in faces])[order],
+        part=part[order],
+        gauge=_with_limits(gauge, spec),
+    )
+
+
+def _faces(spec: FeatureSpec, scene: Scene) -> FacePair | None:
+    cloud, filters = scene.cloud, spec.filters
+    if len(spec.regions) == 2:
+        return FacePair(*(face_in(region, filters, scene) for region in spec.regions))
+    if not isinstance(spec.regions[0], Auto):
+        raise InputError("a thickness has two regions, the upper and the lower face", todo="give both, or none")
+    if filters.sigma_max_mm is None:
+        return find_faces(cloud, margin_mm=filters.margin_mm, progress=scene.progress)
+    kept = np.flatnonzero(cloud.sigma <= filters.sigma_max_mm)
+    pair = find_faces(cloud.select(kept), margin_mm=filters.margin_mm, progress=scene.progress)
+    return FacePair(kept[pair.upper], kept[pair.lower])
+
+
+def _with_limits(gauge: GaugeResult, spec: FeatureSpec) -> GaugeResult:
+    """With nominal value and tolerance where the limits are symmetric: all that it can hold."""
+    limits = spec.limits_of("thickness")
+    if limits is None or limits.lower != -limits.upper:
+        return gauge
+    return replace(gauge, nominal_mm=limits.nominal, tolerance_mm=limits.upper)

@@ -1,0 +1,164 @@
+"""Lengths at 20 °C, and lengths compared with a known one.
+
+A part of expansion coefficient α that is θ away from 20 °C is longer by αθ than the length that drawings mean
+(ISO 1: 20 °C). So the length at 20 °C is::
+
+    L20 = L (1 − αθ + α_s θ_s)          u² = L² (θ² u_α² + α² u_θ²)
+
+with α_s, θ_s of the measuring scale, which here is the printed calibration target: it was longer by α_s θ_s too when
+the camera was calibrated with it, and everything measured with it is smaller by as much.
+
+A master block measured in the same way shows what the rig gets wrong now: the part is longer than the master by as much
+as both were measured to differ, plus what the certificate says (substitution, as in GUM H.1).
+
+References
+----------
+JCGM 100:2008 (GUM), H.1 End-gauge calibration. ISO 1:2022, standard reference temperature.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from core.inspect.characteristic import Characteristic
+from core.inspect.results import Contribution
+from core.inspect.uncertainty import CAMERA, FAN_CALIBRATION, SCALE, combined
+
+REFERENCE_C = 20.0
+PART_TEMPERATURE = "temperature of the part"
+PART_EXPANSION = "expansion coefficient of the part"
+SCALE_TEMPERATURE = "temperature of the calibration target"
+SCALE_EXPANSION = "expansion coefficient of the calibration target"
+CERTIFICATE = "certificate of the master"
+MASTER_MEASURED = "measurement of the master"
+
+LENGTHS = ("thickness", "height", "diameter", "radius", "distance")
+"""Kinds of characteristics that expand with the part."""
+
+ALIKE = 0.2
+"""A master is of use to lengths that differ from its own by no more than this share of it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Temperature:
+    """Of a part, in °C and 1/K, each with its standard uncertainty; the scale's, if it is known, in the same way."""
+
+    part_celsius: float
+    u_part_celsius: float
+    alpha: float
+    u_alpha: float
+    scale_celsius: float = REFERENCE_C
+    u_scale_celsius: float = 0.0
+    scale_alpha: float = 0.0
+    u_scale_alpha: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Master:
+    """A known length that was measured like the part.
+
+    Parameters
+    ----------
+    name
+        What it is called.
+    certified_mm, u_certified_mm
+        Its length at 20 °C and standard uncertainty by its certificate.
+    measured_mm
+        The same length as measured, at 20 °C if the part's are.
+    budget
+        What the measured length's uncertainty is made of; causes that camera and fan have in common with the part's
+        measurement cancel.
+    features
+        Names of the features that are compared with it.
+    same_calibration
+        Whether both were measured with one calibration of camera and fan.
+    """
+
+    name: str
+    certified_mm: float
+    u_certified_mm: float
+    measured_mm: float
+    budget: tuple[tuple[str, float], ...]
+    features: tuple[str, ...] = ()
+    same_calibration: bool = True
+
+
+def at_reference(length: Characteristic, temperature: Temperature) -> Characteristic:
+    """A length at 20 °C, what temperatures and coefficients add to its uncertainty, and a note that says so.
+
+    Form, angles and everything else that does not grow with the part is returned as it is.
+
+    Examples
+    --------
+    >>> hot = Temperature(part_celsius=30.0, u_part_celsius=0.5, alpha=11.5e-6, u_alpha=1e-6)
+    >>> cold = at_reference(Characteristic("bar", "thickness", 100.0, 0.001), hot)
+    >>> round(cold.value, 6), [round(row.u_mm, 6) for row in cold.budget]
+    (99.9885, [0.000575, 0.001])
+    """
+    if length.kind not in LENGTHS or length.quantity != "length":
+        return length
+    rows = temperature_contributions(length.value, temperature)
+    change = -length.value * temperature.alpha * (temperature.part_celsius - REFERENCE_C)
+    change += length.value * temperature.scale_alpha * (temperature.scale_celsius - REFERENCE_C)
+    note = f"Stated at 20 °C: {change * 1000:+.2f} µm for a part at {temperature.part_celsius:g} °C."
+    return replace(
+        length,
+        value=length.value + change,
+        u=math.hypot(length.u, combined(rows)),
+        budget=(*length.budget, *rows),
+        notes=(*length.notes, note),
+    )
+
+
+def temperature_contributions(length_mm: float, temperature: Temperature) -> tuple[Contribution, ...]:
+    """What the temperatures and coefficients contribute to the uncertainty of a length at 20 °C; no zero rows."""
+    part, scale = temperature.part_celsius - REFERENCE_C, temperature.scale_celsius - REFERENCE_C
+    rows = (
+        (PART_TEMPERATURE, temperature.alpha * temperature.u_part_celsius),
+        (PART_EXPANSION, part * temperature.u_alpha),
+        (SCALE_TEMPERATURE, temperature.scale_alpha * temperature.u_scale_celsius),
+        (SCALE_EXPANSION, scale * temperature.u_scale_alpha),
+    )
+    return tuple(Contribution(source, abs(length_mm * share)) for source, share in rows if share)
+
+
+def compared(length: Characteristic, master: Master) -> Characteristic:
+    """A length by comparison with a master: certified + (measured − master measured).
+
+    What camera and fan get wrong is the same for both if one calibration measured both, so of each such cause only the
+    difference stays; everything else of both measurements and the certificate adds up. A length that differs from the
+    master's by more than a fifth is returned as it is, with a note.
+    """
+    if length.kind not in LENGTHS or length.quantity != "length":
+        return length
+    if abs(length.value - master.measured_mm) > ALIKE * master.measured_mm:
+        note = f"Not compared with master {master.name}, whose length of {master.certified_mm:g} mm is too different."
+        return replace(length, notes=(*length.notes, note))
+    correction = master.certified_mm - master.measured_mm
+    rows = _difference(length.budget, master)
+    note = f"Compared with master {master.name}: {correction * 1000:+.2f} µm."
+    return replace(
+        length,
+        value=length.value + correction,
+        u=combined(rows),
+        budget=rows,
+        notes=(*length.notes, note),
+    )
+
+
+def _difference(budget: Sequence[Contribution], master: Master) -> tuple[Contribution, ...]:
+    """The budget of a part's length less the master's."""
+    of_master = dict(master.budget)
+    rows = []
+    own = [u for source, u in master.budget if not (master.same_calibration and source in _CANCEL)]
+    for row in budget:
+        cancels = master.same_calibration and row.source in _CANCEL
+        rows.append(replace(row, u_mm=abs(row.u_mm - of_master.get(row.source, 0.0))) if cancels else row)
+    rows.append(Contribution(MASTER_MEASURED, math.hypot(*own) if own else 0.0))
+    rows.append(Contribution(CERTIFICATE, master.u_certified_mm))
+    return tuple(rows)
+
+
+_CANCEL = (CAMERA, FAN_CALIBRATION, SCALE)

@@ -1,0 +1,138 @@
+"""A nominal surface: triangles, and the signed distance of points from them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from core.model.arrays import Array, frozen_array, set_field
+
+CANDIDATES = 8
+"""Triangles tried first for each point; more where that may not be enough."""
+FINEST = 400_000
+"""A surface is cut into no more pieces than about this many."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Triangles:
+    """Corners (T, 3, 3) in mm; seen from outside each runs anticlockwise."""
+
+    corners: Array
+
+    def __post_init__(self) -> None:
+        set_field(self, "corners", frozen_array(self.corners, (None, 3, 3), "corners"))
+
+    @property
+    def normals(self) -> Array:
+        """(T, 3) outward unit normals; zero for a triangle without area."""
+        cross = np.cross(self.corners[:, 1] - self.corners[:, 0], self.corners[:, 2] - self.corners[:, 0])
+        return np.asarray(cross / np.maximum(np.linalg.norm(cross, axis=1), 1e-30)[:, None])
+
+    @property
+    def size_mm(self) -> float:
+        """Diagonal of the box around it."""
+        return float(np.linalg.norm(np.ptp(self.corners.reshape(-1, 3), axis=0)))
+
+    def moved(self, rotation: Array, translation: Array) -> Triangles:
+        """The surface after X → R X + t."""
+        return Triangles(self.corners @ rotation.T + translation)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Nearest:
+    """Of N points: the nearest place on the surface (N, 3), its outward normal (N, 3), and the signed distance (N,)."""
+
+    foot: Array
+    normal: Array
+    distance: Array
+
+
+class Surroundings:
+    """Triangles made ready to be asked for the nearest of them."""
+
+    def __init__(self, surface: Triangles) -> None:
+        pieces, self._of = _cut(surface.corners)
+        self._surface, self._normals = surface, surface.normals
+        centres = pieces.mean(axis=1)
+        self._reach = float(np.linalg.norm(pieces - centres[:, None], axis=2).max())
+        self._tree = cKDTree(centres)
+
+    def nearest(self, points: Array) -> Nearest:
+        """The nearest place of the surface to each point (N, 3); exact.
+
+        A piece whose middle is farther than the best distance found plus the pieces' reach cannot be nearer.
+        """
+        foot, which = np.zeros_like(points), np.zeros(len(points), dtype=np.int64)
+        left, count = np.arange(len(points)), min(CANDIDATES, self._tree.n)
+        while len(left):
+            found = self._tree.query(points[left], k=[*range(1, count + 1)])
+            far, pieces = np.asarray(found[0], dtype=np.float64), np.asarray(found[1], dtype=np.int64)
+            triangles = self._of[pieces]
+            feet = _foot(points[left, None], self._surface.corners[triangles])
+            away = np.linalg.norm(feet - points[left, None], axis=2)
+            best = np.argmin(away, axis=1)
+            rows = np.arange(len(left))
+            foot[left], which[left] = feet[rows, best], triangles[rows, best]
+            unsure = (far[:, -1] < away[rows, best] + self._reach) & (count < self._tree.n)
+            left, count = left[unsure], min(4 * count, self._tree.n)
+        return self._signed(points, foot, which)
+
+    def _signed(self, points: Array, foot: Array, which: NDArray[np.int64]) -> Nearest:
+        between = points - foot
+        away = np.linalg.norm(between, axis=1)
+        normal = self._normals[which]
+        sign = np.where((between * normal).sum(axis=1) >= 0, 1.0, -1.0)
+        return Nearest(foot, normal, sign * away)
+
+
+def _cut(corners: Array) -> tuple[Array, NDArray[np.int64]]:
+    """The triangles cut at the middle of their longest edge until none is much larger than the others allow."""
+    of = np.arange(len(corners))
+    area = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    longest = max(2.0 * np.sqrt(float(area.sum()) / max(5_000, 2 * len(corners))), 1e-6)
+    while True:
+        edges = np.linalg.norm(corners - np.roll(corners, -1, axis=1), axis=2)  # edge i: corner i to i + 1
+        long = edges.max(axis=1) > longest
+        if not long.any() or len(corners) > FINEST:
+            return corners, of
+        first = edges[long].argmax(axis=1)
+        rolled = np.take_along_axis(corners[long], ((first[:, None] + np.arange(3)) % 3)[:, :, None], axis=1)
+        a, b, c = rolled[:, 0], rolled[:, 1], rolled[:, 2]
+        middle = (a + b) / 2
+        halves = [np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)]
+        corners = np.concatenate([corners[~long], *halves])
+        of = np.concatenate([of[~long], of[long], of[long]])
+
+
+def _foot(points: Array, corners: Array) -> Array:
+    """The place of each triangle (N, k, 3, 3) nearest to its point (N, 1, 3).
+
+    Ericson, Real-Time Collision Detection (2005), 5.1.5: by the region of the triangle's plane the point lies over.
+    """
+    a, b, c = corners[..., 0, :], corners[..., 1, :], corners[..., 2, :]
+    ab, ac, ap, bp, cp = b - a, c - a, points - a, points - b, points - c
+
+    def dot(one: Array, other: Array) -> Array:
+        return np.asarray((one * other).sum(axis=-1))
+
+    d1, d2, d3, d4, d5, d6 = dot(ab, ap), dot(ac, ap), dot(ab, bp), dot(ac, bp), dot(ab, cp), dot(ac, cp)
+    va, vb, vc = d3 * d6 - d5 * d4, d5 * d2 - d1 * d6, d1 * d4 - d3 * d2
+
+    def share(part: Array, whole: Array) -> Array:
+        return np.asarray(part / np.where(np.abs(whole) > 0, whole, 1.0))[..., None]
+
+    inside = a + share(vb, va + vb + vc) * ab + share(vc, va + vb + vc) * ac
+    cases = (
+        ((d1 <= 0) & (d2 <= 0), a),
+        ((d3 >= 0) & (d4 <= d3), b),
+        ((vc <= 0) & (d1 >= 0) & (d3 <= 0), a + share(d1, d1 - d3) * ab),
+        ((d6 >= 0) & (d5 <= d6), c),
+        ((vb <= 0) & (d2 >= 0) & (d6 <= 0), a + share(d2, d2 - d6) * ac),
+        ((va <= 0) & (d4 >= d3) & (d5 >= d6), b + share(d4 - d3, (d4 - d3) + (d5 - d6)) * (c - b)),
+    )
+    return np.asarray(
+        np.select([np.repeat(when[..., None], 3, -1) for when, _ in cases], [at for _, at in cases], inside)
+    )
