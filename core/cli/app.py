@@ -227,14 +227,81 @@ def gauge(folder: Set, out: Out, json: Json = False) -> None:
     raise typer.Exit(measuring.exit_code(result))
 
 
-@app.command()
-def report(folder: Set, out: Out, part: Part = "", json: Json = False) -> None:
-    """Put the results in DIR into report.pdf."""
-    from core.cli import measuring
+Template = Annotated[
+    Path | None, typer.Option("--template", metavar="FILE", help="A company's template of reports (TOML).")
+]
+Language = Annotated[str, typer.Option("--language", metavar="CODE", help="en or de; else the template's, or en.")]
+Serial = Annotated[str, typer.Option("--serial", metavar="TEXT", help="Serial number of the part.")]
+Customer = Annotated[str, typer.Option("--customer", metavar="NAME", help="Who it is measured for.")]
+Operator = Annotated[str, typer.Option("--operator", metavar="NAME", help="Who measured.")]
 
+
+@app.command()
+def report(
+    folder: Set,
+    out: Out,
+    part: Part = "",
+    template: Template = None,
+    language: Language = "",
+    paper: Annotated[str, typer.Option(metavar="NAME", help="A4 or Letter; else the template's, or A4.")] = "",
+    without: Annotated[
+        list[str] | None,
+        typer.Option("--without", metavar="SECTION", help="Leave this section out, as frame; repeat for more."),
+    ] = None,
+    serial: Serial = "",
+    customer: Customer = "",
+    operator: Operator = "",
+    json: Json = False,
+) -> None:
+    """Put the results in DIR into report.pdf."""
+    from core.cli import reporting
+
+    chosen = reporting.ReportOptions(part, template, language, paper, without or (), serial, customer, operator)
     with bars() as progress:
-        shown = measuring.run_report(folder, out, part, progress)
+        shown = reporting.run_report(folder, out, chosen, progress)
     shown.show(as_json=json)
+
+
+@app.command()
+def export(
+    results: Annotated[Path, typer.Argument(metavar="DIR", help="A folder of results.")],
+    formats: Annotated[
+        list[str],
+        typer.Option(
+            "--format",
+            "-f",
+            metavar="NAMES",
+            help="Of clouds: cloud, e57, csv; of surfaces: mesh, stl; of results: table, xlsx, results, dfq, qif, "
+            "json; of the camera: opencv, opencv-json, ros; or pdf. Several with commas.",
+        ),
+    ],
+    to: Annotated[Path | None, typer.Option("--to", metavar="FOLDER", help="Write there instead of into DIR.")] = None,
+    part: Part = "",
+    template: Template = None,
+    serial: Serial = "",
+    customer: Customer = "",
+    operator: Operator = "",
+    json: Json = False,
+) -> None:
+    """Write the results in DIR in the formats of other programs."""
+    from core.cli import reporting
+
+    chosen = reporting.ReportOptions(part, template, serial=serial, customer=customer, operator=operator)
+    with bars() as progress:
+        shown = reporting.run_export(results, formats, to, chosen, progress)
+    shown.show(as_json=json)
+
+
+@app.command(name="import-camera")
+def import_camera(
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="OpenCV's FileStorage (YAML, JSON, XML) or ROS's YAML.")],
+    out: Out,
+    json: Json = False,
+) -> None:
+    """Take a camera calibrated by OpenCV or ROS; writes camera.json."""
+    from core.cli import reporting
+
+    reporting.run_import(file, out).show(as_json=json)
 
 
 @app.command()

@@ -21,7 +21,6 @@ from core.pipeline import (
     camera_step,
     gauge_step,
     planes_step,
-    report_step,
     run,
     scan_step,
 )
@@ -131,13 +130,6 @@ def run_gauge(folder: Path, out: Path, progress: Progress) -> tuple[GaugeResult,
     work = _open(folder, out)
     gauge = gauge_step(work, progress)
     return gauge, _shown(work, "gauge", output.gauge_rows(gauge), output.gauge_json(gauge), "gauge")
-
-
-def run_report(folder: Path, out: Path, part: str, progress: Progress) -> Shown:
-    """Report step."""
-    work = Workspace.open(open_set(folder), out, part)
-    report_step(work, progress)
-    return _shown(work, "report", [], {}, "report")
 
 
 def _open(folder: Path, out: Path) -> Workspace:

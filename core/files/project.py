@@ -5,7 +5,6 @@ from __future__ import annotations
 from core.files.project_data import (
     Accepted,
     Done,
-    Paper,
     Project,
     ProjectFile,
     ProjectInfo,
@@ -38,7 +37,6 @@ __all__ = [
     "Accepted",
     "Done",
     "NewerProject",
-    "Paper",
     "Project",
     "ProjectFile",
     "ProjectInfo",

@@ -5,12 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from datetime import datetime
-from typing import Literal
 
 from core.files.options import Options
 from core.files.rig import Rig, default_rig
-
-Paper = Literal["A4", "Letter"]
+from core.report.template import Language, Paper
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,10 +61,15 @@ class Repeat:
 
 @dataclass(frozen=True, slots=True)
 class ReportChoices:
-    """How the report is made: the sections left out, and the paper."""
+    """How the report is made: the sections left out, the paper, the language of its fixed words, the template file.
+
+    `template` is named as `Sources` are: within the project relative to its folder, elsewhere in full; nothing: none.
+    """
 
     hidden: frozenset[str] = frozenset()
     paper: Paper = "A4"
+    language: Language = "en"
+    template: str = ""
 
 
 @dataclass(frozen=True, slots=True)

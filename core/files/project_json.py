@@ -30,11 +30,12 @@ from core.files.project_tables import OptionsTable, ProjectTables
 from core.files.rig import rig_of, rig_tables
 from core.image.stripe import StripeSettings
 
-SCHEMA = 2
+SCHEMA = 3
 """Raised with every change of the keys: an older program then says that the project is too new for it."""
 
 MIGRATIONS: Mapping[int, Callable[[dict[str, Any]], dict[str, Any]]] = {
     1: lambda tables: {**tables, "rejected": []},
+    2: lambda tables: tables,  # language and template of the report, which have defaults
 }
 """By schema: the tables as the next schema has them, from those of this one."""
 
@@ -66,7 +67,7 @@ def project_text(file: ProjectFile, path: Path) -> str:
         "accepted": asdict(project.accepted),
         "rejected": sorted(project.rejected),
         "repeats": [{**asdict(repeat), "measured_at": _stamp(repeat.measured_at)} for repeat in project.repeats],
-        "report": {"hidden": sorted(project.report.hidden), "paper": project.report.paper},
+        "report": {**asdict(project.report), "hidden": sorted(project.report.hidden)},
         "results": {step: _done_table(done) for step, done in sorted(file.results.items())},
     }
     _checked(tables, path)
@@ -119,7 +120,7 @@ def _project_file(file: ProjectTables, path: Path) -> ProjectFile:
         accepted=Accepted(**dict(file.accepted)),
         rejected=frozenset(file.rejected),
         repeats=tuple(Repeat(**dict(repeat)) for repeat in repeats),
-        report=ReportChoices(frozenset(report.hidden), report.paper),
+        report=ReportChoices(**{**dict(report), "hidden": frozenset(report.hidden)}),
     )
     results = {step: Done(done.key, done.rests_on, done.at) for step, done in file.results.items()}
     return ProjectFile(project, results, file.created, file.saved)

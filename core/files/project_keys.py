@@ -12,7 +12,7 @@ from dataclasses import asdict
 from datetime import datetime
 from typing import Any
 
-from core.files.project_data import Done, Project
+from core.files.project_data import Done, Project, ReportChoices
 from core.files.rig import rig_tables
 
 STEPS = ("camera", "planes", "scan", "inspect", "report")
@@ -115,8 +115,13 @@ def _report(project: Project, results: Mapping[str, Done]) -> dict[str, str]:
         "thickness": _key_of("inspect", results),
         "project fields": _digest(asdict(project.info)),
         "repeats": _digest([[*asdict(repeat).values()] for repeat in project.repeats]),
-        "sections of the report": _digest([sorted(project.report.hidden), project.report.paper]),
+        "sections of the report": _digest([sorted(project.report.hidden), *_printing(project.report)]),
     }
+
+
+def _printing(report: ReportChoices) -> list[str]:
+    """Paper, and what else is not as usual: reports made before there was a choice stay up to date."""
+    return [report.paper, *(one for one in (report.language, report.template) if one not in ("en", ""))]
 
 
 def _key_of(step: str, results: Mapping[str, Done]) -> str:

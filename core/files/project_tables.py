@@ -113,6 +113,8 @@ class ReportTable(Table):
 
     hidden: list[str] = Field(default_factory=list, description="a list of names of sections")
     paper: Literal["A4", "Letter"] = Field(default="A4", description='"A4" or "Letter"')
+    language: Literal["en", "de"] = Field(default="en", description='"en" or "de"')
+    template: str = ""
 
 
 class DoneTable(Table):

@@ -20,6 +20,7 @@ from core.files.atomic import write_text
 from core.files.camera_file import Finite, Maybe, ResultFile
 from core.files.complaints import complaint
 from core.files.json_text import read_json, to_json
+from core.files.project_tables import Time
 from core.scan.results import FrameRecord
 
 LIBRARIES = ("numpy", "scipy", "opencv-python-headless", "numba", "matplotlib", "reportlab")
@@ -46,6 +47,8 @@ class RunRecord:
         SHA-256 in hex of every file read, by its name within the set.
     frames
         What became of every frame.
+    made_at
+        By measuring step: when it began, as far as that is known. A calibration taken from elsewhere keeps its own.
     """
 
     set_name: str
@@ -56,6 +59,7 @@ class RunRecord:
     timings: Mapping[str, float] = field(default_factory=dict)
     inputs: Mapping[str, str] = field(default_factory=dict)
     frames: tuple[FrameRecord, ...] = ()
+    made_at: Mapping[str, datetime] = field(default_factory=dict)
 
     def with_step(
         self, step: str, seconds: float, inputs: Mapping[str, str], settings: Mapping[str, Any], notes: Sequence[str]
@@ -101,6 +105,7 @@ class _RunFile(ResultFile):
     timings_s: dict[str, Finite] = Field(default_factory=dict)
     inputs: dict[str, str] = Field(default_factory=dict)
     frames: list[_Frame] = Field(default_factory=list)
+    made_at: dict[str, Time] = Field(default_factory=dict, description="a table of times")
 
 
 def write_run(path: Path, record: RunRecord) -> None:
@@ -113,6 +118,7 @@ def write_run(path: Path, record: RunRecord) -> None:
                 "set": record.set_name,
                 "part": record.part,
                 "measured_at": record.measured_at.isoformat(timespec="seconds"),
+                "made_at": {step: at.isoformat(timespec="seconds") for step, at in record.made_at.items()},
                 "timings_s": record.timings,
                 "settings": record.settings,
                 "notes": record.notes,
@@ -143,6 +149,7 @@ def read_run(path: Path) -> RunRecord:
         timings=file.timings_s,
         inputs=file.inputs,
         frames=tuple(_record(frame) for frame in file.frames),
+        made_at=file.made_at,
     )
 
 

@@ -1,28 +1,42 @@
-"""Looking at a report before it is made, and copies of results for others."""
+"""Looking at a report before it is made, choosing how it looks, and copies of results for others."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
-from typing import Literal
 
-from core.errors import InputError
-from core.files.atomic import write_bytes
-from core.files.csv_file import write_points_csv
+from core.calibrate.results import CameraCalibration
+from core.files.atomic import make_folder, write_bytes
+from core.files.camera_file import write_camera
+from core.files.exchange.opencv_calibration import read_opencv
+from core.files.exchange.ros_camera_info import read_camera_info
 from core.files.pictures import read_bytes
-from core.files.ply import read_cloud, read_mesh
-from core.files.project_data import Project
+from core.files.project_data import Project, ReportChoices
+from core.files.project_folder import stored_source
 from core.files.project_rescue import can_be_saved
-from core.files.stl import write_stl
-from core.pipeline.project_steps import report_bytes, results_folder
+from core.files.report_template import read_report_template
+from core.pipeline.export_kinds import EXPORTS, ExportKind, Results, export_kind
+from core.pipeline.project_steps import project_content, report_bytes, results_folder
+from core.pipeline.report_step import results_content
 from core.pipeline.workspace import FILES
 from core.progress import Progress, silent
+from core.report.content import ReportContent
 from core.report.page_pictures import Pages, page_pictures
+from core.report.template import LANGUAGES, PAPERS, ReportTemplate
 
-Kind = Literal["pdf", "cloud", "mesh", "stl", "csv", "json"]
-"""What can be handed over: report, cloud and mesh as PLY, mesh as STL, points as CSV, the thickness as JSON."""
-
-_COPIED = {"pdf": "report", "cloud": "cloud", "mesh": "mesh", "json": "gauge"}
+__all__ = [
+    "EXPORTS",
+    "LANGUAGES",
+    "PAPERS",
+    "ExportKind",
+    "choose_template",
+    "export",
+    "export_results",
+    "import_camera",
+    "preview_report",
+    "with_template",
+]
 
 
 def preview_report(folder: Path, project: Project, width_px: int, progress: Progress = silent) -> Pages:
@@ -36,10 +50,43 @@ def preview_report(folder: Path, project: Project, width_px: int, progress: Prog
     return page_pictures(report_bytes(folder, project, progress), width_px, progress)
 
 
-def export(folder: Path, project: Project, kind: Kind, path: Path, progress: Progress = silent) -> Path:
-    """Write a copy of a result to `path` and return it; the file appears whole or not at all.
+def choose_template(folder: Path, choices: ReportChoices, path: Path | None) -> ReportChoices:
+    """The choices with the template in `path` (None: without any), and with the paper, language and sections it names.
 
-    The report of a project that cannot be written to is made on the way: it cannot be among the results.
+    What it does not name stays as it is, and everything can be chosen otherwise afterwards.
+
+    Raises
+    ------
+    InputError
+        If the template cannot be read.
+    """
+    if path is None:
+        return replace(choices, template="")
+    template = read_report_template(path)
+    return replace(
+        choices,
+        hidden=choices.hidden | template.without,
+        paper=template.paper or choices.paper,
+        language=template.language or choices.language,
+        template=stored_source(folder, path),
+    )
+
+
+def with_template(content: ReportContent, template: ReportTemplate) -> ReportContent:
+    """The content as a template wants it: its words, and the paper, language and sections it names."""
+    return replace(
+        content,
+        template=template,
+        hidden=content.hidden | template.without,
+        paper=template.paper or content.paper,
+        language=template.language or content.language,
+    )
+
+
+def export(folder: Path, project: Project, kind: str, path: Path, progress: Progress = silent) -> Path:
+    """Write a project's result of a kind out of EXPORTS to `path` and return it; it appears whole or not at all.
+
+    The report is a copy of the one among the results, or made on the way where the project cannot be written to.
 
     Raises
     ------
@@ -47,20 +94,60 @@ def export(folder: Path, project: Project, kind: Kind, path: Path, progress: Pro
         If the result is not there, or `path` cannot be written.
     """
     progress("writing", 0, 1)
-    results = results_folder(folder)
     if kind == "pdf" and not can_be_saved(folder):
         write_bytes(path, report_bytes(folder, project, progress))
-    elif kind in _COPIED:
-        source = results / FILES[_COPIED[kind]]
-        if not source.exists():
-            raise InputError("is not there", where=source, todo="do the step that makes it first")
-        if source.resolve() != path.resolve():
-            write_bytes(path, read_bytes(source))
     else:
-        write: dict[str, Callable[[], None]] = {
-            "stl": lambda: write_stl(path, read_mesh(results / FILES["mesh"])),
-            "csv": lambda: write_points_csv(path, read_cloud(results / FILES["cloud"]).cloud),
-        }
-        write[kind]()
+        results = Results(results_folder(folder), lambda: project_content(folder, project, progress))
+        export_kind(kind).write(results, path, progress)
     progress("writing", 1, 1)
     return path
+
+
+def export_results(
+    out: Path,
+    kinds: Sequence[str],
+    to: Path | None = None,
+    said: Callable[[ReportContent], ReportContent] | None = None,
+    progress: Progress = silent,
+) -> dict[str, Path]:
+    """Write the results in `out` as `kinds` out of EXPORTS, into the folder `to` (None: beside the results).
+
+    Parameters
+    ----------
+    said
+        Adds what people say to what was measured.
+
+    Raises
+    ------
+    InputError
+        If there is no such kind, a result is missing, or nothing can be written.
+    """
+    chosen = [export_kind(kind) for kind in kinds]
+    folder = make_folder(to or out)
+    results = Results(out, lambda: said(results_content(out)) if said else results_content(out))
+    written = {}
+    for done, kind in enumerate(chosen):
+        progress("writing", done, len(chosen))
+        kind.write(results, folder / kind.file, progress)
+        written[kind.name] = folder / kind.file
+    progress("writing", len(chosen), len(chosen))
+    return written
+
+
+def import_camera(path: Path, out: Path) -> CameraCalibration:
+    """Read a camera calibrated by OpenCV or ROS, and write it as camera.json in `out`.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read, or is no camera that is modelled here.
+    """
+    calibration = read_opencv(path) if _of_opencv(path) else read_camera_info(path)
+    write_camera(make_folder(out) / FILES["camera"], calibration)
+    return calibration
+
+
+def _of_opencv(path: Path) -> bool:
+    """Whether OpenCV wrote it, rather than ROS: the two share YAML's endings."""
+    data = read_bytes(path)
+    return path.suffix.lower() in (".json", ".xml") or data.startswith((b"%YAML", b"<?xml")) or b"!!opencv" in data

@@ -31,6 +31,7 @@ from core.files.project_data import Project
 from core.files.project_folder import source_folder
 from core.files.project_results import ScanSummary
 from core.files.recording_set import RecordingSet, gather_set, require_scan
+from core.files.report_template import read_report_template
 from core.files.run_file import write_run
 from core.inspect.results import GaugeResult
 from core.model import Camera
@@ -48,6 +49,7 @@ from core.progress import Progress, silent
 from core.report.content import RepeatLine, ReportContent
 from core.report.pdf import build_report
 from core.report.section_names import SECTIONS
+from core.report.template import ReportTemplate
 from core.scan.frame_preview import FramePreview
 
 __all__ = [
@@ -269,14 +271,18 @@ def make_report(folder: Path, project: Project, progress: Progress = silent) -> 
     InputError
         If there is no scan among the results.
     """
-    return report_step(_work(folder, project), progress, lambda content: _with_words(content, project))
+    return report_step(_work(folder, project), progress, lambda content: with_words(content, folder, project))
 
 
 def report_bytes(folder: Path, project: Project, progress: Progress = silent) -> bytes:
     """The report as `make_report` would write it, as the bytes of a PDF; nothing is written."""
+    return build_report(project_content(folder, project, progress), progress)
+
+
+def project_content(folder: Path, project: Project, progress: Progress = silent) -> ReportContent:
+    """All that is reported and handed over of a project; InputError if there is no scan among the results."""
     work = Workspace(project_set(folder, project), results_folder(folder), _part(project))  # only read from
-    content = report_content(work, progress, lambda content: _with_words(content, project))
-    return build_report(content, progress)
+    return report_content(work, progress, lambda content: with_words(content, folder, project))
 
 
 def _part(project: Project) -> str:
@@ -313,19 +319,28 @@ def _record_calibrations(work: Workspace, folder: Path, project: Project) -> Non
         ("planes", read_stored(folder, "fan", project.accepted.fan), calibration.fan.notes),
     )
     for step, about, notes in steps:
+        made_at = {} if about is None else {step: about.kept_at}
         about = about or StoredCalibration("camera", "", record.measured_at, 0, 0)
         record = replace(
             record,
             settings={**record.settings, step: about.settings},
             notes={**record.notes, step: (*about.notes, *notes)},
             inputs={**record.inputs, **about.inputs},
+            made_at={**record.made_at, **made_at},
         )
     write_run(work.path("run"), record)
 
 
-def _with_words(content: ReportContent, project: Project) -> ReportContent:
-    """The report's content with what people say of the job and of the report."""
+def with_words(content: ReportContent, folder: Path, project: Project) -> ReportContent:
+    """The report's content with what people say of the job and of the report.
+
+    Raises
+    ------
+    InputError
+        If the project's template of reports cannot be read.
+    """
     info, choices = project.info, project.report
+    template = read_report_template(folder / choices.template) if choices.template else ReportTemplate()
     return replace(
         content,
         serial=info.serial,
@@ -341,4 +356,6 @@ def _with_words(content: ReportContent, project: Project) -> ReportContent:
         ),
         hidden=choices.hidden & SECTIONS.keys(),
         paper=choices.paper,
+        language=choices.language,
+        template=template,
     )

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import hashlib
 import math
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,18 +14,21 @@ from scipy.spatial import cKDTree
 from core import __version__
 from core.errors import InputError
 from core.files.atomic import write_bytes
+from core.files.camera_file import camera_id
+from core.files.fan_file import fan_id
 from core.files.gauge_file import read_gauge
+from core.files.pictures import read_bytes
 from core.files.ply import read_cloud, read_mesh
-from core.files.recording_set import RecordingSet
-from core.files.rig import Rig
-from core.files.run_file import RunRecord
+from core.files.recording_set import RIG, RecordingSet
+from core.files.rig import Rig, rig_to_toml
+from core.files.run_file import RunRecord, read_run
 from core.files.scan_file import ScanFile, read_scan
 from core.image.centreline import Centreline
 from core.image.display import in_8_bit
 from core.model.arrays import Array
-from core.pipeline.workspace import Workspace, check_calibration
+from core.pipeline.workspace import FILES, Calibration, Workspace, check_calibration, read_calibration
 from core.progress import Progress, silent
-from core.report.content import Overlay, ReportContent
+from core.report.content import CalibrationMark, Overlay, ReportContent
 from core.report.pdf import build_report
 from core.report.wording import target_in_words
 from core.scan.cloud import Cloud
@@ -32,6 +37,9 @@ METHOD_IN_WORDS = {
     "network": "all sweeps adjusted together as one network, tied to the fan and to each other by their crossings",
     "three-crossings": "each sweep located from its own crossings with the fan (Sun et al. 2023, section 4)",
 }
+RIG_ID = 12
+"""Hex digits of a rig's hash that name it."""
+
 _SAME_POINT_PX = 0.01
 
 Said = Callable[[ReportContent], ReportContent]
@@ -54,22 +62,44 @@ def report_step(work: Workspace, progress: Progress = silent, said: Said | None 
 def report_content(work: Workspace, progress: Progress = silent, said: Said | None = None) -> ReportContent:
     """What the report says; InputError as `report_step`."""
     progress("report", 0, 1)
-    calibration = work.calibration()
-    cloud_file = read_cloud(work.path("cloud"))
-    check_calibration(work.path("cloud"), cloud_file.calibration_id, calibration)
-    scan = read_scan(work.path("scan"))
-    check_calibration(work.path("scan"), scan.calibration_id, calibration)
-    record = work.record()
-    gauge = read_gauge(work.path("gauge"), cloud_file.cloud) if work.path("gauge").exists() else None
-    content = ReportContent(
-        part=work.part or record.part,
-        rig=_rig_in_words(work.found.rig, calibration.camera.camera.image_size),
+    content = results_content(work.out, work.part, work.record())
+    rig = work.found.rig
+    content = replace(
+        content,
+        rig=_rig_in_words(rig, content.camera.camera.image_size),
+        rig_id=content.rig_id or hashlib.sha256(rig_to_toml(rig).encode()).hexdigest()[:RIG_ID],
+        overlay=_overlay(work.found, read_scan(work.path("scan")), content.cloud),
+    )
+    return said(content) if said else content
+
+
+def results_content(out: Path, part: str = "", record: RunRecord | None = None) -> ReportContent:
+    """What the results in the folder `out` say by themselves, without the pictures and the rig they come from.
+
+    `record` is what is known of the run; None: what run.json says.
+
+    Raises
+    ------
+    InputError
+        If a result is missing, damaged, or was measured with another calibration.
+    """
+    calibration = read_calibration(out)
+    cloud_file = read_cloud(out / FILES["cloud"])
+    check_calibration(out / FILES["cloud"], cloud_file.calibration_id, calibration)
+    scan = read_scan(out / FILES["scan"])
+    check_calibration(out / FILES["scan"], scan.calibration_id, calibration)
+    record = record or read_run(out / FILES["run"])
+    gauge_path = out / FILES["gauge"]
+    return ReportContent(
+        part=part or record.part,
+        rig={},
         camera=calibration.camera,
         fan=calibration.fan,
         cloud=cloud_file.cloud,
-        mesh=read_mesh(work.path("mesh")),
-        gauge=gauge,
-        overlay=_overlay(work.found, scan, cloud_file.cloud),
+        mesh=read_mesh(out / FILES["mesh"]),
+        gauge=read_gauge(gauge_path, cloud_file.cloud) if gauge_path.exists() else None,
+        calibrations=_marks(out, record, calibration),
+        rig_id=record.inputs.get(RIG, "")[:RIG_ID],
         frames=record.frames,
         hashes=record.inputs,
         settings=_settings_in_words(record),
@@ -78,7 +108,15 @@ def report_content(work: Workspace, progress: Progress = silent, said: Said | No
         version=__version__,
         timestamp=record.measured_at,
     )
-    return said(content) if said else content
+
+
+def _marks(out: Path, record: RunRecord, calibration: Calibration) -> tuple[CalibrationMark, ...]:
+    """Which calibrations these are, and since when."""
+    camera, fan = (hashlib.sha256(read_bytes(out / FILES[name])).hexdigest() for name in ("camera", "planes"))
+    return (
+        CalibrationMark("camera", camera_id(calibration.camera.camera), camera, record.made_at.get("camera")),
+        CalibrationMark("fan", fan_id(calibration.fan.fan), fan, record.made_at.get("planes")),
+    )
 
 
 def _rig_in_words(rig: Rig, image_size: tuple[int, int]) -> Mapping[str, str]:

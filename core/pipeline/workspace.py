@@ -99,9 +99,7 @@ class Workspace:
 
     def calibration(self) -> Calibration:
         """Read camera.json and planes.json; InputError if they are missing, wrong, or not of each other."""
-        camera = read_camera(self.path("camera"))
-        fan = read_fan(self.path("planes"), camera.camera)
-        return Calibration(fan.camera_used(camera), fan)
+        return read_calibration(self.out)
 
     def record(self) -> RunRecord:
         """What run.json says so far; a fresh record where there is none."""
@@ -128,10 +126,17 @@ class Workspace:
         if self.part:
             record = replace(record, part=self.part)
         if measures:
-            record = replace(record, measured_at=begun)
+            record = replace(record, measured_at=begun, made_at={**record.made_at, name: begun})
         if log.frames:
             record = replace(record, frames=tuple(log.frames))
         write_run(self.path("run"), record)
+
+
+def read_calibration(out: Path) -> Calibration:
+    """The calibration among the results in `out`; InputError as :meth:`Workspace.calibration`."""
+    camera = read_camera(out / FILES["camera"])
+    fan = read_fan(out / FILES["planes"], camera.camera)
+    return Calibration(fan.camera_used(camera), fan)
 
 
 def check_calibration(path: Path, found_id: str, calibration: Calibration) -> None:

@@ -6,24 +6,37 @@ import hashlib
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from datetime import datetime
-from typing import Literal, TypeAlias
+from datetime import datetime, timedelta
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from core.calibrate.results import CameraCalibration, FanCalibration
 from core.image.centreline import Centreline
+from core.inspect.characteristic import Characteristic, Limits
 from core.inspect.results import GaugeResult
 from core.model.arrays import Array, frozen_array, set_field
 from core.report.section_names import SECTIONS
+from core.report.template import Language, Paper, ReportTemplate
 from core.scan.cloud import Cloud
 from core.scan.results import FrameRecord
 from core.scan.surface import Mesh
 from core.study.repeats import RepeatStatistics, repeat_statistics
 
-Paper: TypeAlias = Literal["A4", "Letter"]
-"""What a report is printed on."""
+
+@dataclass(frozen=True, slots=True)
+class CalibrationMark:
+    """Which calibration a result rests on: its id, the SHA-256 of its file, and when it was made (None: not known)."""
+
+    of: Literal["camera", "fan"]
+    id: str
+    sha256: str
+    made_at: datetime | None = None
+
+    def age(self, at: datetime) -> timedelta | None:
+        """How old it was then; None where that is not known."""
+        return None if self.made_at is None else at - self.made_at
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,7 +110,13 @@ class ReportContent:
     cloud, mesh
         The measured surface in the camera frame; the mesh may be without triangles.
     gauge
-        The thickness, or None for a scan without two faces: then the report is of the cloud alone.
+        The thickness, or None for a scan without two faces.
+    inspected
+        Every characteristic of an inspection, the thickness among them if it was one; empty where there was none.
+    calibrations
+        Which calibrations the result rests on.
+    rig_id
+        Names the rig: twelve hex digits of the hash of its description.
     overlay
         One frame of the scan, or None.
     frames
@@ -120,8 +139,10 @@ class ReportContent:
         Scans of the same part to be compared, in the order of measuring; this one may be among them.
     hidden
         Names out of SECTIONS that are left out; the last page says so.
-    paper
-        What the report is printed on.
+    paper, language
+        What the report is printed on, and the language of its fixed words.
+    template
+        The company's own in it.
 
     Raises
     ------
@@ -138,6 +159,9 @@ class ReportContent:
     version: str
     timestamp: datetime
     gauge: GaugeResult | None = None
+    inspected: tuple[Characteristic, ...] = ()
+    calibrations: tuple[CalibrationMark, ...] = ()
+    rig_id: str = ""
     overlay: Overlay | None = None
     frames: tuple[FrameRecord, ...] = ()
     settings: Mapping[str, str] = field(default_factory=dict)
@@ -155,6 +179,8 @@ class ReportContent:
     repeats: tuple[RepeatLine, ...] = ()
     hidden: frozenset[str] = frozenset()
     paper: Paper = "A4"
+    language: Language = "en"
+    template: ReportTemplate = field(default_factory=ReportTemplate)
 
     def __post_init__(self) -> None:
         if unknown := self.hidden - SECTIONS.keys():
@@ -167,6 +193,20 @@ class ReportContent:
         return hashlib.sha256(lines.encode()).hexdigest()
 
     @property
+    def settings_digest(self) -> str:
+        """SHA-256 in hex over version, method and settings: one line `name=value` each, in the order of names."""
+        lines = [f"version={self.version}", f"method={self.method}"]
+        lines += [f"{name}={value}" for name, value in sorted(self.settings.items())]
+        return hashlib.sha256("\n".join(lines).encode()).hexdigest()
+
+    @property
+    def characteristics(self) -> tuple[Characteristic, ...]:
+        """Every result in a row: what was inspected, or else the thickness alone."""
+        if self.inspected or self.gauge is None:
+            return self.inspected
+        return (thickness_characteristic(self.gauge),)
+
+    @property
     def report_id(self) -> str:
         """Name of this report: from the inputs' hashes, the settings and the software version, never random.
 
@@ -177,6 +217,11 @@ class ReportContent:
         lines += [f"{name}={value}" for name, value in sorted(self.settings.items())]
         choices = {name: getattr(self, name) for name in ("customer", "air_celsius", "part_celsius", "remarks")}
         choices |= {"repeats": self.repeats, "hidden": sorted(self.hidden)}
+        choices |= {
+            "language": "" if self.language == "en" else self.language,
+            "template": self.template.words,
+            "inspected": [(one.name, one.kind, one.value, one.u, one.k, one.limits) for one in self.inspected],
+        }
         lines += [f"{name}: {value!r}" for name, value in choices.items() if value not in ("", None, (), [])]
         digest = hashlib.sha256("\n".join(lines).encode()).hexdigest().upper()
         return "TR-" + "-".join(digest[start : start + 4] for start in (0, 4, 8))
@@ -222,3 +267,21 @@ class ReportContent:
             (reason, [frame.name for frame in left_out if (frame.reason or "no reason recorded") == reason])
             for reason, _ in reasons.most_common()
         ]
+
+
+def thickness_characteristic(gauge: GaugeResult) -> Characteristic:
+    """A thickness as a characteristic among others."""
+    limits = None
+    if gauge.nominal_mm is not None and gauge.tolerance_mm is not None:
+        limits = Limits(gauge.nominal_mm, -gauge.tolerance_mm, gauge.tolerance_mm)
+    return Characteristic(
+        name="thickness",
+        kind="thickness",
+        value=gauge.thickness_mm,
+        u=gauge.u_mm,
+        k=gauge.k,
+        limits=limits,
+        budget=gauge.budget,
+        rule=gauge.rule,
+        notes=gauge.notes,
+    )

@@ -16,12 +16,13 @@ from reportlab.platypus import BaseDocTemplate, Frame, PageTemplate
 
 from core.progress import Progress, Told, silent
 from core.report import figures, plots
-from core.report.content import Paper, ReportContent
+from core.report.content import ReportContent
 from core.report.layout import Limits
 from core.report.overlay_plot import overlay_figure
 from core.report.run_chart import run_chart_figure
 from core.report.sections import TITLE, story
 from core.report.style import HAIRLINE, INK, MUTED, SANS, TEXT_WIDTH, color, prepare_reportlab
+from core.report.template import Paper
 
 MOST_PAGES = 3
 """Of one scan; repeats or long remarks may have one more."""

@@ -47,7 +47,7 @@ def full_project():
         Accepted("0123456789ab", "ba9876543210"),
         frozenset({"deadbeef0123", "0123456789cd"}),
         (REPEAT, replace(REPEAT, thickness_mm=50.001)),
-        ReportChoices(frozenset({"plots", "frames"}), "Letter"),
+        ReportChoices(frozenset({"plots", "frames"}), "Letter", "de", "house/template.toml"),
     )  # fmt: skip
 
 
@@ -233,6 +233,16 @@ def test_an_older_project_is_brought_up_to_date_step_by_step(tmp_path, monkeypat
     monkeypatch.setattr(project_json, "SCHEMA", SCHEMA + 2)
     monkeypatch.setattr(project_json, "MIGRATIONS", {SCHEMA: name_for_title, SCHEMA + 1: shout})
     assert read_project(tmp_path).project.info.name == "X!"
+
+
+def test_a_project_from_before_reports_had_a_language_is_english_and_without_template(tmp_path):
+    write_project(tmp_path, ProjectFile(full_project()))
+    tables = json.loads((tmp_path / "project.json").read_text())
+    tables["schema_version"] = 2
+    del tables["report"]["language"], tables["report"]["template"]
+    (tmp_path / "project.json").write_text(json.dumps(tables))
+    report = read_project(tmp_path).project.report
+    assert (report.paper, report.language, report.template) == ("Letter", "en", "")
 
 
 @pytest.mark.parametrize(("data", "said"), [

@@ -61,6 +61,8 @@ def test_another_camera_calibration_makes_planes_and_scan_out_of_date_and_says_s
         (with_options(camera=replace(START.options.camera, k3=True)), {"camera": ("camera settings",)}),
         (replace(START, sources=replace(START.sources, scan="recordings/scan-2")), {"scan": ("recording",)}),
         (replace(START, report=ReportChoices(frozenset({"inputs"}))), {"report": ("sections of the report",)}),
+        (replace(START, report=ReportChoices(language="de")), {"report": ("sections of the report",)}),
+        (replace(START, report=ReportChoices(template="house.toml")), {"report": ("sections of the report",)}),
         (replace(START, accepted=Accepted("cam1", "fan2")), {"scan": ("laser planes",)}),
         (
             replace(START, rig=replace(START.rig, gauge=GaugeSpec(50.0, 0.2))),

@@ -1,0 +1,1 @@
+"""Results and calibrations in the formats of other programs."""

@@ -1,0 +1,61 @@
+"""A camera calibrated by another program, as our own result: what it lacks stays unknown."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from core.calibrate.results import CAMERA_PARAMETERS, CameraCalibration
+from core.errors import InputError
+from core.model import Camera
+
+OURS = 5
+"""Distortion coefficients of our model: k1, k2, p1, p2, k3."""
+
+
+def imported_camera(
+    path: Path, image_size: tuple[int, int], matrix: ArrayLike, distortion: Sequence[float], rms_px: float = math.nan
+) -> CameraCalibration:
+    """The calibration in `path`, made by another program.
+
+    Raises
+    ------
+    InputError
+        If the camera is absurd, or its distortion is not k1, k2, p1, p2, k3.
+    """
+    coefficients = np.asarray(distortion, dtype=np.float64).ravel()
+    if np.any(coefficients[OURS:] != 0):
+        raise InputError(
+            f"has {len(coefficients)} distortion coefficients, of which more than k1, k2, p1, p2, k3 are not zero, and "
+            "those are all that is modelled here",
+            where=path,
+            todo="calibrate again with the five-coefficient model (plumb_bob)",
+        )
+    values = np.zeros(OURS)
+    values[: len(coefficients[:OURS])] = coefficients[:OURS]
+    matrix = np.asarray(matrix, dtype=np.float64)
+    if matrix.shape != (3, 3) or matrix[1, 0] != 0 or matrix[2].tolist() != [0, 0, 1]:
+        raise InputError("the camera matrix is not of the form [[α, γ, u0], [0, β, v0], [0, 0, 1]]", where=path)
+    try:
+        camera = Camera(image_size, matrix, values)
+    except ValueError as error:
+        raise InputError(f"this is no camera: {error}", where=path) from error
+    size = len(CAMERA_PARAMETERS)
+    return CameraCalibration(
+        camera=camera,
+        covariance=np.zeros((size, size)),
+        views=(),
+        rms_px=rms_px,
+        mean_px=math.nan,
+        coverage=math.nan,
+        tilt_range=math.nan,
+        cross_validation_mm=math.nan,
+        notes=(
+            f"The camera was calibrated by another program and read from {path.name}: its standard deviations are not "
+            "known, so no uncertainty here holds the camera's share.",
+        ),
+    )

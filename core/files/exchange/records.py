@@ -1,0 +1,154 @@
+"""The result of a measurement as rows of plain values: what every table and text format for others is written from.
+
+Lengths in mm, angles in degrees: each row says its unit. A side without a limit has None there.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from core.inspect.characteristic import Characteristic
+from core.inspect.coverage import effective_dof
+from core.report.content import ReportContent
+
+Row = Mapping[str, Any]
+
+RESULT_COLUMNS = (
+    "name",
+    "kind",
+    "unit",
+    "nominal",
+    "lower_limit",
+    "upper_limit",
+    "value",
+    "deviation",
+    "u",
+    "k",
+    "U",
+    "decision",
+    "rule",
+)
+BUDGET_COLUMNS = (
+    "characteristic",
+    "source",
+    "value",
+    "input_unit",
+    "distribution",
+    "standard_uncertainty",
+    "sensitivity",
+    "contribution",
+    "unit",
+    "dof",
+    "share",
+)
+FRAME_COLUMNS = ("name", "used", "reason", "points", "sigma_mm", "stripes", "fan_crossings", "sweep_crossings")
+
+
+def unit_of(one: Characteristic) -> tuple[str, float]:
+    """The unit a characteristic is handed over in, and the factor to it."""
+    return ("deg", math.degrees(1.0)) if one.quantity == "angle" else ("mm", 1.0)
+
+
+def result_row(one: Characteristic) -> dict[str, Any]:
+    """One characteristic: RESULT_COLUMNS."""
+    unit, factor = unit_of(one)
+    limits = one.limits
+    return {
+        "name": one.name,
+        "kind": one.kind,
+        "unit": unit,
+        "nominal": None if limits is None else factor * limits.nominal,
+        "lower_limit": None if limits is None else finite(factor * (limits.nominal + limits.lower)),
+        "upper_limit": None if limits is None else finite(factor * (limits.nominal + limits.upper)),
+        "value": finite(factor * one.value),
+        "deviation": None if one.deviation is None else finite(factor * one.deviation),
+        "u": finite(factor * one.u),
+        "k": one.k,
+        "U": finite(factor * one.U),
+        "decision": one.verdict or "none",
+        "rule": one.rule,
+    }
+
+
+def budget_rows(one: Characteristic) -> list[dict[str, Any]]:
+    """What the uncertainty of one characteristic is made of: BUDGET_COLUMNS; `share` is of the variance, 0 to 1."""
+    unit, factor = unit_of(one)
+    variance = sum(row.u_mm**2 for row in one.budget)
+    return [
+        {
+            "characteristic": one.name,
+            "source": row.source,
+            "value": row.value,
+            "input_unit": row.unit,
+            "distribution": row.distribution,
+            "standard_uncertainty": row.point_mm,
+            "sensitivity": None if row.sensitivity is None else factor * row.sensitivity,
+            "contribution": factor * row.u_mm,
+            "unit": unit,
+            "dof": finite(row.dof),
+            "share": row.u_mm**2 / variance if variance else 0.0,
+        }
+        for row in one.budget
+    ]
+
+
+def degrees_of_freedom(one: Characteristic) -> float | None:
+    """Effective degrees of freedom of u; None for infinitely many, or where there is no budget."""
+    return finite(effective_dof(one.budget)) if one.budget else None
+
+
+def frame_rows(content: ReportContent) -> list[dict[str, Any]]:
+    """Every frame of the recording: FRAME_COLUMNS."""
+    return [{name: plain(getattr(frame, name)) for name in FRAME_COLUMNS} for frame in content.frames]
+
+
+def setting_rows(content: ReportContent) -> list[tuple[str, str]]:
+    """Name and value of all that the result rests on besides the pictures."""
+    known = {
+        "report": content.report_id,
+        "measured at": content.timestamp.isoformat(timespec="seconds"),
+        "part": content.part,
+        "serial number": content.serial,
+        "customer": content.customer,
+        "laboratory": content.laboratory or content.template.name,
+        "operator": content.operator,
+        "air temperature, °C": _said(content.air_celsius),
+        "part temperature, °C": _said(content.part_celsius),
+        "software": f"Trisect {content.version}",
+        "method": content.method,
+        "SHA-256 of the settings": content.settings_digest,
+        "SHA-256 over all inputs": content.inputs_digest,
+        "rig": content.rig_id,
+    }
+    for mark in content.calibrations:
+        known[f"{mark.of} calibration"] = mark.id
+        known[f"{mark.of} calibration, made at"] = "" if mark.made_at is None else mark.made_at.isoformat()
+        known[f"{mark.of} calibration, SHA-256"] = mark.sha256
+    rows = [(name, value) for name, value in known.items() if value]
+    return [*rows, *content.settings.items(), *((f"rig: {name}", value) for name, value in content.rig.items())]
+
+
+def finite(value: float) -> float | None:
+    """The number, or None for what is not one."""
+    return float(value) if math.isfinite(value) else None
+
+
+def plain(value: Any) -> Any:
+    """A value as files hold it: no NaN, no infinity."""
+    return finite(value) if isinstance(value, float) else value
+
+
+def one_line(text: str) -> str:
+    """The text without line ends and control characters, for formats that have one line a field."""
+    return " ".join("".join(c if c.isprintable() else " " for c in text).split())
+
+
+def as_table(columns: Sequence[str], rows: Sequence[Row]) -> list[list[Any]]:
+    """A head line and the rows, in the order of the columns."""
+    return [list(columns), *([row[name] for name in columns] for row in rows)]
+
+
+def _said(value: float | None) -> str:
+    return "" if value is None else f"{value:g}"

@@ -1,0 +1,25 @@
+"""The results as a table: one line for each characteristic, UTF-8, comma between fields, point before decimals."""
+
+from __future__ import annotations
+
+import csv
+import io
+from pathlib import Path
+
+from core.files.atomic import write_text
+from core.files.exchange.records import RESULT_COLUMNS, as_table, result_row
+from core.report.content import ReportContent
+
+
+def write_result_csv(path: Path, content: ReportContent) -> None:
+    """Write one line for each characteristic; what is not known stays empty.
+
+    Raises
+    ------
+    InputError
+        If it cannot be written.
+    """
+    text = io.StringIO()
+    rows = [result_row(one) for one in content.characteristics]
+    csv.writer(text, lineterminator="\n").writerows(as_table(RESULT_COLUMNS, rows))
+    write_text(path, text.getvalue())
