@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
@@ -24,6 +25,8 @@ from core.inspect.features.measured import FeatureResult
 from core.inspect.results import Contribution
 from core.inspect.shapes import Ball, Levels, Tube
 
+NAME = "inspection.json"
+"""Among the results of a scan."""
 SCHEMA = 1
 _TODO = "inspect the scan first: trisect inspect SET --plan plan.toml --out DIR"
 
@@ -62,8 +65,16 @@ class _Limits(ResultFile):
 
 class _Contribution(ResultFile):
     source: str
-    u: Finite
+    u: Finite = Field(ge=0, description="a number not below 0")
     point_mm: Finite | None = None
+    distribution: str = "normal"
+    dof: Finite | None = Field(default=None, ge=1, description="a number of at least 1, or null for infinitely many")
+    value: Finite | None = None
+    unit: str = "mm"
+
+    def row(self) -> Contribution:
+        dof = math.inf if self.dof is None else self.dof
+        return Contribution(self.source, self.u, self.point_mm, self.distribution, dof, self.value, self.unit)
 
 
 class _Characteristic(ResultFile):
@@ -109,8 +120,13 @@ def inspection_values(inspection: Inspection) -> dict[str, Any]:
     }
 
 
-def write_inspection(path: Path, inspection: Inspection, calibration_id: str = "") -> None:
-    """Write inspection.json at `path`, and inspection.npz beside it; InputError if they cannot be written."""
+def write_inspection(
+    path: Path, inspection: Inspection, calibration_id: str = "", plan: Mapping[str, Any] | None = None
+) -> None:
+    """Write inspection.json at `path`, and inspection.npz beside it; InputError if they cannot be written.
+
+    `plan` is what was asked, by the keys of plan.toml.
+    """
     arrays: dict[str, NDArray[Any]] = {}
     for number, result in enumerate(inspection.results):
         arrays[f"points_{number}"] = result.indices
@@ -120,7 +136,7 @@ def write_inspection(path: Path, inspection: Inspection, calibration_id: str = "
         if result.deviations is not None:
             arrays[f"deviation_{number}"] = np.column_stack([result.deviations.points, result.deviations.deviation])
     write_arrays(path.with_suffix(".npz"), arrays)
-    values = inspection_values(inspection) | {"calibration_id": calibration_id, "version": __version__}
+    values = inspection_values(inspection) | {"plan": plan, "calibration_id": calibration_id, "version": __version__}
     write_text(path, to_json(values))
 
 
@@ -173,7 +189,16 @@ def _row(row: Characteristic, feature: str) -> dict[str, Any]:
         "rule": row.rule,
         "notes": row.notes,
         "budget": [
-            {"source": one.source, "u": one.u_mm, "point_mm": one.point_mm, "sensitivity": one.sensitivity}
+            {
+                "source": one.source,
+                "u": one.u_mm,
+                "point_mm": one.point_mm,
+                "distribution": one.distribution,
+                "dof": one.dof,
+                "value": one.value,
+                "unit": one.unit,
+                "sensitivity": one.sensitivity,
+            }
             for one in row.budget
         ],
     }
@@ -215,7 +240,7 @@ def _characteristic(row: _Characteristic, path: Path) -> Characteristic:
         quantity=row.quantity,
         k=row.k,
         limits=limits,
-        budget=tuple(Contribution(one.source, one.u, one.point_mm) for one in row.budget),
+        budget=tuple(one.row() for one in row.budget),
         rule=row.rule,
         notes=tuple(row.notes),
     )

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from core.errors import InputError
 from core.files.gauge_file import read_thickness
+from core.files.inspection_file import read_inspection
 from core.inspect.characteristic import Characteristic, Limits
 from core.inspect.results import Contribution
 
@@ -78,5 +79,8 @@ def _find(folder: Path, name: str) -> Characteristic:
 
 def _characteristics(folder: Path) -> tuple[Characteristic, ...]:
     """All of a folder: those of inspection.json, and the thickness of gauge.json where the inspection has none."""
-    gauge = folder / GAUGE
-    return (read_thickness(gauge),) if gauge.is_file() else ()
+    gauge, inspection = folder / GAUGE, folder / INSPECTION
+    found = read_inspection(inspection).characteristics if inspection.is_file() else ()
+    if not gauge.is_file() or any(one.kind == "thickness" for one in found):
+        return found
+    return (*found, read_thickness(gauge))

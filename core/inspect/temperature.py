@@ -116,12 +116,16 @@ def temperature_contributions(length_mm: float, temperature: Temperature) -> tup
     """What the temperatures and coefficients contribute to the uncertainty of a length at 20 °C; no zero rows."""
     part, scale = temperature.part_celsius - REFERENCE_C, temperature.scale_celsius - REFERENCE_C
     rows = (
-        (PART_TEMPERATURE, temperature.alpha * temperature.u_part_celsius),
-        (PART_EXPANSION, part * temperature.u_alpha),
-        (SCALE_TEMPERATURE, temperature.scale_alpha * temperature.u_scale_celsius),
-        (SCALE_EXPANSION, scale * temperature.u_scale_alpha),
+        (PART_TEMPERATURE, temperature.part_celsius, temperature.u_part_celsius, temperature.alpha, "°C"),
+        (PART_EXPANSION, temperature.alpha, temperature.u_alpha, part, "1/K"),
+        (SCALE_TEMPERATURE, temperature.scale_celsius, temperature.u_scale_celsius, temperature.scale_alpha, "°C"),
+        (SCALE_EXPANSION, temperature.scale_alpha, temperature.u_scale_alpha, scale, "1/K"),
     )
-    return tuple(Contribution(source, abs(length_mm * share)) for source, share in rows if share)
+    return tuple(
+        Contribution(source, abs(length_mm * sensitivity * u), u, value=value, unit=unit)
+        for source, value, u, sensitivity, unit in rows
+        if u and sensitivity
+    )
 
 
 def compared(length: Characteristic, master: Master) -> Characteristic:
@@ -156,8 +160,9 @@ def _difference(budget: Sequence[Contribution], master: Master) -> tuple[Contrib
     for row in budget:
         cancels = master.same_calibration and row.source in _CANCEL
         rows.append(replace(row, u_mm=abs(row.u_mm - of_master.get(row.source, 0.0))) if cancels else row)
-    rows.append(Contribution(MASTER_MEASURED, math.hypot(*own) if own else 0.0))
-    rows.append(Contribution(CERTIFICATE, master.u_certified_mm))
+    measured = math.hypot(*own) if own else 0.0
+    rows.append(Contribution(MASTER_MEASURED, measured, measured, value=master.measured_mm))
+    rows.append(Contribution(CERTIFICATE, master.u_certified_mm, master.u_certified_mm, value=master.certified_mm))
     return tuple(rows)
 
 
