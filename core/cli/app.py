@@ -304,6 +304,31 @@ def import_camera(
     reporting.run_import(file, out).show(as_json=json)
 
 
+@app.command(epilog=EPILOG)
+def inspect(
+    source: Annotated[
+        Path,
+        typer.Argument(
+            metavar="SET|DIR|CLOUD",
+            help="A recording set (its results with --out), a folder of results, or a cloud.ply.",
+        ),
+    ],
+    plan: Annotated[Path, typer.Option("--plan", "-p", metavar="FILE", help="What is to be inspected: a plan.toml.")],
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", "-o", metavar="DIR", help="Folder of the results; inspection.json goes there."),
+    ] = None,
+    json: Json = False,
+) -> None:
+    """Measure the features of a plan on a scan; writes inspection.json."""
+    from core.cli import inspecting
+
+    with bars() as progress:
+        inspection, written = inspecting.run_inspect(source, plan, out, progress)
+    inspecting.show(inspection, written, as_json=json)
+    raise typer.Exit(inspecting.exit_code(inspection))
+
+
 @app.command()
 def target(
     out: Annotated[Path, typer.Option("--out", "-o", metavar="FILE", help="The PDF to write.")],

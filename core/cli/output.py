@@ -30,11 +30,17 @@ def print_json(values: Mapping[str, Any]) -> None:
     sys.stdout.write(to_json(values))
 
 
+def console() -> Console:
+    """Standard output, as wide as a screen or, in a pipe, as its lines."""
+    out = Console(highlight=False)
+    if not out.is_terminal:
+        out.width = PIPE_WIDTH
+    return out
+
+
 def print_rows(rows: Rows, notes: Sequence[str] = (), files: Mapping[str, Path] | None = None) -> None:
     """A table of labels and values, the notes below it, then where the files are."""
-    console = Console(highlight=False)
-    if not console.is_terminal:
-        console.width = PIPE_WIDTH
+    out = console()
     table = Table(box=None, show_header=False, padding=(0, 2, 0, 0))
     table.add_column(style="dim", no_wrap=True)
     table.add_column(overflow="fold")
@@ -43,9 +49,10 @@ def print_rows(rows: Rows, notes: Sequence[str] = (), files: Mapping[str, Path] 
     if files:
         folder = next(iter(files.values())).parent
         table.add_row("written", f"{folder}: {', '.join(path.name for path in files.values())}")
-    console.print(table)
+    if table.rows:
+        out.print(table)
     for note in notes:
-        console.print(f"note: {note}", markup=False, soft_wrap=True)
+        out.print(f"note: {note}", markup=False, soft_wrap=True)
 
 
 def camera_rows(calibration: CameraCalibration) -> Rows:

@@ -1,0 +1,44 @@
+"""Nominal surfaces: STL files in mm, to compare a measured part with."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from core.errors import InputError
+from core.inspect.inspection_plan import InspectionPlan
+from core.inspect.triangles import Triangles
+
+_TODO = "export the part again as STL, in mm"
+
+
+def read_nominal(path: Path) -> Triangles:
+    """The triangles of an STL file, binary or text, those without area left out.
+
+    Raises
+    ------
+    InputError
+        If it is missing, no STL, or holds no usable triangle.
+    """
+    import trimesh  # slow to import, and only this function needs it
+
+    if not path.is_file():
+        raise InputError("the nominal surface is missing", where=path, todo="name an STL file beside the plan")
+    try:
+        loaded = trimesh.load_mesh(str(path), file_type="stl", process=False)
+        corners = np.asarray(loaded.triangles, dtype=np.float64)
+    except (OSError, ValueError, AttributeError, IndexError, KeyError) as problem:
+        raise InputError(f"it cannot be read as an STL mesh ({problem})", where=path, todo=_TODO) from problem
+    if not len(corners) or not np.isfinite(corners).all():
+        raise InputError("it holds no usable triangle", where=path, todo=_TODO)
+    area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    if not (area > 0).any():
+        raise InputError("all of its triangles are without area", where=path, todo=_TODO)
+    return Triangles(corners[area > 0])
+
+
+def read_nominals(plan: InspectionPlan, folder: Path) -> dict[str, Triangles]:
+    """Every nominal surface a plan names, by that name; names are of files in `folder` or whole paths."""
+    names = {feature.deviation.nominal for feature in plan.features if feature.deviation is not None}
+    return {name: read_nominal(folder / name) for name in sorted(names)}

@@ -1,0 +1,159 @@
+"""Inspection step: a scan and a plan → inspection.json."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from core.errors import InputError
+from core.files.atomic import make_folder
+from core.files.inspection_file import NAME, write_inspection
+from core.files.inspection_plan_file import plan_tables
+from core.files.nominal_surface import read_nominals
+from core.files.ply import read_cloud, read_mesh
+from core.files.recording_set import RIG
+from core.files.scan_file import read_scan
+from core.inspect.evaluate import Inspection, evaluate
+from core.inspect.inspection_plan import InspectionPlan
+from core.inspect.point_errors import PointErrors
+from core.pipeline.gauge_step import point_errors
+from core.pipeline.workspace import FILES
+from core.progress import Progress, silent
+from core.scan.cloud import Cloud
+from core.scan.surface import Mesh
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class InspectedScan:
+    """What a plan is measured on.
+
+    Parameters
+    ----------
+    cloud, mesh
+        The points, and the surface over them if there is one.
+    errors
+        How the points' errors hang together; None: not known, of a cloud without its scan.
+    calibration_id
+        Of the cloud.
+    folder
+        Of the results it is among; None for a cloud that was given by itself.
+    """
+
+    cloud: Cloud
+    mesh: Mesh | None
+    errors: PointErrors | None
+    calibration_id: str
+    folder: Path | None = None
+
+
+def open_scan(source: Path, results: Path | None = None) -> InspectedScan:
+    """The scan to be inspected.
+
+    Parameters
+    ----------
+    source
+        A folder of results, a recording set whose `results` lie elsewhere, or a cloud.ply: alone, or among its results.
+    results
+        Of a recording set.
+
+    Raises
+    ------
+    InputError
+        If there is no scan, it is damaged, or its files are not of each other.
+    """
+    if source.is_dir():
+        return _of_results(_results_of(source, results))
+    file = read_cloud(source)
+    beside = source.parent
+    if source.name == FILES["cloud"] and (beside / FILES["scan"]).is_file():
+        return _of_results(beside)
+    return InspectedScan(file.cloud, None, None, file.calibration_id)
+
+
+def inspect(
+    scan: InspectedScan,
+    plan: InspectionPlan,
+    nominals: Path,
+    progress: Progress = silent,
+    previous: Inspection | None = None,
+) -> Inspection:
+    """Measure a plan on a scan; `nominals` is the folder that names of nominal surfaces are of.
+
+    Raises
+    ------
+    InputError
+        If the plan is wrong, or a nominal surface cannot be read.
+    """
+    plan.ordered()
+    surfaces = read_nominals(plan, nominals)
+    return evaluate(plan, scan.cloud, scan.mesh, scan.errors, progress, previous, nominals=surfaces)
+
+
+def inspect_step(
+    source: Path,
+    plan: InspectionPlan,
+    nominals: Path,
+    out: Path | None = None,
+    progress: Progress = silent,
+) -> tuple[Inspection, Path | None]:
+    """Inspect a scan and write inspection.json: into `out`, or among the results of a folder that was given.
+
+    Parameters
+    ----------
+    source
+        As for `open_scan`.
+    plan, nominals
+        As for `inspect`.
+    out
+        The folder of a recording set's results, or where the inspection of a cloud goes; None: nowhere for a cloud.
+    progress
+        Told how far it is; may cancel.
+
+    Returns
+    -------
+    Inspection, Path or None
+        The path of inspection.json, if it was written.
+
+    Raises
+    ------
+    InputError
+        If there is no scan, the plan is wrong, no feature could be measured, or nothing can be written.
+    """
+    scan = open_scan(source, out)
+    inspection = inspect(scan, plan, nominals, progress)
+    if plan.features and not inspection.characteristics and inspection.problems:
+        raise InputError(f"nothing could be measured: {inspection.problems[0].rstrip('.')}", where=source)
+    folder = out or scan.folder
+    if folder is None:
+        return inspection, None
+    path = make_folder(folder) / NAME
+    write_inspection(path, inspection, scan.calibration_id, plan_tables(plan))
+    return inspection, path
+
+
+def _results_of(source: Path, results: Path | None) -> Path:
+    """The folder of results that is meant."""
+    if (source / FILES["cloud"]).is_file():
+        return source
+    if results is None:
+        what = "a recording set has no results in it" if (source / RIG).is_file() else f"there is no {FILES['cloud']}"
+        raise InputError(what, where=source, todo="name the folder of its results with --out")
+    return results
+
+
+def _of_results(folder: Path) -> InspectedScan:
+    cloud, scan = read_cloud(folder / FILES["cloud"]), read_scan(folder / FILES["scan"])
+    if cloud.calibration_id and scan.calibration_id and cloud.calibration_id != scan.calibration_id:
+        raise InputError(
+            f"was measured with calibration {cloud.calibration_id}, but {FILES['scan']} with {scan.calibration_id}",
+            where=folder / FILES["cloud"],
+            todo="measure the scan again: trisect scan SET --out DIR",
+        )
+    mesh = folder / FILES["mesh"]
+    return InspectedScan(
+        cloud.cloud,
+        read_mesh(mesh) if mesh.is_file() else None,
+        point_errors(scan),
+        cloud.calibration_id,
+        folder,
+    )
