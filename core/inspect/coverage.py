@@ -18,6 +18,9 @@ from core.inspect.results import Contribution
 COVERAGE = math.erf(math.sqrt(2))
 """Probability of coverage of U, 95.45 %: k = 2 for infinitely many degrees of freedom."""
 
+ROUNDING = 1e-9
+"""Relative error of an effective number of degrees of freedom that is none: 7.999999999 are 8."""
+
 
 def effective_dof(contributions: Iterable[Contribution]) -> float:
     """Effective degrees of freedom ν_eff = u_c⁴ / Σ (u_i⁴/ν_i) of independent contributions; inf if u is known.
@@ -49,6 +52,7 @@ def coverage_factor(dof: float, coverage: float = COVERAGE) -> float:
     >>> round(coverage_factor(16.7, 0.99), 2), round(coverage_factor(math.inf), 6)
     (2.92, 2.0)
     """
+    dof *= 1 + ROUNDING
     if not dof >= 1 or not 0 < coverage < 1:
         raise ValueError(f"no coverage factor from {dof} degrees of freedom and a coverage of {coverage}")
     tail = (1 + coverage) / 2

@@ -155,7 +155,7 @@ def add_up(
         math.hypot(*(row.u_mm for row in rows)),
         dof,
         coverage,
-        coverage_factor(max(dof, 1.0), coverage),
+        coverage_factor(dof, coverage),
         value,
         unit=unit,
     )

@@ -75,6 +75,10 @@ def test_the_coverage_factor_is_that_of_table_G_2(dof, k95, k9545, k99):
     assert found == pytest.approx([k95, k9545, k99], abs=0.0051)
 
 
+def test_a_rounding_error_does_not_cost_a_degree_of_freedom():
+    assert coverage_factor(effective_dof([Contribution("a", 0.002, dof=8)])) == coverage_factor(8) < coverage_factor(7)
+
+
 def test_freedom_of_known_contributions_is_infinite_and_of_one_its_own():
     assert effective_dof([Contribution("a", 0.1), Contribution("b", 0.2)]) == math.inf
     assert effective_dof([Contribution("a", 0.1, dof=7)]) == pytest.approx(7)

@@ -33,12 +33,12 @@ def test_a_length_is_found_by_its_name_with_its_whole_budget(tmp_path):
     assert (found.limits.lower, found.limits.upper) == (-math.inf, 0.1)
     (only,) = found.budget
     assert (only.distribution, only.dof, only.value, only.unit) == ("rectangular", 8, 5, "K")
-    assert add_up(found.budget).dof == 8
+    assert add_up(found.budget).dof == pytest.approx(8)
 
 
 def test_an_angle_comes_in_degrees_with_all_that_belongs_to_it(tmp_path):
-    angle = row("tilt", math.radians(30), quantity="angle", limits={"nominal": math.radians(30), "lower": -0.01, "upper": 0.01},
-                budget=[{"source": "a", "u": 0.002}])  # fmt: skip
+    limits = {"nominal": math.radians(30), "lower": -0.01, "upper": 0.01}
+    angle = row("tilt", math.radians(30), quantity="angle", limits=limits, budget=[{"source": "a", "u": 0.002}])
     found = measured_in(inspection(tmp_path, angle), "tilt")
     assert (found.value, found.unit) == (pytest.approx(30), "deg")
     assert found.u == found.budget[0].u_mm == pytest.approx(math.degrees(0.002))
