@@ -27,7 +27,7 @@ _REASONS = {
 }
 
 
-def write_bytes(path: Path, data: bytes | memoryview, *, sync: bool = True) -> None:
+def write_bytes(path: Path, *data: bytes | memoryview, sync: bool = True) -> None:
     """Write `data` to `path` so that the file is there whole or not at all.
 
     Parameters
@@ -35,7 +35,7 @@ def write_bytes(path: Path, data: bytes | memoryview, *, sync: bool = True) -> N
     path
         Where to write; an older file is replaced in one step, so readers see the old or the new one.
     data
-        The whole content.
+        The whole content, in one piece or several.
     sync
         Wait until the disk holds it. Pass False for many files that could be made again.
 
@@ -47,7 +47,7 @@ def write_bytes(path: Path, data: bytes | memoryview, *, sync: bool = True) -> N
     beside = path.with_name(f".{path.name}.{secrets.token_hex(4)}.part")
     try:
         with beside.open("xb") as file:
-            file.write(data)
+            file.writelines(data)
             file.flush()
             if sync:
                 os.fsync(file.fileno())

@@ -130,4 +130,4 @@ def _step(desk: Desk) -> LiveStep:
         case "planes":
             return LivePlanes(desk)
         case "scan":
-            return LiveScan(desk, Recorder(desk.request.folder))
+            return LiveScan(desk, Recorder(desk.request.folder, ending=desk.request.ending))

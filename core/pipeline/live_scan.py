@@ -32,6 +32,11 @@ SAY_EVERY_S = 0.2
 STUCK_S = 2.0
 """A disk that has not taken a frame for so long when all is to be saved is given one last try."""
 
+_SLOWER = {
+    ".png": "Record PGM, which takes less time, or choose a lower frame rate.",
+    ".pgm": "Choose a lower frame rate.",
+}
+
 _FAN_ALONE, _BOTH = Lasers(fan=True, hand=False), Lasers(fan=True, hand=True)
 
 
@@ -50,8 +55,8 @@ class FrameStore(Protocol):
     def waiting(self) -> int:
         """How many are taken but not yet on the disk."""
 
-    def write(self, name: str, picture: Picture) -> bool:
-        """Take a picture to be written; False if the disk is too slow."""
+    def write(self, name: str, picture: Picture, frame: Frame | None = None) -> bool:
+        """Take a picture, that of `frame`, to be written; False if the disk is too slow."""
 
     def close(self) -> None:
         """Wait until all are on the disk."""
@@ -165,7 +170,7 @@ class LiveScan:
     def _record(self, frame: Frame) -> None:
         name = f"frame{self._number:05d}"
         try:
-            taken = self._store.write(name, frame.picture)
+            taken = self._store.write(name, frame.picture, frame)
         except InputError as error:  # the disk is full: what waits for it is kept and tried again
             self._desk.lost += 1
             self._stage = "paused"
@@ -173,7 +178,9 @@ class LiveScan:
             return
         if not taken:
             self._desk.lost += 1
-            self._desk.notice("The disk is too slow for all frames: some are lost. Choose a lower frame rate.")
+            self._desk.notice(
+                f"The disk is too slow for all frames: some are lost. {_SLOWER[self._desk.request.ending]}"
+            )
             return
         self._desk.worker.start(self._previewer.look, self._number, name, frame)
         self._number += 1

@@ -37,15 +37,16 @@ def no_threads_left():
     assert threading.active_count() == before
 
 
+@pytest.mark.parametrize("ending", [".png", ".pgm"])
 @pytest.mark.parametrize("dtype", [np.uint8, np.uint16])
-def test_pictures_come_back_as_they_were(tmp_path, dtype):
-    recorder = Recorder(tmp_path / "scan")
+def test_pictures_come_back_as_they_were(tmp_path, dtype, ending):
+    recorder = Recorder(tmp_path / "scan", ending=ending)
     for number in range(6):
-        assert recorder.write(f"frame{number:04d}.png", noise(number, dtype))
+        assert recorder.write(f"frame{number:04d}{ending}", noise(number, dtype))
     recorder.close()
     assert (recorder.written, recorder.dropped, recorder.waiting) == (6, 0, 0)
     for number in range(6):
-        assert np.array_equal(read_picture(tmp_path / "scan" / f"frame{number:04d}.png"), noise(number, dtype))
+        assert np.array_equal(read_picture(tmp_path / "scan" / f"frame{number:04d}{ending}"), noise(number, dtype))
     assert len(list((tmp_path / "scan").iterdir())) == 6
 
 

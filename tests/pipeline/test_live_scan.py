@@ -5,7 +5,7 @@ import pytest
 
 from core.acquire.source import Lasers, SourceSettings
 from core.errors import InputError
-from core.files.pictures import read_picture, write_picture
+from core.files.pictures import is_picture, read_picture, write_picture
 from core.files.rig import Rig
 from core.image.targets import BlackSquare, Checkerboard
 from core.live.events import (
@@ -66,7 +66,7 @@ def swept(picture_of, frames, **how):
 
 
 def names(folder):
-    return sorted(path.name for path in (folder / "scan").iterdir())
+    return sorted(path.name for path in (folder / "scan").iterdir() if is_picture(path))
 
 
 def test_a_source_that_switches_lasers_itself_takes_the_reference_and_scans(monkeypatch, tmp_path, stage):
@@ -302,7 +302,7 @@ def test_a_full_disk_pauses_and_asks(monkeypatch, tmp_path, stage):
         raise InputError("cannot be written, because the disk is full", where=path)
 
     recorder = live.Recorder
-    monkeypatch.setattr(live, "Recorder", lambda folder: recorder(folder, put=full))
+    monkeypatch.setattr(live, "Recorder", lambda folder, ending: recorder(folder, put=full))
     window = Window()
     ended = scan(monkeypatch, tmp_path, stage, swept(stage, 30, pace_s=0.01), window)
     assert "disk is full" in window.all(LiveAsk)[0].sentence
@@ -317,7 +317,7 @@ def test_frames_that_wait_for_a_slow_disk_are_saved_before_the_end(monkeypatch, 
         write_picture(path, picture)
 
     recorder = live.Recorder
-    monkeypatch.setattr(live, "Recorder", lambda folder: recorder(folder, put=slowly))
+    monkeypatch.setattr(live, "Recorder", lambda folder, ending: recorder(folder, put=slowly))
     window = Window()
     ended = scan(monkeypatch, tmp_path, stage, swept(stage, 40), window)
     saving = [event.waiting for event in window.all(LiveSaving)]

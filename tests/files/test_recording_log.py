@@ -1,0 +1,122 @@
+"""The log of a recording: complete whenever the program dies, and when the disk is full."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from core.acquire.source import Frame
+from core.errors import InputError
+from core.files import recording_log
+from core.files.pictures import read_picture
+from core.files.recorder import Recorder
+from core.files.recording_log import LOG, LoggedFrame, RecordingLog, read_log
+from core.files.set_listing import scan_frames
+from tests.files.killed_recorder import SIZE, picture
+
+
+def frame(number, dropped=0):
+    return Frame(picture(number), number + dropped, number / 10, dropped)
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="this system has no fork")
+def test_killed_at_100_moments_every_acknowledged_frame_is_there_and_readable(tmp_path):
+    command = [sys.executable, "-m", "tests.files.killed_recorder", str(tmp_path), "100"]
+    told = subprocess.run(command, capture_output=True, text=True, check=True, timeout=120).stdout
+    runs = [line.rsplit(" ", 1) for line in told.splitlines()]
+    assert len(runs) == 100
+    assert sum(int(count) > 0 for _, count in runs) > 50
+    for folder, acknowledged in runs:
+        frames = read_log(Path(folder))
+        assert len(frames) >= int(acknowledged)
+        assert [one.index for one in frames] == list(range(len(frames)))
+        for one in frames:
+            assert np.array_equal(read_picture(Path(folder) / one.name), picture(one.index))
+        listed = scan_frames(Path(folder))[1]
+        assert len(frames) <= len(listed) <= len(frames) + 1  # a last one whose line was not written
+        for path in listed:
+            assert read_picture(path).shape == SIZE
+
+
+@pytest.mark.parametrize("ending", [".png", ".pgm"])
+def test_the_log_says_when_each_frame_was_exposed_and_how_many_were_lost(tmp_path, ending):
+    recorder = Recorder(tmp_path, ending=ending)
+    recorder.write("frame0", picture(0), frame(0))
+    recorder.write("frame1", picture(1), frame(1, dropped=3))
+    recorder.close()
+    assert read_log(tmp_path) == (
+        LoggedFrame(f"frame0{ending}", 0, 0.0, 0),
+        LoggedFrame(f"frame1{ending}", 4, 0.1, 3),
+    )
+    assert (tmp_path / LOG).read_text().splitlines()[0] == "name,index,time_s,dropped"
+
+
+def test_pictures_without_a_frame_leave_no_log(tmp_path):
+    recorder = Recorder(tmp_path)
+    recorder.write("view00", picture(0))
+    recorder.close()
+    assert not (tmp_path / LOG).exists()
+    assert read_log(tmp_path) == ()
+
+
+def test_a_torn_last_line_is_not_counted_and_a_torn_line_before_is_told(tmp_path):
+    head = "name,index,time_s,dropped\n"
+    (tmp_path / LOG).write_text(head + "frame0.png,0,0.0,0\nframe1.png,1,0.")
+    assert [one.name for one in read_log(tmp_path)] == ["frame0.png"]
+    (tmp_path / LOG).write_text(head + "frame0.png,0,0.\nframe1.png,1,0.1,0\n")
+    with pytest.raises(InputError, match="a line is damaged"):
+        read_log(tmp_path)
+
+
+def test_a_line_that_does_not_fit_on_the_disk_is_taken_back_and_written_later(tmp_path, monkeypatch):
+    log = RecordingLog(tmp_path)
+    log.add(LoggedFrame("frame0.png", 0, 0.0, 0))
+    real = os.write
+    monkeypatch.setattr(recording_log.os, "write", lambda file, data: real(file, data[:5]))
+    with pytest.raises(InputError, match="disk is full"):
+        log.add(LoggedFrame("frame1.png", 1, 0.1, 0))
+    monkeypatch.undo()
+    assert len(read_log(tmp_path)) == 1
+    log.add(LoggedFrame("frame1.png", 1, 0.1, 0))
+    log.close()
+    assert [one.index for one in read_log(tmp_path)] == [0, 1]
+
+
+@pytest.fixture
+def tiny_disk(tmp_path):
+    """A disk of 256 KiB."""
+    disk = tmp_path / "disk"
+    disk.mkdir()
+    made = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=256k", "tmpfs", str(disk)], capture_output=True)
+    if made.returncode:
+        pytest.skip("no disk can be mounted here without more rights")
+    yield disk
+    subprocess.run(["umount", "-l", str(disk)], check=True, capture_output=True)
+
+
+@pytest.mark.parametrize("ending", [".png", ".pgm"])
+def test_a_disk_that_really_fills_up_keeps_all_that_was_taken_and_goes_on_when_there_is_room(tiny_disk, ending):
+    (tiny_disk / "ballast").write_bytes(bytes(100 * 1024))
+    noise = [np.random.default_rng(n).integers(0, 256, (100, 100)).astype(np.uint8) for n in range(40)]
+    recorder = Recorder(tiny_disk / "scan", ending=ending)
+    told, taken = "", []
+    for number, levels in enumerate(noise):
+        try:
+            if recorder.write(f"frame{number:02d}", levels, Frame(levels, number, 0.0, 0)):
+                taken.append(number)
+            recorder.flush()
+        except InputError as full:
+            told = str(full)
+            break
+    assert "the disk is full" in told
+    there = read_log(tiny_disk / "scan")
+    assert len(there) == recorder.written > 3
+    (tiny_disk / "ballast").unlink()
+    recorder.close()
+    assert [one.index for one in read_log(tiny_disk / "scan")] == taken
+    for number in taken:
+        assert np.array_equal(read_picture(tiny_disk / "scan" / f"frame{number:02d}{ending}"), noise[number])
+    assert recorder.dropped == 0
