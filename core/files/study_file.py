@@ -103,7 +103,7 @@ def zones_values(zones: Zones) -> dict[str, Any]:
         "lower": zones.lower,
         "upper": zones.upper,
         "U": zones.U,
-        "guard_factor": zones.r,
+        "r": zones.r,
         "guard_band": zones.guard_band,
         "conformance": zones.conformance,
         "nonconformance_outside": zones.nonconformance,

@@ -23,7 +23,9 @@ ROUNDING = 1e-9
 
 
 def effective_dof(contributions: Iterable[Contribution]) -> float:
-    """Effective degrees of freedom ν_eff = u_c⁴ / Σ (u_i⁴/ν_i) of independent contributions; inf if u is known.
+    """Effective degrees of freedom ν_eff = u_c⁴ / Σ (u_i⁴/ν_i) of independent contributions.
+
+    Infinite if every u is known, or one is not known at all.
 
     References
     ----------
@@ -32,7 +34,7 @@ def effective_dof(contributions: Iterable[Contribution]) -> float:
     rows = tuple(contributions)
     u = np.array([row.u_mm for row in rows], dtype=np.float64)
     doubt = float(np.sum(u**4 / [row.dof for row in rows]))
-    return float(np.sum(u**2)) ** 2 / doubt if doubt else math.inf
+    return float(np.sum(u**2)) ** 2 / doubt if doubt > 0 else math.inf
 
 
 def coverage_factor(dof: float, coverage: float = COVERAGE) -> float:

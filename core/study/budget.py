@@ -71,7 +71,7 @@ def of_observations(name: str, values: Sequence[float], sensitivity: float = 1.0
     if observed.ndim != 1 or len(observed) < 2 or not np.isfinite(observed).all():
         raise ValueError("a type A evaluation needs two finite observations or more")
     u = float(observed.std(ddof=1)) / math.sqrt(len(observed))
-    return Input(name, float(observed.mean()), u, sensitivity, "t", len(observed) - 1, unit)
+    return Input(name, float(observed.mean()), u, sensitivity, "t", float(len(observed) - 1), unit)
 
 
 def within(

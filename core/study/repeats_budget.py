@@ -52,7 +52,7 @@ def from_budgets(
     scatter = _scatter(values)
     if scatter is not None:
         beyond = math.sqrt(max(scatter**2 - noise2, 0.0))
-        rows.append(Contribution(BEYOND, beyond / math.sqrt(n), beyond, "t", n - 1, unit=unit))
+        rows.append(Contribution(BEYOND, beyond / math.sqrt(n), beyond, "t", float(n - 1), unit=unit))
     return add_up(rows, value=float(np.mean(values)), unit=unit)
 
 
@@ -82,7 +82,7 @@ def from_stated(values: Sequence[float], u: Sequence[float] | float | None, *, u
         common = float(np.sqrt(np.mean(np.square(u))))
         rows.append(Contribution(STATED, common, common, unit=unit))
     if scatter is not None:
-        rows.append(Contribution(REPEATABILITY, scatter / math.sqrt(n), scatter, "t", n - 1, unit=unit))
+        rows.append(Contribution(REPEATABILITY, scatter / math.sqrt(n), scatter, "t", float(n - 1), unit=unit))
     if not rows:
         raise ValueError("one value alone, with no stated uncertainty, has no budget")
     return add_up(rows, value=float(np.mean(values)), unit=unit)
