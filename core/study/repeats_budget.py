@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -18,7 +19,7 @@ from core.study.budget import UncertaintyBudget, add_up
 
 OF_EACH_SCAN = (POINT_NOISE, SWEEP_PLANES)
 """Causes drawn anew with each scan. Calibrations are not, nor are speckle and form while the part lies still."""
-BEYOND = "scatter of the repeats beyond their stated noise"
+OBSERVED = "repeatability of the scans, above their stated noise"
 REPEATABILITY = "repeatability of the scans"
 STATED = "uncertainty stated by each scan, as if common to all"
 GIVEN = "common to all scans, as given"
@@ -29,31 +30,25 @@ def from_budgets(
 ) -> UncertaintyBudget:
     """Of the mean of n scans with a budget each.
 
-    What is common stays whole, at its quadratic mean over the scans; the scans' own noise is divided by √n; where the
-    values scatter by more than that noise, the excess √(s² − noise²)/√n is a row of its own, with n − 1 degrees of
-    freedom. So no noise is counted twice, and none is missed.
+    What is common stays whole, at its quadratic mean over the scans. What is drawn anew with each scan shrinks with √n:
+    as stated, or, where the values scatter by more than that, as observed, with n − 1 degrees of freedom. So no noise
+    is counted twice, and none is missed.
     """
-    n = len(values)
-    sources = dict.fromkeys(row.source for budget in budgets for row in budget)
-    rows, noise2 = [], 0.0
-    for source in sources:
-        found = [row for budget in budgets for row in budget if row.source == source]
-        u2 = sum(row.u_mm**2 for row in found) / n
-        if source in OF_EACH_SCAN:
-            noise2 += u2
-            u2 /= n
-        first = found[0]
-        rows.append(
-            Contribution(
-                source, math.sqrt(u2), first.point_mm, first.distribution, min(row.dof for row in found), first.value,
-                first.unit,
-            )
-        )  # fmt: skip
-    scatter = _scatter(values)
-    if scatter is not None:
-        beyond = math.sqrt(max(scatter**2 - noise2, 0.0))
-        rows.append(Contribution(BEYOND, beyond / math.sqrt(n), beyond, "t", float(n - 1), unit=unit))
-    return add_up(rows, value=float(np.mean(values)), unit=unit)
+    n, scatter = len(values), _scatter(values)
+    rows = [_quadratic_mean(source, budgets) for source in dict.fromkeys(row.source for one in budgets for row in one)]
+    common = [row for row in rows if row.source not in OF_EACH_SCAN]
+    own = [row for row in rows if row.source in OF_EACH_SCAN]
+    if scatter is not None and scatter > math.hypot(*(row.u_mm for row in own)):
+        own = [Contribution(OBSERVED, scatter, scatter, "t", float(n - 1), unit=unit)]
+    means = [replace(row, u_mm=row.u_mm / math.sqrt(n)) for row in own]
+    return add_up([*common, *means], value=float(np.mean(values)), unit=unit)
+
+
+def _quadratic_mean(source: str, budgets: Sequence[Sequence[Contribution]]) -> Contribution:
+    """One cause over all scans; a scan that does not name it has none of it."""
+    found = [row for budget in budgets for row in budget if row.source == source]
+    u = math.sqrt(sum(row.u_mm**2 for row in found) / len(budgets))
+    return replace(found[0], u_mm=u, dof=min(row.dof for row in found))
 
 
 def from_stated(values: Sequence[float], u: Sequence[float] | float | None, *, unit: str = "mm") -> UncertaintyBudget:

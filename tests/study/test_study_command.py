@@ -85,8 +85,8 @@ def test_folders_of_results_bring_their_values_their_limits_and_their_budgets(tm
     assert [scan["scan"] for scan in found["scans"]] == ["scan0", "scan1", "scan2"]
     rows = {row["source"]: row["contribution"] for row in found["budget_of_mean"]["rows"]}
     assert rows["camera calibration"] == pytest.approx(0.006)
-    assert rows["light planes of the sweeps (network)"] == pytest.approx(0.008 / math.sqrt(3))
-    assert rows["scatter of the repeats beyond their stated noise"] == pytest.approx(0.006 / math.sqrt(3))
+    assert rows["repeatability of the scans, above their stated noise"] == pytest.approx(0.01 / math.sqrt(3))
+    assert rows.keys() == {"camera calibration", "repeatability of the scans, above their stated noise"}
     assert found["decision"]["guard_band"] == pytest.approx(found["budget_of_mean"]["U"])
 
 
