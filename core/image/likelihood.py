@@ -10,7 +10,8 @@ with A, B, b and s known from `core.image.profile`, A varying along the stripe. 
 by t = Σ ψ·(I − model) / Σ ψ·d, with d the derivative of the model and ψ the weight of `core.image.influence`: the
 maximum of a likelihood with read and shot noise and speckle in it, whatever the background's offset and slope. Both
 sums are taken over a Gaussian window along the stripe, so points stay as smooth as the filter made them, but bends do
-not pull them: the curve's own bend is in x.
+not pull them: the curve's own bend is in x. A and s change along the stripe, and a pixel is held against those at its
+own foot on the curve, not where its row cuts it: where a slanting stripe fades, all rows are brighter on one side.
 
 Where pixels cannot be used (saturated, or other light far off the model), A is estimated together with t from those
 that are left, for then the two are no longer independent.
@@ -187,6 +188,10 @@ def _sums(
             continue
         bend, unit, inverse = run[near, 4], NODES / REACH / width, 1 / (width * width)
         table = tables[kind[near]]
+        slip = -run[near, 3] if upright else run[near, 2]  # of a pixel's foot along the stripe, per pixel
+        before, behind = max(near - math.ceil(width), 0), min(near + math.ceil(width), len(model) - 1)
+        fade = slip * (model[behind, 0] / height - model[before, 0] / height) / max(behind - before, 1)
+        widening = slip * (model[behind, 1] / width - model[before, 1] / width) / max(behind - before, 1)
         other = (_OTHER_LIGHT * height) ** 2 + 36 * (noise[0] + noise[1] * max(background, 0.0))
         part = False
         n, nt, nh = 0.0, 0.0, 0.0  # of ψ: with what is left over, its derivatives with place and height
@@ -200,7 +205,8 @@ def _sums(
             at = min(max(x * unit + NODES, 0.0), 2 * NODES - 1e-9)
             node = int(at)
             psi = table[node] + (at - node) * (table[node + 1] - table[node])
-            bell = math.exp(-0.5 * x * x * inverse)
+            square = x * x * inverse * (1 - 2 * widening * along)
+            bell = (1 + fade * along) * math.exp(-0.5 * square)
             light = height * bell
             residual = picture[row, column] - background - slope * x - light
             if state[row, column] & (SATURATED | IGNORED) or (
