@@ -119,6 +119,9 @@ def acceptance(
         typer.Option("--nominal", metavar="MM", help="Calibrated diameter of the sphere, or distance of a bar's two."),
     ] = None,
     u: Annotated[float, typer.Option("--u", metavar="MM", help="Standard uncertainty of that.")] = 0.0,
+    diameter: Annotated[
+        float | None, typer.Option("--diameter", metavar="MM", help="Of a bar's two spheres, by which they are found.")
+    ] = None,
     form: Annotated[float | None, _limit("form")] = None,
     size: Annotated[float | None, _limit("size")] = None,
     spacing: Annotated[float | None, _limit("spacing")] = None,
@@ -136,5 +139,5 @@ def acceptance(
 
     limits = {"form": form, "size": size, "spacing": spacing, "flatness": flatness}
     with bars() as progress:
-        study = studying.acceptance(files, artefact, nominal, u, limits, progress)
+        study = studying.acceptance(files, artefact, nominal, u, diameter, limits, progress)
     studying.finish(study, out, as_json=json)

@@ -107,6 +107,7 @@ def acceptance(
     artefact: str,
     nominal: float | None,
     u: float,
+    diameter: float | None,
     limits: Mapping[str, float | None],
     progress: Progress,
 ) -> AcceptanceCheck:
@@ -120,10 +121,23 @@ def acceptance(
         return acceptance_check(read_readings(files[0]), given)
     if artefact not in ARTEFACTS:
         raise InputError(f'"{artefact}" is no artefact', where="--artefact", todo=f"choose {', '.join(ARTEFACTS)}")
-    if artefact != "plane" and (nominal is None or not (nominal > 0 and math.isfinite(nominal))):
+    if artefact != "plane" and not _is_length(nominal):
         raise InputError(f"the {artefact} has no calibrated value", where="--nominal", todo="give it in mm, above 0")
-    readings = read_positions(files, cast(Artefact, artefact), calibrated_mm=nominal or 0.0, u_mm=u, progress=progress)
+    if artefact == "bar" and not _is_length(diameter):
+        raise InputError("the spheres of the bar have no diameter", where="--diameter", todo="give it in mm, above 0")
+    readings = read_positions(
+        files,
+        cast(Artefact, artefact),
+        calibrated_mm=nominal or 0.0,
+        u_mm=u,
+        diameter_mm=diameter or 0.0,
+        progress=progress,
+    )
     return acceptance_check(readings, given)
+
+
+def _is_length(value: float | None) -> bool:
+    return value is not None and value > 0 and math.isfinite(value)
 
 
 def _both_sides(tolerance: float | None) -> tuple[float, float] | None:

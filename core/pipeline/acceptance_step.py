@@ -13,7 +13,6 @@ from core.errors import InputError
 from core.files.ply import read_cloud
 from core.inspect.faces import find_planes
 from core.inspect.sphere import find_sphere
-from core.model.arrays import Array
 from core.pipeline.workspace import FILES
 from core.progress import Progress, silent
 from core.scan.cloud import Cloud
@@ -22,13 +21,13 @@ from core.study.acceptance import Reading
 from core.study.acceptance_points import ProbedSphere, probed_flatness, probed_sphere
 
 Artefact: TypeAlias = Literal["sphere", "bar", "plane"]
-RADII = (3.0, 150.0)
-"""In mm: spheres looked for where the diameter is not known."""
+NEARLY = 0.1
+"""Spheres are looked for whose radius is that of the artefact to within this share."""
 
 
 def read_positions(
     folders: Sequence[Path], artefact: Artefact, *, calibrated_mm: float = 0.0, u_mm: float = 0.0,
-    progress: Progress = silent,
+    diameter_mm: float = 0.0, progress: Progress = silent,
 ) -> tuple[Reading, ...]:  # fmt: skip
     """Form and size of the sphere, spacing of the two of a bar, or flatness of the largest plane of each cloud.
 
@@ -42,6 +41,8 @@ def read_positions(
         Diameter of the sphere, or distance of the two centres of a bar; nothing for a plane.
     u_mm
         Standard uncertainty of that.
+    diameter_mm
+        Of the two spheres of a bar, roughly: by it they are found.
 
     Raises
     ------
@@ -57,7 +58,7 @@ def read_positions(
                 f"there is no {FILES['cloud']} in it", where=folder, todo="measure first: trisect run SET --out DIR"
             )
         try:
-            found += _readings(read_cloud(path).cloud, folder.name, artefact, calibrated_mm, u_mm)
+            found += _readings(read_cloud(path).cloud, folder.name, artefact, calibrated_mm, u_mm, diameter_mm)
         except (InputError, ValueError) as error:
             raise InputError(f"no {artefact} was found: {_of(error)}", where=path) from error
     progress("positions", len(folders), len(folders))
@@ -68,7 +69,9 @@ def _of(error: Exception) -> str:
     return error.what if isinstance(error, InputError) else str(error)
 
 
-def _readings(cloud: Cloud, position: str, artefact: Artefact, calibrated: float, u: float) -> list[Reading]:
+def _readings(
+    cloud: Cloud, position: str, artefact: Artefact, calibrated: float, u: float, diameter: float
+) -> list[Reading]:
     if artefact == "plane":
         planes = find_planes(cloud, most=1)
         if not planes:
@@ -79,18 +82,14 @@ def _readings(cloud: Cloud, position: str, artefact: Artefact, calibrated: float
         sphere, _ = _sphere(cloud, calibrated / 2)
         size = Reading("size", position, sphere.diameter, calibrated, u)
         return [Reading("form", position, sphere.form), size]
-    first, members = _sphere(cloud, None)
+    first, members = _sphere(cloud, diameter / 2)
     rest = cloud.select(np.setdiff1d(np.arange(len(cloud)), members))
-    second, _ = _sphere(rest, None)
-    return [Reading("spacing", position, float(np.linalg.norm(_between(first, second))), calibrated, u)]
+    second, _ = _sphere(rest, diameter / 2)
+    spacing = float(np.linalg.norm(first.centre - second.centre))
+    return [Reading("spacing", position, spacing, calibrated, u)]
 
 
-def _sphere(cloud: Cloud, radius: float | None) -> tuple[ProbedSphere, NDArray[np.int64]]:
-    """The sphere that explains most points, of about that radius, and which points those are."""
-    span = RADII if radius is None else (0.9 * radius, 1.1 * radius)
-    members = find_sphere(cloud, radius_range_mm=span)
+def _sphere(cloud: Cloud, radius: float) -> tuple[ProbedSphere, NDArray[np.int64]]:
+    """The sphere of about that radius that explains most points, and which points those are."""
+    members = find_sphere(cloud, radius_range_mm=((1 - NEARLY) * radius, (1 + NEARLY) * radius))
     return probed_sphere(cloud.points[members]), members
-
-
-def _between(first: ProbedSphere, second: ProbedSphere) -> Array:
-    return first.centre - second.centre

@@ -229,3 +229,5 @@ def test_folders_that_are_none_and_names_that_are_not_there_are_told(tmp_path):
     assert "give it alone" in trisect("study", "repeats", of_values(tmp_path, [1]), folder).sentence
     assert "no cloud.ply" in trisect("study", "acceptance", folder, folder, "--nominal", 30).sentence
     assert "no calibrated value" in trisect("study", "acceptance", folder, folder).sentence
+    bar = trisect("study", "acceptance", folder, "--artefact", "bar", "--nominal", 80)
+    assert "the spheres of the bar have no diameter; give it in mm" in bar.sentence
