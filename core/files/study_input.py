@@ -83,7 +83,7 @@ def read_repeats(paths: Sequence[Path], name: str = THICKNESS) -> Repeats:
     """
     table = _table_among(paths)
     if table is None:
-        return _of_results([measured_in(path, name) for path in paths], name)
+        return _of_results(paths, [measured_in(path, name) for path in paths], name)
     column = table.name_of(VALUE) or VALUE[0]
     values = table.numbers(column)
     labels = table.texts("scan") if "scan" in table.columns else tuple(str(row + 1) for row in range(len(table)))
@@ -165,11 +165,18 @@ def _table_among(paths: Sequence[Path]) -> Table | None:
     return read_table(files[0])
 
 
-def _of_results(found: Sequence[Measured], name: str) -> Repeats:
+def _of_results(paths: Sequence[Path], found: Sequence[Measured], name: str) -> Repeats:
     units = {one.unit for one in found}
     if len(units) > 1:
-        raise InputError(f"{name} is a length in one folder and an angle in another")
-    labels = tuple(one.label for one in found)
+        raise InputError(f"{name} is a length in one folder and an angle in another", where=paths[0])
+    labels = _labels(paths)
+    places: dict[tuple[float, float], str] = {}
+    for label, one in zip(labels, found, strict=True):
+        twin = places.setdefault((one.value, one.u), label)
+        if twin != label or labels.count(label) > 1:
+            raise InputError(
+                f"it holds the same measurement as {twin}, to the last digit", where=label, todo="scan the part anew"
+            )
     return Repeats(
         name,
         labels,
@@ -180,6 +187,16 @@ def _of_results(found: Sequence[Measured], name: str) -> Repeats:
         units.pop(),
         found[0].limits if all(one.limits == found[0].limits for one in found) else None,
     )
+
+
+def _labels(paths: Sequence[Path]) -> tuple[str, ...]:
+    """The folders' own names, with those of the folders above them as far as needed to tell them apart."""
+    whole = [path.resolve().parts for path in paths]
+    for depth in range(1, max(map(len, whole))):
+        names = tuple("/".join(parts[-depth:]) for parts in whole)
+        if len(set(names)) == len(names):
+            return names
+    return tuple(str(path) for path in paths)
 
 
 def _not_negative(table: Table, name: str, values: Sequence[float]) -> None:

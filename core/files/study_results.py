@@ -21,8 +21,6 @@ class Measured:
 
     Parameters
     ----------
-    label
-        Name of the folder.
     value, u
         With its standard uncertainty, in `unit`: "mm", or "deg" for an angle.
     k
@@ -33,7 +31,6 @@ class Measured:
         What was asked of it, in `unit`; None for nothing.
     """
 
-    label: str
     value: float
     u: float
     k: float
@@ -54,12 +51,12 @@ def measured_in(folder: Path, name: str) -> Measured:
     if not math.isfinite(found.value) or not math.isfinite(found.u):
         raise InputError(f"the {name} is not known", where=folder)
     if found.quantity == "length":
-        return Measured(folder.name, found.value, found.u, found.k, found.budget, "mm", found.limits)
+        return Measured(found.value, found.u, found.k, found.budget, "mm", found.limits)
     degree = math.degrees(1.0)
     rows = tuple(replace(row, u_mm=row.u_mm * degree) for row in found.budget)
     asked = found.limits
     limits = None if asked is None else Limits(asked.nominal * degree, asked.lower * degree, asked.upper * degree)
-    return Measured(folder.name, found.value * degree, found.u * degree, found.k, rows, "deg", limits)
+    return Measured(found.value * degree, found.u * degree, found.k, rows, "deg", limits)
 
 
 def _find(folder: Path, name: str) -> Characteristic:

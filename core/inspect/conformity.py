@@ -156,7 +156,7 @@ def probability_of_conformity(value: float, u: float, lower: float, upper: float
 
     References
     ----------
-    JCGM 106:2012, 7.3 and 7.4, equations (8) to (11): p_c = Φ((T_U − y)/u) − Φ((T_L − y)/u).
+    JCGM 106:2012, clause 7: p_c = Φ((T_U − y)/u) − Φ((T_L − y)/u).
 
     Examples
     --------

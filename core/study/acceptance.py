@@ -12,7 +12,7 @@ is no certificate, and nobody's accreditation stands behind it.
 
 References
 ----------
-VDI/VDE 2634 part 2:2012, Optical 3-D measuring systems – Systems based on area scanning, 4 and 5.
+VDI/VDE 2634 part 2:2012, Optical 3-D measuring systems – Systems based on area scanning.
 ISO 14253-1:2017 (the uncertainty of the check counts against whoever proves).
 """
 

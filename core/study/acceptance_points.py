@@ -5,7 +5,7 @@ and flatness are ranges: they grow with the number of points and hold their nois
 
 References
 ----------
-VDI/VDE 2634 part 2:2012, 4 (probing, sphere-spacing and flatness error; 3 ‰ of the points may be left out).
+VDI/VDE 2634 part 2:2012 (probing, sphere-spacing and flatness error; 3 ‰ of the points may be left out).
 """
 
 from __future__ import annotations

@@ -220,7 +220,7 @@ def covariance_of(inputs: Sequence[Input], sensitivities: Array, correlation: Ar
 
     References
     ----------
-    JCGM 100:2008, H.2.3, equation (H.9).
+    JCGM 100:2008, H.2.3.
     """
     u = np.array([one.u for one in inputs])
     jacobian = np.asarray(sensitivities, dtype=np.float64)

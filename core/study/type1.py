@@ -2,9 +2,8 @@
 
 References
 ----------
-ISO 22514-7:2021, 7.1 (bias and repeatability on a standard). Bosch, Booklet 10, Capability of measurement and test
-processes, procedure 1 (Cg, Cgk, limit 1.33, resolution ≤ 5 % of T). AIAG, Measurement systems analysis, 4th ed.,
-chapter III-B (t-test on the bias).
+Bosch, Booklet 10, Capability of measurement and test processes, procedure 1 (Cg, Cgk, limit 1.33, resolution at most
+5 % of T). AIAG, Measurement systems analysis, 4th ed., chapter III-B (t-test on the bias).
 """
 
 from __future__ import annotations

@@ -90,6 +90,20 @@ def test_folders_of_results_bring_their_values_their_limits_and_their_budgets(tm
     assert found["decision"]["guard_band"] == pytest.approx(found["budget_of_mean"]["U"])
 
 
+def test_one_measurement_given_twice_is_no_repeat(tmp_path):
+    first, second = (results(tmp_path / name, 50.01234) for name in ("first", "second"))
+    assert "second: it holds the same measurement as first" in trisect("study", "repeats", first, second).sentence
+    assert "scan the part anew" in trisect("study", "repeats", first, first).sentence
+
+
+def test_folders_of_one_name_are_told_apart_by_those_above_them(tmp_path):
+    for name in ("monday", "tuesday"):
+        (tmp_path / name).mkdir()
+    folders = [results(tmp_path / name / "results", 50.0 + len(name) / 100) for name in ("monday", "tuesday")]
+    found = json.loads(trisect("study", "repeats", *folders, "--json").out)
+    assert [scan["scan"] for scan in found["scans"]] == ["monday/results", "tuesday/results"]
+
+
 def test_a_type_1_study_of_a_table_says_capable_or_not(tmp_path):
     path = of_values(tmp_path, 50 + 0.01 * np.sin(np.arange(50)))
     good = trisect("study", "type1", path, "--nominal", 50, "--tolerance", 0.5, "--resolution", 0.001, "--json")
