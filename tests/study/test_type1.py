@@ -26,6 +26,21 @@ def test_the_bias_of_the_manuals_example_is_tested_as_printed_in_table_III_B_2()
     assert not found.bias_is_significant
 
 
+def test_a_printed_report_of_fifty_readings_has_our_t_and_p():
+    """SPC for Excel, Type 1 gage study, example report: T 12.335 − 12.285, reference 12.306, bias 0.00150, s 0.00485."""
+    found = type1_study(spread(12.3075, 0.00485), 12.306, 0.05, resolution=0.0001)
+    assert found.t == pytest.approx(2.185, abs=0.01)  # bias and s are printed to three digits
+    assert round(found.p, 2) == 0.03
+    assert found.bias_is_significant
+    assert found.resolution_share == pytest.approx(0.002)
+    assert found.verdict == NOT_CAPABLE
+
+
+def test_a_spread_of_37_50_percent_of_the_tolerance_has_the_cg_printed_with_it():
+    """Minitab's help on type-1 studies: %Var (repeatability) = 6 s / T = 37.50 %, Cg = 0.53."""
+    assert round(type1_study(spread(0.0, 0.375 / 6), 0.0, 1.0).cg, 2) == 0.53
+
+
 def test_cg_and_cgk_are_what_their_formulas_say():
     found = type1_study(spread(50.02, 0.01), 50.0, 1.0)
     assert found.cg == pytest.approx(0.2 / 0.06)
