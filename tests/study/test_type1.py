@@ -27,7 +27,7 @@ def test_the_bias_of_the_manuals_example_is_tested_as_printed_in_table_III_B_2()
 
 
 def test_a_printed_report_of_fifty_readings_has_our_t_and_p():
-    """SPC for Excel, Type 1 gage study, example report: T 12.335 − 12.285, reference 12.306, bias 0.00150, s 0.00485."""
+    """SPC for Excel, example of a type-1 report: 12.285 to 12.335, reference 12.306, bias 0.00150, s 0.00485."""
     found = type1_study(spread(12.3075, 0.00485), 12.306, 0.05, resolution=0.0001)
     assert found.t == pytest.approx(2.185, abs=0.01)  # bias and s are printed to three digits
     assert round(found.p, 2) == 0.03
