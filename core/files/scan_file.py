@@ -26,11 +26,13 @@ from core.image.stripe import StripeSettings
 from core.model.arrays import Array
 from core.scan.common_errors import CommonErrors
 from core.scan.crossings import CrossingTable
+from core.scan.fan_speckle import FanSpeckle
 from core.scan.features import FrameFeatures, ScanFeatures
 
 _TODO = "measure the scan first: trisect scan SET --out DIR"
 _NO_FRAME = -1
 _COMMON = ("sources", "cameras", "fans", "sweeps")
+_SPECKLE = tuple(one.name for one in fields(FanSpeckle))
 _CROSSINGS = tuple(one.name for one in fields(CrossingTable))
 
 
@@ -60,6 +62,8 @@ class ScanFile:
         What displaced calibrations do to the scan; None if not known.
     features_key
         Names what the features rest on: with the same key they need not be looked for again. Nothing if not known.
+    speckle
+        What the fan's own points and the sweeps are both wrong by; None if not known.
     """
 
     features: ScanFeatures
@@ -72,12 +76,13 @@ class ScanFile:
     calibration_id: str
     features_key: str = ""
     common: CommonErrors | None = None
+    speckle: FanSpeckle | None = None
 
 
 def write_scan(path: Path, scan: ScanFile) -> None:
     """Write scan.npz; the same scan gives the same bytes. InputError if it cannot be written."""
     features = scan.features
-    crossings, common = features.crossings, scan.common
+    crossings, common, speckle = features.crossings, scan.common, scan.speckle
     arrays: dict[str, NDArray[Any]] = {
         "calibration_id": np.array(scan.calibration_id),
         "features_key": np.array(scan.features_key),
@@ -94,6 +99,7 @@ def write_scan(path: Path, scan: ScanFile) -> None:
         "notes": pack_texts(features.notes),
         "stripes": _stripes(features.fan_stripe, features.sweep_stripe),
         **({f"common_{name}": np.asarray(getattr(common, name)) for name in _COMMON} if common else {}),
+        **({f"speckle_{name}": getattr(speckle, name) for name in _SPECKLE} if speckle else {}),
         **{f"crossing_{name}": np.asarray(getattr(crossings, name)) for name in _CROSSINGS},
         **pack_centrelines("fan", [features.fan]),
         **pack_centrelines("sweep", [frame.centrelines for frame in features.frames]),
@@ -156,6 +162,7 @@ def _unpacked(arrays: Arrays) -> ScanFile:
         calibration_id=str(arrays["calibration_id"]),
         features_key=str(arrays.get("features_key", "")),
         common=_common(arrays, (width, height)),
+        speckle=_speckle(arrays),
     )
 
 
@@ -168,6 +175,17 @@ def _common(arrays: Arrays, image_size: tuple[int, int]) -> CommonErrors | None:
     if common.sweeps.shape[1] != len(arrays["sweep_frames"]):
         raise ValueError(f"common_sweeps holds {common.sweeps.shape[1]} sweeps, not {len(arrays['sweep_frames'])}")
     return common
+
+
+def _speckle(arrays: Arrays) -> FanSpeckle | None:
+    """What the fan's own points and the sweeps share; ValueError if it is not of this scan's sweeps and cells."""
+    if f"speckle_{_SPECKLE[0]}" not in arrays:
+        return None
+    speckle = FanSpeckle(**{name: arrays[f"speckle_{name}"] for name in _SPECKLE})
+    sweeps = len(arrays["sweep_frames"])
+    if len(speckle.covariance) != 3 * sweeps:
+        raise ValueError(f"speckle_covariance has {len(speckle.covariance)} rows, not {3 * sweeps}")
+    return speckle
 
 
 def _stripes(fan: StripeSettings, sweep: StripeSettings | None) -> Array:

@@ -8,7 +8,7 @@ of the table is extrapolated by itself, and no mean height is taken.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -33,14 +33,6 @@ RULE_LINE = (
     "distance of two parallel lines fitted jointly and robustly to one light profile, "
     "at right angles to them and along the reference normal"
 )
-
-
-FAN_LINES = 2
-"""The fan's own points can only know the common tilt of two faces if so many of its lines lie on each."""
-FAN_POINTS = 60
-"""A line of the fan lies on a face if it has so many points there."""
-FAN_SUFFICES = 1.6
-"""The fan's own points are taken alone unless u is larger by more than this factor without the sweeps'."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -122,7 +114,7 @@ def fit_gauge(
             where="[gauge] upper_polygon_px",
             todo="exchange upper_polygon_px and lower_polygon_px",
         )
-    faces = _best_fit(upper, lower, robust, errors)
+    faces = fit_faces(upper, lower, robust, errors)
     free = [
         fit_plane(face.points, face.sigma, reference_normal=None if robust.tilt_determined else robust.normal)
         for face in (upper, lower)
@@ -191,32 +183,8 @@ def measure_gauge(
         verdict=verdict,
         normal=fit.planes.normal,
         rule=RULE if fit.planes.tilt_determined else RULE_LINE,
-        notes=(*_basis(fit, cloud), *_notes(errors)),
+        notes=_notes(errors),
     )
-
-
-def _best_fit(upper: Cloud, lower: Cloud, robust: ParallelPlanes, errors: PointErrors) -> FittedFaces:
-    """The joint fit to all points, or to those that the fan measured itself if they know the thickness well enough.
-
-    The sweeps' metric comes from the fan through the network, speckle and all: they know nothing of the thickness that
-    the fan's own points do not know, and what is wrong with the network is wrong with them alone.
-    """
-    everything = fit_faces(upper, lower, robust, errors)
-    own = [_fan_lines(face, weights) for face, weights in zip((upper, lower), robust.weights, strict=True)]
-    if not robust.tilt_determined or min(own) < FAN_LINES:
-        return everything
-    alone = [
-        np.where(face.sweep < 0, weights, 0.0) for face, weights in zip((upper, lower), robust.weights, strict=True)
-    ]
-    fan = fit_faces(upper, lower, replace(robust, weights=(alone[0], alone[1])), errors)
-    suffices = combined(_budget(fan, errors)) <= FAN_SUFFICES * combined(_budget(everything, errors))
-    return fan if suffices else everything
-
-
-def _fan_lines(face: Cloud, weights: Array) -> int:
-    """How many of the fan's lines lie on a face with FAN_POINTS points or more."""
-    lines = face.sweep[(face.sweep < 0) & (weights > 0)]
-    return int(np.count_nonzero(np.unique(lines, return_counts=True)[1] >= FAN_POINTS))
 
 
 def _budget(faces: FittedFaces, errors: PointErrors) -> tuple[Contribution, ...]:
@@ -238,20 +206,15 @@ def _face(fit: PlaneFit, indices: NDArray[np.int64]) -> Face:
     return Face(plane, indices[kept], residuals, float(high - low), float(np.sqrt(np.mean(residuals**2))))
 
 
-def _basis(fit: GaugeFit, cloud: Cloud) -> tuple[str, ...]:
-    """Which points the thickness rests on, where it is not all of them."""
-    on_faces = cloud.sweep[np.concatenate([fit.pair.upper, fit.pair.lower])]
-    if not fit.faces.sources.of_fan.all() or np.all(on_faces < 0):
-        return ()
-    return (
-        f"The thickness rests on the {len(fit.faces.sources.stretch)} points that the fan measured itself; "
-        "those of the sweeps, whose metric comes from the fan, show the form of the faces.",
-    )
-
-
 def _notes(errors: PointErrors) -> tuple[str, ...]:
     """Sentences on what the stated uncertainty does not hold."""
-    missing = [] if errors.sweep_covariance is not None else ["the sweeps' light planes"]
+    missing = [] if errors.sweep_covariance is not None else ["that of the sweeps' light planes"]
+    if not missing and errors.speckle is None:
+        missing = ["what the sweeps owe to the fan's speckle"]
     known = () if errors.common is None else errors.common.sources
-    missing += [name for name, source in (("the camera", CAMERA), ("the fan", FAN_CALIBRATION)) if source not in known]
-    return (f"The stated uncertainty does not hold that of {', '.join(missing)}.",) if missing else ()
+    missing += [
+        f"that of {name}"
+        for name, cause in (("the camera", CAMERA), ("the fan", FAN_CALIBRATION))
+        if cause not in known
+    ]
+    return (f"The stated uncertainty does not hold {', '.join(missing)}.",) if missing else ()

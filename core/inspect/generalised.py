@@ -4,11 +4,16 @@ Points of a scan are not independent. The centreline's noise is one and the same
 share the error of its light plane, and the sweeps share one network; camera and fan err in all points at once; a face
 that is not flat errs in patches. With J stretches instead of N points, observation j of a linear model reads::
 
-    misfit_j = x_j·β + a_jᵀ L ζ + d_j·ξ + σ_form f_j·η + ε_j
+    misfit_j = x_j·β + s_j·z + a_jᵀ L ζ + d_j·ξ + σ_form f_j·η + ε_j
 
-L Lᵀ the network's covariance, ζ, ξ, η of unit variance, ε_j the stretch's own noise. Everything but ε is common to many
-stretches and few in number, so the generalised least-squares estimate of β comes from one small system in which the
-common errors are unknowns with a prior (the same as inverting the full covariance, by Woodbury's identity).
+z the fan's speckle, which moves its own points and, through the network, the sweeps' planes; L Lᵀ the covariance of
+these planes less what z does to them; z, ζ, ξ, η of unit variance, ε_j the stretch's own noise. Everything but ε is
+common to many stretches and few in number, so the generalised least-squares estimate of β comes from one small system
+in which the common errors are unknowns with a prior (the same as inverting the full covariance, by Woodbury's
+identity).
+
+With P the covariance of the planes' errors and C theirs with z: of two jointly normal things the one is C z plus what
+has the covariance P − C Cᵀ and is independent of z.
 
 How large the form is, and whether own noise is larger than stated, is found from the residuals: variance components,
 each by its sum of squares over its redundancy.
@@ -32,6 +37,7 @@ from scipy.linalg import cho_factor, cho_solve
 from core.inspect.point_errors import PointErrors
 from core.model.arrays import Array
 from core.scan.cloud import Cloud
+from core.scan.fan_speckle import FanSpeckle
 
 TUKEY = 6.0
 """A stretch this many of its own standard deviations off has no weight left."""
@@ -43,6 +49,9 @@ GRAZING = 0.35
 """|cos| of incidence below which own noise across the surface falls no further: the pixel is uncertain as well."""
 FLOOR_MM = 2e-4
 """No stretch is known better than this across the surface."""
+LEAST_REST = 0.3
+"""What the fan's cells leave of a stretch's noise is never taken for less than this share of a point's: the windows
+that points were averaged over are known by their usual length only."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -53,6 +62,7 @@ class Sources:
     share: Array  # (N,) weight of each point in its stretch, summing to 1
     own: Array  # (J,) standard deviation in mm
     of_fan: NDArray[np.bool_]  # (J,)
+    speckle: Array  # (J, F)
     sweeps: Array  # (J, 3S)
     common: Array  # (J, K)
     form: Array  # (J, patches)
@@ -84,7 +94,8 @@ class Sources:
         errors
             Of the points.
         """
-        stretch = errors.stretches(cloud, part)
+        place = errors.places(cloud)
+        stretch = errors.stretches(cloud, part, place)
         depth = cloud.points[:, 2]
         rays = cloud.points / depth[:, None]
         gain = np.asarray((direction * rays).sum(axis=1), dtype=np.float64)
@@ -103,12 +114,22 @@ class Sources:
         lever = np.column_stack([mean(-gain * depth**2 * rays[:, axis]) for axis in range(3)])
         form = np.zeros((count, int(patch.max()) + 1))
         np.add.at(form, (stretch, patch), share)
+        noise = mean(own)
+        speckle, sweeps = _of_sweeps(cloud.sweep[first], lever, errors)
+        if errors.speckle is not None:
+            known = np.flatnonzero(place >= 0)
+            _add_fan(speckle, errors.speckle, place[known], stretch[known], (share * gain)[known])
+            of_cells = (errors.speckle.shares[place[known]] ** 2).sum(axis=1)
+            left = own.copy()
+            left[known] *= np.sqrt(np.maximum(1 - of_cells / cloud.sigma[known] ** 2, 0.0))
+            noise = _rest(errors, place, stretch, mean(left), noise)
         return cls(
             stretch,
             share,
-            np.hypot(mean(own), FLOOR_MM) / np.sqrt(alive),
+            np.hypot(noise, FLOOR_MM) / np.sqrt(alive),
             cloud.sweep[first] < 0,
-            _of_sweeps(cloud.sweep[first], lever, errors.sweep_covariance),
+            speckle,
+            sweeps,
             _of_common(cloud, direction, mean, errors, count),
             form,
         )
@@ -147,7 +168,7 @@ class Generalised:
 
 def generalised_fit(design: Array, misfit: Array, sources: Sources) -> Generalised:
     """Robust generalised least squares of `misfit` (J,) = `design` (J, p) · β with the errors of `sources`."""
-    effects = np.hstack([sources.sweeps, sources.common, sources.form])
+    effects = np.hstack([sources.speckle, sources.sweeps, sources.common, sources.form])
     fixed, first_form = design.shape[1], effects.shape[1] - sources.form.shape[1]
     weights, factor = np.ones(len(misfit)), np.ones(2)
     group = sources.of_fan.astype(np.int64)
@@ -189,15 +210,55 @@ def _variance_factor(weights: Array, residuals: Array, spent: float) -> float:
     return (float(weights @ residuals**2) + PRIOR_FREEDOM) / (freedom + PRIOR_FREEDOM)
 
 
-def _of_sweeps(sweep: NDArray[np.int64], lever: Array, covariance: Array | None) -> Array:
-    """Effect (J, 3S) on each stretch of the sweeps' planes, uncorrelated and of unit variance."""
+def _of_sweeps(sweep: NDArray[np.int64], lever: Array, errors: PointErrors) -> tuple[Array, Array]:
+    """Effects (J, F) and (J, 3S) on each stretch of its sweep's plane: of the fan's cells, and of all else."""
+    covariance, speckle = errors.sweep_covariance, errors.speckle
+    cells = 0 if speckle is None else speckle.covariance.shape[1]
     if covariance is None:
-        return np.zeros((len(sweep), 0))
-    values, vectors = np.linalg.eigh((covariance + covariance.T) / 2)
-    root = (vectors * np.sqrt(np.maximum(values, 0.0))).reshape(-1, 3, len(values))
-    effect = np.einsum("ji,jik->jk", lever, root[np.maximum(sweep, 0)])
-    effect[sweep < 0] = 0.0
-    return np.asarray(effect)
+        return np.zeros((len(sweep), cells)), np.zeros((len(sweep), 0))
+    shared = np.zeros((len(covariance), cells)) if speckle is None else speckle.covariance
+
+    def effect(of_planes: Array) -> Array:
+        blocks = of_planes.reshape(errors.sweeps, 3, of_planes.shape[1])
+        acting = np.einsum("ji,jik->jk", lever, blocks[np.maximum(sweep, 0)])
+        acting[sweep < 0] = 0.0
+        return np.asarray(acting)
+
+    return effect(shared), effect(_root(covariance - shared @ shared.T))
+
+
+def _root(covariance: Array) -> Array:
+    """R (n, n) with R Rᵀ = `covariance`, found in units of its standard deviations: they differ by many powers."""
+    size = np.sqrt(np.maximum(covariance.diagonal(), 1e-300))
+    values, vectors = np.linalg.eigh((covariance + covariance.T) / (2 * np.outer(size, size)))
+    return np.asarray(size[:, None] * vectors * np.sqrt(np.maximum(values, 0.0)))
+
+
+def _add_fan(
+    effect: Array, speckle: FanSpeckle, place: NDArray[np.int64], stretch: NDArray[np.int64], gain: Array
+) -> None:
+    """Add to `effect` (J, F) what cells do to stretches through the fan's points at `place`, with these gains (N,)."""
+    for k, share in enumerate(speckle.shares[place].T):
+        there = share != 0
+        np.add.at(effect, (stretch[there], speckle.first[place[there]] + k), gain[there] * share[there])
+
+
+def _rest(
+    errors: PointErrors, place: NDArray[np.int64], stretch: NDArray[np.int64], left: Array, noise: Array
+) -> Array:
+    """Own noise (J,) of the means over stretches where points have `noise` (J,), and cells leave `left` (J,) of it.
+
+    Averaged over a window longer than a cell, little is left of a point. Of what a shorter one leaves, the noise within
+    the cell, the mean over all of the cell is free.
+    """
+    assert errors.speckle is not None
+    known = place >= 0
+    here = np.bincount(stretch[known], minlength=len(noise))
+    whole = np.zeros(len(noise))
+    whole[stretch[known]] = errors.speckle.members[errors.speckle.cell[place[known]]]
+    part = errors.speckle_px * (1 / np.maximum(here, 1) - 1 / np.maximum(whole, 1))
+    rest = np.maximum(np.minimum(left, noise * np.sqrt(np.maximum(part, 0.0))), LEAST_REST * noise)
+    return np.asarray(np.where(here > 0, rest, noise))
 
 
 def _of_common(

@@ -4,6 +4,7 @@ Every point lies on the known ray r of its pixel, so noise can only move its dep
 
 - *own noise* of the centreline, one and the same over a stretch of a stripe, independent beyond: σ_p;
 - *sweep planes*: δz_p = −z_p² r_p·δπ_i for all points of sweep i, with the network's covariance of all π;
+- *the fan's speckle*, which its own points and the sweeps' planes have in common (`core.scan.fan_speckle`);
 - *common errors* of camera and fan: each calibration one standard deviation off moves all points at once.
 """
 
@@ -19,6 +20,7 @@ from core.image.centreline import Centreline
 from core.model.arrays import Array
 from core.scan.cloud import Cloud
 from core.scan.common_errors import CommonErrors
+from core.scan.fan_speckle import FanSpeckle
 from core.scan.features import ScanFeatures
 
 PATCHES = 6
@@ -40,18 +42,27 @@ class PointErrors:
         What displaced calibrations do to the points; None: not known.
     correlation_px, speckle_px
         Lengths along a stripe over which the centreline noise of the sweeps, and of the fan, is one and the same.
+    speckle
+        What the fan's points and the sweeps have in common; None: taken for independent of each other.
     """
 
     sweep_covariance: Array | None = None
     common: CommonErrors | None = None
     correlation_px: float = 12.0
     speckle_px: float = 12.0
+    speckle: FanSpeckle | None = None
 
     @classmethod
-    def of_scan(cls, features: ScanFeatures, sweep_covariance: Array, common: CommonErrors | None) -> PointErrors:
+    def of_scan(
+        cls,
+        features: ScanFeatures,
+        sweep_covariance: Array,
+        common: CommonErrors | None,
+        speckle: FanSpeckle | None = None,
+    ) -> PointErrors:
         """Of the points of a scan with these features, its sweeps' covariance and what displaced calibrations do."""
         swept = [piece for frame in features.frames for piece in frame.centrelines]
-        return cls(sweep_covariance, common, _correlation_px(swept), _correlation_px(features.fan))
+        return cls(sweep_covariance, common, _correlation_px(swept), _correlation_px(features.fan), speckle)
 
     @property
     def sweeps(self) -> int:
@@ -80,11 +91,26 @@ class PointErrors:
         own[swept] = np.maximum(own[swept] - plane, OWN_SHARE**2 * own[swept])
         return np.asarray(np.sqrt(own), dtype=np.float64)
 
-    def stretches(self, cloud: Cloud, part: NDArray[np.int64]) -> NDArray[np.int64]:
-        """Number, from 0, of the stretch of a stripe that each point (N,) lies on; none holds two `part`s (N,)."""
+    def places(self, cloud: Cloud) -> NDArray[np.int64]:
+        """Which of the points of `speckle` each of a cloud's (N,) is; −1 for none of them."""
+        place = np.full(len(cloud), -1, dtype=np.int64)
+        if self.speckle is not None:
+            of_fan = np.flatnonzero(cloud.sweep < 0)
+            place[of_fan] = self.speckle.places(cloud.uv[of_fan])
+        return place
+
+    def stretches(self, cloud: Cloud, part: NDArray[np.int64], place: NDArray[np.int64]) -> NDArray[np.int64]:
+        """Number, from 0, of the stretch of a stripe that each point (N,) lies on; none holds two `part`s (N,).
+
+        Those of the fan are the cells of `speckle` where `place` (N,), as of `places`, knows the point.
+        """
         _, stripe = np.unique((cloud.sweep - cloud.sweep.min()) * (part.max() + 1) + part, return_inverse=True)
         length = np.where(cloud.sweep < 0, self.speckle_px, self.correlation_px)
         along = np.floor(_along(cloud.uv, stripe) / length).astype(np.int64)
+        if self.speckle is not None:
+            known = place >= 0
+            stripe = np.where(known, stripe.max() + 1 + part, stripe)
+            along = np.where(known, self.speckle.cell[place], along) if known.any() else along
         return pairs(stripe, along - along.min())
 
 

@@ -3,12 +3,14 @@
 q follows the misfit of each stretch of a stripe with a gain G_j = ∂q/∂misfit_j. What makes the misfits wrong is in
 `core.inspect.generalised.Sources`, cause by cause, with all that is common kept common; so each cause contributes::
 
-    point noise, fan speckle   u² = Σ_j G_j² own_j²            over the stretches of the sweeps, of the fan
-    sweep planes               u² = ‖Σ_j G_j sweeps_j‖²         the network's full covariance
+    point noise                u² = Σ_j G_j² own_j²            over the stretches
+    fan speckle                u² = ‖Σ_j G_j speckle_j‖²        by the fan's own points and through the network
+    sweep planes               u² = ‖Σ_j G_j sweeps_j‖²         the network's covariance but for the fan's speckle
     camera, fan calibration    u² = Σ_k (Σ_j G_j common_jk)²    over the displacements of that calibration
     form                       u² = form² ‖Σ_j G_j form_j‖²     what the residuals show beyond all that
 
-and the causes are independent of each other.
+and the causes are independent of each other. Where it is not known what the network owes to the fan's speckle, it
+stays in the sweep planes, and the fan's speckle is the own noise of its stretches.
 
 References
 ----------
@@ -42,7 +44,7 @@ __all__ = [
     "effects",
 ]
 
-POINT_NOISE = "centreline noise of the sweeps' points"
+POINT_NOISE = "centreline noise of the points"
 SWEEP_PLANES = "light planes of the sweeps (network)"
 FAN_SPECKLE = "centreline noise of the fan's points (speckle)"
 FORM = "form of the faces beyond the stated noise"
@@ -105,11 +107,15 @@ def effects(
     own = sources.own if own is None else own
     swept, of_fan = ~sources.of_fan, sources.of_fan
     found = []
-    if swept.any():
-        found.append(_noise(POINT_NOISE, gains[:, swept], own[swept]))
-        if sources.sweeps.shape[1]:
-            found.append(_effect(SWEEP_PLANES, gains[:, swept], sources.sweeps[swept], shared=True))
-    if of_fan.any():
+    cells_known = sources.speckle.shape[1] > 0
+    noisy = swept | cells_known
+    if noisy.any():
+        found.append(_noise(POINT_NOISE, gains[:, noisy], own[noisy]))
+    if swept.any() and sources.sweeps.shape[1]:
+        found.append(_effect(SWEEP_PLANES, gains[:, swept], sources.sweeps[swept], shared=True))
+    if cells_known:
+        found.append(_effect(FAN_SPECKLE, gains, sources.speckle, shared=True))
+    elif of_fan.any():
         found.append(_noise(FAN_SPECKLE, gains[:, of_fan], own[of_fan]))
     found.append(_effect(FORM, gains, form_mm * sources.form, shared=False))
     for source in dict.fromkeys(calibrations):

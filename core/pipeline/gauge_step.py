@@ -47,7 +47,7 @@ def gauge_step(work: Workspace, progress: Progress = silent) -> GaugeResult:
 
 def point_errors(scan: ScanFile) -> PointErrors:
     """How the errors of a scan's points hang together."""
-    return PointErrors.of_scan(scan.features, scan.covariance, scan.common)
+    return PointErrors.of_scan(scan.features, scan.covariance, scan.common, scan.speckle)
 
 
 def gauge_if_possible(work: Workspace, progress: Progress = silent) -> tuple[GaugeResult | None, str]:

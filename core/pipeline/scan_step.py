@@ -220,6 +220,7 @@ def _file(features: ScanFeatures, scan: ScanResult, calibration_id: str, key: st
         shown=shown,
         calibration_id=calibration_id,
         features_key=key,
+        speckle=scan.speckle,
     )
 
 

@@ -17,7 +17,6 @@ import numpy as np
 from core.calibrate.deviations import calibration_deviations
 from core.calibrate.results import CameraCalibration, FanCalibration
 from core.errors import InputError
-from core.image.centreline import Centreline
 from core.inspect.gauge import measure_gauge
 from core.inspect.point_errors import PointErrors
 from core.inspect.results import Contribution, GaugeResult
@@ -140,8 +139,7 @@ class Planner:
         deviations = calibration_deviations(camera, fan)
         common = solve_common(features, scan, camera.camera, fan.fan, deviations, progress=told.again)
         cloud = replace(scan.cloud, sigma_common=common.sigma(scan.cloud))
-        swept = [piece for frame in features.frames for piece in frame.centrelines]
-        errors = PointErrors(scan.covariance, common, _correlation(swept), _correlation(features.fan))
+        errors = PointErrors.of_scan(features, scan.covariance, common, scan.speckle)
         gauge = measure_gauge(cloud, errors=errors, progress=told.again)
         if abs(gauge.thickness_mm / height_mm - 1) > 0.1:
             raise InputError(
@@ -195,12 +193,6 @@ def _told_of_a_plan() -> Iterator[None]:
         raise InputError(
             what, where="[plan]", todo="go back to the paper's values one by one to see which of yours it is"
         ) from error
-
-
-def _correlation(pieces: list[Centreline] | tuple[Centreline, ...]) -> float:
-    """Length in pixels over which the noise of a typical point counts as one."""
-    lengths = [len(piece) for piece in pieces]
-    return float(np.median(np.repeat([piece.correlation_px for piece in pieces], lengths)))
 
 
 def _mean_budget(gauges: list[GaugeResult]) -> tuple[Contribution, ...]:

@@ -119,6 +119,17 @@ class Adjustment:
         expected = np.sum(solution.weights) + len(solution.cells) - np.trace(gained)
         return np.asarray((covariance + covariance.T) / 2), float(expected)
 
+    def shared_with_fan(self, solution: Solution) -> Array:
+        """(3S, F) covariance of the planes' errors π̂ − π with the errors z of the fan's cells.
+
+        x̂ − x = H⁻¹(Aᵀ W e − P x) for unknowns x with the prior P and noise e that is none of theirs, and z is one of
+        them with P = 1: so it is minus the block of H⁻¹.
+        """
+        of_cells = np.zeros((len(solution.factor[0]), len(solution.cells)))
+        of_cells[3 * self.sweeps :] = np.eye(len(solution.cells))
+        inverse = cho_solve(solution.factor, of_cells, check_finite=False)
+        return np.asarray(-inverse[: 3 * self.sweeps])
+
     def noise(self, solution: Solution) -> csr_array:
         """(M, …) that turns independent standard normal numbers into the misclosures in 1/mm, less the fan's cells."""
         gain_a, gain_b = solution.gains.T

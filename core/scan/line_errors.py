@@ -36,6 +36,8 @@ class LineErrors:
         (M, Q) shares of the sweeps' Q cells in the errors of a, and of b where b is a sweep.
     rest_a, rest_b
         (M,) variance of the independent rest, in px².
+    fan_cells
+        (F, 2) which centreline of the fan each of its cells is on, and which cell along it.
     """
 
     sigma_a: Array
@@ -45,6 +47,7 @@ class LineErrors:
     sweep_b: csr_array
     rest_a: Array
     rest_b: Array
+    fan_cells: Index
 
     @classmethod
     def of(cls, crossings: CrossingTable) -> LineErrors:
@@ -82,7 +85,9 @@ class LineErrors:
 
         fan_names, fan_column = np.unique(fan_cells, return_inverse=True)
         fan = csr_array((b.shares.ravel()[of_fan], (b.rows[of_fan], fan_column)), shape=(count, len(fan_names)))
-        return cls(a.sigma, b.sigma, fan, matrix(of_a), matrix(~of_a), a.rest, b.rest)
+        piece = (fan_names + _MOST_CELLS // 2) // _MOST_CELLS  # a first cell may be −1
+        cells_of_fan = np.column_stack([piece, fan_names - piece * _MOST_CELLS])
+        return cls(a.sigma, b.sigma, fan, matrix(of_a), matrix(~of_a), a.rest, b.rest, cells_of_fan)
 
 
 @dataclass(frozen=True, eq=False, slots=True)

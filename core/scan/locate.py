@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +23,10 @@ from core.scan.sweep_plane import solve_sweep_plane
 
 @dataclass(frozen=True, eq=False, slots=True)
 class LocatedSweeps:
-    """Solved planes: `frames` (S,) and, per crossing, the weight it had."""
+    """Solved planes: `frames` (S,) and, per crossing, the weight it had.
+
+    `fan_cells` (F, 2) and `fan_covariance` (3S, F) as of `core.scan.network.Network`; F = 0 where not known.
+    """
 
     frames: NDArray[np.int64]
     pis: Array
@@ -31,6 +34,8 @@ class LocatedSweeps:
     weights: Array
     scale: float
     notes: tuple[str, ...]
+    fan_cells: NDArray[np.int64] = field(default_factory=lambda: np.zeros((0, 2), dtype=np.int64))
+    fan_covariance: Array = field(default_factory=lambda: np.zeros((0, 0)))
 
 
 def number_fan_lines(
@@ -109,7 +114,16 @@ def locate_together(
             "The sweeps' light planes have fallen together into one: no depth can be trusted. Move and tilt the "
             "hand-held laser more between frames, and cross the fan on object and table.",
         )
-    return LocatedSweeps(frames, network.pis, network.covariance, network.weights, network.scale, notes)
+    return LocatedSweeps(
+        frames,
+        network.pis,
+        network.covariance,
+        network.weights,
+        network.scale,
+        notes,
+        network.fan_cells,
+        network.fan_covariance,
+    )
 
 
 def sweeping_frames(crossings: CrossingTable) -> NDArray[np.int64]:

@@ -69,6 +69,10 @@ class Network:
         True if rejecting outliers would have silenced the fan and was not done.
     collapsed
         True if the sweeps' planes have fallen together: crossings that say nothing but that the world is flat.
+    fan_cells
+        (F, 2) centreline and cell along it of each of the fan's cells, see `core.scan.line_errors`.
+    fan_covariance
+        (3S, F) of the errors of the stacked π with those of the cells, of which each has unit variance.
     """
 
     pis: Array
@@ -77,7 +81,9 @@ class Network:
     weights: Array
     scale: float
     fan_silenced: bool
-    collapsed: bool = False
+    collapsed: bool
+    fan_cells: Index
+    fan_covariance: Array
 
 
 def solve_network(
@@ -111,6 +117,8 @@ def solve_network(
         scale,
         silenced,
         has_collapsed(equations, solution.pis),
+        equations.errors.fan_cells,
+        equations.shared_with_fan(solution),
     )
 
 

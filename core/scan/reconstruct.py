@@ -19,6 +19,7 @@ from core.scan.cloud import FAN, Cloud
 from core.scan.crossings import CrossingTable
 from core.scan.datum import Datum, datum_of
 from core.scan.fan_lines import UNASSIGNED, FanLines
+from core.scan.fan_speckle import FanSpeckle, fan_speckle
 from core.scan.features import ScanFeatures
 from core.scan.left_out import reasons_of
 from core.scan.locate import LocatedSweeps, by_sweep, locate_each, locate_together, number_fan_lines, numbered
@@ -94,6 +95,7 @@ def reconstruct(
         scale=sweeps.scale,
         notes=features.notes + solved.notes + _fan_notes(lines),
         datum=solved.datum,
+        speckle=_speckle(features, lines, sweeps, camera, fan) if options.method == "network" else None,
         crossing_reasons=solved.reasons,
     )
 
@@ -147,6 +149,13 @@ def _fan_clouds(features: ScanFeatures, lines: FanLines, camera: Camera, fan: Fa
         for piece, line in zip(features.fan, lines.line, strict=True)
         if line != UNASSIGNED
     ]
+
+
+def _speckle(features: ScanFeatures, lines: FanLines, sweeps: LocatedSweeps, camera: Camera, fan: Fan) -> FanSpeckle:
+    """What the fan's own points have in common with the sweeps."""
+    planes = [None if line == UNASSIGNED else fan.planes[line] for line in lines.line]
+    cell_px = features.crossings.half_length_px
+    return fan_speckle(features.fan, planes, camera, cell_px, sweeps.fan_cells, sweeps.fan_covariance)
 
 
 def _sweep_clouds(features: ScanFeatures, sweeps: LocatedSweeps, camera: Camera) -> list[Cloud]:

@@ -12,6 +12,7 @@ from core.scan.cloud import Cloud
 from core.scan.crossings import CrossingTable
 from core.scan.datum import Datum
 from core.scan.fan_lines import FanLines
+from core.scan.fan_speckle import FanSpeckle
 from core.scan.frame_record import FrameRecord
 
 __all__ = ["FrameRecord", "ScanResult"]
@@ -45,6 +46,8 @@ class ScanResult:
         Sentences for the technician.
     datum
         How strongly the fan fixes scale and place; None when frames were solved each on its own.
+    speckle
+        What the fan's own points and the sweeps are both wrong by; None when frames were solved each on its own.
     """
 
     cloud: Cloud
@@ -58,6 +61,7 @@ class ScanResult:
     scale: float
     notes: tuple[str, ...] = ()
     datum: Datum | None = None
+    speckle: FanSpeckle | None = None
     crossing_reasons: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
 
     @property

@@ -104,7 +104,7 @@ def _block(index: int, scans: int, seed: int, frames: int) -> np.ndarray:
         scan = reconstruct(features, camera, fan, fan_lines=lines)
         common = _about(template, first, scan, camera, fan)
         cloud = replace(scan.cloud, sigma_common=common.sigma(scan.cloud))
-        fit = fit_gauge(cloud, errors=PointErrors.of_scan(features, scan.covariance, common))
+        fit = fit_gauge(cloud, errors=PointErrors.of_scan(features, scan.covariance, common, scan.speckle))
         rows.append(
             (
                 fit.thickness_mm - height,

@@ -26,6 +26,7 @@ from core.model import Camera
 from core.scan.cloud import Cloud
 from core.scan.common_errors import CommonErrors
 from core.scan.crossings import CrossingTable
+from core.scan.fan_speckle import FanSpeckle
 from core.scan.features import FrameFeatures, ScanFeatures
 from core.scan.results import FrameRecord
 from core.scan.surface import Mesh
@@ -329,6 +330,24 @@ def test_what_displaced_calibrations_do_is_kept_with_the_scan(tmp_path, scan):
         assert np.array_equal(getattr(back, name), getattr(common, name))
     write_scan(path, replace(scan, common=replace(common, sweeps=rng.normal(size=(3, 4, 3)))))
     with pytest.raises(InputError, match="4 sweeps, not 2"):
+        read_scan(path)
+
+
+def test_what_fan_and_sweeps_have_in_common_is_kept_with_the_scan(tmp_path, scan):
+    rng = np.random.default_rng(7)
+    index = np.array([0, 0, 1])
+    speckle = FanSpeckle(
+        rng.normal(size=(3, 2)), index, np.array([2, 1]), index, rng.normal(size=(3, 2)), rng.normal(size=(6, 2))
+    )
+    path = tmp_path / "scan.npz"
+    write_scan(path, scan)
+    assert read_scan(path).speckle is None
+    write_scan(path, replace(scan, speckle=speckle))
+    back = read_scan(path).speckle
+    for name in ("uv", "cell", "members", "first", "shares", "covariance"):
+        assert np.array_equal(getattr(back, name), getattr(speckle, name))
+    write_scan(path, replace(scan, speckle=replace(speckle, covariance=rng.normal(size=(9, 2)))))
+    with pytest.raises(InputError, match="9 rows, not 6"):
         read_scan(path)
 
 

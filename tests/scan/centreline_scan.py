@@ -179,13 +179,18 @@ class ExactCrossings:
 
     def drawn(self, seed: int) -> CrossingTable:
         """The crossings with errors of this seed."""
+        return self.drawn_with(seed)[0]
+
+    def drawn_with(self, seed: int) -> tuple[CrossingTable, np.ndarray]:
+        """The crossings with errors of this seed, and the errors (F,) of the fan's cells among them."""
         rng, table, errors = np.random.default_rng([seed, 4]), self.table, LineErrors.of(self.table)
         cells, fan = rng.normal(size=errors.sweep_a.shape[1]), rng.normal(size=errors.fan.shape[1])
         rest_a, rest_b = (np.sqrt(rest) * rng.normal(size=len(table)) for rest in (errors.rest_a, errors.rest_b))
         off_a, off_b = errors.sweep_a @ cells + rest_a, errors.sweep_b @ cells + errors.fan @ fan + rest_b
         t_a, t_b = table.tangent_a, table.tangent_b
         sine = t_a[:, 0] * t_b[:, 1] - t_a[:, 1] * t_b[:, 0]
-        return replace(table, uv=table.uv + t_b * (off_a / -sine)[:, None] + t_a * (off_b / sine)[:, None])
+        uv = table.uv + t_b * (off_a / -sine)[:, None] + t_a * (off_b / sine)[:, None]
+        return replace(table, uv=uv), fan
 
 
 def _scene(scenario: Scenario, rig: Rig) -> tuple[Scene, dict, list[Sheet]]:
