@@ -18,6 +18,7 @@ from core.image.target_view import TargetView
 from core.model import Camera, Fan
 from core.model.arrays import Array
 from core.scan.frame_preview import FramePreview
+from core.scan.preflight import Check
 from core.scan.preview_cloud import PreviewCloud
 
 
@@ -47,6 +48,8 @@ class LiveRequest:
         Take each pose of the plane target with the fan on and off.
     there
         What the target showed in the pictures that these are added to.
+    calibrated_s
+        When the older of the two calibrations was made, in s since 1970; None if that is not known.
     ending
         Of the files of a scan's frames: ".png" takes half the room, ".pgm" a tenth of the time.
     """
@@ -63,6 +66,7 @@ class LiveRequest:
     auto: bool = True
     pairs: bool = True
     there: tuple[TargetView, ...] = ()
+    calibrated_s: float | None = None
     ending: Ending = ".png"
 
 
@@ -285,6 +289,24 @@ class LiveNotice:
 
 
 @dataclass(frozen=True, slots=True)
+class LiveAdvice:
+    """How to expose the stripes better; "" and None where all is well.
+
+    `settings` is what to tell the source; None if a person must find out, because what is set now is not known.
+    """
+
+    sentence: str
+    settings: SourceSettings | None
+
+
+@dataclass(frozen=True, slots=True)
+class LiveChecks:
+    """What was looked at before the scan, each with what came of it; comes again whenever that changes."""
+
+    checks: tuple[Check, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class LiveUnplugged:
     """The source is gone; it is looked for every second. What is recorded is kept."""
 
@@ -320,6 +342,8 @@ LiveEvent = (
     | LiveAsk
     | LiveAnswered
     | LiveNotice
+    | LiveAdvice
+    | LiveChecks
     | LiveUnplugged
     | LiveBack
     | LiveSaving

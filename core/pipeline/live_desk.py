@@ -6,7 +6,7 @@ from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Any, Protocol
 
-from core.acquire.source import Frame, FrameSource, Lasers, Picture
+from core.acquire.source import Capabilities, Frame, FrameSource, Lasers, Picture
 from core.files.pictures import write_picture
 from core.live.events import (
     Command,
@@ -93,7 +93,8 @@ class Worker:
 class Desk:
     """What every step works with.
 
-    `recorded` counts what is on the disk, `lost` frames the disk was too slow for.
+    `recorded` counts what is on the disk, `lost` frames the disk was too slow for. `settings` is what the source has
+    been told, `capabilities` what it can be told.
     """
 
     def __init__(self, request: LiveRequest, source: FrameSource, emit: Callable[[LiveEvent], None]) -> None:
@@ -101,6 +102,7 @@ class Desk:
         self.worker = Worker()
         self.recorded = self.lost = 0
         self.lasers = Lasers(fan=False, hand=False)
+        self.settings, self.capabilities = request.settings, Capabilities()
         self._asking = False
         self._told = ""
 

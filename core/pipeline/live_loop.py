@@ -7,7 +7,7 @@ from collections import deque
 from collections.abc import Callable
 
 from core.acquire.settings import TITLES
-from core.acquire.source import Capabilities, Ended, Frame, FrameSource, Unplugged
+from core.acquire.source import Ended, Frame, FrameSource, Unplugged
 from core.errors import InputError
 from core.live.events import (
     Command,
@@ -52,8 +52,6 @@ class LiveLoop:
     ) -> None:
         self._desk, self._step, self._commands, self._ready = desk, step, commands, ready
         self._source: FrameSource = desk.source
-        self._settings = desk.request.settings
-        self._capabilities = Capabilities()
         self._display = Display(desk.request.display_px)
         self._stopping = self._started = False
         self._waiting: deque[Command] = deque()
@@ -100,10 +98,11 @@ class LiveLoop:
     def _open(self) -> None:
         """Open the source, and tell it what it can be told."""
         self._source.open()
-        self._capabilities = self._source.capabilities
-        told = self._settings.only(self._capabilities.names)
-        if left := [TITLES[name][0] for name in self._settings.told if name not in told.told]:
-            self._desk.notice(f"{self._source.name} has no {' and no '.join(left)} to set: what it has is used.")
+        desk = self._desk
+        desk.capabilities = self._source.capabilities
+        told = desk.settings.only(desk.capabilities.names)
+        if left := [TITLES[name][0] for name in desk.settings.told if name not in told.told]:
+            desk.notice(f"{self._source.name} has no {' and no '.join(left)} to set: what it has is used.")
         self._source.configure(told)
 
     def _read(self) -> Frame | None:
@@ -126,7 +125,7 @@ class LiveLoop:
         if not self._started:
             self._started = True
             height, width = frame.picture.shape
-            self._desk.emit(LiveStarted(self._source.name, (width, height), self._capabilities))
+            self._desk.emit(LiveStarted(self._source.name, (width, height), self._desk.capabilities))
         self._newest, self._dropped_now = frame, frame.dropped
         self._times.append(frame.time_s)
         while len(self._times) > 2 and frame.time_s - self._times[0] > _RATE_OVER_S:
@@ -141,9 +140,10 @@ class LiveLoop:
                     self._stopping = True
                     return
                 case Configure(settings):
-                    self._settings = settings
                     try:
                         self._source.configure(settings)
+                        self._desk.settings = self._desk.settings.updated(settings)
+                        self._step.tell(command)
                     except Unplugged:
                         raise
                     except InputError as error:

@@ -5,14 +5,17 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
+import numpy as np
+
 from core.acquire.source import Frame, Lasers, Picture
 from core.calibrate.capture import CaptureJudge, moved_px
 from core.calibrate.missing import PLANE_POSES
 from core.image.target_view import TargetView
-from core.live.events import Auto, Capture, Command, Discard, PlanesDetail
+from core.live.events import Auto, Capture, Command, Configure, Discard, PlanesDetail
 from core.model.arrays import Array
 from core.pipeline.live_camera import named
 from core.pipeline.live_desk import Desk, as_sentence
+from core.pipeline.live_exposure import ExposureAdviser
 from core.pipeline.live_pose import MeasuredPair, PoseLook, look_at_pose, measure_pair, settings_of
 
 MOST_TRIES = 5
@@ -56,6 +59,7 @@ class LivePlanes:
         self._sentence = ""
         self._missing: tuple[str, ...] = ()
         self._number = 0
+        self._adviser = ExposureAdviser()
 
     def begin(self) -> None:
         """The fan on; a pose that was not finished when the source was unplugged is given up."""
@@ -105,8 +109,10 @@ class LivePlanes:
         )
 
     def tell(self, command: Command) -> None:
-        """Capture, Auto and Discard."""
+        """Capture, Auto and Discard; and that the source has been told other settings."""
         match command:
+            case Configure():
+                self._adviser.forget()
             case Capture() if self._stage == "asking":
                 self._desk.answered()
                 self._stage = "second picture"
@@ -124,6 +130,7 @@ class LivePlanes:
 
     def _judged(self, look: PoseLook, judge: CaptureJudge) -> None:
         view, pose = look.pose.view, look.pose
+        self._advise(look)
         verdict = judge.judge(view, look.blur_px, look.frame.time_s, "" if view else as_sentence(pose.reason))
         self._look, self._sentence = look, verdict.sentence
         self._seen_at = None if view is None else view.uv
@@ -138,6 +145,13 @@ class LivePlanes:
         elif verdict.take and not doubt:
             self._sentence = "Press Capture to take this pose."
         self._capture = False
+
+    def _advise(self, look: PoseLook) -> None:
+        """Say how the fan's stripes would be exposed better, when that is news."""
+        desk, full_scale = self._desk, float(np.iinfo(look.frame.picture.dtype).max)
+        advice = self._adviser.watch(look.pose.centrelines, full_scale, desk.settings, desk.capabilities)
+        if advice is not None:
+            desk.emit(advice)
 
     def _doubt(self, look: PoseLook, view: TargetView) -> str:
         """Why a good view of the target is not taken by itself, or ""."""

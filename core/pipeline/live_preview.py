@@ -41,6 +41,13 @@ class PreviewFailed:
     sentence: str
 
 
+@dataclass(frozen=True, slots=True)
+class Departed:
+    """Why a picture without the hand-held laser does not suit the reference, or ""."""
+
+    reason: str
+
+
 class ScanPreviewer:
     """Looks at the reference and then at frames, one at a time.
 
@@ -61,6 +68,18 @@ class ScanPreviewer:
         if self._preview is not None:
             return self._preview.fan_lines
         return () if self._reference is None else (self._reference.fan,)
+
+    @property
+    def full_scale(self) -> float:
+        """Largest grey level of the pictures."""
+        return 255.0 if self._reference is None else self._reference.full_scale
+
+    def departed(self, picture: Picture) -> Departed:
+        """Whether a picture still suits the reference."""
+        if self._reference is None:
+            return Departed("")
+        reason = FrameReader(self._reference, None)((0, ("", picture))).reason
+        return Departed("" if reason == NO_STRIPE else reason)
 
     def fan_cloud(self) -> PreviewCloud:
         """The fan's own points."""

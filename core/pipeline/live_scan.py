@@ -10,9 +10,19 @@ import numpy as np
 
 from core.acquire.source import Frame, Lasers, Picture
 from core.errors import InputError
-from core.live.events import Command, LiveSaving, Pause, Resume, ScanDetail, ScanStage, TakeReference
+from core.live.events import (
+    Command,
+    Configure,
+    LiveSaving,
+    Pause,
+    Resume,
+    ScanDetail,
+    ScanStage,
+    TakeReference,
+)
+from core.pipeline.live_checks import ScanChecks
 from core.pipeline.live_desk import Desk
-from core.pipeline.live_preview import PreviewedFrame, PreviewFailed, ScanPreviewer
+from core.pipeline.live_preview import Departed, PreviewedFrame, PreviewFailed, ScanPreviewer
 from core.scan.coverage_map import CoverageMap
 from core.scan.features import LOST, MOVED
 from core.scan.frame_preview import FramePreview, cloud_of
@@ -78,6 +88,7 @@ class LiveScan:
         self._moved = 0
         self._new: list[PreviewCloud] = []
         self._renewed = False
+        self._checks = ScanChecks(desk, self._previewer)
 
     @property
     def paired(self) -> bool:
@@ -100,8 +111,11 @@ class LiveScan:
         if self._coverage is None:
             height, width = frame.picture.shape
             self._coverage = CoverageMap((width, height))
+            self._checks.begin((width, height))
         if self._stage == "reference" and self._looking:
             self._try_reference(frame.picture)
+        elif self._stage == "ready" and self._checks.are_due:
+            self._desk.worker.start(self._previewer.departed, frame.picture)
         elif self._stage == "scanning":
             self._record(frame)
 
@@ -117,7 +131,10 @@ class LiveScan:
                 self._desk.notice(sentence)
             case PreviewedFrame(frame, preview):
                 self._add(preview)
+                self._checks.stripes(preview.centrelines)
                 return frame
+            case Departed(reason):
+                self._checks.reference(reason)
             case np.ndarray() if self._stage == "reference":
                 self._accept(result)
         return None
@@ -141,8 +158,10 @@ class LiveScan:
         )
 
     def tell(self, command: Command) -> None:
-        """TakeReference, Pause and Resume."""
+        """TakeReference, Pause and Resume; and that the source has been told other settings."""
         match command:
+            case Configure():
+                self._checks.configured()
             case TakeReference() if self._stage == "reference":
                 self._desk.answered()
                 self._forced, self._looking, self._before = self._looking, True, None
@@ -212,6 +231,7 @@ class LiveScan:
         self._desk.write(REFERENCE, picture)
         self._desk.took(REFERENCE, picture)
         self._looking = self._forced = False
+        self._checks.reference()
         fan = self._previewer.fan_cloud()
         self._new, self._renewed = [fan], True
         if self._coverage is not None:

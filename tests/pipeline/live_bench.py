@@ -106,7 +106,8 @@ def record(monkeypatch, source, window, step, rig: Rig, folder: Path, **choices)
     """A whole live recording with a scripted source."""
     monkeypatch.setattr(live, "make_source", lambda choice, rig: source)
     monkeypatch.setattr(live_loop, "RETRY_S", 0.05)
-    request = LiveRequest(step, SourceChoice("scripted"), SourceSettings(), rig, folder, **choices)
+    settings = choices.pop("settings", SourceSettings())
+    request = LiveRequest(step, SourceChoice("scripted"), settings, rig, folder, **choices)
     pickle.dumps(request)
     return live.run_live(request, window.next_command, window.hear, window.ready)
 

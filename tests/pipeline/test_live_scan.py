@@ -6,13 +6,16 @@ import pytest
 from core.acquire.source import Lasers, SourceSettings
 from core.errors import InputError
 from core.files.pictures import is_picture, read_picture, write_picture
+from core.files.recording_log import read_log
 from core.files.rig import Rig
 from core.image.targets import BlackSquare, Checkerboard
 from core.live.events import (
     Configure,
+    LiveAdvice,
     LiveAnswered,
     LiveAsk,
     LiveBack,
+    LiveChecks,
     LiveNotice,
     LiveSaving,
     LiveStarted,
@@ -25,7 +28,7 @@ from core.live.events import (
     Switch,
     TakeReference,
 )
-from core.pipeline import live, live_preview
+from core.pipeline import live, live_checks, live_preview
 from core.simulate.recording import scan_of
 from core.simulate.scenario import Scenario
 from tests.pipeline.live_bench import ScriptedSource, Window, after, answer_to, record
@@ -338,6 +341,64 @@ def test_settings_go_to_the_source_and_a_refusal_is_told(monkeypatch, tmp_path, 
     assert wanted in source.calls
     assert any("no gain" in notice.sentence for notice in window.all(LiveNotice))
     assert Lasers(fan=False, hand=False) in source.calls
+
+
+def checks(event):
+    return {check.name: check.state for check in event.checks}
+
+
+def test_before_a_scan_what_it_needs_is_looked_at_and_told(monkeypatch, tmp_path, stage):
+    window = Window()
+    scan(monkeypatch, tmp_path, stage, swept(stage, 5, pace_s=0.05), window, calibrated_s=time.time() - 60)
+    before, after_reference = window.all(LiveChecks)
+    assert set(checks(before).values()) == {"unknown", "ok"}
+    assert set(checks(after_reference).values()) == {"ok"}
+
+
+def test_a_reference_that_does_not_hold_any_more_is_told_while_nothing_is_recorded(monkeypatch, tmp_path, stage):
+    monkeypatch.setattr(live_checks, "CHECK_EVERY_S", 0.1)
+    pushed = np.roll(stage.reference, 12, axis=1)
+    window = Window(
+        answer_to(LiveAsk, TakeReference()),
+        lambda event: Stop() if isinstance(event, LiveChecks) and checks(event)["reference"] == "failed" else None,
+    )
+    source = ScriptedSource(
+        lambda lasers, number: pushed if window.all(LiveTaken) else stage.reference, 3000, switches=False, pace_s=0.01
+    )
+    scan(monkeypatch, tmp_path, stage, source, window)
+    last = window.all(LiveChecks)[-1]
+    assert "does not hold any more: " in last.checks[0].sentence
+
+
+def test_an_overexposed_stripe_brings_advice_that_can_be_followed(monkeypatch, tmp_path, stage):
+    def glaring(lasers, number):
+        picture = stage(lasers, number)
+        swept_over = picture.astype(int) - stage.reference > 15
+        return np.where(swept_over, 255, picture).astype(np.uint8) if lasers.hand else picture
+
+    told = SourceSettings(exposure_ms=8.0)
+    window = Window(answer_to(LiveAdvice, Stop()))
+    scan(monkeypatch, tmp_path, stage, swept(glaring, 1500, pace_s=0.03), window, settings=told)
+    advice = window.all(LiveAdvice)[0]
+    assert "overexposed: set the exposure time to" in advice.sentence
+    assert advice.settings.exposure_ms in (4.0, 5.6)
+
+
+def test_a_setting_the_source_does_not_have_is_left_out_and_told(monkeypatch, tmp_path, stage):
+    window, source = Window(), swept(stage, 3)
+    ended = scan(monkeypatch, tmp_path, stage, source, window, settings=SourceSettings(exposure_ms=5.0, trigger="Off"))
+    assert ended.error == ""
+    assert source.calls[0] == SourceSettings(exposure_ms=5.0)
+    assert window.all(LiveNotice)[0].sentence == "Scripted camera has no trigger to set: what it has is used."
+    assert window.all(LiveStarted)[0].capabilities.names == ("exposure_ms",)
+
+
+def test_frames_are_recorded_in_the_format_that_was_chosen(monkeypatch, tmp_path, stage):
+    ended = scan(monkeypatch, tmp_path, stage, swept(stage, 10), Window(), ending=".pgm")
+    assert names(tmp_path) == [f"frame{i:05d}.pgm" for i in range(ended.recorded)] + ["reference.png"]
+    assert [one.name for one in read_log(tmp_path / "scan")] == names(tmp_path)[:-1]
+    for path in sorted((tmp_path / "scan").glob("*.pgm")):
+        assert any(np.array_equal(read_picture(path), frame) for frame in stage.frames)
 
 
 def test_a_source_that_cannot_be_opened_is_told_at_the_end(monkeypatch, tmp_path, stage):

@@ -1,0 +1,69 @@
+"""What a live scan says of itself beside its points: the checks before it, and how its stripes are exposed."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+
+from core.image.centreline import Centreline
+from core.live.events import LiveChecks
+from core.pipeline.live_desk import Desk
+from core.pipeline.live_exposure import ExposureAdviser
+from core.pipeline.live_preview import ScanPreviewer
+from core.scan.preflight import Check, Preflight
+
+CHECK_EVERY_S = 1.0
+"""How often it is looked whether the reference still holds, while nothing is recorded."""
+
+
+class ScanChecks:
+    """Tells the window the checks and the advice of a scan whenever they change."""
+
+    def __init__(self, desk: Desk, previewer: ScanPreviewer) -> None:
+        self._desk, self._previewer = desk, previewer
+        self._image_size = (0, 0)
+        self._adviser = ExposureAdviser()
+        self._told: tuple[Check, ...] = ()
+        self._looked_s = 0.0
+
+    @property
+    def are_due(self) -> bool:
+        """Whether it is time to look at the reference again."""
+        return time.monotonic() - self._looked_s >= CHECK_EVERY_S
+
+    def begin(self, image_size: tuple[int, int]) -> None:
+        """The first picture is there, of (width, height)."""
+        self._image_size = image_size
+        self._tell(None, "")
+
+    def reference(self, departed: str = "") -> None:
+        """There is a reference; the latest picture suits it, or why not."""
+        self._looked_s = time.monotonic()
+        self._tell(self._previewer.fan_lines, departed)
+
+    def stripes(self, stripes: Sequence[Centreline]) -> None:
+        """These are seen of the hand-held laser."""
+        desk = self._desk
+        advice = self._adviser.watch(stripes, self._previewer.full_scale, desk.settings, desk.capabilities)
+        if advice is not None:
+            desk.emit(advice)
+
+    def configured(self) -> None:
+        """The source has been told other settings."""
+        self._adviser.forget()
+
+    def _tell(self, fan_lines: tuple[tuple[Centreline, ...], ...] | None, departed: str) -> None:
+        request = self._desk.request
+        checks = Preflight(
+            lines=request.rig.lines,
+            image_size=self._image_size,
+            fan_lines=fan_lines,
+            full_scale=self._previewer.full_scale,
+            departed=departed,
+            camera=request.camera,
+            fan=request.fan,
+            age_s=None if request.calibrated_s is None else max(0.0, time.time() - request.calibrated_s),
+        ).checks()
+        if checks != self._told:
+            self._told = checks
+            self._desk.emit(LiveChecks(checks))
