@@ -168,6 +168,28 @@ def run(
     raise typer.Exit(measuring.exit_code(result.gauge))
 
 
+@app.command(epilog=EPILOG)
+def batch(
+    sets: Annotated[list[Path], typer.Argument(metavar="SETS…", help="Recording sets, all names different.")],
+    out: Out,
+    executor: Annotated[
+        str, typer.Option(metavar="WHO", help="processes, threads, or dask://HOST:PORT for a Dask cluster.")
+    ] = "processes",
+    workers: Annotated[int | None, typer.Option(metavar="N", help="Sets at a time; else one for each core.")] = None,
+    method: MethodOption = Method.network,
+    sigma_cut: SigmaCut = 0.05,
+    json: Json = False,
+) -> None:
+    """Measure many recording sets side by side, each into a folder of its name in DIR."""
+    from core.cli import batching, measuring
+
+    options = measuring.options(method.value, sigma_cut)
+    with bars() as progress:
+        results = batching.run_sets(sets, out, executor, workers, options, progress)
+    batching.show(results, as_json=json)
+    raise typer.Exit(batching.exit_code(results))
+
+
 @app.command()
 def camera(
     folder: Set, out: Out, no_skew: NoSkew = False, k3: K3 = False, exclude: Exclude = None, json: Json = False

@@ -1,0 +1,90 @@
+"""Who measures the sets of a batch: threads, processes, or the workers of a Dask cluster."""
+
+from __future__ import annotations
+
+import importlib
+import multiprocessing
+import os
+import signal
+from collections.abc import Iterator
+from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
+from contextlib import contextmanager
+from typing import Any
+
+from core.errors import InputError
+
+PROCESSES, THREADS, DASK = "processes", "threads", "dask://"
+INSTALL = "A cluster needs Dask's distributed: install it with pip install 'trisect[cluster]'."
+CONNECT_S = 10.0
+
+_BLAS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
+
+
+@contextmanager
+def executor_of(text: str, workers: int | None = None) -> Iterator[Executor]:
+    """The executor that `text` names, shut down at the end.
+
+    Parameters
+    ----------
+    text
+        "processes" or "threads" of this machine, or "dask://HOST:PORT", the scheduler of a Dask cluster.
+    workers
+        How many sets are measured at a time; None: as many as there are cores. A cluster knows its own number.
+
+    Raises
+    ------
+    InputError
+        If it is none of them, or the cluster does not answer.
+    """
+    if workers is not None and workers < 1:
+        raise InputError(f"{workers} workers cannot measure anything", where="--workers", todo="give 1 or more")
+    count = workers or os.cpu_count() or 1
+    if text == THREADS:
+        with ThreadPoolExecutor(count) as threads:
+            yield threads
+    elif text == PROCESSES:
+        with (
+            _one_core_each(),
+            ProcessPoolExecutor(count, multiprocessing.get_context("spawn"), initializer=_leave_interrupts) as pool,
+        ):
+            yield pool
+    elif text.startswith(DASK):
+        if workers is not None:
+            raise InputError("a cluster has workers of its own", where="--workers", todo="leave it out")
+        with _cluster(text.removeprefix(DASK)) as cluster:
+            yield cluster
+    else:
+        raise InputError(f"{text!r} is none of {PROCESSES}, {THREADS} and {DASK}HOST:PORT", where="--executor")
+
+
+@contextmanager
+def _cluster(address: str) -> Iterator[Executor]:
+    try:
+        distributed: Any = importlib.import_module("distributed")
+    except ImportError as missing:
+        raise InputError(INSTALL.removesuffix(".")) from missing
+    try:
+        client = distributed.Client(f"tcp://{address}", timeout=CONNECT_S)
+    except (OSError, ValueError, TimeoutError) as problem:
+        todo = "see that its scheduler runs and the address is right"
+        raise InputError("the cluster does not answer", where=f"{DASK}{address}", todo=todo) from problem
+    with client, client.get_executor(pure=False) as executor:
+        yield executor
+
+
+@contextmanager
+def _one_core_each() -> Iterator[None]:
+    """Processes that begin meanwhile do their linear algebra on one core each: there are others on the other cores."""
+    before = {name: os.environ.get(name) for name in _BLAS}
+    os.environ.update({name: "1" for name, value in before.items() if value is None})
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                os.environ.pop(name, None)
+
+
+def _leave_interrupts() -> None:
+    """Ctrl-C reaches all processes of a terminal; the one that waits for the others ends them."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)

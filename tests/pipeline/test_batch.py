@@ -1,0 +1,181 @@
+"""Batches of recording sets: side by side on any executor, one that fails alone, stopped at once."""
+
+import json
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from concurrent.futures import Future, ThreadPoolExecutor
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+
+from core.errors import Cancelled, InputError
+from core.pipeline import batch
+from core.pipeline.batch import STEP, STOP, run_batch
+from core.pipeline.executors import executor_of
+from tests.simulated import trisect
+
+
+def sets(folder, *names):
+    for name in names:
+        (folder / name).mkdir(parents=True)
+    return [folder / name for name in names]
+
+
+@pytest.fixture
+def quick(monkeypatch):
+    """Measuring takes no time; a set says by its name what becomes of it."""
+
+    def run(folder, out, options, progress):
+        out.mkdir(parents=True, exist_ok=True)
+        if "bad" in folder.name:
+            raise InputError("there is no rig.toml", where=folder)
+        if "broken" in folder.name:
+            raise ZeroDivisionError("nothing to divide by")
+        while "endless" in folder.name:
+            time.sleep(0.01)
+            progress("camera", 0, 1)
+        verdict = "not proven" if "doubtful" in folder.name else "conforming"
+        gauge = SimpleNamespace(thickness_mm=50.0, U_mm=0.02, verdict=verdict)
+        frames = (SimpleNamespace(used=True), SimpleNamespace(used=False))
+        return SimpleNamespace(gauge=gauge, points=1000, frames=frames)
+
+    monkeypatch.setattr(batch, "run", run)
+
+
+def test_results_come_in_the_order_of_the_sets_each_in_its_folder(quick, tmp_path):
+    told = []
+    with ThreadPoolExecutor(2) as executor:
+        results = run_batch(
+            sets(tmp_path, "b", "a", "c"), tmp_path / "out", executor, progress=lambda *what: told.append(what)
+        )
+    assert [result.folder.name for result in results] == ["b", "a", "c"]
+    assert [result.out for result in results] == [tmp_path / "out" / name for name in "bac"]
+    assert all((result.thickness_mm, result.frames_used, result.error) == (50.0, 1, "") for result in results)
+    assert told[-1] == (STEP, 3, 3)
+    assert not (tmp_path / "out" / STOP).exists()
+
+
+def test_a_set_that_fails_does_not_end_the_others(quick, tmp_path):
+    with ThreadPoolExecutor(1) as executor:
+        bad, broken, good = run_batch(sets(tmp_path, "bad", "broken", "good"), tmp_path / "out", executor)
+    assert "there is no rig.toml" in bad.error
+    assert broken.error == "an error in the program: ZeroDivisionError: nothing to divide by"
+    assert good.error == ""
+    assert good.verdict == "conforming"
+
+
+def test_whoever_measures_may_die_without_ending_the_others(quick, tmp_path):
+    class Dying(ThreadPoolExecutor):
+        def submit(self, function, folder, *rest):
+            if folder.name != "b":
+                return super().submit(function, folder, *rest)
+            future = Future()
+            future.set_exception(RuntimeError("a process was terminated abruptly"))
+            return future
+
+    with Dying(1) as executor:
+        results = run_batch(sets(tmp_path, "a", "b", "c"), tmp_path / "out", executor)
+    assert [bool(result.error) for result in results] == [False, True, False]
+    assert "terminated abruptly" in results[1].error
+
+
+def test_a_batch_that_is_cancelled_stops_what_is_under_way_and_begins_nothing_more(quick, tmp_path):
+    def cancel_soon(step, done, total, began=time.monotonic()):  # noqa: B008
+        if time.monotonic() - began > 0.3:
+            raise Cancelled
+
+    with ThreadPoolExecutor(1) as executor, pytest.raises(Cancelled):
+        run_batch(sets(tmp_path, "endless", "next"), tmp_path / "out", executor, progress=cancel_soon)
+    assert not (tmp_path / "out" / "next").exists()
+    assert not (tmp_path / "out" / STOP).exists()
+
+
+def test_two_sets_of_one_name_are_refused(quick, tmp_path):
+    same = [*sets(tmp_path / "monday", "part1"), *sets(tmp_path / "tuesday", "part1")]
+    with ThreadPoolExecutor(1) as executor, pytest.raises(InputError, match=r"same name.*rename one of them"):
+        run_batch(same, tmp_path / "out", executor)
+
+
+@pytest.mark.parametrize(
+    ("names", "code"), [(("a", "b"), 0), (("a", "doubtful"), 1), (("doubtful", "bad"), 2)], ids=["0", "1", "2"]
+)
+def test_the_command_leaves_with_the_worst_code_of_its_sets(quick, tmp_path, names, code):
+    said = trisect("batch", *sets(tmp_path, *names), "--out", tmp_path / "out", "--executor", "threads", "--json")
+    assert said.code == code
+    rows = json.loads(said.out)["sets"]
+    assert [Path(row["folder"]).name for row in rows] == list(names)
+    assert [bool(row["error"]) for row in rows] == ["bad" in name for name in names]
+
+
+def test_the_table_names_every_set_and_what_kept_one_from_being_measured(quick, tmp_path):
+    said = trisect("batch", *sets(tmp_path, "a", "bad"), "--out", tmp_path / "out", "--executor", "threads")
+    lines = said.out.splitlines()
+    assert lines[1].split()[:5] == ["a", "50.000", "mm", "0.020", "mm"]
+    assert "not measured" in lines[2]
+    assert "there is no rig.toml" in lines[3]
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (("--executor", "tractor"), "'tractor' is none of processes, threads and dask://HOST:PORT"),
+        (("--workers", "0"), "give 1 or more"),
+    ],
+)
+def test_absurd_executors_are_refused(quick, tmp_path, words, sentence):
+    said = trisect("batch", *sets(tmp_path, "a"), "--out", tmp_path / "out", *words)
+    assert said.code == 2
+    assert sentence in said.sentence
+
+
+def test_without_dask_one_sentence_says_what_to_install(quick, tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    said = trisect("batch", *sets(tmp_path, "a"), "--out", tmp_path / "out", "--executor", "dask://localhost:1")
+    assert said.code == 2
+    assert "pip install 'trisect[cluster]'" in said.sentence
+
+
+def test_processes_of_their_own_measure_the_sets(tmp_path):
+    with executor_of("processes", 1) as executor:
+        results = run_batch(sets(tmp_path, "empty", "hollow"), tmp_path / "out", executor)
+    assert all("rig.toml" in result.error for result in results)
+
+
+def test_a_dask_cluster_of_separate_processes_measures_the_sets(tmp_path):
+    distributed = pytest.importorskip("distributed", reason="pip install 'trisect[cluster]'")
+    with distributed.LocalCluster(
+        n_workers=1, threads_per_worker=1, processes=True, dashboard_address=None, local_directory=str(tmp_path)
+    ) as cluster:
+        address = cluster.scheduler_address.removeprefix("tcp://")
+        with executor_of(f"dask://{address}") as executor:
+            results = run_batch(sets(tmp_path, "empty", "hollow"), tmp_path / "out", executor)
+    assert all("rig.toml" in result.error for result in results)
+
+
+@pytest.mark.slow
+def test_processes_measure_the_same_as_one_run(simulated, measured, tmp_path):
+    copies = [Path(shutil.copytree(simulated, tmp_path / name)) for name in ("one", "two")]
+    (tmp_path / "empty").mkdir()
+    said = trisect("batch", *copies, tmp_path / "empty", "--out", tmp_path / "out", "--sigma-cut", "0.3", "--json")
+    assert said.code == 2
+    rows = json.loads(said.out)["sets"]
+    expected = json.loads((measured / "gauge.json").read_text())
+    assert [row["thickness_mm"] for row in rows] == [expected["thickness_mm"], expected["thickness_mm"], None]
+    assert (tmp_path / "out" / "two" / "report.pdf").is_file()
+
+
+@pytest.mark.slow
+def test_ctrl_c_ends_all_processes_with_its_own_code(simulated, tmp_path):
+    copies = [Path(shutil.copytree(simulated, tmp_path / f"set{n}")) for n in range(3)]
+    command = [sys.executable, "-m", "core.cli", "batch", *map(str, copies), "--out", str(tmp_path / "out")]
+    process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True, start_new_session=True)
+    while not any((tmp_path / "out").glob("set*")):
+        time.sleep(0.1)
+        assert process.poll() is None
+    process.send_signal(signal.SIGINT)
+    assert process.wait(60) == 130
+    assert "interrupted" in process.stderr.read()
