@@ -39,7 +39,7 @@ def study_values(study: Study) -> dict[str, Any]:
         case GrrStudy():
             values = {"kind": "grr", **_grr(study)}
         case AcceptanceCheck():
-            values = {"kind": "acceptance", "quantities": [_quantity(one) for one in study.quantities]}
+            values = {"kind": "acceptance", "unit": "mm", "quantities": [_quantity(one) for one in study.quantities]}
     return {**values, "verdict": study.verdict, "notes": study.notes}
 
 
