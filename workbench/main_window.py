@@ -26,7 +26,6 @@ from workbench.pages.project_doors import ProjectDoors
 from workbench.pages.step_page import StepPage
 from workbench.pages.welcome_page import WelcomePage
 from workbench.remaining import Remaining, in_words
-from workbench.step_state import step_states
 from workbench.steps import STEPS
 from workbench.tasks import Task
 from workbench.theme import icon
@@ -227,7 +226,7 @@ class MainWindow(QMainWindow):
         self.menus.refresh()
         if not self.model.is_open:
             return
-        states = step_states(self.model.project, self.model.results)
+        states = self.model.states
         self.rail.set_states({name: (str(state.state), state.sentence) for name, state in states.items()})
         last = self._current == STEPS[-1].name
         missing = self.presenters[self._current].blocker() if self._current else ""

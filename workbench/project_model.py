@@ -22,6 +22,7 @@ from core.files.project import (
     write_project,
 )
 from workbench.edits import Edit
+from workbench.step_state import StepState, step_states
 
 CALIBRATIONS = {"camera": "camera", "planes": "fan"}
 """Steps whose result is a calibration, and which of the accepted ones it is."""
@@ -48,6 +49,8 @@ class ProjectModel(QObject):
         self._file = ProjectFile(new_project(""))
         self._saved: ProjectFile | None = None
         self._told = ""
+        self._states_of: ProjectFile | None = None
+        self._states: Mapping[str, StepState] = {}
         self._accepted: dict[tuple[str, str], Done] = {}
         self.undo_stack = QUndoStack(self)
         self._autosave = QTimer(self)
@@ -69,6 +72,13 @@ class ProjectModel(QObject):
     def file(self) -> ProjectFile:
         """Project and results, as they would be saved."""
         return self._file
+
+    @property
+    def states(self) -> Mapping[str, StepState]:
+        """How far each step is, by its name; worked out once for each project, as every page asks several times."""
+        if self._states_of is not self._file:
+            self._states, self._states_of = step_states(self.project, self.results), self._file
+        return self._states
 
     @property
     def is_open(self) -> bool:

@@ -58,7 +58,8 @@ class CameraHistory(QObject):
         """Another calibration is shown."""
         if calibration is not self._shown:
             self._shown = calibration
-            self._compare()
+            if self.chosen:
+                self._compare()
 
     def restore(self) -> None:
         """Accept the chosen one again; undoable."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from PySide6.QtCore import QEvent
+from PySide6.QtCore import QEvent, QTimer
 from PySide6.QtWidgets import QTabWidget, QWidget
 
 from workbench.pages import inspect_words as words
@@ -79,8 +79,9 @@ class InspectPage(StepPage):
         self._refresh_tab()
 
     def _add_repeat(self) -> None:
+        """Add it, and go and see it: in the next round of the event loop, as the plot is drawn for the first time."""
         self.presenter.repeats.add()
-        self.tabs.setCurrentWidget(self.series)
+        QTimer.singleShot(0, self, lambda: self.tabs.setCurrentWidget(self.series))
 
     def _draw(self, face: str, kind: Any) -> None:
         if self.tabs.currentWidget() is self.series:

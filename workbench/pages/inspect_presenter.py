@@ -19,7 +19,7 @@ from workbench.pages.inspect_picks import InspectPicks
 from workbench.pages.inspect_repeats import InspectRepeats
 from workbench.pages.inspect_scan import InspectScan
 from workbench.pages.presenter import StepPresenter
-from workbench.step_state import State, step_states
+from workbench.step_state import State
 from workbench.tasks import Task, sentence
 
 if TYPE_CHECKING:
@@ -116,7 +116,7 @@ class InspectPresenter(StepPresenter):
     @property
     def scan_is_old(self) -> bool:
         """Whether the scan itself is out of date."""
-        return step_states(self.project, self.model.results)["scan"].state is State.OUTDATED
+        return self.model.states["scan"].state is State.OUTDATED
 
     @property
     def gauge(self) -> GaugeResult | None:

@@ -6,7 +6,7 @@ from PySide6.QtCore import QObject, Signal
 
 from core.files.project import Project
 from workbench.bench import Bench
-from workbench.step_state import StepState, step_states
+from workbench.step_state import StepState
 
 
 class StepPresenter(QObject):
@@ -35,7 +35,7 @@ class StepPresenter(QObject):
     @property
     def state(self) -> StepState:
         """How far this step is."""
-        return step_states(self.model.project, self.model.results)[self.step]
+        return self.model.states[self.step]
 
     def blocker(self) -> str:
         """One sentence saying what is missing before Next makes sense, or ""."""

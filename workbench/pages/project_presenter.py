@@ -9,7 +9,7 @@ from PySide6.QtCore import QCoreApplication
 
 from core.files.project import ProjectInfo
 from workbench.pages.presenter import StepPresenter
-from workbench.step_state import ORDER, State, step_states
+from workbench.step_state import ORDER, State
 
 ProgressLevel = Literal["", "good", "warn", "bad"]
 
@@ -43,7 +43,7 @@ class ProjectPresenter(StepPresenter):
             State.DONE: (self.tr("done"), "good"),
             State.OUTDATED: (self.tr("out of date"), "warn"),
         }
-        states = step_states(self.project, self.model.results)
+        states = self.model.states
         titles = self._titles()
         return [
             (titles[step], words[states[step].state][0], states[step].sentence, words[states[step].state][1])
@@ -53,7 +53,7 @@ class ProjectPresenter(StepPresenter):
 
     def next_words(self) -> str:
         """What to do next, in one sentence."""
-        states = step_states(self.project, self.model.results)
+        states = self.model.states
         for step in ORDER:
             if states[step].state is not State.DONE:
                 return self.tr("Next: {0}. {1}").format(self._titles()[step], states[step].sentence)

@@ -13,7 +13,7 @@ from core.report.section_names import SECTIONS
 from workbench import jobs
 from workbench.bench import Bench
 from workbench.pages.presenter import StepPresenter
-from workbench.step_state import State, step_states
+from workbench.step_state import State
 from workbench.tasks import Task, sentence
 
 PAGE_WIDTH_PX = 1400
@@ -99,7 +99,7 @@ class ReportPresenter(StepPresenter):
 
     def warning(self) -> str:
         """What is out of date in the results the report prints, or ""."""
-        states = step_states(self.project, self.model.results)
+        states = self.model.states
         titles = {"scan": self.tr("Scan"), "inspect": self.tr("Inspect")}
         for step, title in titles.items():
             if states[step].state is State.OUTDATED:

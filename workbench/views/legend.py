@@ -3,62 +3,79 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
-from PySide6.QtCore import QRectF, Qt, Signal
-from PySide6.QtGui import QColor, QLinearGradient, QPainter, QPen, QPixmap
-from PySide6.QtWidgets import QFrame, QGridLayout, QLabel, QMenu, QWidget
+from PySide6.QtCore import QRectF, QSize, Qt, Signal
+from PySide6.QtGui import QColor, QLinearGradient, QPainter, QPaintEvent, QPen, QPixmap
+from PySide6.QtWidgets import QMenu, QWidget
 
 from workbench.views.colours import ColourLike, KeySign, sigma_table, to_colour, to_rgba
 from workbench.views.layer_stack import LayerStack
 from workbench.views.symbols import symbol_pixmap
 
+Rgba = tuple[int, int, int, int]
 
-class Legend(QFrame):
-    """A key of symbols and colours over a corner of the picture; the mouse goes through it."""
+GROUND, TEXT = QColor(12, 16, 20, 175), QColor("#F4F6F8")
+KEY_WIDTH, KEY_HEIGHT = 18, 14
+MARGIN, GAP, ROUND = 8, 6, 4
+
+
+class Legend(QWidget):
+    """A key of symbols and colours over a corner of the picture; the mouse goes through it.
+
+    Painted, not laid out from labels: it changes with almost every frame of a scan.
+    """
 
     def __init__(self, parent: QWidget) -> None:
         super().__init__(parent)
         self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
-        self.setStyleSheet(
-            "Legend { background: rgba(12, 16, 20, 175); border-radius: 4px; } QLabel { color: #F4F6F8; }"
-        )
-        self._grid = QGridLayout(self)
-        self._grid.setContentsMargins(8, 5, 10, 5)
-        self._grid.setHorizontalSpacing(6)
-        self._grid.setVerticalSpacing(1)
-        self._entries: list[tuple[str, KeySign, tuple[int, int, int, int]]] = []
+        self._entries: list[tuple[str, KeySign, Rgba]] = []
         self.hide()
 
     def set_entries(self, entries: Sequence[tuple[str, KeySign, ColourLike]]) -> None:
-        """Title, sign and colour of each; nothing is rebuilt when nothing has changed."""
+        """Title, sign and colour of each; nothing is done when nothing has changed."""
         wanted = [(title, sign, to_rgba(colour)) for title, sign, colour in entries]
-        if wanted == self._entries:
-            return
-        self._entries = wanted
-        while (item := self._grid.takeAt(0)) is not None:
-            if (widget := item.widget()) is not None:
-                widget.hide()
-                widget.deleteLater()
-        for row, (title, sign, rgba) in enumerate(wanted):
-            key = QLabel()
-            key.setPixmap(key_pixmap(sign, rgba, self.devicePixelRatioF()))
-            for column, label in enumerate((key, QLabel(title))):
-                self._grid.addWidget(label, row, column)
-                label.show()  # else it has no size before the next round of events
-        self._grid.activate()
-        self.adjustSize()
+        if wanted != self._entries:
+            self._entries = wanted
+            self.setAccessibleDescription(", ".join(self.titles))
+            self.resize(self.sizeHint())
+            self.update()
 
     @property
     def titles(self) -> list[str]:
         """What it lists."""
         return [title for title, _, _ in self._entries]
 
+    def sizeHint(self) -> QSize:
+        words = self.fontMetrics()
+        widest = max((words.horizontalAdvance(title) for title in self.titles), default=0)
+        return QSize(2 * MARGIN + KEY_WIDTH + GAP + widest, 2 * GAP + self._row * len(self._entries))
 
-def key_pixmap(sign: KeySign, colour: ColourLike, ratio: float) -> QPixmap:
+    def paintEvent(self, event: QPaintEvent) -> None:
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter.setPen(Qt.PenStyle.NoPen)
+        painter.setBrush(GROUND)
+        painter.drawRoundedRect(self.rect(), ROUND, ROUND)
+        painter.setPen(TEXT)
+        row, ratio = self._row, self.devicePixelRatioF()
+        for place, (title, sign, rgba) in enumerate(self._entries):
+            top = GAP + place * row
+            painter.drawPixmap(MARGIN, top + (row - KEY_HEIGHT) // 2, key_pixmap(sign, rgba, ratio))
+            left = MARGIN + KEY_WIDTH + GAP
+            painter.drawText(left, top, self.width() - left, row, Qt.AlignmentFlag.AlignVCenter, title)
+        painter.end()
+
+    @property
+    def _row(self) -> int:
+        return max(self.fontMetrics().height(), KEY_HEIGHT) + 1
+
+
+@lru_cache(maxsize=256)
+def key_pixmap(sign: KeySign, rgba: Rgba, ratio: float) -> QPixmap:
     """A sign for a legend."""
-    rgba = to_rgba(colour)
-    pixmap = QPixmap(round(18 * ratio), round(14 * ratio))
+    pixmap = QPixmap(round(KEY_WIDTH * ratio), round(KEY_HEIGHT * ratio))
     pixmap.setDevicePixelRatio(ratio)
     pixmap.fill(Qt.GlobalColor.transparent)
     painter = QPainter(pixmap)

@@ -37,9 +37,9 @@ class RunChart(Plot):
 
     def __init__(self, parent: QWidget | None = None) -> None:
         self._runs: _Runs | None = None
-        self._drawn_width = 0.0
+        self._words_shown: list[tuple[pg.TextItem, float]] = []
         super().__init__(parent, least_height=180)
-        self._box.sigResized.connect(self._fit_words)
+        self._box.sigResized.connect(self._place_words)
 
     def set_runs(
         self,
@@ -84,23 +84,29 @@ class RunChart(Plot):
         reach += [y for y, *_ in lines]
         low, high = min(reach), max(reach)
         margin = 0.12 * (high - low) or 0.01
-        self._drawn_width = self._box.width()
-        end = (count + 0.6) * (1 + _WORDS / max(self._drawn_width - _WORDS, _WORDS))
-        self._box.setRange(xRange=(0.4, end), yRange=(low - margin, high + margin), padding=0)
+        self._words_shown = []
+        self._box.setRange(yRange=(low - margin, high + margin), padding=0)
         for y, text, colour, style in lines:
             self._item.addItem(pg.InfiniteLine(y, angle=0, pen=self._pen(colour, 1.2, style)))
             below = text == self.tr("lower limit") or (runs.mean == y and y < (runs.nominal or y))
             below = below or (runs.nominal == y and y <= (runs.mean or -np.inf))
             words = self._words(f"{text} {written(y, (high - low) / 200)} {runs.unit}", colour, (1, 0 if below else 1))
-            words.setPos(end, y)
+            self._words_shown.append((words, y))
             self._item.addItem(words, ignoreBounds=True)
+        self._place_words()
         bars = pg.ErrorBarItem(x=at, y=runs.values, height=2 * runs.U, beam=0.18, pen=self._pen(s.accent, 1.3))
         self._item.addItem(bars)
         self._item.addItem(pg.ScatterPlotItem(at, runs.values, size=8, pen=None, brush=s.accent))
 
-    def _fit_words(self) -> None:
-        if abs(self._box.width() - self._drawn_width) > 4:
-            self._redraw()
+    def _place_words(self) -> None:
+        """Leave room for what the lines mean at the right, whatever the width."""
+        if self._runs is None:
+            return
+        width = self._box.width()
+        end = (len(self._runs.values) + 0.6) * (1 + _WORDS / max(width - _WORDS, _WORDS))
+        self._box.setXRange(0.4, end, padding=0)
+        for words, y in self._words_shown:
+            words.setPos(end, y)
 
     def _reference_lines(self, runs: _Runs) -> list[tuple[float, str, str, Qt.PenStyle]]:
         s = shades()

@@ -12,6 +12,7 @@ import numpy as np
 import vtkmodules.vtkInteractionWidgets
 import vtkmodules.vtkViewsContext2D  # noqa: F401  both: or pyvista imports them in the GUI thread, which takes 100 ms
 from numpy.typing import NDArray
+from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QWidget
 from pyvistaqt import QtInteractor
 
@@ -21,6 +22,8 @@ from workbench.views.scene_view_contents import Scene
 from workbench.views.scene_view_messages import route_messages
 from workbench.views.scene_view_pieces import Key
 from workbench.views.scene_view_stage import Stage, read_pixels
+
+COLOUR_BUFFER = 0x4000  # GL_COLOR_BUFFER_BIT
 
 
 class _Interactor(QtInteractor):
@@ -32,21 +35,37 @@ class _Interactor(QtInteractor):
         self.setAccessibleName(self.tr("3D view"))
         self.iren.interactor.EnableRenderOff()
         self.started = False
+        self.ground: Rgb = (0, 0, 0)
         self.before_paint: Callable[[], None] | None = None
         self._drawn_size = self.size()
 
     def initializeGL(self) -> None:
-        """Set up, and render once: VTK must own a picture before the first one is shown."""
+        """Set up; what is drawn for the first time is drawn in later rounds of the event loop, as it takes its time."""
         super().initializeGL()  # type: ignore[no-untyped-call]
-        self._RenderWindow.Render()
-        self.started = True
+        QTimer.singleShot(0, self, self._own_a_picture)
 
     def paintGL(self) -> None:
         """Show the last picture; a new size needs a new one first."""
+        if not self.started and self._gl is not None:
+            self._gl.glClearColor(*(shade / 255 for shade in self.ground), 1.0)
+            self._gl.glClear(COLOUR_BUFFER)
+            return
         if self.before_paint is not None and self._drawn_size != self.size():
             self._drawn_size = self.size()
             self.before_paint()
         super().paintGL()  # type: ignore[no-untyped-call]
+
+    def _own_a_picture(self) -> None:
+        """Render once: VTK must own a picture before the first one is shown."""
+        if self.before_paint is None:
+            return  # it is being taken away
+        self._RenderWindow.Render()
+        self.started = True
+        QTimer.singleShot(0, self, self._begin)
+
+    def _begin(self) -> None:
+        if self.before_paint is not None:
+            self.before_paint()
 
 
 class EmbeddedSurface:
@@ -81,6 +100,7 @@ class EmbeddedSurface:
         return bool(self._interactor.started)
 
     def set_look(self, background: Rgb, point_size: float) -> None:
+        self._interactor.ground = background
         self._stage.set_background(background)
         self._stage.point_size = point_size
 

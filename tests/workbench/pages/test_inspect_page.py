@@ -367,7 +367,8 @@ def test_drawing_from_the_repeats_goes_to_the_picture(shown, qtbot):
 
 def test_a_repeat_is_added_shown_and_refused_twice(shown, qtbot):
     press(qtbot, shown.card.buttons["repeat"])
-    assert shown.tabs.currentWidget() is shown.series and shown.tabs.tabText(2) == "Repeats (1)"
+    qtbot.waitUntil(lambda: shown.tabs.currentWidget() is shown.series)
+    assert shown.tabs.tabText(2) == "Repeats (1)"
     table = shown.series.table.table
     assert [table.item(0, column).text() for column in range(4)] == ["scan-1", "50.012", "± 0.024", "cal-1"]
     assert shown.series.rows.text_of("Mean") == "50.0120 mm"
