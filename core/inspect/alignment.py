@@ -25,12 +25,15 @@ from core.model import Pose
 from core.model.arrays import Array
 from core.progress import Progress, silent
 
-TURNS = 24
+TURNS = 12
 """Starts about the upward direction."""
-TRIED, REFINED = 250, 4000
+TRIED, REFINED = 150, 2000
 """Points of each start, and of the final fit."""
-ROUGH_ROUNDS, ROUNDS = 12, 60
+ROUGH_ROUNDS, ROUNDS = 8, 40
 TUKEY = 4.685
+FIRST_CUT, NARROWER = 0.04, 0.75
+"""Points off by more than this share of the part's size have no weight at first, and ever closer ones then: small sides
+that alone fix a direction must not lose theirs before they have moved the part."""
 NEAR_SHARE = 0.7
 """A start is judged by this share of its points that lie nearest."""
 HELD = 0.02
@@ -110,8 +113,9 @@ def best_fit(points: Array, up: Array, nominal: Triangles, progress: Progress = 
         pose, _ = _fitted(few, start, around, ROUGH_ROUNDS)
         tried.append((_left(few, pose, around), pose))
     best = sorted(tried, key=lambda one: one[0])[:3]
-    fits = [_fitted(sample, pose, around, ROUNDS) for _, pose in best]
-    pose, left = min(fits, key=lambda one: _left(sample, one[0], around))
+    fits = [_fitted(sample, pose, around, ROUNDS)[0] for _, pose in best]
+    nearest = min(fits, key=lambda one: _left(sample, one, around))
+    pose, left = _fitted(sample, nearest, around, ROUNDS, exact=True)
     progress("alignment", len(starts), len(starts))
     if left > HELD * nominal.size_mm:
         raise InputError(
@@ -143,17 +147,21 @@ def _starts(points: Array, up: Array, nominal: Triangles) -> list[Pose]:
     return starts
 
 
-def _fitted(points: Array, pose: Pose, around: Surroundings, rounds: int) -> tuple[Pose, float]:
-    """Iterated closest places: the pose into nominal coordinates, and the robust scale of the distances left."""
-    scale = np.inf
-    for _ in range(rounds):
+def _fitted(points: Array, pose: Pose, around: Surroundings, rounds: int, *, exact: bool = False) -> tuple[Pose, float]:
+    """Iterated closest places: the pose into nominal coordinates, and the median of the distances left.
+
+    `exact` is for a pose that is good already: nearest places without compromise, and no wide cut at first.
+    """
+    scale, widest = np.inf, 0.0 if exact else FIRST_CUT * around.size_mm
+    for round_ in range(rounds):
         moved = pose.apply(points)
-        near = around.nearest(moved)
+        near = around.nearest(moved, exact_within=0.0 if exact else -np.inf)
         scale = max(1.4826 * float(np.median(np.abs(near.distance))), 1e-6)
         away = moved - near.foot
         length = np.linalg.norm(away, axis=1)
         direction = np.where(length[:, None] > 1e-6, away / np.maximum(length, 1e-6)[:, None], near.normal)
-        weight = np.clip(1 - (length / (TUKEY * scale)) ** 2, 0, None) ** 2
+        cut = max(TUKEY * scale, widest * NARROWER**round_)
+        weight = np.clip(1 - (length / cut) ** 2, 0, None) ** 2
         middle = moved.mean(axis=0)
         design = np.hstack([direction, np.cross(moved - middle, direction)])
         scaled = design * weight[:, None]
@@ -161,12 +169,13 @@ def _fitted(points: Array, pose: Pose, around: Surroundings, rounds: int) -> tup
         step = -np.linalg.solve(damped, scaled.T @ length)
         turn = Rotation.from_rotvec(step[3:]).as_matrix()
         pose = Pose(turn, middle + step[:3] - turn @ middle) @ pose
-        if np.abs(step[:3]).max() < 1e-6 and np.abs(step[3:]).max() < 1e-8:
+        settled = np.abs(step[:3]).max() < 1e-5 and np.abs(step[3:]).max() < 1e-7
+        if settled and cut <= TUKEY * scale:
             break
     return pose, scale / 1.4826
 
 
 def _left(points: Array, pose: Pose, around: Surroundings) -> float:
     """Mean distance in mm of the points that lie nearest."""
-    away = np.sort(np.abs(around.nearest(pose.apply(points)).distance))
+    away = np.sort(np.abs(around.nearest(pose.apply(points), exact_within=-np.inf).distance))
     return float(away[: max(1, int(NEAR_SHARE * len(away)))].mean())

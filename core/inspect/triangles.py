@@ -56,14 +56,17 @@ class Surroundings:
     def __init__(self, surface: Triangles) -> None:
         pieces, self._of = _cut(surface.corners)
         self._surface, self._normals = surface, surface.normals
+        self.size_mm = surface.size_mm
         centres = pieces.mean(axis=1)
         self._reach = float(np.linalg.norm(pieces - centres[:, None], axis=2).max())
         self._tree = cKDTree(centres)
 
-    def nearest(self, points: Array) -> Nearest:
-        """The nearest place of the surface to each point (N, 3); exact.
+    def nearest(self, points: Array, exact_within: float = np.inf) -> Nearest:
+        """The nearest place of the surface to each point (N, 3); exact for those no farther than `exact_within` mm.
 
-        A piece whose middle is farther than the best distance found plus the pieces' reach cannot be nearer.
+        A piece whose middle is farther than the best distance found plus the pieces' reach cannot be nearer. Beyond
+        `exact_within` (−inf: at all) it is the nearest place of pieces nearest by their middles, at most their reach
+        too far: far from a surface very many pieces are nearly as near.
         """
         foot, which = np.zeros_like(points), np.zeros(len(points), dtype=np.int64)
         left, count = np.arange(len(points)), min(CANDIDATES, self._tree.n)
@@ -76,7 +79,8 @@ class Surroundings:
             best = np.argmin(away, axis=1)
             rows = np.arange(len(left))
             foot[left], which[left] = feet[rows, best], triangles[rows, best]
-            unsure = (far[:, -1] < away[rows, best] + self._reach) & (count < self._tree.n)
+            unsure = far[:, -1] < away[rows, best] + self._reach
+            unsure &= (away[rows, best] <= exact_within + self._reach) & (count < self._tree.n)
             left, count = left[unsure], min(4 * count, self._tree.n)
         return self._signed(points, foot, which)
 
@@ -92,7 +96,7 @@ def _cut(corners: Array) -> tuple[Array, NDArray[np.int64]]:
     """The triangles cut at the middle of their longest edge until none is much larger than the others allow."""
     of = np.arange(len(corners))
     area = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
-    longest = max(2.0 * np.sqrt(float(area.sum()) / max(5_000, 2 * len(corners))), 1e-6)
+    longest = max(2.0 * np.sqrt(float(area.sum()) / max(20_000, 2 * len(corners))), 1e-6)
     while True:
         edges = np.linalg.norm(corners - np.roll(corners, -1, axis=1), axis=2)  # edge i: corner i to i + 1
         long = edges.max(axis=1) > longest

@@ -42,7 +42,7 @@ def measure_deviation(spec: FeatureSpec, scene: Scene) -> FeatureResult:
     step = max(1, len(indices) // MOST_POINTS)
     used = indices[::step]
     cloud = scene.cloud.select(used)
-    near = around.nearest(pose.inverse().apply(cloud.points))
+    near = around.nearest(pose.inverse().apply(cloud.points), asked.reach_mm)
     kept = _facing(cloud.normals, near, pose) & (np.abs(near.distance) <= asked.reach_mm)
     if kept.sum() < 12:
         raise InputError(
@@ -146,7 +146,7 @@ def _map(
         sigma = cloud.sigma * _slant(cloud.points, normals)
         return DeviationMap(cloud.points, used, False, deviation, sigma, asked.tolerance_mm, pose)
     mesh = scene.mesh
-    near = around.nearest(pose.inverse().apply(mesh.vertices))
+    near = around.nearest(pose.inverse().apply(mesh.vertices), asked.reach_mm)
     kept = np.flatnonzero(_facing(mesh.normals, near, pose) & (np.abs(near.distance) <= asked.reach_mm) & mesh.measured)
     normals = near.normal[kept] @ pose.rotation.T
     sigma = mesh.sigma[kept] * _slant(mesh.vertices[kept], normals)

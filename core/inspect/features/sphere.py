@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from core.errors import InputError
 from core.inspect.elements import Element
 from core.inspect.features.measured import FeatureResult, Scene
 from core.inspect.features.regions import points_in
 from core.inspect.inspection_plan import Auto, FeatureSpec, PointsOf
 from core.inspect.sphere import find_sphere, through
-from core.inspect.surface_fit import fit_surface
+from core.inspect.surface_fit import FEWEST, fit_surface
 
 
 def measure_sphere(spec: FeatureSpec, scene: Scene) -> FeatureResult:
@@ -20,6 +21,8 @@ def measure_sphere(spec: FeatureSpec, scene: Scene) -> FeatureResult:
     if not isinstance(region, PointsOf):
         part = cloud.select(indices)
         indices = indices[find_sphere(part, on_table=isinstance(region, Auto), progress=scene.progress)]
+    if len(indices) < FEWEST:
+        raise InputError(f"{len(indices)} points are too few for a sphere", todo="draw a larger region on it")
     start = through(cloud.points[indices])
     filters = spec.filters
     fit = fit_surface(cloud, np.sort(indices), start, scene.errors, tukey=filters.outliers, cell_mm=filters.cell_mm)

@@ -1,0 +1,97 @@
+"""The nearest place on a nominal surface, laying it on a scan, and what the comparison says."""
+
+import numpy as np
+import pytest
+import trimesh
+from scipy.spatial.transform import Rotation
+
+from core.errors import InputError
+from core.inspect.alignment import best_fit
+from core.inspect.deviation_map import classes_of, mark
+from core.inspect.evaluate import evaluate
+from core.inspect.inspection_plan import Deviation, FeatureSpec, InspectionPlan
+from core.inspect.triangles import Surroundings, Triangles
+from core.simulate.objects import step_block
+from tests.inspect.shape_scan import BALL, BALL_RADIUS, ShapeScan
+
+STEPS = Triangles(step_block((12.0, 20.0, 31.0), (60.0, 35.0)).triangles)
+
+
+def test_the_nearest_place_is_that_of_all_triangles():
+    rng = np.random.default_rng(0)
+    corners = rng.uniform(-10, 10, (60, 1, 3)) + rng.normal(0, [8.0, 1.0, 0.1], (60, 3, 3))  # long and thin ones too
+    points = rng.uniform(-15, 15, (300, 3))
+    found = Surroundings(Triangles(corners)).nearest(points)
+    samples = rng.dirichlet([0.4, 0.4, 0.4], 1500)
+    dense = np.einsum("sk,tkc->tsc", samples, corners).reshape(-1, 3)
+    brute = np.min(np.linalg.norm(points[:, None] - dense[None, ::7], axis=2), axis=1)
+    away = np.abs(found.distance)
+    assert np.all(away <= brute + 1e-9)
+    assert np.mean(brute - away) < 0.5
+    assert np.linalg.norm(points - found.foot, axis=1) == pytest.approx(away)
+
+
+def test_inside_is_negative_and_outside_positive():
+    near = Surroundings(STEPS).nearest(np.array([[-20.0, 0.0, 13.0], [-20.0, 0.0, 11.5], [0.0, 0.0, 22.0]]))
+    assert near.distance == pytest.approx([1.0, -0.5, 2.0])
+
+
+def seen_from_above(rng, count=4000):
+    """Points on the sides of the stepped block that look upwards, to +x or to +y, with noise."""
+    normals = STEPS.normals
+    seen = normals @ np.array([0.4, 0.3, 1.0]) > 0.1
+    corners = STEPS.corners[seen]
+    area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    which = rng.choice(len(corners), count, p=area / area.sum())
+    points = np.einsum("nk,nkc->nc", rng.dirichlet([1, 1, 1], count), corners[which])
+    return points + rng.normal(0, 0.02, count)[:, None] * normals[seen][which]
+
+
+@pytest.mark.parametrize("turn", [0.3, 2.1, -1.7])
+def test_a_part_is_found_however_it_lies(turn):
+    rng = np.random.default_rng(1)
+    lie = Rotation.from_rotvec([0.0, 0.0, turn]) * Rotation.from_rotvec([0.15, -0.1, 0.0])
+    rotation, shift = Rotation.from_euler("x", np.pi).as_matrix() @ lie.as_matrix(), np.array([10.0, -20.0, 540.0])
+    points = seen_from_above(rng) @ rotation.T + shift
+    points[:200] += rng.uniform(-8, 8, (200, 3))
+    aligned = best_fit(points, np.array([0.0, 0.0, -1.0]), STEPS)
+    pose = aligned.pose_camera_nominal
+    corners = STEPS.corners.reshape(-1, 3)
+    assert np.abs(pose.apply(corners) - (corners @ rotation.T + shift)).max() < 0.03
+
+
+def test_another_part_is_refused():
+    points = np.random.default_rng(2).uniform(-30, 30, (2000, 3)) + [0, 0, 500]
+    with pytest.raises(InputError, match="cannot be laid"):
+        best_fit(points, np.array([0.0, 0.0, -1.0]), STEPS)
+
+
+def test_classes_are_told_apart_by_marks():
+    assert [mark(one) for one in (-4, -2, 0, 1, 3, 4)] == ["−!", "−−", "", "+", "+++", "+!"]
+    assert classes_of(np.array([-0.3, 0.1, 0.0251, -0.09]), 0.1).tolist() == [-4, 3, 1, -3]
+
+
+def test_a_ball_too_large_by_a_twentieth_shows_it_with_an_honest_uncertainty():
+    scan = ShapeScan()
+    mesh = trimesh.creation.icosphere(subdivisions=5, radius=BALL_RADIUS - 0.05)
+    nominal = Triangles(np.asarray(mesh.triangles) + BALL)
+    spec = FeatureSpec("ball", "deviation", deviation=Deviation("ball.stl", "as measured", 0.1, 1.0))
+    plan, relative = InspectionPlan((spec,)), []
+    for seed in range(8):
+        cloud = scan.measure(np.random.default_rng(seed))
+        inspection = evaluate(plan, cloud, errors=scan.errors, nominals={"ball.stl": nominal})
+        profile, mean = inspection.characteristics
+        relative.append((mean.value - 0.05) / mean.u)
+        deviations = inspection.results[0].deviations
+        assert scan.on[deviations.vertices].mean() < 0.02  # all but the ball's foot is out of reach
+        assert profile.value > 0.1
+        edges, counts = deviations.histogram()
+        assert counts.sum() == len(deviations.deviation)
+        assert edges[np.argmax(counts)] == pytest.approx(0.05, abs=0.03)
+    assert 0.4 < np.sqrt(np.mean(np.square(relative))) < 1.6
+
+
+def test_without_its_file_a_deviation_is_a_problem():
+    spec = FeatureSpec("ball", "deviation", deviation=Deviation("ball.stl"))
+    inspection = evaluate(InspectionPlan((spec,)), ShapeScan().measure(np.random.default_rng(0)))
+    assert "nominal surface was not read" in inspection.problems[0]
