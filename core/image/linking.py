@@ -14,11 +14,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from core.image.filling import filled
 from core.image.ridge import kernel_radius, kernel_table, ridge_at, ridge_response
 from core.image.seeds import Picture, seeds
 from core.model.arrays import Array
@@ -26,7 +28,8 @@ from core.model.arrays import Array
 SATURATED, IGNORED, VISITED = 1, 2, 4
 """Bits of the picture's state map."""
 
-_MARK_EVERY = 3  # points: discs much larger than that leave no gap between them
+_MARK_EVERY = 2  # points: discs much larger than that leave no gap between them
+_WIDE_FILTER_PX = 2.4  # every second point tells all, then: the filter has averaged over 2√π·g px
 _LARGEST_TURN = math.cos(math.radians(30))  # from one point to the next
 
 
@@ -56,16 +59,19 @@ def link(
     if min(picture.shape) <= 2 * radius + 3:
         return []
     unit = ridge_response(1.0, stripe_px, filter_px)
+    stride = 2.0 if filter_px > _WIDE_FILTER_PX else 1.0
+    flat: Any = np.ascontiguousarray(picture).reshape(-1)  # float32 or int16
     points, ends = _trace_all(
-        np.ascontiguousarray(picture).reshape(-1),
+        flat,
         state,
         seeds(picture, stripe_px, filter_px, limits.high, limits.noise_grey),
         kernel_table(filter_px),
-        (filter_px, unit * limits.high, unit * limits.low, limits.hold_px, limits.saturated_hold_px),
+        (filter_px, unit * limits.high, unit * limits.low, limits.hold_px, limits.saturated_hold_px, stride),
         radius,
         math.ceil(2 * stripe_px + 1),
     )
-    return np.split(points, ends[:-1]) if len(ends) else []
+    runs = np.split(points, ends[:-1]) if len(ends) else []
+    return [filled(run) for run in runs] if stride > 1 else runs
 
 
 @njit(cache=True, nogil=True, fastmath=True)
@@ -74,13 +80,13 @@ def _trace_all(
     state: NDArray[np.uint8],
     starts: Array,
     kernels: NDArray[np.float32],
-    limits: tuple[float, float, float, float, float],
+    limits: tuple[float, float, float, float, float, float],
     radius: int,
     reach: int,
 ) -> tuple[Array, NDArray[np.int64]]:
     """Trace both ways from every seed that no run has passed yet; all points and where each run ends."""
     height, width = state.shape
-    high = limits[1]
+    high, stride = limits[1], limits[5]
     ahead = np.empty((4 * (height + width), 5))
     points = np.empty((4096, 5))
     ends = np.empty(64, dtype=np.int64)
@@ -121,7 +127,7 @@ def _trace_all(
             needed += 1
         points[count + needed] = np.array([u, v, nu, nv, response])
         needed += 1
-        closed = backwards > 20 and math.hypot(points[count, 0] - u, points[count, 1] - v) < 1.5
+        closed = backwards > 20 and math.hypot(points[count, 0] - u, points[count, 1] - v) < 1.5 * stride
         if not closed:
             forwards = _follow(picture, state, (u, v, nu, nv), limits, radius, kernels, ahead)
             for i in range(forwards):
@@ -149,20 +155,20 @@ def _follow(
     picture: Picture,
     state: NDArray[np.uint8],
     start: tuple[float, float, float, float],
-    limits: tuple[float, float, float, float, float],
+    limits: tuple[float, float, float, float, float, float],
     radius: int,
     kernels: NDArray[np.float32],
     out: Array,
 ) -> int:
     """Points ahead of `start` (u, v, n_u, n_v) along its tangent, written to `out`; their number."""
     height, width = state.shape
-    filter_px, _, low, hold, saturated_hold = limits
+    filter_px, _, low, hold, saturated_hold, stride = limits
     u, v = start[0], start[1]
     tu, tv = -start[3], start[2]
-    count, missed, blind = 0, 0, 0
+    count, missed, blind = 0, 0.0, 0.0  # the last two in px
     while count < len(out):
-        u += tu
-        v += tv
+        u += stride * tu
+        v += stride * tv
         if not _inside(u, v, width, height, radius):
             break
         here = state[int(v + 0.5), int(u + 0.5)]
@@ -187,23 +193,24 @@ def _follow(
             row = out[count]
             row[0], row[1], row[2], row[3], row[4] = u, v, nu, nv, -across
             count += 1
-            missed, blind = 0, 0
-            if count > 20 and math.hypot(u - start[0], v - start[1]) < 1.0:
+            missed, blind = 0.0, 0.0
+            if count > 20 and math.hypot(u - start[0], v - start[1]) < stride:
                 break  # a closed curve
             continue
         if missed + blind == 0 and count > 2:
             # a chord is steadier than the last tangent; close to a saturated patch the line itself is bent
-            bent = int(2.5 * filter_px) if here & SATURATED else 0
+            bent = int(2.5 * filter_px / stride) if here & SATURATED else 0
             last = max(count - 1 - bent, 1)
-            first = max(last - int((4 if bent else 2) * filter_px) - 1, 0)
+            first = max(last - int((4 if bent else 2) * filter_px / stride) - 1, 0)
             tu, tv = out[last, 0] - out[first, 0], out[last, 1] - out[first, 1]
             length = math.hypot(tu, tv)
             tu, tv = tu / length, tv / length
-            u, v = out[last, 0] + (count - last) * tu, out[last, 1] + (count - last) * tv
+            ahead = (count - last) * stride
+            u, v = out[last, 0] + ahead * tu, out[last, 1] + ahead * tv
         if here & SATURATED:
-            blind += 1
+            blind += stride
         else:
-            missed += 1
+            missed += stride
         if missed > hold or blind > saturated_hold:
             break
     return count

@@ -13,6 +13,7 @@ from core.image.noise import NoiseModel
 from core.image.pieces import arc_length, correlation_length
 from core.image.precision import FLOOR_PX, noise_sigma
 from core.image.profile import Profiles, Sections, smooth_sections
+from core.image.seeds import Picture
 from core.image.speckle import Speckle, measure_speckle
 from core.image.stripe import StripeSettings
 from core.model.arrays import Array
@@ -45,7 +46,7 @@ class Piece:
 
 
 def place(
-    picture: NDArray[np.float32],
+    picture: Picture,
     state: NDArray[np.uint8],
     pieces: list[Piece],
     clear: list[NDArray[np.bool_]],
@@ -74,7 +75,7 @@ def place(
 
 
 def _speckle(
-    picture: NDArray[np.float32],
+    picture: Picture,
     state: NDArray[np.uint8],
     curves: list[Array],
     sections: list[Sections],

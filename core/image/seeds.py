@@ -51,9 +51,15 @@ def sparse_crests(picture: Picture, stripe_px: float, filter_px: float, threshol
     every = max(box, int(_EVERY * filter_px))
     step = max(1, round(_STEP * stripe_px))
     limit = np.float32(2 * box * threshold)
-    upright = _on_rows(picture, every, box, apart, limit)
-    flat = _on_columns(picture, every, box, step, math.ceil(apart / step), limit)
-    return np.concatenate([upright, flat])
+    upright = _maxima(_crest_of_rows(picture, every, box, apart), limit)
+    flat = _maxima(_crest_of_columns(picture, every, box, step, math.ceil(apart / step)), limit)
+    middle = 0.5 * (box - 1)
+    return np.concatenate(
+        [
+            np.column_stack([upright[:, 1] + middle, upright[:, 0] * every, upright[:, 2]]),
+            np.column_stack([flat[:, 0] * every + middle, flat[:, 1] * step, flat[:, 2]]),
+        ]
+    )
 
 
 def coarse_crests(picture: Picture, block: int, threshold: float) -> Array:
@@ -67,42 +73,28 @@ def coarse_crests(picture: Picture, block: int, threshold: float) -> Array:
 
 
 @njit(cache=True, nogil=True, fastmath=True)
-def _on_rows(picture: Picture, every: int, box: int, apart: int, limit: np.float32) -> Array:
-    """Crests along every `every`-th row of means over `box` px, less those `apart` px to either side."""
+def _crest_of_rows(picture: Picture, every: int, box: int, apart: int) -> NDArray[np.float32]:
+    """Sums over `box` px of every `every`-th row, twice, less those `apart` px to either side; (R, W)."""
     height, width = picture.shape
-    count, last = 0, width - box + 1 - apart
-    found = np.empty((1024, 3))
-    sums, crest = np.empty(width, np.float32), np.zeros(width + _SEGMENT, np.float32)
-    inner = max(0, last - apart)
+    inner = max(0, width - box + 1 - 2 * apart)
+    sums, crest = np.empty(width, np.float32), np.zeros(((height - 1) // every + 1, width), np.float32)
     left, middle, right = sums[:inner], sums[apart : apart + inner], sums[2 * apart : 2 * apart + inner]
-    of_inner = crest[apart : apart + inner]
-    for row in range(every // 2, height, every):
+    for j in range(len(crest)):
+        line, out = picture[j * every], crest[j, apart : apart + inner]
         for i in range(width):
-            sums[i] = picture[row, i]
+            sums[i] = line[i]
         for k in range(1, box):
-            shifted = picture[row, k:]
+            shifted = line[k:]
             for i in range(width - k):
                 sums[i] += np.float32(shifted[i])
         for i in range(inner):
-            of_inner[i] = 2 * middle[i] - left[i] - right[i]
-        for start in range(apart, last, _SEGMENT):
-            highest = np.float32(0)
-            for value in crest[start : start + _SEGMENT]:
-                highest = max(highest, value)
-            if highest <= limit:
-                continue
-            for i in range(start, min(start + _SEGMENT, last)):
-                if crest[i] > limit and crest[i] >= crest[i - 1] and crest[i] > crest[i + 1]:
-                    if count == len(found):
-                        found = np.concatenate((found, np.empty_like(found)))
-                    found[count, 0], found[count, 1], found[count, 2] = i + 0.5 * (box - 1), row, crest[i]
-                    count += 1
-    return found[:count]
+            out[i] = 2 * middle[i] - left[i] - right[i]
+    return crest
 
 
 @njit(cache=True, nogil=True, fastmath=True)
-def _on_columns(picture: Picture, every: int, box: int, step: int, apart: int, limit: np.float32) -> Array:
-    """Crests down every `every`-th column, `box` px wide, read every `step` px, less those `apart` steps away."""
+def _crest_of_columns(picture: Picture, every: int, box: int, step: int, apart: int) -> NDArray[np.float32]:
+    """The same of every `every`-th column, `box` px wide, read every `step` px; `apart` counts such steps. (C, J)."""
     height, width = picture.shape
     rows, columns = (height - 1) // step + 1, max(0, (width - box) // every)
     sums, crest = np.zeros((rows, columns), np.float32), np.zeros((rows, columns), np.float32)
@@ -116,21 +108,32 @@ def _on_columns(picture: Picture, every: int, box: int, step: int, apart: int, l
         above, here, below, out = sums[j - apart], sums[j], sums[j + apart], crest[j]
         for k in range(columns):
             out[k] = 2 * here[k] - above[k] - below[k]
-    count = 0
-    found = np.empty((1024, 3))
-    for j in range(1, rows - 1):
-        above, middle, below = crest[j - 1], crest[j], crest[j + 1]
-        highest = np.float32(0)
-        for value in middle:
-            highest = max(highest, value)
-        if highest <= limit:
-            continue
-        for k in range(columns):
-            if middle[k] > limit and middle[k] >= above[k] and middle[k] > below[k]:
-                if count == len(found):
-                    found = np.concatenate((found, np.empty_like(found)))
-                found[count, 0], found[count, 1], found[count, 2] = k * every + 0.5 * (box - 1), j * step, middle[k]
-                count += 1
+    return np.ascontiguousarray(crest.T)
+
+
+@njit(cache=True, nogil=True, fastmath=True)
+def _maxima(crest: NDArray[np.float32], limit: np.float32) -> Array:
+    """Values above `limit` (≥ 0) that are a maximum along their row: (K, 3) row, place, value."""
+    rows, width = crest.shape
+    worth = np.zeros((rows, width // _SEGMENT + 1), dtype=np.bool_)
+    number = 0
+    for j in range(rows):
+        for k in range(width // _SEGMENT + 1):
+            highest = np.float32(0)
+            for value in crest[j, k * _SEGMENT : (k + 1) * _SEGMENT]:
+                highest = max(highest, value)
+            worth[j, k] = highest > limit
+            number += bool(highest > limit)
+    found, count = np.empty((number * _SEGMENT, 3)), 0
+    for j in range(rows):
+        line = crest[j]
+        for k in range(width // _SEGMENT + 1):
+            if not worth[j, k]:
+                continue
+            for i in range(max(k * _SEGMENT, 1), min((k + 1) * _SEGMENT, width - 1)):
+                if line[i] > limit and line[i] >= line[i - 1] and line[i] > line[i + 1]:
+                    found[count, 0], found[count, 1], found[count, 2] = j, i, line[i]
+                    count += 1
     return found[:count]
 
 

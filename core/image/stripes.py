@@ -40,19 +40,14 @@ from numpy.typing import NDArray
 from core.image.centreline import Centreline
 from core.image.influence import REACH
 from core.image.linking import IGNORED, SATURATED, Hysteresis, link
+from core.image.neighbours import NEIGHBOUR, beside_another
 from core.image.noise import NoiseModel
-from core.image.pieces import (
-    NEIGHBOUR,
-    arc_length,
-    beside_another,
-    correlation_length,
-    cut_ends,
-    fully_lit,
-    split_at_breaks,
-)
+from core.image.pieces import arc_length, correlation_length, cut_ends, fully_lit
 from core.image.placing import Piece, place
 from core.image.precision import noise_sigma, response_noise, roughness, saturated_points
 from core.image.profile import measure_profiles
+from core.image.seeds import Picture
+from core.image.splitting import split_at_breaks
 from core.image.stripe import StripeSettings
 from core.image.stripe_settings import choose_settings
 from core.model.arrays import Array
@@ -71,7 +66,7 @@ def correlation_length_px(settings: StripeSettings) -> float:
 
 
 def extract_centrelines(
-    picture: NDArray[np.float32],
+    picture: Picture,
     settings: StripeSettings,
     *,
     noise: NoiseModel,
@@ -83,7 +78,7 @@ def extract_centrelines(
     Parameters
     ----------
     picture
-        (H, W) float32; a picture or a difference of two, so values may be negative.
+        (H, W) float32 or int16; a picture or a difference of two, so values may be negative.
     settings
         Width and contrast of the stripes.
     noise
@@ -96,7 +91,7 @@ def extract_centrelines(
     Raises
     ------
     ValueError
-        If the picture is not a 2-D float32 array or a mask has another shape.
+        If the picture is not a 2-D float32 or int16 array or a mask has another shape.
     """
     state = _state_map(picture, saturated, ignore)
     runs = link(picture, state, settings.stripe_px, settings.filter_px, _limits(settings, noise, saturated is not None))
@@ -131,16 +126,16 @@ def extract_centrelines(
 
 
 def _state_map(
-    picture: NDArray[np.float32], saturated: NDArray[np.bool_] | None, ignore: NDArray[np.bool_] | None
+    picture: Picture, saturated: NDArray[np.bool_] | None, ignore: NDArray[np.bool_] | None
 ) -> NDArray[np.uint8]:
-    if picture.ndim != 2 or picture.dtype != np.float32:
-        raise ValueError(f"picture must be 2-D float32, not {picture.ndim}-D {picture.dtype}")
-    state = np.zeros(picture.shape, dtype=np.uint8)
-    for mask, bit in ((saturated, SATURATED), (ignore, IGNORED)):
-        if mask is not None:
-            if mask.shape != picture.shape:
-                raise ValueError(f"a mask of shape {mask.shape} does not suit a picture of shape {picture.shape}")
-            state[mask] |= bit
+    if picture.ndim != 2 or picture.dtype not in (np.float32, np.int16):
+        raise ValueError(f"picture must be 2-D float32 or int16, not {picture.ndim}-D {picture.dtype}")
+    for mask in (saturated, ignore):
+        if mask is not None and mask.shape != picture.shape:
+            raise ValueError(f"a mask of shape {mask.shape} does not suit a picture of shape {picture.shape}")
+    state = np.zeros(picture.shape, np.uint8) if saturated is None else np.multiply(saturated, np.uint8(SATURATED))
+    if ignore is not None:
+        state[ignore] |= IGNORED
     return state
 
 
@@ -156,7 +151,7 @@ def _limits(settings: StripeSettings, noise: NoiseModel, knows_saturation: bool)
 
 
 def _smooth_pieces(
-    picture: NDArray[np.float32], state: NDArray[np.uint8], run: Array, settings: StripeSettings, noise: NoiseModel
+    picture: Picture, state: NDArray[np.uint8], run: Array, settings: StripeSettings, noise: NoiseModel
 ) -> list[Piece]:
     """One run cut at its ends, kinks and jumps, with the cross-sections of each piece."""
     g = settings.filter_px

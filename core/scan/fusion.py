@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from core.errors import InputError
 from core.model.arrays import Array
 from core.progress import Progress, silent
+from core.scan.cells import fuse_cells, sorted_by_cell
 from core.scan.cloud import Cloud
 from core.scan.normals import STEEPEST, pixel_angle, with_normals
 from core.scan.surface import Surface, grid_shape
@@ -65,8 +66,6 @@ def fuse(
     progress("fusion", 0, 2)
     index = np.flatnonzero(usable)
     cell_of = _cell_index(cloud.uv[index], image_size, cell)
-    kept = _kept_layer(cloud, index, cell_of, cell)
-    index, cell_of = index[kept], cell_of[kept]
     progress("fusion", 1, 2)
     surface = _average(cloud, index, cell_of, image_size, cell)
     progress("fusion", 2, 2)
@@ -76,62 +75,36 @@ def fuse(
 def _cell_index(uv: Array, image_size: tuple[int, int], cell_px: float) -> NDArray[np.int64]:
     """Flat index of the cell of each pixel position; positions on the rim belong to the outermost cells."""
     rows, columns = grid_shape(image_size, cell_px)
-    column, row = np.floor((uv + 0.5) / cell_px).astype(np.int64).T
+    column, row = (np.floor((uv[:, axis] + 0.5) / cell_px).astype(np.int64) for axis in range(2))
     flat: NDArray[np.int64] = np.clip(row, 0, rows - 1) * columns + np.clip(column, 0, columns - 1)
     return flat
-
-
-def _kept_layer(
-    cloud: Cloud, index: NDArray[np.int64], cell_of: NDArray[np.int64], cell_px: float
-) -> NDArray[np.bool_]:
-    """Which of the points `index` belong to the layer that stays in their cell."""
-    if len(index) == 1:
-        return np.ones(1, dtype=np.bool_)
-    depth, sigma = cloud.points[index, 2], cloud.sigma[index]
-    order = np.lexsort((depth, cell_of))
-    depth, sigma, cells = depth[order], sigma[order], cell_of[order]
-    angle = pixel_angle(cloud.points[index], cloud.uv[index]) if np.ptp(cloud.uv[index], axis=0).any() else 0.0
-    slope = STEEPEST * cell_px * angle * depth[1:] / 2  # neighbours in depth lie about half a cell apart at most
-    gate = GAP * np.hypot(sigma[1:], sigma[:-1]) + slope
-    starts = (np.diff(cells) != 0) | (np.diff(depth) > gate)
-    layer = np.concatenate([[0], np.cumsum(starts)])
-    size = np.bincount(layer)
-    first = np.searchsorted(layer, np.arange(len(size)))  # a layer's nearest point
-    ranked = np.lexsort((depth[first], -size, cells[first]))
-    best = ranked[np.concatenate([[True], np.diff(cells[first][ranked]) != 0])]
-    chosen = np.zeros(len(size), dtype=np.bool_)
-    chosen[best] = True
-    kept = np.empty(len(index), dtype=np.bool_)
-    kept[order] = chosen[layer]
-    return kept
 
 
 def _average(
     cloud: Cloud, index: NDArray[np.int64], cell_of: NDArray[np.int64], image_size: tuple[int, int], cell_px: float
 ) -> Surface:
-    """Weighted means per cell, each sweep one observation."""
-    sweep = cloud.sweep[index] - cloud.sweep[index].min()
-    _, group = np.unique(cell_of * (sweep.max() + 1) + sweep, return_inverse=True)
-    in_group = np.bincount(group)
-    weight = 1 / cloud.sigma[index] ** 2 / in_group[group]  # summed over a group: its mean weight
-    cells, fused = np.unique(cell_of, return_inverse=True)
-    total = np.bincount(fused, weight)
-
-    def mean(values: Array) -> Array:
-        summed: Array = np.bincount(fused, weight * values) / total
-        return summed
-
+    """Weighted means per cell of the points `index` of the layer that stays there, each sweep one observation."""
+    usable = index if len(index) < len(cloud) else slice(None)
+    points, uv, sigma = cloud.points[usable], cloud.uv[usable], cloud.sigma[usable]
+    angle = pixel_angle(points, uv) if np.ptp(uv, axis=0).any() else 0.0
+    slope = STEEPEST * cell_px * angle / 2  # neighbours in depth lie about half a cell apart at most
+    sweep = cloud.sweep[usable]
+    sweep = sweep - sweep.min()
+    order, starts = sorted_by_cell(cell_of, int(np.prod(grid_shape(image_size, cell_px))))
+    cells = np.flatnonzero(np.diff(starts))
+    values = np.column_stack([points, uv, cloud.intensity[usable]])
+    means, total, count, fused = fuse_cells(order, starts, cells, values, sigma, sweep, GAP, slope)
     member = np.full(len(cloud), -1, dtype=np.int64)
     member[index] = fused
     return Surface(
         image_size=image_size,
         cell_px=cell_px,
         cells=cells,
-        points=np.column_stack([mean(cloud.points[index, axis]) for axis in range(3)]),
-        uv=np.column_stack([mean(cloud.uv[index, axis]) for axis in range(2)]),
+        points=means[:, :3],
+        uv=means[:, 3:5],
         sigma=1 / np.sqrt(total),
-        intensity=mean(cloud.intensity[index]),
-        count=np.bincount(fused),
+        intensity=means[:, 5],
+        count=count,
         normals=np.zeros((len(cells), 3)),
         member=member,
     )

@@ -28,6 +28,8 @@ NEIGHBOURS = 80
 """Most neighbours one fit takes; more cost time and add nothing to a normal."""
 WORST_TILT = 0.15
 """Largest standard uncertainty of a normal's direction (rad) that still counts as determined."""
+ENOUGH = 100_000
+"""Points that tell the angle of a pixel as well as all of them."""
 CORRELATED = 8.0
 """Neighbours that share one error: points along one stripe are not independent."""
 
@@ -40,6 +42,8 @@ def pixel_angle(points: Array, uv: Array) -> float:
     ValueError
         If all points were seen at one pixel.
     """
+    thin = slice(None, None, max(1, len(points) // ENOUGH))
+    points, uv = points[thin], uv[thin]
     rays = points[:, :2] / points[:, 2:]
     spread = float(np.var(uv, axis=0).sum())
     if not spread > 0:

@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 from core.image.centreline import Centreline
+from core.image.cuts import cuts_of
 from core.image.influence import NODES, REACH, influence
-from core.image.likelihood import _cuts_of, residuals
+from core.image.likelihood import residuals
 from core.image.noise import NoiseModel
 from core.image.profile import Sections
 from core.image.speckle import NO_SPECKLE, Speckle, measure_speckle
@@ -240,7 +241,7 @@ def test_rows_and_columns_cut_a_line_in_order_whichever_way_it_runs(angle_deg: i
     along = np.arange(0, 60, spacing)
     tangent = np.array([np.cos(angle), np.sin(angle)])
     run = np.column_stack([np.outer(along, tangent) + 100.3, np.full((len(along), 2), [tangent[1], -tangent[0]])])
-    cuts = _cuts_of(run, along)
+    cuts = cuts_of(run, along)
     assert np.all(np.diff(cuts[:, 0]) > 0)
     assert len(cuts) == pytest.approx(along[-1] * np.abs(tangent).max(), abs=1)
 

@@ -1,0 +1,243 @@
+"""Rows and columns that cut a stripe, compared with the model of its light; see `core.image.likelihood`."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from core.image.bell import bell
+from core.image.influence import NODES, REACH
+from core.image.linking import IGNORED, SATURATED
+from core.image.seeds import Picture
+from core.model.arrays import Array
+
+_LARGEST_STEP = 2.5  # px between points; across larger gaps nothing is known
+_TAIL, _OTHER_LIGHT = 2.5, 0.15  # farther out, in σ, more than this share of the height is no light of this stripe
+_BELL_STEPS = 64  # per σ
+_BELL = np.exp(-0.5 * (np.arange(3 * _BELL_STEPS + 2) / _BELL_STEPS) ** 2)
+_UPRIGHT, _FLAT = 0.74, 0.67  # |n_u| at which columns give way to rows, and rows to columns
+
+
+@njit(cache=True, nogil=True)
+def cuts_of(run: Array, arc: Array, every: int = 1) -> Array:
+    """Where rows or columns of the picture, or only every `every`-th of them, cut a `run` (N, ≥ 4).
+
+    (K, 5), in order along the run: length along it; number of the row (column); the place in it; the nearest point;
+    1 for a row.
+    """
+    cuts = np.empty((2 * len(run) + 8, 5))
+    count = 0
+    upright = abs(run[0, 2]) > 0.7
+    for k in range(len(run) - 1):
+        du, dv = run[k + 1, 0] - run[k, 0], run[k + 1, 1] - run[k, 1]
+        upright = abs(run[k, 2]) > (_FLAT if upright else _UPRIGHT)  # a stripe at 45° must not change at each point
+        if du * du + dv * dv > _LARGEST_STEP**2:
+            continue
+        start, step = (run[k, 1], dv) if upright else (run[k, 0], du)
+        place, drift = (run[k, 0], du) if upright else (run[k, 1], dv)
+        first, behind = math.ceil(min(start, start + step)), math.ceil(max(start, start + step))
+        for number in range(min(behind - first, len(cuts) - count)):
+            line = first + number if step > 0 else behind - 1 - number
+            if line % every:
+                continue
+            share = (line - start) / step
+            cuts[count, 0] = arc[k] + share * (arc[k + 1] - arc[k])
+            cuts[count, 1], cuts[count, 2] = line, place + share * drift
+            cuts[count, 3], cuts[count, 4] = k + (share > 0.5), upright
+            count += 1
+    return cuts[:count]
+
+
+@njit(cache=True, nogil=True, fastmath=True)
+def score_cuts(
+    picture: Picture,
+    state: NDArray[np.uint8],
+    run: Array,
+    cuts: Array,
+    clear: NDArray[np.bool_],
+    model: Array,
+    kind: NDArray[np.int64],
+    tables: Array,
+    noise: tuple[float, float],
+) -> Array:
+    """Σ ψ·(I − model) and Σ ψ·d of each cut, (K, 2); zeros where it cannot be used."""
+    sums = np.zeros((len(cuts), 2))
+    longest = max(picture.shape)
+    bits, rest = np.empty(longest, dtype=np.uint8), np.empty(longest)
+    places, bells = np.empty(longest), np.empty(longest)
+    for c in range(len(cuts)):
+        line, place, near, upright = int(cuts[c, 1]), cuts[c, 2], int(cuts[c, 3]), cuts[c, 4] > 0
+        if not clear[near]:
+            continue
+        nx = run[near, 2] if upright else run[near, 3]
+        height, width, background = model[near, 0], model[near, 1], model[near, 2]
+        half = REACH * width / abs(nx)
+        first, last = math.ceil(place - half), math.floor(place + half)
+        rows, columns = picture.shape if upright else picture.shape[::-1]
+        if height <= 0 or first < 0 or last >= columns or line < 0 or line >= rows:
+            continue
+        count = last + 1 - first
+        if upright:
+            for i in range(count):
+                rest[i], bits[i] = picture[line, first + i], state[line, first + i] & (SATURATED | IGNORED)
+        else:
+            for i in range(count):
+                rest[i], bits[i] = picture[first + i, line], state[first + i, line] & (SATURATED | IGNORED)
+        slip = -run[near, 3] if upright else run[near, 2]  # of a pixel's foot along the stripe, per pixel
+        before, behind = max(near - math.ceil(width), 0), min(near + math.ceil(width), len(model) - 1)
+        fade = slip * (model[behind, 0] / height - model[before, 0] / height) / max(behind - before, 1)
+        widening = slip * (model[behind, 1] / width - model[before, 1] / width) / max(behind - before, 1)
+        _compare(rest, places, bells, count, first - place, (nx, run[near, 4], fade, widening), model[near])
+        other = (_OTHER_LIGHT * height) ** 2 + 36 * (noise[0] + noise[1] * max(background, 0.0))
+        whole = _all_this_stripe(rest, places, bells, bits, count, _TAIL * width, height, other, 36 * noise[1])
+        table = tables[kind[near]]
+        sums[c, 0], sums[c, 1] = _score(rest, places, bells, bits, count, width, height, table, whole)
+    return sums
+
+
+@njit(cache=True, nogil=True, fastmath=True)
+def _compare(
+    rest: Array,
+    places: Array,
+    bells: Array,
+    count: int,
+    start: float,
+    curve: tuple[float, float, float, float],
+    model: Array,
+) -> None:
+    """Turn grey values into what the model leaves over; with that the pixels' distances from the curve and its bell.
+
+    The first one lies `start` px along the cut from the curve. Of that `curve`: its normal's component along the cut,
+    its bend, and the shares by which the section fades and widens from one pixel's foot to the next.
+    """
+    nx, bend, fade, widening = curve
+    height, background, slope, inverse = model[0], model[2], model[3], 0.5 / (model[1] * model[1])
+    for i in range(count):
+        along = i + start
+        power = along * (2 * nx - bend * along)  # of the pixel with respect to the circle of that bend
+        turn = bend * power
+        x = power * (0.5 + turn * (0.125 + turn * (0.0625 + turn * 0.0390625)))
+        light = (1 + fade * along) * bell(x * x * inverse * (1 - 2 * widening * along))
+        places[i], bells[i] = x, light
+        rest[i] -= background + slope * x + height * light
+
+
+@njit(cache=True, nogil=True, fastmath=True)
+def _all_this_stripe(
+    rest: Array,
+    places: Array,
+    bells: Array,
+    bits: NDArray[np.uint8],
+    count: int,
+    tail: float,
+    height: float,
+    other: float,
+    shot: float,
+) -> bool:
+    """Whether all pixels can be used; `bits` becomes 1 for those that cannot.
+
+    They are saturated, or in the stripe's tails where other light shows.
+    """
+    part = 0
+    for i in range(count):
+        strange = (abs(places[i]) > tail) & (rest[i] * rest[i] > other + shot * height * bells[i])
+        bits[i] = 1 if (bits[i] != 0) | strange else 0
+        part += bits[i]
+    return part == 0
+
+
+@njit(cache=True, nogil=True, fastmath=True)
+def _score(
+    rest: Array,
+    places: Array,
+    bells: Array,
+    bits: NDArray[np.uint8],
+    count: int,
+    width: float,
+    height: float,
+    table: Array,
+    whole: bool,
+) -> tuple[float, float]:
+    """Σ ψ·(I − model) and Σ ψ·d of one cut, the height estimated with the place unless the cut is `whole`."""
+    unit, inverse = NODES / REACH / width, height / (width * width)
+    n, nt, nh = 0.0, 0.0, 0.0  # of ψ: with what is left over, its derivatives with place and height
+    e, et, eh = 0.0, 0.0, 0.0  # the same of the section itself, which asks for the height
+    for i in range(count):
+        if bits[i]:
+            continue
+        x = places[i]
+        at = min(max(x * unit + NODES, 0.0), 2 * NODES - 1e-9)
+        node = int(at)
+        psi = table[node] + (at - node) * (table[node + 1] - table[node])
+        slant = bells[i] * x * inverse
+        n += psi * rest[i]
+        nt += psi * slant
+        if not whole:
+            nh += psi * bells[i]
+            e += bells[i] * rest[i]
+            et += bells[i] * slant
+            eh += bells[i] * bells[i]
+    if eh > 0:
+        n, nt = n - nh / eh * e, nt - nh / eh * et
+    return n, max(nt, 0.0)
+
+
+@njit(cache=True, nogil=True, fastmath=True)
+def averages(arc: Array, at: Array, sums: Array, window: float) -> tuple[Array, Array, Array]:
+    """At each point, (N,): the offset t in px, its variance, and the weight of all cuts it rests on.
+
+    The offset is that of a straight line through the window's cuts: a window cut short has its middle elsewhere.
+    """
+    offset, variance, support = np.zeros(len(arc)), np.full(len(arc), np.inf), np.zeros(len(arc))
+    reach = 3 * window
+    first = 0
+    for k in range(len(arc)):
+        while first < len(at) and at[first] < arc[k] - reach:
+            first += 1
+        m0, m1, m2, n0, n1 = 0.0, 0.0, 0.0, 0.0, 0.0
+        q0, q1, q2 = 0.0, 0.0, 0.0
+        c = first
+        while c < len(at) and at[c] <= arc[k] + reach:
+            if sums[c, 1] > 0:
+                x = (at[c] - arc[k]) / window
+                w = _BELL[int(abs(x) * _BELL_STEPS + 0.5)]
+                m = w * sums[c, 1]
+                m0, m1, m2 = m0 + m, m1 + m * x, m2 + m * x * x
+                n0, n1 = n0 + w * sums[c, 0], n1 + w * sums[c, 0] * x
+                m *= w
+                q0, q1, q2 = q0 + m, q1 + m * x, q2 + m * x * x
+                support[k] += w
+            c += 1
+        determinant = m0 * m2 - m1 * m1
+        if determinant > 1e-3 * m0 * m0:
+            offset[k] = (m2 * n0 - m1 * n1) / determinant
+            variance[k] = (m2 * m2 * q0 - 2 * m1 * m2 * q1 + m1 * m1 * q2) / (determinant * determinant)
+    return offset, variance, support
+
+
+@njit(cache=True, nogil=True, fastmath=True)
+def cut_residuals(
+    picture: Picture, state: NDArray[np.uint8], run: Array, cuts: Array, model: Array, half: int
+) -> Array:
+    """Residuals of the middle 2·`half` + 1 pixels of each cut, and the model's light there, (2, K, W)."""
+    found = np.zeros((2, len(cuts), 2 * half + 1))
+    for c in range(len(cuts)):
+        line, place, near, upright = int(cuts[c, 1]), cuts[c, 2], int(cuts[c, 3]), cuts[c, 4] > 0
+        nx = run[near, 2] if upright else run[near, 3]
+        height, width, background, slope = model[near, 0], model[near, 1], model[near, 2], model[near, 3]
+        rows, columns = picture.shape if upright else picture.shape[::-1]
+        first = math.floor(place + 0.5) - half
+        if first < 0 or first + 2 * half >= columns or line < 0 or line >= rows:
+            continue
+        for k in range(2 * half + 1):
+            column, row = (first + k, line) if upright else (line, first + k)
+            if state[row, column] & (SATURATED | IGNORED):
+                continue
+            x = nx * (first + k - place)
+            light = height * bell(0.5 * (x / width) ** 2)
+            found[0, c, k] = picture[row, column] - background - slope * x - light
+            found[1, c, k] = light
+    return found

@@ -1,0 +1,161 @@
+"""A Gaussian on a sloping background fitted to the pixels around places of a stripe; see `core.image.profile`."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from core.image.bell import bell
+from core.image.linking import IGNORED, SATURATED
+from core.image.seeds import Picture
+from core.model.arrays import Array
+
+REACH = 3.2
+"""Stripe σ looked at on either side; further out a neighbour that is still harmless would pass for a slope."""
+_BINS_PER_PX = 2
+_UNKNOWNS = 5
+_ROUNDS = 8
+
+
+@njit(cache=True, nogil=True, fastmath=True)
+def fit_sections(picture: Picture, state: NDArray[np.uint8], places: Array, stripe_px: float, along_px: float) -> Array:
+    """Fitted height, background, slope, width (K, 4) at `places` (K, ≥ 4) u, v, n_u, n_v; height 0 where a fit failed.
+
+    Each rests on the pixels up to `along_px` away along the stripe and 3.2 σ `stripe_px` across it.
+    """
+    reach = REACH * stripe_px + 1.0
+    bins = 2 * math.ceil(reach * _BINS_PER_PX) + 1
+    section = np.empty((3, bins))
+    work = np.empty((_UNKNOWNS + 1, _UNKNOWNS))
+    x = np.zeros(_UNKNOWNS)  # background, slope, height, centre, width
+    fits = np.zeros((len(places), 4))
+    warm = False
+    for k in range(len(places)):
+        _gather(picture, state, places[k], reach, along_px, section)
+        low, high = _range(section, stripe_px)
+        if high <= low:
+            continue
+        settled = False
+        if warm:  # the neighbour's answer is nearly this one's
+            x[3] = 0.0
+            settled = _fit(section, stripe_px, x, work)
+        if not settled:
+            x[0], x[1], x[2], x[3], x[4] = low, 0.0, high - low, 0.0, stripe_px
+            settled = _fit(section, stripe_px, x, work)
+        warm = settled
+        if settled:
+            fits[k, 0], fits[k, 1], fits[k, 2], fits[k, 3] = x[2], x[0], x[1], x[4]
+    return fits
+
+
+@njit(cache=True, nogil=True, fastmath=True)
+def _gather(
+    picture: Picture, state: NDArray[np.uint8], place: Array, reach: float, along_px: float, section: Array
+) -> None:
+    """Pixels around a place, sorted by their distance across the stripe: number, mean distance, mean grey (3, K)."""
+    height, width = picture.shape
+    u, v, nu, nv = place[0], place[1], place[2], place[3]
+    upright = abs(nu) > abs(nv)
+    if not upright:  # rows are columns, then
+        height, width, u, v, nu, nv = width, height, v, u, nv, nu
+    middle = section.shape[1] // 2
+    section[:] = 0.0
+    half = math.ceil(abs(nv) * reach + abs(nu) * along_px)
+    row = int(v + 0.5)
+    for j in range(max(row - half, 0), min(row + half + 1, height)):
+        at, spread = u - nv * (j - v) / nu, reach / abs(nu)
+        for i in range(max(math.ceil(at - spread), 0), min(math.floor(at + spread) + 1, width)):
+            across = nu * (i - u) + nv * (j - v)
+            if abs(nu * (j - v) - nv * (i - u)) > along_px:
+                continue
+            here = state[j, i] if upright else state[i, j]
+            if here & (SATURATED | IGNORED):
+                continue
+            k = middle + math.floor(across * _BINS_PER_PX + 0.5)
+            section[0, k] += 1.0
+            section[1, k] += across
+            section[2, k] += picture[j, i] if upright else picture[i, j]
+    for k in range(section.shape[1]):
+        if section[0, k] > 0:
+            section[1, k] /= section[0, k]
+            section[2, k] /= section[0, k]
+
+
+@njit(cache=True, nogil=True, fastmath=True)
+def _range(section: Array, stripe_px: float) -> tuple[float, float]:
+    """Lowest and highest grey value; twice 0 where too little is seen: both flanks, the top may be saturated."""
+    low, high, left, right = np.inf, -np.inf, 0, 0
+    for k in range(section.shape[1]):
+        if section[0, k] > 0:
+            low, high = min(low, section[2, k]), max(high, section[2, k])
+            left += section[1, k] < -0.25 * stripe_px
+            right += section[1, k] > 0.25 * stripe_px
+    if min(left, right) < 3 or left + right <= _UNKNOWNS:
+        return 0.0, 0.0
+    return low, high
+
+
+@njit(cache=True, nogil=True, fastmath=True)
+def _fit(section: Array, stripe_px: float, x: Array, work: Array) -> bool:
+    """Gauss–Newton from `x` (5,): background, slope, height, centre, width; whether it settles."""
+    normal, step = work[:_UNKNOWNS], work[_UNKNOWNS]
+    count, distance, grey = section[0], section[1], section[2]
+    for _ in range(_ROUNDS):
+        back, slope, height, centre, width = x[0], x[1], x[2], x[3], x[4]
+        n00, n10, n11, n20, n21, n22, n30, n31 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+        n32, n33, n40, n41, n42, n43, n44 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+        r0, r1, r2, r3, r4 = 0.0, 0.0, 0.0, 0.0, 0.0
+        for k in range(len(count)):
+            w, t = count[k], distance[k]
+            d = (t - centre) / width
+            b = bell(0.5 * d * d)
+            p = height * b * d / width  # by the centre
+            q = p * d  # by the width
+            r = w * (grey[k] - back - slope * t - height * b)
+            r0, r1, r2, r3, r4 = r0 + r, r1 + r * t, r2 + r * b, r3 + r * p, r4 + r * q
+            n00, n10, n20, n30, n40 = n00 + w, n10 + w * t, n20 + w * b, n30 + w * p, n40 + w * q
+            n11, n21, n31, n41 = n11 + w * t * t, n21 + w * t * b, n31 + w * t * p, n41 + w * t * q
+            n22, n32, n42 = n22 + w * b * b, n32 + w * b * p, n42 + w * b * q
+            n33, n43, n44 = n33 + w * p * p, n43 + w * p * q, n44 + w * q * q
+        normal[0, 0], normal[1, 0], normal[1, 1], normal[2, 0], normal[2, 1] = n00, n10, n11, n20, n21
+        normal[2, 2], normal[3, 0], normal[3, 1], normal[3, 2], normal[3, 3] = n22, n30, n31, n32, n33
+        normal[4, 0], normal[4, 1], normal[4, 2], normal[4, 3], normal[4, 4] = n40, n41, n42, n43, n44
+        step[0], step[1], step[2], step[3], step[4] = r0, r1, r2, r3, r4
+        if not _solve(normal, step):
+            return False
+        step[3] = min(max(step[3], -0.5 * stripe_px), 0.5 * stripe_px)
+        step[4] = min(max(step[4], -0.3 * width), 0.5 * width)
+        for a in range(_UNKNOWNS):
+            x[a] += step[a]
+        if abs(step[3]) + abs(step[4]) < 1e-3 * stripe_px:
+            break
+    return bool(x[2] > 0 and 0.3 * stripe_px < x[4] < 3 * stripe_px and abs(x[3]) < stripe_px)
+
+
+@njit(cache=True, nogil=True, fastmath=True)
+def _solve(normal: Array, x: Array) -> bool:
+    """Solve by Cholesky from the lower triangle, lightly damped; `x` comes as the right side. False if singular."""
+    for a in range(_UNKNOWNS):
+        normal[a, a] *= 1 + 1e-9
+        for b in range(a + 1):
+            total = normal[a, b]
+            for c in range(b):
+                total -= normal[a, c] * normal[b, c]
+            if a == b:
+                if total <= 0.0:
+                    return False
+                normal[a, a] = math.sqrt(total)
+            else:
+                normal[a, b] = total / normal[b, b]
+    for a in range(_UNKNOWNS):
+        for b in range(a):
+            x[a] -= normal[a, b] * x[b]
+        x[a] /= normal[a, a]
+    for a in range(_UNKNOWNS - 1, -1, -1):
+        for b in range(a + 1, _UNKNOWNS):
+            x[a] -= normal[b, a] * x[b]
+        x[a] /= normal[a, a]
+    return True
