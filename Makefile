@@ -14,7 +14,7 @@ test quick: export OMP_NUM_THREADS = 1
 ON_SCREEN := $(wildcard tests/workbench/test_behaviour_*.py tests/workbench/test_whole_job*.py tests/workbench/views/test_scene_view*.py)
 SCREEN := $(shell command -v xvfb-run >/dev/null && echo 'xvfb-run -a -s "-screen 0 1920x1080x24"')
 
-.PHONY: demo app test quick accuracy check screenshots pictures wheel clean
+.PHONY: demo app test quick accuracy soak check screenshots pictures wheel clean
 
 demo: $(READY)            ## measure the embedded sample: cloud, mesh and report of a 50 mm gauge block in ./out
 	$(BIN)/trisect demo --out $(OUT)
@@ -34,6 +34,10 @@ accuracy: export OPENBLAS_NUM_THREADS = 1
 accuracy: export OMP_NUM_THREADS = 1
 accuracy: $(READY)        ## measure the README's accuracy table anew: about 80 scans, an hour or more; goes on where it was cut off
 	$(BIN)/python -m tests.accuracy --readme
+
+soak: export OPENBLAS_NUM_THREADS = 1
+soak: $(READY)            ## ten minutes of an emulated camera at full size through a live scan: frames counted, memory flat
+	$(BIN)/python -m tests.soak --seconds 600
 
 screenshots: $(READY)     ## pictures of every page, both sizes, both themes, in ./screenshots
 	$(SCREEN) $(BIN)/python -m tests.workbench.screenshots screenshots
