@@ -95,6 +95,11 @@ Exclude = Annotated[
 ]
 
 
+Profile = Annotated[
+    bool, typer.Option("--profile", help="Say on standard error what each stage has cost in processor time.")
+]
+
+
 class _Commands(TyperGroup):
     """The commands; Ctrl-C passes through as `Cancelled`, or Typer would leave with the code of "not proven"."""
 
@@ -146,6 +151,7 @@ def run(
     adjust_camera: AdjustCamera = False,
     part: Part = "",
     exclude: Exclude = None,
+    profile: Profile = False,
     json: Json = False,
 ) -> None:
     """Measure a recording set: calibrations, cloud, mesh, thickness, report."""
@@ -163,8 +169,10 @@ def run(
     )
     options = measuring.leaving_out(options, folder, exclude)
     with bars() as progress:
-        result = measuring.run_all(folder, out, options, progress)
+        watched = measuring.timed(progress, profile)
+        result = measuring.run_all(folder, out, options, watched)
     measuring.show_run(result, as_json=json)
+    measuring.show_times(watched)
     raise typer.Exit(measuring.exit_code(result.gauge))
 
 
@@ -226,6 +234,7 @@ def scan(
     stripe_width: StripeWidth = 0.0,
     contrast: Contrast = 0.0,
     exclude: Exclude = None,
+    profile: Profile = False,
     json: Json = False,
 ) -> None:
     """Measure the surface from SET/scan, with the calibrations in DIR; writes cloud.ply and mesh.ply."""
@@ -234,8 +243,10 @@ def scan(
     options = measuring.options(method.value, sigma_cut, stripe_width=stripe_width, contrast=contrast)
     options = measuring.leaving_out(options, folder, exclude)
     with bars() as progress:
-        shown = measuring.run_scan(folder, out, options, progress)
+        watched = measuring.timed(progress, profile)
+        shown = measuring.run_scan(folder, out, options, watched)
     shown.show(as_json=json)
+    measuring.show_times(watched)
 
 
 @app.command(epilog=EPILOG)

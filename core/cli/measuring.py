@@ -26,6 +26,7 @@ from core.pipeline import (
 )
 from core.progress import Progress
 from core.scan.method import Method
+from core.stage_times import StageTimes
 
 PROVEN = ("", "conforming")
 """Verdicts that leave with exit code 0."""
@@ -74,6 +75,17 @@ def options(
 def leaving_out(chosen: Options, folder: Path, names: Sequence[str] | None) -> Options:
     """The options with the pictures `names` of the set left out; InputError if the set has no such picture."""
     return replace(chosen, excluded=excluded_names(open_set(folder), names)) if names else chosen
+
+
+def timed(progress: Progress, wanted: bool) -> Progress:
+    """The progress, which learns what the stages cost if that is `wanted`."""
+    return StageTimes(progress) if wanted else progress
+
+
+def show_times(progress: Progress) -> None:
+    """Say on standard error what the stages have cost, if that was wanted."""
+    if isinstance(progress, StageTimes):
+        output.print_times(progress.seconds(), progress.wall_s)
 
 
 def exit_code(gauge: GaugeResult | None) -> int:

@@ -55,6 +55,18 @@ def print_rows(rows: Rows, notes: Sequence[str] = (), files: Mapping[str, Path] 
         out.print(f"note: {note}", markup=False, soft_wrap=True)
 
 
+def print_times(seconds: Mapping[str, float], wall_s: float) -> None:
+    """On standard error: processor time and share of each stage, and how long all of it took."""
+    table = Table("stage", box=None, padding=(0, 2, 0, 0))
+    for title in ("processor s", "share"):
+        table.add_column(title, justify="right")
+    total = sum(seconds.values())
+    for name, spent in seconds.items():
+        table.add_row(name, f"{spent:.2f}", f"{spent / total:.0%}")
+    table.add_row("all", f"{total:.2f}", f"{total / wall_s:.1f} processors busy for {wall_s:.1f} s")
+    Console(stderr=True, highlight=False).print(table)
+
+
 def camera_rows(calibration: CameraCalibration) -> Rows:
     """Parameters with standard deviations, and how well the views fit."""
     camera = calibration.camera

@@ -24,6 +24,7 @@ from core.errors import InputError
 from core.files.pictures import Picture, decode_picture, read_bytes
 from core.files.rig import Rig, read_rig, rig_to_toml
 from core.files.set_listing import PlanePair, check_sizes, pictures_in, plane_pairs, scan_frames
+from core.stage_times import StageTimes, stage
 
 __all__ = [
     "PARTS",
@@ -105,8 +106,10 @@ class RecordingSet:
         self.hashes[self.name_of(path)] = hashlib.sha256(data).hexdigest()
         return decode_picture(data, path, self.rig.channel)
 
-    def stream(self, paths: Sequence[Path]) -> Iterator[tuple[str, Picture | str]]:
+    def stream(self, paths: Sequence[Path], times: StageTimes | None = None) -> Iterator[tuple[str, Picture | str]]:
         """Yield name and picture of each of `paths`, a few read ahead; for a damaged one, why it cannot be read.
+
+        `times` learns what decoding costs.
 
         Raises
         ------
@@ -116,7 +119,8 @@ class RecordingSet:
 
         def attempt(path: Path) -> Picture | str:
             try:
-                return self.read(path)
+                with stage(times, "decoding"):
+                    return self.read(path)
             except InputError as error:
                 return error.what
 

@@ -39,6 +39,7 @@ from core.scan.reconstruct import ReconstructOptions, reconstruct
 from core.scan.reference import quantile_reference, sample_indices
 from core.scan.results import FrameRecord, ScanResult
 from core.scan.surface import Mesh
+from core.stage_times import StageTimes, stage
 
 FEWEST_FOR_QUANTILE = 3
 
@@ -63,7 +64,7 @@ def scan_step(
     Parameters
     ----------
     work, options, progress
-        What is measured, how, and who is told.
+        What is measured, how, and who is told; a StageTimes learns what the stages cost on all threads.
     watch
         Shown each frame with what it would give by itself, in the order of the recording, on this thread.
     earlier
@@ -98,7 +99,8 @@ def scan_step(
         surface = with_normals(fuse(scan.cloud, camera.image_size, progress=progress), progress=progress)
         mesh = build_mesh(surface, progress=progress)
         file = _file(features, scan, calibration.id, features_key(found, options, camera))
-        _write(work, scan, mesh, replace(file, common=common))
+        with stage(progress if isinstance(progress, StageTimes) else None, "writing"):
+            _write(work, scan, mesh, replace(file, common=common))
     return Measured(scan, mesh)
 
 
@@ -110,15 +112,16 @@ def _look(
     watch: Callable[[FramePreview], None] | None,
 ) -> ScanFeatures:
     """What the reference and all frames show."""
+    times = progress if isinstance(progress, StageTimes) else None
     camera = calibration.camera.camera
     looking = replace(feature_options(options), camera=camera)
     progress("reference", 0, 1)
     picture, note = reference_picture(found, camera, options, progress)
     reference = read_reference(picture, looking)
     progress("reference", 1, 1)
-    frames, total = stream_frames(found, options), len(found.frames)
+    frames, total = stream_frames(found, options, times), len(found.frames)
     show = _shown_to(watch, Preview(reference, camera, calibration.fan.fan)) if watch else None
-    features = extract_features(reference, frames, total, looking, progress, show)
+    features = extract_features(reference, frames, total, looking, progress, show, times)
     return replace(features, notes=(*note, *features.notes))
 
 
@@ -142,9 +145,9 @@ def feature_options(options: Options) -> FeatureOptions:
     return FeatureOptions(sweep_stripe=options.stripe, fan_stripe=options.stripe)
 
 
-def stream_frames(found: RecordingSet, options: Options) -> Iterator[Frame]:
+def stream_frames(found: RecordingSet, options: Options, times: StageTimes | None = None) -> Iterator[Frame]:
     """Every frame in the order of the recording; those left out by hand are not read."""
-    pictures = found.stream(taken_frames(found, options))
+    pictures = found.stream(taken_frames(found, options), times)
     for path in found.frames:
         name = found.name_of(path)
         yield (name, LEFT_OUT) if name in options.excluded else next(pictures)

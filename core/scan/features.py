@@ -26,6 +26,7 @@ from core.scan.frame_reader import LOST, MOVED, NO_STRIPE, Frame, FrameFeatures,
 from core.scan.reference import Picture
 from core.scan.reference_features import FeatureOptions, ReferenceFeatures, read_reference
 from core.scan.straightening import bent_back, straightened
+from core.stage_times import StageTimes
 from core.threads import ordered_map
 
 __all__ = [
@@ -69,6 +70,7 @@ def extract_features(
     options: FeatureOptions | None = None,
     progress: Progress = silent,
     watch: Callable[[FrameFeatures], None] | None = None,
+    times: StageTimes | None = None,
 ) -> ScanFeatures:
     """Reduce a scan to features.
 
@@ -82,6 +84,8 @@ def extract_features(
         How many there are, for progress.
     watch
         Shown the features of each frame as they come, in the order of the recording, on the calling thread.
+    times
+        Learns what the stages cost.
 
     Raises
     ------
@@ -96,7 +100,7 @@ def extract_features(
     ahead = _look_ahead(stream)
     progress("frames", 0, total)
     sweep_stripe = options.sweep_stripe or choose_sweep_stripe(ahead, seen, told.again)
-    reader = FrameReader(seen, sweep_stripe, options.move_limit_px)
+    reader = FrameReader(seen, sweep_stripe, options.move_limit_px, times)
     found: list[FrameFeatures] = []
     numbered = enumerate(chain(ahead, stream))
     for features in ordered_map(reader, numbered, idle=lambda: told.again("frames", 0, total)):

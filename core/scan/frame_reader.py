@@ -13,6 +13,7 @@ from core.image.stripe import StripeSettings
 from core.image.stripes import extract_centrelines
 from core.scan.reference import Picture, check_reference
 from core.scan.reference_features import FeatureOptions, ReferenceFeatures
+from core.stage_times import StageTimes, stage
 
 MOVED = "object or camera moved during the scan: the fan's light lies elsewhere than in the reference"
 LOST = "the fan's light is gone: object or camera moved far during the scan, or the three-line laser was off"
@@ -45,6 +46,7 @@ class FrameReader:
     reference: ReferenceFeatures
     stripe: StripeSettings | None
     move_limit_px: float = FeatureOptions().move_limit_px
+    times: StageTimes | None = None
 
     def __call__(self, item: tuple[int, Frame]) -> FrameFeatures:
         index, (name, picture) = item
@@ -55,17 +57,19 @@ class FrameReader:
             return FrameFeatures(index, name, (), _sizes_differ(picture, base))
         if nothing := _shows_nothing(picture, full_scale):
             return FrameFeatures(index, name, (), nothing)
-        difference = self.reference.difference(picture)
-        check = check_reference(difference, fan)
-        light = self.reference.light_change(check.light)
+        with stage(self.times, "difference"):
+            difference = self.reference.difference(picture)
+            check = check_reference(difference, fan)
+            light = self.reference.light_change(check.light)
         if check.lost:
             return FrameFeatures(index, name, (), LOST, check.shift_px, light)
         if check.shift_px > self.move_limit_px:
             return FrameFeatures(index, name, (), MOVED, check.shift_px, light)
         if self.stripe is None:
             return FrameFeatures(index, name, (), NO_STRIPE, check.shift_px, light)
-        saturated = saturated_pixels(picture)
-        pieces = extract_centrelines(difference, self.stripe, noise=self.reference.noise, saturated=saturated)
+        with stage(self.times, "extraction"):
+            saturated = saturated_pixels(picture)
+            pieces = extract_centrelines(difference, self.stripe, noise=self.reference.noise, saturated=saturated)
         reason = "" if pieces else NO_STRIPE
         return FrameFeatures(index, name, pieces, reason, check.shift_px, light)
 

@@ -1,0 +1,74 @@
+"""What the stages of a long job cost: processor time, whichever threads it is spent on."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Iterator, Mapping
+from contextlib import AbstractContextManager, contextmanager, nullcontext
+
+from core.progress import Progress, silent
+
+
+class StageTimes:
+    """A progress that books processor time to the step told last, and to stages that run on other threads.
+
+    Time in which a thread waits for another one does not count, so the sum is what the job costs, and `wall_s` how
+    long it has taken.
+    """
+
+    def __init__(self, progress: Progress = silent) -> None:
+        self._progress = progress
+        self._seconds: dict[str, float] = {}
+        self._lock = threading.Lock()
+        self._step = ""
+        self._thread = threading.get_ident()
+        self._since = time.thread_time()
+        self._started = time.perf_counter()
+
+    def __call__(self, step: str, done: int, total: int) -> None:
+        """Tell how far the job is; by the thread that has made this object."""
+        self._book_own()
+        self._step = step
+        self._progress(step, done, total)
+
+    @contextmanager
+    def stage(self, name: str) -> Iterator[None]:
+        """Book what happens within to the stage `name`, on any thread."""
+        own = threading.get_ident() == self._thread
+        if own:
+            self._book_own()
+        began = time.thread_time()
+        try:
+            yield
+        finally:
+            now = time.thread_time()
+            self._book(name, now - began)
+            if own:
+                self._since = now
+
+    def seconds(self) -> Mapping[str, float]:
+        """Processor time in s by stage, largest first."""
+        self._book_own()
+        with self._lock:
+            return dict(sorted(self._seconds.items(), key=lambda item: -item[1]))
+
+    @property
+    def wall_s(self) -> float:
+        """Time in s since the beginning."""
+        return time.perf_counter() - self._started
+
+    def _book_own(self) -> None:
+        now = time.thread_time()
+        if self._step:
+            self._book(self._step, now - self._since)
+        self._since = now
+
+    def _book(self, name: str, seconds: float) -> None:
+        with self._lock:
+            self._seconds[name] = self._seconds.get(name, 0.0) + seconds
+
+
+def stage(times: StageTimes | None, name: str) -> AbstractContextManager[None]:
+    """`times.stage(name)`, or nothing where nobody wants to know."""
+    return nullcontext() if times is None else times.stage(name)
