@@ -8,7 +8,7 @@ import numpy as np
 
 from core.errors import InputError
 from core.inspect.inspection_plan import InspectionPlan
-from core.inspect.triangles import Triangles
+from core.scan.triangles import Triangles
 
 _TODO = "export the part again as STL, in mm"
 

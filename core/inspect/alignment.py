@@ -20,10 +20,10 @@ from scipy.spatial.transform import Rotation
 from core.errors import InputError
 from core.inspect.elements import Element
 from core.inspect.shapes import square_to
-from core.inspect.triangles import Surroundings, Triangles
 from core.model import Pose
 from core.model.arrays import Array
 from core.progress import Progress, silent
+from core.scan.triangles import Surroundings, Triangles
 
 TURNS = 12
 """Starts about the upward direction."""

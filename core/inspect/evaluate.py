@@ -24,12 +24,12 @@ from core.inspect.features.thickness import measure_thickness
 from core.inspect.inspection_plan import FeatureSpec, InspectionPlan, Kind, PartFrame
 from core.inspect.point_errors import PointErrors
 from core.inspect.temperature import at_reference, compared
-from core.inspect.triangles import Triangles
 from core.inspect.uncertainty import CAMERA, FAN_CALIBRATION
 from core.model import Pose
 from core.progress import Progress, silent
 from core.scan.cloud import Cloud
 from core.scan.surface import Mesh
+from core.scan.triangles import Triangles
 
 MEASURES: Mapping[Kind, Measure] = {
     "plane": measure_plane,

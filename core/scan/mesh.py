@@ -133,11 +133,11 @@ def _compact(surface: Surface, triangles: NDArray[np.int64]) -> Mesh:
     triangles = renumbered.reshape(-1, 3).astype(np.int64)
     vertices = surface.points[used]
     known = np.linalg.norm(surface.normals[used], axis=1) > 0
-    normals = np.where(known[:, None], surface.normals[used], _vertex_normals(vertices, triangles))
+    normals = np.where(known[:, None], surface.normals[used], vertex_normals(vertices, triangles))
     return Mesh(vertices, normals, surface.sigma[used], triangles)
 
 
-def _vertex_normals(vertices: Array, triangles: NDArray[np.int64]) -> Array:
+def vertex_normals(vertices: Array, triangles: NDArray[np.int64]) -> Array:
     """Unit sum (V, 3) of the area-weighted normals of each vertex's triangles."""
     a, b, c = (vertices[triangles[:, corner]] for corner in range(3))
     area = np.cross(b - a, c - a)

@@ -10,7 +10,7 @@ from core.inspect.alignment import best_fit
 from core.inspect.deviation_map import classes_of, mark
 from core.inspect.evaluate import evaluate
 from core.inspect.inspection_plan import Deviation, FeatureSpec, InspectionPlan
-from core.inspect.triangles import Surroundings, Triangles
+from core.scan.triangles import Surroundings, Triangles
 from core.simulate.objects import step_block
 from tests.inspect.shape_scan import BALL, BALL_RADIUS, ShapeScan
 

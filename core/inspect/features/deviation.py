@@ -17,11 +17,11 @@ from core.inspect.inspection_plan import Deviation, FeatureSpec
 from core.inspect.point_errors import patches
 from core.inspect.results import Contribution
 from core.inspect.spread import SAMPLING, u_of_quantiles
-from core.inspect.triangles import Nearest, Surroundings, Triangles
 from core.inspect.uncertainty import budget
 from core.model import Pose
 from core.model.arrays import Array
 from core.scan.cloud import Cloud
+from core.scan.triangles import Nearest, Surroundings, Triangles
 
 MOST_POINTS = 40_000
 """Points of the cloud that the figures rest on, spread evenly over it."""

@@ -17,7 +17,7 @@ from core.inspect.point_errors import PointErrors
 from core.inspect.profile import Profile
 from core.inspect.results import Contribution, GaugeResult
 from core.inspect.shapes import Ball, Levels, Tube
-from core.inspect.triangles import Triangles
+from core.scan.triangles import Triangles
 from core.inspect.uncertainty import combined
 from core.model import Pose
 from core.model.arrays import Array
