@@ -284,12 +284,18 @@ def report(
     serial: Serial = "",
     customer: Customer = "",
     operator: Operator = "",
+    study: Annotated[
+        list[Path] | None,
+        typer.Option("--study", metavar="FILE", help="Print this study.json as well; repeat for more."),
+    ] = None,
     json: Json = False,
 ) -> None:
     """Put the results in DIR into report.pdf."""
     from core.cli import reporting
 
-    chosen = reporting.ReportOptions(part, template, language, paper, without or (), serial, customer, operator)
+    chosen = reporting.ReportOptions(
+        part, template, language, paper, without or (), serial, customer, operator, study or ()
+    )
     with bars() as progress:
         shown = reporting.run_report(folder, out, chosen, progress)
     shown.show(as_json=json)

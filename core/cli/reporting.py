@@ -14,6 +14,7 @@ from core.files.recording_set import open_set
 from core.files.report_template import read_report_template, section_set
 from core.pipeline.handing_over import EXPORTS, export_results, import_camera, with_template
 from core.pipeline.report_step import report_step
+from core.pipeline.reported_inspection import with_studies
 from core.pipeline.workspace import Workspace
 from core.progress import Progress
 from core.report.content import ReportContent
@@ -32,12 +33,14 @@ class ReportOptions:
     serial: str = ""
     customer: str = ""
     operator: str = ""
+    studies: Sequence[Path] = ()
 
     def said(self, content: ReportContent) -> ReportContent:
         """The content with all of it. InputError if a choice is not one, or the template cannot be read."""
         language, paper = _one_of(self.language, LANGUAGES, "--language"), _one_of(self.paper, PAPERS, "--paper")
         if self.template is not None:
             content = with_template(content, read_report_template(self.template))
+        content = with_studies(content, self.studies)
         return replace(
             content,
             part=self.part or content.part,

@@ -26,6 +26,7 @@ from core.files.scan_file import ScanFile, read_scan
 from core.image.centreline import Centreline
 from core.image.display import in_8_bit
 from core.model.arrays import Array
+from core.pipeline.reported_inspection import with_inspection
 from core.pipeline.workspace import FILES, Calibration, Workspace, check_calibration, read_calibration
 from core.progress import Progress, silent
 from core.report.content import CalibrationMark, Overlay, ReportContent
@@ -90,7 +91,7 @@ def results_content(out: Path, part: str = "", record: RunRecord | None = None) 
     check_calibration(out / FILES["scan"], scan.calibration_id, calibration)
     record = record or read_run(out / FILES["run"])
     gauge_path = out / FILES["gauge"]
-    return ReportContent(
+    content = ReportContent(
         part=part or record.part,
         rig={},
         camera=calibration.camera,
@@ -108,6 +109,7 @@ def results_content(out: Path, part: str = "", record: RunRecord | None = None) 
         version=__version__,
         timestamp=record.measured_at,
     )
+    return with_inspection(content, out)
 
 
 def _marks(out: Path, record: RunRecord, calibration: Calibration) -> tuple[CalibrationMark, ...]:

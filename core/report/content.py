@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from datetime import datetime, timedelta
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +23,9 @@ from core.scan.cloud import Cloud
 from core.scan.results import FrameRecord
 from core.scan.surface import Mesh
 from core.study.repeats import RepeatStatistics, repeat_statistics
+
+AT_REFERENCE = "Stated at 20 °C"
+"""How the note of a length begins that was corrected to the reference temperature."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,6 +95,28 @@ class Overlay:
 
 
 @dataclass(frozen=True, eq=False, slots=True)
+class Deviations:
+    """How far places of the surface are from the nominal one.
+
+    Parameters
+    ----------
+    name
+        Of the feature.
+    uv
+        (N, 2) pixels they are seen at.
+    deviation
+        (N,) in mm, outwards positive.
+    tolerance_mm
+        What colours and marks are shares of.
+    """
+
+    name: str
+    uv: Array
+    deviation: Array
+    tolerance_mm: float
+
+
+@dataclass(frozen=True, eq=False, slots=True)
 class ReportContent:
     """Everything that is printed. The same content gives the same bytes.
 
@@ -113,6 +138,12 @@ class ReportContent:
         The thickness, or None for a scan without two faces.
     inspected
         Every characteristic of an inspection, the thickness among them if it was one; empty where there was none.
+    points
+        By name, which points of the cloud a face or a feature rests on: indices.
+    deviations
+        Comparisons with nominal surfaces.
+    studies
+        As study.json has them.
     calibrations
         Which calibrations the result rests on.
     rig_id
@@ -160,6 +191,9 @@ class ReportContent:
     timestamp: datetime
     gauge: GaugeResult | None = None
     inspected: tuple[Characteristic, ...] = ()
+    points: Mapping[str, NDArray[np.int64]] = field(default_factory=dict)
+    deviations: tuple[Deviations, ...] = ()
+    studies: tuple[Mapping[str, Any], ...] = ()
     calibrations: tuple[CalibrationMark, ...] = ()
     rig_id: str = ""
     overlay: Overlay | None = None
@@ -207,6 +241,18 @@ class ReportContent:
         return (thickness_characteristic(self.gauge),)
 
     @property
+    def points_used(self) -> Mapping[str, NDArray[np.int64]]:
+        """By name, which points each face or feature rests on; of a thickness alone, its two faces."""
+        if self.points or self.gauge is None:
+            return self.points
+        return {"Upper face": self.gauge.upper.indices, "Lower face": self.gauge.lower.indices}
+
+    @property
+    def at_reference(self) -> bool:
+        """Whether any result is stated at 20 °C; its own note then says what that changed."""
+        return any(note.startswith(AT_REFERENCE) for one in self.characteristics for note in one.notes)
+
+    @property
     def report_id(self) -> str:
         """Name of this report: from the inputs' hashes, the settings and the software version, never random.
 
@@ -220,6 +266,7 @@ class ReportContent:
         choices |= {
             "language": "" if self.language == "en" else self.language,
             "template": self.template.words,
+            "studies": self.studies,
             "inspected": [(one.name, one.kind, one.value, one.u, one.k, one.limits) for one in self.inspected],
         }
         lines += [f"{name}: {value!r}" for name, value in choices.items() if value not in ("", None, (), [])]
@@ -242,9 +289,12 @@ class ReportContent:
         """Name and heading of those SECTIONS that this content has something for, hidden or not."""
         missing = {
             "frame": self.overlay is None,
+            "points": not self.points_used or not len(self.cloud),
             "maps": self.gauge is None and not len(self.cloud),
-            "budget": self.gauge is None,
+            "deviation": not self.deviations,
+            "budget": not any(one.budget for one in self.characteristics),
             "repeats": not self.repeats,
+            "studies": not self.studies,
             "remarks": not self.remarks.strip(),
             "inputs": not self.hashes,
         }
@@ -256,7 +306,8 @@ class ReportContent:
     def all_notes(self) -> tuple[str, ...]:
         """The report's own notes, those of the gauge and of both calibrations, each once."""
         of_gauge = self.gauge.notes if self.gauge else ()
-        return tuple(dict.fromkeys((*self.notes, *of_gauge, *self.camera.notes, *self.fan.notes)))
+        of_each = [f"{one.name}: {note}" for one in self.inspected for note in one.notes]
+        return tuple(dict.fromkeys((*self.notes, *of_gauge, *of_each, *self.camera.notes, *self.fan.notes)))
 
     @property
     def frames_left_out(self) -> list[tuple[str, list[str]]]:

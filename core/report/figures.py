@@ -14,8 +14,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.cm import ScalarMappable
-from matplotlib.colors import Colormap, Normalize
+from matplotlib.colors import Colormap, Normalize, to_hex, to_rgb
 from matplotlib.figure import Figure
+from matplotlib.ticker import Formatter, ScalarFormatter
 from numpy.typing import NDArray
 
 from core.model.arrays import Array
@@ -62,8 +63,14 @@ def new_figure(width_mm: float, height_mm: float) -> Figure:
     return figure
 
 
-def pixels(figure: Figure) -> NDArray[np.uint8]:
-    """The figure drawn, (H, W, 3) uint8.
+def mixed(accent: str, share: float) -> str:
+    """The hex colour `share` of the way from white to `accent`."""
+    red, green, blue = (1 - share * (1 - part) for part in to_rgb(accent))
+    return to_hex((red, green, blue))
+
+
+def pixels(figure: Figure, decimal: str = ".") -> NDArray[np.uint8]:
+    """The figure drawn, (H, W, 3) uint8, its axes numbered with this decimal sign.
 
     Raises
     ------
@@ -74,9 +81,40 @@ def pixels(figure: Figure) -> NDArray[np.uint8]:
     if not isinstance(canvas, FigureCanvasAgg):
         raise ValueError("the figure was not made for drawing into memory")
     with plot_style():
+        if decimal != ".":
+            _number_with(figure, decimal)
         canvas.draw()  # type: ignore[no-untyped-call]
     rgba = np.asarray(canvas.buffer_rgba())  # type: ignore[no-untyped-call]
     return np.ascontiguousarray(rgba[:, :, :3], dtype=np.uint8)
+
+
+def _number_with(figure: Figure, decimal: str) -> None:
+    """Give every axis that numbers itself another decimal sign."""
+    for axes in figure.axes:
+        for axis in (axes.xaxis, axes.yaxis):
+            inner = axis.get_major_formatter()
+            if isinstance(inner, ScalarFormatter):
+                axis.set_major_formatter(_Renumbered(inner, decimal))
+
+
+class _Renumbered(Formatter):
+    """Another formatter's numbers with another decimal sign."""
+
+    def __init__(self, inner: ScalarFormatter, decimal: str) -> None:
+        self.inner, self.decimal = inner, decimal
+
+    def __call__(self, x: float, pos: int | None = None) -> str:
+        return self.inner(x, pos).replace(".", self.decimal)
+
+    def set_axis(self, axis: Any) -> None:
+        super().set_axis(axis)
+        self.inner.set_axis(axis)
+
+    def set_locs(self, locs: Any) -> None:
+        self.inner.set_locs(locs)
+
+    def get_offset(self) -> str:
+        return self.inner.get_offset()
 
 
 def color_scale(colormap: str | Colormap, low: float, high: float) -> ScalarMappable:

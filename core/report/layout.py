@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from reportlab.lib.utils import ImageReader
 from reportlab.platypus import Flowable, KeepTogether
 
-from core.report.style import TEXT_WIDTH, text
+from core.report.look import Look
+from core.report.style import TEXT_WIDTH
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,6 +21,7 @@ class Limits:
     notes: int
     settings: int
     repeats: int
+    budgets: int
     picture_scale: float
 
 
@@ -38,6 +40,26 @@ class Picture(Flowable):  # type: ignore[misc]
         self.canv.drawImage(self.reader, left, 0, width=self.inner, height=self.height)
 
 
-def section(heading: str, first: list[Flowable]) -> Flowable:
-    """A heading that stays with what follows it."""
-    return KeepTogether([text(heading, "section"), *first])
+class Bookmark(Flowable):  # type: ignore[misc]
+    """A place that links lead to, named in the outline beside the pages; `level` 0 for sections, 1 within them."""
+
+    width = height = 0
+
+    def __init__(self, key: str, title: str, level: int = 0) -> None:
+        super().__init__()
+        self.key, self.title, self.level = key, title, level
+
+    def wrap(self, *_: float) -> tuple[float, float]:
+        """It takes no room (called by reportlab)."""
+        return 0, 0
+
+    def draw(self) -> None:
+        """Note the place (called by reportlab)."""
+        self.canv.bookmarkHorizontal(self.key, 0, 12)
+        self.canv.addOutlineEntry(self.title, self.key, self.level)
+
+
+def section(look: Look, key: str, heading: str, first: list[Flowable], **values: object) -> Flowable:
+    """A heading that stays with what follows it; `heading` is fixed words, `key` what links call it."""
+    title = look.words(heading, **values)
+    return KeepTogether([Bookmark(key, title), look.text(title, "section"), *first])

@@ -17,12 +17,13 @@ from numpy.typing import NDArray
 from core.image.centreline import Centreline
 from core.report.content import Overlay
 from core.report.figures import DPI, MM_PER_INCH, add_color_bar, color_scale, new_figure, plot_style, round_up
+from core.report.look import Look
 from core.report.style import INK
 
 FAN_COLOR, SWEEP_MAP, UNKNOWN = "#E06C00", "viridis", "#737373"
 
 
-def overlay_figure(overlay: Overlay, width_mm: float, height_mm: float) -> Figure:
+def overlay_figure(look: Look, overlay: Overlay, width_mm: float, height_mm: float) -> Figure:
     """One frame with the fan's centrelines, the sweep's centreline coloured by σ of depth, and the crossings used."""
     with plot_style():
         figure = new_figure(width_mm, height_mm)
@@ -49,7 +50,7 @@ def overlay_figure(overlay: Overlay, width_mm: float, height_mm: float) -> Figur
         axes.set_xlabel("u, px", labelpad=1)
         axes.set_ylabel("v, px", labelpad=1)
         axes.legend(
-            handles=_overlay_legend(overlay),
+            handles=_overlay_legend(look, overlay),
             loc="upper left",
             bbox_to_anchor=(-0.01, -7.5 / shown_h),
             ncols=4,
@@ -111,15 +112,21 @@ def _draw_sweep(axes: Axes, overlay: Overlay) -> ScalarMappable | None:
     return colors
 
 
-def _overlay_legend(overlay: Overlay) -> list[Line2D]:
+def _overlay_legend(look: Look, overlay: Overlay) -> list[Line2D]:
     handles = []
     if any(overlay.fan):
-        handles.append(Line2D([], [], color=FAN_COLOR, lw=1.2, ls=(0, (5, 1.5)), label="fan line, with its number"))
+        handles.append(
+            Line2D([], [], color=FAN_COLOR, lw=1.2, ls=(0, (5, 1.5)), label=look.words("fan line, with its number"))
+        )
     if overlay.sweep:
         middle = matplotlib.colormaps[SWEEP_MAP](0.4)
-        handles.append(Line2D([], [], color=middle, lw=2.2, label="hand-moved line, coloured by σ of depth"))
+        handles.append(
+            Line2D([], [], color=middle, lw=2.2, label=look.words("hand-moved line, coloured by σ of depth"))
+        )
         if any(not np.isfinite(sigma).all() for sigma in overlay.sweep_sigma):
-            handles.append(Line2D([], [], color=UNKNOWN, lw=2.2, label="no depth"))
+            handles.append(Line2D([], [], color=UNKNOWN, lw=2.2, label=look.words("no depth")))
     if len(overlay.crossings):
-        handles.append(Line2D([], [], marker="o", ls="", ms=5, mfc="none", mec=INK, mew=1.0, label="crossing used"))
+        handles.append(
+            Line2D([], [], marker="o", ls="", ms=5, mfc="none", mec=INK, mew=1.0, label=look.words("crossing used"))
+        )
     return handles

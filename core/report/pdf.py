@@ -1,10 +1,12 @@
-"""The report put together: one to three pages, the same bytes for the same content."""
+"""The report put together: a few pages, the same bytes for the same content."""
 
 from __future__ import annotations
 
 import io
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import cv2
@@ -12,40 +14,58 @@ from matplotlib.figure import Figure
 from reportlab.lib.pagesizes import A4, LETTER
 from reportlab.lib.units import mm
 from reportlab.lib.utils import ImageReader
-from reportlab.platypus import BaseDocTemplate, Frame, PageTemplate
+from reportlab.platypus import BaseDocTemplate, Frame, PageTemplate, Paragraph
 
 from core.progress import Progress, Told, silent
 from core.report import figures, plots
 from core.report.content import ReportContent
+from core.report.deviation_plot import deviation_figure
+from core.report.head import TITLE
 from core.report.layout import Limits
+from core.report.look import Look
 from core.report.overlay_plot import overlay_figure
-from core.report.run_chart import run_chart_figure
-from core.report.sections import TITLE, story
-from core.report.style import HAIRLINE, INK, MUTED, SANS, TEXT_WIDTH, color, prepare_reportlab
+from core.report.points_plot import points_figure
+from core.report.run_chart import repeats_figure, run_chart_figure
+from core.report.sections import story
+from core.report.studies import study_lines, study_values
+from core.report.style import HAIRLINE, INK, MUTED, SANS, TEXT_WIDTH, color, markup, prepare_reportlab
 from core.report.template import Paper
+from core.report.wording import shown_name
 
-MOST_PAGES = 3
-"""Of one scan; repeats or long remarks may have one more."""
+MOST_PAGES = 4
+"""Of one scan with one result; more results, repeats, studies or long remarks may have more."""
+RESULTS_A_PAGE = 4
+"""Results whose budgets and rows ask for one page more."""
 LONG_REMARKS = 1000
 """Characters of remarks beyond which they need room of their own."""
 
 PAGE_SIZES: Mapping[Paper, tuple[float, float]] = {"A4": A4, "Letter": LETTER}
 FOOT = 16 * mm
+LONGEST_FOOTER = 160
+"""Characters of a company's line: what fits below the page's own."""
 HEAD = 15 * mm
 
 LIMITS = (
-    Limits(inputs=150, reasons=10, names=6, notes=12, settings=30, repeats=60, picture_scale=1.0),
-    Limits(inputs=96, reasons=8, names=6, notes=10, settings=20, repeats=40, picture_scale=1.0),
-    Limits(inputs=72, reasons=6, names=6, notes=8, settings=16, repeats=30, picture_scale=1.0),
-    Limits(inputs=60, reasons=6, names=5, notes=8, settings=14, repeats=25, picture_scale=1.0),
-    Limits(inputs=48, reasons=5, names=4, notes=6, settings=14, repeats=20, picture_scale=0.92),
-    Limits(inputs=30, reasons=3, names=2, notes=5, settings=10, repeats=15, picture_scale=0.84),
-    Limits(inputs=9, reasons=2, names=1, notes=4, settings=6, repeats=10, picture_scale=0.72),
-    Limits(inputs=3, reasons=1, names=1, notes=2, settings=4, repeats=10, picture_scale=0.72),
+    Limits(inputs=150, budgets=40, reasons=10, names=6, notes=12, settings=30, repeats=60, picture_scale=1.0),
+    Limits(inputs=96, budgets=30, reasons=8, names=6, notes=10, settings=20, repeats=40, picture_scale=1.0),
+    Limits(inputs=72, budgets=20, reasons=6, names=6, notes=8, settings=16, repeats=30, picture_scale=1.0),
+    Limits(inputs=60, budgets=16, reasons=6, names=5, notes=8, settings=14, repeats=25, picture_scale=1.0),
+    Limits(inputs=48, budgets=12, reasons=5, names=4, notes=6, settings=14, repeats=20, picture_scale=0.92),
+    Limits(inputs=30, budgets=8, reasons=3, names=2, notes=5, settings=10, repeats=15, picture_scale=0.84),
+    Limits(inputs=9, budgets=4, reasons=2, names=1, notes=4, settings=6, repeats=10, picture_scale=0.72),
+    Limits(inputs=3, budgets=2, reasons=1, names=1, notes=2, settings=4, repeats=10, picture_scale=0.72),
 )
 """Tried in this order until the report has no more pages than it may."""
 
-SURFACE_MM, OVERLAY_MM, FACES_MM, CLOUD_MM, CHART_MM = 104.0, 116.0, 50.0, 58.0, 42.0
+SURFACE_MM, OVERLAY_MM, POINTS_MM, FACES_MM, CLOUD_MM, CHART_MM, DEVIATION_MM = (
+    104.0,
+    116.0,
+    78.0,
+    50.0,
+    58.0,
+    42.0,
+    80.0,
+)
 """Heights of the pictures at scale 1."""
 
 
@@ -62,27 +82,35 @@ def build_report(content: ReportContent, progress: Progress = silent) -> bytes:
     """
     prepare_reportlab()
     progress = told = Told(progress)
-    step, drawings = "report", _drawings(content, told.again)
+    look = Look.of(content)
+    step, drawings = "report", _drawings(look, content, told.again)
     total = len(drawings) + 2
     pictures = {}
     for done, (name, draw) in enumerate(drawings.items()):
         progress(step, done, total)
         figure = draw()
         progress(step, done, total)
-        pictures[name] = _image(figure, photo=name == "frame")
+        pictures[name] = _image(figure, photo=name == "frame", decimal=look.words.numeral("."))
     progress(step, total - 2, total)
-    most_pages = MOST_PAGES + (len(content.repeats) > 0 or len(content.remarks) > LONG_REMARKS)
+    most_pages = _most_pages(content)
     shorter = _page_room(content.paper) / _page_room("A4")
     for step_limits in LIMITS:
         progress(step, total - 2, total)
         limits = replace(step_limits, picture_scale=step_limits.picture_scale * shorter)
-        pages, _ = _typeset(content, pictures, limits, 0)
+        pages, _ = _typeset(look, content, pictures, limits, 0)
         if pages <= most_pages:
             break
     progress(step, total - 1, total)
-    _, data = _typeset(content, pictures, limits, pages)
+    _, data = _typeset(look, content, pictures, limits, pages)
     progress(step, total, total)
     return data
+
+
+def _most_pages(content: ReportContent) -> int:
+    """Pages beyond which lists are shortened."""
+    more = len(content.repeats) > 0 or len(content.remarks) > LONG_REMARKS
+    results = (len(content.characteristics) - 1) / RESULTS_A_PAGE
+    return MOST_PAGES + more + max(0, math.ceil(results)) + len(content.studies) + len(content.deviations)
 
 
 def _page_room(paper: Paper) -> float:
@@ -90,32 +118,57 @@ def _page_room(paper: Paper) -> float:
     return float(PAGE_SIZES[paper][1] - HEAD - FOOT)
 
 
-def _drawings(content: ReportContent, progress: Progress) -> dict[str, Callable[[], Figure]]:
+def _drawings(look: Look, content: ReportContent, progress: Progress) -> dict[str, Callable[[], Figure]]:
     """What is to be drawn, by name."""
     width = TEXT_WIDTH / mm
-    gauge, overlay = content.gauge, content.overlay
+    gauge, overlay, size = content.gauge, content.overlay, content.camera.camera.image_size
     drawings: dict[str, Callable[[], Figure]] = {}
     if len(content.cloud) or len(content.mesh.triangles):
         plane = gauge.lower.plane if gauge else None
         drawings["surface"] = lambda: plots.surface_figure(
-            content.mesh, content.cloud, plane, width, SURFACE_MM, progress
+            look, content.mesh, content.cloud, plane, width, SURFACE_MM, progress
         )
     if overlay is not None:
-        drawings["frame"] = lambda: overlay_figure(overlay, width, OVERLAY_MM)
+        drawings["frame"] = lambda: overlay_figure(look, overlay, width, OVERLAY_MM)
+    if content.points_used and len(content.cloud):
+        named = {look.words.known(name): indices for name, indices in content.points_used.items()}
+        drawings["points"] = lambda: points_figure(look, content.cloud, named, size, width, POINTS_MM)
     if gauge is not None:
-        drawings["maps"] = lambda: plots.residual_figure(gauge, content.cloud, width, FACES_MM)
+        drawings["maps"] = lambda: plots.residual_figure(look, gauge, content.cloud, width, FACES_MM)
     elif len(content.cloud):
-        size = content.camera.camera.image_size
-        drawings["maps"] = lambda: plots.cloud_figure(content.cloud, size, width, CLOUD_MM)
+        drawings["maps"] = lambda: plots.cloud_figure(look, content.cloud, size, width, CLOUD_MM)
     if len(content.repeats) > 1:
         tolerance = gauge.tolerance_mm if gauge else None
-        drawings["repeats"] = lambda: run_chart_figure(content.repeats, content.nominal_mm, tolerance, width, CHART_MM)
-    return {name: draw for name, draw in drawings.items() if name not in content.hidden}
+        drawings["repeats"] = lambda: repeats_figure(
+            look, content.repeats, content.nominal_mm, tolerance, width, CHART_MM
+        )
+    drawings |= {
+        f"deviation-{number}": partial(deviation_figure, look, one, width, DEVIATION_MM)
+        for number, one in enumerate(content.deviations)
+        if len(one.deviation)
+    }
+    drawings |= {
+        f"study-{number}": partial(_study_figure, look, study, width)
+        for number, study in enumerate(content.studies)
+        if len(study_values(study)) > 1
+    }
+    section_of = {"study": "studies"}
+    hidden = content.hidden
+    return {
+        name: draw
+        for name, draw in drawings.items()
+        if section_of.get(name.partition("-")[0], name.partition("-")[0]) not in hidden
+    }
 
 
-def _image(figure: Figure, *, photo: bool) -> ImageReader:
+def _study_figure(look: Look, study: Mapping[str, Any], width: float) -> Figure:
+    U = [scan["U"] if scan["U"] is not None else math.nan for scan in study.get("scans", ())]
+    return run_chart_figure(look, study_values(study), U, study_lines(study), study["unit"], width, CHART_MM)
+
+
+def _image(figure: Figure, *, photo: bool, decimal: str) -> ImageReader:
     """A drawn figure, compressed without loss, or as JPEG with full colour resolution where it holds a photograph."""
-    bgr = figures.pixels(figure)[:, :, ::-1]
+    bgr = figures.pixels(figure, decimal)[:, :, ::-1]
     if photo:
         how = [cv2.IMWRITE_JPEG_QUALITY, 93, cv2.IMWRITE_JPEG_SAMPLING_FACTOR, cv2.IMWRITE_JPEG_SAMPLING_FACTOR_444]
         _, data = cv2.imencode(".jpg", bgr, how)
@@ -125,23 +178,24 @@ def _image(figure: Figure, *, photo: bool) -> ImageReader:
 
 
 def _typeset(
-    content: ReportContent, pictures: Mapping[str, ImageReader], limits: Limits, pages: int
+    look: Look, content: ReportContent, pictures: Mapping[str, ImageReader], limits: Limits, pages: int
 ) -> tuple[int, bytes]:
     """Lay everything out; gives the number of pages and the file. `pages` is what the foot of each page says."""
     stream = io.BytesIO()
     page = PAGE_SIZES[content.paper]
     margin = (page[0] - TEXT_WIDTH) / 2
+    laboratory = content.laboratory or content.template.name
     document = BaseDocTemplate(
         stream,
         pagesize=page,
-        title=f"{TITLE} {content.report_id}",
-        author=", ".join(name for name in (content.laboratory, content.operator) if name) or "not named",
-        subject=_subject(content),
+        title=f"{look.words(TITLE)} {content.report_id}",
+        author=", ".join(name for name in (laboratory, content.operator) if name) or look.words("not named"),
+        subject=_subject(look, content),
         creator=f"Trisect {content.version}",
         keywords="",
         invariant=1,
         initialFontName=SANS,
-        lang="en",
+        lang=content.language,
     )
     frame = Frame(
         margin,
@@ -155,18 +209,21 @@ def _typeset(
     )
 
     def on_page(canvas: Any, _: BaseDocTemplate) -> None:
+        canvas.showOutline()
         # the file's own date is the measurement's, not that of a clock
         canvas.setDateFormatter(lambda *_: f"{content.timestamp:D:%Y%m%d%H%M%S}{_pdf_zone(content)}")
-        _foot(canvas, content, pages, margin)
+        _foot(canvas, look, content, pages, margin)
 
     document.addPageTemplates(PageTemplate("page", [frame], onPage=on_page))
-    document.build(story(content, pictures, limits))
+    document.build(story(look, content, pictures, limits))
     return document.page, stream.getvalue()
 
 
-def _subject(content: ReportContent) -> str:
-    what = "Thickness" if content.gauge else "Point cloud"
-    return f"{what} of {content.part}" if content.part else what
+def _subject(look: Look, content: ReportContent) -> str:
+    found = content.characteristics
+    what = shown_name(found[0], look.words) if len(found) == 1 else look.words("Inspection" if found else "Point cloud")
+    what = what[:1].upper() + what[1:]
+    return look.words("{what} of {part}", what=what, part=content.part) if content.part else what
 
 
 def _pdf_zone(content: ReportContent) -> str:
@@ -175,16 +232,22 @@ def _pdf_zone(content: ReportContent) -> str:
     return f"{zone[:3]}'{zone[3:5]}'" if zone else ""
 
 
-def _foot(canvas: Any, content: ReportContent, pages: int, margin: float) -> None:
-    """Rule, report id, software, page n of m."""
+def _foot(canvas: Any, look: Look, content: ReportContent, pages: int, margin: float) -> None:
+    """Rule, report id, software, page n of m; the company's own line below."""
+    words, footer = look.words, content.template.footer
     canvas.saveState()
     canvas.setStrokeColor(color(HAIRLINE))
     canvas.setLineWidth(0.5)
     canvas.line(margin, 12.5 * mm, margin + TEXT_WIDTH, 12.5 * mm)
     canvas.setFillColor(color(MUTED))
     canvas.setFont(SANS, 7)
-    canvas.drawString(margin, 8.8 * mm, f"{TITLE} {content.report_id}")
+    canvas.drawString(margin, 8.8 * mm, f"{words(TITLE)} {content.report_id}")
     canvas.drawCentredString(margin + TEXT_WIDTH / 2, 8.8 * mm, f"Trisect {content.version}")
     canvas.setFillColor(color(INK))
-    canvas.drawRightString(margin + TEXT_WIDTH, 8.8 * mm, f"page {canvas.getPageNumber()} of {pages}")
+    page = words("page {n} of {all}", n=canvas.getPageNumber(), all=pages)
+    canvas.drawRightString(margin + TEXT_WIDTH, 8.8 * mm, page)
     canvas.restoreState()
+    if footer:
+        line = Paragraph(markup(footer[:LONGEST_FOOTER]), look.style("footer"))
+        _, height = line.wrap(TEXT_WIDTH, 8 * mm)
+        line.drawOn(canvas, margin, 7.6 * mm - height)

@@ -24,22 +24,28 @@ from core.report.figures import (
     NO_DATA,
     add_color_bar,
     color_scale,
+    mixed,
     new_figure,
     paint_map,
     plot_style,
     round_up,
 )
-from core.report.style import ACCENT, HAIRLINE, INK, MUTED
+from core.report.look import Look
+from core.report.style import HAIRLINE, INK, MUTED
 from core.report.surface_view import Ground, SurfacePicture, surface_picture, viewer_axes
 from core.scan.cloud import Cloud
 from core.scan.surface import Mesh
 
 DEPTH_MAP, SIGMA_MAP, SIGN_MAP = "cividis", "viridis", "PuOr_r"
-HEIGHT_MAP = LinearSegmentedColormap.from_list("height", ["#D3DEE2", "#7FAEBD", ACCENT])
-"""From pale to the accent: the shading shows the form, the colour the height."""
+
+
+def height_map(accent: str) -> LinearSegmentedColormap:
+    """From pale to the accent: the shading shows the form, the colour the height."""
+    return LinearSegmentedColormap.from_list("height", ["#DDE2E5", mixed(accent, 0.5), accent])
 
 
 def surface_figure(
+    look: Look,
     mesh: Mesh,
     cloud: Cloud,
     plane: LightPlane | None,
@@ -58,7 +64,7 @@ def surface_figure(
         seen = surface_picture(mesh, cloud, ground, 2 * width_px, aspect, progress)
         heights = ground.local(points)[:, 2]
         low, high = (float(value) for value in np.quantile(heights, [0.002, 0.998]))
-        colors = color_scale(HEIGHT_MAP, low, high if high > low else low + 1e-6)
+        colors = color_scale(height_map(look.accent), low, high if high > low else low + 1e-6)
         paint = _painted(seen, colors)
         small = cv2.resize(paint, (width_px, round(width_px / aspect)), interpolation=cv2.INTER_AREA)
         axes = figure.add_axes((0, 0, 1 - bar_mm / width_mm, 1))
@@ -67,7 +73,7 @@ def surface_figure(
         _draw_footprint(axes, ground.local(points))
         axes.set_xlim(seen.extent[:2])
         axes.set_ylim(seen.extent[2:])
-        add_color_bar(figure, (1 - (bar_mm - 4) / width_mm, 0.12, 3 / width_mm, 0.7), colors, "height, mm")
+        add_color_bar(figure, (1 - (bar_mm - 4) / width_mm, 0.12, 3 / width_mm, 0.7), colors, look.words("height, mm"))
     return figure
 
 
@@ -115,28 +121,28 @@ def _draw_footprint(axes: Axes, local: Array) -> None:
         )
 
 
-def residual_figure(gauge: GaugeResult, cloud: Cloud, width_mm: float, height_mm: float) -> Figure:
+def residual_figure(look: Look, gauge: GaugeResult, cloud: Cloud, width_mm: float, height_mm: float) -> Figure:
     """Residuals of both faces, mean per cell, in mm of the face's own plane; one colour scale, and how they spread."""
     with plot_style():
         figure = new_figure(width_mm, height_mm)
         spread = np.concatenate([gauge.upper.residuals, gauge.lower.residuals])
         limit = round_up(float(np.quantile(np.abs(spread), 0.95))) if len(spread) else 1.0
         colors = color_scale(SIGN_MAP, -limit, limit)
-        panels = (("Upper face", gauge.upper, 11.0), ("Lower face", gauge.lower, 67.0))
+        panels = ((look.words("Upper face"), gauge.upper, 11.0), (look.words("Lower face"), gauge.lower, 67.0))
         for title, face, left in panels:
             box = (left / width_mm, 12 / height_mm, 43 / width_mm, 1 - 18 / height_mm)
-            _residual_panel(figure.add_axes(box), title, face, cloud, colors)
+            _residual_panel(look, figure.add_axes(box), title, face, cloud, colors)
         bar_box = (115.5 / width_mm, 12 / height_mm, 3 / width_mm, 1 - 22 / height_mm)
         add_color_bar(figure, bar_box, colors, "mm", "both")
         box = (137 / width_mm, 12 / height_mm, (width_mm - 139) / width_mm, 1 - 18 / height_mm)
-        _spread_panel(figure.add_axes(box), gauge, 1.8 * limit)
+        _spread_panel(look, figure.add_axes(box), gauge, 1.8 * limit)
     return figure
 
 
-def _residual_panel(axes: Axes, title: str, face: Face, cloud: Cloud, colors: ScalarMappable) -> None:
+def _residual_panel(look: Look, axes: Axes, title: str, face: Face, cloud: Cloud, colors: ScalarMappable) -> None:
     axes.set_title(title)
-    axes.set_xlabel("along, mm", labelpad=1)
-    axes.set_ylabel("across, mm", labelpad=0)
+    axes.set_xlabel(look.words("along, mm"), labelpad=1)
+    axes.set_ylabel(look.words("across, mm"), labelpad=0)
     axes.set_facecolor(NO_DATA)
     if not len(face.indices):
         return
@@ -146,7 +152,7 @@ def _residual_panel(axes: Axes, title: str, face: Face, cloud: Cloud, colors: Sc
     paint_map(axes, flat, face.residuals, colors)
 
 
-def _spread_panel(axes: Axes, gauge: GaugeResult, limit: float) -> None:
+def _spread_panel(look: Look, axes: Axes, gauge: GaugeResult, limit: float) -> None:
     """How the residuals of both faces spread: density over the residual, told apart by line form."""
     edges = np.linspace(-limit, limit, 61)
     for face, name, form, tone in (
@@ -155,19 +161,19 @@ def _spread_panel(axes: Axes, gauge: GaugeResult, limit: float) -> None:
     ):
         if len(face.residuals):
             density = np.histogram(np.clip(face.residuals, -limit, limit), edges)[0] / len(face.residuals)
-            axes.stairs(100 * density, edges, color=tone, lw=0.9, ls=form, label=name, baseline=None)
+            axes.stairs(100 * density, edges, color=tone, lw=0.9, ls=form, label=look.words(name), baseline=None)
     axes.axvline(0, color=HAIRLINE, lw=0.6, zorder=0)
     axes.set_xlim(-limit, limit)
     axes.set_ylim(bottom=0)
-    axes.set_title("Spread", fontsize=7.5)
-    axes.set_xlabel("residual, mm", labelpad=1)
-    axes.set_ylabel("points, %", labelpad=1)
+    axes.set_title(look.words("Spread"), fontsize=7.5)
+    axes.set_xlabel(look.words("residual, mm"), labelpad=1)
+    axes.set_ylabel(look.words("points, %"), labelpad=1)
     axes.spines[["top", "right"]].set_visible(False)
     if axes.patches:
         axes.legend(frameon=False, fontsize=6, loc="upper left", handlelength=1.6, borderaxespad=0.1)
 
 
-def cloud_figure(cloud: Cloud, image_size: tuple[int, int], width_mm: float, height_mm: float) -> Figure:
+def cloud_figure(look: Look, cloud: Cloud, image_size: tuple[int, int], width_mm: float, height_mm: float) -> Figure:
     """Depth and its standard uncertainty over the picture, mean per cell: what there is to show without a gauge."""
     with plot_style():
         figure = new_figure(width_mm, height_mm)
@@ -177,7 +183,7 @@ def cloud_figure(cloud: Cloud, image_size: tuple[int, int], width_mm: float, hei
         )
         for title, values, name, left in panels:
             axes = figure.add_axes((left / width_mm, 12 / height_mm, 56 / width_mm, 1 - 18 / height_mm))
-            axes.set_title(title)
+            axes.set_title(look.words(title))
             axes.set_facecolor(NO_DATA)
             axes.set_xlabel("u, px", labelpad=1)
             axes.set_ylabel("v, px", labelpad=0)

@@ -9,14 +9,18 @@ SECTIONS: Mapping[str, str] = MappingProxyType(
     {
         "surface": "Measured surface",
         "frame": "One frame of the scan",
+        "points": "Points the results rest on",
         "maps": "Residuals of both faces, or depth and σ of the cloud",
-        "budget": "Uncertainty budget of the thickness",
+        "deviation": "Deviation from the nominal surface",
+        "budget": "Uncertainty budget",
         "repeats": "Repeated scans",
+        "studies": "Studies",
         "calibrations": "Calibrations and rig",
         "frames": "Frames and calibration pictures",
         "remarks": "Remarks of the operator",
         "settings": "Software and settings",
         "inputs": "Inputs, each with its hash",
+        "signatures": "Signatures",
     }
 )
 """Name and title of each section that can be left out, in printing order.

@@ -7,150 +7,203 @@ from collections.abc import Callable, Mapping
 
 from reportlab.lib.units import mm
 from reportlab.lib.utils import ImageReader
-from reportlab.platypus import Flowable, HRFlowable, Spacer
+from reportlab.platypus import Flowable, KeepTogether, Spacer
 
 from core.inspect.results import GaugeResult
-from core.report import evidence, tables
+from core.report import evidence
+from core.report.budget import budget_table
 from core.report.content import ReportContent
-from core.report.layout import Limits, Picture, section
+from core.report.head import head
+from core.report.language import grouped
+from core.report.layout import Bookmark, Limits, Picture, section
+from core.report.look import Look
 from core.report.repeats import repeats_head, repeats_table
 from core.report.result_box import result_box
-from core.report.style import ACCENT, TEXT_WIDTH, bullets, color, text
-from core.report.wording import count, fixed, grouped, limits_of_cloud, limits_of_thickness, temperatures_line
+from core.report.result_table import budget_key, result_table
+from core.report.signatures import signatures
+from core.report.studies import studies
+from core.report.style import TEXT_WIDTH
+from core.report.tables import heads, more_line, ruled_table
+from core.report.wording import limits_of_cloud, limits_of_inspection, limits_of_thickness, shown_name
 
-TITLE = "Measurement report"
+Pictures = Mapping[str, ImageReader]
 
 
-def story(content: ReportContent, pictures: Mapping[str, ImageReader], limits: Limits) -> list[Flowable]:
+def story(look: Look, content: ReportContent, pictures: Pictures, limits: Limits) -> list[Flowable]:
     """Everything from the title to the end mark, without what is hidden."""
     parts: list[tuple[str, Callable[[], list[Flowable]]]] = [
-        ("surface", lambda: _surface(content, pictures, limits)),
-        ("frame", lambda: _frame(content, pictures, limits)),
-        ("maps", lambda: _maps(content, pictures, limits)),
-        ("budget", lambda: _budget(content)),
-        ("repeats", lambda: _repeats(content, pictures, limits)),
-        ("calibrations", lambda: evidence.calibrations(content, limits)),
-        ("frames", lambda: evidence.pictures_used(content, limits)),
-        ("", lambda: evidence.warnings(content, limits)),
-        ("remarks", lambda: evidence.remarks(content)),
-        ("settings", lambda: evidence.settings(content, limits)),
-        ("", lambda: evidence.inputs(content, limits)),
+        ("surface", lambda: _surface(look, content, pictures, limits)),
+        ("frame", lambda: _frame(look, content, pictures, limits)),
+        ("points", lambda: _points(look, pictures, limits)),
+        ("maps", lambda: _maps(look, content, pictures, limits)),
+        ("deviation", lambda: _deviations(look, content, pictures, limits)),
+        ("budget", lambda: _budgets(look, content, limits)),
+        ("repeats", lambda: _repeats(look, content, pictures, limits)),
+        ("studies", lambda: studies(look, content, pictures, limits)),
+        ("calibrations", lambda: evidence.calibrations(look, content, limits)),
+        ("frames", lambda: evidence.pictures_used(look, content, limits)),
+        ("", lambda: evidence.warnings(look, content, limits)),
+        ("remarks", lambda: evidence.remarks(look, content)),
+        ("settings", lambda: evidence.settings(look, content, limits)),
+        ("", lambda: evidence.inputs(look, content, limits)),
+        ("signatures", lambda: signatures(look, content)),
     ]
     chosen = [flowable for name, part in parts if name not in content.hidden for flowable in part()]
     return [
-        *_title(content),
+        *head(look, content),
         Spacer(0, 4 * mm),
-        result_box(content, TEXT_WIDTH),
-        *_not_covered(content),
+        Bookmark("result", look.words("Result")),
+        result_box(look, content, TEXT_WIDTH),
+        *_results(look, content),
+        *_not_covered(look, content),
         *chosen,
-        *evidence.end(content),
+        *evidence.end(look, content),
     ]
 
 
-def _title(content: ReportContent) -> list[Flowable]:
-    head = tables.plain_table(
-        [[text(TITLE, "title"), text(content.laboratory, "laboratory")]], [0.5 * TEXT_WIDTH, 0.5 * TEXT_WIDTH]
-    )
-    head.setStyle([("VALIGN", (0, 0), (-1, -1), "BOTTOM"), ("BOTTOMPADDING", (0, 0), (-1, -1), 3)])
-    left = {
-        "Part": content.part or "not named",
-        "Serial number": content.serial,
-        "Customer": content.customer,
-        "Operator": content.operator,
-        "Temperatures": temperatures_line(content.air_celsius, content.part_celsius),
-    }
-    right = {
-        "Report": content.report_id,
-        "Date and time": f"{content.timestamp:%Y-%m-%d %H:%M:%S %Z}".strip(),
-        "Sweeps located by": content.method,
-    }
-    columns = [
-        tables.pairs_table({label: value for label, value in pairs.items() if value}, 81 * mm, 27 * mm)
-        for pairs in (left, right)
-    ]
-    rule = HRFlowable(width="100%", thickness=1.4, color=color(ACCENT), spaceBefore=0, spaceAfter=4)
-    return [head, rule, tables.side_by_side([columns[0]], [columns[1]], TEXT_WIDTH)]
-
-
-def _not_covered(content: ReportContent) -> list[Flowable]:
-    stated = content.air_celsius is not None or content.part_celsius is not None
-    gauge = content.gauge
-    general = limits_of_thickness(gauge, temperatures=stated) if gauge else limits_of_cloud(temperatures=stated)
-    sentences = general + content.limits
-    return [section("What this result does not cover", list(bullets(sentences)))]
-
-
-def _surface(content: ReportContent, pictures: Mapping[str, ImageReader], limits: Limits) -> list[Flowable]:
-    if "surface" not in pictures:
-        return [section("Measured surface", [text("No point was measured, so there is no surface to show.")])]
-    drawn = len(content.mesh.triangles)
-    what = f"Mesh of {grouped(drawn)} triangles" if drawn else f"Cloud of {grouped(len(content.cloud))} points"
-    above = "the lower face" if content.gauge else "the farthest points, towards the camera"
-    caption = (
-        f"{what}, in parallel projection, shaded; colour: height above {above}. "
-        "Dimensions are those of the measured area. Blank: not measured."
-    )
-    return [section("Measured surface", [Picture(pictures["surface"], limits.picture_scale), text(caption, "caption")])]
-
-
-def _frame(content: ReportContent, pictures: Mapping[str, ImageReader], limits: Limits) -> list[Flowable]:
-    overlay = content.overlay
-    if overlay is None:
+def _results(look: Look, content: ReportContent) -> list[Flowable]:
+    """The table of all results; one alone is told in full above."""
+    if len(content.characteristics) < 2:
         return []
-    caption = (
-        f"Frame {overlay.name}, brightened, with {count(len(overlay.crossings), 'crossing')} of the hand-moved line "
-        "and the fan. σ is the standard uncertainty of the depth of the points on the hand-moved line."
+    return [Spacer(0, 3 * mm), result_table(look, content)]
+
+
+def _not_covered(look: Look, content: ReportContent) -> list[Flowable]:
+    stated = content.air_celsius is not None or content.part_celsius is not None
+    words, gauge = look.words, content.gauge
+    if len(content.characteristics) > 1:
+        general = limits_of_inspection(words, temperatures=stated, corrected=content.at_reference)
+    elif gauge:
+        general = limits_of_thickness(gauge, words, temperatures=stated)
+    else:
+        general = limits_of_cloud(words, temperatures=stated)
+    sentences = general + tuple(words.known(limit) for limit in content.limits)
+    return [section(look, "limits", "What this result does not cover", list(look.bullets(sentences)))]
+
+
+def _surface(look: Look, content: ReportContent, pictures: Pictures, limits: Limits) -> list[Flowable]:
+    words = look.words
+    if "surface" not in pictures:
+        nothing = look.say("No point was measured, so there is no surface to show.")
+        return [section(look, "surface", "Measured surface", [nothing])]
+    drawn = len(content.mesh.triangles)
+    if drawn:
+        what = words("Mesh of {n} triangles", n=grouped(drawn))
+    else:
+        what = words("Cloud of {n} points", n=grouped(len(content.cloud)))
+    above = "height above the lower face" if content.gauge else "height above the farthest points, towards the camera"
+    caption = words(
+        "{what}, in parallel projection, shaded; colour: {height}. Dimensions are those of the measured area. Blank: "
+        "not measured.",
+        what=what,
+        height=words(above),
     )
-    body = [Picture(pictures["frame"], limits.picture_scale), text(caption, "caption")]
-    return [section("One frame of the scan", body)]
+    body = [Picture(pictures["surface"], limits.picture_scale), look.text(caption, "caption")]
+    return [section(look, "surface", "Measured surface", body)]
 
 
-def _maps(content: ReportContent, pictures: Mapping[str, ImageReader], limits: Limits) -> list[Flowable]:
+def _frame(look: Look, content: ReportContent, pictures: Pictures, limits: Limits) -> list[Flowable]:
+    overlay = content.overlay
+    if overlay is None or "frame" not in pictures:
+        return []
+    caption = look.words(
+        "Frame {name}, brightened, with {crossings} of the hand-moved line and the fan. σ is the standard uncertainty "
+        "of the depth of the points on the hand-moved line.",
+        name=overlay.name,
+        crossings=look.words.count(len(overlay.crossings), "crossing"),
+    )
+    body = [Picture(pictures["frame"], limits.picture_scale), look.text(caption, "caption")]
+    return [section(look, "frame", "One frame of the scan", body)]
+
+
+def _points(look: Look, pictures: Pictures, limits: Limits) -> list[Flowable]:
+    if "points" not in pictures:
+        return []
+    caption = look.say(
+        "Where in the picture the points lie that each result rests on; grey: other points of the cloud.", "caption"
+    )
+    body = [Picture(pictures["points"], limits.picture_scale), caption]
+    return [section(look, "points", "Points the results rest on", body)]
+
+
+def _maps(look: Look, content: ReportContent, pictures: Pictures, limits: Limits) -> list[Flowable]:
     if "maps" not in pictures:
         return []
     picture = Picture(pictures["maps"], limits.picture_scale)
     if content.gauge is None:
-        caption = "Mean of the points in each cell of the picture; grey: no point."
-        return [section("Depth and its uncertainty over the picture", [picture, text(caption, "caption")])]
-    caption = (
+        caption = look.say("Mean of the points in each cell of the picture; grey: no point.", "caption")
+        return [section(look, "maps", "Depth and its uncertainty over the picture", [picture, caption])]
+    caption = look.say(
         "Distance of the points from the fitted plane, mean per cell, towards the camera positive (orange); grey: no "
         "point. Along: to the right in the picture; across: upwards in the picture. Spread: share of the points per "
-        "bin, what lies beyond counted in the last one."
+        "bin, what lies beyond counted in the last one.",
+        "caption",
     )
-    return [
-        section(
-            "Residuals of both faces", [_faces(content.gauge), Spacer(0, 2 * mm), picture, text(caption, "caption")]
-        )
-    ]
+    body = [_faces(look, content.gauge), Spacer(0, 2 * mm), picture, caption]
+    return [section(look, "maps", "Residuals of both faces", body)]
 
 
-def _faces(gauge: GaugeResult) -> Flowable:
-    heads = [("Face", "head"), ("points", "head_number"), ("rms of the residuals, mm", "head_number")]
-    heads += [
-        ("flatness (95 % of the points), mm", "head_number"),
-        ("angle between the faces, fitted freely", "head_number"),
-    ]
-    rows: list[list[Flowable]] = [[text(words, style) for words, style in heads]]
+def _faces(look: Look, gauge: GaugeResult) -> Flowable:
+    names = (
+        "Face",
+        "points",
+        "rms of the residuals, mm",
+        "flatness (95 % of the points), mm",
+        "angle between the faces, fitted freely",
+    )
+    fixed = look.words.fixed
+    rows: list[list[Flowable]] = [heads(look, *names, numbers=(1, 2, 3, 4))]
     for name, face, angle in (
         ("Upper", gauge.upper, f"{fixed(math.degrees(gauge.parallelism), 3)}°"),
         ("Lower", gauge.lower, ""),
     ):
         numbers = (grouped(len(face.indices)), fixed(face.rms_mm, 3), fixed(face.flatness_mm, 3), angle)
-        rows.append([text(name, "small"), *(text(number, "number") for number in numbers)])
-    return tables.ruled_table(rows, [TEXT_WIDTH * share for share in (0.1, 0.12, 0.22, 0.28, 0.28)])
+        rows.append([look.say(name, "small"), *(look.text(number, "number") for number in numbers)])
+    return ruled_table(rows, [TEXT_WIDTH * share for share in (0.1, 0.12, 0.22, 0.28, 0.28)])
 
 
-def _budget(content: ReportContent) -> list[Flowable]:
-    if content.gauge is None:
-        return []
-    return [section("Uncertainty budget of the thickness", [tables.budget_table(content.gauge, TEXT_WIDTH)])]
+def _deviations(look: Look, content: ReportContent, pictures: Pictures, limits: Limits) -> list[Flowable]:
+    shown = [(number, one) for number, one in enumerate(content.deviations) if f"deviation-{number}" in pictures]
+    parts: list[Flowable] = []
+    for place, (number, one) in enumerate(shown):
+        caption = look.words(
+            "{name}: measured − nominal, outwards positive, as the camera sees it. Marks by quarters of the tolerance "
+            "of {tolerance} mm: + ++ +++ outwards, − −− −−− inwards, with ! beyond it. Grey: not compared.",
+            name=one.name,
+            tolerance=look.words.general(one.tolerance_mm),
+        )
+        body: list[Flowable] = [
+            Picture(pictures[f"deviation-{number}"], limits.picture_scale),
+            look.text(caption, "caption"),
+        ]
+        title = "Deviation from the nominal surface"
+        parts.append(KeepTogether(body) if place else section(look, "deviation", title, body))
+    return parts
 
 
-def _repeats(content: ReportContent, pictures: Mapping[str, ImageReader], limits: Limits) -> list[Flowable]:
-    head = repeats_head(content)
-    if not head:
+def _budgets(look: Look, content: ReportContent, limits: Limits) -> list[Flowable]:
+    """Of every characteristic that has one, each with a heading that the table of results leads to."""
+    known = [(number, one) for number, one in enumerate(content.characteristics) if one.budget]
+    parts: list[Flowable] = []
+    for place, (number, one) in enumerate(known[: limits.budgets]):
+        title = look.words("Uncertainty budget of {name}", name=shown_name(one, look.words))
+        body: list[Flowable] = [
+            Bookmark(budget_key(number), title, 1 if place or len(known) > 1 else 0),
+            look.text(title, "small_strong" if len(known) > 1 else "section"),
+            budget_table(look, one),
+            Spacer(0, 2 * mm),
+        ]
+        first = not place and len(known) > 1
+        parts.append(section(look, "budget", "Uncertainty budget", body) if first else KeepTogether(body))
+    return [*parts, *more_line(look, len(known) - limits.budgets, "inspection.json")]
+
+
+def _repeats(look: Look, content: ReportContent, pictures: Pictures, limits: Limits) -> list[Flowable]:
+    first = repeats_head(look, content)
+    if not first:
         return []
     if "repeats" in pictures:
-        caption = "Thickness with ±U of each scan, in the order of measuring."
-        head += [Spacer(0, 2 * mm), Picture(pictures["repeats"], limits.picture_scale), text(caption, "caption")]
-    return [section("Repeated scans", head), Spacer(0, 2 * mm), *repeats_table(content, limits.repeats)]
+        caption = look.say("Thickness with ±U of each scan, in the order of measuring.", "caption")
+        first += [Spacer(0, 2 * mm), Picture(pictures["repeats"], limits.picture_scale), caption]
+    head_part = section(look, "repeats", "Repeated scans", first)
+    return [head_part, Spacer(0, 2 * mm), *repeats_table(look, content, limits.repeats)]

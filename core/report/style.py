@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 from xml.sax.saxutils import escape
@@ -122,29 +123,37 @@ def _style(name: str, size: float, leading: float, **options: object) -> Paragra
     return ParagraphStyle(name, fontSize=size, leading=leading, **(defaults | options))
 
 
-STYLES = {
-    "title": _style("title", 20, 24, fontName=BOLD, textColor=color(ACCENT)),
-    "laboratory": _style("laboratory", 8.5, 11, alignment=TA_RIGHT, textColor=color(MUTED)),
-    "section": _style("section", 10.5, 13, fontName=BOLD, textColor=color(ACCENT), spaceBefore=9, spaceAfter=3),
-    "body": _style("body", 8, 11),
-    "strong": _style("strong", 8, 11, fontName=BOLD),
-    "small": _style("small", 7, 9.4),
-    "label": _style("label", 7, 9.4, textColor=color(MUTED)),
-    "number": _style("number", 7, 9.4, alignment=TA_RIGHT),
-    "number_strong": _style("number_strong", 7, 9.4, alignment=TA_RIGHT, fontName=BOLD),
-    "small_strong": _style("small_strong", 7, 9.4, fontName=BOLD),
-    "head": _style("head", 7, 9.4, textColor=color(MUTED)),
-    "head_number": _style("head_number", 7, 9.4, textColor=color(MUTED), alignment=TA_RIGHT),
-    "caption": _style("caption", 7, 9.4, textColor=color(MUTED), spaceBefore=2),
-    "bullet": _style("bullet", 7.5, 10.2, leftIndent=8, bulletIndent=0, spaceAfter=1.2),
-    "result": _style("result", 20, 25, fontName=BOLD),
-    "fact": _style("fact", 9, 12, fontName=BOLD),
-    "mono": _style("mono", 5.6, 7.6, fontName=MONO),
-    "hash": _style("hash", 6, 7.8),
-    "hash_folder": _style("hash_folder", 6, 7.8, fontName=BOLD),
-    "end": _style("end", 7, 9.4, alignment=TA_CENTER, textColor=color(MUTED), spaceBefore=6),
-}
-"""Every type style of the report, by name."""
+@cache
+def styles_of(accent: str) -> Mapping[str, ParagraphStyle]:
+    """Every type style of the report, by name; headings in `accent`."""
+    return {
+        "title": _style("title", 20, 24, fontName=BOLD, textColor=color(accent)),
+        "laboratory": _style("laboratory", 8.5, 11, alignment=TA_RIGHT, textColor=color(MUTED)),
+        "section": _style("section", 10.5, 13, fontName=BOLD, textColor=color(accent), spaceBefore=9, spaceAfter=3),
+        "body": _style("body", 8, 11),
+        "strong": _style("strong", 8, 11, fontName=BOLD),
+        "small": _style("small", 7, 9.4),
+        "label": _style("label", 7, 9.4, textColor=color(MUTED)),
+        "number": _style("number", 7, 9.4, alignment=TA_RIGHT),
+        "number_strong": _style("number_strong", 7, 9.4, alignment=TA_RIGHT, fontName=BOLD),
+        "small_strong": _style("small_strong", 7, 9.4, fontName=BOLD),
+        "head": _style("head", 7, 9.4, textColor=color(MUTED)),
+        "head_number": _style("head_number", 7, 9.4, textColor=color(MUTED), alignment=TA_RIGHT),
+        "rule": _style("rule", 6, 7.8, textColor=color(MUTED)),
+        "caption": _style("caption", 7, 9.4, textColor=color(MUTED), spaceBefore=2),
+        "bullet": _style("bullet", 7.5, 10.2, leftIndent=8, bulletIndent=0, spaceAfter=1.2),
+        "result": _style("result", 20, 25, fontName=BOLD),
+        "fact": _style("fact", 9, 12, fontName=BOLD),
+        "mono": _style("mono", 5.6, 7.6, fontName=MONO),
+        "hash": _style("hash", 6, 7.8),
+        "hash_folder": _style("hash_folder", 6, 7.8, fontName=BOLD),
+        "footer": _style("footer", 6, 7.2, alignment=TA_CENTER, textColor=color(MUTED)),
+        "end": _style("end", 7, 9.4, alignment=TA_CENTER, textColor=color(MUTED), spaceBefore=6),
+    }
+
+
+STYLES = styles_of(ACCENT)
+"""Those of a report without a template."""
 
 
 def text(words: str, style: str = "body") -> Paragraph:

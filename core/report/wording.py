@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import math
-from decimal import ROUND_HALF_EVEN, Decimal
 
 from core.image.targets import Charuco, Checkerboard, CircleGrid, Target
+from core.inspect.characteristic import Characteristic
 from core.inspect.results import GaugeResult
+from core.report.language import ENGLISH, Words, grouped
 
-COVERAGE = {1.0: "68 %", 2.0: "95 %", 3.0: "99.7 %"}
-"""Coverage of a normal distribution, for the factors k in common use."""
+__all__ = ["grouped"]
+
+COVERAGE = {1.0: "68", 2.0: "95", 3.0: "99.7"}
+"""Coverage of a normal distribution in %, for the factors k in common use."""
 
 VERDICTS = {
     "conforming": "Conforming",
@@ -28,15 +31,8 @@ def decimals_of(uncertainty: float) -> int:
 
 
 def fixed(value: float, decimals: int, *, signed: bool = False) -> str:
-    """`value` with so many decimals (negative: rounded to tens, hundreds), true minus sign, no minus zero."""
-    if not math.isfinite(value):
-        return "unknown"
-    step = Decimal(1).scaleb(-decimals)
-    rounded = Decimal(repr(float(value))).quantize(step, rounding=ROUND_HALF_EVEN)
-    if rounded == 0:
-        rounded = abs(rounded)
-    text = f"{rounded:+f}" if signed and rounded != 0 else f"{rounded:f}"
-    return text.replace("-", "−")
+    """`value` in English with so many decimals: see `Words.fixed`."""
+    return ENGLISH.fixed(value, decimals, signed=signed)
 
 
 def with_uncertainty(value: float, uncertainty: float) -> tuple[str, str]:
@@ -46,92 +42,183 @@ def with_uncertainty(value: float, uncertainty: float) -> tuple[str, str]:
 
 
 def count(number: int, noun: str) -> str:
-    """'1 frame', '1 204 frames' (no-break spaces between thousands)."""
-    plural = "" if number == 1 else "s"
-    return f"{grouped(number)} {noun}{plural}"
-
-
-def grouped(number: int) -> str:
-    """An integer with no-break spaces between thousands."""
-    return f"{number:,}".replace(",", "\u00a0")
+    """'1 frame', '1 204 frames', in English, whatever the noun."""
+    return f"{grouped(number)} {noun}{'' if number == 1 else 's'}"
 
 
 def thickness_line(gauge: GaugeResult) -> str:
     """'50.012 mm ± 0.024 mm (k = 2)'."""
-    if not math.isfinite(gauge.U_mm):
-        return f"{fixed(gauge.thickness_mm, 3)} mm (uncertainty unknown)"
-    value, uncertainty = with_uncertainty(gauge.thickness_mm, gauge.U_mm)
-    return f"{value} mm ± {uncertainty} mm (k = {gauge.k:g})"
+    return _line(gauge.thickness_mm, gauge.U_mm, gauge.k, "mm", ENGLISH)
 
 
-def uncertainty_sentence(gauge: GaugeResult) -> str:
+def value_line(one: Characteristic, words: Words = ENGLISH) -> str:
+    """'50.012 mm ± 0.024 mm (k = 2)', or the same in degrees."""
+    unit, factor = shown_unit(one)
+    return _line(factor * one.value, factor * one.U, one.k, unit, words)
+
+
+def shown_name(one: Characteristic, words: Words = ENGLISH) -> str:
+    """What a characteristic is called: in the report's language where it is called after its kind alone."""
+    return words.known(one.name) if one.name == one.kind else one.name
+
+
+def shown_unit(one: Characteristic) -> tuple[str, float]:
+    """The unit a characteristic is printed in, and the factor to it."""
+    return ("°", math.degrees(1.0)) if one.quantity == "angle" else ("mm", 1.0)
+
+
+def _line(value: float, U: float, k: float, unit: str, words: Words) -> str:
+    if not math.isfinite(U):
+        return f"{words.fixed(value, 3)} {unit} ({words('uncertainty unknown')})"
+    decimals = decimals_of(U)
+    return f"{words.fixed(value, decimals)} {unit} ± {words.fixed(U, decimals)} {unit} (k = {words.general(k)})"
+
+
+def uncertainty_sentence(k: float, U: float, words: Words = ENGLISH) -> str:
     """What the number behind ± means."""
-    if not math.isfinite(gauge.U_mm):
-        return "Without an uncertainty the value is no complete result of a measurement."
-    coverage = COVERAGE.get(float(gauge.k))
-    about = f", which covers about {coverage} of a normal distribution" if coverage else ""
-    return f"± is the expanded uncertainty U = k·u with k = {gauge.k:g}{about}; u is the combined standard uncertainty."
+    if not math.isfinite(U):
+        return words("Without an uncertainty the value is no complete result of a measurement.")
+    coverage = COVERAGE.get(float(k))
+    meaning = words("± is the expanded uncertainty U = k·u with k = {k}", k=words.general(k))
+    if coverage:
+        share = words.numeral(coverage)
+        meaning += words(", which covers about {share} % of a normal distribution", share=share)
+    return meaning + words("; u is the combined standard uncertainty.")
 
 
 def verdict_sentence(gauge: GaugeResult) -> str:
-    """Why the verdict is what it is (ISO 14253-1), with the numbers that decide."""
+    """Why the verdict on a thickness is what it is (ISO 14253-1), with the numbers that decide."""
     if not gauge.verdict or gauge.nominal_mm is None or gauge.tolerance_mm is None or gauge.deviation_mm is None:
         return "No nominal value with a tolerance was given, so the thickness is stated without a verdict."
-    if not math.isfinite(gauge.U_mm):
-        return "The uncertainty is unknown, so neither conformity nor non-conformity is proven."
-    decimals = max(decimals_of(gauge.U_mm), 0)
-    deviation = fixed(abs(gauge.deviation_mm), decimals)
-    U = fixed(gauge.U_mm, decimals)
-    tolerance = f"{gauge.tolerance_mm:g}"
-    span = f"the deviation of {deviation} mm from the nominal value"
-    if gauge.verdict == "conforming":
-        return f"Conformity is proven: {span}, enlarged by U = {U} mm, stays within the tolerance of ±{tolerance} mm."
-    if gauge.verdict == "not conforming":
-        return (
-            f"Non-conformity is proven: {span}, even lessened by U = {U} mm, "
-            f"is outside the tolerance of ±{tolerance} mm."
+    tolerance = ENGLISH.general(gauge.tolerance_mm)
+    return _reason(gauge.verdict, gauge.deviation_mm, gauge.U_mm, f"±{tolerance} mm", "mm", ENGLISH)
+
+
+def decision_sentence(one: Characteristic, words: Words = ENGLISH) -> str:
+    """Why the decision on a characteristic is what it is (ISO 14253-1), with the numbers that decide."""
+    if one.limits is None or one.deviation is None:
+        return words("No nominal value with a tolerance was given, so the result is stated without a verdict.")
+    unit, factor = shown_unit(one)
+    deviation = factor * one.deviation
+    return _reason(one.verdict, deviation, factor * one.U, tolerance_words(one, words), unit, words)
+
+
+def tolerance_words(one: Characteristic, words: Words = ENGLISH) -> str:
+    """'±0.2 mm', '−0.1 to +0.3 mm', 'at most +0.05 mm': the permitted deviations."""
+    unit, factor = shown_unit(one)
+    if one.limits is None:
+        return ""
+    low, high = factor * one.limits.lower, factor * one.limits.upper
+    if math.isinf(low) and math.isinf(high):
+        return ""
+    if math.isinf(low):
+        return words("at most {limit}", limit=f"{_signed(high, words)}\u00a0{unit}")
+    if math.isinf(high):
+        return words("at least {limit}", limit=f"{_signed(low, words)}\u00a0{unit}")
+    if math.isclose(-low, high):
+        return f"±{words.general(high)}\u00a0{unit}"
+    return words("{low} to {high}", low=_signed(low, words), high=f"{_signed(high, words)}\u00a0{unit}")
+
+
+def _signed(value: float, words: Words) -> str:
+    return words.numeral(f"{value:+g}") if value else "0"
+
+
+def _reason(verdict: str, deviation: float, U: float, tolerance: str, unit: str, words: Words) -> str:
+    if not math.isfinite(U):
+        return words("The uncertainty is unknown, so neither conformity nor non-conformity is proven.")
+    decimals = max(decimals_of(U), 0)
+    shown = {
+        "deviation": f"{words.fixed(abs(deviation), decimals)} {unit}",
+        "U": f"{words.fixed(U, decimals)} {unit}",
+        "tolerance": tolerance,
+    }
+    if verdict == "conforming":
+        return words(
+            "Conformity is proven: the deviation of {deviation} from the nominal value, enlarged by U = {U}, stays "
+            "within the tolerance of {tolerance}.",
+            **shown,
         )
-    return (
-        f"Neither conformity nor non-conformity is proven: a limit of the tolerance of ±{tolerance} mm lies inside the "
-        f"interval of {deviation} mm ± {U} mm (deviation and U). A smaller uncertainty is needed for a decision."
+    if verdict == "not conforming":
+        return words(
+            "Non-conformity is proven: the deviation of {deviation} from the nominal value, even lessened by U = {U}, "
+            "is outside the tolerance of {tolerance}.",
+            **shown,
+        )
+    return words(
+        "Neither conformity nor non-conformity is proven: a limit of the tolerance of {tolerance} lies inside the "
+        "interval of {deviation} ± {U} (deviation and U). A smaller uncertainty is needed for a decision.",
+        **shown,
     )
 
 
-def limits_of_thickness(gauge: GaugeResult, *, temperatures: bool = False) -> tuple[str, ...]:
+def limits_of_thickness(gauge: GaugeResult, words: Words = ENGLISH, *, temperatures: bool = False) -> tuple[str, ...]:
     """What no thickness of this instrument covers; `temperatures`: whether somebody stated them."""
-    rule = gauge.rule or "distance of two parallel planes fitted to the points of both faces"
+    rule = words.known(gauge.rule or "distance of two parallel planes fitted to the points of both faces")
     return (
-        f"The thickness is the {rule}. It is no local length: form deviations of the faces are stated apart, as "
-        "flatness.",
-        "The result rests on one scan. Repeatability over several scans is in it only where the uncertainty "
-        "budget names it.",
-        limit_of_temperature(temperatures),
-        "Faces turned away from the camera or in the shadow of a laser were not measured.",
+        words(
+            "The thickness is the {rule}. It is no local length: form deviations of the faces are stated apart, as "
+            "flatness.",
+            rule=rule,
+        ),
+        words(
+            "The result rests on one scan. Repeatability over several scans is in it only where the uncertainty "
+            "budget names it."
+        ),
+        limit_of_temperature(temperatures, words),
+        words("Faces turned away from the camera or in the shadow of a laser were not measured."),
     )
 
 
-def limits_of_cloud(*, temperatures: bool = False) -> tuple[str, ...]:
+def limits_of_inspection(
+    words: Words = ENGLISH, *, temperatures: bool = False, corrected: bool = False
+) -> tuple[str, ...]:
+    """What no inspection of this instrument covers; `corrected`: whether a length is stated at 20 °C."""
+    temperature = words("Lengths are stated at 20 °C only where a note of theirs says so; the temperatures used are "
+                        "those the plan states.")  # fmt: skip
+    return (
+        words("Each result is what its rule says, of the points that were measured; it is no local length."),
+        words(
+            "The result rests on one scan. Repeatability over several scans is in it only where the uncertainty "
+            "budget names it."
+        ),
+        words(
+            "The decisions are made one by one: that all characteristics together conform is less probable than that "
+            "each does."
+        ),
+        temperature if corrected else limit_of_temperature(temperatures, words),
+        words("Surfaces turned away from the camera or in the shadow of a laser were not measured."),
+    )
+
+
+def limits_of_cloud(words: Words = ENGLISH, *, temperatures: bool = False) -> tuple[str, ...]:
     """What no cloud of this instrument covers; `temperatures`: whether somebody stated them."""
     return (
-        "The σ of a point is the standard uncertainty of its depth within this scan. What is common to all points "
-        "(camera, fan) comes on top and is not in it.",
-        limit_of_temperature(temperatures),
-        "Surfaces turned away from the camera or in the shadow of a laser were not measured.",
+        words(
+            "The σ of a point is the standard uncertainty of its depth within this scan. What is common to all points "
+            "(camera, fan) comes on top and is not in it."
+        ),
+        limit_of_temperature(temperatures, words),
+        words("Surfaces turned away from the camera or in the shadow of a laser were not measured."),
     )
 
 
-def limit_of_temperature(stated: bool) -> str:
+def limit_of_temperature(stated: bool, words: Words = ENGLISH) -> str:
     """What a temperature, stated or not, did not do."""
     if stated:
-        return "Temperatures are those the operator stated; nothing is corrected to 20 °C."
-    return "Temperature was not measured; nothing is corrected to 20 °C."
+        return words("Temperatures are those the operator stated; nothing is corrected to 20 °C.")
+    return words("Temperature was not measured; nothing is corrected to 20 °C.")
 
 
-def temperatures_line(air_celsius: float | None, part_celsius: float | None) -> str:
-    """'air 20.4 °C, part 21.0 °C; not corrected to 20 °C', or nothing where neither is known."""
-    known = {"air": air_celsius, "part": part_celsius}
-    words = [f"{name} {fixed(value, 1)} °C" for name, value in known.items() if value is not None]
-    return f"{', '.join(words)}; no correction to 20 °C was made" if words else ""
+def temperatures_line(
+    air_celsius: float | None, part_celsius: float | None, words: Words = ENGLISH, *, corrected: bool = False
+) -> str:
+    """'air 20.4 °C, part 21.0 °C; no correction to 20 °C was made', or nothing where neither is known."""
+    known = {"air {value}": air_celsius, "part {value}": part_celsius}
+    shown = [words(name, value=f"{words.fixed(value, 1)} °C") for name, value in known.items() if value is not None]
+    if not shown or corrected:
+        return ", ".join(shown)
+    return f"{', '.join(shown)}; {words('no correction to 20 °C was made')}"
 
 
 def target_in_words(target: Target) -> str:

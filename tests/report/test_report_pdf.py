@@ -68,7 +68,7 @@ def test_part_rig_calibrations_software_and_budget_are_named(data, content):
         "5.000 (4.929)",
         "0.034",
         "Trisect 0.1.0",
-        "Fan's centrelines (static speckle) 0.0410 0.20 0.0082 48",
+        "Fan's centrelines (static speckle) normal 0.041 mm 0.20 0.0082 ∞ 48",
         "Combined standard uncertainty u 0.0118",
         "stripe contrast automatic (38 grey levels)",
         "saturated on 0.8 %",
@@ -80,7 +80,7 @@ def test_part_rig_calibrations_software_and_budget_are_named(data, content):
 
 def test_every_page_says_which_of_how_many_it_is(data):
     pages = reader(data).pages
-    assert 1 <= len(pages) <= 3
+    assert 1 <= len(pages) <= 4
     for number, page in enumerate(pages, start=1):
         assert f"page {number} of {len(pages)}" in page.extract_text()
     assert "End of report" in pages[-1].extract_text()
@@ -199,13 +199,13 @@ def test_a_text_beyond_measure_is_shortened_and_says_so(quick):
     assert "shortened from 20000 characters" in text
 
 
-def test_a_long_scan_stays_within_three_pages_and_counts_what_it_leaves_out(content):
+def test_a_long_scan_stays_within_four_pages_and_counts_what_it_leaves_out(content):
     hashes = {f"scan/frame_{n:05d}.png": sha256(str(n).encode()).hexdigest() for n in range(1500)}
     frames = tuple(FrameRecord(n, f"frame_{n:05d}.png", n % 3 > 0, f"reason {n % 40}") for n in range(1500))
     notes = tuple(f"Note {n} of a long series." for n in range(60))
     data = build_report(replace(content, hashes=hashes, frames=frames, notes=notes))
     text = words(data)
-    assert len(reader(data).pages) <= 3
+    assert len(reader(data).pages) <= 4
     assert "1 000 of 1 500 frames used" in text
     assert text.count("more, listed in run.json") == 3
 

@@ -1,15 +1,22 @@
+import math
+
 import numpy as np
 import pytest
 
+from core.inspect.characteristic import Characteristic, Limits
 from core.inspect.results import Face, GaugeResult
 from core.model import LightPlane
+from core.report.language import Words
 from core.report.wording import (
     decimals_of,
+    decision_sentence,
     fixed,
     grouped,
     limits_of_thickness,
     thickness_line,
+    tolerance_words,
     uncertainty_sentence,
+    value_line,
     verdict_sentence,
 )
 
@@ -51,9 +58,9 @@ def test_thousands_do_not_break():
 
 
 def test_coverage_is_only_claimed_for_known_factors():
-    assert "about 95 %" in uncertainty_sentence(gauge(50, 0.01))
-    assert "about" not in uncertainty_sentence(gauge(50, 0.01, k=2.37))
-    assert "k = 2.37" in uncertainty_sentence(gauge(50, 0.01, k=2.37))
+    assert "about 95 %" in uncertainty_sentence(2.0, 0.02)
+    assert "about" not in uncertainty_sentence(2.37, 0.02)
+    assert "k = 2.37" in uncertainty_sentence(2.37, 0.02)
 
 
 @pytest.mark.parametrize(
@@ -78,3 +85,37 @@ def test_what_the_thickness_is_follows_the_rule_of_the_fit():
     assert "distance of two parallel planes" in limits_of_thickness(gauge(50, 0.01))[0]
     ruled = gauge(50, 0.01, rule="distance of two parallel lines in one light profile")
     assert limits_of_thickness(ruled)[0].startswith("The thickness is the distance of two parallel lines in one light")
+
+
+INF = math.inf
+
+
+@pytest.mark.parametrize(
+    ("limits", "english", "german"),
+    [
+        (Limits(50, -0.2, 0.2), "±0.2\u00a0mm", "±0,2\u00a0mm"),
+        (Limits(50, -0.1, 0.3), "−0.1 to +0.3\u00a0mm", "−0,1 bis +0,3\u00a0mm"),
+        (Limits(50, 0, 0.3), "0 to +0.3\u00a0mm", "0 bis +0,3\u00a0mm"),
+        (Limits(0, -INF, 0.05), "at most +0.05\u00a0mm", "höchstens +0,05\u00a0mm"),
+        (Limits(0, -0.05, INF), "at least −0.05\u00a0mm", "mindestens −0,05\u00a0mm"),
+        (Limits(0, -INF, INF), "", ""),
+        (None, "", ""),
+    ],
+)
+def test_permitted_deviations_are_said_as_they_are_asked(limits, english, german):
+    one = Characteristic("a", "thickness", 50.0, 0.01, limits=limits)
+    assert (tolerance_words(one), tolerance_words(one, Words("de"))) == (english, german)
+
+
+def test_an_angle_is_said_in_degrees():
+    limits = Limits(math.radians(90), math.radians(-0.2), math.radians(0.2))
+    one = Characteristic("a", "angle", math.radians(89.95), math.radians(0.02), "angle", limits=limits)
+    assert value_line(one) == "89.950 ° ± 0.040 ° (k = 2)"
+    assert tolerance_words(one) == "±0.2\u00a0°"
+    assert "deviation of 0.050 ° from the nominal value, enlarged by U = 0.040 °" in decision_sentence(one)
+
+
+def test_german_numbers_have_a_comma_and_thousands_do_not_break():
+    words = Words("de")
+    assert (words.fixed(-0.0123, 3, signed=True), words.general(0.25), words.count(1204, "frame")) == (
+        "−0,012", "0,25", "1\u00a0204 Bildern")  # fmt: skip

@@ -1,0 +1,106 @@
+"""The uncertainty budget of a characteristic (GUM): one row an input, u_c, ν_eff, k and U."""
+
+from __future__ import annotations
+
+import math
+
+from reportlab.lib.units import mm
+from reportlab.platypus import Flowable, Table, TableStyle
+
+from core.inspect.characteristic import Characteristic
+from core.inspect.coverage import effective_dof
+from core.report.look import Look
+from core.report.style import MUTED, TEXT_WIDTH, color
+from core.report.tables import ShareBar, heads, plain_table, ruled_table
+from core.report.wording import decimals_of, shown_unit
+
+WIDTHS = [size * mm for size in (20, 19, 17, 17, 16, 11, 20)]
+"""Value, distribution, u of input, sensitivity, contribution, degrees of freedom, share; the rest is the source's."""
+
+BAR = 9 * mm
+
+
+def budget_table(look: Look, one: Characteristic) -> Table:
+    """Where the uncertainty comes from, how it combines, and what that gives.
+
+    Sensitivity is |c|, in the result's unit per unit of the input; contribution |c|·u(x); share of the variance.
+    """
+    unit, factor = shown_unit(one)
+    words = look.words
+    decimals = decimals_of(factor * one.u) + 1
+    variance = sum(row.u_mm**2 for row in one.budget if math.isfinite(row.u_mm)) or 1.0
+    rows: list[list[Flowable]] = [
+        [
+            *heads(look, "Input", "value", "distribution", "u(x)", "sensitivity", numbers=(1, 3, 4)),
+            look.text(f"{words('u of it')}, {unit}", "head_number"),
+            look.text("ν", "head_number"),
+            look.text(f"{words('share')}, %", "head_number"),
+        ]
+    ]
+    for row in one.budget:
+        share = row.u_mm**2 / variance if math.isfinite(row.u_mm) else math.nan
+        u = factor * row.u_mm
+        tiny = math.isfinite(u) and 0 < u < 0.5 * 10.0**-decimals
+        shown = f"< {words.fixed(10.0**-decimals, decimals)}" if tiny else words.fixed(u, decimals)
+        own = "" if row.point_mm is None else f"{_rounded(look, row.point_mm)} {row.unit}"
+        value = "" if row.value is None else f"{words.numeral(f'{row.value:.6g}')} {row.unit}"
+        sensitivity = "" if row.sensitivity is None else _rounded(look, factor * row.sensitivity)
+        source = words.known(row.source)
+        rows.append(
+            [
+                look.text(source[:1].upper() + source[1:], "small"),
+                look.text(value, "number"),
+                look.say(row.distribution, "small"),
+                look.text(own, "number"),
+                look.text(sensitivity, "number"),
+                look.text(shown, "number"),
+                look.text(_dof(look, row.dof), "number"),
+                _share(look, share),
+            ]
+        )
+    return _closed(look, one, rows, decimals)
+
+
+def _closed(look: Look, one: Characteristic, rows: list[list[Flowable]], decimals: int) -> Table:
+    """With the rows of u, ν_eff and U below."""
+    unit, factor = shown_unit(one)
+    words = look.words
+    U = words.fixed(factor * one.U, decimals_of(factor * one.U))
+    last = (
+        (words("Combined standard uncertainty u"), words.fixed(factor * one.u, decimals), "small", "number"),
+        (words("Effective degrees of freedom ν_eff"), _dof(look, effective_dof(one.budget)), "small", "number"),
+        (
+            words("Expanded uncertainty U = k·u, k = {k}", k=words.general(one.k)) + f", {unit}",
+            U,
+            "small_strong",
+            "number_strong",
+        ),
+    )
+    for label, value, style, number in last:
+        blanks = [look.text("", "small") for _ in range(4)]
+        rows.append([look.text(label, style), *blanks, look.text(value, number), look.text(""), look.text("")])
+    table = ruled_table(rows, [TEXT_WIDTH - sum(WIDTHS), *WIDTHS])
+    line = -len(last) - 1
+    spans = [("SPAN", (0, row), (4, row)) for row in range(-len(last), 0)]
+    table.setStyle(TableStyle([("LINEBELOW", (0, line), (-1, line), 0.6, color(MUTED)), *spans]))
+    return table
+
+
+def _share(look: Look, share: float) -> Flowable:
+    """The share in figures with a bar before it."""
+    if not math.isfinite(share):
+        return look.text("", "number")
+    cells = [[ShareBar(look, share, BAR), look.text(look.words.fixed(100 * share, 0), "number")]]
+    table = plain_table(cells, [BAR, WIDTHS[-1] - BAR])
+    sides = ("LEFTPADDING", "RIGHTPADDING", "TOPPADDING", "BOTTOMPADDING")
+    table.setStyle(TableStyle([(side, (0, 0), (-1, -1), 0) for side in sides]))
+    return table
+
+
+def _rounded(look: Look, u: float) -> str:
+    """To two digits."""
+    return look.words.fixed(u, decimals_of(u))
+
+
+def _dof(look: Look, dof: float) -> str:
+    return "∞" if math.isinf(dof) else look.words.fixed(dof, 0 if dof >= 10 else 1)

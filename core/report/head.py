@@ -1,0 +1,88 @@
+"""The head of page one: title, laboratory, what was measured for whom by whom, when, how and with what."""
+
+from __future__ import annotations
+
+import io
+
+from reportlab.lib.units import mm
+from reportlab.lib.utils import ImageReader
+from reportlab.platypus import Flowable, HRFlowable, Image
+
+from core.report.calibration_tables import age_words
+from core.report.content import ReportContent
+from core.report.look import Look
+from core.report.style import TEXT_WIDTH
+from core.report.tables import GAP, pairs_table, plain_table, side_by_side
+from core.report.wording import temperatures_line
+
+TITLE = "Measurement report"
+
+LOGO = (46 * mm, 16 * mm)
+"""Largest width and height of a logo."""
+
+LABEL = 27 * mm
+SHORT = 12
+"""Characters of a hash that name it on page one; the whole of it is further on."""
+
+
+def head(look: Look, content: ReportContent) -> list[Flowable]:
+    """Everything above the result."""
+    template, column = content.template, (TEXT_WIDTH - GAP) / 2
+    name = template.name or content.laboratory
+    lines = [look.text(line, "laboratory") for line in (name, *template.address) if line]
+    right: list[Flowable] = [*_logo(template.logo), *lines] or [look.text("", "laboratory")]
+    top = plain_table([[look.say(TITLE, "title"), right]], [0.5 * TEXT_WIDTH] * 2)
+    top.setStyle(
+        [
+            ("VALIGN", (0, 0), (-1, -1), "BOTTOM"),
+            ("ALIGN", (1, 0), (1, 0), "RIGHT"),
+            ("BOTTOMPADDING", (0, 0), (-1, -1), 3),
+        ]
+    )
+    rule = HRFlowable(width="100%", thickness=1.4, color=look.accent_color, spaceBefore=0, spaceAfter=4)
+    columns = [
+        pairs_table(look, {look.words(label): value for label, value in pairs.items() if value}, column, LABEL)
+        for pairs in (_job(look, content), _evidence(look, content))
+    ]
+    return [top, rule, side_by_side([columns[0]], [columns[1]], TEXT_WIDTH)]
+
+
+def _job(look: Look, content: ReportContent) -> dict[str, str]:
+    """What was measured, for whom, by whom, under which conditions."""
+    return {
+        "Part": content.part or look.words("not named"),
+        "Serial number": content.serial,
+        "Customer": content.customer,
+        "Laboratory": content.laboratory if content.template.name else "",
+        "Operator": content.operator,
+        "Temperatures": temperatures_line(
+            content.air_celsius, content.part_celsius, look.words, corrected=content.at_reference
+        ),
+        "Sweeps located by": look.words.known(content.method),
+    }
+
+
+def _evidence(look: Look, content: ReportContent) -> dict[str, str]:
+    """What names the report and all it rests on."""
+    marks = {
+        mark.of: f"{mark.id}, {look.words('age')} {age_words(look, mark, content)}" for mark in content.calibrations
+    }
+    return {
+        "Report": content.report_id,
+        "Date and time": f"{content.timestamp:%Y-%m-%d %H:%M:%S %Z}".strip(),
+        "Rig": content.rig_id,
+        "Camera calibration": marks.get("camera", ""),
+        "Fan calibration": marks.get("fan", ""),
+        "Software": f"Trisect {content.version}",
+        "Settings, SHA-256": f"{content.settings_digest[:SHORT]}…",
+        "Inputs, SHA-256": f"{content.inputs_digest[:SHORT]}…" if content.hashes else "",
+    }
+
+
+def _logo(data: bytes) -> list[Flowable]:
+    """The logo as large as there is room, on the right."""
+    if not data:
+        return []
+    columns, rows = ImageReader(io.BytesIO(data)).getSize()
+    scale = min(LOGO[0] / columns, LOGO[1] / rows)
+    return [Image(io.BytesIO(data), columns * scale, rows * scale, hAlign="RIGHT")]

@@ -1,0 +1,168 @@
+"""The section of studies, from what study.json says: figures, tables, run chart, notes and the verdict."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from reportlab.lib.units import mm
+from reportlab.lib.utils import ImageReader
+from reportlab.platypus import Flowable, KeepTogether, Spacer
+
+from core.report.content import ReportContent
+from core.report.layout import Bookmark, Limits, Picture, section
+from core.report.look import Look
+from core.report.style import TEXT_WIDTH
+from core.report.tables import heads, plain_table, ruled_table
+from core.report.wording import decimals_of
+
+TITLES = {
+    "repeats": "Repeats of {name}",
+    "type1": "Type-1 gauge study",
+    "grr": "Gauge R&R (ANOVA)",
+    "acceptance": "Acceptance check after the pattern of VDI/VDE 2634-2",
+}
+"""Heading of each kind of study."""
+
+Study = Mapping[str, Any]
+
+
+def studies(look: Look, content: ReportContent, pictures: Mapping[str, ImageReader], limits: Limits) -> list[Flowable]:
+    """Every study, each with a heading of its own."""
+    parts: list[Flowable] = []
+    for number, study in enumerate(content.studies):
+        title = look.words(TITLES[study["kind"]], **_named(look, study))
+        body: list[Flowable] = [
+            Bookmark(f"study-{number}", title, 1),
+            look.text(title, "small_strong"),
+            *_parts(look, study),
+        ]
+        if f"study-{number}" in pictures:
+            body += [Spacer(0, 2 * mm), Picture(pictures[f"study-{number}"], limits.picture_scale)]
+        body += [*look.bullets(tuple(look.words.known(note) for note in study["notes"])), Spacer(0, 2 * mm)]
+        parts.append(KeepTogether(body) if number else section(look, "studies", "Studies", body))
+    return parts
+
+
+def study_values(study: Study) -> Sequence[float]:
+    """The values of a run chart, in the order of measuring; none where a study has no such order."""
+    if study["kind"] == "repeats":
+        return [scan["value"] for scan in study["scans"]]
+    return study["values"] if study["kind"] == "type1" else []
+
+
+def study_lines(study: Study) -> dict[str, float]:
+    """The lines of a run chart by what they are called; only those that are known."""
+    if study["kind"] == "repeats":
+        run = study["run_chart"] or {}
+        lines = {"mean": study["mean"], "nominal": study["nominal"]}
+        lines |= {"upper control limit": run.get("upper"), "lower control limit": run.get("lower")}
+    else:
+        tenth = 0.1 * study["tolerance_width"]
+        lines = {"mean": study["mean"], "reference": study["reference"]}
+        lines |= {"reference + 0.1 T": study["reference"] + tenth, "reference − 0.1 T": study["reference"] - tenth}
+    return {name: value for name, value in lines.items() if value is not None}
+
+
+def _named(look: Look, study: Study) -> dict[str, str]:
+    return {"name": look.words.known(study["characteristic"])} if study["kind"] == "repeats" else {}
+
+
+def _parts(look: Look, study: Study) -> list[Flowable]:
+    """Figures and tables of one study."""
+    verdict = {"verdict": look.words.known(study["verdict"])} if study["verdict"] else {}
+    match study["kind"]:
+        case "repeats":
+            return [_figures(look, _repeats(look, study) | verdict)]
+        case "type1":
+            return [_figures(look, _type1(look, study) | verdict)]
+        case "grr":
+            return [_components(look, study), Spacer(0, 1 * mm), _figures(look, _grr(look, study) | verdict)]
+        case _:
+            return [_quantities(look, study)]
+
+
+def _repeats(look: Look, study: Study) -> dict[str, str]:
+    spread, unit = study["std"], study["unit"]
+    decimals = max(decimals_of(spread or math.nan), 3)
+    budget = study["budget_of_mean"]
+    lengths = {"mean": study["mean"], "error": study["error"], "RMSE": study["rmse"], "s (n − 1)": spread,
+               "largest error": study["largest_error"], "U of the mean": budget["U"]}  # fmt: skip
+    return {"n": f"{study['n']}"} | _lengths(look, lengths, decimals, unit)
+
+
+def _type1(look: Look, study: Study) -> dict[str, str]:
+    decimals, unit, words = max(decimals_of(study["s"] or math.nan), 3), study["unit"], look.words
+    keys = {"reference": "reference", "T": "tolerance_width", "mean": "mean", "s (n − 1)": "s", "bias": "bias"}
+    lengths = {name: study[key] for name, key in keys.items()}
+    ratios = {name: _ratio(look, study[key]) for name, key in (("Cg", "cg"), ("Cgk", "cgk"))}
+    t_test = {"p": "" if study["p"] is None else words.general(float(f"{study['p']:.2g}"))}
+    return {"n": f"{study['n']}"} | _lengths(look, lengths, decimals, unit) | ratios | t_test
+
+
+def _grr(look: Look, study: Study) -> dict[str, str]:
+    words = look.words
+    shares = {"%GRR of the total": study["grr_of_total"]["value"], "%GRR of T": study["grr_of_tolerance"]["value"]}
+    shown = {name: f"{words.fixed(100 * value, 1)} %" for name, value in shares.items() if value is not None}
+    categories = study["ndc"]["categories"]
+    return shown | {"ndc": "∞" if categories is None else f"{categories}"}
+
+
+def _components(look: Look, study: Study) -> Flowable:
+    words = look.words
+    shares = ("share of σ², %", "of the total, %", "of T, %")
+    sigma = look.text(f"σ, {study['unit']}", "head_number")
+    rows: list[list[Flowable]] = [
+        [look.say("Source of variation", "head"), sigma, *(look.say(name, "head_number") for name in shares)]
+    ]
+    for one in study["components"]:
+        percent = (one["contribution"], one["of_total"], one["of_tolerance"])
+        rows.append(
+            [
+                look.text(words.known(one["source"]), "small"),
+                look.text(words.fixed(one["sigma"], max(decimals_of(one["sigma"]), 3)), "number"),
+                *(look.text("" if value is None else words.fixed(100 * value, 1), "number") for value in percent),
+            ]
+        )
+    return ruled_table(rows, [TEXT_WIDTH * share for share in (0.32, 0.17, 0.17, 0.17, 0.17)])
+
+
+def _ratio(look: Look, value: float) -> str:
+    return "∞" if math.isinf(value) else look.words.fixed(value, 2)
+
+
+def _quantities(look: Look, study: Study) -> Flowable:
+    words = look.words
+    names = ("Quantity", "positions", "largest error, mm", "at", "limit, mm", "decision")
+    rows: list[list[Flowable]] = [heads(look, *names, numbers=(1, 2, 4))]
+    rows += [
+        [
+            look.text(words.known(one["title"]), "small"),
+            look.text(f"{len(one['readings'])}", "number"),
+            look.text(words.fixed(one["largest_error"], 4, signed=True), "number"),
+            look.text(one["worst_position"], "small"),
+            look.text("" if one["limit"] is None else words.general(one["limit"]), "number"),
+            look.text(words.known(one["verdict"]), "small_strong"),
+        ]
+        for one in study["quantities"]
+    ]
+    table = ruled_table(rows, [TEXT_WIDTH * share for share in (0.32, 0.11, 0.16, 0.14, 0.11, 0.16)])
+    table.setStyle([("LEFTPADDING", (place, 0), (place, -1), 6) for place in (3, 5)])
+    return table
+
+
+def _lengths(look: Look, lengths: Mapping[str, float | None], decimals: int, unit: str) -> dict[str, str]:
+    return {name: f"{look.words.fixed(value, decimals)} {unit}" for name, value in lengths.items() if value is not None}
+
+
+def _figures(look: Look, figures: Mapping[str, str]) -> Flowable:
+    """Figures below their names, six a row."""
+    names = list(figures)
+    rows: list[list[Flowable]] = []
+    for start in range(0, len(names), 6):
+        shown = names[start : start + 6]
+        padding = [look.text("")] * (6 - len(shown))
+        rows.append([*(look.say(name, "label") for name in shown), *padding])
+        rows.append([*(look.text(figures[name], "small_strong") for name in shown), *padding])
+    return plain_table(rows, [TEXT_WIDTH / 6] * 6)

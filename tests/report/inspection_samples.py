@@ -1,0 +1,95 @@
+"""A report of an inspection with everything in it: characteristics, studies, deviations, calibrations, a template."""
+
+import io
+import math
+from datetime import UTC, datetime, timedelta
+
+import numpy as np
+from PIL import Image
+
+from core.inspect.characteristic import Characteristic, Limits
+from core.inspect.results import Contribution
+from core.report.content import CalibrationMark, Deviations
+from core.report.template import ReportTemplate
+from core.study.grr import grr_study
+from core.study.type1 import type1_study
+
+from .report_samples import block_content, repeats
+
+INF = math.inf
+MEASURED = datetime(2026, 3, 14, 15, 9, 26, tzinfo=UTC)
+
+
+def characteristics():
+    budget = (
+        Contribution("centreline noise of the points", 0.0049, 0.0245),
+        Contribution("camera calibration", 0.0033),
+        Contribution("temperature of the part", 0.0012, 0.5, "rectangular", INF, 21.3, "°C"),
+        Contribution("repeatability of the scans", 0.0021, 0.0021, "t", 9.0),
+    )
+    u = math.sqrt(sum(row.u_mm**2 for row in budget))
+    rule = "distance of two parallel planes fitted jointly and robustly to the points of both faces"
+    rows = [
+        Characteristic("block thickness", "thickness", 50.0123, u, k=2.05, limits=Limits(50, -0.2, 0.2), budget=budget,
+                       rule=rule, notes=("Stated at 20 °C: -0.75 µm for a part at 21.3 °C.",)),
+        Characteristic("top flatness", "flatness", 0.031, 0.004, limits=Limits(0, -INF, 0.05)),
+        Characteristic("top to side", "angle", math.radians(89.95), math.radians(0.02), "angle",
+                       limits=Limits(math.radians(90), math.radians(-0.06), math.radians(0.06)),
+                       budget=(Contribution("camera calibration", math.radians(0.02)),)),
+        Characteristic("step 2 height", "height", 10.2, 0.01, limits=Limits(10, -0.05, 0.05)),
+        Characteristic("ball diameter", "diameter", 24.98, 0.02),
+        Characteristic("unknown", "distance", math.nan, math.nan, limits=Limits(3, -INF, 0.03)),
+    ]  # fmt: skip
+    return tuple(rows)
+
+
+def studies():
+    """As study.json has them, by the functions that write it."""
+    from core.files.study_file import study_values
+
+    rng = np.random.default_rng(4)
+    values = 50.0 + rng.normal(0.002, 0.004, 25)
+    parts = 49.9 + 0.05 * rng.standard_normal((5, 1, 1)) + 0.002 * rng.standard_normal((5, 3, 2))
+    return study_values(type1_study(values, 50.0, 0.4)), study_values(grr_study(parts, tolerance=0.4))
+
+
+def logo():
+    data = io.BytesIO()
+    Image.new("RGB", (300, 90), "#702030").save(data, "PNG")
+    return data.getvalue()
+
+
+def whole_content(**changes):
+    from dataclasses import replace
+
+    content = block_content()
+    faces = {"top": content.gauge.upper.indices, "bottom": content.gauge.lower.indices}
+    top = content.cloud.select(content.gauge.upper.indices)
+    deviation = 0.08 * np.sin(top.uv[:, 0] / 40)
+    template = ReportTemplate(
+        name="Werkzeugbau Süd GmbH",
+        address=("Messraum 2", "Industriestraße 5", "70565 Stuttgart"),
+        logo=logo(),
+        accent="#702030",
+        footer="Amtsgericht Stuttgart HRB 12345 · www.example.com",
+        text="Results refer to the item measured only.",
+        signatures=("M. Jørgensen", "Dr. A. Brandt"),
+    )
+    given = {
+        "inspected": characteristics(),
+        "points": faces,
+        "deviations": (Deviations("top to CAD", top.uv, deviation, 0.1),),
+        "studies": studies(),
+        "calibrations": (
+            CalibrationMark("camera", "c3f1a09b22d4", "ab" * 32, MEASURED - timedelta(days=12, hours=3)),
+            CalibrationMark("fan", "9b22d4c3f1a0", "cd" * 32),
+        ),
+        "rig_id": "0123456789ab",
+        "template": template,
+        "customer": "Brandt & Söhne",
+        "air_celsius": 20.4,
+        "part_celsius": 21.3,
+        "repeats": repeats(),
+        "remarks": "Cleaned with alcohol.",
+    }
+    return replace(content, **(given | changes))

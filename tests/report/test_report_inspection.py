@@ -1,0 +1,231 @@
+"""A report of a whole inspection: all characteristics, budgets, studies, deviations, template, languages, links."""
+
+import io
+import math
+from dataclasses import replace
+
+import numpy as np
+import pypdfium2
+import pytest
+from pypdf import PdfReader
+
+from core.inspect.characteristic import Characteristic, Limits
+from core.inspect.results import Contribution
+from core.report.content import SECTIONS
+from core.report.pdf import build_report
+from core.report.template import ReportTemplate
+from core.scan.surface import Mesh
+
+from .inspection_samples import whole_content
+
+NO_MESH = Mesh(np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0), np.zeros((0, 3), np.int64))
+PICTURES = frozenset({"surface", "frame", "points", "maps", "deviation"})
+
+
+def reader(data):
+    return PdfReader(io.BytesIO(data))
+
+
+def words(data):
+    return " ".join(" ".join(page.extract_text() for page in reader(data).pages).split())
+
+
+@pytest.fixture(scope="module")
+def content():
+    return whole_content()
+
+
+@pytest.fixture(scope="module")
+def data(content):
+    return build_report(content)
+
+
+@pytest.fixture(scope="module")
+def quick(content):
+    """The same with nothing to draw."""
+    return replace(content, hidden=PICTURES, repeats=(), studies=())
+
+
+def test_every_characteristic_is_in_the_table_with_what_is_asked_U_k_and_its_decision(data):
+    text = words(data)
+    for row in (
+        "50 mm ±0.2 mm 50.012 mm 0.013 2.05 +0.012 ✓ Conforming",
+        "top flatness 0 mm at most +0.05 mm 0.0310 mm 0.0080 2 +0.0310 ✓ Conforming",
+        "top to side 90 ° ±0.06 ° 89.950 ° 0.040 2 −0.050 ? Not proven",
+        "step 2 height 10 mm ±0.05 mm 10.200 mm 0.020 2 +0.200 ✗ Not conforming",
+        "ball diameter 24.980 mm 0.040 2 – No verdict",
+        "unknown 3 mm at most +0.03 mm unknown unknown 2 ? Not proven",
+    ):
+        assert row in text.replace("\u00a0", " "), row
+
+
+def test_the_part_is_as_good_as_its_worst_characteristic(data):
+    text = words(data)
+    assert "6 characteristics" in text
+    assert text.index("✗ Not conforming") < text.index("Characteristic nominal"), "in the box above the table"
+
+
+def test_a_budget_has_value_distribution_sensitivity_contribution_and_freedom_of_each_input(data):
+    text = words(data)
+    assert "Temperature of the part 21.3 °C rectangular 0.50 °C 0.0024 0.00120 ∞ 4" in text
+    assert "Repeatability of the scans t 0.0021 mm 1.0 0.00210 9.0 11" in text
+    assert "Effective degrees of freedom ν_eff 768" in text
+    assert "Expanded uncertainty U = k·u, k = 2.05, mm 0.013" in text
+    assert "Camera calibration normal 0.0200 ∞ 100" in text, "of the angle, in degrees"
+
+
+def test_calibrations_have_id_age_and_hash(data):
+    text = words(data)
+    assert "Camera calibration c3f1a09b22d4, age 12 days" in text
+    assert "Fan calibration 9b22d4c3f1a0, age not known" in text
+    assert "c3f1a09b22d4 2026-03-02 12:09 12 days " + "ab" * 32 in text
+    assert "Rig 0123456789ab" in text
+
+
+def test_a_length_stated_at_20_degrees_is_not_said_to_be_uncorrected(data):
+    text = words(data)
+    assert "block thickness: Stated at 20 °C: -0.75 µm for a part at 21.3 °C." in text
+    assert "no correction to 20 °C was made" not in text
+    assert "nothing is corrected" not in text
+
+
+def test_studies_are_printed_with_figures_and_notes(data):
+    text = words(data)
+    assert "Type-1 gauge study n reference T mean s (n − 1) bias 25 50.0000 mm 0.4000 mm" in text
+    assert "Gauge R&R (ANOVA) Source of variation σ, mm share of σ², % of the total, % of T, %" in text
+    assert "%GRR of the total %GRR of T ndc verdict" in text
+    assert "is pooled with the error" in text
+
+
+def test_template_gives_name_address_colour_footer_text_and_signatures(content, data):
+    pages = reader(data).pages
+    assert all("Amtsgericht Stuttgart HRB 12345" in page.extract_text() for page in pages)
+    first, last = pages[0].extract_text(), pages[-1].extract_text()
+    assert all(line in first for line in ("Werkzeugbau Süd GmbH", "70565 Stuttgart", "Brandt & Söhne"))
+    assert "Results refer to the item measured only." in last
+    assert last.index("M. Jørgensen") < last.index("Dr. A. Brandt") < last.index("End of report")
+    assert last.count("Date, signature") == 2
+    picture = pypdfium2.PdfDocument(data)[0].render(scale=1).to_numpy()[:, :, :3]
+    logo = np.argwhere(np.all(np.abs(picture.astype(int) - [0x30, 0x20, 0x70]) < 6, axis=2))
+    assert len(logo) > 1000
+    assert logo[:, 1].max() > 530, "the logo is on the right"
+
+
+def test_without_a_template_the_operator_signs(quick):
+    text = words(build_report(replace(quick, template=ReportTemplate(), operator="M. J.")))
+    assert text.count("Date, signature") == 1
+    assert "M. J. Date, signature" in text
+
+
+def test_sections_are_in_the_outline_and_results_lead_to_their_budgets(data):
+    document = reader(data)
+
+    def titles(entries):
+        return [title for entry in entries for title in (titles(entry) if isinstance(entry, list) else [entry.title])]
+
+    outline = titles(document.outline)
+    for expected in ("Result", "What this result does not cover", "Measured surface", "Uncertainty budget",
+                     "Uncertainty budget of top to side", "Studies", "Gauge R&R (ANOVA)", "Notes and warnings",
+                     "Inputs"):  # fmt: skip
+        assert expected in outline
+    pages = [" ".join(page.extract_text().split()) for page in document.pages]
+    heads = ("Notes and warnings •", "Uncertainty budget of block thickness", "Uncertainty budget of top to side")
+    assert links_of_first_page(document) == sorted(
+        number for head in heads for number, text in enumerate(pages) if head in text
+    )
+
+
+def links_of_first_page(document):
+    """Numbers of the pages that links on page one lead to, sorted."""
+    numbers = {page.indirect_reference.idnum: number for number, page in enumerate(document.pages)}
+    links = [note.get_object()["/Dest"] for note in document.pages[0].get("/Annots", ())]
+    return sorted(numbers[list.__getitem__(link, 0).idnum] for link in links)
+
+
+def test_a_hidden_budget_is_not_linked_to(quick):
+    document = reader(build_report(replace(quick, hidden=quick.hidden | {"budget"})))
+    assert len(links_of_first_page(document)) == 1, "the one to the notes"
+
+
+def test_fonts_are_embedded_and_text_is_selectable_whatever_is_printed(data):
+    for page in reader(data).pages:
+        for font in page["/Resources"]["/Font"].values():
+            assert "/FontFile2" in font.get_object()["/FontDescriptor"], font.get_object()["/BaseFont"]
+            assert "/ToUnicode" in font.get_object()
+
+
+def test_in_german_words_and_numbers_are_german_and_the_file_says_so(content):
+    data = build_report(replace(content, language="de", paper="Letter"))
+    text = words(data).replace("\u00a0", " ")
+    for expected in (
+        "Messbericht",
+        "Seite 1 von",
+        "50 mm ±0,2 mm 50,012 mm 0,013 2,05 +0,012 ✓ Konform",
+        "höchstens +0,05 mm",
+        "Was dieses Ergebnis nicht umfasst",
+        "Temperatur des Teils 21,3 °C Rechteck 0,50 °C",
+        "Erweiterte Messunsicherheit U = k·u, k = 2,05",
+        "Prüfmittelfähigkeit, Verfahren 2 (ANOVA)",
+        "Alter 12 Tage",
+        "Datum, Unterschrift",
+        "Ende des Berichts",
+    ):
+        assert expected in text, expected
+    for english in ("Uncertainty", "deviation", "Calibration", "page 1", "Report", "share"):
+        assert english not in text, english
+    document = reader(data)
+    assert document.trailer["/Root"]["/Lang"] == "de"
+    assert document.metadata.title.startswith("Messbericht TR-")
+
+
+def test_every_section_can_be_left_out_in_german_too(content):
+    text = words(build_report(replace(content, language="de", hidden=frozenset(SECTIONS))))
+    assert "In diesem Bericht bewusst weggelassen: Gemessene Oberfläche" in text
+    assert "Unterschriften." in text
+
+
+LONG = ("Ein sehr langer Merkmalsname ohne Ende über mehrere Zeilen " * 3).strip()
+
+
+@pytest.mark.parametrize("name", [LONG, "x" * 150, "Κύβος μέτρησης Концевая мера " * 4, "校正ブロックの厚さ" * 8])
+@pytest.mark.parametrize("paper", ["A4", "Letter"])
+def test_no_cell_is_cut_whatever_stands_in_it(quick, name, paper):
+    limits = Limits(50.123456, -0.123456, 123.456789)
+    budget = (Contribution(name, 0.004, 12.5, "rectangular", 7.5, 123456.789, "°C"),)
+    rows = tuple(
+        Characteristic(f"{name} {n}", "thickness", 50.1, 0.004, limits=limits, budget=budget, rule=name)
+        for n in range(3)
+    )
+    template = ReportTemplate(name=name, address=(name,), footer=name, text=name, signatures=(name, name, name, name))
+    data = build_report(
+        replace(quick, inspected=rows, template=template, customer=name, operator=name, part=name, paper=paper)
+    )
+    text = "".join(words(data).split())
+    bare = "".join(name.split())
+    assert text.count(bare) >= 3 * 3 + 2 + 4 + 3, "rows, rules, budgets, head, signatures, people"
+    for page in pypdfium2.PdfDocument(data):
+        picture = page.render(scale=1).to_numpy()
+        assert picture[:, :40].min() == picture[:, -40:].min() == 255, "nothing in the margins"
+
+
+def test_the_same_content_gives_the_same_bytes(content, data):
+    assert build_report(whole_content()) == data
+
+
+def test_the_name_of_a_report_follows_what_it_says(content):
+    changes = ({}, {"language": "de"}, {"inspected": content.inspected[:2]}, {"template": ReportTemplate(name="X")},
+               {"studies": ()})  # fmt: skip
+    assert len({replace(content, **change).report_id for change in changes}) == len(changes)
+    assert replace(content, paper="Letter").report_id == content.report_id
+
+
+def test_one_result_alone_fills_the_box_whatever_is_asked_of_it(quick):
+    for limits, expected in (
+        (Limits(0.0, -math.inf, 0.05), "Tolerance at most +0.05"),
+        (Limits(0.0, -0.1, math.inf), "Tolerance at least −0.1"),
+        (None, "without a verdict"),
+    ):
+        one = Characteristic("top flatness", "flatness", 0.031, 0.004, limits=limits)
+        text = words(build_report(replace(quick, inspected=(one,)))).replace("\u00a0", " ")
+        assert "Top flatness 0.0310 mm ± 0.0080 mm (k = 2)" in text
+        assert expected in " ".join(text.split()) or expected.replace("Tolerance ", "") in text
