@@ -28,7 +28,7 @@ from core.acquire import basler_driver
 from core.acquire.genicam import GenICamSource
 from core.acquire.source import Region, SourceChoice, SourceSettings
 from core.files.recorder import Recorder
-from core.files.recording_log import read_log
+from core.files.recording_log import lost_frames, read_log
 from core.files.rig import Rig
 from core.image.targets import BlackSquare, Checkerboard
 from core.live.events import LiveAsk, LiveNotice, LiveRequest, LiveView, Resume, Stop, TakeReference
@@ -116,7 +116,7 @@ class Soaked:
         frame is recorded or counted as lost.
         """
         came = self.sent == self.delivered + self.lost_by_driver
-        return came and self.span == self.recorded + self.lost_in_span + self.lost_by_disk
+        return came and self.span == self.recorded + self.lost_in_span
 
     @property
     def drift(self) -> float:
@@ -132,7 +132,7 @@ class Soaked:
         latency = np.quantile(self.latency_ms, [0.5, 0.95, 1.0]) if self.latency_ms else [float("nan")] * 3
         return [
             f"frames      {self.span} sent in {self.seconds:.0f} s ({self.span / self.seconds:.1f}/s): {self.recorded} "
-            f"recorded, {self.lost_in_span} lost by the driver, {self.lost_by_disk} by the disk; "
+            f"recorded, {self.lost_in_span} lost, {self.lost_by_disk} of them because of the disk; "
             f"{'adds up' if self.adds_up else 'DOES NOT ADD UP'}",
             f"log         {'names every recorded frame' if self.log_is_whole else 'IS NOT WHOLE'}",
             f"memory      {memory[0]:.0f} MB at first, {max(memory):.0f} MB at most, {memory[-1]:.0f} MB at the end; "
@@ -243,7 +243,7 @@ def _record(request: LiveRequest, camera: EmulatedCamera, folder: Path, seconds:
     result.recorded, result.lost_by_driver = ended.recorded, camera.dropped
     result.lost_by_disk = ended.dropped - camera.dropped
     result.span = log[-1].index - log[0].index + 1
-    result.lost_in_span = log[-1].dropped - log[0].dropped
+    result.lost_in_span = lost_frames(log)
     result.log_is_whole = len(log) == ended.recorded and all(
         later.index > earlier.index for earlier, later in pairwise(log)
     )

@@ -108,7 +108,6 @@ class Recorder:
         if not name or Path(name).name != name:
             raise ValueError(f"{name!r} is no plain file name")
         path = self._folder / (name if name.lower().endswith(self._ending) else f"{name}{self._ending}")
-        line = None if frame is None else LoggedFrame(path.name, frame.index, frame.time_s, frame.dropped)
         with self._changed:
             if self._closing:
                 raise ValueError("the recorder is closed")
@@ -118,6 +117,8 @@ class Recorder:
             if self._queue and self._waiting_bytes + picture.nbytes > self._limit:
                 self._dropped += 1
                 return False
+            lost = 0 if frame is None else frame.dropped + self._dropped
+            line = None if frame is None else LoggedFrame(path.name, frame.index, frame.time_s, lost)
             self._queue.append((path, picture, line))
             self._waiting_bytes += picture.nbytes
             self._changed.notify_all()

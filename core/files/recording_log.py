@@ -10,7 +10,9 @@ import contextlib
 import csv
 import errno
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 
 from core.errors import InputError
@@ -24,7 +26,8 @@ _COLUMNS = ("name", "index", "time_s", "dropped")
 class LoggedFrame:
     """One frame of a recording.
 
-    `name` of its file; `index`, `time_s` and `dropped` as in :class:`core.acquire.source.Frame`.
+    `name` of its file; `index` and `time_s` as in :class:`core.acquire.source.Frame`; `dropped` counts the frames lost
+    so far, by the source or because the disk was too slow.
     """
 
     name: str
@@ -87,3 +90,8 @@ def read_log(folder: Path) -> tuple[LoggedFrame, ...]:
         raise InputError(
             f"a line is damaged ({error})", where=path, todo="remove the file: frames need it not"
         ) from error
+
+
+def lost_frames(frames: Sequence[LoggedFrame]) -> int:
+    """How many frames were lost between the first and the last of a recording; a source opened anew counts anew."""
+    return sum(max(0, later.dropped - earlier.dropped) for earlier, later in pairwise(frames))

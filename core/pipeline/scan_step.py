@@ -13,6 +13,7 @@ from core.calibrate.results import LEFT_OUT
 from core.errors import InputError
 from core.files.pictures import Picture
 from core.files.ply import write_cloud, write_mesh
+from core.files.recording_log import lost_frames, read_log
 from core.files.recording_set import RecordingSet, require_scan
 from core.files.scan_file import ScanFile, write_scan
 from core.model import Camera
@@ -96,12 +97,26 @@ def scan_step(
         log.frames.extend(scan.frames)
         log.notes.extend(left_out_sentences(scan.frames))
         log.notes.extend(scan.notes)
+        log.notes.extend(_lost(found))
         surface = with_normals(fuse(scan.cloud, camera.image_size, progress=progress), progress=progress)
         mesh = build_mesh(surface, progress=progress)
         file = _file(features, scan, calibration.id, features_key(found, options, camera))
         with stage(progress if isinstance(progress, StageTimes) else None, "writing"):
             _write(work, scan, mesh, replace(file, common=common))
     return Measured(scan, mesh)
+
+
+def _lost(found: RecordingSet) -> tuple[str, ...]:
+    """A sentence if frames were lost while a live scan was recorded."""
+    try:
+        lost = lost_frames(read_log(found.frames[0].parent))
+    except InputError as error:
+        return (str(error),)
+    if not lost:
+        return ()
+    return (
+        f"{lost} frame{'s were' if lost > 1 else ' was'} lost while recording: camera, computer or disk were too slow.",
+    )
 
 
 def _look(

@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+import threading
 from pathlib import Path
 
 import numpy as np
@@ -11,10 +12,10 @@ import pytest
 from core.acquire.source import Frame
 from core.errors import InputError
 from core.files import recording_log
-from core.files.pictures import read_picture
+from core.files.pictures import read_picture, write_picture
 from core.files.recorder import Recorder
-from core.files.recording_log import LOG, LoggedFrame, RecordingLog, read_log
-from core.files.set_listing import scan_frames
+from core.files.recording_log import LOG, LoggedFrame, RecordingLog, lost_frames, read_log
+from core.files.set_listing import check_sizes, scan_frames
 from tests.files.killed_recorder import SIZE, picture
 
 
@@ -52,6 +53,27 @@ def test_the_log_says_when_each_frame_was_exposed_and_how_many_were_lost(tmp_pat
         LoggedFrame(f"frame1{ending}", 4, 0.1, 3),
     )
     assert (tmp_path / LOG).read_text().splitlines()[0] == "name,index,time_s,dropped"
+
+
+def test_frames_lost_by_source_and_disk_are_counted_together(tmp_path):
+    held = threading.Event()
+
+    def slowly(path, levels):
+        assert held.wait(10)
+        write_picture(path, levels)
+
+    recorder = Recorder(tmp_path, waiting_bytes=1, put=slowly)
+    taken = [recorder.write(f"frame{number}", picture(number), frame(number)) for number in range(3)]
+    held.set()
+    recorder.flush()
+    recorder.write("frame3", picture(3), frame(3, dropped=5))
+    recorder.close()
+    assert taken == [True, False, False]
+    log = read_log(tmp_path)
+    assert [one.dropped for one in log] == [0, 7]
+    assert lost_frames(log) == 7
+    reopened = LoggedFrame("frame4.png", 0, 0.0, 0)
+    assert lost_frames((*log, reopened)) == 7
 
 
 def test_pictures_without_a_frame_leave_no_log(tmp_path):
@@ -120,3 +142,19 @@ def test_a_disk_that_really_fills_up_keeps_all_that_was_taken_and_goes_on_when_t
     for number in taken:
         assert np.array_equal(read_picture(tiny_disk / "scan" / f"frame{number:02d}{ending}"), noise[number])
     assert recorder.dropped == 0
+
+
+def test_a_recording_as_pgm_opens_as_a_recording_set_with_the_very_same_frames(tmp_path):
+    levels = [np.random.default_rng(n).integers(0, 256, (40, 60)).astype(np.uint8) for n in range(4)]
+    for ending in (".png", ".pgm"):
+        recorder = Recorder(tmp_path / ending[1:] / "scan", ending=ending)
+        for number, one in enumerate(levels):
+            recorder.write(f"frame{number}", one, Frame(one, number, number / 14, 0))
+        recorder.close()
+        write_picture(tmp_path / ending[1:] / "scan" / "reference.png", levels[0])
+        reference, frames = scan_frames(tmp_path / ending[1:] / "scan")
+        assert reference is not None
+        check_sizes([reference, *frames])
+        assert [path.name for path in frames] == [f"frame{number}{ending}" for number in range(4)]
+        for path, one in zip(frames, levels, strict=True):
+            assert np.array_equal(read_picture(path), one)
