@@ -78,6 +78,17 @@ def list_sources(kind: str) -> tuple[SourceInfo, ...]:
     return () if found.missing else found.list()
 
 
+def missing_driver(kind: str) -> str:
+    """Why sources of a kind cannot be used on this computer, and what to install; "" if they can.
+
+    Raises
+    ------
+    InputError
+        If the kind is unknown.
+    """
+    return _kind(kind).missing
+
+
 def make_source(choice: SourceChoice, rig: Rig | None = None) -> FrameSource:
     """The source of a choice, not opened yet.
 

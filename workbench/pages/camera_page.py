@@ -15,7 +15,8 @@ from workbench.pages.camera_presenter import CameraPresenter, Stage, short
 from workbench.pages.camera_tabs import CoverageTab, ExpectedTab, HistoryTab, ResidualTab
 from workbench.pages.step_page import StepPage, heading, muted
 from workbench.pages.target_panel import TargetPanel
-from workbench.views.live_panel import LivePanel, LiveStrip
+from workbench.views.live_panel import LivePanel
+from workbench.views.live_strip import LiveStrip
 from workbench.views.plots import Bar, BarsWithThreshold
 from workbench.views.source_chooser import SourceChooser
 from workbench.views.tables import ListRow, ViewList

@@ -6,8 +6,7 @@ the process that runs it runs one after another.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from datetime import datetime
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +14,7 @@ from PySide6.QtCore import QEventLoop, QObject, QTimer, Signal
 
 from core.acquire.source import Lasers, Step
 from core.errors import InputError
-from core.files.unfinished import forget_recording, note_recording
+from core.files.project import Done
 from core.image.target_view import TargetView
 from core.live.events import (
     Auto,
@@ -42,11 +41,12 @@ from core.live.events import (
     TakeReference,
 )
 from core.model import Camera, Fan
-from workbench import jobs
 from workbench.bench import Bench
 from workbench.live import LiveSession
+from workbench.pages.live_ending import LiveEnding, new_folder
 from workbench.pages.live_settings import LiveSettings
-from workbench.pages.sources import folder_of, put_source
+from workbench.pages.live_state import WELL_EXPOSED, LiveState
+from workbench.pages.sources import folder_of
 from workbench.tasks import details, sentence
 
 STOP_WITHIN_MS = 5000
@@ -54,11 +54,8 @@ STOP_WITHIN_MS = 5000
 
 DISPLAY_PX = 1280
 
-LOST_SHARE = 0.02
-"""From this share of lost frames on, the rate is too high."""
 
-
-class LivePresenter(QObject):
+class LivePresenter(LiveState):
     """Starts, steers and ends the live recordings of one step.
 
     `calibration`, `cannot_start`, `there` and `pairs` may be set by the page: what is known of camera and fan when a
@@ -86,25 +83,10 @@ class LivePresenter(QObject):
     other_running = Signal(str)
     """Another page's recording runs: this question, to be answered by `start(stop_other=True)` or not at all."""
 
-    name: str
-    """Of the source, once it is open."""
-
-    image_size: tuple[int, int]
-    paused: bool
-    stopping: bool
-    gone: bool
-    """The source is unplugged."""
-
-    recorded: int
-    dropped: int
-    rate_hz: float
-    _ask: LiveAsk | None
-    _folder: Path | None
-    _project_folder: Path | None
-
     def __init__(self, bench: Bench, step: Step, parent: QObject | None = None) -> None:
-        super().__init__(parent)
-        self.bench, self.model, self.step = bench, bench.model, step
+        super().__init__(step, parent)
+        self.bench, self.model = bench, bench.model
+        self._ending = LiveEnding(bench, step, self)
         self.settings = LiveSettings(bench, step, self)
         self.settings.changed.connect(self._configure)
         self.calibration: Callable[[], tuple[Camera | None, Fan | None]] = lambda: (None, None)
@@ -112,6 +94,7 @@ class LivePresenter(QObject):
         self.there: Callable[[], tuple[TargetView, ...]] = tuple
         self.pairs = True
         self.adding = False
+        self._source = self.settings.choice
         self._auto = step != "scan"
         self._session = LiveSession(bench.live, self)
         self._session.told.connect(self._on_event)
@@ -122,7 +105,6 @@ class LivePresenter(QObject):
         self._deadline.setSingleShot(True)
         self._deadline.setInterval(STOP_WITHIN_MS)
         self._deadline.timeout.connect(self._session.abandon)
-        self._forget()
         self.model.opened.connect(self._project_opened)
         self.model.leaving.connect(self.finish)
 
@@ -132,57 +114,9 @@ class LivePresenter(QObject):
         return self._session.running
 
     @property
-    def live(self) -> bool:
-        """Whether pictures are coming: the first one is there and nobody has pressed stop."""
-        return self.running and self.name != "" and not self.stopping
-
-    @property
     def auto(self) -> bool:
         """Whether views and poses are taken without being told."""
         return self._auto
-
-    @property
-    def question(self) -> tuple[str, str]:
-        """What is asked now: sentence and button; two empty texts if nothing is."""
-        return (self._ask.sentence, self._ask.button) if self._ask is not None else ("", "")
-
-    def state_text(self) -> str:
-        """What goes on, in a few words."""
-        if not self.running:
-            return self.tr("The live source is off.")
-        if self.stopping:
-            return self.tr("Stopping …")
-        if not self.name:
-            return self.tr("Opening the source …")
-        if self.gone:
-            return self.tr("{0} is unplugged.").format(self.name)
-        if self.paused:
-            return self.tr("Paused: {0}").format(self.name)
-        return self.tr("Live: {0}").format(self.name)
-
-    def counts_text(self) -> str:
-        """Recorded and lost pictures and the rate, with their units."""
-        if not self.running:
-            return ""
-        parts = [self._recorded_text()]
-        if self.rate_hz > 0:
-            parts.append(self.tr("{0} frames/s").format(f"{self.rate_hz:.0f}"))
-        if self.step == "scan":
-            parts.append(self.tr("{0} lost").format(self.dropped))
-        return " · ".join(parts)
-
-    def lost_text(self) -> str:
-        """What to do when frames are lost, or "": only a scan needs every frame, and one now and then does no harm."""
-        total = self.recorded + self.dropped
-        if self.step != "scan" or not self.dropped or self.dropped < LOST_SHARE * total:
-            return ""
-        text = self.tr("{0} of {1} pictures were lost on the way").format(self.dropped, total)
-        if not self.rate_hz > 0:
-            return self.tr("{0}: choose a lower rate.").format(text)
-        lower = f"{int(self.rate_hz)}" if self.rate_hz >= 1 else f"{0.9 * self.rate_hz:.1f}"
-        return self.tr("{0}; {1} a second are taken: choose a rate of {2}/s or lower.").format(
-            text, f"{self.rate_hz:.1f}", lower
-        )
 
     @property
     def can_add(self) -> bool:
@@ -214,12 +148,12 @@ class LivePresenter(QObject):
             other.send(Stop())
         try:
             request = self._request(self.model.folder)
-            note_recording(self.model.folder, self.step, request.folder)
+            self._ending.begin(self.model.folder, request.folder)
         except InputError as error:
             self.bench.notices.error(str(error))
             return
-        self._forget()
-        self._folder, self._project_folder = request.folder, self.model.folder
+        self.forget()
+        self._source = request.source
         self._session.start(request)
         self.changed.emit()
 
@@ -269,6 +203,12 @@ class LivePresenter(QObject):
         """Put a picture aside that has been taken."""
         self._session.send(Discard(name))
 
+    def take_advice(self) -> None:
+        """Tell the source how to expose the stripes better, as was advised."""
+        if self.advice.settings is not None:
+            settings, self.advice = self.advice.settings, WELL_EXPOSED
+            self.settings.take(settings)
+
     def answer(self) -> None:
         """The button of what was asked has been pressed."""
         if self._ask is not None:
@@ -312,7 +252,7 @@ class LivePresenter(QObject):
             self.settings.choice,
             self.settings.values,
             self.model.project.rig,
-            _new_folder(project / "recordings", self.step),
+            new_folder(project / "recordings", self.step),
             camera,
             fan,
             self.model.project.options,
@@ -320,22 +260,9 @@ class LivePresenter(QObject):
             self._auto,
             self.pairs,
             self.there() if self.adding and self.can_add else (),
+            _calibrated_s(self.model.results),
+            ".pgm" if self.settings.ending == ".pgm" else ".png",
         )
-
-    def _recorded_text(self) -> str:
-        words = {
-            "camera": self.tr("{0} views taken"),
-            "planes": self.tr("{0} poses taken"),
-            "scan": self.tr("{0} frames recorded"),
-        }
-        return words[self.step].format(self.recorded)
-
-    def _forget(self) -> None:
-        self.name, self.image_size = "", (0, 0)
-        self.paused = self.stopping = self.gone = False
-        self.recorded = self.dropped = 0
-        self.rate_hz = 0.0
-        self._ask = self._folder = self._project_folder = None
 
     def _configure(self) -> None:
         if self.running:
@@ -343,18 +270,18 @@ class LivePresenter(QObject):
         self.changed.emit()
 
     def _on_view(self, view: LiveView) -> None:
-        self.recorded, self.dropped, self.rate_hz = view.recorded, view.dropped, view.rate_hz
+        self.hear(view)
         self.view.emit(view)
 
     def _on_event(self, event: LiveEvent) -> None:
+        self.hear(event)
         match event:
             case LiveStarted():
-                self.name, self.image_size = event.name, event.image_size
+                self.settings.opened(self._source, event.capabilities)
                 self.started.emit(event)
             case LiveTaken():
                 self.taken.emit(event)
             case LiveAsk() | LiveAnswered():
-                self._ask = event if isinstance(event, LiveAsk) else None
                 self.asked.emit(*self.question)
             case LiveNotice():
                 self.notice.emit(event.sentence)
@@ -362,11 +289,9 @@ class LivePresenter(QObject):
             case LiveSaving() if self.stopping:
                 self._deadline.start()  # it is not hanging: frames still go to the disk
             case LiveUnplugged():
-                self.gone = True
                 self.bench.notices.info(event.sentence)  # the page says it, as long as it is so
                 self.unplugged.emit(event.sentence)
             case LiveBack():
-                self.gone = False
                 self.bench.notices.info(self.tr("{0} is back; the recording goes on.").format(self.name))
                 self.back.emit()
         self.changed.emit()
@@ -378,49 +303,17 @@ class LivePresenter(QObject):
         self.recorded, self.dropped = ended.recorded, ended.dropped
         if not ended.error and (lost := self.lost_text()):
             self.bench.notices.warning(lost)
-        asked, self._ask = self._ask, None
-        project, self.stopping, self.paused, self.gone = self._project_folder, False, False, False
-        if asked is not None:
+        asked = self.question[0]
+        self.over()
+        if asked:
             self.asked.emit("", "")
-        if not ended.recorded or project is None or project != self.model.folder:
-            self._tell_ended(ended)
-        elif self.adding and (before := folder_of(self.model, self.step)) is not None:
-            self.bench.glance(
-                jobs.ADD_RECORDING,
-                before,
-                ended.folder,
-                label=self.tr("Adding the pictures that were there"),
-                on_done=lambda _: self._take(ended, keep_left_out=True),
-                on_failed=lambda _: self._take(ended),
-                on_cancelled=lambda: self._take(ended),
-            )
-        else:
-            self._take(ended)
 
-    def _take(self, ended: LiveEnded, *, keep_left_out: bool = False) -> None:
-        """The recording becomes the step's source."""
-        label = {
-            "camera": self.tr("record views of the target"),
-            "planes": self.tr("record poses of the plate"),
-            "scan": self.tr("record a scan"),
-        }[self.step]
-        put_source(self.model, self.step, ended.folder, label, keep_left_out=keep_left_out)
-        self._tell_ended(ended)
+        def finished() -> None:
+            self.adding = False
+            self.ended.emit(ended)
+            self.changed.emit()
 
-    def _tell_ended(self, ended: LiveEnded) -> None:
-        if self._project_folder is not None and (not ended.recorded or self._project_folder == self.model.folder):
-            self._forget_note(self._project_folder)
-        self.adding = False
-        self.ended.emit(ended)
-        self.changed.emit()
-
-    def _forget_note(self, project: Path) -> None:
-        """The recording is in the project: once that is on the disk, it need not be found after a crash."""
-        self.model.autosave()
-        try:
-            forget_recording(project)
-        except InputError as error:
-            self.bench.notices.error(str(error))
+        self._ending.hand_over(ended, adding=self.adding, then=finished)
 
     def _on_failed(self, problem: Any) -> None:
         """The loop did not get to its own end: it was ended, its process died, or the source could not be opened."""
@@ -429,16 +322,15 @@ class LivePresenter(QObject):
             self.bench.notices.error(why, details(problem))
             why = ""
         recorded = self.recorded
-        self._on_ended(LiveEnded(self._folder or Path(), recorded, self.dropped, why))
+        self._on_ended(LiveEnded(self._ending.folder or Path(), recorded, self.dropped, why))
 
     def _project_opened(self) -> None:
-        if self.running and self.model.folder != self._project_folder:
+        if self.running and self.model.folder != self._ending.project_folder:
             self.stop()
         self.changed.emit()
 
 
-def _new_folder(recordings: Path, step: str) -> Path:
-    """A folder that is not there yet, named by the step and the time."""
-    name = f"{step}-{datetime.now():%Y%m%d-%H%M%S}"
-    folders = (recordings / (name if number == 1 else f"{name}-{number}") for number in range(1, 1000))
-    return next(folder for folder in folders if not folder.exists())
+def _calibrated_s(results: Mapping[str, Done]) -> float | None:
+    """When the older of the two calibrations was made, in s since 1970; None if one is missing."""
+    both = [results[step].at.timestamp() for step in ("camera", "planes") if step in results]
+    return min(both) if len(both) == 2 else None

@@ -2,29 +2,39 @@
 
 from __future__ import annotations
 
+import re
+from dataclasses import replace
 from typing import Any
 
 from PySide6.QtCore import QObject, Signal
 
-from core.acquire.source import SourceChoice, SourceInfo, SourceSettings, Step
+from core.acquire.kept_settings import KeptSettings
+from core.acquire.settings import Region
+from core.acquire.source import Capabilities, SourceChoice, SourceInfo, SourceSettings, Step
 from core.errors import InputError
 from workbench import jobs
 from workbench.bench import Bench
 
-KINDS = ("simulated", "opencv", "basler", "replay")
-"""The kinds of sources, in the order of the list; the first is the one that is always there."""
+_CAMERA = ("exposure_ms", "gain_db", "rate_hz")
+_GENICAM = (*_CAMERA, "trigger", "pixel_format", "region")
 
 SETTINGS: dict[str, tuple[str, ...]] = {
-    "simulated": ("rate_hz",),
-    "opencv": ("exposure_ms", "gain_db", "rate_hz"),
-    "basler": ("exposure_ms", "gain_db", "rate_hz"),
+    "simulated": _CAMERA,
+    "opencv": _CAMERA,
     "replay": ("rate_hz",),
+    "basler": _GENICAM,
+    "genicam": _GENICAM,
+    "aravis": _GENICAM,
 }
-"""What a source of each kind can be told."""
+"""The kinds of sources in the order of the list, and what one of each may be told; the first is always there."""
+
+FIRST = next(iter(SETTINGS))
+ENDINGS = (".png", ".pgm")
+"""Of the files of a scan's frames."""
 
 
 class LiveSettings(QObject):
-    """The source chosen in the whole window; exposure, gain and rate are each step's and each kind's own."""
+    """The source chosen in the whole window, and what it is told: each source's own and each step's."""
 
     changed = Signal()
     devices_changed = Signal()
@@ -32,14 +42,20 @@ class LiveSettings(QObject):
     def __init__(self, bench: Bench, step: Step, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self._bench, self._step = bench, step
+        self._known: dict[SourceChoice, Capabilities] = {}
         self.devices: tuple[SourceInfo, ...] = ()
         self.looking = False
+        self.missing = ""
+        """Why sources of this kind cannot be used on this computer, and what to install; "" as far as is known."""
+
+        self.complaint = ""
+        """What is wrong with what was entered last; it is not used."""
 
     @property
     def kind(self) -> str:
-        """One of KINDS."""
-        kind = self._bench.settings.text("live/kind", KINDS[0])
-        return kind if kind in KINDS else KINDS[0]
+        """One of SETTINGS."""
+        kind = self._bench.settings.text("live/kind", FIRST)
+        return kind if kind in SETTINGS else FIRST
 
     @property
     def choice(self) -> SourceChoice:
@@ -49,65 +65,113 @@ class LiveSettings(QObject):
     @property
     def values(self) -> SourceSettings:
         """What the source is told; None leaves it as it is."""
-        told: dict[str, Any] = {name: self._number(name) for name in SETTINGS[self.kind]}
-        try:
-            return SourceSettings(**told)
-        except InputError:
-            return SourceSettings()  # a settings file from elsewhere
+        return self._kept().settings(self.choice, self._step).only(self.names)
 
-    def can(self, name: str) -> bool:
-        """Whether sources of this kind can be told exposure_ms, gain_db or rate_hz."""
-        return name in SETTINGS[self.kind]
+    @property
+    def names(self) -> tuple[str, ...]:
+        """What this source can be told, as far as is known: exactly once it has been open."""
+        known = self._known.get(self.choice)
+        return SETTINGS[self.kind] if known is None else known.names
+
+    @property
+    def capabilities(self) -> Capabilities:
+        """Limits and choices, once the source has been open."""
+        return self._known.get(self.choice, Capabilities())
+
+    @property
+    def ending(self) -> str:
+        """One of ENDINGS: how a scan's frames are written."""
+        ending = self._bench.settings.text("live/ending", ENDINGS[0])
+        return ending if ending in ENDINGS else ENDINGS[0]
 
     def set_kind(self, kind: str) -> None:
         """Choose the kind of source; its last device and settings come back."""
         if kind != self.kind:
             self._bench.settings.keep_text("live/kind", kind)
-            self.devices, self.looking = (), False
+            self.devices, self.looking, self.missing, self.complaint = (), False, "", ""
             self.devices_changed.emit()
             self.changed.emit()
 
     def set_id(self, identifier: str) -> None:
-        """Choose the device: its number, address, serial number or folder."""
+        """Choose the device: its number, name, address, serial number or folder."""
         if identifier != self.choice.id:
             self._bench.settings.keep_text(f"live/{self.kind}/id", identifier)
             self.changed.emit()
 
-    def set_value(self, name: str, value: float | None) -> None:
-        """Set exposure_ms, gain_db or rate_hz; None leaves it to the source."""
-        if value != self._number(name):
-            self._bench.settings.keep_text(self._key(name), "" if value is None else repr(value))
+    def set_value(self, name: str, value: Any) -> None:
+        """Set one of SourceSettings; None leaves it to the source. What no source takes is told as a complaint."""
+        try:
+            self._keep(replace(self.values, **{name: value}))
+        except InputError as error:
+            self._complain(str(error))
+
+    def set_region(self, text: str) -> None:
+        """Set the region from four whole numbers; an empty text leaves it to the source."""
+        numbers = [int(number) for number in re.findall(r"\d+", text)]
+        if text.strip() and len(numbers) != 4:
+            self._complain(self.tr("A region is four whole numbers: first column, first row, width and height."))
+            return
+        try:
+            self._keep(replace(self.values, region=Region(*numbers) if numbers else None))
+        except InputError as error:
+            self._complain(str(error))
+
+    def take(self, settings: SourceSettings) -> None:
+        """Set what of it is not None."""
+        self._keep(self.values.updated(settings))
+
+    def set_ending(self, ending: str) -> None:
+        """Choose how a scan's frames are written."""
+        if ending != self.ending:
+            self._bench.settings.keep_text("live/ending", ending)
             self.changed.emit()
 
+    def opened(self, choice: SourceChoice, capabilities: Capabilities) -> None:
+        """A source is open and says what it can be told."""
+        self._known[choice] = capabilities
+
     def look_for_devices(self) -> None:
-        """List the devices of this kind; `devices_changed` when it is done."""
+        """List the devices of this kind, and see whether its driver is there; `devices_changed` when it is done."""
         kind, self.looking = self.kind, True
 
-        def found(devices: Any) -> None:
+        def found(devices: Any, missing: str = "") -> None:
             if kind == self.kind:
-                self.devices, self.looking = tuple(devices), False
+                self.devices, self.missing, self.looking = tuple(devices), missing, False
                 self.devices_changed.emit()
 
-        def failed(_: Any) -> None:
-            found(())
+        def listed(devices: Any) -> None:
+            if devices or kind == FIRST:
+                found(devices)
+                return
+            self._look(jobs.MISSING_DRIVER, kind, lambda missing: found((), missing), lambda: found(()))
 
+        self._look(jobs.LIST_SOURCES, kind, listed, lambda: found(()))
+        self.devices_changed.emit()
+
+    def _look(self, job: jobs.Job, kind: str, done: Any, failed: Any) -> None:
         self._bench.glance(
-            jobs.LIST_SOURCES,
+            job,
             kind,
             label=self.tr("Looking for cameras"),
-            on_done=found,
-            on_failed=failed,
-            on_cancelled=lambda: failed(None),
+            on_done=done,
+            on_failed=lambda _: failed(),
+            on_cancelled=failed,
             offers={},
             replace_waiting=True,
         )
-        self.devices_changed.emit()
 
-    def _number(self, name: str) -> float | None:
-        try:
-            return float(self._bench.settings.text(self._key(name), ""))
-        except ValueError:
-            return None
+    def _kept(self) -> KeptSettings:
+        return KeptSettings.from_text(self._bench.settings.text("live/kept", ""))
 
-    def _key(self, name: str) -> str:
-        return f"live/{self.kind}/{self._step}/{name}"
+    def _keep(self, settings: SourceSettings) -> None:
+        was, self.complaint = self.complaint, ""
+        if settings != self.values:
+            kept = self._kept().with_settings(self.choice, self._step, settings)
+            self._bench.settings.keep_text("live/kept", kept.to_text())
+        elif not was:
+            return
+        self.changed.emit()
+
+    def _complain(self, sentence: str) -> None:
+        self.complaint = sentence
+        self.changed.emit()

@@ -16,7 +16,7 @@ from workbench.pages.planes_stage import Stage
 from workbench.pages.planes_tabs import HistoryTab, RigTab
 from workbench.pages.step_page import StepPage
 from workbench.pages.target_panel import TargetPanel
-from workbench.views.live_panel import LiveStrip
+from workbench.views.live_strip import LiveStrip
 from workbench.views.plots import Bar, BarsWithThreshold
 from workbench.views.source_chooser import SourceChooser
 from workbench.views.tables import ListRow, ViewList

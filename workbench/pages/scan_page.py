@@ -19,10 +19,15 @@ from workbench.pages.scan_picture import ScanPicture, View
 from workbench.pages.scan_presenter import ScanPresenter, Stage
 from workbench.pages.scan_run import short
 from workbench.pages.step_page import StepPage
-from workbench.views.live_panel import LivePanel, LiveStrip
+from workbench.views.checks_card import ChecksCard
+from workbench.views.live_panel import LivePanel
+from workbench.views.live_strip import LiveStrip
 from workbench.views.side_by_side import SideBySide
 from workbench.views.source_chooser import SourceChooser
 from workbench.views.tables import ListRow, ViewList
+
+BEFORE = ("reference", "ready")
+"""Stages of a live scan in which nothing is recorded yet."""
 
 _STEPS = {Qt.Key.Key_Left: -1, Qt.Key.Key_Right: 1}
 """Keys that go through the frames."""
@@ -51,6 +56,8 @@ class ScanPage(StepPage):
 
         self.stage = ScanCard(presenter)
         self.add_to_side(self.stage)
+        self.checks = ChecksCard()
+        self.add_to_side(self.checks)
         self.live_panel = LivePanel(presenter.live)
         self.source = SourceChooser(self.live_panel, what=self.tr("Folder with the frames of a scan"))
         self.source_fold = self.add_panel(self.tr("Recording"), self.source)
@@ -70,6 +77,7 @@ class ScanPage(StepPage):
         p, stage = self.presenter, self.presenter.stage
         live, busy = stage is Stage.LIVE, stage in (Stage.LIVE, Stage.MEASURING)
         self.stage.refresh()
+        self.checks.show_checks(p.live.checks if p.live_stage in BEFORE else ())
         self.source.set_folder(p.folder, self._folder_words())
         self.live_panel.set_primary(stage in (Stage.NONE, Stage.EMPTY))
         self.live_panel.refresh()

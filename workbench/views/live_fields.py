@@ -1,4 +1,4 @@
-"""Fields of the live controls: a device from a list or typed in, a number that may be left as it is."""
+"""Fields of the live controls: a device from a list or typed in, and settings that may be left as they are."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtWidgets import QComboBox, QDoubleSpinBox, QHBoxLayout, QToolButton, QWidget
+from PySide6.QtWidgets import QComboBox, QDoubleSpinBox, QHBoxLayout, QLineEdit, QToolButton, QWidget
 
-from core.acquire.source import SourceInfo
+from core.acquire.source import Region, SourceInfo
 from workbench.theme import icon
 from workbench.views import ask
 
@@ -70,6 +70,8 @@ class DeviceField(QWidget):
                 "simulated": self.tr("the sample's rig"),
                 "opencv": self.tr("0, the first camera"),
                 "basler": self.tr("the first camera"),
+                "genicam": self.tr("the first camera"),
+                "aravis": self.tr("the first camera"),
                 "replay": self.tr("choose a folder"),
             }.get(kind, "")
         )
@@ -109,9 +111,9 @@ class NumberField(QDoubleSpinBox):
 
     def __init__(self, none_text: str, unit: str, low: float, high: float, decimals: int) -> None:
         super().__init__()
-        self._nothing = low - 10**-decimals
+        self._usual = low, high
         self.setDecimals(decimals)
-        self.setRange(self._nothing, high)
+        self.limit(None)
         self.setSpecialValueText(none_text)
         self.setSuffix(unit)
         self.setKeyboardTracking(False)
@@ -119,8 +121,61 @@ class NumberField(QDoubleSpinBox):
         self.show_value(None)
         self.valueChanged.connect(lambda value: self.edited.emit(None if value <= self._nothing else value))
 
+    def limit(self, limits: tuple[float, float] | None) -> None:
+        """Keep to what the camera can do; None: to what any camera can."""
+        low, high = limits or self._usual
+        self.blockSignals(True)
+        self._nothing = low - 10 ** -self.decimals()
+        self.setRange(self._nothing, high)
+        self.blockSignals(False)
+
     def show_value(self, value: float | None) -> None:
         """Show a number, or that there is none."""
         self.blockSignals(True)
         self.setValue(self._nothing if value is None else value)
         self.blockSignals(False)
+
+
+class ChoiceField(QComboBox):
+    """One of several words; the first entry is "as it is", which is None."""
+
+    edited = Signal(object)
+
+    def __init__(self, none_text: str) -> None:
+        super().__init__()
+        self._none_text = none_text
+        self.addItem(none_text, None)
+        self.activated.connect(lambda _: self.edited.emit(self.currentData()))
+
+    def show_choices(self, choices: Sequence[str], chosen: str | None) -> None:
+        """Offer these; one that is chosen already is offered, too."""
+        wanted = [None, *choices, *([chosen] if chosen and chosen not in choices else [])]
+        if wanted != [self.itemData(place) for place in range(self.count())]:
+            self.clear()
+            for word in wanted:
+                self.addItem(word or self._none_text, word)
+        self.setCurrentIndex(max(self.findData(chosen), 0))
+
+
+class RegionField(QLineEdit):
+    """A part of the sensor as four whole numbers; empty is "as it is"."""
+
+    edited = Signal(str)
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._shown = ""
+        self.editingFinished.connect(self._finished)
+
+    def show_region(self, region: Region | None, sensor: tuple[int, int] | None) -> None:
+        """Show a region, or that there is none; `sensor` is (width, height), as far as it is known."""
+        shown = "" if region is None else f"{region.left} {region.top} {region.width} {region.height}"
+        whole = self.tr("as it is")
+        self.setPlaceholderText(whole if sensor is None else f"{whole} (0 0 {sensor[0]} {sensor[1]})")
+        if shown != self._shown:
+            self._shown = shown
+            self.setText(shown)
+
+    def _finished(self) -> None:
+        if self.text() != self._shown:
+            self.edited.emit(self.text())

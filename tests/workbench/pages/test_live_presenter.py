@@ -1,7 +1,7 @@
 """Live recordings as the pages steer them."""
 
 from dataclasses import replace
-from datetime import datetime
+from datetime import UTC, datetime
 from typing import cast
 
 import numpy as np
@@ -9,14 +9,17 @@ import pytest
 from PySide6.QtCore import QTimer
 
 from core.acquire.source import Lasers, SourceInfo
+from core.files.project import Done
 from core.live.events import (
     Auto,
     Capture,
     Configure,
     Discard,
+    LiveAdvice,
     LiveAnswered,
     LiveAsk,
     LiveBack,
+    LiveChecks,
     LiveEnded,
     LiveStarted,
     LiveTaken,
@@ -28,6 +31,7 @@ from core.live.events import (
     Switch,
     TakeReference,
 )
+from core.scan.preflight import Check
 from tests.workbench.hand_lane import HandLane
 from workbench import jobs
 from workbench.pages.live_presenter import LivePresenter
@@ -320,3 +324,43 @@ def test_recordings_of_one_second_have_folders_of_their_own(live, lane):
     lane.finish(LiveEnded(first, 0, 0))
     live.start()
     assert request_of(lane).folder != first
+
+
+def test_the_window_knows_every_kind_of_source_and_what_it_may_be_told():
+    from core.pipeline.sources import SOURCES
+    from workbench.pages.live_settings import SETTINGS
+
+    assert {kind: source.settings for kind, source in SOURCES.items()} == SETTINGS
+
+
+def test_each_step_and_each_source_keeps_its_own_settings(live, camera_bench):
+    scan = LivePresenter(camera_bench, "scan")
+    for presenter, exposure_ms in ((live, 40.0), (scan, 2.0)):
+        presenter.settings.set_kind("genicam")
+        presenter.settings.set_id("one")
+        presenter.settings.set_value("exposure_ms", exposure_ms)
+    live.settings.set_id("two")
+    assert live.settings.values.exposure_ms is None
+    live.settings.set_id("one")
+    assert live.settings.values.exposure_ms == 40.0
+    assert LivePresenter(camera_bench, "scan").settings.values.exposure_ms == 2.0
+
+
+def test_a_request_says_how_old_the_calibrations_are_and_how_frames_are_written(camera_bench, lane):
+    scan = LivePresenter(camera_bench, "scan")
+    scan.settings.set_ending(".pgm")
+    scan.start()
+    assert request_of(lane).ending == ".pgm" and request_of(lane).calibrated_s is None
+    lane.finish(LiveEnded(request_of(lane).folder, 0, 0))
+    older, newer = datetime(2026, 1, 2, tzinfo=UTC), datetime(2026, 3, 4, tzinfo=UTC)
+    scan.model.record_all({"camera": Done("c", at=older), "planes": Done("p", at=newer)})
+    scan.start()
+    assert request_of(lane).calibrated_s == older.timestamp()
+
+
+def test_checks_and_advice_are_gone_with_the_recording(running, lane):
+    lane.current.told.emit(LiveChecks((Check("reference", "ok", "The reference holds."),)))
+    lane.current.told.emit(LiveAdvice("Too bright.", None))
+    assert running.checks[0].state == "ok" and running.advice.sentence == "Too bright."
+    lane.finish(LiveEnded(request_of(lane).folder, 0, 0))
+    assert running.checks == () and running.advice.sentence == ""

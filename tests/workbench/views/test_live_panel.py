@@ -9,11 +9,12 @@ from PySide6.QtCore import QMimeData, QPoint, QPointF, Qt, QUrl
 from PySide6.QtGui import QDragEnterEvent, QDropEvent
 from PySide6.QtWidgets import QApplication, QLabel
 
-from core.acquire.source import SourceInfo
+from core.acquire.source import Capabilities, Region, SourceInfo, SourceSettings
 from core.files.project import new_project
 from core.live.events import (
     Auto,
     Capture,
+    LiveAdvice,
     LiveAsk,
     LiveEnded,
     LiveStarted,
@@ -23,6 +24,7 @@ from core.live.events import (
     Resume,
     TakeReference,
 )
+from core.scan.preflight import Check
 from tests.workbench.hand_lane import HandLane
 from workbench import jobs
 from workbench.bench import Bench
@@ -31,7 +33,9 @@ from workbench.pages.live_presenter import LivePresenter
 from workbench.project_model import ProjectModel
 from workbench.settings import AppSettings
 from workbench.views import ask
-from workbench.views.live_panel import LivePanel, LiveStrip
+from workbench.views.checks_card import ChecksCard
+from workbench.views.live_panel import LivePanel
+from workbench.views.live_strip import LiveStrip
 from workbench.views.source_chooser import SourceChooser
 
 LEFT = Qt.MouseButton.LeftButton
@@ -60,7 +64,8 @@ def panel(live, qtbot):
 
 
 def open_source(lane):
-    lane.current.told.emit(LiveStarted("Camera 1", (640, 480)))
+    can = Capabilities(exposure_ms=(0.1, 60.0), gain_db=(0.0, 24.0), rate_hz=(1.0, 60.0))
+    lane.current.told.emit(LiveStarted("Camera 1", (640, 480), can))
 
 
 def test_start_becomes_stop(panel, live, lane, qtbot):
@@ -101,27 +106,133 @@ def test_a_scan_takes_no_single_pictures(live, qtbot):
     assert panel.take.isHidden() and panel.auto.isHidden()
 
 
+def shown(panel):
+    """Names of the settings that can be seen."""
+    return [name for name, field in panel.form._fields().items() if not field.isHidden()]
+
+
 def test_only_settings_the_kind_has_are_shown(panel, live):
-    assert panel.exposure.isHidden() and not panel.rate.isHidden()
-    panel.kind.setCurrentIndex(panel.kind.findData("opencv"))
-    panel.kind.activated.emit(panel.kind.currentIndex())
+    live.settings.set_kind("replay")
+    assert shown(panel) == ["rate_hz"]
+    panel.form.kind.setCurrentIndex(panel.form.kind.findData("opencv"))
+    panel.form.kind.activated.emit(panel.form.kind.currentIndex())
     assert live.settings.kind == "opencv"
-    assert not panel.exposure.isHidden() and not panel.gain.isHidden()
-    assert panel.exposure.text() == "as it is"
+    assert shown(panel) == ["exposure_ms", "gain_db", "rate_hz"]
+    assert panel.form.exposure.text() == "as it is"
+    live.settings.set_kind("genicam")
+    assert shown(panel) == ["exposure_ms", "gain_db", "rate_hz", "region"], "choices are known once it is open"
+
+
+def test_once_the_source_is_open_only_what_it_has_is_shown_within_its_limits(panel, live, lane):
+    live.settings.set_kind("genicam")
+    live.start()
+    can = Capabilities(exposure_ms=(0.5, 40.0), pixel_formats=("Mono8", "Mono12"), sensor=(3840, 2748))
+    lane.current.told.emit(LiveStarted("Camera 1", (3840, 2748), can))
+    assert shown(panel) == ["exposure_ms", "pixel_format", "region"]
+    panel.form.exposure.setValue(90.0)
+    assert live.settings.values.exposure_ms == 40.0
+    panel.form.pixel_format.setCurrentIndex(2)
+    panel.form.pixel_format.activated.emit(2)
+    assert lane.sent[-1].settings == SourceSettings(exposure_ms=40.0, pixel_format="Mono12")
+    assert "3840" in panel.form.region.placeholderText()
+
+
+def test_a_region_is_four_numbers_and_an_empty_one_leaves_it_to_the_camera(panel, live, qtbot):
+    live.settings.set_kind("genicam")
+    region = panel.form.region
+    region.setText("10 20 640")
+    region.editingFinished.emit()
+    assert panel.form.complaint.text().startswith("A region is four whole numbers")
+    assert live.settings.values.region is None
+    region.setText("10, 20, 640 x 480")
+    region.editingFinished.emit()
+    assert panel.form.complaint.isHidden() and region.text() == "10 20 640 480"
+    assert live.settings.values.region == Region(10, 20, 640, 480)
+    region.setText("0 0 0 0")
+    region.editingFinished.emit()
+    assert "not within a sensor" in panel.form.complaint.text()
+    region.setText("")
+    region.editingFinished.emit()
+    assert live.settings.values.region is None and panel.form.complaint.isHidden()
+
+
+def test_a_driver_that_is_missing_is_told_in_one_sentence(panel, live, qtbot):
+    quick = cast(HandLane, live.bench.quick)
+    quick.answers[jobs.LIST_SOURCES] = lambda kind: ()
+    quick.answers[jobs.MISSING_DRIVER] = lambda kind: f"{kind} needs its driver."
+    assert panel.form.missing.isHidden()
+    live.settings.set_kind("aravis")
+    live.settings.look_for_devices()
+    qtbot.waitUntil(lambda: not panel.form.missing.isHidden())
+    assert panel.form.missing.text() == "aravis needs its driver."
+    live.settings.set_kind("simulated")
+    assert panel.form.missing.isHidden()
+
+
+def test_how_the_frames_are_written_is_chosen_for_a_scan_only(panel, live, qtbot):
+    assert panel.form.files.isHidden()
+    scan = LivePresenter(live.bench, "scan")
+    other = LivePanel(scan)
+    qtbot.addWidget(other)
+    other.show()
+    assert not other.form.files.isHidden()
+    other.form.files.setCurrentIndex(1)
+    other.form.files.activated.emit(1)
+    assert LivePresenter(live.bench, "scan").settings.ending == ".pgm"
+
+
+def test_the_strip_advises_on_the_exposure_and_sets_it(live, lane, qtbot):
+    strip = LiveStrip(live)
+    qtbot.addWidget(strip)
+    live.start()
+    open_source(lane)
+    lane.current.told.emit(LiveAdvice("The stripe is faint: open the aperture.", None))
+    assert not strip.isHidden() and strip.take_advice.isHidden()
+    lane.current.told.emit(LiveAdvice("Set 8 ms.", SourceSettings(exposure_ms=8.0)))
+    assert strip.advice.text() == "Set 8 ms."
+    strip.show()
+    qtbot.mouseClick(strip.take_advice, LEFT)
+    assert lane.sent[-1].settings.exposure_ms == 8.0
+    assert strip.isHidden()
+    lane.current.told.emit(LiveAdvice("Set 8 ms.", SourceSettings(exposure_ms=8.0)))
+    lane.current.told.emit(LiveAdvice("", None))
+    assert strip.isHidden()
+
+
+@pytest.mark.parametrize("theme_name", ["light", "dark"])
+def test_checks_have_a_tick_a_cross_or_a_question_mark_and_a_sentence_each(qtbot, theme, theme_name):
+    card = ChecksCard()
+    qtbot.addWidget(card)
+    assert card.isHidden()
+    checks = (
+        Check("reference", "ok", "The reference holds."),
+        Check("lines", "failed", "Only 2 of 3 lines are seen."),
+        Check("focus", "unknown", "Take the reference first."),
+    )
+    card.show_checks(checks)
+    theme(theme_name)
+    assert not card.isHidden() and card.sentences == tuple(check.sentence for check in checks)
+    signs = [sign for sign, _, _ in card._rows]
+    assert [sign.accessibleName() for sign in signs] == ["in order", "not in order", "not known"]
+    assert len({sign.pixmap().cacheKey() for sign in signs}) == 3
+    card.show_checks(checks[:1])
+    assert card.sentences == ("The reference holds.",) and card._rows[1][2].isHidden()
+    card.show_checks(())
+    assert card.isHidden()
 
 
 def test_a_setting_is_remembered_and_can_be_left_to_the_camera_again(panel, live):
     live.settings.set_kind("opencv")
-    panel.exposure.setValue(20.0)
+    panel.form.exposure.setValue(20.0)
     assert live.settings.values.exposure_ms == 20.0
-    assert panel.exposure.text() == "20.00 ms"
-    panel.exposure.setValue(panel.exposure.minimum())
+    assert panel.form.exposure.text() == "20.00 ms"
+    panel.form.exposure.setValue(panel.form.exposure.minimum())
     assert live.settings.values.exposure_ms is None
 
 
 def test_the_source_cannot_be_changed_while_it_runs(panel, qtbot):
     qtbot.mouseClick(panel.start, LEFT)
-    assert not panel.kind.isEnabled() and not panel.device.isEnabled()
+    assert not panel.form.kind.isEnabled() and not panel.form.device.isEnabled()
 
 
 def test_devices_found_can_be_chosen_or_typed(panel, live, qtbot):
@@ -133,21 +244,21 @@ def test_devices_found_can_be_chosen_or_typed(panel, live, qtbot):
     )
     cast(HandLane, live.bench.quick).answers[jobs.LIST_SOURCES] = lambda kind: found
     live.settings.set_kind("opencv")
-    qtbot.mouseClick(panel.device.button, LEFT)
-    qtbot.waitUntil(lambda: panel.device.box.count() == 2)
-    assert panel.device.box.itemText(1) == "Camera 2"
-    panel.device.box.setCurrentIndex(1)
-    panel.device.box.activated.emit(1)
+    qtbot.mouseClick(panel.form.device.button, LEFT)
+    qtbot.waitUntil(lambda: panel.form.device.box.count() == 2)
+    assert panel.form.device.box.itemText(1) == "Camera 2"
+    panel.form.device.box.setCurrentIndex(1)
+    panel.form.device.box.activated.emit(1)
     assert live.settings.choice.id == "2"
-    panel.device.box.setEditText("rtsp://camera")
-    panel.device.box.lineEdit().editingFinished.emit()
+    panel.form.device.box.setEditText("rtsp://camera")
+    panel.form.device.box.lineEdit().editingFinished.emit()
     assert live.settings.choice.id == "rtsp://camera"
 
 
 def test_a_replays_folder_is_browsed_for(panel, live, qtbot, monkeypatch, tmp_path):
     live.settings.set_kind("replay")
     monkeypatch.setattr(ask, "choose_folder", lambda *_: tmp_path)
-    qtbot.mouseClick(panel.device.button, LEFT)
+    qtbot.mouseClick(panel.form.device.button, LEFT)
     assert live.settings.choice.id == str(tmp_path)
 
 
@@ -212,7 +323,7 @@ def test_the_strip_says_while_it_runs_that_frames_are_lost_and_which_rate_will_d
 
 
 def test_everything_without_text_has_a_name(panel):
-    for widget in (panel.kind, panel.device.box, panel.exposure, panel.gain, panel.rate):
+    for widget in (panel.form.kind, panel.form.device.box, panel.form.exposure, panel.form.gain, panel.form.rate):
         assert widget.accessibleName()
 
 

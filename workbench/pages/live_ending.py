@@ -1,0 +1,88 @@
+"""How a recording ends: its folder becomes the source of its step, together with the pictures it was added to."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from datetime import datetime
+from pathlib import Path
+
+from PySide6.QtCore import QObject
+
+from core.acquire.source import Step
+from core.errors import InputError
+from core.files.unfinished import forget_recording, note_recording
+from core.live.events import LiveEnded
+from workbench import jobs
+from workbench.bench import Bench
+from workbench.pages.sources import folder_of, put_source
+
+
+class LiveEnding(QObject):
+    """Finds a recording its folder, notes it in case the program crashes, and hands it to the project at the end."""
+
+    def __init__(self, bench: Bench, step: Step, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self._bench, self._model, self._step = bench, bench.model, step
+        self.project_folder: Path | None = None
+        self.folder: Path | None = None
+
+    def begin(self, project: Path, folder: Path) -> None:
+        """A recording into `folder` begins.
+
+        Raises
+        ------
+        InputError
+            If that cannot be noted in the project's folder.
+        """
+        note_recording(project, self._step, folder)
+        self.project_folder, self.folder = project, folder
+
+    def hand_over(self, ended: LiveEnded, *, adding: bool, then: Callable[[], None]) -> None:
+        """Make what was recorded the step's source, `adding` it to the one before; `then` is called at the end."""
+
+        def take(*, keep_left_out: bool = False) -> None:
+            put_source(self._model, self._step, ended.folder, self._label(), keep_left_out=keep_left_out)
+            done()
+
+        def done() -> None:
+            if self.project_folder is not None and (not ended.recorded or self.project_folder == self._model.folder):
+                self._forget_note(self.project_folder)
+            then()
+
+        before = folder_of(self._model, self._step)
+        if not ended.recorded or self.project_folder is None or self.project_folder != self._model.folder:
+            done()
+        elif adding and before is not None:
+            self._bench.glance(
+                jobs.ADD_RECORDING,
+                before,
+                ended.folder,
+                label=self.tr("Adding the pictures that were there"),
+                on_done=lambda _: take(keep_left_out=True),
+                on_failed=lambda _: take(),
+                on_cancelled=take,
+            )
+        else:
+            take()
+
+    def _label(self) -> str:
+        return {
+            "camera": self.tr("record views of the target"),
+            "planes": self.tr("record poses of the plate"),
+            "scan": self.tr("record a scan"),
+        }[self._step]
+
+    def _forget_note(self, project: Path) -> None:
+        """The recording is in the project: once that is on the disk, it need not be found after a crash."""
+        self._model.autosave()
+        try:
+            forget_recording(project)
+        except InputError as error:
+            self._bench.notices.error(str(error))
+
+
+def new_folder(recordings: Path, step: str) -> Path:
+    """A folder that is not there yet, named by the step and the time."""
+    name = f"{step}-{datetime.now():%Y%m%d-%H%M%S}"
+    folders = (recordings / (name if number == 1 else f"{name}-{number}") for number in range(1, 1000))
+    return next(folder for folder in folders if not folder.exists())

@@ -1,0 +1,90 @@
+"""What was looked at before a scan, with ticks and crosses."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from PySide6.QtCore import QEvent, QSize, Qt
+from PySide6.QtWidgets import QFrame, QGridLayout, QLabel, QWidget
+
+from core.scan.preflight import Check, Name, State
+from workbench.theme import icon
+
+_SIGNS: dict[State, tuple[str, str]] = {
+    "ok": ("mdi6.check-circle-outline", "good"),
+    "failed": ("mdi6.close-circle-outline", "bad"),
+    "unknown": ("mdi6.help-circle-outline", "muted"),
+}
+
+
+class ChecksCard(QFrame):
+    """One row a check: a tick, a cross or a question mark, what was looked at, and a sentence.
+
+    Hidden while there are no checks.
+    """
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName("card")
+        self._checks: tuple[Check, ...] = ()
+        self._rows: list[tuple[QLabel, QLabel, QLabel]] = []
+        title = QLabel(self.tr("Before the scan"))
+        title.setObjectName("heading")
+        self._grid = QGridLayout(self)
+        self._grid.setContentsMargins(10, 8, 10, 8)
+        self._grid.setHorizontalSpacing(8)
+        self._grid.setVerticalSpacing(3)
+        self._grid.setColumnStretch(2, 1)
+        self._grid.addWidget(title, 0, 0, 1, 3)
+        self.hide()
+
+    def show_checks(self, checks: Sequence[Check]) -> None:
+        """Show these instead."""
+        if tuple(checks) != self._checks:
+            self._checks = tuple(checks)
+            self._show()
+        self.setVisible(bool(checks))
+
+    @property
+    def sentences(self) -> tuple[str, ...]:
+        """What is said of each check."""
+        return tuple(said.text() for _, _, said in self._rows[: len(self._checks)])
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "_grid"):
+            self._show()
+
+    def _show(self) -> None:
+        titles = self._titles()
+        states = {"ok": self.tr("in order"), "failed": self.tr("not in order"), "unknown": self.tr("not known")}
+        while len(self._rows) < len(self._checks):
+            self._add_row()
+        for place, row in enumerate(self._rows):
+            for label in row:
+                label.setVisible(place < len(self._checks))
+        for check, (sign, name, said) in zip(self._checks, self._rows, strict=False):
+            symbol, colour = _SIGNS[check.state]
+            sign.setPixmap(icon(symbol, colour=colour).pixmap(QSize(16, 16)))
+            sign.setAccessibleName(states[check.state])
+            sign.setToolTip(states[check.state])
+            name.setText(titles[check.name])
+            said.setText(check.sentence)
+
+    def _add_row(self) -> None:
+        sign, name, said = QLabel(), QLabel(), QLabel()
+        said.setObjectName("muted")
+        said.setWordWrap(True)
+        place = len(self._rows) + 1
+        for column, label in enumerate((sign, name, said)):
+            self._grid.addWidget(label, place, column, Qt.AlignmentFlag.AlignTop if column < 2 else Qt.AlignmentFlag(0))
+        self._rows.append((sign, name, said))
+
+    def _titles(self) -> dict[Name, str]:
+        return {
+            "reference": self.tr("Reference"),
+            "lines": self.tr("Lines"),
+            "exposure": self.tr("Exposure"),
+            "focus": self.tr("Focus"),
+            "calibration": self.tr("Calibration"),
+        }
