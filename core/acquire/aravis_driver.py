@@ -8,7 +8,6 @@ import importlib.util
 import sys
 from collections.abc import Iterator
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -28,10 +27,10 @@ SYSTEM_PACKAGES = Path("/usr/lib/python3/dist-packages")
 
 
 def is_missing() -> bool:
-    """Whether Aravis cannot be used on this computer."""
+    """Whether Aravis cannot be used on this computer; nothing of it is loaded to know."""
     try:
-        aravis()
-    except InputError:
+        _introspection()
+    except (ImportError, ValueError):
         return True
     return False
 
@@ -45,8 +44,7 @@ def aravis() -> Any:
         If it is not installed, or not for this version of Python.
     """
     try:
-        gi = _introspection()
-        gi.require_version("Aravis", VERSION)
+        _introspection()
         return importlib.import_module("gi.repository.Aravis")
     except (ImportError, ValueError) as missing:
         raise InputError(INSTALL.removesuffix(".")) from missing
@@ -204,15 +202,20 @@ class DeviceFeatures:
         return isinstance(self._device.get_feature(name), self._module.GcInteger)
 
 
-def _introspection() -> ModuleType:
-    """Python's link to the system's libraries: installed beside us, or else the system's, if it is for this version."""
+def _introspection() -> None:
+    """Load Python's link to the system's libraries for the Aravis we want; ImportError or ValueError if one is missing.
+
+    It may be installed beside us; else the system's is taken, if it is for this version of Python.
+    """
     if importlib.util.find_spec("gi") is None and _is_for_us(SYSTEM_PACKAGES):
         sys.path.append(str(SYSTEM_PACKAGES))
         try:
-            return importlib.import_module("gi")
+            gi = importlib.import_module("gi")
         finally:
             sys.path.remove(str(SYSTEM_PACKAGES))
-    return importlib.import_module("gi")
+    else:
+        gi = importlib.import_module("gi")
+    gi.require_version("Aravis", VERSION)
 
 
 def _is_for_us(packages: Path) -> bool:

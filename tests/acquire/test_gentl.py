@@ -89,6 +89,18 @@ def test_a_producer_can_be_named_with_or_without_a_camera(producer, monkeypatch)
         driver.close()
 
 
+def test_the_producer_is_asked_whether_a_silent_camera_is_still_there(producer, monkeypatch):
+    driver = connect(RED)
+    try:
+        assert not driver.gone()
+        monkeypatch.setattr(gentl_driver, "GONE_AFTER_S", 0.0)
+        assert not driver.gone()
+        driver._id = "pulled out"
+        assert driver.gone()
+    finally:
+        driver.close()
+
+
 @pytest.mark.parametrize(
     ("identifier", "sentence"),
     [("VikyTL_DEV_grey", r"no camera VikyTL_DEV_grey; plug it in; asked were viky\.cti"), ("/a.cti", "no such GenTL")],
