@@ -369,6 +369,31 @@ def inspect(
 
 
 @app.command()
+def mesh(
+    results: Annotated[Path, typer.Argument(metavar="DIR", help="A folder of results.")],
+    formats: Annotated[
+        list[str], typer.Option("--format", "-f", metavar="NAMES", help="ply, stl, obj or 3mf; several with commas.")
+    ],
+    fill_holes: Annotated[
+        float, typer.Option("--fill-holes", metavar="MM", help="Fill holes up to this span, marked; 0: none.")
+    ] = 0.0,
+    triangles: Annotated[int, typer.Option(metavar="N", help="Leave about so many triangles; 0: all.")] = 0,
+    error: Annotated[
+        float, typer.Option(metavar="MM", help="Leave as few triangles as this largest error allows; 0: all.")
+    ] = 0.0,
+    to: Annotated[Path | None, typer.Option("--to", metavar="FOLDER", help="Write there instead of into DIR.")] = None,
+    json: Json = False,
+) -> None:
+    """Make the surface in DIR ready for other programs; writes surface.*, mesh.ply stays as it is."""
+    from core.cli import meshing
+    from core.pipeline.mesh_step import MeshOptions
+
+    with bars() as progress:
+        shown = meshing.run_mesh(results, formats, MeshOptions(fill_holes, triangles, error), to, progress)
+    shown.show(as_json=json)
+
+
+@app.command()
 def target(
     out: Annotated[Path, typer.Option("--out", "-o", metavar="FILE", help="The PDF to write.")],
     kind: Annotated[

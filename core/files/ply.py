@@ -30,6 +30,7 @@ _CLOUD = [
     (_COMMON, "f4"),
 ]
 _MESH = [("x", "f4"), ("y", "f4"), ("z", "f4"), *_NORMALS, ("sigma", "f4")]
+_FILLED = "filled"
 _CALIBRATION = "calibration "
 
 
@@ -100,7 +101,7 @@ def read_cloud(path: Path) -> CloudFile:
 
 
 def write_mesh(path: Path, mesh: Mesh, calibration_id: str) -> None:
-    """Write mesh.ply: vertices with normals and sigma, triangles.
+    """Write mesh.ply: vertices with normals and sigma, triangles; `filled` marks those over holes, if there are any.
 
     Raises
     ------
@@ -111,8 +112,11 @@ def write_mesh(path: Path, mesh: Mesh, calibration_id: str) -> None:
     _put(vertices, ("x", "y", "z"), mesh.vertices)
     _put(vertices, ("nx", "ny", "nz"), mesh.normals)
     vertices["sigma"] = mesh.sigma
-    faces = np.empty(len(mesh.triangles), dtype=[("vertex_indices", "i4", (3,))])
+    marked = [(_FILLED, "u1")] if mesh.filled.any() else []
+    faces = np.empty(len(mesh.triangles), dtype=[("vertex_indices", "i4", (3,)), *marked])
     faces["vertex_indices"] = mesh.triangles
+    if marked:
+        faces[_FILLED] = mesh.filled
     elements = [PlyElement.describe(vertices, "vertex"), PlyElement.describe(faces, "face")]
     comments = ["unit mm", "frame of reference: the camera, z forward, y down", "sigma: standard uncertainty in mm"]
     _write(path, elements, comments, calibration_id)
@@ -137,6 +141,9 @@ def read_mesh(path: Path) -> Mesh:
         normals=np.column_stack([vertices[name] for name in ("nx", "ny", "nz")]).astype(np.float64),
         sigma=np.asarray(vertices["sigma"], dtype=np.float64),
         triangles=corners,
+        filled=np.asarray(faces[_FILLED], dtype=np.bool_)
+        if _FILLED in (faces.dtype.names or ())
+        else np.zeros(0, bool),
     )
 
 

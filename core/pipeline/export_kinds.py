@@ -23,6 +23,7 @@ from core.files.exchange.result_csv import write_result_csv
 from core.files.exchange.result_json import write_result_json
 from core.files.exchange.ros_camera_info import write_camera_info
 from core.files.exchange.xlsx import write_xlsx
+from core.files.mesh_export import write_3mf, write_obj
 from core.files.pictures import read_bytes
 from core.files.ply import read_cloud, read_mesh
 from core.files.run_file import read_run
@@ -114,6 +115,14 @@ def _stl(results: Results, path: Path, _: Progress) -> None:
     write_stl(path, read_mesh(results.folder / FILES["mesh"]))
 
 
+def _obj(results: Results, path: Path, _: Progress) -> None:
+    write_obj(path, read_mesh(results.folder / FILES["mesh"]))
+
+
+def _3mf(results: Results, path: Path, _: Progress) -> None:
+    write_3mf(path, read_mesh(results.folder / FILES["mesh"]))
+
+
 def _points(results: Results, path: Path, progress: Progress) -> None:
     write_points_csv(path, read_cloud(results.folder / FILES["cloud"]).cloud, progress)
 
@@ -139,6 +148,8 @@ _ALL = (
     ExportKind("csv", "Points as a table (CSV)", "points.csv", "scan", _points),
     ExportKind("mesh", "Surface (PLY)", "mesh.ply", "scan", _copy("mesh")),
     ExportKind("stl", "Surface (STL)", "mesh.stl", "scan", _stl),
+    ExportKind("obj", "Surface (OBJ)", "mesh.obj", "scan", _obj),
+    ExportKind("3mf", "Surface (3MF)", "mesh.3mf", "scan", _3mf),
     ExportKind("table", "Results as a table (CSV)", "result.csv", "inspect", _of_content(write_result_csv)),
     ExportKind("xlsx", "Results as a workbook (XLSX)", "result.xlsx", "inspect", _of_content(write_xlsx)),
     ExportKind("results", "Results with their schema (JSON)", "result.json", "inspect", _of_content(write_result_json)),

@@ -1,0 +1,99 @@
+"""The mesh as OBJ and as 3MF: triangles over filled holes told apart from those that were measured."""
+
+from __future__ import annotations
+
+import io
+import zipfile
+from pathlib import Path
+from xml.sax.saxutils import quoteattr
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core import __version__
+from core.files.atomic import write_bytes, write_text
+from core.model.arrays import Array
+from core.scan.surface import Mesh
+
+_EPOCH = (1980, 1, 1, 0, 0, 0)
+"""The time of all parts of a 3MF file, so that the same mesh gives the same bytes."""
+_CONTENT_TYPES = (
+    '<?xml version="1.0" encoding="UTF-8"?>\n'
+    '<Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types">'
+    '<Default Extension="rels" ContentType="application/vnd.openxmlformats-package.relationships+xml"/>'
+    '<Default Extension="model" ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/></Types>'
+)
+_RELATIONS = (
+    '<?xml version="1.0" encoding="UTF-8"?>\n'
+    '<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships">'
+    '<Relationship Target="/3D/3dmodel.model" Id="rel0" '
+    'Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>'
+)
+
+
+def write_obj(path: Path, mesh: Mesh, calibration_id: str = "") -> None:
+    """Write the mesh as Wavefront OBJ, in mm (OBJ itself has no unit), with normals; groups measured and filled.
+
+    Raises
+    ------
+    InputError
+        If it cannot be written.
+    """
+    head = f"# Trisect {__version__}\n# unit mm; calibration {calibration_id}\n"
+    parts = [head, _rows("v", mesh.vertices), _rows("vn", mesh.normals)]
+    for name, chosen in _groups(mesh):
+        corners = mesh.triangles[chosen] + 1
+        lines = [f"f {a}//{a} {b}//{b} {c}//{c}" for a, b, c in corners.tolist()]
+        parts += [f"g {name}\n", "\n".join(lines), "\n"]
+    write_text(path, "".join(parts))
+
+
+def write_3mf(path: Path, mesh: Mesh, name: str = "scan") -> None:
+    """Write the mesh as 3MF, unit millimetre: an object of what was measured, and one of what was filled.
+
+    Raises
+    ------
+    InputError
+        If it cannot be written.
+
+    References
+    ----------
+    3MF Core Specification 1.3, 3MF Consortium.
+    """
+    objects, items = [], []
+    for number, (group, chosen) in enumerate(_groups(mesh), start=1):
+        objects.append(_object(number, f"{name}, {group}", mesh.vertices, mesh.triangles[chosen]))
+        items.append(f'<item objectid="{number}"/>')
+    model = (
+        '<?xml version="1.0" encoding="UTF-8"?>\n'
+        '<model unit="millimeter" xml:lang="en-US" '
+        'xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02">'
+        f'<metadata name="Application">Trisect {__version__}</metadata>'
+        f"<resources>{''.join(objects)}</resources><build>{''.join(items)}</build></model>"
+    )
+    data = io.BytesIO()
+    with zipfile.ZipFile(data, "w", zipfile.ZIP_DEFLATED) as file:
+        parts = (("[Content_Types].xml", _CONTENT_TYPES), ("_rels/.rels", _RELATIONS), ("3D/3dmodel.model", model))
+        for part, text in parts:
+            info = zipfile.ZipInfo(part, _EPOCH)
+            info.compress_type = zipfile.ZIP_DEFLATED
+            file.writestr(info, text)
+    write_bytes(path, data.getvalue())
+
+
+def _groups(mesh: Mesh) -> list[tuple[str, NDArray[np.int64]]]:
+    """The triangles measured and, if there are any, filled."""
+    groups = [("measured", np.flatnonzero(~mesh.filled)), ("filled", np.flatnonzero(mesh.filled))]
+    return [(name, chosen) for name, chosen in groups if len(chosen)]
+
+
+def _rows(letter: str, values: Array) -> str:
+    return "".join(f"{letter} {x:.6f} {y:.6f} {z:.6f}\n" for x, y, z in values.tolist())
+
+
+def _object(number: int, name: str, vertices: Array, triangles: NDArray[np.int64]) -> str:
+    used, corners = np.unique(triangles, return_inverse=True)
+    places = "".join(f'<vertex x="{x:.6f}" y="{y:.6f}" z="{z:.6f}"/>' for x, y, z in vertices[used].tolist())
+    faces = "".join(f'<triangle v1="{a}" v2="{b}" v3="{c}"/>' for a, b, c in corners.reshape(-1, 3).tolist())
+    shape = f"<mesh><vertices>{places}</vertices><triangles>{faces}</triangles></mesh>"
+    return f'<object id="{number}" type="surface" name={quoteattr(name)}>{shape}</object>'

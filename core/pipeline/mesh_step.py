@@ -1,0 +1,81 @@
+"""The surface of a scan made ready for other programs: holes filled on request, fewer triangles, several formats."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from core.errors import InputError
+from core.files.atomic import make_folder
+from core.files.mesh_export import write_3mf, write_obj
+from core.files.ply import read_mesh, write_mesh
+from core.files.stl import write_stl
+from core.pipeline.workspace import FILES
+from core.progress import Progress, silent
+from core.scan.decimation import Decimated, decimate, decimate_to
+from core.scan.mesh_holes import fill_holes
+from core.scan.surface import Mesh
+
+_WRITE: Mapping[str, Callable[[Path, Mesh], None]] = {
+    "ply": lambda path, mesh: write_mesh(path, mesh, ""),
+    "stl": write_stl,
+    "obj": write_obj,
+    "3mf": write_3mf,
+}
+FORMATS = tuple(_WRITE)
+
+
+@dataclass(frozen=True, slots=True)
+class MeshOptions:
+    """What is done to the mesh: `fill_mm` fills holes up to that span; `triangles` or `error_mm` decimate; 0: not."""
+
+    fill_mm: float = 0.0
+    triangles: int = 0
+    error_mm: float = 0.0
+
+
+def prepared_mesh(mesh: Mesh, options: MeshOptions, progress: Progress = silent) -> Decimated:
+    """The mesh after all that is asked for, with the error that decimation made.
+
+    Raises
+    ------
+    InputError
+        If options contradict each other or make no sense.
+    """
+    if options.triangles and options.error_mm:
+        raise InputError("a number of triangles and an error are two wishes", where="decimation", todo="give one")
+    if min(options.fill_mm, options.error_mm, options.triangles) < 0 or not np.isfinite(options.fill_mm):
+        raise InputError("lengths and numbers of triangles are not negative", where="mesh", todo="give one above 0")
+    if options.fill_mm:
+        mesh = fill_holes(mesh, options.fill_mm, progress)
+    if options.triangles:
+        return decimate(mesh, options.triangles, progress)
+    if options.error_mm:
+        return decimate_to(mesh, options.error_mm, progress)
+    return Decimated(mesh, 0.0, 0.0, 0.0)
+
+
+def mesh_step(
+    results: Path, formats: Sequence[str], options: MeshOptions, to: Path, progress: Progress = silent
+) -> tuple[Decimated, dict[str, Path]]:
+    """Write the surface among `results` into the folder `to` in each of the FORMATS named; mesh.ply stays as it is.
+
+    Raises
+    ------
+    InputError
+        If there is no mesh, no such format, or nothing can be written.
+    """
+    for name in formats:
+        if name not in _WRITE:
+            raise InputError(
+                f'there is no format "{name}"', where="--format", todo=f"choose among {', '.join(FORMATS)}"
+            )
+    made = prepared_mesh(read_mesh(results / FILES["mesh"]), options, progress)
+    folder = make_folder(to)
+    written = {name: folder / f"surface.{name}" for name in formats}
+    for name, path in written.items():
+        _WRITE[name](path, made.mesh)
+    return made, written
