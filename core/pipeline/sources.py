@@ -147,10 +147,12 @@ def _make_opencv(choice: SourceChoice, rig: Rig | None) -> OpenCVSource:
     return OpenCVSource(choice.id, None if rig is None else rig.channel)
 
 
-def _make_replay(choice: SourceChoice, rig: Rig | None) -> ReplaySource:
+def _make_replay(choice: SourceChoice, rig: Rig | None) -> FrameSource:
     if not choice.id:
         raise InputError("no folder is chosen", where="replay", todo="choose a folder of pictures")
     folder = Path(choice.id)
+    if folder.is_file():
+        return _make_opencv(choice, rig)  # a video
     read = partial(read_picture, channel=None if rig is None else rig.channel)
     listing = ReplayPictures(folder)
     return ReplaySource(folder.name, folder, listing, read, holds=HOLDS if listing.is_set else {})
@@ -220,7 +222,7 @@ SOURCES: Mapping[str, SourceKind] = {
     ),
     "replay": SourceKind(
         "Folder of pictures",
-        "Recorded pictures, one after the other, as if a camera took them now.",
+        "Recorded pictures or a video, one after the other, as if a camera took them now.",
         _make_replay,
         lambda: (),
     ),

@@ -3,6 +3,7 @@
 import pickle
 from dataclasses import replace
 
+import cv2
 import numpy as np
 import pytest
 
@@ -93,6 +94,22 @@ def test_a_replayed_set_shows_the_step_that_is_recorded(tmp_path):
     assert source.read(1).picture[0, 0] == 10
     with pytest.raises(InputError, match="no folder is chosen"):
         make_source(SourceChoice("replay"))
+
+
+def test_a_video_can_be_replayed_like_a_folder(tmp_path):
+    film = tmp_path / "film.avi"
+    writer = cv2.VideoWriter(str(film), cv2.VideoWriter.fourcc(*"MJPG"), 20, (64, 48), isColor=False)
+    for level in (20, 200):
+        writer.write(np.full((48, 64), level, np.uint8))
+    writer.release()
+    source = make_source(SourceChoice("replay", str(film)))
+    source.configure(SourceSettings(rate_hz=0))
+    source.open()
+    assert [round(float(source.read(1).picture.mean()), -1) for _ in range(2)] == [20, 200]
+    source.close()
+    (tmp_path / "notes.txt").write_text("no video")
+    with pytest.raises(InputError, match=r"notes\.txt: this is no video"):
+        make_source(SourceChoice("replay", str(tmp_path / "notes.txt"))).open()
 
 
 def test_sources_are_named_as_a_person_would(tmp_path):
