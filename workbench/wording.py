@@ -15,7 +15,8 @@ _PLAINER = (
     (r"the dictionary in rig\.toml", "the markers of the target"),
     (r"\[camera_target\] in rig\.toml", "the target"),
     (r",? in rig\.toml", ""),
-    (r": trisect \w+ SET --out DIR", ""),
+    (r": trisect \w+ (SET|…)( --plan plan\.toml)? --out DIR", ""),
+    (r"name the folder of its results with --out", "choose the folder of its results"),
     (r"choose another folder with --out", _ELSEWHERE),
     (r"choose another --out", "choose another folder"),
 )

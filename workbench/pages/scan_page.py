@@ -27,7 +27,7 @@ from workbench.views.source_chooser import SourceChooser
 from workbench.views.tables import ListRow, ViewList
 
 BEFORE = ("reference", "ready")
-"""Stages of a live scan in which nothing is recorded yet."""
+"""Stages of a live scan in which nothing is recorded yet; later only those checks are shown that failed."""
 
 _STEPS = {Qt.Key.Key_Left: -1, Qt.Key.Key_Right: 1}
 """Keys that go through the frames."""
@@ -77,7 +77,8 @@ class ScanPage(StepPage):
         p, stage = self.presenter, self.presenter.stage
         live, busy = stage is Stage.LIVE, stage in (Stage.LIVE, Stage.MEASURING)
         self.stage.refresh()
-        self.checks.show_checks(p.live.checks if p.live_stage in BEFORE else ())
+        before = p.live_stage in BEFORE
+        self.checks.show_checks([check for check in p.live.checks if before or check.state == "failed"])
         self.source.set_folder(p.folder, self._folder_words())
         self.live_panel.set_primary(stage in (Stage.NONE, Stage.EMPTY))
         self.live_panel.refresh()

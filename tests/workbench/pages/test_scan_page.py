@@ -10,7 +10,8 @@ from PySide6.QtCore import Qt
 from core.errors import InputError
 from core.files.pictures import write_picture
 from core.files.project_keys import finished
-from core.live.events import LiveAsk, LiveEnded, LiveStarted, Resume
+from core.live.events import LiveAsk, LiveChecks, LiveEnded, LiveStarted, Resume
+from core.scan.preflight import Check
 from tests.workbench.hand_lane import HandLane
 from tests.workbench.pages import scan_cases as cases
 from workbench import jobs
@@ -332,6 +333,18 @@ def test_a_live_scan_goes_from_the_reference_to_the_result(page, lane, measuring
     assert page.picture.image.has_picture and page.cloud.scene.state()["points"] == 30
     measuring.finish(cases.summary())
     qtbot.waitUntil(lambda: page.presenter.stage is Stage.MEASURED and page.presenter.scrub.up_to_date)
+
+
+def test_checks_stand_there_until_the_scan_begins_and_those_that_failed_after_that(page, lane, qtbot):
+    start_live(page, lane, qtbot)
+    good, bad = Check("reference", "ok", "It holds."), Check("lines", "failed", "Only 2 lines.")
+    lane.current.told.emit(LiveChecks((good, bad)))
+    lane.current.view.emit(cases.live_view(0, stage="ready"))
+    assert page.checks.sentences == ("It holds.", "Only 2 lines.") and not page.checks.isHidden()
+    lane.current.view.emit(cases.live_view(1))
+    assert page.checks.sentences == ("Only 2 lines.",)
+    lane.current.told.emit(LiveChecks((good,)))
+    assert page.checks.isHidden()
 
 
 def test_while_paused_no_sweep_and_no_crossings_are_shown(page, lane, qtbot):
