@@ -80,9 +80,11 @@ class SweepingRecorder(Recorder):
         super().__init__(folder, **how)
         self.index_of: dict[str, int] = {}
         self._names: deque[Path] = deque()
+        self.frame_mb = 0.0
 
     def write(self, name, picture, frame=None):
         taken = super().write(name, picture, frame)
+        self.frame_mb = picture.nbytes / 1e6
         if taken and frame is not None:
             self.index_of = {**dict(list(self.index_of.items())[-200:]), name: frame.index}
             self._names.append(self._folder / f"{name}{self._ending}")
@@ -104,6 +106,7 @@ class Soaked:
     lost_in_span: int = 0
     seconds: float = 0.0
     memory_mb: list[tuple[float, float]] = field(default_factory=list)
+    waiting_mb: float = 0.0
     latency_ms: list[float] = field(default_factory=list)
     overlays: int = 0
     views: int = 0
@@ -136,7 +139,8 @@ class Soaked:
             f"{'adds up' if self.adds_up else 'DOES NOT ADD UP'}",
             f"log         {'names every recorded frame' if self.log_is_whole else 'IS NOT WHOLE'}",
             f"memory      {memory[0]:.0f} MB at first, {max(memory):.0f} MB at most, {memory[-1]:.0f} MB at the end; "
-            f"{self.drift:+.1%} from the second third to the last",
+            f"{self.drift:+.1%} from the second third to the last; besides, frames that wait for the disk: "
+            f"{self.waiting_mb:.0f} MB at most",
             f"latency     {latency[0]:.0f} ms median, {latency[1]:.0f} ms 95 %, {latency[2]:.0f} ms at most, "
             f"from a frame's arrival to its overlay ({self.overlays} overlays, {self.views} views)",
             *(f"notice      {sentence}" for sentence in self.notices),
@@ -222,7 +226,9 @@ def _record(request: LiveRequest, camera: EmulatedCamera, folder: Path, seconds:
     def watch_memory() -> None:
         while not done.wait(0.5):
             if began:
-                result.memory_mb.append((time.monotonic() - began[0], _resident_mb()))
+                waiting = recorders[0].waiting * recorders[0].frame_mb
+                result.memory_mb.append((time.monotonic() - began[0], _resident_mb() - waiting))
+                result.waiting_mb = max(result.waiting_mb, waiting)
 
     watcher = threading.Thread(target=watch_memory)
     watcher.start()
