@@ -130,6 +130,17 @@ class Adjustment:
         inverse = cho_solve(solution.factor, of_cells, check_finite=False)
         return np.asarray(-inverse[: 3 * self.sweeps])
 
+    def shared_with_own_lines(self, solution: Solution) -> Array:
+        """(Q, 3) covariance of π̂ − π of a sweep with the errors z of the cells of its own centrelines.
+
+        The crossings say A x = y + noise, so x̂ − x is −H⁻¹ Aᵀ W noise, prior aside.
+        """
+        shared = self.noise(solution)[:, : self.errors.sweep_a.shape[1]]
+        felt = solution.design.T @ (diags_array(solution.weights / solution.sigma**2) @ shared)
+        moved = -cho_solve(solution.factor, felt.toarray(), check_finite=False)[: 3 * self.sweeps]
+        sweep = self.errors.sweep_cells[:, 0]
+        return np.asarray(moved.reshape(self.sweeps, 3, -1)[sweep, :, np.arange(len(sweep))])
+
     def noise(self, solution: Solution) -> csr_array:
         """(M, …) that turns independent standard normal numbers into the misclosures in 1/mm, less the fan's cells."""
         gain_a, gain_b = solution.gains.T

@@ -20,6 +20,7 @@ SIGMA_FLOOR_PX = 0.01
 """No centreline is known better than this: what a filter's phase error leaves."""
 
 _MOST_CELLS = 1_000_000
+_MOST_PIECES = 10_000
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -38,6 +39,8 @@ class LineErrors:
         (M,) variance of the independent rest, in px².
     fan_cells
         (F, 2) which centreline of the fan each of its cells is on, and which cell along it.
+    sweep_cells
+        (Q, 3) which sweep each of theirs is of, on which of its centrelines, and which cell along it.
     """
 
     sigma_a: Array
@@ -48,6 +51,7 @@ class LineErrors:
     rest_a: Array
     rest_b: Array
     fan_cells: Index
+    sweep_cells: Index
 
     @classmethod
     def of(cls, crossings: CrossingTable) -> LineErrors:
@@ -85,9 +89,17 @@ class LineErrors:
 
         fan_names, fan_column = np.unique(fan_cells, return_inverse=True)
         fan = csr_array((b.shares.ravel()[of_fan], (b.rows[of_fan], fan_column)), shape=(count, len(fan_names)))
-        piece = (fan_names + _MOST_CELLS // 2) // _MOST_CELLS  # a first cell may be −1
-        cells_of_fan = np.column_stack([piece, fan_names - piece * _MOST_CELLS])
-        return cls(a.sigma, b.sigma, fan, matrix(of_a), matrix(~of_a), a.rest, b.rest, cells_of_fan)
+        return cls(
+            a.sigma,
+            b.sigma,
+            fan,
+            matrix(of_a),
+            matrix(~of_a),
+            a.rest,
+            b.rest,
+            fan_cells=_unnamed(fan_names)[:, 1:],
+            sweep_cells=_unnamed(names),
+        )
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -111,9 +123,15 @@ class _End:
         shared = np.sum(share**2, axis=1)
         share = share * np.sqrt(np.minimum(1.0, sigma**2 / np.maximum(shared, 1e-300)))[:, None]
         rest = sigma**2 - np.minimum(shared, sigma**2)
-        line = (frame + 1) * 10_000 + piece
+        line = (frame + 1) * _MOST_PIECES + piece
         keys = line[:, None] * _MOST_CELLS + cell[:, None] + np.arange(wide)
         return cls(sigma, share, rest, np.repeat(np.arange(len(along)), wide), keys.ravel())
+
+
+def _unnamed(names: Index) -> Index:
+    """Frame, piece and cell (N, 3) of each name, as `_End.known` makes them; a first cell may be −1."""
+    line = (names + _MOST_CELLS // 2) // _MOST_CELLS
+    return np.column_stack([line // _MOST_PIECES - 1, line % _MOST_PIECES, names - line * _MOST_CELLS])
 
 
 def _window(along: Array, sigma: Array, length: float) -> tuple[Index, Array]:

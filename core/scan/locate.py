@@ -20,12 +20,16 @@ from core.scan.geometry import CrossingRays, inverse_depth_gradient, noise_gains
 from core.scan.network import solve_network
 from core.scan.sweep_plane import solve_sweep_plane
 
+FOR_NUMBERS = 60
+"""Sweeps by which the fan's lines are numbered: a longer scan says no more of that."""
+
 
 @dataclass(frozen=True, eq=False, slots=True)
 class LocatedSweeps:
     """Solved planes: `frames` (S,) and, per crossing, the weight it had.
 
-    `fan_cells` (F, 2) and `fan_covariance` (3S, F) as of `core.scan.network.Network`; F = 0 where not known.
+    `fan_cells` (F, 2), `fan_covariance` (3S, F), `line_cells` (Q, 3) and `line_covariance` (Q, 3) as of
+    `core.scan.network.Network`; F = Q = 0 where not known.
     """
 
     frames: NDArray[np.int64]
@@ -36,6 +40,8 @@ class LocatedSweeps:
     notes: tuple[str, ...]
     fan_cells: NDArray[np.int64] = field(default_factory=lambda: np.zeros((0, 2), dtype=np.int64))
     fan_covariance: Array = field(default_factory=lambda: np.zeros((0, 0)))
+    line_cells: NDArray[np.int64] = field(default_factory=lambda: np.zeros((0, 3), dtype=np.int64))
+    line_covariance: Array = field(default_factory=lambda: np.zeros((0, 3)))
 
 
 def number_fan_lines(
@@ -51,8 +57,18 @@ def choose_numbering(
     """That of the `numberings` that the sweeps agree with best, unsure stretches settled by them."""
     if len(numberings) == 1 and numberings[0].settled == len(numberings[0].line):
         return numberings[0]
+    crossings = _of_some_sweeps(crossings)
     settled = [_settled(lines, crossings, camera, fan, progress) for lines in numberings]
     return min(settled, key=lambda lines: _disagreement(lines, crossings, camera, fan, progress))
+
+
+def _of_some_sweeps(crossings: CrossingTable) -> CrossingTable:
+    """The crossings with the fan and with each other of FOR_NUMBERS sweeps spread over the scan: they tell all."""
+    frames = np.unique(crossings.a[crossings.with_fan])
+    if len(frames) <= FOR_NUMBERS:
+        return crossings
+    some = frames[np.linspace(0, len(frames) - 1, FOR_NUMBERS).round().astype(np.int64)]
+    return crossings.select(np.isin(crossings.a, some) & (crossings.with_fan | np.isin(crossings.b, some)))
 
 
 def _settled(lines: FanLines, all_of_them: CrossingTable, camera: Camera, fan: Fan, progress: Progress) -> FanLines:
@@ -123,6 +139,8 @@ def locate_together(
         notes,
         network.fan_cells,
         network.fan_covariance,
+        network.line_cells,
+        network.line_covariance,
     )
 
 

@@ -73,6 +73,10 @@ class Network:
         (F, 2) centreline and cell along it of each of the fan's cells, see `core.scan.line_errors`.
     fan_covariance
         (3S, F) of the errors of the stacked π with those of the cells, of which each has unit variance.
+    line_cells
+        (Q, 3) sweep, centreline and cell along it of each cell of the sweeps' own centrelines.
+    line_covariance
+        (Q, 3) of the error of the sweep's π with that of the cell.
     """
 
     pis: Array
@@ -84,6 +88,8 @@ class Network:
     collapsed: bool
     fan_cells: Index
     fan_covariance: Array
+    line_cells: Index
+    line_covariance: Array
 
 
 def solve_network(
@@ -119,6 +125,8 @@ def solve_network(
         has_collapsed(equations, solution.pis),
         equations.errors.fan_cells,
         equations.shared_with_fan(solution),
+        equations.errors.sweep_cells,
+        equations.shared_with_own_lines(solution),
     )
 
 

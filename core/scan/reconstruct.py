@@ -27,7 +27,7 @@ from core.scan.method import Method
 from core.scan.records import frame_records
 from core.scan.results import ScanResult
 from core.scan.still_part import still_part
-from core.scan.triangulate import join, triangulate
+from core.scan.triangulate import OwnLine, join, triangulate
 
 
 @dataclass(frozen=True, slots=True)
@@ -160,13 +160,25 @@ def _speckle(features: ScanFeatures, lines: FanLines, sweeps: LocatedSweeps, cam
 
 def _sweep_clouds(features: ScanFeatures, sweeps: LocatedSweeps, camera: Camera) -> list[Cloud]:
     clouds: list[Cloud] = []
+    cell_px = features.crossings.half_length_px
     for sweep, frame in enumerate(sweeps.frames):
         block = slice(3 * sweep, 3 * sweep + 3)
-        clouds.extend(
-            triangulate(piece, sweeps.pis[sweep], sweeps.covariance[block, block], camera, int(frame), sweep)
-            for piece in features.frames[frame].centrelines
-        )
+        mine = sweeps.line_cells[:, 0] == sweep
+        cells, covariance = sweeps.line_cells[mine, 1:], sweeps.line_covariance[mine]
+        for number, piece in enumerate(features.frames[frame].centrelines):
+            own = OwnLine(_by_cell(cells[:, 0] == number, cells[:, 1], covariance), cell_px)
+            clouds.append(
+                triangulate(piece, sweeps.pis[sweep], sweeps.covariance[block, block], camera, int(frame), sweep, own)
+            )
     return clouds
+
+
+def _by_cell(mine: NDArray[np.bool_], cell: NDArray[np.int64], covariance: Array) -> Array:
+    """Rows of `covariance` (Q, 3) that are `mine` (Q,) in the order of their cells from 0, zero where there is none."""
+    ordered = np.zeros((int(cell[mine].max(initial=-1)) + 1, 3))
+    known = mine & (cell >= 0)
+    ordered[cell[known]] = covariance[known]
+    return ordered
 
 
 def _cut(cloud: Cloud, sigma_cut_mm: float) -> Cloud:

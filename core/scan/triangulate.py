@@ -2,28 +2,69 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
+from dataclasses import dataclass, fields
 
 import numpy as np
 
 from core.image.centreline import Centreline
+from core.image.pieces import arc_length
 from core.model import Camera
 from core.model.arrays import Array
 from core.scan.cloud import Cloud
 
+LEAST_LEFT = 0.2
+"""No plane undoes more of a point's variance than leaves this share."""
 
-def triangulate(centreline: Centreline, pi: Array, covariance: Array, camera: Camera, frame: int, sweep: int) -> Cloud:
+
+@dataclass(frozen=True, eq=False, slots=True)
+class OwnLine:
+    """What a light plane owes to the centreline it is triangulated with, for crossings on that line fixed it.
+
+    `covariance` (C, 3) in 1/mm of π̂ − π with the errors z of the line's cells of `cell_px`, from its beginning on; see
+    `core.scan.network.Network.line_covariance`.
+    """
+
+    covariance: Array
+    cell_px: float
+
+    def with_noise(self, centreline: Centreline, rays: Array, slope: Array, focal: float) -> Array:
+        """Covariance (N,) in 1/mm² of r·(π̂ − π) with what the line's own noise does to w.
+
+        A cell's mean is off by z times its standard deviation. Points are averages over cells; the covariance changes
+        so little from one to the next that an average of it is its value at the point.
+        """
+        middle = arc_length(focal * rays) / self.cell_px - 0.5
+        cells = np.arange(len(self.covariance))
+        here = np.column_stack([np.interp(middle, cells, column) for column in self.covariance.T])
+        of_cell = float(np.median(centreline.sigma)) * np.sqrt(centreline.correlation_px / self.cell_px)
+        return np.asarray(slope * of_cell * np.einsum("ni,ni->n", rays, here))
+
+
+def triangulate(
+    centreline: Centreline,
+    pi: Array,
+    covariance: Array,
+    camera: Camera,
+    frame: int,
+    sweep: int,
+    own: OwnLine | None = None,
+) -> Cloud:
     """Points of one centreline on the light plane `pi` (3,), with `covariance` (3, 3).
 
-    With r the ray and n the centreline's normal, in inverse depth w = π·r: var(w) = rᵀ Σ r + (∂w/∂(u,v)·n)² σ², and
-    σ_z = z² σ_w. Points that the plane puts behind the camera, and saturated ones, are left out.
+    With r the ray and n the centreline's normal, in inverse depth w = π·r: var(w) = rᵀ Σ r + (∂w/∂(u,v)·n)² σ² + 2 c,
+    and σ_z = z² σ_w. The plane goes where its crossings are, so it follows the line's noise and undoes some of it: c,
+    by `own`, is mostly negative. Points that the plane puts behind the camera, and saturated ones, are left out.
     """
     rays = camera.rays(centreline.uv)
     inverse_depth = rays @ pi
-    keep = (inverse_depth > 1e-5) & ~centreline.saturated & np.isfinite(inverse_depth)
-    centreline, rays, inverse_depth = centreline.select(keep), rays[keep], inverse_depth[keep]
     slope = np.einsum("i,nij,nj->n", pi[:2], camera.ray_jacobian(rays), centreline.normal)
     variance = np.einsum("ni,ij,nj->n", rays, covariance, rays) + (slope * centreline.sigma) ** 2
+    if own is not None and len(own.covariance):
+        common = own.with_noise(centreline, rays, slope, camera.focal)
+        variance = np.maximum(variance + 2 * common, LEAST_LEFT * variance)
+    keep = (inverse_depth > 1e-5) & ~centreline.saturated & np.isfinite(inverse_depth)
+    centreline, rays, inverse_depth = centreline.select(keep), rays[keep], inverse_depth[keep]
+    variance = variance[keep]
     depth = 1 / inverse_depth
     count = len(rays)
     return Cloud(

@@ -181,8 +181,8 @@ class ExactCrossings:
         """The crossings with errors of this seed."""
         return self.drawn_with(seed)[0]
 
-    def drawn_with(self, seed: int) -> tuple[CrossingTable, np.ndarray]:
-        """The crossings with errors of this seed, and the errors (F,) of the fan's cells among them."""
+    def drawn_with(self, seed: int) -> tuple[CrossingTable, np.ndarray, np.ndarray]:
+        """The crossings with errors of this seed, and among them those of the cells of fan (F,) and sweeps (Q,)."""
         rng, table, errors = np.random.default_rng([seed, 4]), self.table, LineErrors.of(self.table)
         cells, fan = rng.normal(size=errors.sweep_a.shape[1]), rng.normal(size=errors.fan.shape[1])
         rest_a, rest_b = (np.sqrt(rest) * rng.normal(size=len(table)) for rest in (errors.rest_a, errors.rest_b))
@@ -190,7 +190,7 @@ class ExactCrossings:
         t_a, t_b = table.tangent_a, table.tangent_b
         sine = t_a[:, 0] * t_b[:, 1] - t_a[:, 1] * t_b[:, 0]
         uv = table.uv + t_b * (off_a / -sine)[:, None] + t_a * (off_b / sine)[:, None]
-        return replace(table, uv=uv), fan
+        return replace(table, uv=uv), fan, cells
 
 
 def _scene(scenario: Scenario, rig: Rig) -> tuple[Scene, dict, list[Sheet]]:

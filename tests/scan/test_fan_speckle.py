@@ -6,10 +6,8 @@ import pytest
 from core.image.pieces import arc_length
 from core.image.smoothing import smooth
 from core.scan.fan_speckle import fan_speckle
-from core.scan.line_errors import LineErrors
-from core.scan.locate import by_sweep, locate_together
 from core.simulate.scenario import Scenario
-from tests.scan.centreline_scan import ExactCrossings, ExactScan, Noise
+from tests.scan.centreline_scan import ExactScan, Noise
 
 CELL_PX = 40.0
 NO_CELLS = np.zeros((0, 2), dtype=np.int64)
@@ -52,23 +50,3 @@ def test_points_of_the_fan_are_known_again_in_the_picture(exact):
     assert np.array_equal(speckle.places(piece.uv[::-7].astype(np.float32)), np.arange(len(piece))[::-7])
     assert (speckle.places(piece.uv + 5 * piece.normal) == -1).all()
     assert len(fan_speckle([piece], [None], exact.rig.camera, CELL_PX, NO_CELLS, np.zeros((0, 0))).cell) == 0
-
-
-def test_the_sweeps_planes_follow_the_fans_cells_as_stated(exact):
-    crossings = ExactCrossings.of(exact)
-    cells = LineErrors.of(crossings.table)
-    camera, fan = exact.rig.camera, exact.rig.fan
-    seen = by_sweep(crossings.table, np.arange(24))
-    errors, told = [], []
-    for seed in range(16):
-        table, z = crossings.drawn_with(seed)
-        solved = locate_together(table, crossings.line, camera, fan)
-        assert np.array_equal(solved.fan_cells, cells.fan_cells)
-        rays = camera.rays(seen.uv)
-        off = (solved.pis - exact.pis[solved.frames])[np.searchsorted(solved.frames, seen.a)]
-        errors.append((rays * off).sum(axis=1))
-        moved = (solved.fan_covariance @ z).reshape(-1, 3)[np.searchsorted(solved.frames, seen.a)]
-        told.append((rays * moved).sum(axis=1))
-    error, told = np.concatenate(errors), np.concatenate(told)
-    assert (error @ told) / (told @ told) == pytest.approx(1.0, abs=0.15)
-    assert np.corrcoef(error, told)[0, 1] > 0.5
