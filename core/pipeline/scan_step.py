@@ -152,7 +152,7 @@ def _write(work: Workspace, scan: ScanResult, mesh: Mesh, file: ScanFile) -> Non
     write_scan(work.path("scan"), file)
     write_mesh(work.path("mesh"), mesh, file.calibration_id)
     if before != work.digest("cloud"):
-        work.clear(("gauge", "faces"))
+        work.clear(("gauge", "faces", "inspection", "inspected"))
 
 
 def feature_options(options: Options) -> FeatureOptions:

@@ -31,6 +31,8 @@ FILES = {
     "scan": "scan.npz",
     "gauge": "gauge.json",
     "faces": "gauge.npz",
+    "inspection": "inspection.json",
+    "inspected": "inspection.npz",
     "report": "report.pdf",
     "run": "run.json",
 }

@@ -1,0 +1,95 @@
+"""`trisect inspect` on a rendered recording: a table for people, the same numbers for machines, exit codes."""
+
+import json
+
+import pytest
+
+from core.files.inspection_file import read_inspection
+from core.files.inspection_plan_file import read_plan
+from core.pipeline.inspect_step import inspect, open_scan
+from tests.simulated import copy_of, trisect
+
+PLAN = """
+[[feature]]
+name = "block"
+kind = "thickness"
+limits.thickness = { nominal_mm = 50, tolerance_mm = 2 }
+[[feature]]
+name = "table"
+kind = "plane"
+filters = { cell_mm = 4.0 }
+[[feature]]
+name = "steps"
+kind = "steps"
+nominal_heights_mm = [50]
+limits.height = { lower_mm = -2, upper_mm = 2 }
+"""
+
+
+@pytest.fixture(scope="module")
+def results(measured, tmp_path_factory):
+    folder = copy_of(measured, tmp_path_factory.mktemp("inspected") / "out")
+    (folder / "plan.toml").write_text(PLAN)
+    return folder
+
+
+def test_a_folder_of_results_is_inspected_and_told_in_a_table(results):
+    said = trisect("inspect", results, "--plan", results / "plan.toml")
+    assert said.code == 0, said.err
+    for word in ("block thickness", "table flatness", "steps height 1", "conforming", "inspection.json"):
+        assert word in said.out
+    file = read_inspection(results / "inspection.json")
+    rows = {row.name: row for row in file.characteristics}
+    assert rows["block thickness"].value == pytest.approx(50.0, abs=3 * rows["block thickness"].u)
+    assert rows["steps height 1"].value == pytest.approx(50.0, abs=3 * rows["steps height 1"].u)
+    assert len(file.points["block"]) > 1000
+    assert file.kinds["steps"] == "steps"
+
+
+def test_machines_files_and_windows_get_the_same_numbers_to_the_last_digit(results):
+    said = json.loads(trisect("inspect", results, "--plan", results / "plan.toml", "--json").out)
+    again = inspect(open_scan(results), read_plan(results / "plan.toml"), results)
+    file = json.loads((results / "inspection.json").read_text())
+    told = [(row["name"], row["value"], row["u"], row["verdict"]) for row in said["characteristics"]]
+    assert told == [(row.name, row.value, row.u, row.verdict) for row in again.characteristics]
+    assert told == [(row["name"], row["value"], row["u"], row["verdict"]) for row in file["characteristics"]]
+    assert [feature["name"] for feature in file["plan"]["feature"]] == ["block", "table", "steps"]
+
+
+def test_a_recording_set_is_inspected_with_its_results(simulated, results):
+    said = trisect("inspect", simulated, "--plan", results / "plan.toml", "--out", results, "--json")
+    assert said.code == 0
+    refused = trisect("inspect", simulated, "--plan", results / "plan.toml")
+    assert refused.code == 2
+    assert "--out" in refused.sentence
+
+
+def test_a_cloud_alone_is_inspected_and_says_what_is_not_known(results, tmp_path):
+    (tmp_path / "lonely.ply").write_bytes((results / "cloud.ply").read_bytes())
+    said = json.loads(trisect("inspect", tmp_path / "lonely.ply", "--plan", results / "plan.toml", "--json").out)
+    assert any("less than is known" in note for note in said["notes"])
+    assert said["files"] == {}
+    whole = json.loads(trisect("inspect", results / "cloud.ply", "--plan", results / "plan.toml", "--json").out)
+    alone, known = (one["characteristics"][0] for one in (said, whole))
+    assert alone["value"] == pytest.approx(known["value"], abs=0.2)
+    assert not any("less than is known" in note for note in whole["notes"])
+
+
+@pytest.mark.parametrize(
+    ("plan", "code", "word"),
+    [
+        (PLAN.replace("nominal_mm = 50", "nominal_mm = 60"), 1, "not conforming"),
+        (
+            PLAN + '[[feature]]\nname = "ball"\nkind = "sphere"\nregion = { polygon_px = [[0,0],[9,0],[9,9]] }\n',
+            1,
+            "ball",
+        ),
+        ('[[feature]]\nname = "ball"\nkind = "sphere"\nregion = { polygon_px = [[0,0],[9,0],[9,9]] }\n', 2, "nothing"),
+        ("[[feature]]\nname = 1\n", 2, "name"),
+    ],
+)
+def test_exit_codes(results, tmp_path, plan, code, word):
+    (tmp_path / "plan.toml").write_text(plan)
+    said = trisect("inspect", results, "--plan", tmp_path / "plan.toml", "--out", tmp_path / "out")
+    assert said.code == code
+    assert word in said.out + said.err
