@@ -16,6 +16,9 @@ INSTALL = "Basler cameras need pypylon: install it with pip install 'trisect[bas
 
 READY_MS = 200
 
+TICKS = "GevTimestampTickFrequency"
+"""Ticks per second of an older camera's clock; newer ones count nanoseconds."""
+
 
 def list_cameras() -> list[tuple[str, str, str]]:
     """Serial number, name and kind of connection of each Basler camera that is plugged in.
@@ -84,10 +87,12 @@ class PylonDriver:
         self._pylon = pylon
         self._format = ""
         self._number = -1
+        self._ticks_hz = 1e9
 
     def start(self) -> None:
         with _telling():
             self._format, self._number = self.features.entry("PixelFormat"), -1
+            self._ticks_hz = self.features.number(TICKS) if self.features.has(TICKS) else 1e9
             self.camera.OutputQueueSize.SetValue(BUFFERS)
             self.camera.StartGrabbing(self._pylon.GrabStrategy_LatestImages)
 
@@ -115,7 +120,9 @@ class PylonDriver:
                 return Grabbed(None, number=self._number)
             picture = result.GetArray()
             height, width = picture.shape[:2]
-            return Grabbed(picture.ravel(), self._format, width, height, self._number)
+            ticks = int(result.GetTimeStamp())  # 0 of the emulator, which has no clock
+            time_s = ticks / self._ticks_hz if ticks else None
+            return Grabbed(picture.ravel(), self._format, width, height, self._number, time_s)
         finally:
             result.Release()
 

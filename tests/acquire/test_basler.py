@@ -82,10 +82,10 @@ def test_a_late_reader_gets_the_newest_frames_and_the_exact_number_of_lost_ones(
     source.configure(SourceSettings(rate_hz=500))
     source.open()
     first = source.read(2)
-    time.sleep(0.2)
-    frames = [source.read(2) for _ in range(6)]
+    time.sleep(0.6)
+    frames = [source.read(2) for _ in range(12)]
     assert frames[-1].dropped > 3
-    assert frames[-1].index == first.index + 6 + frames[-1].dropped
+    assert frames[-1].index == first.index + 12 + frames[-1].dropped
 
 
 def test_the_first_camera_found_is_taken_without_a_number(pylon):
@@ -226,6 +226,25 @@ def test_a_frame_the_connection_broke_is_counted(source):
     frame = source.read(2)
     assert frame.index >= index + 4
     assert frame.dropped >= 3
+
+
+def test_a_cameras_own_clock_is_used_where_it_has_one(source):
+    source.open()
+    source.read(2)
+    source._origin, source._driver._ticks_hz = None, 125e6
+
+    def at(ticks):
+        result = SimpleNamespace(
+            GetNumberOfSkippedImages=lambda: 0,
+            GetBlockID=lambda: 0,
+            GrabSucceeded=lambda: True,
+            GetArray=lambda: np.zeros((48, 64), np.uint8),
+            GetTimeStamp=lambda: ticks,
+            Release=lambda: None,
+        )
+        return source._frame(source._driver._grabbed(result)).time_s
+
+    assert [at(10**9), at(10**9 + 12_500_000)] == pytest.approx([0.0, 0.1])
 
 
 def test_lasers_are_a_persons_business():
