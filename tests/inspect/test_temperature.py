@@ -1,0 +1,98 @@
+"""Lengths at 20 °C and by comparison with a master, against figures worked out by hand."""
+
+import pytest
+
+from core.inspect.characteristic import Characteristic, Limits
+from core.inspect.results import Contribution
+from core.inspect.temperature import (
+    CERTIFICATE,
+    MASTER_MEASURED,
+    PART_EXPANSION,
+    PART_TEMPERATURE,
+    SCALE_EXPANSION,
+    Master,
+    Temperature,
+    at_reference,
+    compared,
+    temperature_contributions,
+)
+from core.inspect.uncertainty import CAMERA, POINT_NOISE, SCALE, combined
+
+WARM = Temperature(24.0, 0.5, 11.5e-6, 1.0e-6)
+
+
+def length(value=50.02, noise=0.003, camera=0.008, kind="thickness", **more):
+    budget = (Contribution(POINT_NOISE, noise), Contribution(CAMERA, camera))
+    return Characteristic("block", kind, value, combined(budget), budget=budget, **more)
+
+
+def test_a_warm_steel_block_is_shorter_at_20_degrees():
+    row = at_reference(length(limits=Limits(50.0, -0.1, 0.1)), WARM)
+    assert row.value == pytest.approx(50.02 * (1 - 11.5e-6 * 4.0), abs=1e-12)
+    rows = {one.source: one for one in row.budget}
+    assert rows[PART_TEMPERATURE].u_mm == pytest.approx(50.02 * 11.5e-6 * 0.5, rel=1e-9)
+    assert rows[PART_TEMPERATURE].sensitivity == pytest.approx(50.02 * 11.5e-6, rel=1e-9)
+    assert (rows[PART_TEMPERATURE].value, rows[PART_TEMPERATURE].unit) == (24.0, "°C")
+    assert rows[PART_EXPANSION].u_mm == pytest.approx(50.02 * 4.0 * 1e-6, rel=1e-9)
+    assert row.u == pytest.approx(combined(row.budget), rel=1e-12)
+    assert row.deviation == pytest.approx(row.value - 50.0)
+    assert "20 °C" in row.notes[0]
+
+
+def test_a_scale_of_the_same_material_at_the_same_temperature_cancels_the_expansion():
+    both = Temperature(24.0, 0.0, 11.5e-6, 1e-6, scale_celsius=24.0, scale_alpha=11.5e-6, u_scale_alpha=1e-6)
+    row = at_reference(length(), both)
+    assert row.value == pytest.approx(50.02, abs=1e-12)
+    assert SCALE_EXPANSION in {one.source for one in row.budget}
+
+
+def test_at_20_degrees_only_the_thermometer_counts():
+    rows = temperature_contributions(50.0, Temperature(20.0, 0.2, 11.5e-6, 1e-6))
+    assert [row.source for row in rows] == [PART_TEMPERATURE]
+    assert rows[0].u_mm == pytest.approx(50 * 11.5e-6 * 0.2)
+
+
+def test_the_end_gauge_of_the_gum_has_its_published_contributions():
+    # H.1.3.4: u(δα) = 0.58·10⁻⁶ with θ = −0.1 K gives 2.9 nm; H.1.3.5: α = 11.5·10⁻⁶ with u(δθ) = 0.029 K 16.6 nm
+    rows = temperature_contributions(50.0, Temperature(19.9, 0.029, 11.5e-6, 0.58e-6))
+    nanometres = {row.source: row.u_mm * 1e6 for row in rows}
+    assert nanometres[PART_EXPANSION] == pytest.approx(2.9, abs=0.05)
+    assert nanometres[PART_TEMPERATURE] == pytest.approx(16.6, abs=0.1)
+
+
+def test_forms_and_angles_do_not_expand():
+    flat = length(kind="flatness")
+    lean = length(kind="angle", quantity="angle")
+    assert at_reference(flat, WARM) is flat
+    assert at_reference(lean, WARM) is lean
+    assert compared(flat, MASTER) is flat
+
+
+MASTER = Master("M50", 50.0002, 0.0001, 50.0152, ((POINT_NOISE, 0.004), (CAMERA, 0.0075), (SCALE, 0.002)), ("block",))
+
+
+def test_a_part_is_compared_with_a_master_of_its_size():
+    row = compared(length(), MASTER)
+    assert row.value == pytest.approx(50.02 - 0.015, abs=1e-12)
+    rows = {one.source: one.u_mm for one in row.budget}
+    assert rows[CAMERA] == pytest.approx(0.0005)  # both wrong in the same way
+    assert rows[POINT_NOISE] == 0.003
+    assert rows[MASTER_MEASURED] == 0.004
+    assert rows[CERTIFICATE] == 0.0001
+    assert row.u == pytest.approx(combined(row.budget))
+    assert row.u < length().u
+
+
+def test_a_master_measured_with_another_calibration_cancels_nothing():
+    other = Master("M50", 50.0002, 0.0001, 50.0152, MASTER.budget, ("block",), same_calibration=False)
+    row = compared(length(), other)
+    rows = {one.source: one.u_mm for one in row.budget}
+    assert rows[CAMERA] == 0.008
+    assert rows[MASTER_MEASURED] == pytest.approx((0.004**2 + 0.0075**2 + 0.002**2) ** 0.5)
+    assert row.u > length().u
+
+
+def test_a_master_of_quite_another_size_is_not_used():
+    row = compared(length(value=70.0), MASTER)
+    assert row.value == 70.0
+    assert "too different" in row.notes[-1]
