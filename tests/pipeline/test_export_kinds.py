@@ -116,6 +116,6 @@ def test_a_template_that_is_gone_is_told_and_the_old_report_stays(done, folder):
     report = make_report(folder, done.project)
     before = report.read_bytes()
     choices = ReportChoices(template="gone.toml")
-    with pytest.raises(InputError, match="gone.toml"):
+    with pytest.raises(InputError, match=r"gone\.toml"):
         make_report(folder, replace(done.project, report=choices))
     assert report.read_bytes() == before
