@@ -59,3 +59,15 @@ def coverage_factor(dof: float, coverage: float = COVERAGE) -> float:
         raise ValueError(f"no coverage factor from {dof} degrees of freedom and a coverage of {coverage}")
     tail = (1 + coverage) / 2
     return float(ndtri(tail) if math.isinf(dof) else stdtrit(math.floor(dof), tail))
+
+
+def student_factor(k: float, contributions: Iterable[Contribution]) -> float:
+    """The factor, to two decimals, that covers as much with a budget's ν_eff as `k` does where u is known: `k` itself.
+
+    Examples
+    --------
+    >>> student_factor(2.0, [Contribution("known", 0.1)]), student_factor(2.0, [Contribution("guessed", 0.1, dof=10)])
+    (2.0, 2.28)
+    """
+    dof = effective_dof(contributions)
+    return k if math.isinf(dof) else round(coverage_factor(dof, math.erf(k / math.sqrt(2))), 2)

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from core.errors import InputError
 from core.inspect.conformity import decide
+from core.inspect.coverage import student_factor
 from core.inspect.faces import FacePair, faces_in_polygons, find_faces
 from core.inspect.parallel_faces import FittedFaces, fit_faces
 from core.inspect.plane_fit import ParallelPlanes, PlaneFit, fit_parallel_planes, fit_plane
@@ -155,7 +156,7 @@ def measure_gauge(
     nominal_mm, tolerance_mm
         What the part should be, ±; without both of them there is no verdict.
     k
-        Coverage factor.
+        Coverage factor where u is known; Student's t makes it larger where form makes up much of u.
     progress
         Told how far it is.
 
@@ -166,7 +167,7 @@ def measure_gauge(
     """
     errors = errors or PointErrors()
     fit = fit_gauge(cloud, errors=errors, regions=regions, seed=seed, progress=progress)
-    u = combined(fit.budget)
+    u, k = combined(fit.budget), student_factor(k, fit.budget)
     verdict = ""
     if nominal_mm is not None and tolerance_mm is not None:
         verdict = decide(fit.thickness_mm - nominal_mm, tolerance_mm, k * u)

@@ -19,8 +19,9 @@ JCGM 100:2008, Guide to the expression of uncertainty in measurement, 5.2 (corre
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -49,6 +50,9 @@ SWEEP_PLANES = "light planes of the sweeps (network)"
 FAN_SPECKLE = "centreline noise of the fan's points (speckle)"
 FORM = "form of the faces beyond the stated noise"
 
+UNKNOWNS = 4
+"""Of a fit: two parallel planes, or a sphere. The form's size is found from as many patches less."""
+
 
 def combined(contributions: Iterable[Contribution]) -> float:
     """Combined standard uncertainty in mm of independent contributions."""
@@ -70,12 +74,15 @@ class Effect:
         quantities' own (noise of their points, form of their surface).
     point_mm
         Standard uncertainty in mm that the cause gives to a typical point, across the surface.
+    dof
+        Degrees of freedom of all this.
     """
 
     source: str
     factor: Array
     shared: bool
     point_mm: float
+    dof: float = math.inf
 
 
 def budget(
@@ -117,7 +124,8 @@ def effects(
         found.append(_effect(FAN_SPECKLE, gains, sources.speckle, shared=True))
     elif of_fan.any():
         found.append(_noise(FAN_SPECKLE, gains[:, of_fan], own[of_fan]))
-    found.append(_effect(FORM, gains, form_mm * sources.form, shared=False))
+    patches = max(sources.form.shape[1] - UNKNOWNS, 1)  # what the form's size was found from
+    found.append(replace(_effect(FORM, gains, form_mm * sources.form, shared=False), dof=float(patches)))
     for source in dict.fromkeys(calibrations):
         mine = np.array([one == source for one in calibrations])
         found.append(_effect(source, gains, sources.common[:, mine], shared=True))
@@ -136,14 +144,15 @@ def budget_of(parts: Sequence[tuple[Array, Sequence[Effect]]]) -> tuple[Contribu
     Returns
     -------
     tuple of Contribution
-        One a cause; `point_mm` is the largest of the groups'.
+        One a cause; `point_mm` is the largest of the groups', `dof` the smallest.
     """
     rows = []
     for source in dict.fromkeys(effect.source for _, of_part in parts for effect in of_part):
         mine = [(gradient, one) for gradient, of_part in parts for one in of_part if one.source == source]
         moved = [gradient @ one.factor for gradient, one in mine]
         together = sum(moved[1:], start=moved[0]) if mine[0][1].shared else np.concatenate(moved)
-        rows.append(Contribution(source, float(np.linalg.norm(together)), max(one.point_mm for _, one in mine)))
+        point_mm, dof = max(one.point_mm for _, one in mine), min(one.dof for _, one in mine)
+        rows.append(Contribution(source, float(np.linalg.norm(together)), point_mm, dof=dof))
     return tuple(rows)
 
 

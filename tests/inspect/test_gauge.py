@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from core.errors import InputError
+from core.inspect.coverage import coverage_factor, effective_dof
 from core.inspect.faces import FacePair
 from core.inspect.gauge import RULE, fit_gauge, measure_gauge
 from core.inspect.point_errors import PointErrors
@@ -153,6 +154,10 @@ def test_form_error_appears_in_the_budget(scan):
     assert rows(measure_gauge(plain, **settings))[FORM] < 0.0015
     waved = measure_gauge(wavy, **settings)
     assert rows(waved)[FORM] > 0.002
+    form = next(row for row in waved.budget if row.source == FORM)
+    assert 3 < form.dof < 500  # patches, not points, say how rough the faces are
+    assert waved.k == pytest.approx(coverage_factor(effective_dof(waved.budget)), abs=0.005)
+    assert waved.k > 2
     assert waved.upper.flatness_mm > 1.3 * waved.lower.flatness_mm
 
 

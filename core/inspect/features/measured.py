@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.inspect.characteristic import Characteristic
+from core.inspect.coverage import student_factor
 from core.inspect.deviation_map import DeviationMap
 from core.inspect.elements import Element
 from core.inspect.faces import FoundPlane, find_planes
@@ -17,7 +18,6 @@ from core.inspect.point_errors import PointErrors
 from core.inspect.profile import Profile
 from core.inspect.results import Contribution, GaugeResult
 from core.inspect.shapes import Ball, Levels, Tube
-from core.scan.triangles import Triangles
 from core.inspect.uncertainty import combined
 from core.model import Pose
 from core.model.arrays import Array
@@ -25,6 +25,7 @@ from core.progress import Progress, silent
 from core.scan.cloud import Cloud
 from core.scan.normals import with_normals
 from core.scan.surface import Mesh
+from core.scan.triangles import Triangles
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -134,7 +135,7 @@ class Scene:
             value=value,
             u=combined(budget),
             quantity="angle" if angle else "length",
-            k=self.k,
+            k=student_factor(self.k, budget),
             limits=spec.limits_of(result),
             budget=budget,
             rule=rule,
