@@ -46,6 +46,7 @@ from core.files.inspection_plan_tables import (
 )
 from core.files.master_file import master_of, master_table
 from core.inspect.characteristic import Limits
+from core.inspect.conditions import Temperature
 from core.inspect.inspection_plan import (
     Auto,
     Cut,
@@ -61,7 +62,6 @@ from core.inspect.inspection_plan import (
     Region,
     Section,
 )
-from core.inspect.temperature import Temperature
 
 ONE_SIDED = ("flatness", "form", "profile")
 """Results that cannot be too small: of their tolerance only the upper limit counts."""

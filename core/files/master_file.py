@@ -6,9 +6,8 @@ from pathlib import Path
 from typing import Any
 
 from core.errors import InputError
-from core.files.inspection_file import read_inspection
 from core.files.inspection_plan_tables import MasterTable
-from core.inspect.temperature import Master
+from core.inspect.conditions import Master
 
 
 def master_of(table: MasterTable, path: Path) -> Master:
@@ -21,6 +20,8 @@ def master_of(table: MasterTable, path: Path) -> Master:
     """
     measured, budget = table.measured_mm, tuple((row.source, row.u_mm) for row in table.budget)
     if table.result is not None:
+        from core.files.inspection_file import read_inspection  # the whole of inspecting: only now
+
         rows = {row.name: row for row in read_inspection(path.parent / table.result).characteristics}
         if table.characteristic not in rows:
             known = ", ".join(rows) or "nothing"

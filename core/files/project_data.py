@@ -8,6 +8,7 @@ from datetime import datetime
 
 from core.files.options import Options
 from core.files.rig import Rig, default_rig
+from core.inspect.inspection_plan import InspectionPlan
 from core.report.template import Language, Paper
 
 
@@ -76,7 +77,8 @@ class ReportChoices:
 class Project:
     """Everything the user decides. Two projects are equal if every field is, and then have one hash.
 
-    `rejected`: ids of calibrations that were found and are not wanted.
+    `rejected`: ids of calibrations that were found and are not wanted. `inspection`: the features measured beside the
+    thickness; names of nominal surfaces in it are paths within the project's folder, or whole ones.
     """
 
     info: ProjectInfo = field(default_factory=ProjectInfo)
@@ -87,6 +89,7 @@ class Project:
     rejected: frozenset[str] = frozenset()
     repeats: tuple[Repeat, ...] = ()
     report: ReportChoices = field(default_factory=ReportChoices)
+    inspection: InspectionPlan = field(default_factory=InspectionPlan)
 
 
 @dataclass(frozen=True, slots=True)

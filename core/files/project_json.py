@@ -14,6 +14,7 @@ from core import __version__
 from core.calibrate.camera import CameraOptions
 from core.errors import InputError
 from core.files.complaints import complaint
+from core.files.inspection_plan_file import plan_of, plan_tables
 from core.files.json_text import read_json, to_json
 from core.files.options import Options
 from core.files.project_data import (
@@ -30,12 +31,13 @@ from core.files.project_tables import OptionsTable, ProjectTables
 from core.files.rig import rig_of, rig_tables
 from core.image.stripe import StripeSettings
 
-SCHEMA = 3
+SCHEMA = 4
 """Raised with every change of the keys: an older program then says that the project is too new for it."""
 
 MIGRATIONS: Mapping[int, Callable[[dict[str, Any]], dict[str, Any]]] = {
     1: lambda tables: {**tables, "rejected": []},
     2: lambda tables: tables,  # language and template of the report, which have defaults
+    3: lambda tables: tables,  # the plan of the inspection, which may be empty
 }
 """By schema: the tables as the next schema has them, from those of this one."""
 
@@ -68,6 +70,7 @@ def project_text(file: ProjectFile, path: Path) -> str:
         "rejected": sorted(project.rejected),
         "repeats": [{**asdict(repeat), "measured_at": _stamp(repeat.measured_at)} for repeat in project.repeats],
         "report": {**asdict(project.report), "hidden": sorted(project.report.hidden)},
+        "inspection": plan_tables(project.inspection),
         "results": {step: _done_table(done) for step, done in sorted(file.results.items())},
     }
     _checked(tables, path)
@@ -121,6 +124,7 @@ def _project_file(file: ProjectTables, path: Path) -> ProjectFile:
         rejected=frozenset(file.rejected),
         repeats=tuple(Repeat(**dict(repeat)) for repeat in repeats),
         report=ReportChoices(**{**dict(report), "hidden": frozenset(report.hidden)}),
+        inspection=plan_of(file.inspection, path),
     )
     results = {step: Done(done.key, done.rests_on, done.at) for step, done in file.results.items()}
     return ProjectFile(project, results, file.created, file.saved)

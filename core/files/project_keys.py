@@ -12,11 +12,12 @@ from dataclasses import asdict
 from datetime import datetime
 from typing import Any
 
+from core.files.inspection_plan_file import plan_tables
 from core.files.project_data import Done, Project, ReportChoices
 from core.files.rig import rig_tables
 
-STEPS = ("camera", "planes", "scan", "inspect", "report")
-"""The steps that have a result, in the order of work."""
+STEPS = ("camera", "planes", "scan", "inspect", "features", "report")
+"""The steps that have a result, in the order of work; "inspect" is the thickness, "features" the plan's inspection."""
 
 Keys = Mapping[str, str]
 """Name of an input, in the user's words → its key."""
@@ -42,6 +43,8 @@ def rests_on(step: str, project: Project, results: Mapping[str, Done]) -> dict[s
             return _scan(project)
         case "inspect":
             return _inspect(project, results)
+        case "features":
+            return _features(project, results)
         case "report":
             return _report(project, results)
     raise ValueError(f"{step} is none of {', '.join(STEPS)}")
@@ -109,10 +112,16 @@ def _inspect(project: Project, results: Mapping[str, Done]) -> dict[str, str]:
     }
 
 
+def _features(project: Project, results: Mapping[str, Done]) -> dict[str, str]:
+    return {"scan": _key_of("scan", results), "features": _digest(plan_tables(project.inspection))}
+
+
 def _report(project: Project, results: Mapping[str, Done]) -> dict[str, str]:
+    inspected = {"features": _key_of("features", results)} if "features" in results else {}
     return {
         "scan": _key_of("scan", results),
         "thickness": _key_of("inspect", results),
+        **inspected,
         "project fields": _digest(asdict(project.info)),
         "repeats": _digest([[*asdict(repeat).values()] for repeat in project.repeats]),
         "sections of the report": _digest([sorted(project.report.hidden), *_printing(project.report)]),

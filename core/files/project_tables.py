@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 
 from pydantic import BeforeValidator, Field
 
+from core.files.inspection_plan_tables import PlanTables
 from core.files.rig_tables import RigTables, Table
 
 
@@ -140,4 +141,5 @@ class ProjectTables(Table):
     rejected: list[_Id] = Field(default_factory=list, description="a list of ids of calibrations")
     repeats: list[RepeatTable] = Field(default_factory=list)
     report: ReportTable = ReportTable()
+    inspection: PlanTables = PlanTables()
     results: dict[str, DoneTable] = Field(default_factory=dict)

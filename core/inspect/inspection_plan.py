@@ -12,7 +12,7 @@ from typing import Literal, TypeAlias
 
 from core.errors import InputError
 from core.inspect.characteristic import Limits
-from core.inspect.temperature import Master, Temperature
+from core.inspect.conditions import Master, Temperature
 
 Kind = Literal[
     "plane", "sphere", "cylinder", "point", "thickness", "steps", "distance", "angle", "section", "deviation"

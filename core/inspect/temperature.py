@@ -20,13 +20,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from core.inspect.characteristic import Characteristic
+from core.inspect.conditions import REFERENCE_C, Master, Temperature
 from core.inspect.results import Contribution
 from core.inspect.uncertainty import CAMERA, FAN_CALIBRATION, SCALE, combined
 
-REFERENCE_C = 20.0
 PART_TEMPERATURE = "temperature of the part"
 PART_EXPANSION = "expansion coefficient of the part"
 SCALE_TEMPERATURE = "temperature of the calibration target"
@@ -39,50 +39,6 @@ LENGTHS = ("thickness", "height", "diameter", "radius", "distance")
 
 ALIKE = 0.2
 """A master is of use to lengths that differ from its own by no more than this share of it."""
-
-
-@dataclass(frozen=True, slots=True)
-class Temperature:
-    """Of a part, in °C and 1/K, each with its standard uncertainty; the scale's, if it is known, in the same way."""
-
-    part_celsius: float
-    u_part_celsius: float
-    alpha: float
-    u_alpha: float
-    scale_celsius: float = REFERENCE_C
-    u_scale_celsius: float = 0.0
-    scale_alpha: float = 0.0
-    u_scale_alpha: float = 0.0
-
-
-@dataclass(frozen=True, slots=True)
-class Master:
-    """A known length that was measured like the part.
-
-    Parameters
-    ----------
-    name
-        What it is called.
-    certified_mm, u_certified_mm
-        Its length at 20 °C and standard uncertainty by its certificate.
-    measured_mm
-        The same length as measured, at 20 °C if the part's are.
-    budget
-        What the measured length's uncertainty is made of; causes that camera and fan have in common with the part's
-        measurement cancel.
-    features
-        Names of the features that are compared with it.
-    same_calibration
-        Whether both were measured with one calibration of camera and fan.
-    """
-
-    name: str
-    certified_mm: float
-    u_certified_mm: float
-    measured_mm: float
-    budget: tuple[tuple[str, float], ...]
-    features: tuple[str, ...] = ()
-    same_calibration: bool = True
 
 
 def at_reference(length: Characteristic, temperature: Temperature) -> Characteristic:

@@ -7,6 +7,7 @@ import pytest
 from core.errors import InputError
 from core.files.inspection_plan_file import read_plan, write_plan
 from core.inspect.characteristic import Limits
+from core.inspect.conditions import Master, Temperature
 from core.inspect.inspection_plan import (
     Auto,
     Cut,
@@ -21,7 +22,6 @@ from core.inspect.inspection_plan import (
     Polygon,
     Section,
 )
-from core.inspect.temperature import Master, Temperature
 
 SQUARE = Polygon(((800.0, 500.0), (1100.5, 500.0), (950.0, 800.0)))
 EVERYTHING = InspectionPlan(

@@ -29,6 +29,9 @@ from core.files.project_json import SCHEMA, project_text
 from core.files.rig import GaugeSpec, Rig, default_rig, read_rig, rig_to_toml
 from core.image.stripe import StripeSettings
 from core.image.targets import Charuco, CircleGrid
+from core.inspect.characteristic import Limits
+from core.inspect.conditions import Master, Temperature
+from core.inspect.inspection_plan import FeatureSpec, Filters, InspectionPlan, PartFrame, Polygon
 
 AT = datetime(2026, 1, 31, 12, 30, 15, 250_000, timezone(timedelta(hours=2)))
 POLYGON = np.array([[0, 0], [10.5, 0], [10, 1 / 3]])
@@ -48,7 +51,22 @@ def full_project():
         frozenset({"deadbeef0123", "0123456789cd"}),
         (REPEAT, replace(REPEAT, thickness_mm=50.001)),
         ReportChoices(frozenset({"plots", "frames"}), "Letter", "de", "house/template.toml"),
+        full_plan(),
     )  # fmt: skip
+
+
+def full_plan():
+    """A plan of an inspection in which nothing is as usual."""
+    ball = FeatureSpec(
+        "ball Ø",
+        "sphere",
+        (Polygon(((1.5, 2.0), (30.0, 2.0), (15.0, 20.0))),),
+        filters=Filters(0.04, 2.0, 3.5, 1.0),
+        limits=(("diameter", Limits(50.0, -0.05, 0.1)),),
+    )
+    hot = Temperature(22.5, 0.3, 11.5e-6, 1e-6, 21.0, 0.2, 9e-6, 5e-7)
+    master = Master("ring", 49.999, 0.0002, 50.004, (("noise", 0.003),), ("ball Ø",), False)
+    return InspectionPlan((ball,), PartFrame("ball Ø", "table", "side"), hot, master, 3.0)
 
 
 def full_file():
@@ -89,7 +107,9 @@ def swapped(to, source, path):
     return replace(to, **{name: swapped(getattr(to, name), inner, rest) if rest else inner})
 
 
-ONE_BY_ONE = [path for path in leaves(full_project()) if path[:2] not in (("rig", "gauge"), ("options", "stripe"))]
+WHOLE = {("rig", "gauge"), ("options", "stripe")} | {("inspection", of) for of in ("frame", "temperature", "master")}
+"""What a new project has none of."""
+ONE_BY_ONE = [path for path in leaves(full_project()) if path[:2] not in WHOLE]
 
 
 @pytest.mark.parametrize("path", ONE_BY_ONE, ids=".".join)
@@ -121,7 +141,7 @@ def test_the_file_is_for_people_too(tmp_path):
     tables = json.loads(text)
     assert list(tables) == [
         "schema_version", "version", "created", "saved", "info", "rig", "sources", "options", "accepted", "rejected",
-        "repeats", "report", "results",
+        "repeats", "report", "inspection", "results",
     ]  # fmt: skip
     assert tables["schema_version"] == SCHEMA
     assert tables["options"]["excluded"] == ["camera/b.png", "planes/pose02", "scan/ä ö.png"]

@@ -9,6 +9,7 @@ from core.files.project_data import Accepted, Repeat, ReportChoices, Sources, ne
 from core.files.project_keys import STEPS, changed, finished, rests_on
 from core.files.rig import GaugeSpec
 from core.image.targets import Checkerboard
+from core.inspect.inspection_plan import FeatureSpec, InspectionPlan
 
 START = replace(
     new_project("block"),
@@ -114,3 +115,16 @@ def test_a_calibration_given_up_is_missed_by_its_own_step():
 def test_an_unknown_step_is_refused():
     with pytest.raises(ValueError, match="weigh"):
         rests_on("weigh", START, {})
+
+
+def test_features_rest_on_the_scan_and_on_the_plan_and_the_report_on_them():
+    project, results = new_project(""), {}
+    results["scan"] = finished("scan", project, results)
+    results["features"] = finished("features", project, results)
+    ball = replace(project, inspection=InspectionPlan((FeatureSpec("ball", "sphere"),)))
+    assert changed(results["features"].rests_on, rests_on("features", ball, results)) == ("features",)
+    assert "features" in rests_on("report", project, results)
+
+
+def test_a_report_of_a_project_without_features_does_not_speak_of_them():
+    assert "features" not in rests_on("report", new_project(""), {})

@@ -7,10 +7,10 @@ import pytest
 
 from core.errors import InputError
 from core.inspect.characteristic import Limits
+from core.inspect.conditions import Temperature
 from core.inspect.evaluate import evaluate
 from core.inspect.inspection_plan import Auto, Cut, FeatureSpec, Filters, InspectionPlan, PointsOf, Polygon, Section
 from core.inspect.point_errors import PointErrors
-from core.inspect.temperature import Temperature
 from tests.inspect.block_scan import BlockScan
 
 BLOCK = BlockScan(sweeps=24)

@@ -9,7 +9,8 @@ from core.files.atomic import write_text
 from core.files.json_text import to_json
 from core.files.study_results import measured_in
 from core.inspect.characteristic import Characteristic
-from core.inspect.temperature import PART_EXPANSION, Temperature, at_reference
+from core.inspect.conditions import Temperature
+from core.inspect.temperature import PART_EXPANSION, at_reference
 from core.study.budget import add_up
 
 
