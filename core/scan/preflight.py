@@ -21,9 +21,6 @@ FRESH_DAYS = 30.0
 IN_FOCUS, OUT_OF_FOCUS = 1 / 600, 1 / 250
 """Gaussian σ of the fan's stripes over the picture's width: up to the first they are sharp, from the second on not."""
 
-SAME_FOCUS = 1.4
-"""Stripes this many times as wide as when the fan was calibrated show that the focus has changed."""
-
 _NO_REFERENCE = "Take the reference first."
 _DAY_S = 86_400.0
 
@@ -57,8 +54,6 @@ class Preflight:
         The calibrations; None where there is none.
     age_s
         Time since the older of the two was made; None if that is not known.
-    usual_width_px
-        Gaussian σ of the stripes when the fan was calibrated; None if that is not known.
     """
 
     lines: int
@@ -69,7 +64,6 @@ class Preflight:
     camera: Camera | None = None
     fan: Fan | None = None
     age_s: float | None = None
-    usual_width_px: float | None = None
 
     def checks(self) -> tuple[Check, ...]:
         """All checks, the reference first: the next three rest on it."""
@@ -109,13 +103,10 @@ class Preflight:
             return Check("focus", "unknown", _NO_REFERENCE)
         width = float(np.median(np.concatenate([piece.width for piece in stripes])))
         said = f"The fan's stripes are {width:.1f} px wide (σ)"
-        if self.usual_width_px is not None and width > SAME_FOCUS * self.usual_width_px:
-            times = width / self.usual_width_px
-            return Check("focus", "failed", f"{said}, {times:.1f} times as wide as when the fan was calibrated.")
         share = width / self.image_size[0]
         if share >= OUT_OF_FOCUS:
             return Check("focus", "failed", f"{said}: focus camera and laser, then calibrate again.")
-        return Check("focus", "ok" if share <= IN_FOCUS or self.usual_width_px is not None else "unknown", f"{said}.")
+        return Check("focus", "ok" if share <= IN_FOCUS else "unknown", f"{said}.")
 
     def _calibration(self) -> Check:
         if self.camera is None or self.fan is None:

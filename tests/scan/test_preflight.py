@@ -62,7 +62,6 @@ def test_before_the_reference_only_the_calibration_is_known():
         ({"fan_lines": ((stripe(count=10),),) * 3}, "exposure", "unknown", "Too little of the fan"),
         ({"fan_lines": ((stripe(width=9.0),),) * 3}, "focus", "failed", "9.0 px wide (σ): focus camera and laser"),
         ({"fan_lines": ((stripe(width=5.0),),) * 3}, "focus", "unknown", "5.0 px wide"),
-        ({"usual_width_px": 1.0}, "focus", "failed", "1.5 times as wide as when the fan was calibrated"),
         (
             {"image_size": (960, 687)},
             "calibration",
