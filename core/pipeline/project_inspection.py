@@ -1,0 +1,61 @@
+"""The inspection of a project: its plan, measured on the scan among its results, written there and shown."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from core.errors import InputError
+from core.files.inspection_file import NAME, write_inspection
+from core.files.inspection_plan_file import plan_tables
+from core.files.project_data import Project
+from core.inspect.evaluate import Inspection
+from core.inspect.shown_features import ShownFeature, ShownInspection
+from core.pipeline.gauge_complaints import in_a_project
+from core.pipeline.inspect_step import inspect, open_scan
+from core.pipeline.project_steps import results_folder
+from core.progress import Progress, silent
+
+
+def measure_features(folder: Path, project: Project, progress: Progress = silent) -> ShownInspection:
+    """Measure the project's plan and write inspection.json among its results.
+
+    The same numbers as `trisect inspect RESULTS --plan plan.toml` with the same plan; names of nominal surfaces are of
+    the project's folder. A feature that cannot be measured has its problem; the others are measured.
+
+    Raises
+    ------
+    InputError
+        If there is no scan among the results, the plan is wrong, or a nominal surface cannot be read.
+    """
+    try:
+        inspection, calibration_id = _inspected(folder, project, progress)
+    except InputError as error:
+        raise in_a_project(error) from error
+    write_inspection(results_folder(folder) / NAME, inspection, calibration_id, plan_tables(project.inspection))
+    return _shown(inspection, calibration_id)
+
+
+def look_at_features(folder: Path, project: Project, progress: Progress = silent) -> ShownInspection:
+    """The same without writing anything: what was measured is measured again, to be drawn."""
+    return _shown(*_inspected(folder, project, progress))
+
+
+def _inspected(folder: Path, project: Project, progress: Progress) -> tuple[Inspection, str]:
+    scan = open_scan(results_folder(folder))
+    return inspect(scan, project.inspection, folder, progress), scan.calibration_id
+
+
+def _shown(inspection: Inspection, calibration_id: str) -> ShownInspection:
+    features = tuple(
+        ShownFeature(
+            name=result.spec.name,
+            kind=result.spec.kind,
+            rows=result.characteristics,
+            points=result.indices,
+            problem=result.problem,
+            profile=result.profile,
+            deviations=result.deviations,
+        )
+        for result in inspection.results
+    )
+    return ShownInspection(features, inspection.verdict, inspection.notes, calibration_id)
