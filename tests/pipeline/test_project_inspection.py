@@ -1,4 +1,4 @@
-"""The plan of a project: the numbers of `trisect inspect`, among the results, gone with the scan they were made from."""
+"""The plan of a project: the numbers of `trisect inspect`, written among the results."""
 
 import json
 import shutil
