@@ -21,7 +21,7 @@ studies = typer.Typer(
 
 Files = Annotated[
     list[Path],
-    typer.Argument(metavar="FILE...", help="One CSV table, or several folders of results (trisect run, inspect)."),
+    typer.Argument(metavar="FILE", help="One CSV table, or several folders of results (trisect run, inspect)."),
 ]
 Characteristic = Annotated[
     str,
