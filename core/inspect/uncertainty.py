@@ -3,14 +3,15 @@
 q follows the misfit of each stretch of a stripe with a gain G_j = ∂q/∂misfit_j. What makes the misfits wrong is in
 `core.inspect.generalised.Sources`, cause by cause, with all that is common kept common; so each cause contributes::
 
-    point noise                u² = Σ_j G_j² own_j²            over the stretches
-    fan speckle                u² = ‖Σ_j G_j speckle_j‖²        by the fan's own points and through the network
+    point noise                u² = Σ_j G_j² own_j²            over the stretches of the sweeps
+    fan speckle                u² = ‖Σ_j G_j speckle_j‖²        by the fan's own points and through the network,
+                                  + Σ_j G_j² own_j²            over the stretches of the fan
     sweep planes               u² = ‖Σ_j G_j sweeps_j‖²         the network's covariance but for the fan's speckle
     camera, fan calibration    u² = Σ_k (Σ_j G_j common_jk)²    over the displacements of that calibration
     form                       u² = form² ‖Σ_j G_j form_j‖²     what the residuals show beyond all that
 
 and the causes are independent of each other. Where it is not known what the network owes to the fan's speckle, it
-stays in the sweep planes, and the fan's speckle is the own noise of its stretches.
+stays in the sweep planes.
 
 References
 ----------
@@ -45,7 +46,7 @@ __all__ = [
     "effects",
 ]
 
-POINT_NOISE = "centreline noise of the points"
+POINT_NOISE = "centreline noise of the sweeps' points"
 SWEEP_PLANES = "light planes of the sweeps (network)"
 FAN_SPECKLE = "centreline noise of the fan's points (speckle)"
 FORM = "form of the faces beyond the stated noise"
@@ -114,15 +115,13 @@ def effects(
     own = sources.own if own is None else own
     swept, of_fan = ~sources.of_fan, sources.of_fan
     found = []
-    cells_known = sources.speckle.shape[1] > 0
-    noisy = swept | cells_known
-    if noisy.any():
-        found.append(_noise(POINT_NOISE, gains[:, noisy], own[noisy]))
-    if swept.any() and sources.sweeps.shape[1]:
-        found.append(_effect(SWEEP_PLANES, gains[:, swept], sources.sweeps[swept], shared=True))
-    if cells_known:
+    if swept.any():
+        found.append(_noise(POINT_NOISE, gains[:, swept], own[swept]))
+        if sources.sweeps.shape[1]:
+            found.append(_effect(SWEEP_PLANES, gains[:, swept], sources.sweeps[swept], shared=True))
+    if sources.speckle.shape[1]:
         found.append(_effect(FAN_SPECKLE, gains, sources.speckle, shared=True))
-    elif of_fan.any():
+    if of_fan.any():
         found.append(_noise(FAN_SPECKLE, gains[:, of_fan], own[of_fan]))
     patches = max(sources.form.shape[1] - UNKNOWNS, 1)  # what the form's size was found from
     found.append(replace(_effect(FORM, gains, form_mm * sources.form, shared=False), dof=float(patches)))
@@ -150,7 +149,9 @@ def budget_of(parts: Sequence[tuple[Array, Sequence[Effect]]]) -> tuple[Contribu
     for source in dict.fromkeys(effect.source for _, of_part in parts for effect in of_part):
         mine = [(gradient, one) for gradient, of_part in parts for one in of_part if one.source == source]
         moved = [gradient @ one.factor for gradient, one in mine]
-        together = sum(moved[1:], start=moved[0]) if mine[0][1].shared else np.concatenate(moved)
+        shared = [by for by, (_, one) in zip(moved, mine, strict=True) if one.shared]
+        alone = [by for by, (_, one) in zip(moved, mine, strict=True) if not one.shared]
+        together = np.concatenate([*alone, sum(shared[1:], start=shared[0])] if shared else alone)
         point_mm, dof = max(one.point_mm for _, one in mine), min(one.dof for _, one in mine)
         rows.append(Contribution(source, float(np.linalg.norm(together)), point_mm, dof=dof))
     return tuple(rows)

@@ -27,6 +27,9 @@ _MOST_PIECES = 10_000
 class LineErrors:
     """Errors of the centrelines at M crossings, in pixels: shares of the cells' z, and an independent rest.
 
+    Once in the network's equations they count along the normal (t_v, −t_u) of a line with the tangent t, that of
+    `core.image.centreline.Centreline`; as all are symmetric about 0, the sign of z is there for the taking.
+
     Parameters
     ----------
     sigma_a, sigma_b
