@@ -33,6 +33,14 @@ WINDOWS = (9.0, 13.0, 19.0, 28.0, 41.0, 60.0, 88.0)
 AGREE = 1.0
 """Half width of the confidence intervals in standard deviations."""
 
+FORESHORTENED = 6.0
+"""An arc seen at a slant is flattened, and departs from its parabola by more than its own curvature tells: by 1/sin² of
+the angle between its plane and the line of sight, which is 24° here."""
+LOPSIDED = 5.0
+"""The same once more where a window has less than SYMMETRIC of its half length on one side: a flattened arc is not as
+bent on one side as on the other."""
+SYMMETRIC = 0.8
+
 
 def smooth(centreline: Centreline, windows: tuple[float, ...] = WINDOWS) -> Centreline:
     """The centreline moved across itself onto local parabolas, with the σ that leaves.
@@ -50,7 +58,8 @@ def smooth(centreline: Centreline, windows: tuple[float, ...] = WINDOWS) -> Cent
         fits = _Fits.at(centreline, arc, window)
         low = np.fmax(low, fits.shift - AGREE * fits.sigma)
         high = np.fmin(high, fits.shift + AGREE * fits.sigma)
-        straight = arc_bias(best.curvature, window) <= BIAS_ALLOWED * fits.sigma
+        bias = FORESHORTENED * np.where(fits.lopsided, LOPSIDED, 1.0) * arc_bias(best.curvature, window)
+        straight = bias <= BIAS_ALLOWED * fits.sigma
         growing &= (low <= high) & np.isfinite(fits.shift) & straight
         best = best.replaced(fits, growing)
     moved = np.isfinite(best.shift)
@@ -70,12 +79,14 @@ def smooth(centreline: Centreline, windows: tuple[float, ...] = WINDOWS) -> Cent
 class _Fits:
     """For every point, how far (px, along its normal) the parabola through its window lies from it.
 
-    With that its σ in px and the parabola's curvature in 1/px, (N,) each; NaN where a window holds too little.
+    With that its σ in px and the parabola's curvature in 1/px, (N,) each; NaN where a window holds too little. And
+    whether the window reaches much further to one side than to the other.
     """
 
     shift: Array
     sigma: Array
     curvature: Array
+    lopsided: NDArray[np.bool_]
 
     @classmethod
     def at(cls, line: Centreline, arc: Array, half_length: float) -> _Fits:
@@ -106,11 +117,14 @@ class _Fits:
         curvature = 2 * np.abs(np.einsum("ni,ni->n", coefficients[2], line.normal)) / half_length**2
         repeats = np.maximum(1.0, line.correlation_px / np.maximum(spacing, 1e-9))
         sigma = np.sqrt(repeats * inverse[:, 0, 0])
-        return cls(*(np.where(usable, values, np.nan) for values in (shift, sigma, curvature)))
+        lopsided = np.minimum(arc - arc[first], arc[last - 1] - arc) < SYMMETRIC * half_length
+        shift, sigma, curvature = (np.where(usable, values, np.nan) for values in (shift, sigma, curvature))
+        return cls(shift, sigma, curvature, lopsided)
 
     def replaced(self, other: _Fits, where: NDArray[np.bool_]) -> _Fits:
         pairs = ((other.shift, self.shift), (other.sigma, self.sigma), (other.curvature, self.curvature))
-        return _Fits(*(np.where(where, new, old) for new, old in pairs))
+        shift, sigma, curvature = (np.where(where, new, old) for new, old in pairs)
+        return _Fits(shift, sigma, curvature, np.where(where, other.lopsided, self.lopsided))
 
 
 def _about(moments: Array, origin: Array) -> Array:
