@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from core.errors import InputError
 from core.inspect.alignment import three_two_one
 from core.inspect.characteristic import Characteristic
 from core.inspect.elements import Element
+from core.inspect.faces import FoundPlane
 from core.inspect.features.cylinder import measure_cylinder
 from core.inspect.features.derived import measure_angle, measure_distance
 from core.inspect.features.deviation import measure_deviation
@@ -20,7 +21,7 @@ from core.inspect.features.plane import measure_plane, measure_point
 from core.inspect.features.section import measure_section
 from core.inspect.features.sphere import measure_sphere
 from core.inspect.features.steps import measure_steps
-from core.inspect.features.thickness import measure_thickness
+from core.inspect.features.thickness import measure_thickness, with_limits
 from core.inspect.inspection_plan import FeatureSpec, InspectionPlan, Kind, PartFrame
 from core.inspect.point_errors import PointErrors
 from core.inspect.temperature import at_reference, compared
@@ -59,12 +60,18 @@ class Inspection:
         Part coordinates into the camera frame; None: they are the camera's, or their features were not measured.
     notes
         Whole sentences.
+    scan_key
+        Names the scan.
+    planes
+        Plane faces found in it, by their margin: for the next inspection of the same scan.
     """
 
     plan: InspectionPlan
     results: tuple[FeatureResult, ...]
     pose_camera_part: Pose | None = None
     notes: tuple[str, ...] = ()
+    scan_key: str = ""
+    planes: Mapping[float, tuple[FoundPlane, ...]] = field(default_factory=dict)
 
     @property
     def characteristics(self) -> tuple[Characteristic, ...]:
@@ -128,6 +135,8 @@ def evaluate(
     scene = Scene(cloud, mesh, errors or PointErrors(), plan.k, nominals or {}, progress=progress)
     known = {} if previous is None else {result.key: result for result in previous.results if result.key}
     scan_key = _digest(cloud, mesh, errors, nominals or {})
+    if previous is not None and previous.scan_key == scan_key:
+        scene.found_planes.update(previous.planes)
     frame_problem = ""
     for number, spec in enumerate(ordered):
         progress("features", number, len(ordered))
@@ -136,7 +145,7 @@ def evaluate(
             scene.pose_camera_part, frame_problem = _frame(plan.frame, scene)
         key = _key(plan, spec, scene, scan_key, framed=framed)
         if key in known:
-            result = replace(known[key], spec=spec)
+            result = _asked_anew(known[key], spec)
         else:
             result = _measured(plan, spec, scene, frame_problem if framed else "")
         scene.found[spec.name] = replace(result, key=key)
@@ -145,7 +154,7 @@ def evaluate(
     progress("features", len(ordered), len(ordered))
     results = tuple(scene.found[spec.name] for spec in plan.features)
     notes = (*([frame_problem] if frame_problem else []), *_missing(scene.errors))
-    return Inspection(plan, results, scene.pose_camera_part, notes)
+    return Inspection(plan, results, scene.pose_camera_part, notes, scan_key, scene.found_planes)
 
 
 def _measured(plan: InspectionPlan, spec: FeatureSpec, scene: Scene, frame_problem: str) -> FeatureResult:
@@ -167,6 +176,15 @@ def _measured(plan: InspectionPlan, spec: FeatureSpec, scene: Scene, frame_probl
     return replace(result, characteristics=rows)
 
 
+def _asked_anew(result: FeatureResult, spec: FeatureSpec) -> FeatureResult:
+    """The same measurement with the limits of `spec`, which differs from its own in nothing else."""
+    start = len(spec.name) + 1
+    rows = tuple(replace(row, limits=spec.limits_of(row.name[start:])) for row in result.characteristics)
+    same = all(a.limits == b.limits for a, b in zip(rows, result.characteristics, strict=True))
+    gauge = None if result.gauge is None else with_limits(result.gauge, spec)
+    return replace(result, spec=spec, characteristics=result.characteristics if same else rows, gauge=gauge)
+
+
 def _frame(frame: PartFrame, scene: Scene) -> tuple[Pose | None, str]:
     """The part's frame, or why there is none."""
     elements: list[Element] = []
@@ -182,11 +200,12 @@ def _frame(frame: PartFrame, scene: Scene) -> tuple[Pose | None, str]:
 
 
 def _key(plan: InspectionPlan, spec: FeatureSpec, scene: Scene, scan_key: str, *, framed: bool) -> str:
-    """Names all that a feature's result follows from; its own name and limits among it."""
+    """Names all that a feature's measurement follows from, its own name among it; what is asked of it is not."""
     rests_on = [scene.found[name].key for name in spec.needs]
     frame = (plan.frame, [scene.found[name].key for name in plan.frame.names]) if framed and plan.frame else None
     master = plan.master if plan.master is not None and spec.name in plan.master.features else None
-    said = repr((scan_key, spec, plan.k, plan.temperature, master, rests_on, frame))
+    measured = replace(spec, limits=(), nominal_heights=())
+    said = repr((scan_key, measured, plan.k, plan.temperature, master, rests_on, frame))
     return hashlib.sha256(said.encode()).hexdigest()[:32]
 
 

@@ -7,7 +7,7 @@ can be compared, copied with `dataclasses.replace` and undone.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal, TypeAlias
 
 from core.errors import InputError
@@ -221,8 +221,14 @@ class FeatureSpec:
         return placed or framed or any(isinstance(region, InSphere | InBox) for region in self.regions)
 
     def limits_of(self, result: str) -> Limits | None:
-        """What is asked of one of its results; None: nothing."""
-        return dict(self.limits).get(result)
+        """What is asked of one of its results, as "diameter" or "height 2"; None: nothing."""
+        asked = dict(self.limits)
+        if self.kind != "steps":
+            return asked.get(result)
+        limits, step = asked.get("height"), int(result.rpartition(" ")[2])
+        if limits is None or step > len(self.nominal_heights):
+            return None
+        return replace(limits, nominal=self.nominal_heights[step - 1])
 
 
 @dataclass(frozen=True, slots=True)

@@ -71,6 +71,22 @@ def test_only_what_an_edit_changed_is_measured_again(cloud):
     assert not any(a.key == b.key for a, b in zip(before.results, moved.results, strict=True))
 
 
+def test_other_limits_are_decided_without_measuring_again(cloud):
+    plan = InspectionPlan((FeatureSpec("block", "thickness"), FeatureSpec("step", "steps", nominal_heights=(40.0,))))
+    before = evaluate(plan, cloud, errors=ERRORS)
+    tight, wide = Limits(40.5, -0.1, 0.1), Limits(0.0, -0.1, 0.1)
+    features = (
+        replace(plan.features[0], limits=(("thickness", tight),)),
+        replace(plan.features[1], limits=(("height", wide),)),
+    )
+    after = evaluate(replace(plan, features=features), cloud, errors=ERRORS, previous=before)
+    assert [a.indices is b.indices for a, b in zip(before.results, after.results, strict=True)] == [True, True]
+    assert [row.verdict for row in after.characteristics] == ["not conforming", "conforming"]
+    assert after.results[0].gauge.nominal_mm == 40.5
+    assert [row.verdict for row in before.characteristics] == ["", ""]
+    assert evaluate(plan, cloud, errors=ERRORS, previous=after).verdict == ""
+
+
 def test_a_feature_that_is_not_there_has_a_problem_and_the_others_are_measured(cloud):
     corner = Polygon(((0.0, 0.0), (5.0, 0.0), (5.0, 5.0)))
     plan = InspectionPlan(

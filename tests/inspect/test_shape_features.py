@@ -6,8 +6,9 @@ import pytest
 from core.errors import InputError
 from core.inspect.cylinder import find_cylinder
 from core.inspect.evaluate import evaluate
-from core.inspect.inspection_plan import FeatureSpec, InBox, InspectionPlan, InSphere, PartFrame, Polygon
+from core.inspect.inspection_plan import Cut, FeatureSpec, InBox, InspectionPlan, InSphere, PartFrame, Polygon, Section
 from core.scan.cloud import Cloud
+from tests.inspect.block_scan import CENTRE, FOCAL
 from tests.inspect.shape_scan import BALL, PIN, PIN_AXIS, ShapeScan
 
 SCAN = ShapeScan()
@@ -74,6 +75,23 @@ def test_regions_in_part_coordinates_hold_what_lies_there():
     assert np.mean(SCAN.on[inspection.result("again").indices] == 0) > 0.99
     assert inspection.result("again").shape.radius == pytest.approx(20.0, abs=0.03)
     assert inspection.result("spot").element.position[2] == pytest.approx(545.0, abs=0.05)
+
+
+def test_the_section_through_a_ball_has_its_radius():
+    across = np.array([np.cos(0.4), np.sin(0.4), 0.0])
+    ends = np.array([BALL - 30 * across, BALL + 30 * across])
+    first, second = (tuple(end[:2] / end[2] * FOCAL + CENTRE) for end in ends)
+    section = Section((first, second), half_width_mm=1.0, cuts=(Cut("round", "radius", (14.0, 46.0)),))
+    relative = []
+    for seed in range(6):
+        cloud = SCAN.measure(np.random.default_rng(seed))
+        inspection = evaluate(
+            InspectionPlan((FeatureSpec("cut", "section", section=section),)), cloud, errors=SCAN.errors
+        )
+        (row,) = inspection.characteristics
+        relative.append((row.value - 20.0) / row.u)
+        assert row.u < 0.4
+    assert np.sqrt(np.mean(np.square(relative))) < 1.8
 
 
 def test_a_bore_is_a_cylinder_seen_from_inside():

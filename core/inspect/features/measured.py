@@ -92,6 +92,8 @@ class Scene:
         Features measured already, by name.
     progress
         Told how far a search is.
+    found_planes
+        Plane faces found already, by their margin.
     """
 
     cloud: Cloud
@@ -102,14 +104,15 @@ class Scene:
     pose_camera_part: Pose | None = None
     found: dict[str, FeatureResult] = field(default_factory=dict)
     progress: Progress = silent
-    _planes: dict[float, list[FoundPlane]] = field(default_factory=dict)
+    found_planes: dict[float, tuple[FoundPlane, ...]] = field(default_factory=dict)
 
-    def planes(self, margin_mm: float) -> list[FoundPlane]:
+    def planes(self, margin_mm: float) -> tuple[FoundPlane, ...]:
         """The plane faces of the cloud, found once."""
-        if margin_mm not in self._planes:
+        if margin_mm not in self.found_planes:
             self.know_normals()
-            self._planes[margin_mm] = find_planes(self.cloud, margin_mm=margin_mm, progress=self.progress)
-        return self._planes[margin_mm]
+            found = find_planes(self.cloud, margin_mm=margin_mm, progress=self.progress)
+            self.found_planes[margin_mm] = tuple(found)
+        return self.found_planes[margin_mm]
 
     def know_normals(self) -> None:
         """Normals of the cloud, estimated where the file had none."""

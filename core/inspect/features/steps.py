@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from core.errors import InputError
-from core.inspect.characteristic import Limits
 from core.inspect.faces import PARALLEL, search_tolerance
 from core.inspect.features.measured import FeatureResult, Scene
 from core.inspect.features.regions import Indices, face_in
@@ -45,8 +42,9 @@ def measure_steps(spec: FeatureSpec, scene: Scene) -> FeatureResult:
         lower = 0 if spec.over == "lowest" else upper - 1
         height, gradient = fit.shape.height(upper, lower)
         rule = f"distance of level {upper + 1} from level {lower + 1}, parallel planes fitted jointly to all levels"
-        row = scene.characteristic(spec, "height", height, fit.budget(gradient), result=f"height {upper}", rule=rule)
-        rows.append(replace(row, limits=_limits(spec, upper)))
+        rows.append(
+            scene.characteristic(spec, "height", height, fit.budget(gradient), result=f"height {upper}", rule=rule)
+        )
     return FeatureResult(
         spec,
         characteristics=tuple(rows),
@@ -89,11 +87,3 @@ def _found(spec: FeatureSpec, scene: Scene) -> list[Indices]:
             faces.append(np.sort(found[scene.cloud.sigma[found] <= allowed]))
             heights.append(height)
     return faces
-
-
-def _limits(spec: FeatureSpec, step: int) -> Limits | None:
-    """What is asked of a step (from 1): the limits of all, about its own nominal height."""
-    limits = spec.limits_of("height")
-    if limits is None or step > len(spec.nominal_heights):
-        return None
-    return replace(limits, nominal=spec.nominal_heights[step - 1])

@@ -32,7 +32,7 @@ def measure_thickness(spec: FeatureSpec, scene: Scene) -> FeatureResult:
         indices=indices[order],
         residuals=np.concatenate([face.residuals for face in faces])[order],
         part=part[order],
-        gauge=_with_limits(gauge, spec),
+        gauge=with_limits(gauge, spec),
     )
 
 
@@ -49,9 +49,9 @@ def _faces(spec: FeatureSpec, scene: Scene) -> FacePair | None:
     return FacePair(kept[pair.upper], kept[pair.lower])
 
 
-def _with_limits(gauge: GaugeResult, spec: FeatureSpec) -> GaugeResult:
+def with_limits(gauge: GaugeResult, spec: FeatureSpec) -> GaugeResult:
     """With nominal value and tolerance where the limits are symmetric: all that it can hold."""
     limits = spec.limits_of("thickness")
     if limits is None or limits.lower != -limits.upper:
-        return gauge
+        return replace(gauge, nominal_mm=None, tolerance_mm=None)
     return replace(gauge, nominal_mm=limits.nominal, tolerance_mm=limits.upper)
