@@ -30,6 +30,7 @@ from core.pipeline.reported_inspection import with_inspection
 from core.pipeline.workspace import FILES, Calibration, Workspace, check_calibration, read_calibration
 from core.progress import Progress, silent
 from core.report.content import CalibrationMark, Overlay, ReportContent
+from core.report.language import Words
 from core.report.pdf import build_report
 from core.report.wording import target_in_words
 from core.scan.cloud import Cloud
@@ -67,11 +68,11 @@ def report_content(work: Workspace, progress: Progress = silent, said: Said | No
     rig = work.found.rig
     content = replace(
         content,
-        rig=_rig_in_words(rig, content.camera.camera.image_size),
         rig_id=content.rig_id or hashlib.sha256(rig_to_toml(rig).encode()).hexdigest()[:RIG_ID],
         overlay=_overlay(work.found, read_scan(work.path("scan")), content.cloud),
     )
-    return said(content) if said else content
+    content = said(content) if said else content
+    return replace(content, rig=_rig_in_words(rig, content.camera.camera.image_size, Words(content.language)))
 
 
 def results_content(out: Path, part: str = "", record: RunRecord | None = None) -> ReportContent:
@@ -121,17 +122,22 @@ def _marks(out: Path, record: RunRecord, calibration: Calibration) -> tuple[Cali
     )
 
 
-def _rig_in_words(rig: Rig, image_size: tuple[int, int]) -> Mapping[str, str]:
-    lines = f"{rig.lines} lines, {math.degrees(rig.angle):g}° apart" if rig.lines > 1 else "1 line"
-    words = {
-        "Picture": f"{image_size[0]} × {image_size[1]} px" + (f", {rig.channel} channel" if rig.channel else ""),
-        "Camera target": target_in_words(rig.camera_target),
-        "Plane target": target_in_words(rig.plane_target),
-        "Fixed laser": lines,
+def _rig_in_words(rig: Rig, image_size: tuple[int, int], words: Words) -> Mapping[str, str]:
+    size = {"width": image_size[0], "height": image_size[1]}
+    picture = "{width} × {height} px, {channel} channel" if rig.channel else "{width} × {height} px"
+    angle = words.general(math.degrees(rig.angle))
+    said = {
+        "Picture": words.known(picture).format(**size, channel=rig.channel),
+        "Camera target": target_in_words(rig.camera_target, words),
+        "Plane target": target_in_words(rig.plane_target, words),
+        "Fixed laser": words("{n} lines, {angle}° apart", n=rig.lines, angle=angle)
+        if rig.lines > 1
+        else words("1 line"),
     }
-    if rig.gauge and rig.gauge.nominal_mm is not None:
-        words["Nominal"] = f"{rig.gauge.nominal_mm:g} mm ± {rig.gauge.tolerance_mm:g} mm"
-    return words
+    if rig.gauge and rig.gauge.nominal_mm is not None and rig.gauge.tolerance_mm is not None:
+        nominal, tolerance = words.general(rig.gauge.nominal_mm), words.general(rig.gauge.tolerance_mm)
+        said["Nominal"] = f"{nominal} mm ± {tolerance} mm"
+    return said
 
 
 def _settings_in_words(record: RunRecord) -> Mapping[str, str]:

@@ -19,6 +19,9 @@ WIDTHS = [size * mm for size in (20, 19, 17, 17, 16, 11, 20)]
 
 BAR = 9 * mm
 
+SMALL = 1e-3
+"""Below it a power of ten says more than zeros."""
+
 
 def budget_table(look: Look, one: Characteristic) -> Table:
     """Where the uncertainty comes from, how it combines, and what that gives.
@@ -43,7 +46,7 @@ def budget_table(look: Look, one: Characteristic) -> Table:
         tiny = math.isfinite(u) and 0 < u < 0.5 * 10.0**-decimals
         shown = f"< {words.fixed(10.0**-decimals, decimals)}" if tiny else words.fixed(u, decimals)
         own = "" if row.point_mm is None else f"{_rounded(look, row.point_mm)} {row.unit}"
-        value = "" if row.value is None else f"{words.numeral(f'{row.value:.6g}')} {row.unit}"
+        value = "" if row.value is None else f"{words.general(row.value)} {row.unit}"
         sensitivity = "" if row.sensitivity is None else _rounded(look, factor * row.sensitivity)
         source = words.known(row.source)
         rows.append(
@@ -99,7 +102,7 @@ def _share(look: Look, share: float) -> Flowable:
 
 def _rounded(look: Look, u: float) -> str:
     """To two digits."""
-    return look.words.fixed(u, decimals_of(u))
+    return look.words.general(float(f"{u:.1e}")) if 0 < u < SMALL else look.words.fixed(u, decimals_of(u))
 
 
 def _dof(look: Look, dof: float) -> str:

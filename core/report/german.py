@@ -176,6 +176,31 @@ _LIMITS = {
     ),
 }
 
+_RULES = {
+    "range that holds 95 % of the deviations from the plane: points, their noise included": (
+        "Bereich von 95 % der Abweichungen von der Ebene: Punkte mit ihrem Rauschen"
+    ),
+    "range that holds 95 % of the deviations from the sphere": "Bereich von 95 % der Abweichungen von der Kugel",
+    "range that holds 95 % of the deviations from the cylinder": "Bereich von 95 % der Abweichungen vom Zylinder",
+    "diameter of the sphere of least squares, by the points' covariance": (
+        "Durchmesser der ausgleichenden Kugel, mit der Kovarianz der Punkte"
+    ),
+    "diameter of the cylinder of least squares, by the points' covariance": (
+        "Durchmesser des ausgleichenden Zylinders, mit der Kovarianz der Punkte"
+    ),
+    "distance square to the plane": "Abstand senkrecht zur Ebene",
+    "distance square to the axis": "Abstand senkrecht zur Achse",
+    "distance of two points": "Abstand zweier Punkte",
+    "angle of an axis and a plane": "Winkel zwischen Achse und Ebene",
+    "angle of two planes, 0 to 90°": "Winkel zweier Ebenen, 0 bis 90°",
+    "angle of two axes, 0 to 90°": "Winkel zweier Achsen, 0 bis 90°",
+    "radius of the circle of least squares in the section": "Radius des ausgleichenden Kreises im Schnitt",
+    "twice the deviation from the nominal surface that 95 % of the points do not exceed": (
+        "das Doppelte der Abweichung von der Sollfläche, die 95 % der Punkte nicht überschreiten"
+    ),
+    "mean deviation from the nominal surface": "mittlere Abweichung von der Sollfläche",
+}
+
 _PICTURES = {
     "Measured surface": "Gemessene Oberfläche",
     "No point was measured, so there is no surface to show.": (
@@ -374,6 +399,19 @@ _STUDIES = {
 }
 
 _EVIDENCE = {
+    "inner corners": "innere Ecken",
+    "checkerboard": "Schachbrett",
+    "ChArUco board, {columns} × {rows} squares of {square} mm, markers {marker} mm": (
+        "ChArUco-Tafel, {columns} × {rows} Felder von {square} mm, Marker {marker} mm"
+    ),
+    "asymmetric circle grid": "versetztes Kreisraster",
+    "circle grid": "Kreisraster",
+    "pitch": "Teilung",
+    "black square": "schwarzes Quadrat",
+    "side": "Seite",
+    "{n} lines, {angle}° apart": "{n} Linien im Abstand von {angle}°",
+    "1 line": "1 Linie",
+    "{width} × {height} px, {channel} channel": "{width} × {height} px, Kanal {channel}",
     "Calibrations and rig": "Kalibrierungen und Messaufbau",
     "Calibration": "Kalibrierung",
     "id": "Kennung",
@@ -477,5 +515,5 @@ _COUNTED = {
 }
 
 GERMAN: Mapping[str, str] = MappingProxyType(
-    {**_HEAD, **_RESULT, **_LIMITS, **_PICTURES, **_BUDGET, **_STUDIES, **_EVIDENCE, **_COUNTED}
+    {**_HEAD, **_RESULT, **_LIMITS, **_RULES, **_PICTURES, **_BUDGET, **_STUDIES, **_EVIDENCE, **_COUNTED}
 )

@@ -14,6 +14,8 @@ from types import MappingProxyType
 from core.report.german import GERMAN
 from core.report.template import Language
 
+RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
 TABLES: Mapping[Language, Mapping[str, str]] = MappingProxyType({"de": GERMAN})
 """By language: its words by the English ones."""
 
@@ -44,8 +46,9 @@ class Words:
         return self.numeral(f"{rounded:+f}" if signed and rounded != 0 else f"{rounded:f}")
 
     def general(self, value: float) -> str:
-        """A value as somebody stated it: no more digits than it has."""
-        return self.numeral(f"{value:g}")
+        """A value as somebody stated it: no more digits than it has, a power of ten for very small and large ones."""
+        digits, _, power = f"{value:g}".partition("e")
+        return self.numeral(digits) + (f"·10{str(int(power)).translate(RAISED)}" if power else "")
 
     def numeral(self, digits: str) -> str:
         """Digits with the language's decimal sign and a true minus sign."""

@@ -39,10 +39,12 @@ def points_figure(
         axes = figure.add_axes(box)
         every = max(1, len(cloud) // (2 * MOST_DRAWN))
         axes.plot(*cloud.uv[::every].T, ".", ms=1.2, color=HAIRLINE, zorder=1)
-        for number, (name, indices) in enumerate(points.items()):
+        largest_first = sorted(points.items(), key=lambda item: -len(item[1]))
+        for number, (name, indices) in enumerate(largest_first):
             drawn = cloud.uv[indices[:: max(1, len(indices) // MOST_DRAWN)]]
             mark, color = MARKS[number % len(MARKS)], COLORS[number % len(COLORS)]
-            axes.plot(*drawn.T, ".", ms=1.6, color=color, zorder=2)
+            # what lies below another keeps a rim
+            axes.plot(*drawn.T, ".", ms=max(3.2 - 0.8 * number, 1.2), color=color, zorder=2)
             count = look.words.count(len(indices), "point")
             axes.plot([], [], mark, ms=4, color=color, label=f"{_short(name)}\n{count}")
         axes.set(xlim=(-0.5, columns - 0.5), ylim=(rows - 0.5, -0.5))

@@ -221,16 +221,21 @@ def temperatures_line(
     return f"{', '.join(shown)}; {words('no correction to 20 °C was made')}"
 
 
-def target_in_words(target: Target) -> str:
+def target_in_words(target: Target, words: Words = ENGLISH) -> str:
     """'checkerboard, 17 × 12 inner corners, 10 mm'."""
     if isinstance(target, Checkerboard):
-        return f"checkerboard, {target.columns} × {target.rows} inner corners, {target.square_mm:g} mm"
+        corners = words("inner corners")
+        said = f"{target.columns} × {target.rows} {corners}, {words.general(target.square_mm)} mm"
+        return f"{words('checkerboard')}, {said}"
     if isinstance(target, Charuco):
-        return (
-            f"ChArUco board, {target.columns} × {target.rows} squares of {target.square_mm:g} mm, "
-            f"markers {target.marker_mm:g} mm"
+        return words(
+            "ChArUco board, {columns} × {rows} squares of {square} mm, markers {marker} mm",
+            columns=target.columns,
+            rows=target.rows,
+            square=words.general(target.square_mm),
+            marker=words.general(target.marker_mm),
         )
     if isinstance(target, CircleGrid):
-        kind = "asymmetric circle grid" if target.asymmetric else "circle grid"
-        return f"{kind}, {target.columns} × {target.rows}, pitch {target.pitch_mm:g} mm"
-    return f"black square, side {target.side_mm:g} mm"
+        kind = words("asymmetric circle grid" if target.asymmetric else "circle grid")
+        return f"{kind}, {target.columns} × {target.rows}, {words('pitch')} {words.general(target.pitch_mm)} mm"
+    return f"{words('black square')}, {words('side')} {words.general(target.side_mm)} mm"

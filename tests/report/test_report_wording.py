@@ -119,3 +119,12 @@ def test_german_numbers_have_a_comma_and_thousands_do_not_break():
     words = Words("de")
     assert (words.fixed(-0.0123, 3, signed=True), words.general(0.25), words.count(1204, "frame")) == (
         "−0,012", "0,25", "1\u00a0204 Bildern")  # fmt: skip
+
+
+def test_very_small_values_are_said_with_a_power_of_ten():
+    assert [Words().general(value) for value in (1.15e-5, 0.0002, 1e9, 20.4)] == [
+        "1.15·10⁻⁵",
+        "0.0002",
+        "1·10⁹",
+        "20.4",
+    ]
