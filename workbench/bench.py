@@ -8,10 +8,11 @@ from typing import Any
 
 from workbench import jobs
 from workbench.notices import Notices
+from workbench.problems import details, sentence
 from workbench.processes import ONE_THREAD
 from workbench.project_model import ProjectModel
 from workbench.settings import AppSettings
-from workbench.tasks import Lane, Task, details, sentence
+from workbench.tasks import Lane, Task
 
 
 @dataclass(frozen=True, eq=False, slots=True)

@@ -16,16 +16,12 @@ from collections.abc import Callable, Mapping
 from multiprocessing.connection import Connection
 from typing import Any
 
-from PySide6.QtCore import QCoreApplication, QObject, QTimer, Signal
+from PySide6.QtCore import QObject, QTimer, Signal
 
-from core.errors import InputError
 from workbench.jobs import Job
+from workbench.problems import ENDED
 from workbench.processes import lean_start
-from workbench.wording import in_the_window
 from workbench.worker import Failure, serve
-
-ENDED = "ProcessEnded"
-"""The kind of failure of a job whose process is gone."""
 
 STOP_WITHIN_MS = 900
 """A cancelled job that has not stopped by then is ended with its process."""
@@ -302,21 +298,3 @@ class Lane(QObject):
             connection.close()
         if self._reader is not None:
             self._reader.join(2)
-
-
-def sentence(problem: InputError | Failure) -> str:
-    """The one sentence that tells a failed task to the technician."""
-    if not isinstance(problem, Failure):
-        return in_the_window(str(problem))
-    if problem.kind == ENDED:
-        return _tr("The process that does this ended unexpectedly. What was recorded and measured before is kept.")
-    return _tr("Something went wrong in the program; your work is kept. Details: {0}").format(problem)
-
-
-def details(problem: InputError | Failure) -> str:
-    """What may be copied beside the sentence."""
-    return problem.details if isinstance(problem, Failure) else ""
-
-
-def _tr(text: str) -> str:
-    return QCoreApplication.translate("Tasks", text)

@@ -9,8 +9,9 @@ import pytest
 from core.errors import InputError
 from workbench.bench import Bench
 from workbench.jobs import Job
+from workbench.problems import details, sentence
 from workbench.processes import ONE_THREAD
-from workbench.tasks import Lane, Task, details, sentence
+from workbench.tasks import Lane, Task
 from workbench.worker import Failure
 
 

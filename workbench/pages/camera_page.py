@@ -11,7 +11,8 @@ from PySide6.QtWidgets import QTabWidget, QVBoxLayout, QWidget
 from workbench.pages import camera_words as words
 from workbench.pages.camera_panels import TARGETS, CameraCard, CameraModelForm
 from workbench.pages.camera_picture import PictureTab
-from workbench.pages.camera_presenter import CameraPresenter, Stage, short
+from workbench.pages.camera_presenter import CameraPresenter, short
+from workbench.pages.camera_stage import Stage
 from workbench.pages.camera_tabs import CoverageTab, ExpectedTab, HistoryTab, ResidualTab
 from workbench.pages.step_page import StepPage, heading, muted
 from workbench.pages.target_panel import TargetPanel

@@ -4,27 +4,21 @@ from __future__ import annotations
 
 from PySide6.QtWidgets import QWidget
 
-from workbench.pages.camera_presenter import CameraPresenter, Stage
+from workbench.pages.camera_presenter import CameraPresenter
+from workbench.pages.camera_stage import Stage
 from workbench.views.forms import SettingsForm
-from workbench.views.stage_card import CardButton, StageCard
+from workbench.views.stage_card import CalibrationCard
 
 TARGETS = ("checkerboard", "charuco", "circle_grid")
 """Kinds of targets a camera can be calibrated with."""
 
 
-class CameraCard(StageCard):
+class CameraCard(CalibrationCard):
     """The stage; the next thing to do is the primary button."""
 
     def __init__(self, presenter: CameraPresenter, parent: QWidget | None = None) -> None:
         self._presenter = p = presenter
-        super().__init__(
-            [
-                CardButton("run", p.tr("Calibrate"), "mdi6.play", p.do_run),
-                CardButton("accept", p.tr("Accept"), "mdi6.check-bold", p.accept),
-                CardButton("reject", p.tr("Reject"), "mdi6.close-thick", p.reject),
-            ],
-            parent,
-        )
+        super().__init__(p.do_run, p.accept, p.reject, parent)
 
     def refresh(self) -> None:
         """Show the stage."""

@@ -44,7 +44,7 @@ class PictureTab(QWidget):
         column.addWidget(self.image, 1)
         column.addWidget(self.hints)
         presenter.picture_ready.connect(self._show_picture)
-        presenter.live.view.connect(self._show_live)
+        presenter.live.show_by(self._draw_live)
         presenter.live.started.connect(lambda _: self.image.clear_layers())
         self._empty()
 
@@ -118,15 +118,7 @@ class PictureTab(QWidget):
             "residuals", seen, quality.residuals, factor=factor, title=self.tr("residuals × {0:g}").format(factor)
         )
 
-    def _show_live(self, view: LiveView) -> None:
-        try:
-            self._draw_live(view)
-        finally:
-            self._presenter.live.shown()
-
     def _draw_live(self, view: LiveView) -> None:
-        if not self._presenter.live.running:
-            return
         if self._name != "live":
             self.image.clear_layers()
             self._name = "live"

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from enum import StrEnum
 from pathlib import Path
 from typing import Any
 
@@ -20,31 +19,14 @@ from workbench import jobs
 from workbench.bench import Bench
 from workbench.pages.acceptance import Acceptance
 from workbench.pages.camera_history import CameraHistory
+from workbench.pages.camera_stage import Stage, missing, stage_of, why_not_accept, why_not_reject, why_not_search
 from workbench.pages.camera_work import CameraWork
 from workbench.pages.live_presenter import LivePresenter
 from workbench.pages.presenter import StepPresenter
 from workbench.pages.sources import folder_of, put_source
 from workbench.pages.target_choice import TargetChoice
-from workbench.step_state import State
 
 PART = "camera/"
-
-
-class Stage(StrEnum):
-    """How far the camera's calibration is."""
-
-    NONE = "none"
-    EMPTY = "empty"
-    FOUND = "found"
-    LIVE = "live"
-    SEARCHING = "searching"
-    SOLVING = "solving"
-    FAILED = "failed"
-    SOLVED = "solved"
-    REJECTED = "rejected"
-    ACCEPTED = "accepted"
-    OUTDATED = "outdated"
-    OTHER = "other"
 
 
 class CameraPresenter(StepPresenter):
@@ -81,26 +63,7 @@ class CameraPresenter(StepPresenter):
     @property
     def stage(self) -> Stage:
         """How far the calibration is."""
-        work, accepted = self.work, self.project.accepted.camera
-        if self.live.running:
-            return Stage.LIVE
-        if work.searching:
-            return Stage.SEARCHING
-        if work.seen is not None and work.solving:
-            return Stage.SOLVING
-        if accepted and self.candidate in ("", accepted):
-            if self.candidate == accepted or self.state.state is State.DONE:
-                return Stage.ACCEPTED
-            return Stage.OUTDATED
-        if self.candidate:
-            if accepted and self.state.state is State.DONE:
-                return Stage.OTHER
-            return Stage.REJECTED if self.acceptance.is_rejected(self.candidate) else Stage.SOLVED
-        if work.problem:
-            return Stage.FAILED
-        if not self.project.sources.camera:
-            return Stage.NONE
-        return Stage.EMPTY if work.pictures == () else Stage.FOUND
+        return stage_of(self)
 
     @property
     def candidate(self) -> str:
@@ -109,20 +72,7 @@ class CameraPresenter(StepPresenter):
         return camera_id(calibration.camera) if calibration is not None else ""
 
     def blocker(self) -> str:
-        return {
-            Stage.NONE: self.tr("Record or choose pictures of the camera's target first."),
-            Stage.EMPTY: self.tr("Choose a folder that holds pictures of the camera's target."),
-            Stage.FOUND: self.tr("Calibrate the camera from its pictures first."),
-            Stage.LIVE: self.tr("Stop the live source when there are enough views."),
-            Stage.SEARCHING: self.tr("The pictures are being searched for the target."),
-            Stage.SOLVING: self.tr("The camera is being solved."),
-            Stage.FAILED: self.tr("The camera could not be calibrated; record more views or check the target."),
-            Stage.SOLVED: self.tr("Accept a camera calibration first."),
-            Stage.REJECTED: self.tr("The calibration was rejected; accept a better one first."),
-            Stage.ACCEPTED: "",
-            Stage.OTHER: "",
-            Stage.OUTDATED: self.tr("The accepted camera calibration is out of date; calibrate again."),
-        }[self.stage]
+        return missing(self)
 
     def busy(self) -> str:
         return self.live.busy()
@@ -130,31 +80,17 @@ class CameraPresenter(StepPresenter):
     @property
     def can_search(self) -> str:
         """Why the target cannot be looked for now, or ""."""
-        if not self.project.sources.camera:
-            return self.tr("Choose or record pictures first.")
-        if self.live.running:
-            return self.tr("Stop the live source first.")
-        if self.work.searching:
-            return self.tr("The pictures are being searched.")
-        return ""
+        return why_not_search(self)
 
     @property
     def can_accept(self) -> str:
         """Why nothing can be accepted now, or ""."""
-        if self.work.calibration is None or self.work.solving or self.acceptance.keeping:
-            return self.tr("There is no calibration yet.")
-        if self.candidate == self.project.accepted.camera:
-            return self.tr("This calibration is accepted already.")
-        return ""
+        return why_not_accept(self)
 
     @property
     def can_reject(self) -> str:
         """Why nothing can be rejected now, or ""."""
-        if not self.candidate or self.work.solving:
-            return self.tr("There is no calibration yet.")
-        if self.acceptance.is_rejected(self.candidate) and self.candidate != self.project.accepted.camera:
-            return self.tr("This calibration is rejected already.")
-        return ""
+        return why_not_reject(self)
 
     # ---- pictures
 

@@ -19,8 +19,9 @@ from workbench.pages.inspect_picks import InspectPicks
 from workbench.pages.inspect_repeats import InspectRepeats
 from workbench.pages.inspect_scan import InspectScan
 from workbench.pages.presenter import StepPresenter
+from workbench.problems import sentence
 from workbench.step_state import State
-from workbench.tasks import Task, sentence
+from workbench.tasks import Task
 
 if TYPE_CHECKING:
     from core.inspect.inspection import InspectionView

@@ -9,7 +9,7 @@ from PySide6.QtCore import QObject, Signal
 
 from core.files.project import Project
 from workbench import jobs
-from workbench.tasks import sentence
+from workbench.problems import sentence
 
 if TYPE_CHECKING:
     from core.inspect.inspection import InspectionView

@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from datetime import datetime
 from pathlib import Path
 
-from PySide6.QtCore import QObject
+from PySide6.QtCore import QEventLoop, QObject, QTimer, SignalInstance
 
 from core.acquire.source import Step
 from core.errors import InputError
+from core.files.project import Done
 from core.files.unfinished import forget_recording, note_recording
 from core.live.events import LiveEnded
 from workbench import jobs
 from workbench.bench import Bench
 from workbench.pages.sources import folder_of, put_source
+
+LET_GO_MS = 1000
+"""A process that is ended has so long to say so."""
 
 
 class LiveEnding(QObject):
@@ -86,3 +90,27 @@ def new_folder(recordings: Path, step: str) -> Path:
     name = f"{step}-{datetime.now():%Y%m%d-%H%M%S}"
     folders = (recordings / (name if number == 1 else f"{name}-{number}") for number in range(1, 1000))
     return next(folder for folder in folders if not folder.exists())
+
+
+def calibrated_s(results: Mapping[str, Done]) -> float | None:
+    """When the older of the two calibrations was made, in s since 1970; None if one is missing."""
+    both = [results[step].at.timestamp() for step in ("camera", "planes") if step in results]
+    return min(both) if len(both) == 2 else None
+
+
+def wait_until_ended(ended: SignalInstance, stop: Callable[[], None], deadline: QTimer) -> None:
+    """Call `stop`, and let events come until `ended`, or a moment after the `deadline` that stopping has started."""
+    loop = QEventLoop()
+    ended.connect(loop.quit)
+    limit = QTimer(loop)
+    limit.setSingleShot(True)
+    limit.setInterval(LET_GO_MS)
+    limit.timeout.connect(loop.quit)
+    deadline.timeout.connect(limit.start)
+    stop()
+    if not deadline.isActive():
+        limit.start(deadline.interval())
+    loop.exec()
+    limit.stop()
+    deadline.timeout.disconnect(limit.start)
+    ended.disconnect(loop.quit)

@@ -6,15 +6,14 @@ the process that runs it runs one after another.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from PySide6.QtCore import QEventLoop, QObject, QTimer, Signal
+from PySide6.QtCore import QObject, QTimer, Signal
 
 from core.acquire.source import Lasers, Step
 from core.errors import InputError
-from core.files.project import Done
 from core.image.target_view import TargetView
 from core.live.events import (
     Auto,
@@ -43,11 +42,11 @@ from core.live.events import (
 from core.model import Camera, Fan
 from workbench.bench import Bench
 from workbench.live import LiveSession
-from workbench.pages.live_ending import LiveEnding, new_folder
+from workbench.pages.live_ending import LiveEnding, calibrated_s, new_folder, wait_until_ended
 from workbench.pages.live_settings import LiveSettings
 from workbench.pages.live_state import WELL_EXPOSED, LiveState
 from workbench.pages.sources import folder_of
-from workbench.tasks import details, sentence
+from workbench.problems import details, sentence
 
 STOP_WITHIN_MS = 5000
 """A source that has not let go by then is ended with its process; what is on the disk stays."""
@@ -222,46 +221,44 @@ class LivePresenter(LiveState):
         """The last view is on the screen; the next one is welcome."""
         self._session.shown()
 
+    def show_by(self, draw: Callable[[LiveView], None]) -> None:
+        """Have each view drawn by this while it runs, and answered by `shown()` whatever comes of that."""
+
+        def show(view: LiveView) -> None:
+            try:
+                if self.running:
+                    draw(view)
+            finally:
+                self.shown()
+
+        self.view.connect(show)
+
     def busy(self) -> str:
         """What would be interrupted if the project were left now, or ""."""
         return self.tr("A recording is running.") if self.running else ""
 
     def finish(self) -> None:
         """The project is about to be left: end the recording, and wait for it for a moment."""
-        if not self.running:
-            return
-        loop = QEventLoop()
-        self.ended.connect(loop.quit)
-        limit = QTimer(loop)
-        limit.setSingleShot(True)
-        limit.setInterval(1000)
-        limit.timeout.connect(loop.quit)
-        self._deadline.timeout.connect(limit.start)
-        self.stop()
-        if not self._deadline.isActive():
-            limit.start(STOP_WITHIN_MS)
-        loop.exec()
-        limit.stop()
-        self._deadline.timeout.disconnect(limit.start)
-        self.ended.disconnect(loop.quit)
+        if self.running:
+            wait_until_ended(self.ended, self.stop, self._deadline)
 
     def _request(self, project: Path) -> LiveRequest:
         camera, fan = self.calibration()
         return LiveRequest(
-            self.step,
-            self.settings.choice,
-            self.settings.values,
-            self.model.project.rig,
-            new_folder(project / "recordings", self.step),
-            camera,
-            fan,
-            self.model.project.options,
-            DISPLAY_PX,
-            self._auto,
-            self.pairs,
-            self.there() if self.adding and self.can_add else (),
-            _calibrated_s(self.model.results),
-            ".pgm" if self.settings.ending == ".pgm" else ".png",
+            step=self.step,
+            source=self.settings.choice,
+            settings=self.settings.values,
+            rig=self.model.project.rig,
+            folder=new_folder(project / "recordings", self.step),
+            camera=camera,
+            fan=fan,
+            options=self.model.project.options,
+            display_px=DISPLAY_PX,
+            auto=self._auto,
+            pairs=self.pairs,
+            there=self.there() if self.adding and self.can_add else (),
+            calibrated_s=calibrated_s(self.model.results),
+            ending=self.settings.ending,
         )
 
     def _configure(self) -> None:
@@ -328,9 +325,3 @@ class LivePresenter(LiveState):
         if self.running and self.model.folder != self._ending.project_folder:
             self.stop()
         self.changed.emit()
-
-
-def _calibrated_s(results: Mapping[str, Done]) -> float | None:
-    """When the older of the two calibrations was made, in s since 1970; None if one is missing."""
-    both = [results[step].at.timestamp() for step in ("camera", "planes") if step in results]
-    return min(both) if len(both) == 2 else None

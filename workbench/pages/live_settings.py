@@ -12,6 +12,7 @@ from core.acquire.kept_settings import KeptSettings
 from core.acquire.settings import Region
 from core.acquire.source import Capabilities, SourceChoice, SourceInfo, SourceSettings, Step
 from core.errors import InputError
+from core.files.recorder import Ending
 from workbench import jobs
 from workbench.bench import Bench
 
@@ -29,8 +30,6 @@ SETTINGS: dict[str, tuple[str, ...]] = {
 """The kinds of sources in the order of the list, and what one of each may be told; the first is always there."""
 
 FIRST = next(iter(SETTINGS))
-ENDINGS = (".png", ".pgm")
-"""Of the files of a scan's frames."""
 
 
 class LiveSettings(QObject):
@@ -79,10 +78,9 @@ class LiveSettings(QObject):
         return self._known.get(self.choice, Capabilities())
 
     @property
-    def ending(self) -> str:
-        """One of ENDINGS: how a scan's frames are written."""
-        ending = self._bench.settings.text("live/ending", ENDINGS[0])
-        return ending if ending in ENDINGS else ENDINGS[0]
+    def ending(self) -> Ending:
+        """How a scan's frames are written."""
+        return ".pgm" if self._bench.settings.text("live/ending", "") == ".pgm" else ".png"
 
     def set_kind(self, kind: str) -> None:
         """Choose the kind of source; its last device and settings come back."""
@@ -120,7 +118,7 @@ class LiveSettings(QObject):
         """Set what of it is not None."""
         self._keep(self.values.updated(settings))
 
-    def set_ending(self, ending: str) -> None:
+    def set_ending(self, ending: Ending) -> None:
         """Choose how a scan's frames are written."""
         if ending != self.ending:
             self._bench.settings.keep_text("live/ending", ending)

@@ -13,26 +13,19 @@ from workbench.pages.planes_stage import Stage
 from workbench.pages.step_page import heading, muted
 from workbench.views.forms import SettingsForm
 from workbench.views.live_panel import LivePanel
-from workbench.views.stage_card import CardButton, StageCard
+from workbench.views.stage_card import CalibrationCard
 from workbench.views.value_rows import ValueRows
 
 PLATES = ("black_square", "checkerboard", "charuco", "circle_grid")
 """Kinds of targets the laser planes can be calibrated with."""
 
 
-class PlanesCard(StageCard):
+class PlanesCard(CalibrationCard):
     """The stage; the next thing to do is the primary button."""
 
     def __init__(self, presenter: PlanesPresenter, parent: QWidget | None = None) -> None:
         self._presenter = p = presenter
-        super().__init__(
-            [
-                CardButton("run", p.tr("Calibrate"), "mdi6.play", p.do_run),
-                CardButton("accept", p.tr("Accept"), "mdi6.check-bold", p.accept),
-                CardButton("reject", p.tr("Reject"), "mdi6.close-thick", p.reject),
-            ],
-            parent,
-        )
+        super().__init__(p.do_run, p.accept, p.reject, parent)
 
     def refresh(self) -> None:
         """Show the stage."""

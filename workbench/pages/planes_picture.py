@@ -38,7 +38,7 @@ class PoseTab(QWidget):
         column.addWidget(self.hints)
         presenter.look.measured.connect(self._show_pose)
         presenter.look.picture.connect(self._show_picture)
-        presenter.live.view.connect(self._show_live)
+        presenter.live.show_by(self._draw_live)
         presenter.live.started.connect(lambda _: self.image.clear_layers())
         self._empty()
 
@@ -116,15 +116,7 @@ class PoseTab(QWidget):
             labels = [str(line + 1)] * len(mine) if line >= 0 else None
             self.image.set_lines(f"stripe {line}", mine, colour=colour, width=2.0, labels=labels, title=name)
 
-    def _show_live(self, view: LiveView) -> None:
-        try:
-            self._draw_live(view)
-        finally:
-            self._presenter.live.shown()
-
     def _draw_live(self, view: LiveView) -> None:
-        if not self._presenter.live.running:
-            return
         if self._name != LIVE:
             self.image.clear_layers()
             self._name = LIVE

@@ -15,7 +15,8 @@ from core.files.project_keys import rests_on
 from workbench import jobs
 from workbench.bench import Bench
 from workbench.pages.sources import folder_of
-from workbench.tasks import Task, sentence
+from workbench.problems import sentence
+from workbench.tasks import Task
 
 MEASURED_BY = ("camera calibration", "pictures of the plane target", "plane target", "colour channel")
 """What measuring the poses rests on; solving rests on the laser, the left-out poses and the constraint too."""

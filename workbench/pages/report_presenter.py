@@ -13,8 +13,9 @@ from core.report.section_names import SECTIONS
 from workbench import jobs
 from workbench.bench import Bench
 from workbench.pages.presenter import StepPresenter
+from workbench.problems import sentence
 from workbench.step_state import State
-from workbench.tasks import Task, sentence
+from workbench.tasks import Task
 
 PAGE_WIDTH_PX = 1400
 

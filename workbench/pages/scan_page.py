@@ -118,7 +118,7 @@ class ScanPage(StepPage):
         self.bar.view_chosen.connect(self.picture.show_view)
         self.bar.choose(View.CROSSINGS)
         p.live.started.connect(lambda _: self._begin(self.cloud.begin_live))
-        p.live.view.connect(self._show_live)
+        p.live.show_by(self._show_live)
         p.run.started.connect(lambda: self._begin(self.cloud.begin_measuring))
         p.run.frame_seen.connect(self._show_measured)
         p.model.opened.connect(self._opened)
@@ -161,15 +161,10 @@ class ScanPage(StepPage):
             self.presenter.scrub.step(by)
 
     def _show_live(self, view: LiveView) -> None:
-        try:
-            if self.presenter.live.running:
-                self.picture.show_live(view)
-                self.cloud.show_live(view)
-                detail = view.detail if isinstance(view.detail, ScanDetail) else None
-                self.running.show_detail(detail, view.picture.shape[1] * view.scale)
-                self.live_panel.show_counts()
-        finally:
-            self.presenter.live.shown()
+        self.picture.show_live(view)
+        self.cloud.show_live(view)
+        detail = view.detail if isinstance(view.detail, ScanDetail) else None
+        self.running.show_detail(detail, view.picture.shape[1] * view.scale)
 
     def _show_measured(self, detail: ScanDetail, picture: Any, scale: int) -> None:
         try:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
+from PySide6.QtCore import QCoreApplication
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
 
 from workbench.theme import icon
@@ -60,3 +61,27 @@ class StageCard(QFrame):
                 button.setProperty("primary", main)
                 button.style().unpolish(button)
                 button.style().polish(button)
+
+
+class CalibrationCard(StageCard):
+    """The card of what is calibrated, looked at, and accepted or rejected."""
+
+    def __init__(
+        self,
+        run: Callable[[], object],
+        accept: Callable[[], object],
+        reject: Callable[[], object],
+        parent: QWidget | None = None,
+    ) -> None:
+        super().__init__(
+            [
+                CardButton("run", _tr("Calibrate"), "mdi6.play", run),
+                CardButton("accept", _tr("Accept"), "mdi6.check-bold", accept),
+                CardButton("reject", _tr("Reject"), "mdi6.close-thick", reject),
+            ],
+            parent,
+        )
+
+
+def _tr(text: str) -> str:
+    return QCoreApplication.translate("CalibrationCard", text)

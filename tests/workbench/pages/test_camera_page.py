@@ -12,7 +12,8 @@ from core.live.events import CameraDetail, LiveEnded, LiveStarted, LiveTaken, Li
 from tests.workbench.hand_lane import HandLane
 from workbench import jobs
 from workbench.pages.camera_page import CameraPage
-from workbench.pages.camera_presenter import CameraPresenter, Stage
+from workbench.pages.camera_presenter import CameraPresenter
+from workbench.pages.camera_stage import Stage
 from workbench.views import ask
 
 LEFT = Qt.MouseButton.LeftButton
@@ -32,7 +33,7 @@ def page(camera_bench, qtbot):
 @pytest.fixture
 def solved(page, views_folder, qtbot):
     page.source.folder_chosen.emit(views_folder)
-    qtbot.waitUntil(lambda: page.presenter.work.judgement is not None)
+    qtbot.waitUntil(lambda: page.presenter.work.judgement is not None, timeout=30_000)
     qtbot.waitUntil(lambda: not page.presenter.bench.quick.busy)
     return page
 
@@ -111,7 +112,7 @@ def test_every_tab_shows_something_before_and_after(page, views_folder, qtbot, n
     tab = getattr(page, name)
     page.tabs.setCurrentWidget(tab)
     page.presenter.use_folder(views_folder)
-    qtbot.waitUntil(lambda: page.presenter.work.judgement is not None)
+    qtbot.waitUntil(lambda: page.presenter.work.judgement is not None, timeout=30_000)
     tab.refresh()
     said = tab.missing if name == "coverage" else tab.words
     assert said.text()

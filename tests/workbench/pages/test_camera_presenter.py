@@ -11,7 +11,8 @@ from core.files.project import Sources
 from core.files.project_keys import finished
 from core.live.events import LiveEnded
 from workbench import jobs
-from workbench.pages.camera_presenter import CameraPresenter, Stage
+from workbench.pages.camera_presenter import CameraPresenter
+from workbench.pages.camera_stage import Stage
 from workbench.step_state import State
 
 
@@ -25,7 +26,7 @@ def presenter(camera_bench):
 @pytest.fixture
 def solved(presenter, views_folder, qtbot):
     presenter.use_folder(views_folder)
-    qtbot.waitUntil(lambda: presenter.work.judgement is not None)
+    qtbot.waitUntil(lambda: presenter.work.judgement is not None, timeout=30_000)
     return presenter
 
 

@@ -6,7 +6,8 @@ import pytest
 
 from core.files.project import project_from_set
 from workbench.bench import Bench
-from workbench.pages.camera_presenter import CameraPresenter, Stage
+from workbench.pages.camera_presenter import CameraPresenter
+from workbench.pages.camera_stage import Stage
 
 
 @pytest.fixture
