@@ -1,0 +1,151 @@
+"""`trisect run` and its steps, each alone, and many sets. Light to import; the work is in `core.cli.measuring`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from core.cli.bars import bars
+from core.cli.options import (
+    EPILOG,
+    K3,
+    AdjustCamera,
+    Contrast,
+    Exclude,
+    Json,
+    Method,
+    MethodOption,
+    NoSkew,
+    Out,
+    Part,
+    Profile,
+    Set,
+    SigmaCut,
+    StripeWidth,
+)
+
+commands = typer.Typer()
+
+
+@commands.command(epilog=EPILOG)
+def run(
+    folder: Set,
+    out: Out,
+    method: MethodOption = Method.network,
+    sigma_cut: SigmaCut = 0.05,
+    stripe_width: StripeWidth = 0.0,
+    contrast: Contrast = 0.0,
+    no_skew: NoSkew = False,
+    k3: K3 = False,
+    adjust_camera: AdjustCamera = False,
+    part: Part = "",
+    exclude: Exclude = None,
+    profile: Profile = False,
+    json: Json = False,
+) -> None:
+    """Measure a recording set: calibrations, cloud, mesh, thickness, report."""
+    from core.cli import measuring
+
+    options = measuring.options(
+        method.value,
+        sigma_cut,
+        skew=not no_skew,
+        k3=k3,
+        part=part,
+        stripe_width=stripe_width,
+        contrast=contrast,
+        adjust_camera=adjust_camera,
+    )
+    options = measuring.leaving_out(options, folder, exclude)
+    with bars() as progress:
+        watched = measuring.timed(progress, profile)
+        result = measuring.run_all(folder, out, options, watched)
+    measuring.show_run(result, as_json=json)
+    measuring.show_times(watched)
+    raise typer.Exit(measuring.exit_code(result.gauge))
+
+
+@commands.command(epilog=EPILOG)
+def batch(
+    sets: Annotated[list[Path], typer.Argument(metavar="SETS…", help="Recording sets, all names different.")],
+    out: Out,
+    executor: Annotated[
+        str, typer.Option(metavar="WHO", help="processes, threads, or dask://HOST:PORT for a Dask cluster.")
+    ] = "processes",
+    workers: Annotated[int | None, typer.Option(metavar="N", help="Sets at a time; else one for each core.")] = None,
+    method: MethodOption = Method.network,
+    sigma_cut: SigmaCut = 0.05,
+    json: Json = False,
+) -> None:
+    """Measure many recording sets side by side, each into a folder of its name in DIR."""
+    from core.cli import batching, measuring
+
+    options = measuring.options(method.value, sigma_cut)
+    with bars() as progress:
+        results = batching.run_sets(sets, out, executor, workers, options, progress)
+    batching.show(results, as_json=json)
+    raise typer.Exit(batching.exit_code(results))
+
+
+@commands.command()
+def camera(
+    folder: Set, out: Out, no_skew: NoSkew = False, k3: K3 = False, exclude: Exclude = None, json: Json = False
+) -> None:
+    """Calibrate the camera from SET/camera; writes camera.json."""
+    from core.cli import measuring
+
+    options = measuring.leaving_out(measuring.options("network", 0.05, skew=not no_skew, k3=k3), folder, exclude)
+    with bars() as progress:
+        shown = measuring.run_camera(folder, out, options, progress)
+    shown.show(as_json=json)
+
+
+@commands.command()
+def planes(
+    folder: Set, out: Out, adjust_camera: AdjustCamera = False, exclude: Exclude = None, json: Json = False
+) -> None:
+    """Calibrate the fan's light planes from SET/planes, with camera.json in DIR; writes planes.json."""
+    from core.cli import measuring
+
+    chosen = measuring.options("network", 0.05, adjust_camera=adjust_camera)
+    options = measuring.leaving_out(chosen, folder, exclude)
+    with bars() as progress:
+        shown = measuring.run_planes(folder, out, options, progress)
+    shown.show(as_json=json)
+
+
+@commands.command()
+def scan(
+    folder: Set,
+    out: Out,
+    method: MethodOption = Method.network,
+    sigma_cut: SigmaCut = 0.05,
+    stripe_width: StripeWidth = 0.0,
+    contrast: Contrast = 0.0,
+    exclude: Exclude = None,
+    profile: Profile = False,
+    json: Json = False,
+) -> None:
+    """Measure the surface from SET/scan, with the calibrations in DIR; writes cloud.ply and mesh.ply."""
+    from core.cli import measuring
+
+    options = measuring.options(method.value, sigma_cut, stripe_width=stripe_width, contrast=contrast)
+    options = measuring.leaving_out(options, folder, exclude)
+    with bars() as progress:
+        watched = measuring.timed(progress, profile)
+        shown = measuring.run_scan(folder, out, options, watched)
+    shown.show(as_json=json)
+    measuring.show_times(watched)
+
+
+@commands.command(epilog=EPILOG)
+def gauge(folder: Set, out: Out, json: Json = False) -> None:
+    """Measure the thickness of the cloud in DIR as SET/rig.toml asks; writes gauge.json."""
+    from core.cli import measuring
+
+    with bars() as progress:
+        result, shown = measuring.run_gauge(folder, out, progress)
+    shown.show(as_json=json)
+    raise typer.Exit(measuring.exit_code(result))

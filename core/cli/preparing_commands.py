@@ -1,0 +1,73 @@
+"""What comes before a measurement: targets to print, and what a rig would measure. Light to import."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from core.cli.bars import bars
+from core.cli.options import Json, SigmaCut, Which
+
+commands = typer.Typer()
+
+
+@commands.command()
+def target(
+    out: Annotated[Path, typer.Option("--out", "-o", metavar="FILE", help="The PDF to write.")],
+    kind: Annotated[
+        str, typer.Argument(metavar="KIND", help="checkerboard, charuco, circle_grid or black_square.")
+    ] = "",
+    columns: Annotated[
+        int | None, typer.Option(help="Inner corners (checkerboard), squares (charuco) or circles in a row.")
+    ] = None,
+    rows: Annotated[int | None, typer.Option(help="The same in a column.")] = None,
+    size_mm: Annotated[
+        float | None, typer.Option("--size-mm", metavar="MM", help="Side of a square, or pitch of the circles.")
+    ] = None,
+    marker_mm: Annotated[
+        float | None, typer.Option("--marker-mm", metavar="MM", help="Side of a ChArUco marker; else 3/4 of a square.")
+    ] = None,
+    dictionary: Annotated[str, typer.Option(metavar="NAME", help="OpenCV's name of the markers.")] = "DICT_4X4_100",
+    asymmetric: Annotated[bool, typer.Option("--asymmetric", help="Every second row of circles moved.")] = False,
+    paper: Annotated[str, typer.Option(help="A4, A3, A2, Letter or Tabloid.")] = "A4",
+    title: Annotated[str, typer.Option(metavar="NAME", help="A name of yours to print with it.")] = "",
+    rig: Annotated[
+        Path | None, typer.Option("--rig", metavar="FILE", help="Take the target from this rig.toml instead.")
+    ] = None,
+    which: Annotated[Which, typer.Option(help="Which of rig.toml's two targets.")] = Which.camera,
+    json: Json = False,
+) -> None:
+    """Write a calibration target as a PDF to scale, to be printed at 100 %."""
+    from core.cli import target_sheets
+
+    target_sheets.chosen(kind, rig)
+    printed = (
+        target_sheets.from_rig(rig, which.value)
+        if rig
+        else target_sheets.described(kind, columns, rows, size_mm, marker_mm, dictionary, asymmetric=asymmetric)
+    )
+    target_sheets.write_sheet(printed, paper, title, out)
+    target_sheets.show(printed, paper, out, as_json=json)
+
+
+@commands.command()
+def plan(
+    rig: Annotated[Path, typer.Argument(metavar="RIG", help="A rig.toml, or the recording set that holds it.")],
+    out: Annotated[
+        Path | None, typer.Option("--out", "-o", metavar="DIR", help="Write plan.json and sigma.png there.")
+    ] = None,
+    scans: Annotated[int, typer.Option(help="Scans drawn for the prediction.")] = 2,
+    no_changes: Annotated[
+        bool, typer.Option("--no-changes", help="Do not try which change of the rig helps most: sooner done.")
+    ] = False,
+    sigma_cut: SigmaCut = 0.05,
+    json: Json = False,
+) -> None:
+    """Predict what a rig will measure, before anything is bolted down: U of a thickness, σ, what helps most."""
+    from core.cli import planning
+
+    with bars() as progress:
+        shown = planning.run_plan(rig, out, scans=scans, changes=not no_changes, sigma_cut=sigma_cut, progress=progress)
+    shown.show(as_json=json)

@@ -1,0 +1,90 @@
+"""Recording sets of the digital twin, and the demonstration. Light to import."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from core.cli.bars import bars
+from core.cli.options import EPILOG, Json
+from core.simulate.scenario import CAMERA_TARGETS, OBJECTS, PLANE_TARGETS, Scenario
+
+commands = typer.Typer()
+
+SCENARIO = Scenario()
+"""The defaults of a simulated recording."""
+
+
+@commands.command()
+def simulate(
+    thing: Annotated[str, typer.Argument(metavar="OBJECT", help=f"What stands on the table: {', '.join(OBJECTS)}.")],
+    out: Annotated[Path, typer.Option("--out", "-o", metavar="SET", help="Folder of the new recording set.")],
+    height: Annotated[
+        float, typer.Option("--height", metavar="MM", help="Height of a block or mask, diameter of a sphere.")
+    ] = SCENARIO.height_mm,
+    stl: Annotated[str, typer.Option("--stl", metavar="FILE", help="The file of an stl.")] = SCENARIO.stl_path,
+    frames: Annotated[int, typer.Option(help="Frames of the scan.")] = SCENARIO.frames,
+    views: Annotated[int, typer.Option(help="Views of the camera target.")] = SCENARIO.camera_views,
+    poses: Annotated[int, typer.Option(help="Poses of the plane target.")] = SCENARIO.plane_poses,
+    seed: Annotated[int, typer.Option(help="The same seed gives the same pictures.")] = SCENARIO.seed,
+    scale: Annotated[float, typer.Option(help="Picture size over 3840 × 2748.")] = SCENARIO.scale,
+    noise: Annotated[float, typer.Option(help="Factor on shot and read noise; 0 for none.")] = SCENARIO.noise,
+    speckle: Annotated[float, typer.Option(help="Contrast of the lasers' speckle; 0 for none.")] = SCENARIO.speckle,
+    bits: Annotated[int, typer.Option(help="Depth of the pictures, 8 or 16.")] = SCENARIO.bits,
+    ambient: Annotated[float, typer.Option(help="Grey level of a white surface in the room's light.")] = (
+        SCENARIO.ambient_grey
+    ),
+    texture: Annotated[float, typer.Option(help="Relative unevenness of the surfaces.")] = SCENARIO.texture,
+    camera_target: Annotated[str, typer.Option(help=f"One of {', '.join(CAMERA_TARGETS)}.")] = SCENARIO.camera_target,
+    plane_target: Annotated[str, typer.Option(help=f"One of {', '.join(PLANE_TARGETS)}.")] = SCENARIO.plane_target,
+    published_planes: Annotated[
+        bool, typer.Option("--published-planes", help="The paper's printed planes instead of an exact 5° pencil.")
+    ] = False,
+    no_reference: Annotated[bool, typer.Option("--no-reference", help="Leave scan/reference.png out.")] = False,
+    json: Json = False,
+) -> None:
+    """Render a recording set as the paper's rig would record it; its truth is written beside it, never inside."""
+    from core.cli import simulating
+
+    scenario = Scenario(
+        object=thing,
+        stl_path=stl,
+        height_mm=height,
+        frames=frames,
+        camera_views=views,
+        plane_poses=poses,
+        seed=seed,
+        scale=scale,
+        noise=noise,
+        speckle=speckle,
+        bits=bits,
+        ambient_grey=ambient,
+        texture=texture,
+        camera_target=camera_target,
+        plane_target=plane_target,
+        published_planes=published_planes,
+        reference=not no_reference,
+    )
+    with bars() as progress:
+        simulating.render(scenario, out, progress)
+    simulating.show(out, as_json=json)
+
+
+@commands.command(epilog=EPILOG)
+def demo(
+    out: Annotated[Path, typer.Option("--out", "-o", metavar="DIR", help="Folder of the results.")] = Path("out"),
+    quick: Annotated[bool, typer.Option("--quick", help="A smaller sample: sooner done, less exact.")] = False,
+    json: Json = False,
+) -> None:
+    """Measure the embedded sample, a 50 mm gauge block; it is rendered on first use and kept in your cache."""
+    from core.cli import measuring, simulating
+
+    options = measuring.options("network", simulating.QUICK_CUT_MM if quick else 0.05, part=simulating.PART)
+    with bars() as progress, simulating.sample(progress, quick=quick) as folder:
+        result = measuring.run_all(folder, out, options, progress)
+    measuring.show_run(result, as_json=json)
+    if not json:
+        simulating.show_demo(result)
+    raise typer.Exit(measuring.exit_code(result.gauge))
