@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from reportlab.lib.utils import ImageReader
-from reportlab.platypus import Flowable, KeepTogether
+from reportlab.platypus import Flowable, KeepTogether, Paragraph
 
 from core.report.look import Look
-from core.report.style import TEXT_WIDTH
+from core.report.style import TEXT_WIDTH, markup
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +59,25 @@ class Bookmark(Flowable):  # type: ignore[misc]
         self.canv.addOutlineEntry(self.title, self.key, self.level)
 
 
+class Heading(Paragraph):  # type: ignore[misc]
+    """A heading that links lead to. The bookmark is its own: before it, its space above would not be counted."""
+
+    def __init__(self, look: Look, key: str, title: str, style: str = "section", level: int = 0) -> None:
+        super().__init__(markup(title), look.style(style))
+        self.key, self.title, self.level = key, title, level
+
+    def split(self, *_: float) -> list[Flowable]:
+        """It stays in one piece (called by reportlab)."""
+        return []
+
+    def draw(self) -> None:
+        """Note the place and paint it (called by reportlab)."""
+        self.canv.bookmarkHorizontal(self.key, 0, self.height)
+        self.canv.addOutlineEntry(self.title, self.key, self.level)
+        super().draw()
+
+
 def section(look: Look, key: str, heading: str, first: list[Flowable], **values: object) -> Flowable:
     """A heading that stays with what follows it; `heading` is fixed words, `key` what links call it."""
     title = look.words(heading, **values)
-    return KeepTogether([Bookmark(key, title), look.text(title, "section"), *first])
+    return KeepTogether([Heading(look, key, title), *first])

@@ -15,7 +15,7 @@ from core.report.budget import budget_table
 from core.report.content import ReportContent
 from core.report.head import head
 from core.report.language import grouped
-from core.report.layout import Bookmark, Limits, Picture, section
+from core.report.layout import Bookmark, Heading, Limits, Picture, section
 from core.report.look import Look
 from core.report.repeats import repeats_head, repeats_table
 from core.report.result_box import result_box
@@ -188,8 +188,7 @@ def _budgets(look: Look, content: ReportContent, limits: Limits) -> list[Flowabl
     for place, (number, one) in enumerate(known[: limits.budgets]):
         title = look.words("Uncertainty budget of {name}", name=shown_name(one, look.words))
         body: list[Flowable] = [
-            Bookmark(budget_key(number), title, 1 if place or len(known) > 1 else 0),
-            look.text(title, "small_strong" if len(known) > 1 else "section"),
+            Heading(look, budget_key(number), title, *(("small_strong", 1) if len(known) > 1 else ())),
             budget_table(look, one),
             Spacer(0, 2 * mm),
         ]

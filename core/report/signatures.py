@@ -33,5 +33,5 @@ def signatures(look: Look, content: ReportContent) -> list[Flowable]:
         table = plain_table([columns[:-1]], ([width, gap] * len(row))[:-1])
         above = [("LINEABOVE", (2 * place, 0), (2 * place, 0), 0.5, color(MUTED)) for place in range(len(row))]
         table.setStyle(TableStyle(above))
-        lines += [Spacer(TEXT_WIDTH, ROOM), table]  # one without width would not count when the page is filled
+        lines += [Spacer(0, ROOM), table]
     return [section(look, "signatures", "Signatures", [*own, *lines])]

@@ -11,7 +11,7 @@ from reportlab.lib.utils import ImageReader
 from reportlab.platypus import Flowable, KeepTogether, Spacer
 
 from core.report.content import ReportContent
-from core.report.layout import Bookmark, Limits, Picture, section
+from core.report.layout import Heading, Limits, Picture, section
 from core.report.look import Look
 from core.report.style import TEXT_WIDTH
 from core.report.tables import heads, plain_table, ruled_table
@@ -34,8 +34,7 @@ def studies(look: Look, content: ReportContent, pictures: Mapping[str, ImageRead
     for number, study in enumerate(content.studies):
         title = look.words(TITLES[study["kind"]], **_named(look, study))
         body: list[Flowable] = [
-            Bookmark(f"study-{number}", title, 1),
-            look.text(title, "small_strong"),
+            Heading(look, f"study-{number}", title, "small_strong", 1),
             *_parts(look, study),
         ]
         if f"study-{number}" in pictures:

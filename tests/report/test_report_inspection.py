@@ -111,14 +111,6 @@ def test_template_gives_name_address_colour_footer_text_and_signatures(content, 
     assert logo[:, 1].max() > 530, "the logo is on the right"
 
 
-@pytest.mark.parametrize("lines", range(0, 60, 4))
-def test_heading_and_lines_to_sign_on_stay_on_one_page(quick, lines):
-    remarks = "\n".join(f"line {n}" for n in range(lines))
-    data = build_report(replace(quick, hidden=frozenset(SECTIONS) - {"signatures", "remarks"}, remarks=remarks))
-    (page,) = [text for text in (one.extract_text() for one in reader(data).pages) if "Date, signature" in text]
-    assert "Signatures" in page
-
-
 def test_without_a_template_the_operator_signs(quick):
     text = words(build_report(replace(quick, template=ReportTemplate(), operator="M. J.")))
     assert text.count("Date, signature") == 1
