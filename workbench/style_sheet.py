@@ -16,6 +16,9 @@ from PySide6.QtWidgets import QApplication, QWidget
 AT_ONCE = 150
 """So many hidden widgets are polished in one go."""
 
+SOON_MS = 1
+"""After this what else waits has its turn; what is to be done after 0 ms Qt does before anything else."""
+
 _CHECK = Path(str(files("resources"))) / "icons" / "check.svg"
 _CHECKED = "#1f6feb"
 """Behind the white tick: dark enough for it and light enough on the ground of either theme."""
@@ -77,7 +80,7 @@ def polish_again(app: QApplication) -> None:
             _polish(widget)
         else:
             hidden.append(widget)
-    QTimer.singleShot(0, app, lambda: _polish_some(app, hidden))
+    QTimer.singleShot(SOON_MS, app, lambda: _polish_some(app, hidden))
 
 
 def _polish_some(app: QApplication, left: list[QWidget]) -> None:
@@ -85,7 +88,7 @@ def _polish_some(app: QApplication, left: list[QWidget]) -> None:
         if shiboken6.isValid(widget):
             _polish(widget)
     if left := left[AT_ONCE:]:
-        QTimer.singleShot(0, app, lambda: _polish_some(app, left))
+        QTimer.singleShot(SOON_MS, app, lambda: _polish_some(app, left))
 
 
 def _polish(widget: QWidget) -> None:

@@ -24,6 +24,8 @@ from workbench.views.scene_view_pieces import Key
 from workbench.views.scene_view_stage import Stage, read_pixels
 
 COLOUR_BUFFER = 0x4000  # GL_COLOR_BUFFER_BIT
+SOON_MS = 1
+"""A later round of the event loop: what is to be done after 0 ms Qt does before it looks at mouse and keys again."""
 
 
 class _Interactor(QtInteractor):
@@ -42,7 +44,7 @@ class _Interactor(QtInteractor):
     def initializeGL(self) -> None:
         """Set up; what is drawn for the first time is drawn in later rounds of the event loop, as it takes its time."""
         super().initializeGL()  # type: ignore[no-untyped-call]
-        QTimer.singleShot(0, self, self._own_a_picture)
+        QTimer.singleShot(SOON_MS, self, self._own_a_picture)
 
     def paintGL(self) -> None:
         """Show the last picture; a new size needs a new one first."""
@@ -60,12 +62,14 @@ class _Interactor(QtInteractor):
         if self.before_paint is None:
             return  # it is being taken away
         self._RenderWindow.Render()
-        self.started = True
-        QTimer.singleShot(0, self, self._begin)
+        QTimer.singleShot(SOON_MS, self, self._begin)
 
     def _begin(self) -> None:
         if self.before_paint is not None:
+            self.started, self._drawn_size = True, self.size()
+            self.setUpdatesEnabled(False)
             self.before_paint()
+            QTimer.singleShot(SOON_MS, self, lambda: self.setUpdatesEnabled(True))
 
 
 class EmbeddedSurface:
