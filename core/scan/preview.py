@@ -64,6 +64,7 @@ class Preview:
         self._thin_fan = [piece.select(slice(None, None, options.thin)) for piece in reference.fan]
         self._fan_rays = [StripeRays.of(-1, [piece], camera) for piece in self._thin_fan]
         self._stripes: dict[int, StripeRays] = {}
+        self._kept = 0
         self._before: Sequence[Centreline] = ()
         self._before_index = -1
         self._speed_before = float("nan")
@@ -78,8 +79,6 @@ class Preview:
 
     def cloud(self) -> PreviewCloud:
         """All points so far, the fan's own first."""
-        if sum(map(len, self._stripes.values())) > self._options.most_points:
-            self._stripes = {frame: stripe.thinned() for frame, stripe in self._stripes.items()}
         clouds = self._fan_clouds()
         self._limits = _depth_limits(clouds)
         for sweep in self._tracker.sweeps():
@@ -96,7 +95,8 @@ class Preview:
             return self._with_news(empty_preview(features.index, features.name, features.reason), renewed=False)
         sweep, renewed = self._tracker.add(features.index, features.centrelines)
         thin = tuple(piece.select(slice(None, None, self._options.thin)) for piece in features.centrelines)
-        stripe = self._stripes[features.index] = StripeRays.of(features.index, thin, self._camera)
+        stripe = StripeRays.of(features.index, thin, self._camera)
+        self._keep(stripe)
         nowhere = np.full(len(stripe.rays), np.nan)
         plane = sweep.plane
         depth, sigma = (nowhere, nowhere) if plane is None else stripe.depth(plane.pi, plane.covariance)
@@ -126,6 +126,14 @@ class Preview:
             "" if len(points) else _why_no_points(marks, located=plane is not None),
         )
         return self._with_news(preview, renewed=renewed)
+
+    def _keep(self, stripe: StripeRays) -> None:
+        """Keep the points of a frame, and every second of all when they become too many."""
+        self._stripes[stripe.frame] = stripe
+        self._kept += len(stripe)
+        if self._kept > self._options.most_points:
+            self._stripes = {frame: stripe.thinned() for frame, stripe in self._stripes.items()}
+            self._kept = sum(map(len, self._stripes.values()))
 
     def _with_news(self, preview: FramePreview, *, renewed: bool) -> FramePreview:
         """The preview with the whole cloud and the fan's lines, if they are new."""

@@ -60,6 +60,12 @@ class TrackedSweep:
     plane: OneSweep | None
     used: NDArray[np.int64]
 
+    def without_crossings(self) -> TrackedSweep:
+        """The sweep and its plane alone, which it takes little memory to keep."""
+        none = np.zeros(0, np.int64)
+        table, rays = self.crossings.select(none), self.geometry.select(none)
+        return replace(self, crossings=table, geometry=rays, left_out=(), used=none)
+
 
 class SweepTracker:
     """Locates sweeps one after another.
@@ -107,11 +113,14 @@ class SweepTracker:
             self._anchors[frame] = lines
             self._last_anchor = pieces
             self._thin_out()
-        if len(self._sweeps) < self._due or len(self._anchors) < FIRST_ADJUSTMENT:
-            return sweep, False
-        self._due = round(GROWTH * len(self._sweeps))
-        renewed = self._adjust()
-        return self._sweeps[frame], renewed
+        renewed = False
+        if len(self._sweeps) >= self._due and len(self._anchors) >= FIRST_ADJUSTMENT:
+            self._due = round(GROWTH * len(self._sweeps))
+            renewed = self._adjust()
+            sweep = self._sweeps[frame]
+        if len(self._sweeps) > MOST_RENEWED and frame not in self._anchors:
+            self._sweeps[frame] = sweep.without_crossings()
+        return sweep, renewed
 
     def sweeps(self) -> Iterator[TrackedSweep]:
         """All sweeps so far, in the order they came."""
@@ -136,6 +145,9 @@ class SweepTracker:
         """Keep every second anchor when there are too many, and from now on take them twice as far apart."""
         if len(self._anchors) <= self._most_anchors:
             return
+        if len(self._sweeps) > MOST_RENEWED:
+            for frame in list(self._anchors)[1::2]:
+                self._sweeps[frame] = self._sweeps[frame].without_crossings()
         self._anchors = {frame: self._anchors[frame] for frame in list(self._anchors)[::2]}
         self._stride_px *= 2
 

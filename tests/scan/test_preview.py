@@ -1,9 +1,11 @@
 import pickle
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from core.model import LightPlane
+from core.scan import tracking
 from core.scan.coverage_map import CoverageMap
 from core.scan.crossing_marks import GOOD, LEFT_OUT, WEAK
 from core.scan.features import FrameFeatures, FrameReader, choose_sweep_stripe, extract_features, read_reference
@@ -228,3 +230,18 @@ def test_a_cloud_that_grows_too_large_is_thinned(block):
         preview(features)
     assert len(preview.cloud()) < 3500
     assert len(block.preview.cloud()) > 4000
+
+
+def test_a_scan_that_goes_on_for_long_keeps_no_more_and_more(block, monkeypatch):
+    monkeypatch.setattr(tracking, "MOST_RENEWED", 12)
+    preview = Preview(block.reference, block.camera, block.fan, PreviewOptions(most_points=1500))
+    tracker, points, crossed = preview._tracker, [], []
+    for index in range(60):
+        preview(replace(block.features[3 * index % len(block.features)], index=index))
+        points.append(sum(map(len, preview._stripes.values())))
+        crossed.append(sum(len(sweep.crossings) > 0 for sweep in tracker.sweeps()))
+    assert max(points) <= 1500
+    assert all(stripe.rays.base is None for stripe in list(preview._stripes.values())[:5])
+    assert max(crossed) <= 12 + 40
+    assert crossed[-1] <= 12 + len(tracker._anchors)
+    assert len(preview.cloud()) > 200
