@@ -1,0 +1,85 @@
+"""What a report takes from inspection.json and study.json."""
+
+import json
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from core.errors import InputError
+from core.files.arrays_file import write_arrays
+from core.files.study_file import write_study
+from core.pipeline.reported_inspection import with_inspection, with_studies
+from core.report.content import CalibrationMark
+from core.study.type1 import type1_study
+from tests.report.report_samples import block_content
+
+
+@pytest.fixture(scope="module")
+def content():
+    marks = (CalibrationMark("camera", "aaa", "0" * 64), CalibrationMark("fan", "bbb", "1" * 64))
+    return replace(block_content(), calibrations=marks)
+
+
+def inspected(folder, content, **changes):
+    """An inspection.json of a plane and of a comparison with a nominal surface, and the points beside it."""
+    row = {"name": "top flatness", "feature": "top", "kind": "flatness", "value": 0.031, "u": 0.004, "k": 2.0,
+           "limits": {"nominal": 0.0, "lower": None, "upper": 0.05}, "rule": "range", "notes": ["Few points."],
+           "budget": [{"source": "camera calibration", "u": 0.004, "dof": None}]}  # fmt: skip
+    tables = {
+        "schema_version": 1,
+        "characteristics": [row],
+        "features": [
+            {"name": "top", "kind": "plane"},
+            {"name": "to CAD", "kind": "deviation"},
+            {"name": "ball", "kind": "sphere", "problem": "ball: there is no sphere."},
+        ],
+        "plan": {"k": 2.0, "feature": [{"name": "to CAD", "kind": "deviation", "deviation": {"tolerance_mm": 0.25}}]},
+        "notes": ["Said by the inspection."],
+        "calibration_id": "aaa-bbb",
+    }
+    (folder / "inspection.json").write_text(json.dumps(tables | changes))
+    points = content.cloud.points[:50]
+    deviation = np.column_stack([points, np.linspace(-0.3, 0.3, 50)])
+    write_arrays(folder / "inspection.npz", {"points_0": np.arange(30), "deviation_1": deviation})
+
+
+def test_without_an_inspection_nothing_is_said_of_one(tmp_path, content):
+    assert with_inspection(content, tmp_path) is content
+
+
+def test_characteristics_points_deviations_and_problems_come_from_the_files(tmp_path, content):
+    inspected(tmp_path, content)
+    found = with_inspection(content, tmp_path)
+    (one,) = found.characteristics
+    assert (one.name, one.value, one.verdict, one.budget[0].dof) == ("top flatness", 0.031, "conforming", math.inf)
+    assert found.points["top"].tolist() == list(range(30))
+    (deviations,) = found.deviations
+    assert (deviations.name, deviations.tolerance_mm) == ("to CAD", 0.25)
+    assert np.allclose(deviations.uv, content.cloud.uv[:50], atol=0.01), "where the camera sees them"
+    for note in ("Said by the inspection.", "ball: there is no sphere.", "top flatness: Few points."):
+        assert note in found.all_notes
+
+
+def test_the_inspection_of_another_scan_is_refused(tmp_path, content):
+    inspected(tmp_path, content, calibration_id="ccc-ddd")
+    with pytest.raises(InputError, match=r"inspection\.json: is of a scan with calibration ccc-ddd, but this one has"):
+        with_inspection(content, tmp_path)
+
+
+def test_points_that_are_not_in_the_cloud_are_refused(tmp_path, content):
+    inspected(tmp_path, content)
+    small = replace(content, cloud=content.cloud.select(np.arange(20)), gauge=None, mesh=content.mesh)
+    with pytest.raises(InputError, match="top names points that the cloud does not have"):
+        with_inspection(small, tmp_path)
+
+
+def test_a_study_is_printed_from_its_file(tmp_path, content):
+    values = 50 + np.linspace(-0.01, 0.012, 25)
+    write_study(tmp_path, type1_study(values, 50.0, 0.4))
+    (study,) = with_studies(content, [tmp_path / "study.json"]).studies
+    assert study["kind"] == "type1"
+    assert study["mean"] == pytest.approx(50.001)
+    with pytest.raises(InputError, match=r"missing\.json"):
+        with_studies(content, [tmp_path / "missing.json"])
