@@ -86,8 +86,9 @@ def score_cuts(
         else:
             for i in range(count):
                 rest[i], bits[i] = picture[first + i, line], state[first + i, line] & (SATURATED | IGNORED)
+        reach = math.ceil(3 * width)
         slip = -run[near, 3] if upright else run[near, 2]  # of a pixel's foot along the stripe, per pixel
-        before, behind = max(near - math.ceil(width), 0), min(near + math.ceil(width), len(model) - 1)
+        before, behind = max(near - reach, 0), min(near + reach, len(model) - 1)
         fade = slip * (model[behind, 0] / height - model[before, 0] / height) / max(behind - before, 1)
         widening = slip * (model[behind, 1] / width - model[before, 1] / width) / max(behind - before, 1)
         _compare(rest, places, bells, count, first - place, (nx, run[near, 4], fade, widening), model[near])

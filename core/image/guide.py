@@ -7,6 +7,7 @@ import math
 import numpy as np
 from numba import njit
 
+from core.image.running import quantile_of_sizes
 from core.model.arrays import Array
 
 _ARM, _SHORTEST_ARM = 8.0, 3.0  # filter σ
@@ -16,7 +17,7 @@ _LARGEST_ANGLE = 0.2  # rad from the middle of a parabola to its end: beyond, an
 def guide(run: Array, arc: Array, weight: Array, filter_px: float) -> Array:
     """The curve through a run (N, ≥ 2) as `parabolas` of ± 8 filter σ give it, of fewer where the run is bent."""
     curve: Array = parabolas(run, arc, weight, _ARM * filter_px)
-    bend = float(np.quantile(np.abs(curve[:, 4]), 0.9))
+    bend = quantile_of_sizes(curve[:, 4], 0.9)
     if bend * _ARM * filter_px > _LARGEST_ANGLE:
         curve = parabolas(run, arc, weight, max(_LARGEST_ANGLE / bend, _SHORTEST_ARM * filter_px))
     return curve

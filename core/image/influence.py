@@ -42,9 +42,16 @@ def influence(height: float, background: float, width_px: float, noise: NoiseMod
 
     All figures are rounded to steps of 8 %, which costs nothing noticeable, so that few different ones are computed.
     """
-    floor = float(noise.variance(np.array(background)))
-    figures = (_coarse(height), _coarse(floor), _coarse(width_px), noise.grey_per_electron)
-    return _influence(*figures, _coarse(speckle.contrast), _coarse(speckle.grain_px))
+    return influences([height], background, width_px, noise, speckle)[0]
+
+
+def influences(
+    heights: list[float], background: float, width_px: float, noise: NoiseModel, speckle: Speckle
+) -> list[Influence]:
+    """The weights for sections that differ in their height alone."""
+    floor = _coarse(noise.read_grey**2 + noise.grey_per_electron * max(background, 0.0))
+    figures = (floor, _coarse(width_px), noise.grey_per_electron, _coarse(speckle.contrast), _coarse(speckle.grain_px))
+    return [_influence(_coarse(height), *figures) for height in heights]
 
 
 def _coarse(value: float) -> float:

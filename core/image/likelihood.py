@@ -32,10 +32,11 @@ from numpy.typing import NDArray
 
 from core.image.cuts import averages, cut_residuals, cuts_of, score_cuts
 from core.image.guide import guide
-from core.image.influence import influence
+from core.image.influence import influences
 from core.image.noise import NoiseModel
 from core.image.pieces import arc_length
 from core.image.profile import Sections
+from core.image.running import median
 from core.image.seeds import Picture
 from core.image.speckle import Speckle
 from core.model.arrays import Array
@@ -96,7 +97,7 @@ def refine(
             curve = guide(curve, arc, weight, filter_px)
     curve[:, :2] += (_PIXEL_VARIANCE / 2 * curve[:, 4])[:, None] * curve[:, 2:4]  # an arc seen through square pixels
     # grains reach further along the stripe than the pixel: the window averages over fewer of them than of pixels
-    grown = math.sqrt(1 + float(np.median(shares[kind])) * (speckle.grain_px / (2 * filter_px)) ** 2)
+    grown = math.sqrt(1 + median(shares[kind]) * (speckle.grain_px / (2 * filter_px)) ** 2)
     usual = 1 / math.sqrt(2 * math.pi) / filter_px
     sigma = np.where(support * usual > _ENOUGH, np.sqrt(variance / grown), np.inf)
     return Refined(curve, sigma, 2 * math.sqrt(math.pi) * filter_px * grown)
@@ -112,7 +113,7 @@ def residuals(
 
     Zeros where a pixel cannot be used. The other arguments are those of `refine`.
     """
-    half = max(2, int(_CORE * float(np.median(sections.width))))
+    half = max(2, int(_CORE * median(sections.width)))
     cuts = cuts_of(curve, arc_length(curve))
     return np.asarray(cut_residuals(picture, state, curve, cuts, np.column_stack(sections), half))
 
@@ -123,6 +124,6 @@ def _weights(sections: Sections, noise: NoiseModel, speckle: Speckle) -> tuple[N
     lowest = int(level.min())
     there = np.bincount(level - lowest) > 0
     levels, kind = np.flatnonzero(there) + lowest, (np.cumsum(there) - 1)[level - lowest]
-    background, width = float(np.median(sections.background)), float(np.median(sections.width))
-    found = [influence(math.exp(k * _HEIGHT_CLASS), background, width, noise, speckle) for k in levels]
+    background, width = median(sections.background), median(sections.width)
+    found = influences(np.exp(levels * _HEIGHT_CLASS).tolist(), background, width, noise, speckle)
     return kind, np.array([f.weight for f in found]), np.array([f.speckle_share for f in found])

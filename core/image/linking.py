@@ -88,7 +88,8 @@ def _trace_all(
     height, width = state.shape
     high, stride = limits[1], limits[5]
     ahead = np.empty((4 * (height + width), 5))
-    points = np.empty((4096, 5))
+    behind = np.empty_like(ahead)
+    points = np.empty((16384, 5))
     ends = np.empty(64, dtype=np.int64)
     count, runs = 0, 0
     for k in range(len(starts)):
@@ -115,33 +116,30 @@ def _trace_all(
                 break
         if not found:
             continue
-        needed = 0
-        while len(points) < count + 2 * len(ahead) + 1:
-            points = np.concatenate((points, np.empty_like(points)))
-        backwards = _follow(picture, state, (u, v, -nu, -nv), limits, radius, kernels, ahead)
+        backwards = _follow(picture, state, (u, v, -nu, -nv), limits, radius, kernels, behind)
+        last = max(backwards - 1, 0)
+        closed = backwards > 20 and math.hypot(behind[last, 0] - u, behind[last, 1] - v) < 1.5 * stride
+        forwards = 0 if closed else _follow(picture, state, (u, v, nu, nv), limits, radius, kernels, ahead)
+        needed = backwards + 1 + forwards
+        if len(points) < count + needed:
+            more = np.empty((2 * (count + needed), 5))
+            more[:count] = points[:count]
+            points = more
+        run = points[count : count + needed]
         for i in range(backwards):
-            row = points[count + needed]
-            row[:] = ahead[backwards - 1 - i]
-            row[2] = -row[2]
-            row[3] = -row[3]
-            needed += 1
-        points[count + needed] = np.array([u, v, nu, nv, response])
-        needed += 1
-        closed = backwards > 20 and math.hypot(points[count, 0] - u, points[count, 1] - v) < 1.5 * stride
-        if not closed:
-            forwards = _follow(picture, state, (u, v, nu, nv), limits, radius, kernels, ahead)
-            for i in range(forwards):
-                points[count + needed] = ahead[i]
-                needed += 1
+            for a in range(5):
+                run[i, a] = behind[backwards - 1 - i, a] if a not in (2, 3) else -behind[backwards - 1 - i, a]
+        run[backwards, 0], run[backwards, 1], run[backwards, 2], run[backwards, 3] = u, v, nu, nv
+        run[backwards, 4] = response
+        run[backwards + 1 :] = ahead[:forwards]
         for i in range(0, needed + _MARK_EVERY - 1, _MARK_EVERY):
-            last = count + min(i, needed - 1)
-            _mark(state, points[last, 0], points[last, 1], reach)
+            _mark(state, run[min(i, needed - 1), 0], run[min(i, needed - 1), 1], reach)
         count += needed
         if runs == len(ends):
             ends = np.concatenate((ends, np.empty_like(ends)))
         ends[runs] = count
         runs += 1
-    return points[:count].copy(), ends[:runs].copy()
+    return points[:count], ends[:runs]
 
 
 @njit(cache=True, nogil=True, fastmath=True)
@@ -219,9 +217,10 @@ def _follow(
 @njit(cache=True, nogil=True)
 def _mark(state: NDArray[np.uint8], u: float, v: float, reach: int) -> None:
     """Mark a disc VISITED."""
-    height, width = state.shape
+    height = len(state)
     column, row = int(u + 0.5), int(v + 0.5)
     for j in range(max(row - reach, 0), min(row + reach + 1, height)):
-        for i in range(max(column - reach, 0), min(column + reach + 1, width)):
-            if (i - u) ** 2 + (j - v) ** 2 <= reach * reach:
-                state[j, i] |= VISITED
+        half = int(math.sqrt(reach * reach - (j - row) ** 2))
+        part = state[j, max(column - half, 0) : column + half + 1]
+        for i in range(len(part)):
+            part[i] |= VISITED

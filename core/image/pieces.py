@@ -17,6 +17,8 @@ END_TRIM_PX = 4.0
 _END_TRIM = 2.5  # the same in filter σ
 _FADE_REACH = 20.0  # filter σ from an end that a fading shadow is looked for
 _FADED = 0.8  # less than this share of what is further in
+_NARROWED = 0.9  # of the square of the width, averaged over some points
+_EVEN_REACH = 1.5  # filter σ
 
 
 @njit(cache=True, nogil=True)
@@ -35,39 +37,61 @@ def correlation_length(filter_px: float) -> float:
 
 def cut_ends(run: Array, filter_px: float) -> Array:
     """Cut a run (N, 5) where its response falls to half at an end, and END_TRIM_PX more."""
-    arc = arc_length(run)
-    trim = max(END_TRIM_PX, _END_TRIM * filter_px)
+    first, last = _lit(run, arc_length(run), filter_px, max(END_TRIM_PX, _END_TRIM * filter_px))
+    return run[first:last]
+
+
+@njit(cache=True, nogil=True)
+def _lit(run: Array, arc: Array, filter_px: float, trim: float) -> tuple[int, int]:
+    """First and past-the-last point of a run between its ends and `trim` px more."""
+    whole = arc[-1]
     start = _real_end(arc, run[:, 4], filter_px) + trim
-    end = float(arc[-1]) - _real_end(arc[-1] - arc[::-1], run[::-1, 4], filter_px) - trim
-    inside: Array = run[(arc >= start) & (arc <= end)]
-    return inside
+    end = whole - _real_end(whole - arc[::-1], run[::-1, 4], filter_px) - trim
+    return int(np.searchsorted(arc, start)), int(np.searchsorted(arc, end, side="right"))
 
 
+@njit(cache=True, nogil=True)
 def _real_end(arc: Array, response: Array, filter_px: float) -> float:
     """Where the response first reaches half of what it is further in."""
-    inner = response[(arc >= 3 * filter_px) & (arc <= 9 * filter_px)]
-    if len(inner) == 0:
+    first, last = np.searchsorted(arc, 3 * filter_px), np.searchsorted(arc, 9 * filter_px, side="right")
+    if last <= first:
         return 0.0
-    return float(arc[np.argmax(response >= 0.5 * np.median(inner))])
+    half = 0.5 * np.median(response[first:last])
+    for k in range(len(arc)):
+        if response[k] >= half:
+            return float(arc[k])
+    return 0.0
 
 
-def fully_lit(arc: Array, height: Array, width: Array, filter_px: float) -> slice:
-    """The part of a run between its fading ends, from the height and width (N,) of its cross-section.
+@njit(cache=True, nogil=True)
+def fully_lit(arc: Array, height: Array, width: Array, filter_px: float) -> tuple[int, int]:
+    """First and past-the-last point between a run's fading ends, from height and width (N,) of its cross-section.
 
     An oblique shadow cuts the stripe on one side first and pulls the line to the other while its crest is still as
     bright as before. What gives it away is height · width², which speckle hardly changes: its grains make the stripe
-    dimmer and wider, or brighter and narrower.
+    dimmer and wider, or brighter and narrower. Where a surface turns away from the laser that falls too, but the stripe
+    gets no narrower as it fades: that is no shadow.
     """
-    spread = height * width**2
-    first = _fading(arc, spread, filter_px)
-    last = len(arc) - _fading(arc[-1] - arc[::-1], spread[::-1], filter_px)
-    return slice(first, max(first, last))
+    square = width * width
+    first = _fading(arc, height, square, filter_px)
+    last = len(arc) - _fading(arc[-1] - arc[::-1], height[::-1], square[::-1], filter_px)
+    return first, max(first, last)
 
 
-def _fading(arc: Array, spread: Array, filter_px: float) -> int:
-    """How many points at the start have less light than the stretch behind them."""
-    reach = min(_FADE_REACH * filter_px, 0.2 * float(arc[-1]))
-    inner = spread[(arc >= reach) & (arc <= 2.5 * reach)]
-    if len(inner) == 0:
+@njit(cache=True, nogil=True)
+def _fading(arc: Array, height: Array, square: Array, filter_px: float) -> int:
+    """How many points at the start are in a shadow's edge: less light than the stretch behind them, and narrower."""
+    reach = min(_FADE_REACH * filter_px, 0.2 * arc[-1])
+    first, last = np.searchsorted(arc, reach), np.searchsorted(arc, 2.5 * reach, side="right")
+    if last <= first:
         return 0
-    return int(np.argmax((spread >= _FADED * np.median(inner)) | (arc >= reach)))
+    enough = _FADED * np.median(height[first:last] * square[first:last])
+    faded = 0
+    while height[faded] * square[faded] < enough and arc[faded] < reach:
+        faded += 1
+    narrow = _NARROWED * np.median(square[first:last])
+    half = round(_EVEN_REACH * filter_px)
+    for k in range(faded - 1, -1, -1):
+        if np.mean(square[max(k - half, 0) : k + half + 1]) < narrow:
+            return k + 1
+    return 0

@@ -38,7 +38,8 @@ class Piece:
     @property
     def usable(self) -> NDArray[np.bool_]:
         """Points to judge the line by: those not saturated, or all where most of them are."""
-        return ~self.saturated if np.mean(self.saturated) < 0.5 else np.ones_like(self.saturated)
+        mostly = 2 * np.count_nonzero(self.saturated) >= len(self.saturated)
+        return np.ones_like(self.saturated) if mostly else ~self.saturated
 
     def judged(self, run: Array, sigma: Array) -> tuple[Array, Array]:
         """Those of the points `run`, and of their standard uncertainties, that are usable."""

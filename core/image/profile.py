@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.image.pieces import arc_length
-from core.image.running import running_median
+from core.image.running import running_mean, running_median
 from core.image.section_fit import fit_sections
 from core.image.seeds import Picture
 from core.model.arrays import Array
@@ -88,7 +88,7 @@ def measure_profiles(
     height, background, width = (running_median(fits[:, k], short) for k in (0, 1, 3))
     freed = np.sqrt(np.maximum(width**2 - _PIXEL_VARIANCE, 0.04))  # the pixel lowers what it widens
     # the slope moves the point itself, so it must be far less noisy than a point: average it over a long stretch
-    slope, slope_sigma = _running_mean(fits[:, 2], long)
+    slope, slope_sigma = running_mean(fits[:, 2], long)
     return Profiles(
         np.interp(arc, where, height * width / freed),
         np.interp(arc, where, background),
@@ -107,16 +107,3 @@ def _places(count: int, filter_px: float) -> tuple[NDArray[np.int64], int]:
 def _odd(length: float) -> int:
     """The odd number nearest to `length`, at least 3."""
     return max(3, 2 * int(length / 2) + 1)
-
-
-def _running_mean(values: Array, length: int) -> tuple[Array, Array]:
-    """Mean over `length` neighbours (fewer at the ends) and its standard error, outliers clipped."""
-    centre = np.median(values)
-    spread = 1.4826 * np.median(np.abs(values - centre)) + 1e-12
-    clipped = np.clip(values, centre - 4 * spread, centre + 4 * spread)
-    kernel = np.ones(min(length, len(values)))
-    count = np.convolve(np.ones(len(values)), kernel, "same")
-    mean = np.convolve(clipped, kernel, "same") / count
-    variance = np.maximum(np.convolve(clipped**2, kernel, "same") / count - mean**2, 0)
-    error = np.where(count >= 3, np.sqrt(variance / np.maximum(count - 1, 1)), np.inf)  # two give no standard error
-    return mean, error

@@ -1,4 +1,4 @@
-"""Running medians along a stripe."""
+"""Medians and means along a stripe, compiled: on a thousand points numpy takes longer to begin than to work."""
 
 from __future__ import annotations
 
@@ -6,6 +6,19 @@ import numpy as np
 from numba import njit
 
 from core.model.arrays import Array
+
+
+@njit(cache=True, nogil=True)
+def median(values: Array) -> float:
+    """Median of `values` (N,), N ≥ 1."""
+    return float(np.median(values))
+
+
+@njit(cache=True, nogil=True)
+def quantile_of_sizes(values: Array, share: float) -> float:
+    """The size |value| that `share` of the `values` (N,) do not exceed."""
+    k = min(int(share * len(values)), len(values) - 1)
+    return float(np.partition(np.abs(values), k)[k])
 
 
 @njit(cache=True, nogil=True)
@@ -29,3 +42,28 @@ def running_median(values: Array, length: int) -> Array:
             k -= 1
         window[k] = new
     return medians
+
+
+@njit(cache=True, nogil=True)
+def running_mean(values: Array, length: int) -> tuple[Array, Array]:
+    """Mean over `length` (odd) neighbours, fewer at the ends, and its standard error, (N,) each; outliers clipped.
+
+    Two values give no standard error: it is infinite.
+    """
+    count, half = len(values), length // 2
+    centre = np.median(values)
+    spread = 1.4826 * np.median(np.abs(values - centre)) + 1e-12
+    sums = np.zeros((count + 1, 2))
+    for k in range(count):
+        away = min(max(values[k] - centre, -4 * spread), 4 * spread)
+        sums[k + 1, 0], sums[k + 1, 1] = sums[k, 0] + away, sums[k, 1] + away * away
+    mean, error = np.empty(count), np.full(count, np.inf)
+    for k in range(count):
+        first, last = max(k - half, 0), min(k + half + 1, count)
+        number = last - first
+        away = (sums[last, 0] - sums[first, 0]) / number
+        variance = max((sums[last, 1] - sums[first, 1]) / number - away * away, 0.0)
+        mean[k] = centre + away
+        if number >= 3:
+            error[k] = np.sqrt(variance / (number - 1))
+    return mean, error

@@ -14,8 +14,8 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from scipy.ndimage import median_filter
 
+from core.image.running import median, running_median
 from core.model.arrays import Array
 
 _COARSEST = 3.0  # stripe σ
@@ -74,9 +74,9 @@ def measure_speckle(stripes: list[Array], width_px: float) -> Speckle:
 def _levelled(r: Array, m: Array) -> Array:
     """Residuals freed of brightness that changes along the stripe, of the section's shape, and of what stands out."""
     height = np.sum(r * m, axis=1) / np.maximum(np.sum(m**2, axis=1), 1e-9)
-    levelled = r - median_filter(height, _LEVEL_CUTS, mode="nearest")[:, None] * m
+    levelled = r - running_median(height, _LEVEL_CUTS)[:, None] * m
     levelled -= np.sum(levelled * m, axis=0) / np.maximum(np.sum(m**2, axis=0), 1e-9) * m
     seen = m > 0
-    limit = _OUTLIER * float(np.median(np.abs(levelled[seen]) / m[seen])) * m if seen.any() else m
+    limit = _OUTLIER * median(np.abs(levelled[seen]) / m[seen]) * m if seen.any() else m
     clipped: Array = np.clip(levelled, -limit, limit)
     return clipped

@@ -167,6 +167,6 @@ def _smooth_pieces(
         piece, profiles = run[part], whole.profiles
         if len(piece) < len(run):  # the running median must not reach across the break
             profiles = measure_profiles(picture, state, piece, settings.stripe_px, g)
-        lit = fully_lit(arc_length(piece), profiles.height, profiles.width, g)
+        lit = slice(*fully_lit(arc_length(piece), profiles.height, profiles.width, g))
         pieces.append(Piece(piece[lit], profiles.select(lit), saturated[part][lit]))
     return pieces
