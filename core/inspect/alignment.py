@@ -27,15 +27,14 @@ from core.scan.triangles import Surroundings, Triangles
 
 TURNS = 12
 """Starts about the upward direction."""
-TRIED, REFINED = 150, 2000
-"""Points of each start, and of the final fit."""
-ROUGH_ROUNDS, ROUNDS = 8, 40
+STAGES = ((150, 8, 12), (500, 20, 2), (2000, 40, 1))
+"""Points, rounds, and how many of the poses go on to the next stage."""
 TUKEY = 4.685
-FIRST_CUT, NARROWER = 0.04, 0.75
+FREE = 1e-6
+"""Directions known less well than the best one by this share of information count as not known at all."""
+FIRST_CUT, NARROWER = 0.04, 0.85
 """Points off by more than this share of the part's size have no weight at first, and ever closer ones then: small sides
 that alone fix a direction must not lose theirs before they have moved the part."""
-NEAR_SHARE = 0.7
-"""A start is judged by this share of its points that lie nearest."""
 HELD = 0.02
 """A fit holds if the median distance left is less than this share of the part's size."""
 
@@ -103,20 +102,21 @@ def best_fit(points: Array, up: Array, nominal: Triangles, progress: Progress = 
         If no start leads to a fit: the part is another one, or seen too little of.
     """
     rng = np.random.default_rng(seed)
-    sample = points[rng.permutation(len(points))[:REFINED]]
-    few = sample[:TRIED]
+    shuffled = points[rng.permutation(len(points))]
     around = Surroundings(nominal)
-    starts = _starts(few, up, nominal)
-    tried: list[tuple[float, Pose]] = []
-    for number, start in enumerate(starts):
-        progress("alignment", number, len(starts))
-        pose, _ = _fitted(few, start, around, ROUGH_ROUNDS)
-        tried.append((_left(few, pose, around), pose))
-    best = sorted(tried, key=lambda one: one[0])[:3]
-    fits = [_fitted(sample, pose, around, ROUNDS)[0] for _, pose in best]
-    nearest = min(fits, key=lambda one: _left(sample, one, around))
-    pose, left = _fitted(sample, nearest, around, ROUNDS, exact=True)
-    progress("alignment", len(starts), len(starts))
+    poses = _starts(shuffled[: STAGES[0][0]], up, nominal)
+    done, total = 0, len(poses) + sum(kept for _, _, kept in STAGES)
+    for count, rounds, kept in STAGES:
+        sample = shuffled[:count]
+        tried: list[tuple[float, int, Pose]] = []
+        for start in poses:
+            progress("alignment", done, total)
+            done += 1
+            pose, _ = _fitted(sample, start, around, rounds)
+            tried.append((_left(sample, pose, around), len(tried), pose))
+        poses = [pose for _, _, pose in sorted(tried, key=lambda one: one[:2])[:kept]]
+    pose, left = _fitted(sample, poses[0], around, rounds, exact=True)
+    progress("alignment", total, total)
     if left > HELD * nominal.size_mm:
         raise InputError(
             f"the nominal surface cannot be laid on the scan: half of the points stay {left:.2f} mm and more off",
@@ -163,10 +163,12 @@ def _fitted(points: Array, pose: Pose, around: Surroundings, rounds: int, *, exa
         cut = max(TUKEY * scale, widest * NARROWER**round_)
         weight = np.clip(1 - (length / cut) ** 2, 0, None) ** 2
         middle = moved.mean(axis=0)
-        design = np.hstack([direction, np.cross(moved - middle, direction)])
+        arms = (moved - middle) / around.size_mm
+        design = np.hstack([direction, np.cross(arms, direction)])
         scaled = design * weight[:, None]
-        damped = scaled.T @ design + 1e-9 * np.diag(np.maximum((design**2).sum(axis=0), 1e-9))
-        step = -np.linalg.solve(damped, scaled.T @ length)
+        # What the points do not fix, as a shift along the one face that was scanned, stays as it is.
+        step = -np.linalg.pinv(scaled.T @ design, rcond=FREE, hermitian=True) @ (scaled.T @ length)
+        step[3:] /= around.size_mm
         turn = Rotation.from_rotvec(step[3:]).as_matrix()
         pose = Pose(turn, middle + step[:3] - turn @ middle) @ pose
         settled = np.abs(step[:3]).max() < 1e-5 and np.abs(step[3:]).max() < 1e-7
@@ -176,6 +178,6 @@ def _fitted(points: Array, pose: Pose, around: Surroundings, rounds: int, *, exa
 
 
 def _left(points: Array, pose: Pose, around: Surroundings) -> float:
-    """Mean distance in mm of the points that lie nearest."""
-    away = np.sort(np.abs(around.nearest(pose.apply(points), exact_within=-np.inf).distance))
-    return float(away[: max(1, int(NEAR_SHARE * len(away)))].mean())
+    """Mean distance in mm of the points, those farther than the first cut counted as if they lay there."""
+    away = np.abs(around.nearest(pose.apply(points), exact_within=-np.inf).distance)
+    return float(np.minimum(away, FIRST_CUT * around.size_mm).mean())

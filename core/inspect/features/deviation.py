@@ -27,6 +27,9 @@ MOST_POINTS = 40_000
 """Points of the cloud that the figures rest on, spread evenly over it."""
 TABLE = 1.2
 """A plane larger than the part by this factor is what it stands on."""
+ALIKE = 0.5
+"""Points whose surface faces more than 60° elsewhere than the nominal one are of another side."""
+FEWEST = 12
 LARGEST = 0.95
 """Share of the points whose deviations a profile deviation holds."""
 
@@ -37,6 +40,7 @@ def measure_deviation(spec: FeatureSpec, scene: Scene) -> FeatureResult:
         raise InputError("its nominal surface was not read", todo="name an STL file in mm")
     asked, nominal = spec.deviation, scene.nominals[spec.deviation.nominal]
     indices = points_in(spec.regions[0], spec.filters, scene)
+    indices = indices[_above_table(scene.cloud.points[indices], nominal, scene)]
     pose = _pose(asked, nominal, indices, scene)
     around = Surroundings(nominal)
     step = max(1, len(indices) // MOST_POINTS)
@@ -44,7 +48,7 @@ def measure_deviation(spec: FeatureSpec, scene: Scene) -> FeatureResult:
     cloud = scene.cloud.select(used)
     near = around.nearest(pose.inverse().apply(cloud.points), asked.reach_mm)
     kept = _facing(cloud.normals, near, pose) & (np.abs(near.distance) <= asked.reach_mm)
-    if kept.sum() < 12:
+    if kept.sum() < FEWEST:
         raise InputError(
             f"{kept.sum()} measured points lie within {asked.reach_mm:g} mm of the nominal surface",
             todo="check the alignment, or allow a larger reach_mm",
@@ -58,7 +62,7 @@ def measure_deviation(spec: FeatureSpec, scene: Scene) -> FeatureResult:
         indices=used,
         residuals=deviation,
         part=np.zeros(len(used), dtype=np.int64),
-        deviations=_map(asked, scene, around, pose, (used, cloud, deviation, normals)),
+        deviations=_map(asked, scene, nominal, pose, (used, cloud, deviation, normals)),
     )
 
 
@@ -72,21 +76,25 @@ def _pose(asked: Deviation, nominal: Triangles, indices: NDArray[np.int64], scen
         return scene.pose_camera_part
     planes = scene.planes(0.0)
     up = -planes[0].normal if planes else np.array([0.0, 0.0, -1.0])
-    points = scene.cloud.points[indices]
-    if planes:
-        table = scene.cloud.points[planes[0].region.indices]
-        if np.linalg.norm(np.ptp(table, axis=0)) > TABLE * nominal.size_mm:
-            above = planes[0].distance - points @ planes[0].normal
-            points = points[above > 3 * search_tolerance(scene.cloud, None)]
-    if len(points) < 12:
+    if len(indices) < FEWEST:
         raise InputError("nothing but a plane was scanned, so there is no part to lay the nominal surface on")
-    return best_fit(points, up, nominal, scene.progress).pose_camera_nominal
+    return best_fit(scene.cloud.points[indices], up, nominal, scene.progress).pose_camera_nominal
+
+
+def _above_table(points: Array, nominal: Triangles, scene: Scene) -> NDArray[np.bool_]:
+    """Which points (N, 3) are not on what the part stands on: a plane much larger than the part."""
+    planes = scene.planes(0.0)
+    table = scene.cloud.points[planes[0].region.indices] if planes else np.zeros((1, 3))
+    if np.linalg.norm(np.ptp(table, axis=0)) <= TABLE * nominal.size_mm:
+        return np.ones(len(points), dtype=np.bool_)
+    height = planes[0].distance - points @ planes[0].normal
+    return np.asarray(height > 3 * search_tolerance(scene.cloud, None))
 
 
 def _facing(normals: Array, near: Nearest, pose: Pose) -> NDArray[np.bool_]:
     """Which points' surfaces do not face elsewhere than the nominal one does; unknown normals face anywhere."""
     cosine = (normals * (near.normal @ pose.rotation.T)).sum(axis=1)
-    return np.asarray((cosine > 0) | ~normals.any(axis=1))
+    return np.asarray((cosine > ALIKE) | ~normals.any(axis=1))
 
 
 def _characteristics(
@@ -112,8 +120,10 @@ def _characteristics(
             of_stretch = _without_alignment(of_stretch, sources, cloud, normals)
         rows[name] = budget(of_stretch, sources, calibrations=calibrations)
     stripe = np.unique(cloud.sweep, return_inverse=True)[1]
-    sampling = Contribution(SAMPLING, u_of_quantiles(size, (LARGEST,), (2.0,), stripe))
-    rows["profile"] = (sampling, *(row for row in rows["profile"] if row.source in calibrations))
+    sampled = {"profile": u_of_quantiles(size, (LARGEST,), (2.0,), stripe), "mean": _u_of_mean(deviation, stripe)}
+    for name in ("profile", "mean") if fitted else ("profile",):  # what is common to the stripes the alignment takes
+        own = [row for row in rows[name] if row.source in calibrations]
+        rows[name] = (Contribution(SAMPLING, sampled[name]), *own)
     rule = "twice the deviation from the nominal surface that 95 % of the points do not exceed"
     return (
         scene.characteristic(spec, "profile", 2 * largest, rows["profile"], rule=rule),
@@ -121,6 +131,12 @@ def _characteristics(
             spec, "mean", float(np.mean(deviation)), rows["mean"], rule="mean deviation from the nominal surface"
         ),
     )
+
+
+def _u_of_mean(deviation: Array, stripe: NDArray[np.int64]) -> float:
+    """Standard uncertainty of a mean over stripes that err by themselves: of a ratio of sums, by its residuals."""
+    left = np.bincount(stripe, deviation - deviation.mean())
+    return float(np.sqrt(np.sum(left**2) * len(left) / max(len(left) - 1, 1)) / len(deviation))
 
 
 def _without_alignment(gain: Array, sources: Sources, cloud: Cloud, normals: Array) -> Array:
@@ -136,7 +152,7 @@ def _without_alignment(gain: Array, sources: Sources, cloud: Cloud, normals: Arr
 def _map(
     asked: Deviation,
     scene: Scene,
-    around: Surroundings,
+    nominal: Triangles,
     pose: Pose,
     points: tuple[NDArray[np.int64], Cloud, Array, Array],
 ) -> DeviationMap:
@@ -146,11 +162,13 @@ def _map(
         sigma = cloud.sigma * _slant(cloud.points, normals)
         return DeviationMap(cloud.points, used, False, deviation, sigma, asked.tolerance_mm, pose)
     mesh = scene.mesh
-    near = around.nearest(pose.inverse().apply(mesh.vertices), asked.reach_mm)
-    kept = np.flatnonzero(_facing(mesh.normals, near, pose) & (np.abs(near.distance) <= asked.reach_mm) & mesh.measured)
-    normals = near.normal[kept] @ pose.rotation.T
+    mine = np.flatnonzero(mesh.measured & _above_table(mesh.vertices, nominal, scene))
+    near = Surroundings(nominal).nearest(pose.inverse().apply(mesh.vertices[mine]), asked.reach_mm)
+    close = _facing(mesh.normals[mine], near, pose) & (np.abs(near.distance) <= asked.reach_mm)
+    kept = mine[close]
+    normals = near.normal[close] @ pose.rotation.T
     sigma = mesh.sigma[kept] * _slant(mesh.vertices[kept], normals)
-    return DeviationMap(mesh.vertices[kept], kept, True, near.distance[kept], sigma, asked.tolerance_mm, pose)
+    return DeviationMap(mesh.vertices[kept], kept, True, near.distance[close], sigma, asked.tolerance_mm, pose)
 
 
 def _slant(points: Array, normals: Array) -> Array:
