@@ -12,15 +12,10 @@ from typing import Any
 
 from PySide6.QtCore import QObject, QTimer, Signal
 
-from core.acquire.source import Lasers, Step
+from core.acquire.source import Step
 from core.errors import InputError
 from core.image.target_view import TargetView
 from core.live.events import (
-    Auto,
-    Capture,
-    Command,
-    Configure,
-    Discard,
     LiveAnswered,
     LiveAsk,
     LiveBack,
@@ -33,18 +28,12 @@ from core.live.events import (
     LiveTaken,
     LiveUnplugged,
     LiveView,
-    Pause,
-    Resume,
     Stop,
-    Switch,
-    TakeReference,
 )
 from core.model import Camera, Fan
 from workbench.bench import Bench
-from workbench.live import LiveSession
+from workbench.pages.live_commands import LiveCommands
 from workbench.pages.live_ending import LiveEnding, calibrated_s, new_folder, wait_until_ended
-from workbench.pages.live_settings import LiveSettings
-from workbench.pages.live_state import WELL_EXPOSED, LiveState
 from workbench.pages.sources import folder_of
 from workbench.problems import details, sentence
 
@@ -54,7 +43,7 @@ STOP_WITHIN_MS = 5000
 DISPLAY_PX = 1280
 
 
-class LivePresenter(LiveState):
+class LivePresenter(LiveCommands):
     """Starts, steers and ends the live recordings of one step.
 
     `calibration`, `cannot_start`, `there` and `pairs` may be set by the page: what is known of camera and fan when a
@@ -64,11 +53,7 @@ class LivePresenter(LiveState):
     becomes the step's source by an undoable edit, then `ended` is emitted.
     """
 
-    changed = Signal()
-    """State, choice or settings are others: draw the controls anew."""
-
     started = Signal(object)
-    view = Signal(object)
     taken = Signal(object)
     asked = Signal(str, str)
     """Sentence and name of the button that calls `answer`; two empty texts: nothing is asked any more."""
@@ -83,19 +68,15 @@ class LivePresenter(LiveState):
     """Another page's recording runs: this question, to be answered by `start(stop_other=True)` or not at all."""
 
     def __init__(self, bench: Bench, step: Step, parent: QObject | None = None) -> None:
-        super().__init__(step, parent)
+        super().__init__(bench, step, parent)
         self.bench, self.model = bench, bench.model
         self._ending = LiveEnding(bench, step, self)
-        self.settings = LiveSettings(bench, step, self)
-        self.settings.changed.connect(self._configure)
         self.calibration: Callable[[], tuple[Camera | None, Fan | None]] = lambda: (None, None)
         self.cannot_start: Callable[[], str] = lambda: ""
         self.there: Callable[[], tuple[TargetView, ...]] = tuple
         self.pairs = True
         self.adding = False
         self._source = self.settings.choice
-        self._auto = step != "scan"
-        self._session = LiveSession(bench.live, self)
         self._session.told.connect(self._on_event)
         self._session.view.connect(self._on_view)
         self._session.ended.connect(self._on_ended)
@@ -106,16 +87,6 @@ class LivePresenter(LiveState):
         self._deadline.timeout.connect(self._session.abandon)
         self.model.opened.connect(self._project_opened)
         self.model.leaving.connect(self.finish)
-
-    @property
-    def running(self) -> bool:
-        """Whether a recording is going on, from start until the source is closed."""
-        return self._session.running
-
-    @property
-    def auto(self) -> bool:
-        """Whether views and poses are taken without being told."""
-        return self._auto
 
     @property
     def can_add(self) -> bool:
@@ -171,68 +142,6 @@ class LivePresenter(LiveState):
         else:
             self.start()
 
-    def pause(self, on: bool) -> None:
-        """Record nothing for a while, or go on."""
-        if self.live and on != self.paused:
-            self.paused = on
-            self._session.send(Pause() if on else Resume())
-            self.changed.emit()
-
-    def capture(self) -> None:
-        """Take this picture now."""
-        if self.live:
-            self._session.send(Capture())
-
-    def set_auto(self, on: bool) -> None:
-        """Take views and poses without being told, or no longer; also before a start."""
-        if on != self._auto:
-            self._auto = on
-            self._session.send(Auto(on))
-            self.changed.emit()
-
-    def lasers(self, lasers: Lasers) -> None:
-        """Switch the lasers, or have the technician asked to."""
-        self._session.send(Switch(lasers))
-
-    def take_reference(self) -> None:
-        """Take the scan's reference: the fan alone is on."""
-        self._session.send(TakeReference())
-
-    def discard(self, name: str) -> None:
-        """Put a picture aside that has been taken."""
-        self._session.send(Discard(name))
-
-    def take_advice(self) -> None:
-        """Tell the source how to expose the stripes better, as was advised."""
-        if self.advice.settings is not None:
-            settings, self.advice = self.advice.settings, WELL_EXPOSED
-            self.settings.take(settings)
-
-    def answer(self) -> None:
-        """The button of what was asked has been pressed."""
-        if self._ask is not None:
-            self._session.send(self._ask.answer)
-
-    def send(self, command: Command) -> None:
-        """Give the recording any other command."""
-        self._session.send(command)
-
-    def shown(self) -> None:
-        """The last view is on the screen; the next one is welcome."""
-        self._session.shown()
-
-    def show_by(self, draw: Callable[[LiveView], None]) -> None:
-        """Have each view drawn by this while it runs, and answered by `shown()` whatever comes of that."""
-
-        def show(view: LiveView) -> None:
-            try:
-                if self.running:
-                    draw(view)
-            finally:
-                self.shown()
-
-        self.view.connect(show)
-
     def busy(self) -> str:
         """What would be interrupted if the project were left now, or ""."""
         return self.tr("A recording is running.") if self.running else ""
@@ -260,11 +169,6 @@ class LivePresenter(LiveState):
             calibrated_s=calibrated_s(self.model.results),
             ending=self.settings.ending,
         )
-
-    def _configure(self) -> None:
-        if self.running:
-            self._session.send(Configure(self.settings.values))
-        self.changed.emit()
 
     def _on_view(self, view: LiveView) -> None:
         self.hear(view)

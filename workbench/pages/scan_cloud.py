@@ -9,7 +9,8 @@ from PySide6.QtWidgets import QVBoxLayout, QWidget
 
 from core.live.events import LiveView, ScanDetail
 from workbench.pages.scan_overlays import PREVIEW_SIGMA_MM
-from workbench.pages.scan_presenter import ScanPresenter, Stage
+from workbench.pages.scan_presenter import ScanPresenter
+from workbench.pages.scan_stage import Stage
 from workbench.views.scene_view import SceneView
 
 _NOTHING = np.zeros((0, 3), np.float32), np.zeros(0, np.float32)

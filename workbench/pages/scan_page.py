@@ -16,8 +16,9 @@ from workbench.pages.scan_bar import FrameBar
 from workbench.pages.scan_cloud import ScanCloud
 from workbench.pages.scan_panels import ResultPanel, RunningPanel, ScanCard, SettingsPanel
 from workbench.pages.scan_picture import ScanPicture, View
-from workbench.pages.scan_presenter import ScanPresenter, Stage
+from workbench.pages.scan_presenter import ScanPresenter
 from workbench.pages.scan_run import short
+from workbench.pages.scan_stage import Stage
 from workbench.pages.step_page import StepPage
 from workbench.views.checks_card import ChecksCard
 from workbench.views.live_panel import LivePanel

@@ -11,7 +11,8 @@ from PySide6.QtWidgets import QGridLayout, QLabel, QVBoxLayout, QWidget
 from core.live.events import ScanDetail
 from core.scan.hints import HintLimits
 from workbench.pages import scan_words as words
-from workbench.pages.scan_presenter import ScanPresenter, Stage
+from workbench.pages.scan_presenter import ScanPresenter
+from workbench.pages.scan_stage import Stage
 from workbench.pages.step_page import heading, muted
 from workbench.views.forms import SettingsForm
 from workbench.views.meters import HintBar, Meter

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from enum import StrEnum
 from pathlib import Path
 from typing import Any
 
@@ -20,24 +19,10 @@ from workbench.pages.presenter import StepPresenter
 from workbench.pages.scan_run import ScanRun, short
 from workbench.pages.scan_scrub import FrameScrub
 from workbench.pages.scan_settings import changed_options, values_of
+from workbench.pages.scan_stage import Stage, missing, stage_of, why_not_measure, why_not_record
 from workbench.pages.scan_thumbnails import FrameThumbnails
 from workbench.pages.scan_work import ScanWork
 from workbench.pages.sources import folder_of, put_source
-from workbench.step_state import State
-
-
-class Stage(StrEnum):
-    """How far the scan is."""
-
-    NONE = "none"
-    LISTING = "listing"
-    EMPTY = "empty"
-    LIVE = "live"
-    RECORDED = "recorded"
-    MEASURING = "measuring"
-    FAILED = "failed"
-    MEASURED = "measured"
-    OUTDATED = "outdated"
 
 
 class ScanPresenter(StepPresenter):
@@ -72,23 +57,7 @@ class ScanPresenter(StepPresenter):
     @property
     def stage(self) -> Stage:
         """How far the scan is."""
-        work = self.work
-        if self.live.running:
-            return Stage.LIVE
-        if self.run.measuring:
-            return Stage.MEASURING
-        if self.run.problem:
-            return Stage.FAILED
-        state = self.state.state
-        if state is State.DONE:
-            return Stage.MEASURED
-        if state is State.OUTDATED:
-            return Stage.OUTDATED
-        if not self.project.sources.scan:
-            return Stage.NONE
-        if work.frames is None:
-            return Stage.LISTING
-        return Stage.RECORDED if work.frames else Stage.EMPTY
+        return stage_of(self)
 
     @property
     def scrubbing(self) -> bool:
@@ -96,19 +65,7 @@ class ScanPresenter(StepPresenter):
         return self.stage not in (Stage.LIVE, Stage.MEASURING) and bool(self.work.frames)
 
     def blocker(self) -> str:
-        stage = self.stage
-        if stage is Stage.MEASURED:
-            return ""
-        if stage in (Stage.LIVE, Stage.MEASURING):
-            return self.cannot_measure
-        if stage is Stage.OUTDATED and not self.changed_since():
-            return self.state.sentence
-        if self.cannot_measure:
-            return self.cannot_measure
-        return {
-            Stage.FAILED: self.tr("The scan could not be measured; look at why, or record another one."),
-            Stage.OUTDATED: self.tr("The measured scan is out of date; measure it again."),
-        }.get(stage, self.tr("Measure the scan first."))
+        return missing(self)
 
     def busy(self) -> str:
         return self.live.busy()
@@ -116,24 +73,7 @@ class ScanPresenter(StepPresenter):
     @property
     def cannot_measure(self) -> str:
         """Why the scan cannot be measured now, or ""."""
-        accepted, work = self.project.accepted, self.work
-        if self.live.running:
-            return self.tr("Stop the recording first.")
-        if self.run.measuring:
-            return self.tr("The scan is being measured.")
-        if not accepted.camera:
-            return self.tr("Accept a camera calibration first.")
-        if not accepted.fan:
-            return self.tr("Accept the laser planes first.")
-        if not self.project.sources.scan:
-            return self.tr("Record a scan, or choose a recording, first.")
-        if work.frames is None:
-            return self.tr("The frames are being listed.")
-        if not work.frames:
-            return work.no_frames or self.tr("Choose a folder that holds the frames of a scan.")
-        if all(name in self.project.options.excluded for name in work.names):
-            return self.tr("All frames are left out; let some of them count again.")
-        return ""
+        return why_not_measure(self)
 
     def changed_since(self) -> tuple[str, ...]:
         """What the result rests on and is not what it was."""
@@ -272,11 +212,7 @@ class ScanPresenter(StepPresenter):
 
     def _cannot_record(self) -> str:
         """Why no recording can start now, or ""."""
-        if self.run.measuring:
-            return self.tr("The scan is being measured; wait for it, or cancel it.")
-        if not self.work.calibrations_read:
-            return self.tr("The calibrations are being read.")
-        return ""
+        return why_not_record(self)
 
     def _live_started(self) -> None:
         self._leaving = False

@@ -27,7 +27,7 @@ from workbench.views.scene_view_chooser import Chooser
 from workbench.views.scene_view_contents import GRID, Scene, as_points
 from workbench.views.scene_view_grid import ground_grid
 from workbench.views.scene_view_navigator import Navigator
-from workbench.views.scene_view_overlay import Look, bar_width, paint_marker, paint_overlay
+from workbench.views.scene_view_overlay import Look, bar_width, paint_marker, paint_overlay, place_text
 from workbench.views.scene_view_shown import ColourLike, ColourMap, SceneShown
 from workbench.views.scene_view_snapshot import Snapshot
 from workbench.views.scene_view_tools import Lasso, Navigate, Pick, Polygon
@@ -92,7 +92,7 @@ class SceneView(SceneShown):
         rows.addWidget(self._buttons)
         rows.addWidget(self._canvas, 1)
         self._connect()
-        self._reserve_opengl()
+        choice.reserve_opengl(self)
         self._show_message()
 
     def _connect(self) -> None:
@@ -113,15 +113,6 @@ class SceneView(SceneShown):
         self._snapshot.failed.connect(self.notice)
         self._backing.presented.connect(self._overlay.update)
         self._backing.waiting.connect(self._show_message)
-
-    def _reserve_opengl(self) -> None:
-        """A window that gets its first OpenGL widget while it is seen is made anew and flickers: let it have one."""
-        if choice.opengl_in_windows():
-            from PySide6.QtOpenGLWidgets import QOpenGLWidget
-
-            placeholder = QOpenGLWidget(self)
-            placeholder.setGeometry(0, 0, 1, 1)
-            placeholder.hide()
 
     # ---- from where it is seen
 
@@ -305,10 +296,4 @@ class SceneView(SceneShown):
         if self._chooser.marked is not None:
             x, y = camera.project(self._chooser.marked, size)[0][0]
             if np.isfinite([x, y]).all():
-                paint_marker(painter, QPointF(float(x), float(y)), _place(self._chooser.marked), look)
-
-
-def _place(point: Array) -> str:
-    """Coordinates as they are read out."""
-    x, y, z = (f"{c:.3f}".replace("-", "−") for c in point)
-    return f"{x}   {y}   {z} mm"
+                paint_marker(painter, QPointF(float(x), float(y)), place_text(self._chooser.marked), look)

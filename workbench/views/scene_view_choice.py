@@ -24,6 +24,7 @@ from typing import Literal
 
 from PySide6.QtCore import QCoreApplication, QObject, Signal
 from PySide6.QtGui import QGuiApplication, QOffscreenSurface, QOpenGLContext, QSurfaceFormat
+from PySide6.QtWidgets import QWidget
 
 SurfaceKind = Literal["embedded", "pictures", "painter"]
 
@@ -79,6 +80,16 @@ def opengl_in_windows() -> bool:
     if _Choice.opengl is None:
         _Choice.opengl = QGuiApplication.platformName() in WITH_WINDOWS and _context_can_be_made()
     return _Choice.opengl
+
+
+def reserve_opengl(view: QWidget) -> None:
+    """A window that gets its first OpenGL widget while it is seen is made anew and flickers: let it have one."""
+    if opengl_in_windows():
+        from PySide6.QtOpenGLWidgets import QOpenGLWidget
+
+        placeholder = QOpenGLWidget(view)
+        placeholder.setGeometry(0, 0, 1, 1)
+        placeholder.hide()
 
 
 def first_time(kind: SurfaceKind) -> bool:

@@ -12,6 +12,7 @@ import numpy as np
 from PySide6.QtCore import QCoreApplication, QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFont, QFontMetricsF, QLinearGradient, QPainter, QPalette, QPen, QPolygonF
 
+from core.model.arrays import Array
 from workbench.views.scene_view_camera import SceneCamera
 from workbench.views.scene_view_colours import Colouring, Rgb, nice_step, table, ticks
 from workbench.views.scene_view_contents import Labels, Measure, Scene
@@ -271,3 +272,9 @@ def paint_sentence(painter: QPainter, area: QRectF, text: str, look: Look) -> No
     painter.setPen(colour)
     flags = int(Qt.AlignmentFlag.AlignCenter) | int(Qt.TextFlag.TextWordWrap)
     painter.drawText(area.adjusted(24, 24, -24, -24), flags, text)
+
+
+def place_text(point: Array) -> str:
+    """Coordinates as they are read out."""
+    x, y, z = (f"{c:.3f}".replace("-", "−") for c in point)
+    return f"{x}   {y}   {z} mm"

@@ -17,7 +17,8 @@ from tests.workbench.pages import scan_cases as cases
 from workbench import jobs
 from workbench.pages.scan_page import ScanPage
 from workbench.pages.scan_picture import View
-from workbench.pages.scan_presenter import ScanPresenter, Stage
+from workbench.pages.scan_presenter import ScanPresenter
+from workbench.pages.scan_stage import Stage
 from workbench.views import ask
 
 LEFT = Qt.MouseButton.LeftButton

@@ -14,7 +14,8 @@ from core.live.events import LiveEnded, LiveStarted
 from tests.workbench.hand_lane import HandLane
 from tests.workbench.pages import scan_cases as cases
 from workbench import jobs
-from workbench.pages.scan_presenter import ScanPresenter, Stage
+from workbench.pages.scan_presenter import ScanPresenter
+from workbench.pages.scan_stage import Stage
 from workbench.step_state import State
 
 

@@ -9,7 +9,8 @@ from tests.workbench.watchdog import LIMIT_MS, Watchdog
 from workbench.bench import Bench
 from workbench.pages.scan_page import ScanPage
 from workbench.pages.scan_picture import View
-from workbench.pages.scan_presenter import ScanPresenter, Stage
+from workbench.pages.scan_presenter import ScanPresenter
+from workbench.pages.scan_stage import Stage
 
 
 @pytest.fixture
