@@ -158,6 +158,30 @@ def test_ends_are_trimmed() -> None:
     assert np.abs(errors(line, truth)).max() < 0.05
 
 
+@pytest.mark.parametrize("oblique_deg", [20.0, 35.0])
+def test_an_oblique_shadow_does_not_pull_the_end_of_a_stripe(oblique_deg: float) -> None:
+    truth = straight((110.0, 80.0), 0.0)
+    across = np.radians(90.0 - oblique_deg)
+
+    def lit(u: np.ndarray, v: np.ndarray) -> np.ndarray:
+        return 150.0 * ((u - 150) * np.cos(across) + (v - 80) * np.sin(across) < 0)
+
+    (line,) = find(draw(SHAPE, truth, S, lit))
+    assert np.abs(errors(line, truth)).max() < 0.15
+
+
+def test_a_stripe_that_fades_because_its_surface_turns_away_is_kept() -> None:
+    truth = straight((110.0, 80.0), 0.0)
+
+    def lit(u: np.ndarray, v: np.ndarray) -> np.ndarray:
+        return 150.0 * np.sqrt(np.clip(1 - ((u - 110) / 90) ** 2, 0, None))
+
+    (line,) = find(draw(SHAPE, truth, S, lit))
+    assert line.uv[:, 0].min() < 40
+    assert line.uv[:, 0].max() > 180
+    assert np.abs(errors(line, truth)).max() < 0.01
+
+
 @pytest.mark.parametrize("jump", [1.0, 3.0, 8.0, 20.0])
 def test_a_centreline_never_crosses_a_jump(jump: float) -> None:
     left, right = straight((0.0, 80.2), 0.0), straight((0.0, 80.2 + jump), 0.0)
