@@ -8,13 +8,14 @@ import numpy as np
 import pyqtgraph as pg
 from numpy.typing import ArrayLike
 from PySide6.QtCore import QEvent, QPoint, QPointF, QRectF, Qt
-from PySide6.QtGui import QContextMenuEvent, QFocusEvent, QGuiApplication, QKeyEvent, QPaintEvent
-from PySide6.QtWidgets import QFileDialog, QLabel, QMenu, QVBoxLayout, QWidget
+from PySide6.QtGui import QContextMenuEvent, QFocusEvent, QKeyEvent, QPaintEvent
+from PySide6.QtWidgets import QLabel, QMenu, QVBoxLayout, QWidget
 
 from workbench.theme import is_dark
 from workbench.views.drawing import ARROWS, DrawingTool
 from workbench.views.dressing import draw_focus
 from workbench.views.empty_state import EmptyState
+from workbench.views.grabbed import copy_picture, save_picture
 from workbench.views.image_tools import ToneMenu, ToolStrip
 from workbench.views.layer_stack import LayerStack
 from workbench.views.legend import LayersMenu, Legend
@@ -234,10 +235,9 @@ class ImageFrame(QWidget):
         menu.addAction(self.tr("Whole picture"), self.fit)
         menu.addAction(self.tr("Pixel on pixel"), self.one_to_one)
         menu.addSeparator()
-        menu.addAction(
-            self.tr("Copy what is shown"), lambda: QGuiApplication.clipboard().setPixmap(self._canvas.grab())
-        )
-        menu.addAction(self.tr("Save what is shown …"), self._save)
+        menu.addAction(self.tr("Copy what is shown"), lambda: copy_picture(self._canvas))
+        title = self.tr("Save what is shown")
+        menu.addAction(f"{title} …", lambda: save_picture(self._canvas, title, "picture.png"))
         menu.exec(event.globalPos())
         menu.deleteLater()
 
@@ -291,13 +291,6 @@ class ImageFrame(QWidget):
         self._hint.setVisible(drawing)
         self._canvas.viewport().setCursor(Qt.CursorShape.CrossCursor if drawing else Qt.CursorShape.ArrowCursor)
         self._arrange()
-
-    def _save(self) -> None:
-        path, _ = QFileDialog.getSaveFileName(
-            self, self.tr("Save what is shown"), "picture.png", self.tr("Picture (*.png)")
-        )
-        if path:
-            self._canvas.grab().save(path)
 
     def _dress(self) -> None:
         self._canvas.setBackground(GROUND[is_dark()])

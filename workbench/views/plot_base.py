@@ -7,10 +7,11 @@ from typing import Any
 import pyqtgraph as pg
 from PySide6.QtCore import QEvent, QPointF, Qt
 from PySide6.QtGui import QColor, QContextMenuEvent, QCursor, QFont, QGuiApplication, QPen, QResizeEvent, QWheelEvent
-from PySide6.QtWidgets import QFileDialog, QMenu, QToolTip, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QMenu, QToolTip, QVBoxLayout, QWidget
 
 from workbench.theme import shades
 from workbench.views.empty_state import EmptyState
+from workbench.views.grabbed import copy_picture, save_picture
 
 _TICK_PIXELS = 11
 
@@ -89,8 +90,10 @@ class Plot(QWidget):
 
     def contextMenuEvent(self, event: QContextMenuEvent) -> None:
         menu = QMenu(self)
-        menu.addAction(self.tr("Copy picture"), lambda: QGuiApplication.clipboard().setPixmap(self._canvas.grab()))
-        menu.addAction(self.tr("Save picture …"), self._save)
+        menu.addAction(self.tr("Copy picture"), lambda: copy_picture(self._canvas))
+        menu.addAction(
+            self.tr("Save picture …"), lambda: save_picture(self._canvas, self.tr("Save picture"), "plot.png")
+        )
         menu.exec(event.globalPos())
         menu.deleteLater()
 
@@ -172,11 +175,6 @@ class Plot(QWidget):
     def _resized(self, *_: object) -> None:
         if not self._empty.isHidden():
             self._empty.setGeometry(0, 0, self._canvas.width(), self._canvas.height())
-
-    def _save(self) -> None:
-        path, _ = QFileDialog.getSaveFileName(self, self.tr("Save picture"), "plot.png", self.tr("Picture (*.png)"))
-        if path:
-            self._canvas.grab().save(path)
 
 
 def small_font() -> QFont:
