@@ -39,6 +39,11 @@ soak: export OPENBLAS_NUM_THREADS = 1
 soak: $(READY)            ## ten minutes of an emulated camera at full size through a live scan: frames counted, memory flat
 	$(BIN)/python -m tests.soak --seconds 600
 
+bench: export OPENBLAS_NUM_THREADS = 1
+bench: export OMP_NUM_THREADS = 1
+bench: $(READY)           ## how fast it is, as ratios to OpenCV and scikit-image within one run: a few minutes
+	$(BIN)/pytest -q tests/benchmarks/bench_*.py --benchmark-timer=time.process_time --benchmark-columns=min,median,rounds
+
 screenshots: $(READY)     ## pictures of every page, both sizes, both themes, in ./screenshots
 	$(SCREEN) $(BIN)/python -m tests.workbench.screenshots screenshots
 

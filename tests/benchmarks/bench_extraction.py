@@ -1,0 +1,129 @@
+"""Finding and measuring the stripes of one 10.7 MP frame, on one core."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from core.image.linking import link
+from core.image.ridge import ridge_response
+from core.image.stripes import _limits, extract_centrelines
+from core.scan.features import FrameReader
+from core.scan.frame_reader import saturated_pixels
+from core.simulate.scenario import Scenario
+from tests.benchmarks.conftest import FullFrame, processor_ms, table
+from tests.benchmarks.peers import opencv_steger, skimage_hessian
+from tests.scan.centreline_scan import ExactScan
+
+
+def found(frame: FullFrame, picture: np.ndarray) -> list[np.ndarray]:
+    state = np.zeros(picture.shape, np.uint8)
+    limits = _limits(frame.stripe, frame.noise, knows_saturation=True)
+    return link(picture, state, frame.stripe.stripe_px, frame.stripe.filter_px, limits)
+
+
+def test_tracing_against_filtering_every_pixel(benchmark, speckled, capsys):
+    """Steger's line points of four stripes, linked, against those of peers that look at every pixel."""
+    picture, four = speckled.frame.astype(np.int16), speckled.four
+    g, s = speckled.stripe.filter_px, speckled.stripe.stripe_px
+    threshold = ridge_response(0.35 * speckled.stripe.contrast, s, g)
+    ours = processor_ms(lambda: found(speckled, picture))
+    opencv = processor_ms(lambda: opencv_steger(four, g, threshold), 3)
+    skimage = processor_ms(lambda: skimage_hessian(four, g), 1)
+    reading = processor_ms(lambda: int(speckled.frame.max()))
+    points = sum(map(len, found(speckled, picture)))
+    benchmark(lambda: found(speckled, picture))
+    table(
+        capsys,
+        f"Finding four stripes, {points} px of them, in 3840 × 2748 px, one core",
+        {
+            "tracing": f"{ours:8.1f} ms   {1e3 * ours / points:.2f} µs a px of stripe",
+            "OpenCV, Steger on every pixel, not linked": f"{opencv:8.1f} ms   {opencv / ours:.0f} times as long",
+            "scikit-image, Hessian of every pixel alone": f"{skimage:8.1f} ms   {skimage / ours:.0f} times as long",
+            "reading every pixel once": f"{reading:8.1f} ms   {reading / ours:.2f} of tracing",
+        },
+    )
+
+
+def test_a_whole_frame(benchmark, speckled, capsys):
+    """Difference, tracing and likelihood of one frame against its reference, and of four stripes at once."""
+    reader = FrameReader(speckled.reference, speckled.stripe)
+    picture = speckled.frame.astype(np.int16)
+    saturated = saturated_pixels(speckled.frame)
+
+    def four() -> object:
+        return extract_centrelines(picture, speckled.stripe, noise=speckled.noise, saturated=saturated)
+
+    opencv = processor_ms(
+        lambda: opencv_steger(speckled.four, speckled.stripe.filter_px, ridge_response(30.0, 2.4, 3.4)), 3
+    )
+    rows = {
+        "frame − reference": processor_ms(lambda: speckled.reference.difference(speckled.frame)),
+        "one frame read, difference to σ of each point": processor_ms(lambda: reader((0, ("frame", speckled.frame)))),
+        "four stripes found": processor_ms(lambda: found(speckled, picture)),
+        "four stripes found and measured": processor_ms(four),
+    }
+    benchmark(lambda: reader((0, ("frame", speckled.frame))))
+    shown = {
+        name: f"{ms:8.1f} ms   OpenCV's line points alone: {opencv / ms:.0f} times as long" for name, ms in rows.items()
+    }
+    table(capsys, "One frame, one core", shown)
+
+
+def test_cost_grows_with_the_stripe_and_not_with_the_picture(benchmark, clean, capsys):
+    """The same stripes in larger and larger pictures, and more and more of them in one."""
+    g, s = clean.stripe.filter_px, clean.stripe.stripe_px
+    limits = _limits(clean.stripe, clean.noise, knows_saturation=True)
+    rows = {}
+
+    def drawn(height: int, width: int, stripes: int) -> np.ndarray:
+        u, v = np.arange(width), np.arange(1000)[:, None]
+        picture = np.zeros((height, width), np.int16)
+        for k in range(stripes):
+            away = (u - 300.3 - 60 * k - 0.1 * v) / np.hypot(1, 0.1)
+            picture[:1000] += (150 * np.exp(-0.5 * (away / s) ** 2)).astype(np.int16)
+        return picture
+
+    def cost(picture: np.ndarray) -> tuple[float, int]:
+        state = np.zeros(picture.shape, np.uint8)
+
+        def job() -> list[np.ndarray]:
+            state[:] = 0
+            return link(picture, state, s, g, limits)
+
+        clearing = processor_ms(lambda: state.fill(0))
+        return processor_ms(job) - clearing, sum(map(len, job()))
+
+    for height, width in ((1000, 1000), (1400, 2000), (2000, 2800), (2748, 3840), (4000, 5500)):
+        ms, points = cost(drawn(height, width, 4))
+        rows[f"{height * width / 1e6:5.1f} MP, {points:6d} px of stripe"] = f"{ms:8.2f} ms"
+    for stripes in (1, 2, 4, 8, 16):
+        ms, points = cost(drawn(2748, 3840, stripes))
+        rows[f" 10.6 MP, {points:6d} px of stripe"] = f"{ms:8.2f} ms"
+    benchmark(lambda: cost(drawn(1000, 1000, 1)))
+    table(capsys, "Finding stripes: the cost's curve", rows)
+
+
+def test_the_stripes_of_the_twin_are_found_whole_and_nothing_else(benchmark, clean, speckled, capsys):
+    """Shares of the true light that is found, and of what is found that is true, within a pixel; error over σ."""
+    exact = ExactScan.of(Scenario(frames=12, seed=3))
+    truth = [curve.uv for curve in exact.sweeps[5]]
+    every = cKDTree(np.concatenate(truth))
+    normals = np.concatenate([curve.normal for curve in exact.sweeps[5]])
+    rows = {}
+    for name, full in (("without speckle", clean), ("speckle 0.18", speckled)):
+        reader = FrameReader(full.reference, full.stripe)
+        lines = reader((0, ("frame", full.frame))).centrelines
+        found = np.concatenate([line.uv for line in lines])
+        sigma = np.concatenate([line.sigma for line in lines])
+        trim = int(4 * full.stripe.filter_px)  # ends are cut by 2.5 filter σ, and known to a few px
+        inner = np.concatenate([uv[trim:-trim] for uv in truth if len(uv) > 2 * trim + 12 * full.stripe.filter_px])
+        recall = np.mean(cKDTree(found).query(inner)[0] < 1.5)
+        apart, nearest = every.query(found)
+        off = np.sum((found - every.data[nearest]) * normals[nearest], axis=1)
+        rows[name] = (
+            f"recall {recall:.4f}, precision {np.mean(apart < 1.5):.4f}, "
+            f"RMS error {np.sqrt(np.mean(off[apart < 1.5] ** 2)):.4f} px, σ stated {np.sqrt(np.mean(sigma**2)):.4f} px"
+        )
+    benchmark(lambda: None)
+    table(capsys, f"The sweep's stripe against the twin's truth, {len(found)} px", rows)
