@@ -14,7 +14,7 @@ test quick: export OMP_NUM_THREADS = 1
 ON_SCREEN := $(wildcard tests/workbench/test_behaviour_*.py tests/workbench/test_whole_job*.py tests/workbench/views/test_scene_view*.py)
 SCREEN := $(shell command -v xvfb-run >/dev/null && echo 'xvfb-run -a -s "-screen 0 1920x1080x24"')
 
-.PHONY: demo app test quick accuracy soak check screenshots pictures wheel clean
+.PHONY: demo app test quick accuracy bench soak check screenshots pictures wheel clean
 
 demo: $(READY)            ## measure the embedded sample: cloud, mesh and report of a 50 mm gauge block in ./out
 	$(BIN)/trisect demo --out $(OUT)
