@@ -4,30 +4,22 @@ from __future__ import annotations
 
 import io
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
-from functools import partial
 from typing import Any
 
-import cv2
-from matplotlib.figure import Figure
 from reportlab.lib.pagesizes import A4, LETTER
 from reportlab.lib.units import mm
 from reportlab.lib.utils import ImageReader
 from reportlab.platypus import BaseDocTemplate, Frame, PageTemplate, Paragraph
 
 from core.progress import Progress, Told, silent
-from core.report import figures, plots
 from core.report.content import ReportContent
-from core.report.deviation_plot import deviation_figure
+from core.report.drawings import drawings, image
 from core.report.head import TITLE
 from core.report.layout import Limits
 from core.report.look import Look
-from core.report.overlay_plot import overlay_figure
-from core.report.points_plot import points_figure
-from core.report.run_chart import repeats_figure, run_chart_figure
 from core.report.sections import story
-from core.report.studies import study_lines, study_values
 from core.report.style import HAIRLINE, INK, MUTED, SANS, TEXT_WIDTH, color, markup, prepare_reportlab
 from core.report.template import Paper
 from core.report.wording import shown_name
@@ -57,17 +49,6 @@ LIMITS = (
 )
 """Tried in this order until the report has no more pages than it may."""
 
-SURFACE_MM, OVERLAY_MM, POINTS_MM, FACES_MM, CLOUD_MM, CHART_MM, DEVIATION_MM = (
-    104.0,
-    116.0,
-    78.0,
-    50.0,
-    58.0,
-    42.0,
-    80.0,
-)
-"""Heights of the pictures at scale 1."""
-
 
 def build_report(content: ReportContent, progress: Progress = silent) -> bytes:
     """The report as the bytes of a PDF; nothing is written to disk.
@@ -83,14 +64,14 @@ def build_report(content: ReportContent, progress: Progress = silent) -> bytes:
     prepare_reportlab()
     progress = told = Told(progress)
     look = Look.of(content)
-    step, drawings = "report", _drawings(look, content, told.again)
-    total = len(drawings) + 2
+    step, pending = "report", drawings(look, content, told.again)
+    total = len(pending) + 2
     pictures = {}
-    for done, (name, draw) in enumerate(drawings.items()):
+    for done, (name, draw) in enumerate(pending.items()):
         progress(step, done, total)
         figure = draw()
         progress(step, done, total)
-        pictures[name] = _image(figure, photo=name == "frame", decimal=look.words.numeral("."))
+        pictures[name] = image(figure, photo=name == "frame", decimal=look.words.numeral("."))
     progress(step, total - 2, total)
     most_pages = _most_pages(content)
     shorter = _page_room(content.paper) / _page_room("A4")
@@ -116,65 +97,6 @@ def _most_pages(content: ReportContent) -> int:
 def _page_room(paper: Paper) -> float:
     """Height for text on one page, in points."""
     return float(PAGE_SIZES[paper][1] - HEAD - FOOT)
-
-
-def _drawings(look: Look, content: ReportContent, progress: Progress) -> dict[str, Callable[[], Figure]]:
-    """What is to be drawn, by name."""
-    width = TEXT_WIDTH / mm
-    gauge, overlay, size = content.gauge, content.overlay, content.camera.camera.image_size
-    drawings: dict[str, Callable[[], Figure]] = {}
-    if len(content.cloud) or len(content.mesh.triangles):
-        plane = gauge.lower.plane if gauge else None
-        drawings["surface"] = lambda: plots.surface_figure(
-            look, content.mesh, content.cloud, plane, width, SURFACE_MM, progress
-        )
-    if overlay is not None:
-        drawings["frame"] = lambda: overlay_figure(look, overlay, width, OVERLAY_MM)
-    if content.points_used and len(content.cloud):
-        named = {look.words.known(name): indices for name, indices in content.points_used.items()}
-        drawings["points"] = lambda: points_figure(look, content.cloud, named, size, width, POINTS_MM)
-    if gauge is not None:
-        drawings["maps"] = lambda: plots.residual_figure(look, gauge, content.cloud, width, FACES_MM)
-    elif len(content.cloud):
-        drawings["maps"] = lambda: plots.cloud_figure(look, content.cloud, size, width, CLOUD_MM)
-    if len(content.repeats) > 1:
-        tolerance = gauge.tolerance_mm if gauge else None
-        drawings["repeats"] = lambda: repeats_figure(
-            look, content.repeats, content.nominal_mm, tolerance, width, CHART_MM
-        )
-    drawings |= {
-        f"deviation-{number}": partial(deviation_figure, look, one, width, DEVIATION_MM)
-        for number, one in enumerate(content.deviations)
-        if len(one.deviation)
-    }
-    drawings |= {
-        f"study-{number}": partial(_study_figure, look, study, width)
-        for number, study in enumerate(content.studies)
-        if len(study_values(study)) > 1
-    }
-    section_of = {"study": "studies"}
-    hidden = content.hidden
-    return {
-        name: draw
-        for name, draw in drawings.items()
-        if section_of.get(name.partition("-")[0], name.partition("-")[0]) not in hidden
-    }
-
-
-def _study_figure(look: Look, study: Mapping[str, Any], width: float) -> Figure:
-    U = [scan["U"] if scan["U"] is not None else math.nan for scan in study.get("scans", ())]
-    return run_chart_figure(look, study_values(study), U, study_lines(study), study["unit"], width, CHART_MM)
-
-
-def _image(figure: Figure, *, photo: bool, decimal: str) -> ImageReader:
-    """A drawn figure, compressed without loss, or as JPEG with full colour resolution where it holds a photograph."""
-    bgr = figures.pixels(figure, decimal)[:, :, ::-1]
-    if photo:
-        how = [cv2.IMWRITE_JPEG_QUALITY, 93, cv2.IMWRITE_JPEG_SAMPLING_FACTOR, cv2.IMWRITE_JPEG_SAMPLING_FACTOR_444]
-        _, data = cv2.imencode(".jpg", bgr, how)
-    else:
-        _, data = cv2.imencode(".png", bgr)
-    return ImageReader(io.BytesIO(data.tobytes()))
 
 
 def _typeset(
