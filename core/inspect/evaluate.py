@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 
 import numpy as np
 
@@ -216,7 +216,9 @@ def _digest(cloud: Cloud, mesh: Mesh | None, errors: PointErrors | None, nominal
     if mesh is not None:
         arrays += [mesh.vertices, mesh.triangles]
     if errors is not None:
-        arrays += [np.array([errors.correlation_px, errors.speckle_px])]
+        lengths = [getattr(errors, one.name) for one in fields(errors)]
+        arrays += [np.array([length for length in lengths if isinstance(length, float)])]
+        arrays += [] if errors.speckle is None else [errors.speckle.covariance, errors.speckle.shares]
         arrays += [] if errors.sweep_covariance is None else [errors.sweep_covariance]
         arrays += [] if errors.common is None else [errors.common.sweeps, errors.common.cameras, errors.common.fans]
     for name in sorted(nominals):
