@@ -22,8 +22,10 @@ class ShownFeature:
         As the plan has them.
     rows
         Its characteristics.
-    points
-        (M,) indices into the cloud of the points used, ascending.
+    used
+        How many points of the cloud were used.
+    places, uv
+        (M, 3) in mm in the camera frame and (M, 2) in pixels: these points, or as many of them as can be drawn.
     problem
         Why it could not be measured, or "".
     profile
@@ -35,7 +37,9 @@ class ShownFeature:
     name: str
     kind: str
     rows: tuple[Characteristic, ...]
-    points: NDArray[np.int64]
+    used: int
+    places: NDArray[np.float32]
+    uv: NDArray[np.float32]
     problem: str = ""
     profile: Profile | None = None
     deviations: DeviationMap | None = None

@@ -93,7 +93,7 @@ def inspection_view(folder: Path, project: Project, progress: Progress = silent)
 
 
 def outline_selected(folder: Path, numbers: NDArray[np.int32], face: str, progress: Progress = silent) -> Array:
-    """The outline (n, 2) in pixels of the plane face meant by the points of these numbers in the cloud.
+    """The outline (n, 2) in pixels of the points of these numbers in the cloud, or of the plane face meant by them.
 
     Parameters
     ----------
@@ -102,7 +102,7 @@ def outline_selected(folder: Path, numbers: NDArray[np.int32], face: str, progre
     numbers
         Which points were chosen.
     face
-        "upper" or "lower": which face is to be outlined.
+        "upper" or "lower": which face is to be outlined; "": all of the points, whatever surface they are on.
     progress
         Told what is being done; may cancel.
 
@@ -116,7 +116,8 @@ def outline_selected(folder: Path, numbers: NDArray[np.int32], face: str, progre
     cloud = read_cloud(path).cloud
     if len(numbers) and int(numbers.max()) >= len(cloud):
         raise InputError("this scan has been replaced by another one", where=path, todo="draw the region again")
-    outline = face_outline(cloud, numbers.astype(np.int64), face)
+    chosen = numbers.astype(np.int64)
+    outline = face_outline(cloud, chosen, face) if face else outline_px(cloud.uv[chosen])
     progress("outline", 1, 1)
     return outline
 

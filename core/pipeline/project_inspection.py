@@ -4,16 +4,23 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
+
 from core.errors import InputError
 from core.files.inspection_file import NAME, write_inspection
 from core.files.inspection_plan_file import plan_tables
 from core.files.project_data import Project
 from core.inspect.evaluate import Inspection
+from core.inspect.features.measured import FeatureResult
 from core.inspect.shown_features import ShownFeature, ShownInspection
 from core.pipeline.gauge_complaints import in_a_project
-from core.pipeline.inspect_step import inspect, open_scan
+from core.pipeline.inspect_step import InspectedScan, inspect, open_scan
 from core.pipeline.project_steps import results_folder
 from core.progress import Progress, silent
+from core.scan.cloud import Cloud
+
+MOST_DRAWN = 20_000
+"""So many of the points that a feature used are drawn."""
 
 
 def measure_features(folder: Path, project: Project, progress: Progress = silent) -> ShownInspection:
@@ -28,11 +35,11 @@ def measure_features(folder: Path, project: Project, progress: Progress = silent
         If there is no scan among the results, the plan is wrong, or a nominal surface cannot be read.
     """
     try:
-        inspection, calibration_id = _inspected(folder, project, progress)
+        inspection, scan = _inspected(folder, project, progress)
     except InputError as error:
         raise in_a_project(error) from error
-    write_inspection(results_folder(folder) / NAME, inspection, calibration_id, plan_tables(project.inspection))
-    return _shown(inspection, calibration_id)
+    write_inspection(results_folder(folder) / NAME, inspection, scan.calibration_id, plan_tables(project.inspection))
+    return _shown(inspection, scan)
 
 
 def look_at_features(folder: Path, project: Project, progress: Progress = silent) -> ShownInspection:
@@ -40,22 +47,26 @@ def look_at_features(folder: Path, project: Project, progress: Progress = silent
     return _shown(*_inspected(folder, project, progress))
 
 
-def _inspected(folder: Path, project: Project, progress: Progress) -> tuple[Inspection, str]:
+def _inspected(folder: Path, project: Project, progress: Progress) -> tuple[Inspection, InspectedScan]:
     scan = open_scan(results_folder(folder))
-    return inspect(scan, project.inspection, folder, progress), scan.calibration_id
+    return inspect(scan, project.inspection, folder, progress), scan
 
 
-def _shown(inspection: Inspection, calibration_id: str) -> ShownInspection:
-    features = tuple(
-        ShownFeature(
-            name=result.spec.name,
-            kind=result.spec.kind,
-            rows=result.characteristics,
-            points=result.indices,
-            problem=result.problem,
-            profile=result.profile,
-            deviations=result.deviations,
-        )
-        for result in inspection.results
+def _shown(inspection: Inspection, scan: InspectedScan) -> ShownInspection:
+    features = tuple(_feature(result, scan.cloud) for result in inspection.results)
+    return ShownInspection(features, inspection.verdict, inspection.notes, scan.calibration_id)
+
+
+def _feature(result: FeatureResult, cloud: Cloud) -> ShownFeature:
+    sample = result.indices[:: max(1, -(-len(result.indices) // MOST_DRAWN))]
+    return ShownFeature(
+        name=result.spec.name,
+        kind=result.spec.kind,
+        rows=result.characteristics,
+        used=len(result.indices),
+        places=cloud.points[sample].astype(np.float32),
+        uv=cloud.uv[sample].astype(np.float32),
+        problem=result.problem,
+        profile=result.profile,
+        deviations=result.deviations,
     )
-    return ShownInspection(features, inspection.verdict, inspection.notes, calibration_id)

@@ -208,3 +208,13 @@ def test_a_region_beside_the_part_is_told_in_the_words_of_a_window(done, tmp_pat
     rig = replace(done.project.rig, gauge=GaugeSpec(upper_polygon_px=corner, lower_polygon_px=corner))
     with pytest.raises(InputError, match=r"region of the upper face: .*draw it over a face"):
         measure_gauge(folder, replace(done.project, rig=rig))
+
+
+def test_points_that_stand_for_themselves_are_outlined_though_they_are_no_whole_face(done, view):
+    upper = np.sort(view.gauge.upper.indices)
+    part = upper[view.uv[upper, 0] < np.median(view.uv[upper, 0])]
+    outline = outline_selected(done.folder, view.number[part], "")
+    low, high = view.uv[part].min(axis=0), view.uv[part].max(axis=0)
+    assert 3 <= len(outline) <= 16
+    assert np.all(outline >= low - 5) and np.all(outline <= high + 5)
+    assert np.ptp(outline, axis=0) == pytest.approx(high - low, rel=0.2)

@@ -8,6 +8,7 @@ from PySide6.QtCore import QEvent, QTimer
 from PySide6.QtWidgets import QTabWidget, QWidget
 
 from workbench.pages import inspect_words as words
+from workbench.pages.inspect_features_panel import FeaturesPanel
 from workbench.pages.inspect_panels import FacesPanel, ResultPanel
 from workbench.pages.inspect_picks_panel import PicksPanel
 from workbench.pages.inspect_picture import PictureTab
@@ -46,10 +47,13 @@ class InspectPage(StepPage):
         self.result_fold = self.add_panel(self.tr("Result"), self.result)
         self.faces = FacesPanel(presenter)
         self.add_panel(self.tr("What is measured"), self.faces)
+        self.features = FeaturesPanel(presenter)
+        self.add_panel(self.tr("Features"), self.features)
         self.picks = PicksPanel(presenter)
         self.add_panel(self.tr("Points and distances"), self.picks)
         self.tabs.currentChanged.connect(self._tab_changed)
         self.faces.draw.connect(self._draw)
+        self.features.draw.connect(self._draw)
         self.picks.pick.connect(self._pick)
         self.surface.notice.connect(presenter.bench.notices.warning)
         presenter.model.opened.connect(lambda: self.tabs.setCurrentIndex(0))
@@ -58,7 +62,7 @@ class InspectPage(StepPage):
         p = self.presenter
         self._show_stage(p.stage)
         self.result_fold.setVisible(p.gauge is not None)
-        for panel in (self.result, self.faces, self.picks):
+        for panel in (self.result, self.faces, self.features, self.picks):
             panel.refresh()
         count = len(p.repeats.all)
         self.tabs.setTabText(2, self.tr("Repeats ({0})").format(count) if count else self.tr("Repeats"))
@@ -81,7 +85,7 @@ class InspectPage(StepPage):
     def _add_repeat(self) -> None:
         """Add it, and go and see it: in the next round of the event loop, as the plot is drawn for the first time."""
         self.presenter.repeats.add()
-        QTimer.singleShot(0, self, lambda: self.tabs.setCurrentWidget(self.series))
+        QTimer.singleShot(1, self, lambda: self.tabs.setCurrentWidget(self.series))
 
     def _draw(self, face: str, kind: Any) -> None:
         if self.tabs.currentWidget() is self.series:

@@ -6,14 +6,18 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
+from core.inspect.inspection_plan import Polygon
 from workbench.pages.inspect_faces import FACES
 from workbench.pages.inspect_presenter import RELIEF, InspectPresenter, Stage
 from workbench.pages.step_page import muted
-from workbench.views.colours import FACE_LOWER, FACE_UPPER
+from workbench.views.colours import FACE_LOWER, FACE_UPPER, FEATURE
 from workbench.views.image_view import ImageView
 
 if TYPE_CHECKING:
     from core.inspect.inspection import InspectionView
+
+USED = "used by the feature"
+"""The layer of the points that the chosen feature used."""
 
 COLOURS = {"upper": FACE_UPPER, "lower": FACE_LOWER}
 
@@ -26,6 +30,8 @@ class PictureTab(QWidget):
         self._presenter = presenter
         self._shown: tuple[object, ...] = ()
         self._laid: tuple[object, ...] = ()
+        self._feature: tuple[object, ...] = ()
+        self._regions = 0
         self.image, self.pictures, self.line = ImageView(), QComboBox(), muted()
         self.pictures.setAccessibleName(self.tr("Picture"))
         self.pictures.setToolTip(self.tr("The surface as the camera sees it, or a picture of the recording"))
@@ -42,8 +48,8 @@ class PictureTab(QWidget):
         column.addLayout(bar)
         column.addWidget(self.image, 1)
         self.pictures.activated.connect(lambda _: presenter.choose_picture(str(self.pictures.currentData())))
-        self.image.polygon_drawn.connect(presenter.faces.set_region)
-        self.image.polygon_edited.connect(presenter.faces.set_region)
+        self.image.polygon_drawn.connect(presenter.set_region)
+        self.image.polygon_edited.connect(presenter.set_region)
         presenter.picture_ready.connect(self._show_picture)
 
     def refresh(self) -> None:
@@ -58,6 +64,7 @@ class PictureTab(QWidget):
             self._shown = (p.serial, RELIEF)
             self.image.set_picture(view.relief.picture, scale=view.relief.cell_px)
         self._lay_faces(view)
+        self._lay_feature()
         self.line.setText(self._words())
 
     def start_region(self, face: str, kind: Literal["polygon", "lasso"]) -> None:
@@ -81,7 +88,7 @@ class PictureTab(QWidget):
             message = self.tr("There is no scan yet. Scan the part, then mark its faces here.")
         else:
             message = p.problem or self.tr("Reading the scan …")
-        self._shown = self._laid = ()
+        self._shown = self._laid = self._feature = ()
         self.image.clear(message)
         self.line.setText("")
 
@@ -121,6 +128,30 @@ class PictureTab(QWidget):
                 self.image.set_points(
                     f"used {face}", view.used_uv[place], colour=COLOURS[face], symbol=".", size=3, title=title
                 )
+
+    def _lay_feature(self) -> None:
+        """The regions drawn for the chosen feature, and the points it used; laid anew only if they changed."""
+        features = self._presenter.features
+        spec, result = features.edit.spec, features.result(features.chosen)
+        laid = (self._presenter.serial, spec, result)
+        if laid == self._feature:
+            return
+        self._feature = laid
+        regions = () if spec is None else spec.regions
+        for place in range(max(len(regions), self._regions)):
+            name = features.edit.region_name(place)
+            region = regions[place] if place < len(regions) else None
+            if isinstance(region, Polygon):
+                title = self.tr("region of the feature")
+                self.image.set_polygon(name, region.corners_px, editable=True, colour=FEATURE, title=title)
+            else:
+                self.image.remove_layer(name)
+        self._regions = len(regions)
+        if result is None or not len(result.uv):
+            self.image.remove_layer(USED)
+        else:
+            title = self.tr("points used, {0}").format(result.name)
+            self.image.set_points(USED, result.uv, colour=FEATURE, symbol=".", size=3, title=title)
 
     def _words(self) -> str:
         faces = self._presenter.faces

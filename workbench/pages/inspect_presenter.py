@@ -7,14 +7,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from PySide6.QtCore import Signal
 
 from core.files.project import Project, source_folder
 from core.files.project_keys import finished
 from workbench import jobs
 from workbench.bench import Bench
-from workbench.pages.inspect_faces import InspectFaces
+from workbench.pages.inspect_faces import FACES, InspectFaces
+from workbench.pages.inspect_features import InspectFeatures
 from workbench.pages.inspect_picks import InspectPicks
 from workbench.pages.inspect_repeats import InspectRepeats
 from workbench.pages.inspect_scan import InspectScan
@@ -70,7 +71,9 @@ class InspectPresenter(StepPresenter):
         self.faces = InspectFaces(self)
         self.picks = InspectPicks(self)
         self.repeats = InspectRepeats(self)
+        self.features = InspectFeatures(self)
         self.faces.changed.connect(self.changed)
+        self.features.changed.connect(self.changed)
         self.picks.changed.connect(self.changed)
         self.scan.changed.connect(self._scan_changed)
         self.model.results_changed.connect(lambda: self.scan.look(seen=self._seen))
@@ -246,21 +249,29 @@ class InspectPresenter(StepPresenter):
             self.bench.notices.warning(self.tr("There are no points in that region."))
             return
         self.outlining = face
+        meant = face if face in FACES else self.features.edit.meant
 
         def done(outline: Any) -> None:
             if view is self.view:
-                self.faces.set_region(face, outline)
+                self.set_region(face, outline)
 
         task = self.bench.glance(
             jobs.OUTLINE_SELECTED,
             folder,
             numbers[:: -(-len(numbers) // MOST_SENT)],
-            face,
+            meant,
             label=self.tr("Outlining the chosen points"),
             on_done=done,
         )
         task.ended.connect(self._outlined)
         self.changed.emit()
+
+    def set_region(self, name: str, corners: ArrayLike) -> None:
+        """Take a polygon of the picture for the region of that name: of a face, or of the chosen feature."""
+        if name in FACES:
+            self.faces.set_region(name, corners)
+        else:
+            self.features.edit.set_region(self.features.edit.place_of(name), corners)
 
     def _outlined(self) -> None:
         self.outlining = ""
@@ -271,6 +282,7 @@ class InspectPresenter(StepPresenter):
     def opened(self) -> None:
         self._just_measured = False
         self.faces.forget()
+        self.features.forget()
         self.scan.forget()
         self.scan.look(seen=self._seen)
 
@@ -286,6 +298,7 @@ class InspectPresenter(StepPresenter):
         if before.rig.gauge != after.rig.gauge:
             self._unmeasurable = ""
         self.faces.follow(before.rig.gauge, after.rig.gauge)
+        self.features.follow(before.inspection)
 
     def _scan_changed(self) -> None:
         """Another scan is shown, or the same one with another thickness, or none."""
@@ -296,6 +309,8 @@ class InspectPresenter(StepPresenter):
         if self.view is None or self.picture not in (RELIEF, *self.view.pictures):
             self.picture = RELIEF
         self.read_picture()
+        if self.view is not None:
+            self.features.look()
         self.changed.emit()
         if self._just_measured and not self.stale:
             self._just_measured = False

@@ -15,11 +15,12 @@ from workbench.pages import inspect_words as words
 from workbench.pages.inspect_choices import Shape, SurfaceChoices
 from workbench.pages.inspect_picks import Pick, Span
 from workbench.pages.inspect_presenter import InspectPresenter, Stage
-from workbench.views.colours import FACE_LOWER, FACE_UPPER, to_rgba
+from workbench.views.colours import FACE_LOWER, FACE_UPPER, FEATURE, to_rgba
 from workbench.views.scene_view import SceneView
 
 if TYPE_CHECKING:
     from core.inspect.inspection import InspectionView, ShownMesh
+    from core.inspect.shown_features import ShownFeature
 
 PLAIN = "#8A96A3"
 """The surface where colour means nothing, and points that were not used."""
@@ -41,6 +42,7 @@ class SurfaceTab(QWidget):
         self._face = ""
         self._drawn: tuple[object, ...] = ()
         self._marked: list[str] = []
+        self._feature: ShownFeature | None = None
         self._cloud: tuple[object, ...] = ()
         self._mesh: tuple[object, ...] = ()
         self._oriented = False
@@ -82,6 +84,7 @@ class SurfaceTab(QWidget):
                 self._draw()  # the first picture at once
             else:
                 self._later.start()
+        self._show_feature()
         self._show_picks()
         self._show_words(view)
 
@@ -124,7 +127,7 @@ class SurfaceTab(QWidget):
             message = self.tr("Reading the scan …")
         self._later.stop()
         self._drawn = self._cloud = self._mesh = ()
-        self._marked, self._oriented = [], False
+        self._marked, self._oriented, self._feature = [], False, None
         self.scene.clear(message)
         self.line.setText("")
         self.hint.setText("")
@@ -192,6 +195,18 @@ class SurfaceTab(QWidget):
         ):
             step = max(1, -(-len(used) // MOST_MARKED))
             self.scene.set_highlight(name, view.points[used[::step]], colour)
+
+    def _show_feature(self) -> None:
+        """The points that the chosen feature used, over whatever colours the surface."""
+        features = self._presenter.features
+        result = features.result(features.chosen)
+        if result is self._feature:
+            return
+        self._feature = result
+        if result is None or not len(result.places):
+            self.scene.remove_highlight("feature")
+        else:
+            self.scene.set_highlight("feature", result.places, FEATURE)
 
     # ---- picks
 

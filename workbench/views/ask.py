@@ -47,6 +47,12 @@ def choose_file_to_save(parent: QWidget | None, title: str, start: Path, kinds: 
     return Path(chosen) if chosen else None
 
 
+def choose_file_to_open(parent: QWidget | None, title: str, start: Path | None, kinds: str) -> Path | None:
+    """Let a file to read be chosen, or None; `kinds` as "STL (*.stl)"."""
+    chosen, _ = QFileDialog.getOpenFileName(parent, title, str(start or Path.home()), kinds)
+    return Path(chosen) if chosen else None
+
+
 def ask_name_and_folder(parent: QWidget | None, title: str, name: str, folder: Path) -> tuple[str, Path] | None:
     """Ask for a project's name and the folder it is to be put in, or None."""
     dialog = _NameAndFolder(parent, title, name, folder)

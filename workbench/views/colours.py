@@ -48,6 +48,9 @@ REGION = "#FFD54A"
 FACE_UPPER, FACE_LOWER = "#56B4E9", "#FF9E2C"
 """Points of the two faces of a gauge."""
 
+FEATURE = "#E66AD2"
+"""Points and regions of the feature that is chosen."""
+
 CROSSING_GOOD = Mark("#3DDC84", "o")
 CROSSING_WEAK = Mark("#FFB000", "t")
 CROSSING_LEFT_OUT = Mark("#FF5C57", "x")

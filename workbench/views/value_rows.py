@@ -21,7 +21,7 @@ LEVEL_ICONS: dict[Level, tuple[str, str]] = {
 
 VerdictKind = Literal["", "conforming", "not conforming", "not proven"]
 
-_VERDICT_ICONS: dict[str, tuple[str, str]] = {
+VERDICT_ICONS: dict[str, tuple[str, str]] = {
     "": ("mdi6.minus-circle-outline", "muted"),
     "conforming": ("mdi6.check-decagram", "good"),
     "not conforming": ("mdi6.close-octagon", "bad"),
@@ -139,7 +139,7 @@ class Verdict(QFrame):
             self._show()
 
     def _show(self) -> None:
-        symbol, colour = _VERDICT_ICONS[self._kind]
+        symbol, colour = VERDICT_ICONS[self._kind]
         words = {
             "": self.tr("No verdict"),
             "conforming": self.tr("Conforming"),

@@ -1,10 +1,13 @@
 """The inspect page's work on a real scan, in real processes."""
 
+import json
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from core.files.inspection_plan_file import read_plan, write_plan
+from core.pipeline.inspect_step import inspect_step
 from tests.workbench.watchdog import Watchdog, slowness, too_long
 from workbench.bench import Bench
 from workbench.pages.inspect_presenter import InspectPresenter, Stage
@@ -76,6 +79,25 @@ def test_a_repeat_and_its_thickness_are_there_after_reopening(presenter, qtbot):
     assert presenter.repeats.statistics().mean_mm == pytest.approx(thickness)
     assert presenter.repeats.can_add.startswith("This scan is among the repeats already.")
     assert step_states(presenter.project, presenter.model.results)["report"].sentence.startswith("Out of date")
+
+
+def test_features_have_the_numbers_of_the_command_line_to_the_last_digit(presenter, qtbot, tmp_path):
+    features = presenter.features
+    for kind in ("plane", "plane", "distance", "section"):
+        features.edit.add(kind)
+    features.edit.add_cut()
+    features.choose("plane 1")
+    features.edit.set_value("number 0", 2)
+    features.measure()
+    qtbot.waitUntil(lambda: features.shown is not None, timeout=60_000)
+    results = presenter.model.folder / "results"
+    write_plan(tmp_path / "plan.toml", features.plan)
+    inspect_step(results, read_plan(tmp_path / "plan.toml"), tmp_path, tmp_path)
+    told = json.loads((tmp_path / "inspection.json").read_text())
+    assert told == json.loads((results / "inspection.json").read_text())
+    distance = features.result("distance 1").rows[0]
+    (row,) = [one for one in told["characteristics"] if one["name"] == distance.name]
+    assert (row["value"], row["u"]) == (distance.value, distance.u)
 
 
 def test_a_recorded_picture_is_shown(presenter, qtbot):

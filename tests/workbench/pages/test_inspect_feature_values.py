@@ -1,0 +1,90 @@
+"""A feature as fields of a form, and back."""
+
+import math
+
+import pytest
+
+from core.inspect.characteristic import Limits
+from core.inspect.inspection_plan import Auto, FeatureSpec, InspectionPlan, PointsOf, Polygon
+from workbench.pages import inspect_feature_values as fields
+
+SIZE = (640, 480)
+PLANES = InspectionPlan((FeatureSpec("top", "plane"), FeatureSpec("table", "plane")))
+
+
+def made(kind, plan=PLANES):
+    return fields.new_feature(kind, "new", plan, SIZE, "part.stl")
+
+
+@pytest.mark.parametrize("kind", fields.KINDS)
+def test_a_new_feature_fits_into_a_plan(kind):
+    assert not fields.why_not(kind, PLANES)
+    InspectionPlan((*PLANES.features, made(kind))).ordered()
+
+
+@pytest.mark.parametrize("kind", fields.KINDS)
+def test_every_field_can_be_set_to_what_it_is(kind):
+    spec = fields.with_new_cut(made(kind))
+    for key, value in fields.values_of(spec).items():
+        if not key.startswith("limits "):
+            assert fields.with_value(spec, key, value) == spec, key
+
+
+def test_without_two_elements_there_is_no_distance():
+    assert "made of two other features" in fields.why_not("distance", InspectionPlan(PLANES.features[:1]))
+
+
+def test_the_angle_is_shown_in_degrees_and_kept_in_radians():
+    values = {"limits nominal angle": 90.0, "limits lower angle": -0.5, "limits upper angle": 0.5}
+    spec = fields.with_limits(made("angle"), "angle", values)
+    ((result, limits),) = spec.limits
+    assert result == "angle" and limits.nominal == pytest.approx(math.pi / 2)
+    assert limits.upper == pytest.approx(math.radians(0.5))
+    assert fields.limits_values(spec, "angle") == pytest.approx(values)
+
+
+def test_a_form_has_an_upper_limit_alone():
+    spec = fields.with_limits(made("plane"), "flatness", {"limits upper flatness": 0.05})
+    assert spec.limits == (("flatness", Limits(0.0, -math.inf, 0.05)),)
+    assert fields.with_limits(spec, "flatness", {"limits upper flatness": None}).limits == ()
+
+
+@pytest.mark.parametrize(
+    ("values", "sentence"),
+    [
+        ((50.0, None, None), "Enter a lower or an upper deviation"),
+        ((None, -0.1, 0.1), "Enter the nominal value too"),
+        ((50.0, 0.2, 0.1), "above the upper one"),
+    ],
+)
+def test_half_limits_are_told(values, sentence):
+    keys = [f"limits {side} diameter" for side in fields.SIDES]
+    with pytest.raises(ValueError, match=sentence):
+        fields.with_limits(made("sphere"), "diameter", dict(zip(keys, values, strict=True)))
+
+
+def test_regions_come_from_faces_by_number_or_from_other_features():
+    spec = fields.with_value(made("thickness"), "parts", 2)
+    assert spec.regions == (Auto(1), Auto(2))
+    spec = fields.with_value(spec, "source 1", fields.OF + "table")
+    assert spec.regions == (Auto(1), PointsOf("table"))
+    drawn = fields.with_region(spec, 0, Polygon(((0.0, 0.0), (1.0, 0.0), (0.0, 1.0))))
+    assert fields.values_of(drawn)["source 0"] == fields.DRAWN
+    assert fields.with_value(drawn, "parts", None).regions == drawn.regions[:1]
+
+
+def test_heights_are_read_with_semicolons_and_refused_with_a_sentence():
+    spec = fields.with_value(made("steps"), "heights", "10; 20,5 ;30")
+    assert spec.nominal_heights == (10.0, 20.5, 30.0)
+    with pytest.raises(ValueError, match="semicolons"):
+        fields.with_value(spec, "heights", "ten")
+
+
+def test_what_is_asked_of_a_cut_follows_its_name_and_goes_with_it():
+    spec = fields.with_new_cut(fields.with_new_cut(made("section")))
+    values = dict(zip((f"limits {side} height 1" for side in fields.SIDES), (5.0, -0.1, 0.1), strict=True))
+    spec = fields.with_value(fields.with_limits(spec, "height 1", values), "cut 0 name", "rib")
+    assert spec.limits[0][0] == "rib"
+    with pytest.raises(ValueError, match="a name of its own"):
+        fields.with_value(spec, "cut 0 name", "height 2")
+    assert fields.without_cut(spec, 0).limits == ()

@@ -1,0 +1,312 @@
+"""Features beside the thickness: the plan edited, measured, shown; the panel clicked."""
+
+import math
+from typing import cast
+
+import numpy as np
+import pytest
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QAbstractButton
+
+from core.errors import InputError
+from core.inspect.characteristic import Characteristic, Limits
+from core.inspect.inspection_plan import Auto, FeatureSpec, InspectionPlan, PointsOf, Polygon
+from core.inspect.shown_features import ShownFeature, ShownInspection
+from tests.workbench.hand_lane import HandLane
+from tests.workbench.pages import inspect_cases as cases
+from workbench import jobs
+from workbench.pages import inspect_feature_values as fields
+from workbench.pages.inspect_page import InspectPage
+from workbench.pages.inspect_presenter import InspectPresenter
+from workbench.views.scene_view_contents import Marks
+
+CORNERS = [(10.0, 10.0), (30.0, 10.0), (20.0, 30.0)]
+
+
+def shown_of(project):
+    """What measuring the plan would give: 50.012 ± 0.024 mm each; nothing for those called "lost"."""
+    features = []
+    for spec in project.inspection.features:
+        rows = tuple(
+            Characteristic(f"{spec.name} {result}", result, 50.012, 0.012, limits=spec.limits_of(result))
+            for result in spec.results
+        )
+        lost = "no points there" if spec.name == "lost" else ""
+        places = np.zeros((0 if lost else 5, 3), np.float32)
+        features.append(
+            ShownFeature(spec.name, spec.kind, () if lost else rows, len(places), places, places[:, :2], lost)
+        )
+    return ShownInspection(tuple(features), "", (), "cal-1")
+
+
+@pytest.fixture
+def measuring(hand_bench):
+    lane = cast(HandLane, hand_bench.measuring)
+    lane.answers[jobs.MEASURE_FEATURES] = lambda folder, project: shown_of(project)
+    lane.answers[jobs.LOOK_AT_FEATURES] = lambda folder, project: shown_of(project)
+    return lane
+
+
+@pytest.fixture
+def presenter(hand_bench, measuring, tmp_path, qtbot):
+    """A scan with its thickness is shown; the plan is empty."""
+    quick = cast(HandLane, hand_bench.quick)
+    quick.answers[jobs.INSPECTION_VIEW] = lambda folder, project: cases.view(cases.gauge())
+    quick.answers[jobs.OUTLINE_SELECTED] = lambda folder, numbers, face: np.array(CORNERS)
+    made = InspectPresenter(hand_bench)
+    hand_bench.model.create(tmp_path / "project", cases.project())
+    for step, done in cases.results(made.project).items():
+        made.model.record(step, done)
+    made.entered()
+    qtbot.waitUntil(lambda: made.view is not None and not made.stale)
+    return made
+
+
+@pytest.fixture
+def features(presenter):
+    return presenter.features
+
+
+@pytest.fixture
+def page(presenter, qtbot, monkeypatch):
+    monkeypatch.setenv("TRISECT_NO_OPENGL", "painter")
+    made = InspectPage(presenter)
+    qtbot.addWidget(made)
+    made.resize(1280, 800)
+    made.show()
+    yield made
+    made.close()
+
+
+def measured(features, qtbot):
+    features.measure()
+    qtbot.waitUntil(lambda: features.shown is not None and not features.measuring)
+
+
+def undo(features):
+    features.owner.model.undo_stack.undo()
+
+
+# ---- the plan
+
+
+def test_a_feature_is_added_changed_moved_and_removed_and_each_is_undone(features):
+    features.edit.add("plane")
+    features.edit.add("sphere")
+    assert features.plan.names == ("plane 1", "sphere 1") and features.chosen == "sphere 1"
+    features.move("sphere 1", -1)
+    assert features.plan.names == ("sphere 1", "plane 1")
+    features.edit.set_value("margin_mm", 0.5)
+    assert features.plan.feature("sphere 1").filters.margin_mm == 0.5
+    features.remove("sphere 1")
+    assert features.plan.names == ("plane 1",)
+    for names in (("sphere 1", "plane 1"),) * 2 + (("plane 1", "sphere 1"), ("plane 1",), ()):
+        undo(features)
+        assert features.plan.names == names
+
+
+def test_others_follow_a_new_name(features):
+    features.edit.add("plane")
+    features.edit.add("plane")
+    features.edit.add("distance")
+    features.edit.add("plane")
+    features.edit.set_value("source 0", fields.OF + "plane 1")
+    features.choose("plane 1")
+    features.edit.set_value("name", "top")
+    assert features.plan.feature("distance 1").of == ("top", "plane 2")
+    assert features.plan.feature("plane 3").regions == (PointsOf("top"),)
+    assert features.chosen == "top"
+    features.plan.ordered()
+
+
+def test_a_feature_that_others_rest_on_stays(features):
+    for kind in ("plane", "plane", "distance"):
+        features.edit.add(kind)
+    features.remove("plane 1")
+    assert "plane 1" in features.plan.names
+    assert features.owner.bench.notices.all[-1].text == "plane 1 cannot be removed: distance 1 rests on it."
+
+
+def test_what_cannot_be_stays_in_the_form_with_a_sentence(features):
+    features.edit.add("plane")
+    features.edit.add("plane")
+    features.edit.set_value("name", "plane 1")
+    assert "two features have this name" in features.edit.complaint("name")
+    assert features.edit.values()["name"] == "plane 1" and features.plan.names == ("plane 1", "plane 2")
+    features.edit.set_value("name", "top")
+    assert features.edit.complaint("name") == "" and features.plan.names == ("plane 1", "top")
+
+
+def test_limits_wait_for_their_other_half(features):
+    features.edit.add("sphere")
+    features.edit.set_value("limits nominal diameter", 50.0)
+    assert "lower or an upper deviation" in features.edit.complaint("limits nominal diameter")
+    assert not features.plan.feature("sphere 1").limits
+    features.edit.set_value("limits upper diameter", 0.1)
+    assert features.plan.feature("sphere 1").limits == (("diameter", Limits(50.0, -math.inf, 0.1)),)
+    assert not features.edit.complaint("limits nominal diameter")
+
+
+def test_a_half_entered_value_is_not_taken_for_another_feature(features):
+    features.edit.add("sphere")
+    features.edit.set_value("limits nominal diameter", 50.0)
+    features.edit.add("sphere")
+    assert features.edit.values()["limits nominal diameter"] is None
+
+
+def test_a_region_drawn_in_3d_is_outlined_and_taken(presenter, features, qtbot):
+    features.edit.add("sphere")
+    presenter.outline(features.edit.region_name(0), np.ones(cases.POINTS, bool))
+    qtbot.waitUntil(lambda: isinstance(features.plan.feature("sphere 1").regions[0], Polygon))
+    assert features.plan.feature("sphere 1").regions == (Polygon(tuple(CORNERS)),)
+    undo(features)
+    assert features.plan.feature("sphere 1").regions == (Auto(),)
+
+
+# ---- measuring
+
+
+def test_why_nothing_can_be_measured_is_told(features):
+    assert features.cannot_measure == "Add a feature first."
+
+
+def test_the_plan_is_measured_and_stays_so_after_opening_again(presenter, features, measuring, qtbot):
+    features.edit.add("plane")
+    measured(features, qtbot)
+    assert features.up_to_date and features.result("plane 1").rows[0].value == 50.012
+    model = presenter.model
+    model.save()
+    model.open(model.folder)
+    qtbot.waitUntil(lambda: features.shown is not None)
+    assert measuring.ran[-1] == jobs.LOOK_AT_FEATURES
+
+
+def test_a_plan_measured_once_is_measured_anew_when_it_changes(features, measuring, qtbot):
+    features.edit.add("plane")
+    assert jobs.MEASURE_FEATURES not in measuring.ran
+    measured(features, qtbot)
+    features.edit.set_value("margin_mm", 0.5)
+    assert features.result("plane 1") is None
+    qtbot.waitUntil(lambda: features.up_to_date and features.shown is not None)
+    undo(features)
+    qtbot.waitUntil(lambda: features.up_to_date and features.shown is not None)
+    assert measuring.ran.count(jobs.MEASURE_FEATURES) == 3
+
+
+def test_an_edit_while_measuring_is_measured_next_and_what_is_shown_is_of_the_plan(features, measuring, qtbot):
+    features.edit.add("plane")
+    measured(features, qtbot)
+    measuring.held = {jobs.MEASURE_FEATURES}
+    features.edit.set_value("margin_mm", 0.5)
+    old = shown_of(features.owner.project)
+    features.edit.set_value("name", "top")
+    measuring.finish(old)
+    assert features.shown is None and features.measuring
+    measuring.finish(shown_of(features.owner.project))
+    assert features.result("top") is not None and not features.measuring
+
+
+def test_a_plan_that_cannot_be_measured_says_so_once(features, measuring, qtbot):
+    def refuse(folder, project):
+        raise InputError("the nominal surface is missing", where="part.stl")
+
+    features.edit.add("plane")
+    measured(features, qtbot)
+    measuring.answers[jobs.MEASURE_FEATURES] = refuse
+    features.edit.set_value("margin_mm", 0.5)
+    qtbot.waitUntil(lambda: bool(features.problem) and not features.measuring)
+    assert "nominal surface is missing" in features.problem
+    assert measuring.ran.count(jobs.MEASURE_FEATURES) == 2
+
+
+# ---- the panel
+
+
+def test_without_features_the_panel_is_one_button(page):
+    panel = page.features
+    assert panel.add.isVisibleTo(page)
+    assert not any(one.isVisibleTo(page) for one in (panel.list, panel.measure, panel.remove, panel.form))
+    assert not panel.kinds["distance"].isEnabled()
+    assert "made of two other features" in panel.kinds["distance"].toolTip()
+
+
+def test_the_list_shows_value_uncertainty_verdict_and_problem(page, features, qtbot):
+    plan = InspectionPlan(
+        (
+            FeatureSpec("ball", "sphere", limits=(("diameter", Limits(50.0, -0.1, 0.1)),)),
+            FeatureSpec("top", "plane"),
+            FeatureSpec("lost", "plane"),
+        )
+    )
+    features.take_template(plan, "three")
+    assert page.features.list.topLevelItem(0).text(1) == "not measured"
+    measured(features, qtbot)
+    ball, top, lost = (page.features.list.topLevelItem(row) for row in range(3))
+    assert (ball.child(0).text(0), ball.child(0).text(1)) == ("diameter", "50.012 ± 0.024 mm")
+    assert "Conformity is proven" in ball.child(0).toolTip(1) and not ball.icon(1).isNull()
+    assert top.text(1) == "50.012 ± 0.024 mm" and top.icon(1).isNull()
+    assert lost.text(1) == "cannot be measured" and "no points there" in lost.toolTip(1)
+
+
+def test_choosing_a_feature_shows_its_points_in_3d_and_in_the_picture(page, features, qtbot):
+    features.edit.add("plane")
+    features.edit.add("sphere")
+    measured(features, qtbot)
+    page.features.list.setCurrentItem(page.features.list.topLevelItem(0))
+    assert features.chosen == "plane 1" and (Marks, "feature") in page.surface.scene._scene.items
+    page.tabs.setCurrentWidget(page.picture)
+    assert "used by the feature" in page.picture.image.layer_names()
+    features.choose("")
+    assert "used by the feature" not in page.picture.image.layer_names()
+    page.tabs.setCurrentWidget(page.surface)
+    assert (Marks, "feature") not in page.surface.scene._scene.items
+
+
+def test_a_region_drawn_in_the_picture_is_the_features(page, features):
+    features.edit.add("plane")
+    page.tabs.setCurrentWidget(page.picture)
+    page.features.form.tools[0, "polygon"].click()
+    page.picture.image.polygon_drawn.emit(features.edit.region_name(0), np.array(CORNERS))
+    assert features.plan.feature("plane 1").regions == (Polygon(tuple(CORNERS)),)
+    assert features.edit.region_name(0) in page.picture.image.layer_names()
+    page.presenter.faces.set_region("upper", np.array(CORNERS))
+    assert features.plan.feature("plane 1").regions == (Polygon(tuple(CORNERS)),)
+
+
+@pytest.mark.parametrize("kind", fields.KINDS)
+def test_every_kind_has_a_form_in_which_all_is_named_and_helped(page, features, kind, tmp_path):
+    features.edit.add("plane")
+    features.edit.add("plane")
+    if kind == "deviation":
+        features.edit.add(kind, tmp_path / "part.stl")
+    else:
+        features.edit.add(kind)
+    features.edit.add_cut()
+    form = page.features.form
+    values = features.edit.values()
+    held = set(form.where.values()) | set(form.what.values())
+    assert held <= set(values)
+    for one in (form.where, form.what):
+        assert all(one.help_of(key) for key in one.values())
+    greyed = [b for b in page.features.findChildren(QAbstractButton) if b.isVisible() and not b.isEnabled()]
+    assert all(button.toolTip() for button in greyed)
+
+
+def test_an_edit_in_the_form_is_an_edit_of_the_plan(page, features, qtbot):
+    features.edit.add("plane")
+    editor = page.features.form.what.editor("margin_mm")
+    editor.setFocus()
+    editor.selectAll()
+    qtbot.keyClicks(editor, "0.75")
+    qtbot.keyClick(editor, Qt.Key.Key_Return)
+    assert features.plan.feature("plane 1").filters.margin_mm == 0.75
+
+
+def test_delete_and_alt_arrows_work_in_the_list(page, features, qtbot):
+    features.edit.add("plane")
+    features.edit.add("sphere")
+    page.features.list.setFocus()
+    qtbot.keyClick(page.features.list, Qt.Key.Key_Up, Qt.KeyboardModifier.AltModifier)
+    assert features.plan.names == ("sphere 1", "plane 1")
+    qtbot.keyClick(page.features.list, Qt.Key.Key_Delete)
+    assert features.plan.names == ("plane 1",)

@@ -1,0 +1,145 @@
+"""The chosen feature, edited: its fields, what is wrong with them, its regions. Every edit is undoable."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from numpy.typing import ArrayLike
+from PySide6.QtCore import QObject
+
+from core.files.project import stored_source
+from core.inspect.inspection_plan import FeatureSpec, Kind, Polygon
+from workbench.pages import inspect_feature_values as fields
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from workbench.pages.inspect_features import InspectFeatures
+
+REGION = "region of the feature"
+
+NO_PICTURE = (1280, 960)
+"""The picture's size in pixels where none is known yet."""
+
+
+class InspectFeatureEdit(QObject):
+    """What stands in the form.
+
+    Limits whose other half is missing, and values that cannot be, are kept here until they can be put into the plan.
+    """
+
+    def __init__(self, owner: InspectFeatures) -> None:
+        super().__init__(owner)
+        self._owner = owner
+        self._of = ""
+        self._pending: dict[str, Any] = {}
+        self._complaints: dict[str, str] = {}
+
+    @property
+    def spec(self) -> FeatureSpec | None:
+        """The chosen feature; None if none is."""
+        plan, chosen = self._owner.plan, self._owner.chosen
+        return plan.feature(chosen) if chosen in plan.names else None
+
+    def values(self) -> dict[str, Any]:
+        """The fields as they stand in the form."""
+        self._follow()
+        return {} if self.spec is None else fields.values_of(self.spec) | self._pending
+
+    def complaint(self, key: str) -> str:
+        """What is wrong with a field, or ""."""
+        self._follow()
+        return self._complaints.get(key, "")
+
+    def add(self, kind: Kind, nominal: Path | None = None) -> None:
+        """Add a feature of a kind and choose it; undoable. A deviation needs its `nominal` surface."""
+        owner = self._owner
+        why_not, folder, view = fields.why_not(kind, owner.plan), owner.owner.model.folder, owner.owner.view
+        if why_not or folder is None:
+            owner.owner.bench.notices.warning(why_not or self.tr("Open a project first."))
+            return
+        stored = "" if nominal is None else stored_source(folder, nominal)
+        size = NO_PICTURE if view is None else view.image_size
+        owner.put(fields.new_feature(kind, owner.free_name(kind), owner.plan, size, stored))
+
+    def set_value(self, key: str, value: Any) -> None:
+        """Change a field; what cannot be is kept in the form with a sentence, and the plan stays as it was."""
+        self._follow()
+        spec = self.spec
+        if spec is None:
+            return
+        self._pending[key] = value
+        try:
+            if key.startswith("limits "):
+                result = key.split(" ", 2)[2]
+                changed = fields.with_limits(spec, result, self.values())
+                done = [one for one in self._pending if one.startswith("limits ") and one.split(" ", 2)[2] == result]
+            else:
+                changed, done = fields.with_value(spec, key, value), [key]
+        except ValueError as error:
+            self._complain(key, str(error))
+            return
+        wrong = self._owner.complaint(changed, spec.name)
+        if wrong:
+            self._complain(key, wrong)
+            return
+        for one in done:
+            self._pending.pop(one, None)
+            self._complaints.pop(one, None)
+        self._of = changed.name
+        self._put(spec, changed)
+
+    def set_region(self, place: int, corners: ArrayLike) -> None:
+        """Take the points seen inside a polygon of the picture; undoable."""
+        spec = self.spec
+        if spec is None or place >= len(spec.regions):
+            return
+        region = Polygon(tuple((float(u), float(v)) for u, v in corners))  # type: ignore[union-attr]
+        self._put(spec, fields.with_region(spec, place, region))
+
+    @property
+    def meant(self) -> str:
+        """What points chosen in 3D stand for: the plane face among them, or ("") all of them."""
+        return "upper" if self.spec is not None and self.spec.kind in fields.BY_NUMBER else ""
+
+    def region_name(self, place: int) -> str:
+        """What a region of the chosen feature is called in the pictures."""
+        return f"{REGION} {place}"
+
+    def place_of(self, name: str) -> int:
+        """The place of the region called so."""
+        return int(name.removeprefix(REGION))
+
+    def set_nominal(self, path: Path) -> None:
+        """Compare with another nominal surface; undoable."""
+        folder = self._owner.owner.model.folder
+        if folder is not None:
+            self.set_value("nominal", stored_source(folder, path))
+
+    def add_cut(self) -> None:
+        """One measurement more in the chosen section; undoable."""
+        if self.spec is not None:
+            self._put(self.spec, fields.with_new_cut(self.spec))
+
+    def remove_cut(self, place: int) -> None:
+        """One measurement less in the chosen section; undoable."""
+        if self.spec is not None:
+            self._put(self.spec, fields.without_cut(self.spec, place))
+
+    # ---- inside
+
+    def _put(self, before: FeatureSpec, after: FeatureSpec) -> None:
+        if after != before:
+            self._owner.put(after, before.name)
+        else:
+            self._owner.changed.emit()
+
+    def _complain(self, key: str, sentence: str) -> None:
+        self._complaints[key] = sentence
+        self._owner.changed.emit()
+
+    def _follow(self) -> None:
+        """Another feature is chosen: what was half entered of the last one is forgotten."""
+        if self._of != self._owner.chosen:
+            self._of = self._owner.chosen
+            self._pending, self._complaints = {}, {}

@@ -1,0 +1,228 @@
+"""The chosen feature in a form: its name, where its points are, what is asked of it, how it is measured."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from PySide6.QtCore import QEvent, QSize, Signal
+from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QPushButton, QToolButton, QVBoxLayout, QWidget
+
+from core.inspect.inspection_plan import DERIVED, Auto, FeatureSpec, InBox, InspectionPlan, InSphere, PointsOf, Polygon
+from workbench.pages import inspect_feature_values as fields
+from workbench.pages import inspect_feature_words as words
+from workbench.pages.inspect_feature_settings import (
+    add_cuts,
+    add_deviation,
+    add_filters,
+    add_limits,
+    add_section,
+    add_steps,
+)
+from workbench.pages.inspect_presenter import InspectPresenter
+from workbench.pages.step_page import heading
+from workbench.theme import icon
+from workbench.views import ask
+from workbench.views.forms import SettingsForm
+
+
+class FeatureForm(QWidget):
+    """Two forms with the tools to draw regions between them; made anew for a feature with other fields."""
+
+    draw = Signal(str, str)
+    """Name of a region and kind of tool: it is to be drawn."""
+
+    def __init__(self, presenter: InspectPresenter, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._presenter, self._edit = presenter, presenter.features.edit
+        self._made: object = None
+        self._inside = QWidget()
+        self.where, self.what = SettingsForm(), SettingsForm()
+        self.tools: dict[tuple[int, str], QToolButton] = {}
+        self.buttons: dict[str, QPushButton] = {}
+        self._column = QVBoxLayout(self)
+        self._column.setContentsMargins(0, 0, 0, 0)
+        self._column.addWidget(self._inside)
+
+    def refresh(self) -> None:
+        """Show what the presenter says now."""
+        spec, plan = self._edit.spec, self._presenter.features.plan
+        self.setVisible(spec is not None)
+        if spec is None:
+            return
+        values = self._edit.values()
+        made = _fields_of(spec, plan)
+        if made != self._made:
+            self._made = made
+            self._make(spec, plan)
+        for form in (self.where, self.what):
+            form.set_values(values)
+            for key in form.values():
+                form.set_complaint(key, self._edit.complaint(key))
+        self._show_tools()
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "buttons"):
+            self._dress()
+
+    # ---- making it
+
+    def _make(self, spec: FeatureSpec, plan: InspectionPlan) -> None:
+        self._column.removeWidget(self._inside)
+        self._inside.hide()
+        self._inside.deleteLater()  # its editors may be telling of the very edit that ends them
+        self._inside, self.where, self.what = QWidget(), SettingsForm(), SettingsForm()
+        self.tools, self.buttons = {}, {}
+        column = QVBoxLayout(self._inside)
+        column.setContentsMargins(0, 6, 0, 0)
+        column.setSpacing(4)
+        column.addWidget(heading(words.title(spec.kind).removesuffix(" …")))
+        self._add_where(spec, plan)
+        column.addWidget(self.where)
+        if fields.own_regions(spec):
+            column.addLayout(self._drawing_tools(spec))
+        self._add_what(spec)
+        column.addWidget(self.what)
+        self._add_buttons(spec, column)
+        self._column.addWidget(self._inside)
+        self.where.edited.connect(self._edited)
+        self.what.edited.connect(self._edited)
+        self._dress()
+
+    def _add_where(self, spec: FeatureSpec, plan: InspectionPlan) -> None:
+        form = self.where
+        form.add_text("name", self.tr("Name"), self.tr("As it is called in the list and in the report."))
+        others = [(name, name) for name in fields.elements(plan)]
+        for place in range(DERIVED.get(spec.kind, 0)):
+            title = self.tr("First feature") if place == 0 else self.tr("Second feature")
+            form.add_choice(f"of {place}", title, others, self.tr("A plane, sphere, cylinder or point of the list."))
+        if spec.kind in ("thickness", "steps"):
+            least = 2
+            most = 2 if spec.kind == "thickness" else fields.MOST_FACES
+            form.add_number(
+                "parts", self.tr("Faces"), "", self.tr("How many faces are named one by one; automatic: all found."),
+                minimum=least, maximum=most, none_text=self.tr("automatic"),
+            )  # fmt: skip
+        for place, region in enumerate(fields.own_regions(spec)):
+            self._add_region(spec, plan, place, isinstance(region, Auto))
+
+    def _add_region(self, spec: FeatureSpec, plan: InspectionPlan, place: int, found: bool) -> None:
+        region = spec.regions[place]
+        choices = [(fields.AUTO, words.source_of_none(spec)), (fields.DRAWN, self.tr("drawn"))]
+        if isinstance(region, InSphere | InBox):
+            choices.append((fields.PLACED, self.tr("as in the plan file")))
+        choices += [
+            (fields.OF + one.name, self.tr("points of {0}").format(one.name))
+            for one in plan.features
+            if one.name != spec.name and one.kind not in DERIVED
+        ]
+        self.where.add_choice(
+            f"source {place}", self._region_title(spec, place), choices, self.tr("Where its points are taken from.")
+        )
+        single = spec.kind in ("thickness", "steps") and len(spec.regions) == 1
+        if found and spec.kind in fields.BY_NUMBER and not single:
+            self.where.add_number(
+                f"number {place}", self.tr("Number of the face"), "",
+                self.tr("1 is the largest plane face of the scan, 2 the next."), minimum=1, maximum=fields.MOST_FACES,
+            )  # fmt: skip
+
+    def _region_title(self, spec: FeatureSpec, place: int) -> str:
+        if spec.kind == "thickness" and len(spec.regions) == 2:
+            return self.tr("Upper face") if place == 0 else self.tr("Lower face")
+        return self.tr("Level {0}").format(place + 1) if len(spec.regions) > 1 else self.tr("Region")
+
+    def _drawing_tools(self, spec: FeatureSpec) -> QGridLayout:
+        grid = QGridLayout()
+        grid.setContentsMargins(0, 0, 0, 0)
+        grid.setColumnStretch(0, 1)
+        for place in range(len(spec.regions)):
+            title = self.tr("Draw: {0}").format(self._region_title(spec, place))
+            grid.addWidget(QLabel(title), place, 0)
+            for column, kind in enumerate(("polygon", "lasso"), start=1):
+                button = QToolButton()
+                button.setAutoRaise(True)
+                button.setIconSize(QSize(20, 20))
+                button.setAccessibleName(f"{title}, {kind}")
+                button.clicked.connect(lambda _=False, place=place, kind=kind: self._draw(place, kind))
+                self.tools[place, kind] = button
+                grid.addWidget(button, place, column)
+        return grid
+
+    def _add_what(self, spec: FeatureSpec) -> None:
+        form = self.what
+        if spec.kind == "steps":
+            add_steps(form)
+        if spec.deviation is not None:
+            add_deviation(form)
+        if spec.section is not None:
+            add_section(form, spec.section)
+            add_cuts(form, spec.section)
+        add_limits(form, spec)
+        if spec.kind not in DERIVED:
+            add_filters(form)
+
+    def _add_buttons(self, spec: FeatureSpec, column: QVBoxLayout) -> None:
+        wanted: list[tuple[str, str, Any]] = []
+        if spec.deviation is not None:
+            wanted.append(("nominal", self.tr("Choose another nominal surface"), self._choose_nominal))
+        if spec.section is not None:
+            wanted.append(("cut", self.tr("Add measurement"), self._edit.add_cut))
+            if spec.section.cuts:
+                last = len(spec.section.cuts) - 1
+                wanted.append(("uncut", self.tr("Remove the last"), lambda: self._edit.remove_cut(last)))
+        row = QHBoxLayout()
+        for name, text, does in wanted:
+            button = QPushButton(text)
+            button.clicked.connect(lambda _=False, does=does: does())
+            self.buttons[name] = button
+            row.addWidget(button, 1)
+        column.addLayout(row)
+
+    # ---- using it
+
+    def _edited(self, key: str, value: object) -> None:
+        spec = self._edit.spec
+        if not key.startswith("source ") or spec is None or value not in (fields.DRAWN, fields.PLACED):
+            self._edit.set_value(key, value)
+            return
+        place = int(key.removeprefix("source "))
+        if not isinstance(spec.regions[place], Polygon) and value == fields.DRAWN:
+            self._draw(place, "polygon")
+        self.where.set_values(self._edit.values())
+
+    def _draw(self, place: int, kind: str) -> None:
+        self.draw.emit(self._edit.region_name(place), kind)
+
+    def _choose_nominal(self) -> None:
+        path = ask.choose_file_to_open(
+            self, self.tr("Nominal surface"), self._presenter.model.folder, self.tr("STL (*.stl *.STL)")
+        )
+        if path is not None:
+            self._edit.set_nominal(path)
+
+    def _show_tools(self) -> None:
+        why_not = "" if self._presenter.view is not None else self.tr("There is no surface to draw on yet.")
+        for (_, kind), button in self.tools.items():
+            first = (
+                self.tr("Draw the region corner by corner.")
+                if kind == "polygon"
+                else self.tr("Draw round the region with the button held down.")
+            )
+            button.setEnabled(not why_not)
+            tip = self.tr("{0} In the picture, or in 3D: what is drawn round there is outlined in the picture.")
+            button.setToolTip(why_not or tip.format(first))
+
+    def _dress(self) -> None:
+        for (_, kind), button in self.tools.items():
+            button.setIcon(icon("mdi6.vector-polygon" if kind == "polygon" else "mdi6.lasso"))
+        for name, symbol in (("nominal", "mdi6.folder-open-outline"), ("cut", "mdi6.plus"), ("uncut", "mdi6.minus")):
+            if name in self.buttons:
+                self.buttons[name].setIcon(icon(symbol))
+
+
+def _fields_of(spec: FeatureSpec, plan: InspectionPlan) -> object:
+    """What decides which fields there are, and what they can be chosen from."""
+    regions = [(type(region), region.feature if isinstance(region, PointsOf) else "") for region in spec.regions]
+    others = [(one.name, one.kind) for one in plan.features if one.name != spec.name]
+    cuts = () if spec.section is None else tuple((cut.name, cut.kind) for cut in spec.section.cuts)
+    return spec.kind, regions, others, cuts

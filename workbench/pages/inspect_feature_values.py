@@ -1,0 +1,282 @@
+"""A feature of a plan as the fields of a form, and back."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+from PySide6.QtCore import QCoreApplication
+
+from core.files.inspection_plan_file import ONE_SIDED
+from core.inspect.characteristic import Limits
+from core.inspect.inspection_plan import (
+    DERIVED,
+    ELEMENTS,
+    RESULTS,
+    Auto,
+    Cut,
+    Deviation,
+    FeatureSpec,
+    InspectionPlan,
+    Kind,
+    PointsOf,
+    Polygon,
+    Region,
+    Section,
+)
+
+KINDS: tuple[Kind, ...] = tuple(RESULTS)
+AUTO, DRAWN, PLACED = "auto", "drawn", "placed"
+OF = "of "
+"""Where a region's points come from: found, drawn in the picture, placed in part coordinates, "of " and a feature."""
+
+BY_NUMBER: tuple[Kind, ...] = ("plane", "point", "thickness", "steps")
+"""Kinds made of plane faces, which are found by their number from the largest down."""
+MOST_FACES = 8
+
+SIDES = ("nominal", "lower", "upper")
+
+
+def new_feature(kind: Kind, name: str, plan: InspectionPlan, size: tuple[int, int], nominal: str = "") -> FeatureSpec:
+    """A feature with what is usual: a cut across the middle of the picture (`size`), the last two elements."""
+    made = FeatureSpec(name, kind)
+    if kind in DERIVED:
+        return replace(made, of=elements(plan)[-DERIVED[kind] :])
+    if kind == "section":
+        middle = float(size[1] // 2)
+        return replace(made, section=Section(((0.0, middle), (float(size[0] - 1), middle))))
+    if kind == "deviation":
+        return replace(made, deviation=Deviation(nominal))
+    return made
+
+
+def elements(plan: InspectionPlan) -> tuple[str, ...]:
+    """Names of the features that others can be made from."""
+    return tuple(one.name for one in plan.features if one.kind in ELEMENTS)
+
+
+def why_not(kind: Kind, plan: InspectionPlan) -> str:
+    """Why a feature of this kind cannot be added to the plan, or ""."""
+    if len(elements(plan)) < DERIVED.get(kind, 0):
+        return _tr("It is made of two other features: add planes, spheres, cylinders or points first.")
+    return ""
+
+
+def values_of(spec: FeatureSpec) -> dict[str, Any]:
+    """All fields of a feature; what it does not have is not among them."""
+    values: dict[str, Any] = {"name": spec.name}
+    values |= {f"of {place}": name for place, name in enumerate(spec.of)}
+    if spec.kind not in DERIVED:
+        filters = spec.filters
+        values |= {"sigma_max_mm": filters.sigma_max_mm, "margin_mm": filters.margin_mm}
+        values |= {"outliers": filters.outliers, "cell_mm": filters.cell_mm}
+        values["parts"] = None if len(spec.regions) == 1 else len(spec.regions)
+    for place, region in enumerate(own_regions(spec)):
+        values[f"source {place}"] = _source(region)
+        values[f"number {place}"] = region.number if isinstance(region, Auto) else 1
+    for result in dict.fromkeys(spec.results):
+        values |= limits_values(spec, result)
+    if spec.kind == "steps":
+        values |= {"heights": "; ".join(f"{height:g}" for height in spec.nominal_heights), "over": spec.over}
+    if spec.deviation is not None:
+        values |= {key: getattr(spec.deviation, key) for key in ("nominal", "align", "tolerance_mm", "reach_mm")}
+    if spec.section is not None:
+        values |= _section_values(spec.section)
+    return values
+
+
+def with_value(spec: FeatureSpec, key: str, value: Any) -> FeatureSpec:
+    """The feature with one field changed; ValueError with a sentence if that cannot be."""
+    group, _, rest = key.partition(" ")
+    if key == "name":
+        return replace(spec, name=str(value).strip())
+    if group == "of":
+        names = list(spec.of)
+        names[int(rest)] = str(value)
+        return replace(spec, of=tuple(names))
+    if key == "parts":
+        count = 1 if value is None else int(value)
+        return replace(spec, regions=tuple(_region(spec.regions, place) for place in range(count)))
+    if group in ("source", "number"):
+        return with_region(spec, int(rest), _sourced(value) if group == "source" else Auto(int(value)))
+    if key in ("sigma_max_mm", "margin_mm", "outliers", "cell_mm"):
+        return replace(spec, filters=replace(spec.filters, **{key: value}))
+    if key == "heights":
+        return replace(spec, nominal_heights=_numbers(str(value)))
+    if key == "over":
+        return replace(spec, over=value)
+    if spec.deviation is not None and group in ("nominal", "align", "tolerance_mm", "reach_mm"):
+        return replace(spec, deviation=replace(spec.deviation, **{key: value}))
+    if spec.section is not None:
+        return _with_section(spec, spec.section, key, value)
+    raise KeyError(key)
+
+
+def own_regions(spec: FeatureSpec) -> tuple[Region, ...]:
+    """Where its points are; none for what is made of other features."""
+    return () if spec.kind in DERIVED else spec.regions
+
+
+def with_region(spec: FeatureSpec, place: int, region: Region) -> FeatureSpec:
+    """The feature with another region at this place."""
+    return replace(spec, regions=(*spec.regions[:place], region, *spec.regions[place + 1 :]))
+
+
+# ---- limits
+
+
+def limits_values(spec: FeatureSpec, result: str) -> dict[str, float | None]:
+    """What is asked of a result: nominal value and permitted deviations in mm or degrees, None where nothing is."""
+    limits = dict(spec.limits).get(result)
+    keys = [f"limits {side} {result}" for side in SIDES]
+    if limits is None:
+        return dict.fromkeys(keys)
+    shown = (limits.nominal, limits.lower, limits.upper)
+    return {key: _finite(_factor(spec) * value) for key, value in zip(keys, shown, strict=True)}
+
+
+def one_sided(spec: FeatureSpec, result: str) -> bool:
+    """Whether a result cannot be too small, and so has an upper limit alone."""
+    return spec.section is None and result in ONE_SIDED
+
+
+def with_limits(spec: FeatureSpec, result: str, values: Mapping[str, float | None]) -> FeatureSpec:
+    """The feature with a result's limits, by the keys of `limits_values`; ValueError with a sentence if one lacks."""
+    nominal, lower, upper = (values.get(f"limits {side} {result}") for side in SIDES)
+    kept = tuple(one for one in spec.limits if one[0] != result)
+    if one_sided(spec, result):
+        nominal, lower = None if upper is None else 0.0, None
+    elif spec.kind == "steps" and (lower, upper) != (None, None):
+        nominal = nominal or 0.0
+    if nominal is None and lower is None and upper is None:
+        return replace(spec, limits=kept)
+    if nominal is None:
+        raise ValueError(_tr("Enter the nominal value too: the deviations count from it."))
+    if lower is None and upper is None:
+        raise ValueError(_tr("Enter a lower or an upper deviation too: without one nothing can be decided."))
+    if lower is not None and upper is not None and lower > upper:
+        raise ValueError(_tr("The lower deviation is above the upper one."))
+    per = 1 / _factor(spec)
+    low, high = -math.inf if lower is None else per * lower, math.inf if upper is None else per * upper
+    return replace(spec, limits=(*kept, (result, Limits(per * nominal, low, high))))
+
+
+def _factor(spec: FeatureSpec) -> float:
+    """From what a plan holds to what is shown: angles in degrees."""
+    return math.degrees(1.0) if spec.kind == "angle" else 1.0
+
+
+def _finite(value: float) -> float | None:
+    return value if math.isfinite(value) else None
+
+
+# ---- regions
+
+
+def _source(region: Region) -> str:
+    match region:
+        case Auto():
+            return AUTO
+        case Polygon():
+            return DRAWN
+        case PointsOf():
+            return OF + region.feature
+    return PLACED
+
+
+def _sourced(source: str) -> Region:
+    return PointsOf(source.removeprefix(OF)) if source.startswith(OF) else Auto()
+
+
+def _region(regions: tuple[Region, ...], place: int) -> Region:
+    """The region at a place; new ones are found as the faces not yet taken, from the largest down."""
+    return regions[place] if place < len(regions) else Auto(min(place + 1, MOST_FACES))
+
+
+def _numbers(text: str) -> tuple[float, ...]:
+    try:
+        numbers = tuple(float(part.replace(",", ".")) for part in text.split(";") if part.strip())
+    except ValueError as error:
+        raise ValueError(_tr("Write the heights in mm with semicolons between them, as 10; 20; 30.")) from error
+    if not all(math.isfinite(number) for number in numbers):
+        raise ValueError(_tr("Write the heights in mm with semicolons between them, as 10; 20; 30."))
+    return numbers
+
+
+# ---- sections
+
+
+def _section_values(section: Section) -> dict[str, Any]:
+    values: dict[str, Any] = {"half_width_mm": section.half_width_mm, "step_mm": section.step_mm}
+    for place, corner in enumerate(section.line_px or ()):
+        values |= {f"line {place} 0": corner[0], f"line {place} 1": corner[1]}
+    for place, cut in enumerate(section.cuts):
+        values |= {f"cut {place} name": cut.name, f"cut {place} kind": cut.kind}
+        for stretch in ("first", "second"):
+            low, high = getattr(cut, stretch)
+            values |= {f"cut {place} {stretch} 0": low, f"cut {place} {stretch} 1": high}
+    return values
+
+
+def _with_section(spec: FeatureSpec, section: Section, key: str, value: Any) -> FeatureSpec:
+    group, _, rest = key.partition(" ")
+    if key in ("half_width_mm", "step_mm"):
+        size: dict[str, Any] = {key: float(value)}
+        return replace(spec, section=replace(section, **size))
+    place, _, field = rest.partition(" ")
+    if group == "line" and section.line_px is not None:
+        line = [list(corner) for corner in section.line_px]
+        line[int(place)][int(field)] = float(value)
+        return replace(spec, section=replace(section, line_px=((line[0][0], line[0][1]), (line[1][0], line[1][1]))))
+    if group == "cut":
+        return _with_cut(spec, section, int(place), field, value)
+    raise KeyError(key)
+
+
+def _with_cut(spec: FeatureSpec, section: Section, place: int, field: str, value: Any) -> FeatureSpec:
+    cut, limits = section.cuts[place], spec.limits
+    if field == "name":
+        name = str(value).strip()
+        if not name or any(other.name == name for other in section.cuts if other is not cut):
+            raise ValueError(_tr("Give each measurement in the section a name of its own."))
+        limits = tuple((name if result == cut.name else result, one) for result, one in limits)
+        changed = replace(cut, name=name)
+    elif field == "kind":
+        changed = replace(cut, kind=value)
+    else:
+        stretch, _, end = field.partition(" ")
+        ends = list(getattr(cut, stretch))
+        ends[int(end)] = float(value)
+        moved: dict[str, Any] = {stretch: (ends[0], ends[1])}
+        changed = replace(cut, **moved)
+    return replace(spec, limits=limits, section=replace(section, cuts=_put(section.cuts, place, changed)))
+
+
+def with_new_cut(spec: FeatureSpec) -> FeatureSpec:
+    """A section with one measurement more."""
+    if spec.section is None:
+        return spec
+    names, number = {cut.name for cut in spec.section.cuts}, 1
+    while f"height {number}" in names:
+        number += 1
+    cut = Cut(f"height {number}", "height", (0.0, 10.0), (20.0, 30.0))
+    return replace(spec, section=replace(spec.section, cuts=(*spec.section.cuts, cut)))
+
+
+def without_cut(spec: FeatureSpec, place: int) -> FeatureSpec:
+    """A section with one measurement less, and without what was asked of it."""
+    if spec.section is None:
+        return spec
+    cuts, gone = spec.section.cuts, spec.section.cuts[place].name
+    limits = tuple(one for one in spec.limits if one[0] != gone)
+    return replace(spec, limits=limits, section=replace(spec.section, cuts=(*cuts[:place], *cuts[place + 1 :])))
+
+
+def _put(cuts: tuple[Cut, ...], place: int, cut: Cut) -> tuple[Cut, ...]:
+    return (*cuts[:place], cut, *cuts[place + 1 :])
+
+
+def _tr(text: str) -> str:
+    return QCoreApplication.translate("Inspect", text)

@@ -1,0 +1,243 @@
+"""Features measured beside the thickness: the plan is edited here, every edit undoable, and measured as a whole."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from PySide6.QtCore import QObject, Signal
+
+from core.errors import InputError
+from core.files.project_keys import changed as changes
+from core.files.project_keys import finished, rests_on
+from core.inspect.inspection_plan import FeatureSpec, InspectionPlan, PointsOf
+from workbench import jobs
+from workbench.pages.inspect_feature_edit import InspectFeatureEdit
+from workbench.problems import sentence
+from workbench.tasks import Task
+
+if TYPE_CHECKING:
+    from core.inspect.shown_features import ShownFeature, ShownInspection
+    from workbench.pages.inspect_presenter import InspectPresenter
+
+
+class InspectFeatures(QObject):
+    """The plan of the project, what it gave on this scan, and which feature is chosen."""
+
+    changed = Signal()
+
+    def __init__(self, owner: InspectPresenter) -> None:
+        super().__init__(owner)
+        self._owner = owner
+        self._measuring: Task | None = None
+        self._shown: ShownInspection | None = None
+        self._shown_for: object = None
+        self.problem = ""
+        self.chosen = ""
+        self.edit = InspectFeatureEdit(self)
+
+    # ---- the plan
+
+    @property
+    def plan(self) -> InspectionPlan:
+        """What is to be measured."""
+        return self._owner.project.inspection
+
+    @property
+    def owner(self) -> InspectPresenter:
+        """The presenter of the page."""
+        return self._owner
+
+    def free_name(self, kind: str) -> str:
+        """A name for a new feature that no other has: "plane 2"."""
+        number = 1
+        while f"{kind} {number}" in self.plan.names:
+            number += 1
+        return f"{kind} {number}"
+
+    def complaint(self, spec: FeatureSpec, instead_of: str = "") -> str:
+        """Why the plan would be wrong with this feature (in place of another), or ""."""
+        try:
+            self._with(spec, instead_of).ordered()
+        except InputError as error:
+            return sentence(error)
+        return ""
+
+    def put(self, spec: FeatureSpec, instead_of: str = "") -> None:
+        """Add a feature, or change the one called `instead_of`; undoable. Others follow when it is given a new name."""
+        plan = self._with(spec, instead_of)
+        label = self.tr("change {0}").format(spec.name) if instead_of else self.tr("add {0}").format(spec.name)
+        self.chosen = spec.name
+        self._put(plan, label)
+
+    def remove(self, name: str) -> None:
+        """Take a feature out of the plan; undoable. One that others rest on stays, and a notice says which."""
+        why_not = self.cannot_remove(name)
+        if why_not:
+            self._owner.bench.notices.warning(why_not)
+            return
+        kept = tuple(one for one in self.plan.features if one.name != name)
+        self._put(replace(self.plan, features=kept), self.tr("remove {0}").format(name))
+
+    def cannot_remove(self, name: str) -> str:
+        """Why a feature cannot be taken out, or ""."""
+        if name not in self.plan.names:
+            return self.tr("Choose a feature first.")
+        frame = self.plan.frame.names if self.plan.frame is not None else ()
+        resting = [one.name for one in self.plan.features if name in one.needs]
+        if name in frame:
+            resting.append(self.tr("the part's coordinates"))
+        if resting:
+            return self.tr("{0} cannot be removed: {1} rests on it.").format(name, ", ".join(resting))
+        return ""
+
+    def move(self, name: str, by: int) -> None:
+        """Move a feature up (−1) or down (+1) in the list; undoable."""
+        names = list(self.plan.names)
+        if name not in names or not 0 <= names.index(name) + by < len(names):
+            return
+        features = list(self.plan.features)
+        features.insert(names.index(name) + by, features.pop(names.index(name)))
+        self._put(replace(self.plan, features=tuple(features)), self.tr("move {0}").format(name))
+
+    def take_template(self, plan: InspectionPlan, name: str) -> None:
+        """Measure this plan from now on; undoable."""
+        self._put(plan, self.tr("take the plan {0}").format(name))
+
+    # ---- measuring
+
+    @property
+    def measuring(self) -> bool:
+        """Whether the plan is being measured."""
+        return self._measuring is not None
+
+    @property
+    def cannot_measure(self) -> str:
+        """Why the plan cannot be measured now, or ""."""
+        if "scan" not in self._owner.model.results:
+            return self.tr("Scan the part first.")
+        if not self.plan.features:
+            return self.tr("Add a feature first.")
+        if self.measuring:
+            return self.tr("The features are being measured.")
+        return ""
+
+    @property
+    def up_to_date(self) -> bool:
+        """Whether what was measured is of this plan and this scan."""
+        results = self._owner.model.results
+        done = results.get("features")
+        return done is not None and not changes(done.rests_on, rests_on("features", self._owner.project, results))
+
+    def measure(self) -> None:
+        """Measure the whole plan on the scan among the results."""
+        model, project, folder = self._owner.model, self._owner.project, self._owner.model.folder
+        if folder is None or self.cannot_measure:
+            return
+        self.problem, wanted, results = "", self._wanted(), model.results
+
+        def done(shown: Any) -> None:
+            if folder == model.folder:
+                self._shown, self._shown_for = shown, wanted
+                model.record("features", finished("features", project, results))
+
+        self._run(jobs.MEASURE_FEATURES, folder, done, self.tr("Measuring the features"))
+
+    def follow(self, before: InspectionPlan) -> None:
+        """The plan was edited, or an edit undone: what was measured once is measured anew."""
+        if self.plan == before:
+            return
+        self.problem = ""
+        if self.chosen not in self.plan.names:
+            self.chosen = ""
+        self._measure_again()
+
+    def look(self) -> None:
+        """Have what was measured earlier drawn, if it is still true of this plan and this scan."""
+        folder = self._owner.model.folder
+        if folder is None or self.measuring or not self.up_to_date or self.shown is not None:
+            return
+        wanted = self._wanted()
+
+        def done(shown: Any) -> None:
+            if folder == self._owner.model.folder:
+                self._shown, self._shown_for = shown, wanted
+
+        self._run(jobs.LOOK_AT_FEATURES, folder, done, self.tr("Preparing the features"))
+
+    @property
+    def shown(self) -> ShownInspection | None:
+        """What the plan gave, if that is still what it would give now."""
+        return self._shown if self._shown_for == self._wanted() else None
+
+    def result(self, name: str) -> ShownFeature | None:
+        """What a feature gave; None if it is not measured, or something has changed since."""
+        if self.shown is None:
+            return None
+        return next((one for one in self.shown.features if one.name == name), None)
+
+    def choose(self, name: str) -> None:
+        """Show the points this feature used; "" for none."""
+        if name != self.chosen:
+            self.chosen = name
+            self.changed.emit()
+
+    def forget(self) -> None:
+        """Another project is open: nothing of it has been measured here."""
+        self._shown, self._shown_for = None, None
+        self.problem = self.chosen = ""
+
+    # ---- inside
+
+    def _run(self, job: jobs.Job, folder: Path, done: Any, label: str) -> None:
+        def failed(problem: Any) -> None:
+            if folder == self._owner.model.folder:
+                self.problem = sentence(problem)
+
+        self._measuring = self._owner.bench.measure(
+            job, folder, self._owner.project, label=label, on_done=done, on_failed=failed
+        )
+        self._measuring.ended.connect(self._ended)
+        self.changed.emit()
+
+    def _ended(self) -> None:
+        self._measuring = None
+        self._measure_again()
+        self.changed.emit()
+
+    def _measure_again(self) -> None:
+        """Measure a plan that has changed since it was measured; one that failed waits for the next edit."""
+        if "features" in self._owner.model.results and not self.up_to_date and not self.problem:
+            self.measure()
+
+    def _wanted(self) -> object:
+        scan = self._owner.model.results.get("scan")
+        return self.plan, None if scan is None else scan.key
+
+    def _with(self, spec: FeatureSpec, instead_of: str) -> InspectionPlan:
+        if not instead_of:
+            return replace(self.plan, features=(*self.plan.features, spec))
+        renamed = tuple(
+            spec if one.name == instead_of else _following(one, instead_of, spec.name) for one in self.plan.features
+        )
+        frame = self.plan.frame
+        if frame is not None:
+            names = {key: getattr(frame, key) for key in ("primary", "secondary", "tertiary")}
+            frame = replace(frame, **{key: spec.name if name == instead_of else name for key, name in names.items()})
+        return replace(self.plan, features=renamed, frame=frame)
+
+    def _put(self, plan: InspectionPlan, label: str) -> None:
+        self._owner.model.edit(label, replace(self._owner.project, inspection=plan))
+        if self.chosen not in plan.names:
+            self.chosen = ""
+
+
+def _following(spec: FeatureSpec, before: str, now: str) -> FeatureSpec:
+    """A feature that rests on another one which has a new name."""
+    regions: Sequence[Any] = [
+        PointsOf(now) if isinstance(region, PointsOf) and region.feature == before else region
+        for region in spec.regions
+    ]
+    return replace(spec, of=tuple(now if name == before else name for name in spec.of), regions=tuple(regions))
