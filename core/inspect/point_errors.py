@@ -44,6 +44,8 @@ class PointErrors:
         Lengths along a stripe over which the centreline noise of the sweeps, and of the fan, is one and the same.
     speckle
         What the fan's points and the sweeps have in common; None: taken for independent of each other.
+    stripe_px
+        σ of the light's sections in the picture; 0: not known. On a curved surface they are uneven.
     """
 
     sweep_covariance: Array | None = None
@@ -51,6 +53,7 @@ class PointErrors:
     correlation_px: float = 12.0
     speckle_px: float = 12.0
     speckle: FanSpeckle | None = None
+    stripe_px: float = 0.0
 
     @classmethod
     def of_scan(
@@ -62,7 +65,9 @@ class PointErrors:
     ) -> PointErrors:
         """Of the points of a scan with these features, its sweeps' covariance and what displaced calibrations do."""
         swept = [piece for frame in features.frames for piece in frame.centrelines]
-        return cls(sweep_covariance, common, _correlation_px(swept), _correlation_px(features.fan), speckle)
+        lengths = _correlation_px(swept), _correlation_px(features.fan)
+        width = float(np.median(np.concatenate([piece.width for piece in swept]))) if swept else 0.0
+        return cls(sweep_covariance, common, *lengths, speckle, width)
 
     @property
     def sweeps(self) -> int:

@@ -5,7 +5,7 @@ import pytest
 
 from core.errors import InputError
 from core.inspect.point_errors import PointErrors
-from core.inspect.sphere import find_sphere, fit_sphere
+from core.inspect.sphere import UNEVEN_LIGHT, find_sphere, fit_sphere
 from core.scan.cloud import Cloud
 from tests.inspect.block_scan import CENTRE, FOCAL
 
@@ -81,3 +81,12 @@ def test_no_sphere_and_too_few_points_are_said():
         find_sphere(table)
     with pytest.raises(InputError, match="too few for a sphere"):
         fit_sphere(table, np.arange(5))
+
+
+def test_wide_light_on_a_ball_makes_its_radius_less_sure_by_its_square():
+    cloud, on = scan(np.random.default_rng(3))
+    indices = np.flatnonzero(on)
+    narrow, wide = (fit_sphere(cloud, indices, errors=PointErrors(stripe_px=width)) for width in (1.5, 3.0))
+    share = [next(row.u_mm for row in fit.budget if row.source == UNEVEN_LIGHT) for fit in (narrow, wide)]
+    assert share[1] == pytest.approx(4 * share[0])
+    assert wide.u_mm > narrow.u_mm > fit_sphere(cloud, indices, errors=PointErrors()).u_mm
