@@ -23,18 +23,19 @@ def test_a_sphere_of_50_mm_has_its_radius(sphere):
     _, measured = sphere
     fit = fit_sphere(measured.cloud, find_sphere(measured.cloud), errors=measured.errors)
     print(f"radius error {fit.radius_mm - 25.0:+.4f} mm, u {fit.u_mm:.4f} mm")
-    assert abs(fit.radius_mm - 25.0) <= 0.10
+    assert abs(fit.radius_mm - 25.0) <= 0.04
     assert abs(fit.radius_mm - 25.0) <= 3 * fit.u_mm
+    assert fit.form_mm <= 0.12
     assert np.linalg.norm(fit.centre - measured.truth.thing["centre_mm"]) < 0.3
 
 
 def test_a_sphere_has_its_radius_on_the_worst_of_five_seeds_too(tmp_path):
-    """Within 4 u: of what bends light on steep flanks σ only knows the size along them (core.image.shading)."""
+    """Too small, as all are: light lies unevenly on the flanks (core.image.shading)."""
     measured = measure(Scenario(object="sphere", height_mm=50.0, seed=5, scale=0.5, frames=60), tmp_path)
     fit = fit_sphere(measured.cloud, find_sphere(measured.cloud), errors=measured.errors)
     print(f"radius error {fit.radius_mm - 25.0:+.4f} mm, u {fit.u_mm:.4f} mm")
-    assert abs(fit.radius_mm - 25.0) <= 0.11
-    assert abs(fit.radius_mm - 25.0) <= 4 * fit.u_mm
+    assert abs(fit.radius_mm - 25.0) <= 0.06
+    assert abs(fit.radius_mm - 25.0) <= 3 * fit.u_mm
 
 
 @pytest.mark.parametrize(
