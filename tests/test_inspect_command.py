@@ -69,6 +69,7 @@ def test_a_cloud_alone_is_inspected_and_says_what_is_not_known(results, tmp_path
     said = json.loads(trisect("inspect", tmp_path / "lonely.ply", "--plan", results / "plan.toml", "--json").out)
     assert any("less than is known" in note for note in said["notes"])
     assert said["files"] == {}
+    assert said["verdict"] == "not proven"
     whole = json.loads(trisect("inspect", results / "cloud.ply", "--plan", results / "plan.toml", "--json").out)
     alone, known = (one["characteristics"][0] for one in (said, whole))
     assert alone["value"] == pytest.approx(known["value"], abs=0.2)

@@ -86,6 +86,7 @@ class _Characteristic(ResultFile):
     k: Finite = Field(gt=0, description="a number above 0")
     quantity: Literal["length", "angle"] = "length"
     limits: _Limits | None = None
+    complete: bool = True
     rule: str = ""
     notes: list[str] = Field(default_factory=list)
     budget: list[_Contribution] = Field(default_factory=list)
@@ -186,6 +187,7 @@ def _row(row: Characteristic, feature: str) -> dict[str, Any]:
         else {"nominal": limits.nominal, "lower": limits.lower, "upper": limits.upper},  # infinite: null
         "deviation": row.deviation,
         "verdict": row.verdict,
+        "complete": row.complete,
         "rule": row.rule,
         "notes": row.notes,
         "budget": [
@@ -243,4 +245,5 @@ def _characteristic(row: _Characteristic, path: Path) -> Characteristic:
         budget=tuple(one.row() for one in row.budget),
         rule=row.rule,
         notes=tuple(row.notes),
+        complete=row.complete,
     )

@@ -58,6 +58,8 @@ class Characteristic:
         In words, what exactly was measured.
     notes
         Whole sentences.
+    complete
+        Whether u holds all that is known to act on the value; if not, it is a lower bound and proves nothing.
     """
 
     name: str
@@ -70,6 +72,7 @@ class Characteristic:
     budget: tuple[Contribution, ...] = ()
     rule: str = ""
     notes: tuple[str, ...] = ()
+    complete: bool = True
 
     @property
     def U(self) -> float:
@@ -85,10 +88,10 @@ class Characteristic:
     def verdict(self) -> str:
         """Decision by ISO 14253-1: "conforming", "not conforming", "not proven", or "" without limits.
 
-        A value or an uncertainty that is not known proves nothing.
+        A value or an uncertainty that is not known, or not all of it, proves nothing.
         """
         if self.limits is None:
             return ""
-        if math.isnan(self.value) or math.isnan(self.u):
+        if not self.complete or math.isnan(self.value) or math.isnan(self.u):
             return NOT_PROVEN
         return decide_between(self.value - self.limits.nominal, self.limits.lower, self.limits.upper, self.U)

@@ -236,4 +236,5 @@ def _missing(errors: PointErrors) -> tuple[str, ...]:
     missing += [name for name, source in (("the camera", CAMERA), ("the fan", FAN_CALIBRATION)) if source not in known]
     if not missing:
         return ()
-    return (f"The stated uncertainties do not hold that of {', '.join(missing)}: they are less than is known.",)
+    proof = "" if errors.sweep_covariance is not None else ", and prove nothing"
+    return (f"The stated uncertainties do not hold that of {', '.join(missing)}: they are less than is known{proof}.",)
