@@ -83,6 +83,8 @@ class _RememberedIcon(QIconEngine):
         self._pixmaps: dict[tuple[int, int, QIcon.Mode, QIcon.State], QPixmap] = {}
 
     def pixmap(self, size: QSize, mode: QIcon.Mode, state: QIcon.State) -> QPixmap:
+        if size.isEmpty():
+            return QPixmap()  # a button without room; qtawesome would try to paint it
         key = size.width(), size.height(), mode, state
         if key not in self._pixmaps:
             self._pixmaps[key] = self._drawn.pixmap(size, 1.0, mode, state)

@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 import shiboken6
-from PySide6.QtCore import QSize
-from PySide6.QtGui import QColor
+from PySide6.QtCore import QRect, QSize
+from PySide6.QtGui import QColor, QPainter, QPixmap
 from PySide6.QtWidgets import QApplication, QFrame, QHBoxLayout, QWidget
 
 from workbench.theme import DARK, LIGHT, Shades, icon
@@ -69,3 +69,12 @@ def test_an_icon_has_the_colour_of_the_theme_and_is_drawn_once_a_size(qtbot: Any
         drawn[name] = pixmap.cacheKey()
         assert icon("mdi6.square").pixmap(QSize(24, 24)).cacheKey() == drawn[name]
     assert drawn["light"] != drawn["dark"]
+
+
+def test_an_icon_without_room_is_not_drawn(qtbot: Any, theme: Callable[[str], None]) -> None:
+    theme("light")
+    assert icon("mdi6.square").pixmap(QSize(0, 0)).isNull()
+    target = QPixmap(8, 8)
+    painter = QPainter(target)
+    icon("mdi6.square").paint(painter, QRect(0, 0, 0, 5))
+    painter.end()
