@@ -136,15 +136,21 @@ def fit_sphere(
     indices = find_sphere(cloud, seed=seed) if indices is None else indices
     if len(indices) < FEWEST:
         raise InputError(f"{len(indices)} points are too few for a sphere", where="point cloud")
-    fit = fit_surface(cloud, indices, through(cloud.points[indices]), errors or PointErrors())
-    rows = fit.budget(np.array([0.0, 0.0, 0.0, 1.0]))
-    if errors is not None and errors.stripe_px > 0:
-        uneven = _uneven_light(cloud.select(fit.indices), fit.shape, errors.stripe_px)
-        rows = (*rows, Contribution(UNEVEN_LIGHT, uneven))
+    errors = errors or PointErrors()
+    fit = fit_surface(cloud, indices, through(cloud.points[indices]), errors)
+    rows = radius_budget(cloud, fit, errors)
     ball = fit.shape
     return SphereFit(
         ball.centre, ball.radius, combined(rows), fit.form.value, fit.indices, fit.residuals, rows, fit.form.u, fit
     )
+
+
+def radius_budget(cloud: Cloud, fit: SurfaceFit[Ball], errors: PointErrors) -> tuple[Contribution, ...]:
+    """What makes the radius of a sphere fitted to points of `cloud` uncertain."""
+    rows = fit.budget(np.array([0.0, 0.0, 0.0, 1.0]))
+    if not errors.stripe_px > 0:
+        return rows
+    return (*rows, Contribution(UNEVEN_LIGHT, _uneven_light(cloud.select(fit.indices), fit.shape, errors.stripe_px)))
 
 
 def _uneven_light(cloud: Cloud, ball: Ball, stripe_px: float) -> float:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from core.errors import InputError
@@ -9,7 +11,7 @@ from core.inspect.elements import Element
 from core.inspect.features.measured import FeatureResult, Scene
 from core.inspect.features.regions import points_in
 from core.inspect.inspection_plan import Auto, FeatureSpec, PointsOf
-from core.inspect.sphere import find_sphere, through
+from core.inspect.sphere import find_sphere, radius_budget, through
 from core.inspect.surface_fit import FEWEST, fit_surface
 
 
@@ -28,7 +30,7 @@ def measure_sphere(spec: FeatureSpec, scene: Scene) -> FeatureResult:
     fit = fit_surface(cloud, np.sort(indices), start, scene.errors, tukey=filters.outliers, cell_mm=filters.cell_mm)
     ball = fit.shape
     rule = "diameter of the sphere of least squares, by the points' covariance"
-    rows = fit.budget(np.array([0.0, 0.0, 0.0, 2.0]))
+    rows = tuple(replace(row, u_mm=2 * row.u_mm) for row in radius_budget(cloud, fit, scene.errors))
     form_rule = "range that holds 95 % of the deviations from the sphere"
     return FeatureResult(
         spec,
