@@ -210,8 +210,8 @@ class MasterTable(Table):
 class PlanTables(Table):
     """What plan.toml holds."""
 
-    k: float = Field(2.0, ge=1, le=5, allow_inf_nan=False, description="a coverage factor from 1 to 5")
-    frame: FrameTable | None = Field(None, description="a table [frame] with primary and secondary")
-    temperature: TemperatureTable | None = Field(None, description="a table [temperature]")
-    master: MasterTable | None = Field(None, description="a table [master]")
+    k: float = Field(default=2.0, ge=1, le=5, allow_inf_nan=False, description="a coverage factor from 1 to 5")
+    frame: FrameTable | None = Field(default=None, description="a table [frame] with primary and secondary")
+    temperature: TemperatureTable | None = Field(default=None, description="a table [temperature]")
+    master: MasterTable | None = Field(default=None, description="a table [master]")
     feature: list[FeatureTable] = Field(default_factory=list, description="tables [[feature]]")
