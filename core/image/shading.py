@@ -15,7 +15,7 @@ the stripe's curvature in the picture, the centre lies off the plane by
 (the second term with weights that trust the flanks, as speckle asks for). On a rendered sphere of 50 mm at half
 resolution (s = 1, b = 1.03 px) that foretells the offset, 0.012 px rms and 0.03 px at the rim, to 0.0025 px rms where
 bend and emitter are given. Radially it is 0.010 mm on the flanks against nothing on the top, the same for all stripes,
-and the radius follows with 0.02 to 0.04 mm, the more the less of the sphere is seen; `core.inspect.sphere` counts it.
+and the radius follows with 0.03 to 0.05 mm, the more the less of the sphere is seen; `core.inspect.sphere` counts it.
 A fit of the bends to the measured surface does not reach the flanks, where most of it is, well enough to take it off.
 """
 

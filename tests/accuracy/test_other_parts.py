@@ -23,7 +23,7 @@ def test_a_sphere_of_50_mm_has_its_radius(sphere):
     _, measured = sphere
     fit = fit_sphere(measured.cloud, find_sphere(measured.cloud), errors=measured.errors)
     print(f"radius error {fit.radius_mm - 25.0:+.4f} mm, u {fit.u_mm:.4f} mm")
-    assert abs(fit.radius_mm - 25.0) <= 0.04
+    assert abs(fit.radius_mm - 25.0) <= 0.06
     assert abs(fit.radius_mm - 25.0) <= 3 * fit.u_mm
     assert fit.form_mm <= 0.12
     assert np.linalg.norm(fit.centre - measured.truth.thing["centre_mm"]) < 0.3
