@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from PySide6.QtCore import QEvent, QUrl
-from PySide6.QtGui import QDesktopServices
-from PySide6.QtWidgets import QCheckBox, QComboBox, QGridLayout, QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtGui import QAction, QDesktopServices
+from PySide6.QtWidgets import QCheckBox, QComboBox, QGridLayout, QLabel, QMenu, QPushButton, QVBoxLayout, QWidget
 
+from core.report.template import PAPERS
+from workbench.pages.report_exports import AT_HAND, EXPORTS
 from workbench.pages.report_presenter import ReportPresenter, Stage
+from workbench.pages.report_words import export_words
 from workbench.pages.step_page import StepPage, muted
 from workbench.theme import icon
 from workbench.views import ask
 from workbench.views.page_scroll import PageScroll
 from workbench.views.stage_card import CardButton, StageCard
-
-PAPERS = ("A4", "Letter")
 
 
 class ReportPage(StepPage):
@@ -33,10 +34,12 @@ class ReportPage(StepPage):
         self.add_to_side(self.card)
         self.add_to_side(self.warning)
         self.boxes: dict[str, QCheckBox] = {}
-        self.paper = QComboBox()
+        self.paper, self.language = QComboBox(), QComboBox()
+        self.template, self.no_template, self.template_name = QPushButton(), QPushButton(), QLabel()
         self.add_panel(self.tr("In the report"), self._choices())
-        self.exports: dict[str, QPushButton] = {}
-        self.folder = QPushButton(self.tr("Open the results folder"))
+        self.exports: dict[str, QPushButton | QAction] = {}
+        self.more = QPushButton(self.tr("More formats"))
+        self.folder = QPushButton(self.tr("Results folder"))
         self.add_panel(self.tr("Hand over"), self._hand_over())
         self._shown: object = None
         self._dress()
@@ -52,11 +55,16 @@ class ReportPage(StepPage):
             short = title.partition(",")[0]
             box.setText(self.tr("{0} (nothing yet)").format(short) if why else short)
             box.setToolTip(why or self.tr("{0}. What is left out is named on the last page.").format(title))
-        self.paper.setCurrentText(p.project.report.paper)
+        self._show_looks()
         for kind, button in self.exports.items():
             missing = p.export_missing(kind)
             button.setEnabled(not missing)
             button.setToolTip(missing or self._export_help(kind))
+        nothing = all(p.export_missing(kind) for kind in self.exports)
+        self.more.setEnabled(not nothing)
+        self.more.setToolTip(
+            p.export_missing("pdf") if nothing else self.tr("Other programs' formats: E57, 3MF, DFQ, QIF and more")
+        )
         why = "" if p.results_folder() is not None else self.tr("There are no results yet.")
         self.folder.setEnabled(not why)
         self.folder.setToolTip(why or str(p.results_folder()))
@@ -105,64 +113,104 @@ class ReportPage(StepPage):
             box.clicked.connect(lambda on, section=name: self.presenter.choose_section(section, on))
             self.boxes[name] = box
             column.addWidget(box)
-        row = QHBoxLayout()
-        label = QLabel(self.tr("Paper"))
-        label.setBuddy(self.paper)
-        row.addWidget(label)
-        self.paper.addItems(PAPERS)
-        self.paper.setAccessibleName(self.tr("Paper"))
-        self.paper.setToolTip(self.tr("What the report is printed on"))
-        self.paper.textActivated.connect(self.presenter.choose_paper)
-        row.addWidget(self.paper, 1)
-        column.addLayout(row)
+        column.addLayout(self._looks())
         column.addWidget(
             muted(self.tr("The result, what it does not cover, and the hash over all inputs are always printed."))
         )
         return inside
 
+    def _looks(self) -> QGridLayout:
+        """Paper, language and the company's template."""
+        grid = QGridLayout()
+        grid.setColumnStretch(1, 1)
+        self.paper.addItems(PAPERS)
+        for language, text in (("en", self.tr("English")), ("de", self.tr("German"))):
+            self.language.addItem(text, language)
+        for row, (box, title, tip) in enumerate(
+            (
+                (self.paper, self.tr("Paper"), self.tr("What the report is printed on")),
+                (self.language, self.tr("Language"), self.tr("The language of the report's fixed words")),
+            )
+        ):
+            label = QLabel(title)
+            label.setBuddy(box)
+            box.setAccessibleName(title)
+            box.setToolTip(tip)
+            grid.addWidget(label, row, 0)
+            grid.addWidget(box, row, 1, 1, 2)
+        self.paper.textActivated.connect(self.presenter.choose_paper)
+        self.language.activated.connect(lambda _: self.presenter.choose_language(self.language.currentData()))
+        self.template_name.setWordWrap(True)
+        self.template.setText(self.tr("Choose template"))
+        self.template.setToolTip(self.tr("Logo, address, colours and text of your laboratory, from a template.toml"))
+        self.no_template.setText(self.tr("None"))
+        self.template.clicked.connect(self._choose_template)
+        self.no_template.clicked.connect(lambda: self.presenter.choose_template(None))
+        grid.addWidget(QLabel(self.tr("Template")), 2, 0)
+        grid.addWidget(self.template_name, 2, 1, 1, 2)
+        grid.addWidget(self.template, 3, 1)
+        grid.addWidget(self.no_template, 3, 2)
+        return grid
+
+    def _show_looks(self) -> None:
+        report = self.presenter.project.report
+        self.paper.setCurrentText(report.paper)
+        self.language.setCurrentIndex(self.language.findData(report.language))
+        self.template_name.setText(report.template.rpartition("/")[2] or self.tr("none"))
+        self.template_name.setToolTip(report.template)
+        open_ = self.presenter.model.is_open
+        why_not = "" if open_ else self.tr("Open a project first.")
+        self.template.setEnabled(open_)
+        self.no_template.setEnabled(bool(report.template))
+        self.no_template.setToolTip(
+            why_not or (self.tr("Print without a template") if report.template else self.tr("No template is chosen."))
+        )
+
+    def _choose_template(self) -> None:
+        path = ask.choose_file_to_open(
+            self, self.tr("Template of the report"), self.presenter.model.folder, self.tr("Template (*.toml)")
+        )
+        if path is not None:
+            self.presenter.choose_template(path)
+
     def _hand_over(self) -> QWidget:
         inside = QWidget()
         grid = QGridLayout(inside)
         grid.setContentsMargins(0, 4, 0, 4)
-        for place, (kind, title, _, _) in enumerate(self._kinds()):
-            button = QPushButton(title)
-            button.clicked.connect(lambda _=False, k=kind: self._export(k))
-            self.exports[kind] = button
-            grid.addWidget(button, place // 2, place % 2)
+        menu = QMenu(self)
+        menu.setToolTipsVisible(True)
+        place = 0
+        for kind in EXPORTS:
+            title, _, _ = export_words(kind)
+            if kind in AT_HAND:
+                button = QPushButton(title)
+                button.clicked.connect(lambda _=False, k=kind: self._export(k))
+                grid.addWidget(button, place // 2, place % 2)
+                self.exports[kind] = button
+                place += 1
+            else:
+                action = menu.addAction(title)
+                action.triggered.connect(lambda _=False, k=kind: self._export(k))
+                self.exports[kind] = action
+        self.more.setMenu(menu)
         self.folder.clicked.connect(self._open_folder)
-        grid.addWidget(self.folder, 3, 0, 1, 2)
+        grid.addWidget(self.more, 3, 0)
+        grid.addWidget(self.folder, 3, 1)
         return inside
-
-    def _kinds(self) -> tuple[tuple[str, str, str, str], ...]:
-        """Kind, button, kind of file for the window that asks, icon."""
-        return (
-            ("pdf", self.tr("PDF"), self.tr("PDF (*.pdf)"), "mdi6.file-pdf-box"),
-            ("cloud", self.tr("PLY"), self.tr("PLY (*.ply)"), "mdi6.dots-hexagon"),
-            ("mesh", self.tr("PLY mesh"), self.tr("PLY (*.ply)"), "mdi6.triangle-outline"),
-            ("stl", self.tr("STL"), self.tr("STL (*.stl)"), "mdi6.cube-outline"),
-            ("csv", self.tr("CSV"), self.tr("CSV (*.csv)"), "mdi6.table"),
-            ("json", self.tr("JSON"), self.tr("JSON (*.json)"), "mdi6.code-json"),
-        )
 
     def _export_help(self, kind: str) -> str:
         if kind == "pdf" and self.presenter.stage is not Stage.MADE:
             return self.tr("Make the report as it is shown here, and write a copy where you want it")
-        return {
-            "pdf": self.tr("The report, for people"),
-            "cloud": self.tr("All points in mm with normal, σ and frame, for other programs"),
-            "mesh": self.tr("The surface as triangles, in mm"),
-            "stl": self.tr("The surface as triangles, in mm, for CAD programs and printers"),
-            "csv": self.tr("All points as a table, in mm, for a spreadsheet"),
-            "json": self.tr("The thickness with U, flatness, parallelism and verdict, for other programs"),
-        }[kind]
+        return export_words(kind)[1]
 
     def _dress(self) -> None:
-        for kind, _, _, symbol in self._kinds():
-            self.exports[kind].setIcon(icon(symbol))
+        for kind, button in self.exports.items():
+            button.setIcon(icon(export_words(kind)[2]))
         self.folder.setIcon(icon("mdi6.folder-open-outline"))
 
     def _export(self, kind: str) -> None:
-        kinds = next(files for one, _, files, _ in self._kinds() if one == kind)
+        ending = EXPORTS[kind].ending
+        kinds = f"{ending.removeprefix('.').upper()} (*{ending})"
         path = ask.choose_file_to_save(self, self.tr("Write a copy"), self.presenter.export_place(kind), kinds)
         if path is not None:
             self.presenter.export(kind, path)

@@ -13,14 +13,12 @@ from core.report.section_names import SECTIONS
 from workbench import jobs
 from workbench.bench import Bench
 from workbench.pages.presenter import StepPresenter
+from workbench.pages.report_exports import EXPORTS
 from workbench.problems import sentence
 from workbench.step_state import State
 from workbench.tasks import Task
 
 PAGE_WIDTH_PX = 1400
-
-ENDINGS = {"pdf": ".pdf", "cloud": ".ply", "mesh": ".ply", "stl": ".stl", "csv": ".csv", "json": ".json"}
-"""What can be handed over, and how the file's name ends."""
 
 EXPORT_FOLDER = "export folder"
 
@@ -80,6 +78,26 @@ class ReportPresenter(StepPresenter):
         report = replace(self.project.report, paper=paper)
         self.model.edit(self.tr("print on {0}").format(paper), replace(self.project, report=report))
 
+    def choose_language(self, language: Any) -> None:
+        """English or German; undoable."""
+        report = replace(self.project.report, language=language)
+        self.model.edit(self.tr("language of the report"), replace(self.project, report=report))
+
+    def choose_template(self, path: Path | None) -> None:
+        """Print with the template in this file (None: without any), and as it says; undoable."""
+        folder, choices = self.model.folder, self.project.report
+        if folder is None:
+            return
+
+        def done(report: Any) -> None:
+            if folder == self.model.folder and choices == self.project.report:
+                label = self.tr("report without a template") if path is None else self.tr("template of the report")
+                self.model.edit(label, replace(self.project, report=report))
+
+        self.bench.glance(
+            jobs.CHOOSE_TEMPLATE, folder, choices, path, label=self.tr("Reading the template"), on_done=done, offers={}
+        )
+
     # ---- how far it is
 
     @property
@@ -131,8 +149,9 @@ class ReportPresenter(StepPresenter):
         self._make("")
 
     def export(self, kind: str, path: Path) -> None:
-        """Write a copy for others, of a kind in ENDINGS; a report that is not up to date is made first."""
-        path = path if path.suffix.lower() == ENDINGS[kind] else path.with_name(path.name + ENDINGS[kind])
+        """Write a copy for others, of a kind in EXPORTS; a report that is not up to date is made first."""
+        ending = EXPORTS[kind].ending
+        path = path if path.suffix.lower() == ending else path.with_name(path.name + ending)
         self.bench.settings.keep_text(EXPORT_FOLDER, str(path.parent))
         if kind == "pdf" and self.stage is not Stage.MADE and not self.read_only:
             self._make(path)
@@ -141,11 +160,14 @@ class ReportPresenter(StepPresenter):
 
     def export_missing(self, kind: str) -> str:
         """Why this cannot be handed over yet, or ""."""
+        needs, results = EXPORTS[kind].needs, self.model.results
+        if needs == "camera":
+            return "" if "camera" in results else self.tr("Calibrate the camera first.")
         if not self.ready():
             return self.tr("Scan the part first.")
         if kind == "pdf" and self._making is not None:
             return self.tr("The report is being made.")
-        if kind == "json" and "inspect" not in self.model.results:
+        if needs == "inspect" and "inspect" not in results and (kind == "json" or "features" not in results):
             return self.tr("Measure the thickness first.")
         return ""
 
@@ -153,9 +175,16 @@ class ReportPresenter(StepPresenter):
         """The file proposed for an export: where the last one was put, called like the part."""
         name = self.project.info.part or self.project.info.name or self.tr("result")
         name = "".join("-" if c in '<>:"/\\|?*' or ord(c) < 32 else c for c in name).strip(" .") or self.tr("result")
-        name += {"mesh": self.tr(" surface"), "json": self.tr(" thickness")}.get(kind, "")
+        words = {
+            "surface": self.tr("surface"),
+            "thickness": self.tr("thickness"),
+            "results": self.tr("results"),
+            "camera": self.tr("camera"),
+        }
+        called = EXPORTS[kind].called
+        name += f" {words[called]}" if called else ""
         folder = Path(self.bench.settings.text(EXPORT_FOLDER, str(self.model.folder or Path.home())))
-        return (folder if folder.is_dir() else Path.home()) / (name + ENDINGS[kind])
+        return (folder if folder.is_dir() else Path.home()) / (name + EXPORTS[kind].ending)
 
     def results_folder(self) -> Path | None:
         """Where the results lie; None if there are none."""
@@ -229,6 +258,7 @@ class ReportPresenter(StepPresenter):
             project.options.part,
             results.get("scan"),
             results.get("inspect"),
+            results.get("features"),
         )
 
     def _refresh_preview(self) -> None:

@@ -15,6 +15,7 @@ from core.files.project import Project, new_project
 from core.files.project_keys import finished
 from tests.workbench.pages.test_report_presenter import PAGES, Drawing, measured
 from workbench.bench import Bench
+from workbench.pages.report_exports import AT_HAND
 from workbench.pages.report_page import ReportPage
 from workbench.pages.report_presenter import ReportPresenter
 from workbench.views import ask
@@ -50,7 +51,8 @@ def test_an_empty_project_says_what_comes_first_everywhere(page: ReportPage) -> 
     assert page.card.title.text() == "Nothing to report yet"
     assert not page.make.isEnabled()
     assert page.make.toolTip() == "Scan the part first; then there is something to report."
-    assert {button.toolTip() for button in page.exports.values()} == {"Scan the part first."}
+    assert {page.exports[kind].toolTip() for kind in AT_HAND} == {"Scan the part first."}
+    assert page.exports["ros"].toolTip() == "Calibrate the camera first."
     assert page.folder.toolTip() == "There are no results yet."
     assert not any(button.isEnabled() for button in (*page.exports.values(), page.folder))
 
@@ -107,7 +109,24 @@ def test_the_button_makes_the_report_and_then_makes_it_again(page: ReportPage, d
     qtbot.waitUntil(lambda: page.card.title.text() == "The report is made")
 
 
-@pytest.mark.parametrize("kind", ["pdf", "cloud", "mesh", "stl", "csv", "json"])
+def test_language_and_template_are_chosen(
+    page: ReportPage, qtbot: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    page.language.setFocus()
+    qtbot.keyClick(page.language, Qt.Key.Key_Down)
+    assert page.presenter.project.report.language == "de"
+    assert page.no_template.toolTip() == "No template is chosen."
+    path = tmp_path / "project" / "house.toml"
+    path.write_text('name = "Laboratory"\nlanguage = "en"\n', encoding="utf-8")
+    monkeypatch.setattr(ask, "choose_file_to_open", lambda *_: path)
+    click(qtbot, page.template)
+    qtbot.waitUntil(lambda: page.template_name.text() == "house.toml")
+    assert page.language.currentText() == "English"
+    click(qtbot, page.no_template)
+    qtbot.waitUntil(lambda: page.template_name.text() == "none")
+
+
+@pytest.mark.parametrize("kind", AT_HAND)
 def test_each_kind_is_handed_over_by_its_button(
     page: ReportPage, drawing: Drawing, qtbot: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, kind: str
 ) -> None:
@@ -124,6 +143,20 @@ def test_each_kind_is_handed_over_by_its_button(
     (_, _, proposed, kinds) = wanted[0]
     assert f"*{proposed.suffix}" in kinds
     assert drawing.exported == [(kind, tmp_path / f"copy{proposed.suffix}")]
+
+
+def test_other_formats_are_in_a_menu(
+    page: ReportPage, drawing: Drawing, qtbot: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert page.more.toolTip() == "Scan the part first." and not page.more.isEnabled()
+    measured(page.presenter)
+    monkeypatch.setattr(ask, "choose_file_to_save", lambda *_: tmp_path / "copy")
+    menu = page.more.menu()
+    assert menu is not None and set(menu.actions()) | {page.exports[kind] for kind in AT_HAND} == set(
+        page.exports.values()
+    )
+    page.exports["e57"].trigger()  # type: ignore[union-attr]
+    qtbot.waitUntil(lambda: drawing.exported == [("e57", tmp_path / "copy.e57")])
 
 
 def test_nothing_is_written_where_no_file_is_chosen(
@@ -157,5 +190,6 @@ def test_at_the_smallest_window_nothing_is_cut(page: ReportPage, drawing: Drawin
     page.resize(1024 - 182, 600)
     measured(page.presenter)
     page.presenter.model.record("report", finished("report", Project(), {}))
-    for widget in (*page.boxes.values(), *page.exports.values(), page.make, page.folder):
+    buttons = [page.exports[kind] for kind in AT_HAND] + [page.more, page.folder, page.template, page.no_template]
+    for widget in (*page.boxes.values(), *buttons, page.make):
         assert widget.width() >= widget.minimumSizeHint().width(), widget.text()

@@ -13,9 +13,11 @@ import pytest
 from core.errors import InputError
 from core.files.project import Project, Repeat, new_project
 from core.files.project_keys import finished
+from core.pipeline import export_kinds
 from tests.workbench.hand_lane import HandLane
 from workbench import jobs
 from workbench.bench import Bench
+from workbench.pages.report_exports import EXPORTS
 from workbench.pages.report_presenter import ReportPresenter, Stage
 from workbench.step_state import State
 
@@ -250,12 +252,62 @@ def test_why_nothing_can_be_drawn_is_told_in_place_of_the_pages(shown: ReportPre
     assert not shown.drawing
 
 
+# ---- how it looks
+
+
+def test_the_language_is_chosen_and_taken_back(shown: ReportPresenter) -> None:
+    shown.choose_language("de")
+    assert shown.project.report.language == "de"
+    shown.model.undo_stack.undo()
+    assert shown.project.report.language == "en"
+
+
+def test_a_template_brings_what_it_names_and_is_put_away_again(
+    shown: ReportPresenter, drawing: Drawing, tmp_path: Path, qtbot: Any
+) -> None:
+    drawing.lane.held = set()
+    drawing.lane.answers[jobs.PREVIEW_REPORT] = lambda folder, project, width: PAGES
+    path = tmp_path / "project" / "house.toml"
+    path.write_text('name = "Laboratory"\npaper = "Letter"\nlanguage = "de"\n', encoding="utf-8")
+    shown.choose_template(path)
+    qtbot.waitUntil(lambda: shown.project.report.template == "house.toml")
+    assert (shown.project.report.paper, shown.project.report.language) == ("Letter", "de")
+    shown.choose_template(None)
+    qtbot.waitUntil(lambda: shown.project.report.template == "")
+    shown.model.undo_stack.undo()
+    shown.model.undo_stack.undo()
+    assert (shown.project.report.template, shown.project.report.paper) == ("", "A4")
+
+
+def test_a_template_that_cannot_be_read_is_told_and_changes_nothing(
+    shown: ReportPresenter, drawing: Drawing, tmp_path: Path, qtbot: Any
+) -> None:
+    drawing.lane.held = set()
+    drawing.lane.answers[jobs.PREVIEW_REPORT] = lambda folder, project, width: PAGES
+    before = shown.project
+    shown.choose_template(tmp_path / "missing.toml")
+    qtbot.waitUntil(lambda: bool(shown.bench.notices.all))
+    assert "missing.toml" in shown.bench.notices.all[-1].text and shown.project == before
+
+
 # ---- hand over
+
+
+def test_everything_the_program_can_hand_over_is_offered() -> None:
+    written = {kind.name: (kind.ending, kind.needs) for kind in export_kinds.EXPORTS.values()}
+    assert {name: (one.ending, one.needs) for name, one in EXPORTS.items()} == written
+    assert list(EXPORTS) == list(export_kinds.EXPORTS)
 
 
 @pytest.mark.parametrize(
     ("kind", "name"),
-    [("cloud", "Block.ply"), ("mesh", "Block surface.ply"), ("stl", "Block.stl"), ("csv", "Block.csv")],
+    [
+        ("cloud", "Block.ply"),
+        ("mesh", "Block surface.ply"),
+        ("stl", "Block.stl"),
+        ("csv", "Block.csv"),
+        ("qif", "Block results.qif"),
+    ],
 )
 def test_a_copy_is_written_where_it_is_wanted_and_the_next_is_proposed_there(
     shown: ReportPresenter, drawing: Drawing, tmp_path: Path, qtbot: Any, kind: str, name: str
@@ -295,8 +347,8 @@ def test_a_read_only_projects_report_is_exported_elsewhere_but_not_kept_with_it(
 
 def test_without_a_thickness_only_its_file_is_missing(report: ReportPresenter) -> None:
     measured(report, "camera", "planes", "scan")
-    missing = {kind: report.export_missing(kind) for kind in ("pdf", "cloud", "mesh", "stl", "csv", "json")}
-    assert {kind for kind, why in missing.items() if why} == {"json"}
+    missing = {kind: report.export_missing(kind) for kind in EXPORTS}
+    assert {kind for kind, why in missing.items() if why} == {"table", "xlsx", "results", "dfq", "qif", "json"}
     assert missing["json"] == "Measure the thickness first."
 
 
