@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -78,3 +79,18 @@ def mark(number: int) -> str:
     """The sign drawn for a class: + ++ +++ outwards, − −− −−− inwards, with ! beyond the tolerance."""
     outwards = MARKS[abs(int(number))]
     return outwards if number >= 0 else outwards.replace("+", "−")
+
+
+def bounds(number: int, tolerance_mm: float) -> tuple[float, float]:
+    """From where to where a class goes, in mm; −inf or inf beyond the tolerance.
+
+    Examples
+    --------
+    >>> bounds(0, 0.1), bounds(-4, 0.1)
+    ((-0.025, 0.025), (-inf, -0.1))
+    """
+    ends = (0.0, *(quarter * tolerance_mm for quarter in QUARTERS), math.inf)
+    if number == 0:
+        return -ends[1], ends[1]
+    low, high = ends[abs(number)], ends[abs(number) + 1]
+    return (low, high) if number > 0 else (-high, -low)

@@ -8,8 +8,60 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.inspect.characteristic import Characteristic
-from core.inspect.deviation_map import DeviationMap
-from core.inspect.profile import Profile
+from core.model.arrays import Array
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class ShownProfile:
+    """A cross-section as it is drawn: positions along it and heights, in mm.
+
+    Parameters
+    ----------
+    position, height
+        (M,) of its points, or of as many as can be drawn.
+    mean_position, mean_height
+        (K,) of the profile averaged over steps.
+    """
+
+    position: Array
+    height: Array
+    mean_position: Array
+    mean_height: Array
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class ShownClass:
+    """One class of deviations: its `mark` as "++", from where to where it goes, how many places, and some of them.
+
+    `low_mm`, `high_mm`: −inf and inf for those beyond the tolerance. `share` of all places. `places` (M, 3) in mm.
+    """
+
+    mark: str
+    number: int
+    low_mm: float
+    high_mm: float
+    share: float
+    places: NDArray[np.float32]
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class ShownDeviations:
+    """A comparison with a nominal surface as it is drawn.
+
+    Parameters
+    ----------
+    classes
+        From the farthest inwards to the farthest outwards.
+    edges, counts
+        (B + 1,) in mm and (B,): the histogram.
+    tolerance_mm
+        What the classes are quarters of.
+    """
+
+    classes: tuple[ShownClass, ...]
+    edges: Array
+    counts: NDArray[np.int64]
+    tolerance_mm: float
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -41,8 +93,8 @@ class ShownFeature:
     places: NDArray[np.float32]
     uv: NDArray[np.float32]
     problem: str = ""
-    profile: Profile | None = None
-    deviations: DeviationMap | None = None
+    profile: ShownProfile | None = None
+    deviations: ShownDeviations | None = None
 
 
 @dataclass(frozen=True, eq=False, slots=True)

@@ -10,9 +10,11 @@ from core.errors import InputError
 from core.files.inspection_file import NAME, write_inspection
 from core.files.inspection_plan_file import plan_tables
 from core.files.project_data import Project
+from core.inspect.deviation_map import QUARTERS, DeviationMap, bounds, mark
 from core.inspect.evaluate import Inspection
 from core.inspect.features.measured import FeatureResult
-from core.inspect.shown_features import ShownFeature, ShownInspection
+from core.inspect.profile import Profile
+from core.inspect.shown_features import ShownClass, ShownDeviations, ShownFeature, ShownInspection, ShownProfile
 from core.pipeline.gauge_complaints import in_a_project
 from core.pipeline.inspect_step import InspectedScan, inspect, open_scan
 from core.pipeline.project_steps import results_folder
@@ -67,6 +69,22 @@ def _feature(result: FeatureResult, cloud: Cloud) -> ShownFeature:
         places=cloud.points[sample].astype(np.float32),
         uv=cloud.uv[sample].astype(np.float32),
         problem=result.problem,
-        profile=result.profile,
-        deviations=result.deviations,
+        profile=None if result.profile is None else _profile(result.profile),
+        deviations=None if result.deviations is None else _deviations(result.deviations),
     )
+
+
+def _profile(profile: Profile) -> ShownProfile:
+    order = np.argsort(profile.position, kind="stable")[:: max(1, -(-len(profile.position) // MOST_DRAWN))]
+    return ShownProfile(profile.position[order], profile.height[order], profile.mean_position, profile.mean_height)
+
+
+def _deviations(found: DeviationMap) -> ShownDeviations:
+    numbers, most = found.classes, -(-len(found.points) // MOST_DRAWN)
+    classes = []
+    for number in range(-len(QUARTERS), len(QUARTERS) + 1):
+        mine = np.flatnonzero(numbers == number)
+        low, high = bounds(number, found.tolerance_mm)
+        places = found.points[mine[:: max(1, most)]].astype(np.float32)
+        classes.append(ShownClass(mark(number), number, low, high, len(mine) / max(1, len(numbers)), places))
+    return ShownDeviations(tuple(classes), *found.histogram(), found.tolerance_mm)

@@ -4,11 +4,14 @@ import json
 import shutil
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from core.errors import InputError
 from core.files.inspection_plan_file import write_plan
-from core.inspect.inspection_plan import Auto, FeatureSpec, InspectionPlan
+from core.files.ply import read_mesh
+from core.files.stl import write_stl
+from core.inspect.inspection_plan import Auto, Deviation, FeatureSpec, InspectionPlan, Section
 from core.pipeline.inspect_step import inspect_step
 from core.pipeline.project_inspection import look_at_features, measure_features
 from core.pipeline.project_steps import results_folder
@@ -52,6 +55,29 @@ def test_what_cannot_be_measured_says_why_and_the_rest_is_measured(done, folder)
     shown = measure_features(folder, replace(done.project, inspection=plan))
     assert shown.features[3].problem and not shown.features[3].rows
     assert shown.features[2].rows
+
+
+def test_what_is_drawn_of_a_section_and_of_deviations_is_of_the_scan(done, folder):
+    write_stl(folder / "nominal.stl", read_mesh(results_folder(folder) / "mesh.ply"))
+    across = Section(
+        (
+            (0.0, done.camera.camera.image_size[1] / 2),
+            (done.camera.camera.image_size[0] - 1.0, done.camera.camera.image_size[1] / 2),
+        )
+    )
+    plan = InspectionPlan(
+        (
+            FeatureSpec("cut", "section", section=across),
+            FeatureSpec("itself", "deviation", deviation=Deviation("nominal.stl", "as measured", 0.4)),
+        )
+    )
+    cut, itself = measure_features(folder, replace(done.project, inspection=plan)).features
+    assert not cut.problem and not itself.problem
+    assert np.all(np.diff(cut.profile.position) >= 0) and len(cut.profile.position) == len(cut.profile.height)
+    shares = [one.share for one in itself.deviations.classes]
+    assert sum(shares) == pytest.approx(1) and shares[4] > 0.9
+    assert [one.mark for one in itself.deviations.classes][:2] == ["−!", "−−−"]
+    assert int(itself.deviations.counts.sum()) > 0
 
 
 def test_without_a_scan_it_is_one_sentence(done, tmp_path):

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 from numpy.typing import ArrayLike
 from PySide6.QtCore import QObject
 
@@ -16,6 +18,7 @@ if TYPE_CHECKING:
 
     from workbench.pages.inspect_features import InspectFeatures
 
+LINE = "line of the section"
 REGION = "region of the feature"
 
 NO_PICTURE = (1280, 960)
@@ -94,8 +97,16 @@ class InspectFeatureEdit(QObject):
         spec = self.spec
         if spec is None or place >= len(spec.regions):
             return
-        region = Polygon(tuple((float(u), float(v)) for u, v in corners))  # type: ignore[union-attr]
+        region = Polygon(tuple((float(u), float(v)) for u, v in np.asarray(corners)))
         self._put(spec, fields.with_region(spec, place, region))
+
+    def set_line(self, ends: ArrayLike) -> None:
+        """Lay the chosen section between two places of the picture; undoable."""
+        spec = self.spec
+        if spec is not None and spec.section is not None:
+            first, second = np.asarray(ends)
+            line = (float(first[0]), float(first[1])), (float(second[0]), float(second[1]))
+            self._put(spec, replace(spec, section=replace(spec.section, line_px=line)))
 
     @property
     def meant(self) -> str:

@@ -78,11 +78,14 @@ def add_deviation(form: SettingsForm) -> None:
 
 def add_section(form: SettingsForm, section: Section) -> None:
     """Where the cut is, and how wide."""
-    for place, title in enumerate((_tr("From"), _tr("To")) if section.line_px is not None else ()):
+    ends = (
+        (_tr("From"), _tr("Where it begins; drag its end in the picture.")),
+        (_tr("To"), _tr("Where it ends; drag its end in the picture.")),
+    )
+    for place, (title, help) in enumerate(ends if section.line_px is not None else ()):
         for axis, name in enumerate("uv"):
             form.add_number(
-                f"line {place} {axis}", f"{title}, {name}", "px",
-                _tr("A pixel of the picture: the cut goes from the first to the second."),
+                f"line {place} {axis}", f"{title}, {name}", "px", help,
                 minimum=-MOST_PX, maximum=MOST_PX, decimals=1, step=10.0,
             )  # fmt: skip
     form.add_number(

@@ -9,11 +9,12 @@ from PySide6.QtCore import QCoreApplication
 
 from core.inspect.inspection_plan import Kind
 from core.report.wording import decision_sentence, grouped, shown_unit, value_line, with_uncertainty
+from workbench.pages.inspect_words import Row
 
 if TYPE_CHECKING:
     from core.inspect.characteristic import Characteristic
     from core.inspect.inspection_plan import FeatureSpec
-    from core.inspect.shown_features import ShownFeature
+    from core.inspect.shown_features import ShownDeviations, ShownFeature
 
 SYMBOLS: dict[Kind, str] = {
     "plane": "mdi6.square-outline",
@@ -100,6 +101,26 @@ def verdict(feature: ShownFeature) -> str:
     """The worst of a feature's verdicts; "" where nothing is asked."""
     found = {row.verdict for row in feature.rows}
     return next((one for one in WORST_FIRST if one in found), "")
+
+
+def result_rows(feature: ShownFeature) -> list[Row]:
+    """Each result of a feature with its uncertainty."""
+    return [(short_name(row, feature.name), value(row), tip(row), "") for row in feature.rows]
+
+
+def class_rows(found: ShownDeviations) -> list[Row]:
+    """The share of each class of deviations, outwards first."""
+    rows: list[Row] = []
+    for one in reversed(found.classes):
+        if math.isinf(one.high_mm):
+            span = _tr("over {0} mm").format(f"{one.low_mm:+g}")
+        elif math.isinf(one.low_mm):
+            span = _tr("under {0} mm").format(f"{one.high_mm:+g}".replace("-", "−"))
+        else:
+            span = _tr("{0} to {1} mm").format(*(f"{end:+g}".replace("-", "−") for end in (one.low_mm, one.high_mm)))
+        name = f"{one.mark}  {span}" if one.mark else span
+        rows.append((name, f"{one.share:.1%}", _tr("Share of all places compared"), ""))
+    return rows
 
 
 def used(feature: ShownFeature) -> str:

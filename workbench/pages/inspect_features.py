@@ -15,6 +15,7 @@ from core.files.project_keys import finished, rests_on
 from core.inspect.inspection_plan import FeatureSpec, InspectionPlan, PointsOf
 from workbench import jobs
 from workbench.pages.inspect_feature_edit import InspectFeatureEdit
+from workbench.pages.inspect_templates import InspectTemplates
 from workbench.problems import sentence
 from workbench.tasks import Task
 
@@ -37,6 +38,7 @@ class InspectFeatures(QObject):
         self.problem = ""
         self.chosen = ""
         self.edit = InspectFeatureEdit(self)
+        self.templates = InspectTemplates(self)
 
     # ---- the plan
 

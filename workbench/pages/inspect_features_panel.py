@@ -24,6 +24,7 @@ from workbench.pages import inspect_feature_values as fields
 from workbench.pages import inspect_feature_words as words
 from workbench.pages.inspect_feature_form import FeatureForm
 from workbench.pages.inspect_presenter import InspectPresenter
+from workbench.pages.inspect_templates_button import TemplatesButton
 from workbench.pages.step_page import muted
 from workbench.theme import icon
 from workbench.views import ask
@@ -46,6 +47,7 @@ class FeaturesPanel(QWidget):
         self._presenter, self._features = presenter, presenter.features
         self._shown: object = None
         self.list, self.add, self.measure = QTreeWidget(), QPushButton(), QPushButton()
+        self.templates = TemplatesButton(presenter.features.templates)
         self.remove, self.up, self.down = QToolButton(), QToolButton(), QToolButton()
         self.state, self.form = muted(), FeatureForm(presenter)
         self.kinds: dict[Kind, QAction] = {}
@@ -60,6 +62,9 @@ class FeaturesPanel(QWidget):
         for button in (self.remove, self.up, self.down):
             button.setAutoRaise(True)
             row.addWidget(button)
+        column.addLayout(row)
+        row = QHBoxLayout()
+        row.addWidget(self.templates, 1)
         row.addWidget(self.measure, 1)
         column.addLayout(row)
         column.addWidget(self.state)
@@ -75,6 +80,7 @@ class FeaturesPanel(QWidget):
             widget.setVisible(some)
         self._show_list()
         self._show_buttons()
+        self.templates.refresh()
         self.state.setText(self._sentence())
         self.state.setVisible(bool(self.state.text()))
         self.form.refresh()
@@ -84,6 +90,7 @@ class FeaturesPanel(QWidget):
         if event.type() == QEvent.Type.PaletteChange and hasattr(self, "form"):
             self._dress()
             self._shown = None
+            self._show_list()
 
     # ---- the list
 
@@ -215,6 +222,9 @@ class FeaturesPanel(QWidget):
             return self.tr("Steps, spheres, flatness, sections and more, beside the thickness.")
         if features.problem:
             return features.problem
+        chosen = features.result(features.chosen)
+        if chosen is not None and chosen.problem:
+            return chosen.problem
         if features.measuring or features.shown is not None:
             shown = features.shown
             return "" if shown is None else "\n".join(shown.notes)

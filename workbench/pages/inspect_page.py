@@ -12,11 +12,15 @@ from workbench.pages.inspect_features_panel import FeaturesPanel
 from workbench.pages.inspect_panels import FacesPanel, ResultPanel
 from workbench.pages.inspect_picks_panel import PicksPanel
 from workbench.pages.inspect_picture import PictureTab
+from workbench.pages.inspect_plot import PlotTab
 from workbench.pages.inspect_presenter import InspectPresenter, Stage
 from workbench.pages.inspect_series import RepeatsTab
 from workbench.pages.inspect_surface import SurfaceTab
 from workbench.pages.step_page import StepPage
 from workbench.views.stage_card import CardButton, StageCard
+
+REPEATS, PLOT = 2, 3
+"""Places of these tabs."""
 
 
 class InspectPage(StepPage):
@@ -28,10 +32,12 @@ class InspectPage(StepPage):
         super().__init__(presenter, parent)
         self.tabs = QTabWidget()
         self.surface, self.picture, self.series = SurfaceTab(presenter), PictureTab(presenter), RepeatsTab(presenter)
+        self.plot = PlotTab(presenter)
         for tab, title, tip in (
             (self.surface, self.tr("Surface"), self.tr("The measured points and the mesh in 3D")),
             (self.picture, self.tr("Picture"), self.tr("The two faces in the camera's picture; draw regions here")),
             (self.series, self.tr("Repeats"), self.tr("The thickness over several scans of the part")),
+            (self.plot, self.tr("Plot"), self.tr("The profile or the deviations of the chosen feature")),
         ):
             self.tabs.setTabToolTip(self.tabs.addTab(tab, title), tip)
         self.centre.addWidget(self.tabs, 1)
@@ -65,7 +71,8 @@ class InspectPage(StepPage):
         for panel in (self.result, self.faces, self.features, self.picks):
             panel.refresh()
         count = len(p.repeats.all)
-        self.tabs.setTabText(2, self.tr("Repeats ({0})").format(count) if count else self.tr("Repeats"))
+        self.tabs.setTabText(REPEATS, self.tr("Repeats ({0})").format(count) if count else self.tr("Repeats"))
+        self.tabs.setTabVisible(PLOT, bool(p.features.plan.features))
         self._refresh_tab()
 
     def changeEvent(self, event: QEvent) -> None:
@@ -88,7 +95,7 @@ class InspectPage(StepPage):
         QTimer.singleShot(1, self, lambda: self.tabs.setCurrentWidget(self.series))
 
     def _draw(self, face: str, kind: Any) -> None:
-        if self.tabs.currentWidget() is self.series:
+        if self.tabs.currentWidget() not in (self.surface, self.picture):
             self.tabs.setCurrentWidget(self.picture)
         tab: Any = self.tabs.currentWidget()
         tab.start_region(face, kind)

@@ -8,6 +8,7 @@ from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLabel, QVBoxLayout, QWidg
 
 from core.inspect.inspection_plan import Polygon
 from workbench.pages.inspect_faces import FACES
+from workbench.pages.inspect_feature_edit import LINE
 from workbench.pages.inspect_presenter import RELIEF, InspectPresenter, Stage
 from workbench.pages.step_page import muted
 from workbench.views.colours import FACE_LOWER, FACE_UPPER, FEATURE
@@ -147,6 +148,12 @@ class PictureTab(QWidget):
             else:
                 self.image.remove_layer(name)
         self._regions = len(regions)
+        section = None if spec is None else spec.section
+        if section is not None and section.line_px is not None:
+            title = self.tr("cut of {0}").format(spec.name if spec is not None else "")
+            self.image.set_polygon(LINE, section.line_px, editable=True, colour=FEATURE, title=title)
+        else:
+            self.image.remove_layer(LINE)
         if result is None or not len(result.uv):
             self.image.remove_layer(USED)
         else:

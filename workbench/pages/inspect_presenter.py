@@ -15,6 +15,7 @@ from core.files.project_keys import finished
 from workbench import jobs
 from workbench.bench import Bench
 from workbench.pages.inspect_faces import FACES, InspectFaces
+from workbench.pages.inspect_feature_edit import LINE
 from workbench.pages.inspect_features import InspectFeatures
 from workbench.pages.inspect_picks import InspectPicks
 from workbench.pages.inspect_repeats import InspectRepeats
@@ -270,6 +271,8 @@ class InspectPresenter(StepPresenter):
         """Take a polygon of the picture for the region of that name: of a face, or of the chosen feature."""
         if name in FACES:
             self.faces.set_region(name, corners)
+        elif name == LINE:
+            self.features.edit.set_line(corners)
         else:
             self.features.edit.set_region(self.features.edit.place_of(name), corners)
 

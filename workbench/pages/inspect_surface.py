@@ -15,7 +15,7 @@ from workbench.pages import inspect_words as words
 from workbench.pages.inspect_choices import Shape, SurfaceChoices
 from workbench.pages.inspect_picks import Pick, Span
 from workbench.pages.inspect_presenter import InspectPresenter, Stage
-from workbench.views.colours import FACE_LOWER, FACE_UPPER, FEATURE, to_rgba
+from workbench.views.colours import DEVIATIONS, FACE_LOWER, FACE_UPPER, FEATURE, to_rgba
 from workbench.views.scene_view import SceneView
 
 if TYPE_CHECKING:
@@ -43,6 +43,7 @@ class SurfaceTab(QWidget):
         self._drawn: tuple[object, ...] = ()
         self._marked: list[str] = []
         self._feature: ShownFeature | None = None
+        self._highlights: list[str] = []
         self._cloud: tuple[object, ...] = ()
         self._mesh: tuple[object, ...] = ()
         self._oriented = False
@@ -127,7 +128,7 @@ class SurfaceTab(QWidget):
             message = self.tr("Reading the scan …")
         self._later.stop()
         self._drawn = self._cloud = self._mesh = ()
-        self._marked, self._oriented, self._feature = [], False, None
+        self._marked, self._oriented, self._feature, self._highlights = [], False, None, []
         self.scene.clear(message)
         self.line.setText("")
         self.hint.setText("")
@@ -203,10 +204,21 @@ class SurfaceTab(QWidget):
         if result is self._feature:
             return
         self._feature = result
-        if result is None or not len(result.places):
-            self.scene.remove_highlight("feature")
-        else:
-            self.scene.set_highlight("feature", result.places, FEATURE)
+        for name in self._highlights:
+            self.scene.remove_highlight(name)
+        self._highlights = []
+        if result is None:
+            return
+        if result.deviations is None:
+            self._highlight("feature", result.places, FEATURE)
+            return
+        for one in result.deviations.classes:
+            self._highlight(f"deviation {one.number}", one.places, DEVIATIONS[one.number + len(DEVIATIONS) // 2])
+
+    def _highlight(self, name: str, places: Any, colour: str) -> None:
+        if len(places):
+            self.scene.set_highlight(name, places, colour)
+            self._highlights.append(name)
 
     # ---- picks
 

@@ -51,6 +51,9 @@ FACE_UPPER, FACE_LOWER = "#56B4E9", "#FF9E2C"
 FEATURE = "#E66AD2"
 """Points and regions of the feature that is chosen."""
 
+DEVIATIONS = ("#08306B", "#2166AC", "#5B9FD0", "#A6CDE6", "#C9CDD2", "#F4B79A", "#E08259", "#C4403C", "#7A0221")
+"""Classes of deviations from a nominal surface, from the farthest inwards to the farthest outwards; marks tell more."""
+
 CROSSING_GOOD = Mark("#3DDC84", "o")
 CROSSING_WEAK = Mark("#FFB000", "t")
 CROSSING_LEFT_OUT = Mark("#FF5C57", "x")

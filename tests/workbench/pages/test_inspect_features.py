@@ -1,6 +1,7 @@
 """Features beside the thickness: the plan edited, measured, shown; the panel clicked."""
 
 import math
+from dataclasses import replace
 from typing import cast
 
 import numpy as np
@@ -10,14 +11,17 @@ from PySide6.QtWidgets import QAbstractButton
 
 from core.errors import InputError
 from core.inspect.characteristic import Characteristic, Limits
+from core.inspect.deviation_map import bounds, mark
 from core.inspect.inspection_plan import Auto, FeatureSpec, InspectionPlan, PointsOf, Polygon
-from core.inspect.shown_features import ShownFeature, ShownInspection
+from core.inspect.shown_features import ShownClass, ShownDeviations, ShownFeature, ShownInspection, ShownProfile
 from tests.workbench.hand_lane import HandLane
 from tests.workbench.pages import inspect_cases as cases
 from workbench import jobs
 from workbench.pages import inspect_feature_values as fields
+from workbench.pages.inspect_feature_edit import LINE
 from workbench.pages.inspect_page import InspectPage
 from workbench.pages.inspect_presenter import InspectPresenter
+from workbench.views import ask
 from workbench.views.scene_view_contents import Marks
 
 CORNERS = [(10.0, 10.0), (30.0, 10.0), (20.0, 30.0)]
@@ -37,6 +41,12 @@ def shown_of(project):
             ShownFeature(spec.name, spec.kind, () if lost else rows, len(places), places, places[:, :2], lost)
         )
     return ShownInspection(tuple(features), "", (), "cal-1")
+
+
+def with_drawn(project, **drawn):
+    """The same, with something to draw."""
+    shown = shown_of(project)
+    return replace(shown, features=tuple(replace(one, **drawn) for one in shown.features))
 
 
 @pytest.fixture
@@ -219,6 +229,54 @@ def test_a_plan_that_cannot_be_measured_says_so_once(features, measuring, qtbot)
     assert measuring.ran.count(jobs.MEASURE_FEATURES) == 2
 
 
+# ---- templates
+
+
+def test_a_template_is_taken_for_the_next_part_with_one_click_and_taken_back(presenter, features, tmp_path, qtbot):
+    nominal = presenter.model.folder / "part.stl"
+    nominal.write_bytes(b"")
+    features.edit.add("plane")
+    features.edit.add("deviation", nominal)
+    assert features.plan.feature("deviation 1").deviation.nominal == "part.stl"
+    features.templates.save(tmp_path / "block")
+    qtbot.waitUntil(lambda: features.templates.recent == [tmp_path / "block.toml"])
+    presenter.model.create(tmp_path / "next", cases.project())
+    for step, done in cases.results(presenter.project).items():
+        presenter.model.record(step, done)
+    assert not features.plan.features
+    features.templates.take(features.templates.recent[0])
+    qtbot.waitUntil(lambda: features.shown is not None)
+    assert features.plan.names == ("plane 1", "deviation 1")
+    assert features.plan.feature("deviation 1").deviation.nominal == nominal.as_posix()
+    undo(features)
+    assert not features.plan.features
+
+
+def test_a_template_that_cannot_be_read_is_told_and_changes_nothing(features, tmp_path, qtbot):
+    path = tmp_path / "plan.toml"
+    path.write_text("[[feature]]\nkind = 'plane'\n", encoding="utf-8")
+    features.templates.take(path)
+    qtbot.waitUntil(lambda: bool(features.owner.bench.notices.all))
+    assert "name" in features.owner.bench.notices.all[-1].text and not features.plan.features
+    assert features.templates.recent == []
+
+
+def test_the_templates_button_lists_the_ones_used_last(page, features, tmp_path, qtbot, monkeypatch):
+    button = page.features.templates
+    assert not button.save.isEnabled() and button.save.toolTip() == "Add a feature first."
+    features.edit.add("plane")
+    monkeypatch.setattr(ask, "choose_file_to_save", lambda *_: tmp_path / "block.toml")
+    button.save.trigger()
+    qtbot.waitUntil(lambda: [action.text() for action in button.recent] == ["block"])
+    features.remove("plane 1")
+    button.recent[0].trigger()
+    qtbot.waitUntil(lambda: features.plan.names == ("plane 1",))
+    features.remove("plane 1")
+    monkeypatch.setattr(ask, "choose_file_to_open", lambda *_: tmp_path / "block.toml")
+    button.open.trigger()
+    qtbot.waitUntil(lambda: features.plan.names == ("plane 1",))
+
+
 # ---- the panel
 
 
@@ -271,6 +329,50 @@ def test_a_region_drawn_in_the_picture_is_the_features(page, features):
     assert features.edit.region_name(0) in page.picture.image.layer_names()
     page.presenter.faces.set_region("upper", np.array(CORNERS))
     assert features.plan.feature("plane 1").regions == (Polygon(tuple(CORNERS)),)
+
+
+def test_the_cut_is_dragged_in_the_picture(page, features):
+    features.edit.add("section")
+    page.tabs.setCurrentWidget(page.picture)
+    page.picture.image.polygon_edited.emit(LINE, np.array([(1.0, 2.0), (30.0, 40.0)]))
+    assert features.plan.feature("section 1").section.line_px == ((1.0, 2.0), (30.0, 40.0))
+    features.choose("")
+    assert LINE not in page.picture.image.layer_names()
+
+
+def test_the_plot_shows_the_profile_of_the_chosen_section(page, features, measuring, qtbot):
+    profile = ShownProfile(np.arange(5.0), np.ones(5), np.arange(2.0), np.ones(2))
+    measuring.answers[jobs.MEASURE_FEATURES] = lambda folder, project: with_drawn(project, profile=profile)
+    assert not page.tabs.isTabVisible(page.tabs.indexOf(page.plot))
+    features.edit.add("section")
+    features.edit.add_cut()
+    page.tabs.setCurrentWidget(page.plot)
+    assert "Measure the features" in page.plot.chart.empty_state.message
+    measured(features, qtbot)
+    assert set(page.plot.chart._curves) == {"points", "mean"}
+    assert page.plot.rows.text_of("height 1") == "50.012 ± 0.024 mm"
+    features.choose("")
+    assert "Choose a cross-section" in page.plot.chart.empty_state.message
+
+
+def test_deviations_are_drawn_by_class_and_their_shares_are_told(page, features, measuring, qtbot, tmp_path):
+    classes = tuple(
+        ShownClass(mark(number), number, *bounds(number, 0.1), 0.125 * (number > -4), np.ones((int(number > -4), 3)))
+        for number in range(-4, 5)
+    )
+    found = ShownDeviations(classes, np.linspace(-1, 1, 5), np.arange(4), 0.1)
+    measuring.answers[jobs.MEASURE_FEATURES] = lambda folder, project: with_drawn(project, deviations=found)
+    features.edit.add("deviation", tmp_path / "part.stl")
+    measured(features, qtbot)
+    drawn = {name for kind, name in page.surface.scene._scene.items if kind is Marks}
+    assert drawn == {f"deviation {number}" for number in range(-3, 5)}
+    page.tabs.setCurrentWidget(page.plot)
+    assert page.plot.rows.text_of("++  +0.05 to +0.075 mm") == "12.5%"
+    assert page.plot.rows.text_of("+!  over +0.1 mm") == "12.5%"
+    assert page.plot.rows.text_of("−!  under −0.1 mm") == "0.0%"
+    page.tabs.setCurrentWidget(page.surface)
+    features.choose("")
+    assert not {name for kind, name in page.surface.scene._scene.items if kind is Marks}
 
 
 @pytest.mark.parametrize("kind", fields.KINDS)

@@ -1,0 +1,89 @@
+"""The plot of the chosen feature: the profile of a section, or how the deviations are spread, with their marks."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
+
+from workbench.pages import inspect_feature_words as words
+from workbench.pages.inspect_presenter import InspectPresenter
+from workbench.pages.step_page import muted
+from workbench.views.colours import FEATURE
+from workbench.views.plots import LineChart
+from workbench.views.value_rows import ValueRows
+
+if TYPE_CHECKING:
+    from core.inspect.shown_features import ShownDeviations, ShownFeature, ShownProfile
+
+
+class PlotTab(QWidget):
+    """A chart, and beside it what it says in numbers."""
+
+    def __init__(self, presenter: InspectPresenter, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._presenter = presenter
+        self._shown: object = None
+        self.chart, self.rows, self.words = LineChart(), ValueRows(), muted()
+        column = QVBoxLayout(self)
+        column.setContentsMargins(6, 6, 6, 4)
+        column.addWidget(self.words)
+        row = QHBoxLayout()
+        row.setSpacing(14)
+        row.addWidget(self.chart, 1)
+        row.addWidget(self.rows, 0, Qt.AlignmentFlag.AlignTop)
+        self.rows.setMinimumWidth(200)
+        column.addLayout(row, 1)
+
+    def refresh(self) -> None:
+        """Show what the presenter says now; drawn anew only for another feature or result."""
+        features = self._presenter.features
+        result = features.result(features.chosen)
+        wanted = (features.chosen, result)
+        if wanted == self._shown:
+            return
+        self._shown = wanted
+        self.words.setText("")
+        if result is not None and result.profile is not None:
+            self._show_profile(result, result.profile)
+        elif result is not None and result.deviations is not None:
+            self._show_deviations(result, result.deviations)
+        else:
+            self.rows.set_rows([])
+            self.chart.clear(self._message(result))
+
+    def _message(self, result: ShownFeature | None) -> str:
+        if result is not None and result.problem:
+            return result.problem
+        spec = self._presenter.features.edit.spec
+        if spec is not None and spec.kind in ("section", "deviation"):
+            return self.tr("Measure the features: then what was found is drawn here.")
+        return self.tr("Choose a cross-section or a deviation in the list of features: it is drawn here.")
+
+    def _show_profile(self, result: ShownFeature, profile: ShownProfile) -> None:
+        self.chart.clear()
+        self.chart.set_axes(self.tr("along the cut"), "mm", self.tr("height"), "mm")
+        title = self.tr("points near the cut")
+        self.chart.set_curve("points", profile.position, profile.height, colour=FEATURE, title=title, points=True)
+        self.chart.set_curve(
+            "mean", profile.mean_position, profile.mean_height, title=self.tr("their median over each step")
+        )
+        self.words.setText(
+            self.tr("{0}: positions count from where the cut begins; measurements lie between positions.").format(
+                result.name
+            )
+        )
+        self.rows.set_rows(words.result_rows(result))
+
+    def _show_deviations(self, result: ShownFeature, found: ShownDeviations) -> None:
+        self.chart.clear()
+        self.chart.set_axes(self.tr("measured − nominal"), "mm", self.tr("places"), "")
+        self.chart.set_curve("histogram", np.repeat(found.edges, 2)[1:-1], np.repeat(found.counts, 2))
+        self.words.setText(
+            self.tr("{0}: the outermost bars hold all beyond. Marks are quarters of ±{1} mm, ! is beyond it.").format(
+                result.name, f"{found.tolerance_mm:g}"
+            )
+        )
+        self.rows.set_rows([*words.result_rows(result), *words.class_rows(found)])
