@@ -58,6 +58,8 @@ SAMPLE_PROJECT = Job("core.pipeline.sample_project:sample_project")
 CLEAR_SAMPLE = Job("core.pipeline.sample_project:clear_unfinished")
 INSPECTION_VIEW = Job("core.pipeline.inspect_view:inspection_view")
 OUTLINE_SELECTED = Job("core.pipeline.inspect_view:outline_selected")
+TYPE1_STUDY = Job("core.study.type1:type1_study")
+COMPILE_AHEAD = Job("core.pipeline.warm_up:stages")
 LOAD_RESULTS = Job(f"{_STEPS}:load_results")
 
 

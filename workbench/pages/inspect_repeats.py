@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from PySide6.QtCore import QObject
 
 from core.files.project import Repeat
 from core.study.repeats import RepeatStatistics, repeat_statistics
+from workbench import jobs
 from workbench.step_state import State
 
 if TYPE_CHECKING:
+    from core.study.type1 import Type1Study
     from workbench.pages.inspect_presenter import InspectPresenter
 
 
@@ -22,6 +24,9 @@ class InspectRepeats(QObject):
     def __init__(self, owner: InspectPresenter) -> None:
         super().__init__(owner)
         self._owner = owner
+        self._type1: Type1Study | None = None
+        self._type1_of: object = None
+        self._asked: object = None
 
     @property
     def all(self) -> tuple[Repeat, ...]:
@@ -74,6 +79,50 @@ class InspectRepeats(QObject):
         if not self.all:
             return None
         return repeat_statistics([repeat.thickness_mm for repeat in self.all], self._owner.faces.spec.nominal_mm)
+
+    @property
+    def type1(self) -> Type1Study | None:
+        """The type-1 study of the repeats against the tolerance; None as long as there is none."""
+        return self._type1 if self._type1_of == self._type1_wanted() else None
+
+    @property
+    def no_type1(self) -> str:
+        """Why there is no type-1 study, or ""."""
+        spec = self._owner.faces.spec
+        if spec.nominal_mm is None or spec.tolerance_mm is None:
+            return self.tr("A type-1 study needs a reference part: enter its thickness and the tolerance.")
+        if len(self.all) < 2:
+            return self.tr("A type-1 study needs two repeats or more; 25 are asked for, 50 are usual.")
+        return ""
+
+    def study(self) -> None:
+        """Have the type-1 study worked out, unless it is there or under way."""
+        wanted, spec = self._type1_wanted(), self._owner.faces.spec
+        if self.no_type1 or spec.tolerance_mm is None or wanted in (self._type1_of, self._asked):
+            return
+        self._asked = wanted
+
+        def done(study: Any) -> None:
+            self._type1, self._type1_of = study, wanted
+            self._owner.changed.emit()
+
+        def ended(*_: Any) -> None:
+            self._asked = None if self._asked == wanted else self._asked
+
+        task = self._owner.bench.glance(
+            jobs.TYPE1_STUDY,
+            [repeat.thickness_mm for repeat in self.all],
+            spec.nominal_mm,
+            2 * spec.tolerance_mm,
+            label=self.tr("Studying the repeats"),
+            on_done=done,
+            offers={},
+        )
+        task.ended.connect(ended)
+
+    def _type1_wanted(self) -> object:
+        spec = self._owner.faces.spec
+        return tuple(repeat.thickness_mm for repeat in self.all), spec.nominal_mm, spec.tolerance_mm
 
     def calibrations(self) -> int:
         """With how many different calibrations they were measured."""

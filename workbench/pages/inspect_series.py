@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from PySide6.QtCore import QEvent, Qt
 from PySide6.QtGui import QGuiApplication
-from PySide6.QtWidgets import QHBoxLayout, QPushButton, QSplitter, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QPushButton, QSplitter, QTabWidget, QVBoxLayout, QWidget
 
 from core.files.project import Repeat
 from workbench.pages import inspect_words as words
 from workbench.pages.inspect_presenter import InspectPresenter
 from workbench.pages.step_page import muted
 from workbench.theme import icon
-from workbench.views.plots import RunChart
+from workbench.views.plots import Histogram, RunChart
 from workbench.views.tables import DataTable
 from workbench.views.value_rows import ValueRows
 
@@ -24,6 +24,7 @@ class RepeatsTab(QWidget):
         self._presenter = presenter
         self._shown: object = None
         self.table, self.chart, self.rows, self.words = DataTable(), RunChart(), ValueRows(), muted()
+        self.histogram, self.type1, self.type1_words = Histogram(), ValueRows(), muted()
         self.table.set_headers(
             [
                 (self.tr("Scan"), ""),
@@ -55,8 +56,15 @@ class RepeatsTab(QWidget):
         row = QHBoxLayout(below)
         row.setContentsMargins(0, 6, 0, 0)
         row.setSpacing(14)
-        row.addWidget(self.chart, 1)
-        row.addWidget(self.rows, 0, Qt.AlignmentFlag.AlignTop)
+        self.charts = QTabWidget()
+        self.charts.addTab(self.chart, self.tr("In their order"))
+        self.charts.addTab(self.histogram, self.tr("Histogram"))
+        row.addWidget(self.charts, 1)
+        numbers = QVBoxLayout()
+        for widget in (self.rows, self.type1, self.type1_words):
+            numbers.addWidget(widget)
+        numbers.addStretch(1)
+        row.addLayout(numbers)
         self.rows.setMinimumWidth(230)
         split = QSplitter(Qt.Orientation.Vertical)
         split.addWidget(above)
@@ -74,6 +82,7 @@ class RepeatsTab(QWidget):
         spec = p.faces.spec
         wanted = (repeats.all, spec.nominal_mm, spec.tolerance_mm)
         self._show_buttons()
+        self._show_type1()
         self.words.setText(self._sentence())
         self.words.setVisible(bool(self.words.text()))
         if wanted == self._shown:
@@ -83,6 +92,7 @@ class RepeatsTab(QWidget):
         statistics = repeats.statistics()
         if statistics is None:
             self.rows.set_rows([])
+            self.histogram.clear(self.tr("There are no repeats yet."))
             self.chart.clear(self.tr("Two scans or more of the same part show how well the measurement repeats."))
             return
         self.rows.set_rows(words.statistics_rows(statistics, spec.nominal_mm))
@@ -95,6 +105,23 @@ class RepeatsTab(QWidget):
             tolerance=spec.tolerance_mm,
             k=repeats.all[-1].k,
         )
+        limits = []
+        if spec.nominal_mm is not None and spec.tolerance_mm is not None:
+            limits.append((spec.nominal_mm - spec.tolerance_mm, self.tr("lower limit")))
+            limits.append((spec.nominal_mm + spec.tolerance_mm, self.tr("upper limit")))
+        self.histogram.set_values(
+            [repeat.thickness_mm for repeat in repeats.all], label=self.tr("thickness"), unit="mm", limits=limits
+        )
+
+    def _show_type1(self) -> None:
+        """The study where there can be one; else what it needs, as soon as there is a repeat."""
+        repeats = self._presenter.repeats
+        repeats.study()
+        study = repeats.type1
+        self.type1.set_rows([] if study is None else words.type1_rows(study))
+        told = "" if not repeats.all else repeats.no_type1 if study is None else "\n".join(study.notes)
+        self.type1_words.setText(told)
+        self.type1_words.setVisible(bool(told))
 
     def changeEvent(self, event: QEvent) -> None:
         super().changeEvent(event)
@@ -137,7 +164,7 @@ class RepeatsTab(QWidget):
 
     def _copy(self) -> None:
         repeats = self._presenter.repeats
-        QGuiApplication.clipboard().setText(words.repeats_tsv(repeats.all, repeats.statistics()))
+        QGuiApplication.clipboard().setText(words.repeats_tsv(repeats.all, repeats.statistics(), repeats.type1))
 
     def _dress(self) -> None:
         for button, symbol in (

@@ -16,6 +16,10 @@ from workbench.views.colours import Level
 
 if TYPE_CHECKING:
     from core.inspect.results import GaugeResult
+    from core.study.type1 import Type1Study
+
+CAPABLE = "capable"
+"""The verdict of `core.study.type1` on a gauge that suffices."""
 
 Row = tuple[str, str, str, Level]
 """Label, text with unit, tip, level."""
@@ -97,6 +101,23 @@ def statistics_rows(statistics: RepeatStatistics, nominal_mm: float | None) -> l
     return rows
 
 
+def type1_rows(study: Type1Study) -> list[Row]:
+    """Bias, Cg and Cgk of a type-1 study, and whether they suffice."""
+    level: Level = "good" if study.verdict == CAPABLE else "bad"
+    verdict = _tr("capable") if level == "good" else _tr("not capable")
+    low, high = (fixed(end, 2) for end in study.cg_interval)
+    lasts = fixed(study.smallest_tolerance, 4)
+    return [
+        (_tr("Type-1 study"), verdict, _tr("Capable if Cg and Cgk are 1.33 or more"), level),
+        (_tr("Tolerance T"), f"{study.tolerance:g} mm", _tr("Full width: twice the ± tolerance of the thickness"), ""),
+        (_tr("Cg"), fixed(study.cg, 2), _tr("0.2 T / (6 s); 95 % interval {0} to {1}").format(low, high), ""),
+        (_tr("Cgk"), fixed(study.cgk, 2), _tr("(0.1 T − |bias|) / (3 s)"), ""),
+        (_tr("Bias"), f"{fixed(study.bias, 4, signed=True)} mm", _tr("Mean less the reference value"), ""),
+        (_tr("p of the bias"), f"{study.p:.2g}", _tr("t-test: how probable a bias as large is without any"), ""),
+        (_tr("Smallest T"), f"{lasts} mm", _tr("Smallest tolerance for which Cgk reaches 1.33"), ""),
+    ]
+
+
 def repeat_row(repeat: Repeat) -> tuple[str, str, str, str, str]:
     """Scan, thickness, U, calibration, time."""
     value, expanded = with_uncertainty(repeat.thickness_mm, repeat.U_mm)
@@ -104,7 +125,9 @@ def repeat_row(repeat: Repeat) -> tuple[str, str, str, str, str]:
     return scan_name(repeat.scan), value, f"± {expanded}", short_id(repeat.calibration_id), time
 
 
-def repeats_tsv(repeats: tuple[Repeat, ...], statistics: RepeatStatistics | None) -> str:
+def repeats_tsv(
+    repeats: tuple[Repeat, ...], statistics: RepeatStatistics | None, study: Type1Study | None = None
+) -> str:
     """The series as text with tabs, all digits kept, for a spreadsheet."""
     lines = [["scan", "thickness [mm]", "U [mm]", "k", "calibration", "measured at"]]
     lines += [
@@ -127,6 +150,10 @@ def repeats_tsv(repeats: tuple[Repeat, ...], statistics: RepeatStatistics | None
             ("largest error [mm]", statistics.largest_error_mm),
         )
         lines += [[]] + [[name, f"{value:.6f}"] for name, value in named if value is not None and not math.isnan(value)]
+    if study is not None:
+        lines += [[], ["type-1 study", study.verdict], ["tolerance T [mm]", f"{study.tolerance:.6f}"]]
+        lines += [["Cg", f"{study.cg:.6f}"], ["Cgk", f"{study.cgk:.6f}"]]
+        lines += [["bias [mm]", f"{study.bias:.6f}"], ["p of the bias", f"{study.p:.6g}"]]
     return "\n".join("\t".join(line) for line in lines) + "\n"
 
 

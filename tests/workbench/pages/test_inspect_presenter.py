@@ -10,6 +10,7 @@ from core.errors import InputError
 from core.files.pictures import write_picture
 from core.files.project import Accepted
 from core.files.project_keys import finished
+from core.study.type1 import type1_study
 from tests.workbench.hand_lane import HandLane
 from tests.workbench.pages import inspect_cases as cases
 from workbench import jobs
@@ -483,3 +484,25 @@ def test_the_series_is_copied_with_all_digits(shown):
     assert [line.split("\t")[0] for line in lines[4:]] == [
         "mean [mm]", "error of the mean [mm]", "RMSE [mm]", "STD [mm]", "largest error [mm]",
     ]  # fmt: skip
+
+
+def test_a_type_1_study_of_the_repeats_has_the_numbers_of_the_command_line(shown, qtbot):
+    values = (50.012, 50.018, 50.007, 50.011)
+    put_repeats(shown, values[:1])
+    assert "two repeats or more" in shown.repeats.no_type1
+    put_repeats(shown, values)
+    shown.repeats.study()
+    qtbot.waitUntil(lambda: shown.repeats.type1 is not None)
+    told, wanted = shown.repeats.type1, type1_study(values, 50.0, 0.4)
+    assert (told.cg, told.cgk, told.p) == (wanted.cg, wanted.cgk, wanted.p)
+    assert f"Cgk\t{wanted.cgk:.6f}" in repeats_tsv(shown.project.repeats, shown.repeats.statistics(), told)
+    shown.faces.set_number("tolerance_mm", 0.1)
+    assert shown.repeats.type1 is None, "it is of another tolerance"
+    shown.faces.set_number("tolerance_mm", None)
+    shown.faces.set_number("nominal_mm", None)
+    assert "needs a reference part" in shown.repeats.no_type1
+
+
+def put_repeats(presenter, values):
+    repeats = tuple(cases.repeat(number, value) for number, value in enumerate(values, 2))
+    presenter.model.edit("repeats", replace(presenter.project, repeats=repeats))
