@@ -65,7 +65,7 @@ def make_bench(settings: AppSettings | None = None) -> Bench:
         ProjectModel(),
         Notices(),
         settings or AppSettings(),
-        Lane("measuring", warm=measuring),
+        Lane("measuring", warm=measuring, ahead=jobs.COMPILE_AHEAD),
         Lane("quick", warm=measuring),
         Lane("live", warm=(jobs.RUN_LIVE,), environment=ONE_THREAD),
     )

@@ -69,9 +69,10 @@ class Lane(QObject):
         warm: tuple[Job, ...] = (),
         environment: Mapping[str, str] | None = None,
         parent: QObject | None = None,
+        ahead: Job | None = None,
     ) -> None:
         super().__init__(parent)
-        self.name, self._warm, self._environment = name, warm, dict(environment or {})
+        self.name, self._warm, self._environment, self._ahead = name, warm, dict(environment or {}), ahead
         self._context = multiprocessing.get_context("spawn")
         self._waiting: deque[tuple[Task, Job, tuple[Any, ...], dict[str, str]]] = deque()
         self._current: Task | None = None
@@ -96,7 +97,7 @@ class Lane(QObject):
         return self._current is not None or bool(self._waiting)
 
     def warm_up(self) -> None:
-        """Start the process and let it import what it will need."""
+        """Start the process and let it import, and compile while idle, what it will need."""
         if self._process is None:
             self._start()
 
@@ -203,7 +204,10 @@ class Lane(QObject):
         self._generation += 1
         self._cancel_number = self._context.Value("q", 0, lock=False)
         process = self._context.Process(
-            target=serve, args=(theirs, self._cancel_number, self._warm), name=f"trisect-{self.name}", daemon=True
+            target=serve,
+            args=(theirs, self._cancel_number, self._warm, self._ahead),
+            name=f"trisect-{self.name}",
+            daemon=True,
         )
         try:
             with lean_start(self._environment):

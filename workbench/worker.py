@@ -82,23 +82,37 @@ class Channel:
         self._connection.send((self._number, kind, value))
 
 
-def serve(connection: Connection, cancel: Any, warm: tuple[Job, ...]) -> None:
+def serve(connection: Connection, cancel: Any, warm: tuple[Job, ...], ahead: Job | None = None) -> None:
     """Run the jobs that come through `connection` until it closes.
 
     `cancel` is a shared number: the job of that number is to stop. The functions of `warm` are imported beforehand,
-    so that the first job does not wait for it.
+    so that the first job does not wait for it. `ahead` names a function that gives small pieces of work: they are done
+    one by one while no job waits.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the window decides
     try:
         for job in warm:
             with suppress(ImportError, AttributeError):  # told when the job is asked for
                 resolve(job)
+        pieces = list(_pieces(ahead))
         while True:
+            if pieces and not connection.poll(0):
+                pieces.pop(0)()
+                continue
             kind, value = connection.recv()
             if kind == "run":
                 _run(connection, cancel, *value)
     except (EOFError, BrokenPipeError, ConnectionResetError):
         return  # the window is gone
+
+
+def _pieces(ahead: Job | None) -> tuple[Callable[[], None], ...]:
+    """What is done ahead; nothing if it cannot be had: jobs then do it when they need it."""
+    if ahead is None:
+        return ()
+    with suppress(ImportError, AttributeError):
+        return tuple(resolve(ahead)())
+    return ()
 
 
 def _run(

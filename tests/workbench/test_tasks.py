@@ -191,3 +191,17 @@ def test_a_lane_sees_its_environment_and_carries_no_window(qtbot: Any, monkeypat
         lane.close()
     assert answers.got == [("done", ("1", False))]
     assert os.environ["OMP_NUM_THREADS"] == "7"
+
+
+def test_what_is_done_ahead_is_done_piece_by_piece_while_no_job_waits(qtbot: Any) -> None:
+    lane, answers = Lane("ahead", ahead=job("pieces")), Answers()
+    try:
+        answers.run(lane, "pieces_done")
+        finish(qtbot, lane)
+        qtbot.wait(1000)
+        answers.run(lane, "pieces_done")
+        finish(qtbot, lane)
+    finally:
+        lane.close()
+    (_, first), (_, second) = answers.got
+    assert first < second < 50
