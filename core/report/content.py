@@ -148,17 +148,23 @@ class ReportContent:
 
     @property
     def characteristics(self) -> tuple[Characteristic, ...]:
-        """Every result in a row: what was inspected, or else the thickness alone."""
-        if self.inspected or self.gauge is None:
+        """Every result in a row: the thickness, unless one was inspected, and what was inspected."""
+        if self.gauge is None or self._thickness_inspected:
             return self.inspected
-        return (thickness_characteristic(self.gauge),)
+        return (thickness_characteristic(self.gauge), *self.inspected)
 
     @property
     def points_used(self) -> Mapping[str, NDArray[np.int64]]:
-        """By name, which points each face or feature rests on; of a thickness alone, its two faces."""
-        if self.points or self.gauge is None:
+        """By name, which points each face or feature rests on."""
+        if self.gauge is None or self._thickness_inspected:
             return self.points
-        return {"Upper face": self.gauge.upper.indices, "Lower face": self.gauge.lower.indices}
+        faces = {"Upper face": self.gauge.upper.indices, "Lower face": self.gauge.lower.indices}
+        return {**faces, **self.points}
+
+    @property
+    def _thickness_inspected(self) -> bool:
+        """Whether what was inspected has a thickness of its own, which stands for the one measured alone."""
+        return any(one.kind == "thickness" for one in self.inspected)
 
     @property
     def at_reference(self) -> bool:

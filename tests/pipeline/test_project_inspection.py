@@ -14,7 +14,7 @@ from core.files.stl import write_stl
 from core.inspect.inspection_plan import Auto, Deviation, FeatureSpec, InspectionPlan, Section
 from core.pipeline.inspect_step import inspect_step
 from core.pipeline.project_inspection import look_at_features, measure_features
-from core.pipeline.project_steps import results_folder
+from core.pipeline.project_steps import project_content, results_folder
 
 pytestmark = pytest.mark.xdist_group("small simulated set")
 
@@ -78,6 +78,15 @@ def test_what_is_drawn_of_a_section_and_of_deviations_is_of_the_scan(done, folde
     assert sum(shares) == pytest.approx(1) and shares[4] > 0.9
     assert [one.mark for one in itself.deviations.classes][:2] == ["−!", "−−−"]
     assert int(itself.deviations.counts.sum()) > 0
+
+
+def test_the_report_has_the_thickness_beside_the_features_and_none_that_were_taken_out(done, folder):
+    project = replace(done.project, inspection=InspectionPlan(PLAN.features[:1]))
+    measure_features(folder, project)
+    names = [one.name for one in project_content(folder, project).characteristics]
+    assert names == ["thickness", "table flatness"]
+    measure_features(folder, replace(project, inspection=InspectionPlan()))
+    assert [one.name for one in project_content(folder, done.project).characteristics] == ["thickness"]
 
 
 def test_without_a_scan_it_is_one_sentence(done, tmp_path):

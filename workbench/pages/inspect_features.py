@@ -120,7 +120,7 @@ class InspectFeatures(QObject):
         """Why the plan cannot be measured now, or ""."""
         if "scan" not in self._owner.model.results:
             return self.tr("Scan the part first.")
-        if not self.plan.features:
+        if not self.plan.features and "features" not in self._owner.model.results:
             return self.tr("Add a feature first.")
         if self.measuring:
             return self.tr("The features are being measured.")

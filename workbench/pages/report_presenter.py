@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from core.files.project import Project, can_be_saved
-from core.files.project_keys import finished
+from core.files.project_keys import changed, finished, rests_on
 from core.report.section_names import SECTIONS
 from workbench import jobs
 from workbench.bench import Bench
@@ -125,6 +125,12 @@ class ReportPresenter(StepPresenter):
                 return self.tr("{0}: {1} The report prints what was measured then.").format(
                     title, states[step].sentence
                 )
+        features = self.model.results.get("features")
+        if features is not None and changed(features.rests_on, rests_on("features", self.project, self.model.results)):
+            return self.tr(
+                "Inspect: the features or the scan have changed since the features were measured. The report prints "
+                "what was measured then."
+            )
         return ""
 
     # ---- make and hand over

@@ -203,6 +203,14 @@ def test_a_plan_measured_once_is_measured_anew_when_it_changes(features, measuri
     assert measuring.ran.count(jobs.MEASURE_FEATURES) == 3
 
 
+def test_without_its_last_feature_nothing_old_stays_among_the_results(features, measuring, qtbot):
+    features.edit.add("plane")
+    measured(features, qtbot)
+    features.remove("plane 1")
+    qtbot.waitUntil(lambda: features.shown is not None and features.up_to_date)
+    assert features.shown.features == () and measuring.ran.count(jobs.MEASURE_FEATURES) == 2
+
+
 def test_an_edit_while_measuring_is_measured_next_and_what_is_shown_is_of_the_plan(features, measuring, qtbot):
     features.edit.add("plane")
     measured(features, qtbot)

@@ -13,6 +13,7 @@ import pytest
 from core.errors import InputError
 from core.files.project import Project, Repeat, new_project
 from core.files.project_keys import finished
+from core.inspect.inspection_plan import FeatureSpec, InspectionPlan
 from core.pipeline import export_kinds
 from tests.workbench.hand_lane import HandLane
 from workbench import jobs
@@ -250,6 +251,15 @@ def test_why_nothing_can_be_drawn_is_told_in_place_of_the_pages(shown: ReportPre
     assert shown.pages == ()
     assert shown.problem == "cloud.ply: the file is missing; measure the scan again."
     assert not shown.drawing
+
+
+def test_features_that_have_changed_since_are_told(shown: ReportPresenter) -> None:
+    plan = InspectionPlan((FeatureSpec("top", "plane"),))
+    shown.model.edit("add", replace(shown.project, inspection=plan))
+    measured(shown, "camera", "planes", "scan", "inspect", "features")
+    assert not shown.warning()
+    shown.model.edit("remove", replace(shown.project, inspection=InspectionPlan()))
+    assert "prints what was measured then" in shown.warning()
 
 
 # ---- how it looks
