@@ -34,7 +34,7 @@ class PlotTab(QWidget):
         row.setSpacing(14)
         row.addWidget(self.chart, 1)
         row.addWidget(self.rows, 0, Qt.AlignmentFlag.AlignTop)
-        self.rows.setMinimumWidth(200)
+        self.rows.setMinimumWidth(260)
         column.addLayout(row, 1)
 
     def refresh(self) -> None:
