@@ -1,6 +1,6 @@
 """The main job against hidden truth: the paper's rig at half resolution, 60 frames, own calibration.
 
-The limits are those the project promises; the README's table holds what was measured.
+The limits are those the project promises; `make accuracy` measures all heights and seeds for the README's table.
 """
 
 import numpy as np
@@ -9,18 +9,17 @@ import pytest
 from core.simulate.scenario import Scenario
 from tests.accuracy.twin import Measured, measure
 
-HEIGHTS = (40.0, 50.0, 60.0, 70.0)
-
-THICKNESS_MM = 0.10
-MEDIAN_DEPTH_MM = 0.08
+THICKNESS_MM = 0.045
+MEDIAN_DEPTH_MM = 0.06
 
 pytestmark = pytest.mark.slow
 
 
 class BlocksOfOneSeed:
-    """Rendered and calibrated once, four blocks measured; one class a seed, so that they run side by side."""
+    """Rendered and calibrated once, with the first block; one class a seed, so that they run side by side."""
 
     seed: int
+    first: float
 
     @pytest.fixture(scope="class")
     @classmethod
@@ -31,9 +30,9 @@ class BlocksOfOneSeed:
 
         def of_height(height: float) -> Measured:
             if height not in done:
-                calibrated = None if height == HEIGHTS[0] else folder / f"{HEIGHTS[0]:g}"
+                calibrated = None if height == cls.first else folder / f"{cls.first:g}"
                 if calibrated:
-                    of_height(HEIGHTS[0])
+                    of_height(cls.first)
                 scenario = Scenario(object="block", height_mm=height, seed=cls.seed, scale=0.5, frames=60)
                 done[height] = measure(scenario, folder / f"{height:g}", calibrated)
             return done[height]
@@ -41,12 +40,11 @@ class BlocksOfOneSeed:
         return of_height
 
     def test_camera_parameters_lie_within_four_of_their_own_standard_deviations(self, block):
-        errors = block(HEIGHTS[0]).camera_errors()
+        errors = block(self.first).camera_errors()
         assert set(errors) >= {"alpha", "beta", "gamma", "u0", "v0", "k1", "k2", "p1", "p2"}
         assert max(abs(error) for error in errors.values()) < 4
 
-    @pytest.mark.parametrize("height", HEIGHTS)
-    def test_thickness_and_depth_are_true_within_what_they_state(self, block, height):
+    def is_true(self, block, height):
         measured = block(height)
         error, u = measured.gauge.thickness_mm - height, measured.gauge.u_mm
         depth_errors = measured.depth_errors()
@@ -66,8 +64,16 @@ class BlocksOfOneSeed:
 
 
 class TestSeed1(BlocksOfOneSeed):
-    seed = 1
+    seed, first = 1, 40.0
+
+    @pytest.mark.parametrize("height", [40.0, 70.0])
+    def test_thickness_and_depth_are_true_within_what_they_state(self, block, height):
+        self.is_true(block, height)
 
 
 class TestSeed2(BlocksOfOneSeed):
-    seed = 2
+    seed, first = 2, 60.0
+
+    @pytest.mark.parametrize("height", [60.0, 50.0])
+    def test_thickness_and_depth_are_true_within_what_they_state(self, block, height):
+        self.is_true(block, height)

@@ -12,7 +12,7 @@ from core.simulate.sample import sample_scenario
 
 DARK, FAN, BOTH = Lasers(fan=False, hand=False), Lasers(fan=True, hand=False), Lasers(fan=True, hand=True)
 PER_SECOND = 12
-SCAN_S = 16
+SCAN_S = 12
 EVERY = 2
 
 
