@@ -14,6 +14,8 @@ CANDIDATES = 8
 """Triangles tried first for each point; more where that may not be enough."""
 FINEST = 400_000
 """A surface is cut into no more pieces than about this many."""
+AT_ONCE = 200_000
+"""So many pairs of a point and a triangle are compared at once: about 100 MB."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -50,39 +52,81 @@ class Nearest:
     distance: Array
 
 
+@dataclass(frozen=True, eq=False, slots=True)
+class _Class:
+    """Pieces of about one size: a tree of their middles, the triangles they are of, how far corners are at most."""
+
+    tree: cKDTree
+    of: NDArray[np.int64]
+    reach: float
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class _Best:
+    """The nearest found so far of N points: distance (N,), foot (N, 3), triangle (N,)."""
+
+    distance: Array
+    foot: Array
+    which: NDArray[np.int64]
+
+
 class Surroundings:
-    """Triangles made ready to be asked for the nearest of them."""
+    """Triangles made ready to be asked for the nearest of them.
+
+    They are kept in classes of about one size, each with a tree of its own: the reach of a few large triangles must not
+    make every small one a candidate.
+    """
 
     def __init__(self, surface: Triangles) -> None:
-        pieces, self._of = _cut(surface.corners)
+        pieces, of = _cut(surface.corners)
         self._surface, self._normals = surface, surface.normals
         self.size_mm = surface.size_mm
         centres = pieces.mean(axis=1)
-        self._reach = float(np.linalg.norm(pieces - centres[:, None], axis=2).max())
-        self._tree = cKDTree(centres)
+        radius = np.linalg.norm(pieces - centres[:, None], axis=2).max(axis=1)
+        size = np.round(np.log2(np.maximum(radius, 1e-9))).astype(np.int64)
+        self._classes = []
+        for one in np.unique(size):
+            mine = np.flatnonzero(size == one)
+            self._classes.append(_Class(cKDTree(centres[mine]), of[mine], float(radius[mine].max())))
 
     def nearest(self, points: Array, exact_within: float = np.inf) -> Nearest:
         """The nearest place of the surface to each point (N, 3); exact for those no farther than `exact_within` mm.
 
-        A piece whose middle is farther than the best distance found plus the pieces' reach cannot be nearer. Beyond
+        A piece whose middle is farther than the best distance found plus its class's reach cannot be nearer. Beyond
         `exact_within` (−inf: at all) it is the nearest place of pieces nearest by their middles, at most their reach
         too far: far from a surface very many pieces are nearly as near.
         """
-        foot, which = np.zeros_like(points), np.zeros(len(points), dtype=np.int64)
-        left, count = np.arange(len(points)), min(CANDIDATES, self._tree.n)
+        best = _Best(np.full(len(points), np.inf), np.zeros_like(points), np.zeros(len(points), dtype=np.int64))
+        for kind in self._classes:
+            self._look(points, kind, exact_within, best)
+        return self._signed(points, best.foot, best.which)
+
+    def _look(self, points: Array, kind: _Class, exact_within: float, best: _Best) -> None:
+        """Look among the pieces of one class for nearer ones than were found."""
+        left, count = np.arange(len(points)), min(CANDIDATES, kind.tree.n)
         while len(left):
-            found = self._tree.query(points[left], k=[*range(1, count + 1)])
-            far, pieces = np.asarray(found[0], dtype=np.float64), np.asarray(found[1], dtype=np.int64)
-            triangles = self._of[pieces]
-            feet = _foot(points[left, None], self._surface.corners[triangles])
-            away = np.linalg.norm(feet - points[left, None], axis=2)
-            best = np.argmin(away, axis=1)
-            rows = np.arange(len(left))
-            foot[left], which[left] = feet[rows, best], triangles[rows, best]
-            unsure = far[:, -1] < away[rows, best] + self._reach
-            unsure &= (away[rows, best] <= exact_within + self._reach) & (count < self._tree.n)
-            left, count = left[unsure], min(4 * count, self._tree.n)
-        return self._signed(points, foot, which)
+            unsure = np.zeros(len(left), dtype=np.bool_)
+            for start in range(0, len(left), max(1, AT_ONCE // count)):
+                part = slice(start, start + max(1, AT_ONCE // count))
+                farthest = self._compare(points, left[part], count, kind, best)
+                away = best.distance[left[part]]
+                unsure[part] = (farthest < away + kind.reach) & (away <= exact_within + kind.reach)
+            left = left[unsure & (count < kind.tree.n)]
+            count = min(4 * count, kind.tree.n)
+
+    def _compare(self, points: Array, which: NDArray[np.int64], count: int, kind: _Class, best: _Best) -> Array:
+        """Compare some points with the `count` nearest pieces; how far the middle of the last of them is."""
+        found = kind.tree.query(points[which], k=[*range(1, count + 1)])
+        far, pieces = np.asarray(found[0], dtype=np.float64), np.asarray(found[1], dtype=np.int64)
+        triangles = kind.of[pieces]
+        feet = _foot(points[which, None], self._surface.corners[triangles])
+        away = np.linalg.norm(feet - points[which, None], axis=2)
+        rows, first = np.arange(len(which)), np.argmin(away, axis=1)
+        nearer = away[rows, first] < best.distance[which]
+        mine, rows, first = which[nearer], rows[nearer], first[nearer]
+        best.distance[mine], best.foot[mine] = away[rows, first], feet[rows, first]
+        best.which[mine] = triangles[rows, first]
+        return far[:, -1]
 
     def _signed(self, points: Array, foot: Array, which: NDArray[np.int64]) -> Nearest:
         between = points - foot
