@@ -22,7 +22,11 @@ demo: $(READY)            ## measure the embedded sample: cloud, mesh and report
 app: $(READY)             ## open the workbench
 	$(BIN)/trisect-workbench
 
+# Once, so that test processes do not all compile the same at the same time.
+COMPILE_AHEAD := $(BIN)/python -c 'from core.pipeline.warm_up import stages; [stage() for stage in stages()]'
+
 test: check               ## format, lint, types, rooms, and every test; windows offscreen and on a virtual screen
+	$(COMPILE_AHEAD)
 	QT_QPA_PLATFORM=offscreen $(BIN)/pytest $(SIDE_BY_SIDE)
 	@if command -v Xvfb >/dev/null; then TRISECT_VIRTUAL_SCREEN=1 $(BIN)/pytest $(SIDE_BY_SIDE) $(ON_SCREEN); \
 	else echo "Xvfb is not installed: the windows were tested without a screen only"; fi

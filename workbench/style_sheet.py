@@ -80,15 +80,40 @@ def polish_again(app: QApplication) -> None:
             _polish(widget)
         else:
             hidden.append(widget)
-    QTimer.singleShot(SOON_MS, app, lambda: _polish_some(app, hidden))
+    _later(app).begin(hidden)
 
 
-def _polish_some(app: QApplication, left: list[QWidget]) -> None:
-    for widget in left[:AT_ONCE]:
-        if shiboken6.isValid(widget):
-            _polish(widget)
-    if left := left[AT_ONCE:]:
-        QTimer.singleShot(SOON_MS, app, lambda: _polish_some(app, left))
+def is_polishing(app: QApplication) -> bool:
+    """Whether widgets out of sight still have the colours of before."""
+    return _later(app).isActive()
+
+
+class _Later(QTimer):
+    """Polishes what is out of sight, some at a time; a new palette begins anew."""
+
+    def __init__(self, app: QApplication) -> None:
+        super().__init__(app)
+        self._left: list[QWidget] = []
+        self.setInterval(SOON_MS)
+        self.timeout.connect(self._some)
+
+    def begin(self, widgets: list[QWidget]) -> None:
+        self._left = widgets
+        self.start()
+
+    def _some(self) -> None:
+        now, self._left = self._left[:AT_ONCE], self._left[AT_ONCE:]
+        for widget in now:
+            if shiboken6.isValid(widget):
+                _polish(widget)
+        if not self._left:
+            self.stop()
+
+
+def _later(app: QApplication) -> _Later:
+    """The one of this program; made when first asked for."""
+    found = next((child for child in app.children() if isinstance(child, _Later)), None)
+    return found or _Later(app)
 
 
 def _polish(widget: QWidget) -> None:

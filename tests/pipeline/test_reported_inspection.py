@@ -52,7 +52,8 @@ def test_without_an_inspection_nothing_is_said_of_one(tmp_path, content):
 def test_characteristics_points_deviations_and_problems_come_from_the_files(tmp_path, content):
     inspected(tmp_path, content)
     found = with_inspection(content, tmp_path)
-    (one,) = found.characteristics
+    thickness, one = found.characteristics
+    assert thickness.kind == "thickness"
     assert (one.name, one.value, one.verdict, one.budget[0].dof) == ("top flatness", 0.031, "conforming", math.inf)
     assert found.points["top"].tolist() == list(range(30))
     (deviations,) = found.deviations

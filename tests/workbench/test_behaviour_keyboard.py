@@ -92,7 +92,7 @@ def test_from_new_project_to_report_without_the_mouse(
     press(t, Qt.Key.Key_R, CONTROL)
     t.until(lambda: "report" in t.model.results, "the report", 60)
     t.will_choose(tmp_path / "report.pdf")
-    tab_to(t, "PDF")
+    tab_to(t, "Report (PDF)")
     press(t, Qt.Key.Key_Space)
     t.until(lambda: (tmp_path / "report.pdf").exists(), "the PDF")
     t.idle()

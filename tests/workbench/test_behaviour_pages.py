@@ -12,6 +12,7 @@ from PySide6.QtWidgets import QApplication
 from core.files.project import new_project
 from tests.workbench.technician import Technician
 from workbench.step_state import ORDER
+from workbench.style_sheet import is_polishing
 from workbench.theme import is_dark
 
 MISSING = {
@@ -90,6 +91,7 @@ def test_the_theme_is_switched_on_every_page(technician: Technician, measured_pr
             assert shown.pixelColor(t.window.width() - 3, t.window.height() // 2).lightness() == pytest.approx(
                 ground.lightness(), abs=40
             ), f"{page} is not dressed"
+    t.until(lambda: not is_polishing(QApplication.instance()), "what is out of sight to have the new colours")
     assert t.errors() == []
 
 

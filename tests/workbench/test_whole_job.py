@@ -51,7 +51,7 @@ def do_the_whole_job(t: Technician, recordings: Path, exports: Path) -> Path:
 
     t.press("Make the report")
     t.until(lambda: "report" in t.model.results, "the report", 60)
-    for name, button in (("report.pdf", "PDF"), ("cloud.ply", "PLY")):
+    for name, button in (("report.pdf", "Report (PDF)"), ("cloud.ply", "Points (PLY)")):
         t.will_choose(exports / name)
         t.press(button)
         t.until(lambda name=name: (exports / name).exists() and not t.bench.measuring.busy, name)

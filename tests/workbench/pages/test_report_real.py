@@ -65,23 +65,32 @@ def test_everything_is_handed_over_and_the_report_is_what_was_seen(
     drawn(t, page)
     assert page.card.title.text() == "The report is out of date"
     written = {}
-    for button, name in (("PDF", "a.pdf"), ("PLY", "b.ply"), ("PLY mesh", "c.ply"), ("STL", "d.stl"), ("CSV", "e.csv"),
-                         ("JSON", "f.json")):  # fmt: skip
+    for button, name in (
+        ("Report (PDF)", "a.pdf"),
+        ("Points (PLY)", "b.ply"),
+        ("Surface (STL)", "d.stl"),
+        ("Points (CSV)", "e.csv"),
+        ("Thickness (JSON)", "f.json"),
+    ):
         t.will_choose(tmp_path / name)
         t.press(button)
         t.until((tmp_path / name).exists, name, 60)
         t.idle()
         written[button] = tmp_path / name
+    t.will_choose(tmp_path / "c.ply")
+    page.exports["mesh"].trigger()  # in the menu of further formats
+    t.until((tmp_path / "c.ply").exists, "the surface", 60)
+    t.idle()
     assert page.card.title.text() == "The report is made", "the PDF that is handed over is the one that is shown"
-    pdf = PdfReader(written["PDF"])
+    pdf = PdfReader(written["Report (PDF)"])
     assert len(pdf.pages) == page.preview.count()
     assert "A remark to be printed" in "".join(one.extract_text() for one in pdf.pages)
-    cloud, mesh = read_cloud(written["PLY"]).cloud, read_mesh(written["PLY mesh"])
-    assert int(np.frombuffer(written["STL"].read_bytes(), "<u4", 1, 80)[0]) == len(mesh.triangles)
-    with written["CSV"].open(newline="", encoding="utf-8") as file:
+    cloud, mesh = read_cloud(written["Points (PLY)"]).cloud, read_mesh(tmp_path / "c.ply")
+    assert int(np.frombuffer(written["Surface (STL)"].read_bytes(), "<u4", 1, 80)[0]) == len(mesh.triangles)
+    with written["Points (CSV)"].open(newline="", encoding="utf-8") as file:
         rows = [row for row in csv.reader(file) if row and not row[0].startswith("#")]
     assert len(rows) - 1 == len(cloud)
-    assert json.loads(written["JSON"].read_text())["thickness_mm"] == pytest.approx(50.0, abs=0.5)
+    assert json.loads(written["Thickness (JSON)"].read_text())["thickness_mm"] == pytest.approx(50.0, abs=0.5)
     assert t.errors() == []
 
 
@@ -92,7 +101,7 @@ def test_what_cannot_be_written_is_one_sentence_and_nothing_is_lost(
     drawn(t, page)
     (tmp_path / "file").write_text("in the way")
     t.will_choose(tmp_path / "file" / "a.stl")
-    t.press("STL")
+    t.press("Surface (STL)")
     t.until(lambda: t.errors(), "a message", 30)
     t.idle()
     (message,) = t.errors()
