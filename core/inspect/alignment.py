@@ -80,7 +80,7 @@ class Aligned:
     left_mm: float
 
 
-def best_fit(points: Array, up: Array, nominal: Triangles, progress: Progress = silent, *, seed: int = 0) -> Aligned:
+def best_fit(points: Array, up: Array, around: Surroundings, progress: Progress = silent, *, seed: int = 0) -> Aligned:
     """Lay a nominal surface on measured points.
 
     Parameters
@@ -89,8 +89,8 @@ def best_fit(points: Array, up: Array, nominal: Triangles, progress: Progress = 
         (N, 3) in mm, camera frame, of the part and as little else as can be.
     up
         (3,) unit: about the direction the camera sees the part from, or that of the table it stands on.
-    nominal
-        The surface.
+    around
+        The surface, made ready to be asked.
     progress
         Told how far it is.
     seed
@@ -103,8 +103,7 @@ def best_fit(points: Array, up: Array, nominal: Triangles, progress: Progress = 
     """
     rng = np.random.default_rng(seed)
     shuffled = points[rng.permutation(len(points))]
-    around = Surroundings(nominal)
-    poses = _starts(shuffled[: STAGES[0][0]], up, nominal)
+    poses = _starts(shuffled[: STAGES[0][0]], up, around.surface)
     done, total = 0, len(poses) + sum(kept for _, _, kept in STAGES)
     for count, rounds, kept in STAGES:
         sample = shuffled[:count]
@@ -117,7 +116,7 @@ def best_fit(points: Array, up: Array, nominal: Triangles, progress: Progress = 
         poses = [pose for _, _, pose in sorted(tried, key=lambda one: one[:2])[:kept]]
     pose, left = _fitted(sample, poses[0], around, rounds, exact=True)
     progress("alignment", total, total)
-    if left > HELD * nominal.size_mm:
+    if left > HELD * around.size_mm:
         raise InputError(
             f"the nominal surface cannot be laid on the scan: half of the points stay {left:.2f} mm and more off",
             where=f"alignment of {len(points)} points",

@@ -73,13 +73,13 @@ class _Best:
 class Surroundings:
     """Triangles made ready to be asked for the nearest of them.
 
-    They are kept in classes of about one size, each with a tree of its own: the reach of a few large triangles must not
-    make every small one a candidate.
+    `surface` are the triangles themselves. They are kept in classes of about one size, each with a tree of its own: the
+    reach of a few large triangles must not make every small one a candidate.
     """
 
     def __init__(self, surface: Triangles) -> None:
         pieces, of = _cut(surface.corners)
-        self._surface, self._normals = surface, surface.normals
+        self.surface, self._normals = surface, surface.normals
         self.size_mm = surface.size_mm
         centres = pieces.mean(axis=1)
         radius = np.linalg.norm(pieces - centres[:, None], axis=2).max(axis=1)
@@ -119,7 +119,7 @@ class Surroundings:
         found = kind.tree.query(points[which], k=[*range(1, count + 1)])
         far, pieces = np.asarray(found[0], dtype=np.float64), np.asarray(found[1], dtype=np.int64)
         triangles = kind.of[pieces]
-        feet = _foot(points[which, None], self._surface.corners[triangles])
+        feet = _foot(points[which, None], self.surface.corners[triangles])
         away = np.linalg.norm(feet - points[which, None], axis=2)
         rows, first = np.arange(len(which)), np.argmin(away, axis=1)
         nearer = away[rows, first] < best.distance[which]

@@ -54,7 +54,7 @@ def test_a_part_is_found_however_it_lies(turn):
     rotation, shift = Rotation.from_euler("x", np.pi).as_matrix() @ lie.as_matrix(), np.array([10.0, -20.0, 540.0])
     points = seen_from_above(rng) @ rotation.T + shift
     points[:200] += rng.uniform(-8, 8, (200, 3))
-    aligned = best_fit(points, np.array([0.0, 0.0, -1.0]), STEPS)
+    aligned = best_fit(points, np.array([0.0, 0.0, -1.0]), Surroundings(STEPS))
     pose = aligned.pose_camera_nominal
     corners = STEPS.corners.reshape(-1, 3)
     assert np.abs(pose.apply(corners) - (corners @ rotation.T + shift)).max() < 0.03
@@ -65,7 +65,9 @@ def test_one_face_alone_is_laid_on_a_face_it_fits_on():
     points = np.column_stack(
         [rng.uniform(-29, 29, (1500, 1)), rng.uniform(-17, 17, (1500, 1)), rng.normal(0, 0.01, 1500)]
     )
-    aligned = best_fit(points * [1, -1, -1] + [0, 0, 500], np.array([0.0, 0.0, -1.0]), STEPS)  # the bottom is 60 × 35
+    aligned = best_fit(
+        points * [1, -1, -1] + [0, 0, 500], np.array([0.0, 0.0, -1.0]), Surroundings(STEPS)
+    )  # the bottom is 60 × 35
     assert aligned.left_mm < 0.01
     feet = aligned.pose_camera_nominal.inverse().apply(points * [1, -1, -1] + [0, 0, 500])
     assert np.abs(feet[:, 2]).max() < 0.1
@@ -74,7 +76,7 @@ def test_one_face_alone_is_laid_on_a_face_it_fits_on():
 def test_another_part_is_refused():
     points = np.random.default_rng(2).uniform(-30, 30, (2000, 3)) + [0, 0, 500]
     with pytest.raises(InputError, match="cannot be laid"):
-        best_fit(points, np.array([0.0, 0.0, -1.0]), STEPS)
+        best_fit(points, np.array([0.0, 0.0, -1.0]), Surroundings(STEPS))
 
 
 def test_classes_are_told_apart_by_marks():

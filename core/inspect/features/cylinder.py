@@ -8,6 +8,7 @@ from core.inspect.cylinder import find_cylinder
 from core.inspect.elements import Element
 from core.inspect.features.measured import FeatureResult, Scene
 from core.inspect.features.regions import points_in
+from core.inspect.features.round import round_result
 from core.inspect.inspection_plan import Auto, FeatureSpec
 from core.inspect.surface_fit import fit_surface
 
@@ -20,19 +21,5 @@ def measure_cylinder(spec: FeatureSpec, scene: Scene) -> FeatureResult:
     on, start = find_cylinder(cloud.select(indices), on_table=isinstance(region, Auto), progress=scene.progress)
     filters = spec.filters
     fit = fit_surface(cloud, indices[on], start, scene.errors, tukey=filters.outliers, cell_mm=filters.cell_mm)
-    tube = fit.shape
-    rule = "diameter of the cylinder of least squares, by the points' covariance"
     rows = fit.budget(np.array([0.0, 0.0, 0.0, 0.0, 2.0]))
-    form_rule = "range that holds 95 % of the deviations from the cylinder"
-    return FeatureResult(
-        spec,
-        characteristics=(
-            scene.characteristic(spec, "diameter", 2 * tube.radius, rows, rule=rule),
-            scene.characteristic(spec, "form", fit.form.value, fit.form.budget, rule=form_rule),
-        ),
-        indices=fit.indices,
-        residuals=fit.residuals,
-        part=fit.part,
-        element=Element.of_tube(fit),
-        shape=tube,
-    )
+    return round_result(spec, scene, fit, rows, Element.of_tube(fit))

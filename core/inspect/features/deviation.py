@@ -41,8 +41,8 @@ def measure_deviation(spec: FeatureSpec, scene: Scene) -> FeatureResult:
     asked, nominal = spec.deviation, scene.nominals[spec.deviation.nominal]
     indices = points_in(spec.regions[0], spec.filters, scene)
     indices = indices[_above_table(scene.cloud.points[indices], nominal, scene)]
-    pose = _pose(asked, nominal, indices, scene)
     around = Surroundings(nominal)
+    pose = _pose(asked, around, indices, scene)
     step = max(1, len(indices) // MOST_POINTS)
     used = indices[::step]
     cloud = scene.cloud.select(used)
@@ -62,11 +62,11 @@ def measure_deviation(spec: FeatureSpec, scene: Scene) -> FeatureResult:
         indices=used,
         residuals=deviation,
         part=np.zeros(len(used), dtype=np.int64),
-        deviations=_map(asked, scene, nominal, pose, (used, cloud, deviation, normals)),
+        deviations=_map(asked, scene, around, pose, (used, cloud, deviation, normals)),
     )
 
 
-def _pose(asked: Deviation, nominal: Triangles, indices: NDArray[np.int64], scene: Scene) -> Pose:
+def _pose(asked: Deviation, around: Surroundings, indices: NDArray[np.int64], scene: Scene) -> Pose:
     """The nominal surface's coordinates into the camera frame."""
     if asked.align == "as measured":
         return Pose.identity()
@@ -78,7 +78,7 @@ def _pose(asked: Deviation, nominal: Triangles, indices: NDArray[np.int64], scen
     up = -planes[0].normal if planes else np.array([0.0, 0.0, -1.0])
     if len(indices) < FEWEST:
         raise InputError("nothing but a plane was scanned, so there is no part to lay the nominal surface on")
-    return best_fit(scene.cloud.points[indices], up, nominal, scene.progress).pose_camera_nominal
+    return best_fit(scene.cloud.points[indices], up, around, scene.progress).pose_camera_nominal
 
 
 def _above_table(points: Array, nominal: Triangles, scene: Scene) -> NDArray[np.bool_]:
@@ -152,7 +152,7 @@ def _without_alignment(gain: Array, sources: Sources, cloud: Cloud, normals: Arr
 def _map(
     asked: Deviation,
     scene: Scene,
-    nominal: Triangles,
+    around: Surroundings,
     pose: Pose,
     points: tuple[NDArray[np.int64], Cloud, Array, Array],
 ) -> DeviationMap:
@@ -162,8 +162,8 @@ def _map(
         sigma = cloud.sigma * _slant(cloud.points, normals)
         return DeviationMap(cloud.points, used, False, deviation, sigma, asked.tolerance_mm, pose)
     mesh = scene.mesh
-    mine = np.flatnonzero(mesh.measured & _above_table(mesh.vertices, nominal, scene))
-    near = Surroundings(nominal).nearest(pose.inverse().apply(mesh.vertices[mine]), asked.reach_mm)
+    mine = np.flatnonzero(mesh.measured & _above_table(mesh.vertices, around.surface, scene))
+    near = around.nearest(pose.inverse().apply(mesh.vertices[mine]), asked.reach_mm)
     close = _facing(mesh.normals[mine], near, pose) & (np.abs(near.distance) <= asked.reach_mm)
     kept = mine[close]
     normals = near.normal[close] @ pose.rotation.T

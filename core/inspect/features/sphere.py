@@ -10,6 +10,7 @@ from core.errors import InputError
 from core.inspect.elements import Element
 from core.inspect.features.measured import FeatureResult, Scene
 from core.inspect.features.regions import points_in
+from core.inspect.features.round import round_result
 from core.inspect.inspection_plan import Auto, FeatureSpec, PointsOf
 from core.inspect.sphere import find_sphere, radius_budget, through
 from core.inspect.surface_fit import FEWEST, fit_surface
@@ -28,19 +29,5 @@ def measure_sphere(spec: FeatureSpec, scene: Scene) -> FeatureResult:
     start = through(cloud.points[indices])
     filters = spec.filters
     fit = fit_surface(cloud, np.sort(indices), start, scene.errors, tukey=filters.outliers, cell_mm=filters.cell_mm)
-    ball = fit.shape
-    rule = "diameter of the sphere of least squares, by the points' covariance"
     rows = tuple(replace(row, u_mm=2 * row.u_mm) for row in radius_budget(cloud, fit, scene.errors))
-    form_rule = "range that holds 95 % of the deviations from the sphere"
-    return FeatureResult(
-        spec,
-        characteristics=(
-            scene.characteristic(spec, "diameter", 2 * ball.radius, rows, rule=rule),
-            scene.characteristic(spec, "form", fit.form.value, fit.form.budget, rule=form_rule),
-        ),
-        indices=fit.indices,
-        residuals=fit.residuals,
-        part=fit.part,
-        element=Element.of_ball(fit),
-        shape=ball,
-    )
+    return round_result(spec, scene, fit, rows, Element.of_ball(fit))
