@@ -10,9 +10,10 @@ from typing import cast
 from core.cli import output
 from core.cli.measuring import Shown
 from core.errors import InputError
+from core.files.export_list import EXPORTS
 from core.files.recording_set import open_set
 from core.files.report_template import read_report_template, section_set
-from core.pipeline.handing_over import EXPORTS, export_results, import_camera, with_template
+from core.pipeline.handing_over import export_results, import_camera, with_template
 from core.pipeline.report_step import report_step
 from core.pipeline.reported_inspection import with_studies
 from core.pipeline.workspace import Workspace

@@ -1,14 +1,11 @@
-"""Everything that can be handed over: its name, its title, how its file ends, and how it is written."""
+"""How everything that can be handed over is written."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from datetime import datetime
 from functools import cached_property
 from pathlib import Path
-from types import MappingProxyType
-from typing import Literal
 
 from core.calibrate.results import CameraCalibration
 from core.errors import InputError
@@ -23,6 +20,7 @@ from core.files.exchange.result_csv import write_result_csv
 from core.files.exchange.result_json import write_result_json
 from core.files.exchange.ros_camera_info import write_camera_info
 from core.files.exchange.xlsx import write_xlsx
+from core.files.export_list import EXPORTS, ExportKind
 from core.files.mesh_export import write_3mf, write_obj
 from core.files.pictures import read_bytes
 from core.files.ply import read_cloud, read_mesh
@@ -31,9 +29,6 @@ from core.files.stl import write_stl
 from core.pipeline.workspace import FILES
 from core.progress import Progress, silent
 from core.report.content import ReportContent
-
-Needs = Literal["camera", "scan", "inspect"]
-"""The step whose result something is written from."""
 
 
 class Results:
@@ -68,35 +63,10 @@ class Results:
         return record.made_at.get("camera", record.measured_at)
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class ExportKind:
-    """One thing that can be handed over.
-
-    Parameters
-    ----------
-    name, title
-        What programs and people call it.
-    file
-        Its name in a folder of results; `ending` is how it ends.
-    needs
-        The step it is made from.
-    write
-        Writes it to a path.
-    """
-
-    name: str
-    title: str
-    file: str
-    needs: Needs
-    write: Callable[[Results, Path, Progress], None]
-
-    @property
-    def ending(self) -> str:
-        """How the file's name ends, with its point."""
-        return Path(self.file).suffix
+Write = Callable[[Results, Path, Progress], None]
 
 
-def _copy(name: str) -> Callable[[Results, Path, Progress], None]:
+def _copy(name: str) -> Write:
     def copy(results: Results, path: Path, progress: Progress = silent) -> None:
         source = results.folder / FILES[name]
         if not source.exists():
@@ -107,7 +77,7 @@ def _copy(name: str) -> Callable[[Results, Path, Progress], None]:
     return copy
 
 
-def _of_content(write: Callable[[Path, ReportContent], None]) -> Callable[[Results, Path, Progress], None]:
+def _of_content(write: Callable[[Path, ReportContent], None]) -> Write:
     return lambda results, path, _: write(path, results.content)
 
 
@@ -141,28 +111,26 @@ def _ros(results: Results, path: Path, _: Progress) -> None:
     write_camera_info(path, results.camera)
 
 
-_ALL = (
-    ExportKind("pdf", "Report (PDF)", "report.pdf", "scan", _copy("report")),
-    ExportKind("cloud", "Point cloud (PLY)", "cloud.ply", "scan", _copy("cloud")),
-    ExportKind("e57", "Point cloud, σ as intensity (E57)", "cloud.e57", "scan", _e57),
-    ExportKind("csv", "Points as a table (CSV)", "points.csv", "scan", _points),
-    ExportKind("mesh", "Surface (PLY)", "mesh.ply", "scan", _copy("mesh")),
-    ExportKind("stl", "Surface (STL)", "mesh.stl", "scan", _stl),
-    ExportKind("obj", "Surface (OBJ)", "mesh.obj", "scan", _obj),
-    ExportKind("3mf", "Surface (3MF)", "mesh.3mf", "scan", _3mf),
-    ExportKind("table", "Results as a table (CSV)", "result.csv", "inspect", _of_content(write_result_csv)),
-    ExportKind("xlsx", "Results as a workbook (XLSX)", "result.xlsx", "inspect", _of_content(write_xlsx)),
-    ExportKind("results", "Results with their schema (JSON)", "result.json", "inspect", _of_content(write_result_json)),
-    ExportKind("dfq", "Results for statistics (Q-DAS DFQ)", "result.dfq", "inspect", _of_content(write_dfq)),
-    ExportKind("qif", "Results (QIF 3.0)", "result.qif", "inspect", _of_content(write_qif)),
-    ExportKind("json", "Thickness (JSON)", "gauge.json", "inspect", _copy("gauge")),
-    ExportKind("opencv", "Camera (OpenCV YAML)", "camera_opencv.yml", "camera", _opencv),
-    ExportKind("opencv-json", "Camera (OpenCV JSON)", "camera_opencv.json", "camera", _opencv),
-    ExportKind("ros", "Camera (ROS camera_info)", "camera_info.yaml", "camera", _ros),
-)
-
-EXPORTS: Mapping[str, ExportKind] = MappingProxyType({kind.name: kind for kind in _ALL})
-"""All kinds by name, in the order in which they are offered."""
+WRITERS: Mapping[str, Write] = {
+    "pdf": _copy("report"),
+    "cloud": _copy("cloud"),
+    "e57": _e57,
+    "csv": _points,
+    "mesh": _copy("mesh"),
+    "stl": _stl,
+    "obj": _obj,
+    "3mf": _3mf,
+    "table": _of_content(write_result_csv),
+    "xlsx": _of_content(write_xlsx),
+    "results": _of_content(write_result_json),
+    "dfq": _of_content(write_dfq),
+    "qif": _of_content(write_qif),
+    "json": _copy("gauge"),
+    "opencv": _opencv,
+    "opencv-json": _opencv,
+    "ros": _ros,
+}
+"""What writes each kind of `core.files.export_list.EXPORTS`, by its name."""
 
 
 def export_kind(name: str) -> ExportKind:
@@ -170,3 +138,8 @@ def export_kind(name: str) -> ExportKind:
     if name not in EXPORTS:
         raise InputError(f'there is no format "{name}"', where="--format", todo=f"choose among {', '.join(EXPORTS)}")
     return EXPORTS[name]
+
+
+def write_export(kind: str, results: Results, path: Path, progress: Progress = silent) -> None:
+    """Write the kind of that name to `path`; InputError if there is none, or a result is missing."""
+    WRITERS[export_kind(kind).name](results, path, progress)

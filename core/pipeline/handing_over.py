@@ -16,7 +16,7 @@ from core.files.project_data import Project, ReportChoices
 from core.files.project_folder import stored_source
 from core.files.project_rescue import can_be_saved
 from core.files.report_template import read_report_template
-from core.pipeline.export_kinds import EXPORTS, ExportKind, Results, export_kind
+from core.pipeline.export_kinds import Results, export_kind, write_export
 from core.pipeline.project_steps import project_content, report_bytes, results_folder
 from core.pipeline.report_step import results_content
 from core.pipeline.workspace import FILES
@@ -26,10 +26,8 @@ from core.report.page_pictures import Pages, page_pictures
 from core.report.template import LANGUAGES, PAPERS, ReportTemplate
 
 __all__ = [
-    "EXPORTS",
     "LANGUAGES",
     "PAPERS",
-    "ExportKind",
     "choose_template",
     "export",
     "export_results",
@@ -98,7 +96,7 @@ def export(folder: Path, project: Project, kind: str, path: Path, progress: Prog
         write_bytes(path, report_bytes(folder, project, progress))
     else:
         results = Results(results_folder(folder), lambda: project_content(folder, project, progress))
-        export_kind(kind).write(results, path, progress)
+        write_export(kind, results, path, progress)
     progress("writing", 1, 1)
     return path
 
@@ -128,7 +126,7 @@ def export_results(
     written = {}
     for done, kind in enumerate(chosen):
         progress("writing", done, len(chosen))
-        kind.write(results, folder / kind.file, progress)
+        write_export(kind.name, results, folder / kind.file, progress)
         written[kind.name] = folder / kind.file
     progress("writing", len(chosen), len(chosen))
     return written

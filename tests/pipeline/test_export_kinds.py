@@ -17,9 +17,11 @@ from pypdf import PdfReader
 
 from core.errors import InputError
 from core.files.camera_file import read_camera, write_camera
+from core.files.export_list import EXPORTS
 from core.files.project_data import ReportChoices
 from core.model import Camera
-from core.pipeline.handing_over import EXPORTS, choose_template, export, export_results, import_camera
+from core.pipeline.export_kinds import WRITERS
+from core.pipeline.handing_over import choose_template, export, export_results, import_camera
 from core.pipeline.project_steps import make_report, project_content, results_folder
 from tests.simulated import copy_of
 
@@ -44,6 +46,7 @@ def without_skew(folder):
 
 def test_every_kind_has_a_name_a_title_an_ending_and_a_file_of_its_own():
     assert len({kind.file for kind in EXPORTS.values()}) == len(EXPORTS)
+    assert list(WRITERS) == list(EXPORTS)
     for name, kind in EXPORTS.items():
         assert (kind.name, kind.ending[:1], kind.needs in ("camera", "scan", "inspect")) == (name, ".", True)
         assert kind.title.strip()

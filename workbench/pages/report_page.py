@@ -6,10 +6,10 @@ from PySide6.QtCore import QEvent, QUrl
 from PySide6.QtGui import QAction, QDesktopServices
 from PySide6.QtWidgets import QCheckBox, QComboBox, QGridLayout, QLabel, QMenu, QPushButton, QVBoxLayout, QWidget
 
+from core.files.export_list import EXPORTS
 from core.report.template import PAPERS
-from workbench.pages.report_exports import AT_HAND, EXPORTS
 from workbench.pages.report_presenter import ReportPresenter, Stage
-from workbench.pages.report_words import export_words
+from workbench.pages.report_words import AT_HAND, export_words
 from workbench.pages.step_page import StepPage, muted
 from workbench.theme import icon
 from workbench.views import ask

@@ -7,13 +7,13 @@ from enum import StrEnum
 from pathlib import Path
 from typing import Any
 
+from core.files.export_list import EXPORTS
 from core.files.project import Project, can_be_saved
 from core.files.project_keys import changed, finished, rests_on
 from core.report.section_names import SECTIONS
 from workbench import jobs
 from workbench.bench import Bench
 from workbench.pages.presenter import StepPresenter
-from workbench.pages.report_exports import EXPORTS
 from workbench.problems import sentence
 from workbench.step_state import State
 from workbench.tasks import Task

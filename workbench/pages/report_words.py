@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from PySide6.QtCore import QCoreApplication
 
+AT_HAND = ("pdf", "cloud", "csv", "stl", "xlsx", "json")
+"""Exports with a button of their own; the others are in a menu."""
+
 
 def export_words(kind: str) -> tuple[str, str, str]:
     """Title, help and icon of what is handed over."""

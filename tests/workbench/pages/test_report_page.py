@@ -15,9 +15,9 @@ from core.files.project import Project, new_project
 from core.files.project_keys import finished
 from tests.workbench.pages.test_report_presenter import PAGES, Drawing, measured
 from workbench.bench import Bench
-from workbench.pages.report_exports import AT_HAND
 from workbench.pages.report_page import ReportPage
 from workbench.pages.report_presenter import ReportPresenter
+from workbench.pages.report_words import AT_HAND
 from workbench.views import ask
 
 

@@ -11,14 +11,13 @@ import numpy as np
 import pytest
 
 from core.errors import InputError
+from core.files.export_list import EXPORTS
 from core.files.project import Project, Repeat, new_project
 from core.files.project_keys import finished
 from core.inspect.inspection_plan import FeatureSpec, InspectionPlan
-from core.pipeline import export_kinds
 from tests.workbench.hand_lane import HandLane
 from workbench import jobs
 from workbench.bench import Bench
-from workbench.pages.report_exports import EXPORTS
 from workbench.pages.report_presenter import ReportPresenter, Stage
 from workbench.step_state import State
 
@@ -301,12 +300,6 @@ def test_a_template_that_cannot_be_read_is_told_and_changes_nothing(
 
 
 # ---- hand over
-
-
-def test_everything_the_program_can_hand_over_is_offered() -> None:
-    written = {kind.name: (kind.ending, kind.needs) for kind in export_kinds.EXPORTS.values()}
-    assert {name: (one.ending, one.needs) for name, one in EXPORTS.items()} == written
-    assert list(EXPORTS) == list(export_kinds.EXPORTS)
 
 
 @pytest.mark.parametrize(
