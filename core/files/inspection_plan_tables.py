@@ -134,7 +134,7 @@ class FeatureTable(Table):
     )
     region: RegionTable | Literal["auto"] | None = Field(None, description='a table as { polygon_px = … }, or "auto"')
     regions: list[RegionTable | Literal["auto"]] | None = Field(
-        None, min_length=1, max_length=20, description="a list of regions: upper and lower face, or levels"
+        None, max_length=20, description="a list of regions: upper and lower face, or levels"
     )
     of: list[_Name] = Field(default_factory=list, description="a list of names of features")
     filters: FiltersTable | None = Field(None, description="a table")

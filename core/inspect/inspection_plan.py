@@ -331,6 +331,8 @@ def _check(spec: FeatureSpec, plan: InspectionPlan) -> None:
     for name in spec.of:
         if plan.feature(name).kind not in ELEMENTS:
             raise InputError(f"{name} is a {plan.feature(name).kind}, and no {spec.kind} is made of that", where=where)
+    if not spec.regions and not wanted:
+        raise InputError("it has no region", where=where, todo="draw one, or leave regions out to have it found")
     if (spec.kind == "section") != (spec.section is not None):
         raise InputError("only a section has a section's settings, and it needs them", where=where)
     if (spec.kind == "deviation") != (spec.deviation is not None):
