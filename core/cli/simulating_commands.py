@@ -22,7 +22,8 @@ def simulate(
     thing: Annotated[str, typer.Argument(metavar="OBJECT", help=f"What stands on the table: {', '.join(OBJECTS)}.")],
     out: Annotated[Path, typer.Option("--out", "-o", metavar="SET", help="Folder of the new recording set.")],
     height: Annotated[
-        float, typer.Option("--height", metavar="MM", help="Height of a block or mask, diameter of a sphere.")
+        float,
+        typer.Option("--height", metavar="MM", help="Height of a block or mask, diameter of a sphere or cylinder."),
     ] = SCENARIO.height_mm,
     stl: Annotated[str, typer.Option("--stl", metavar="FILE", help="The file of an stl.")] = SCENARIO.stl_path,
     frames: Annotated[int, typer.Option(help="Frames of the scan.")] = SCENARIO.frames,

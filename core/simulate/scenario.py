@@ -10,7 +10,7 @@ from pathlib import Path
 
 from core.errors import InputError
 
-OBJECTS = ("block", "narrow-block", "steps", "sphere", "mask", "stl", "plane")
+OBJECTS = ("block", "narrow-block", "steps", "sphere", "cylinder", "mask", "stl", "plane")
 """What can stand on the table."""
 
 CAMERA_TARGETS = ("checkerboard", "charuco", "circle_grid")
@@ -29,7 +29,7 @@ class Scenario:
     object
         One of OBJECTS; `stl_path` names the file of an "stl".
     height_mm
-        Height of a block, diameter of a sphere, height of the mask.
+        Height of a block, diameter of a sphere or of a lying cylinder, height of the mask.
     seed
         All chance in the pictures comes from it.
     scale

@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 from core.model import Pose
 from core.model.arrays import Array
 from core.simulate.mask import face_mask
-from core.simulate.objects import gauge_block, step_block, stl, turned
+from core.simulate.objects import cylinder, gauge_block, step_block, stl, turned
 from core.simulate.scenario import Scenario
 from core.simulate.scene import Mesh, Scene, Sphere
 
@@ -44,6 +44,8 @@ def build_scene(scenario: Scenario) -> tuple[Scene, dict[str, object]]:
     elif scenario.object == "sphere":
         figures["centre_mm"] = scene.spheres[0].centre.tolist()
         figures["radius_mm"] = scene.spheres[0].radius
+    elif scenario.object == "cylinder":
+        figures["radius_mm"] = scenario.height_mm / 2
     return scene, figures
 
 
@@ -63,6 +65,8 @@ def _thing(scenario: Scenario) -> Mesh | Sphere | None:
         radius = scenario.height_mm / 2
         # 3 mm: the outer fan lines equally far from its rims
         return Sphere(np.array([*(place + [0.0, 3.0]), radius]), radius)
+    if scenario.object == "cylinder":
+        return turned(cylinder(scenario.height_mm), yaw, place)
     if scenario.object == "mask":
         return turned(face_mask(scenario.height_mm), yaw, place)
     if scenario.object == "stl":

@@ -5,7 +5,7 @@ import trimesh
 from core.errors import InputError
 from core.model import Camera, Pose
 from core.simulate.mask import face_mask
-from core.simulate.objects import gauge_block, step_block, stl
+from core.simulate.objects import cylinder, gauge_block, step_block, stl
 from core.simulate.rays import ray_map
 from core.simulate.rig import paper_rig
 from core.simulate.scene import Mesh, Scene, Sphere, surface_maps
@@ -60,6 +60,24 @@ def test_sphere_depth_solves_the_quadratic_and_a_fine_mesh_of_it_agrees():
     assert both.sum() > 0.7 * (ball.depth > 0).sum()
     assert np.abs(ball.depth - meshed.depth)[both].max() < 0.05
     assert (ball.normals[both] * meshed.normals[both]).sum(axis=1).min() > 0.999
+
+
+def test_a_lying_cylinder_is_closed_round_and_shaded_as_if_it_had_no_facets():
+    shaft = cylinder(30.0, 60.0)
+    solid = trimesh.Trimesh(**trimesh.triangles.to_kwargs(shaft.triangles))
+    assert solid.is_watertight
+    assert solid.volume == pytest.approx(np.pi * 15.0**2 * 60.0, rel=1e-5)
+    pose = table_pose()
+    maps = surface_maps(Scene.on_table(pose, shaft), RIG.camera, RAYS)
+    pixels = np.argwhere(~maps.table)
+    local = pose.inverse().apply(rays_of(pixels) * maps.depth[tuple(pixels.T)][:, None])
+    normals = maps.normals[tuple(pixels.T)] @ pose.rotation
+    away = local - [0.0, 0.0, 15.0]
+    side = np.abs(away[:, 0]) < 29.9
+    assert side.sum() > 1000
+    assert np.abs(np.hypot(away[side, 1], away[side, 2]) - 15.0).max() < 1e-3
+    assert np.abs(normals[side, 1:] - away[side, 1:] / 15.0).max() < 1e-3
+    assert np.abs(normals[side, 0]).max() < 1e-5
 
 
 def test_nearer_triangles_hide_farther_ones_in_whatever_order():
