@@ -10,6 +10,7 @@ from core.errors import InputError
 from core.files.inspection_file import NAME, write_inspection
 from core.files.inspection_plan_file import plan_tables
 from core.files.project_data import Project
+from core.files.shown_file import read_shown, write_shown
 from core.inspect.deviation_map import QUARTERS, DeviationMap, bounds, mark
 from core.inspect.evaluate import Inspection
 from core.inspect.features.measured import FeatureResult
@@ -40,13 +41,17 @@ def measure_features(folder: Path, project: Project, progress: Progress = silent
         inspection, scan = _inspected(folder, project, progress)
     except InputError as error:
         raise in_a_project(error) from error
-    write_inspection(results_folder(folder) / NAME, inspection, scan.calibration_id, plan_tables(project.inspection))
-    return _shown(inspection, scan)
+    path, shown = results_folder(folder) / NAME, _shown(inspection, scan)
+    write_inspection(path, inspection, scan.calibration_id, plan_tables(project.inspection))
+    write_shown(path, shown)
+    return shown
 
 
 def look_at_features(folder: Path, project: Project, progress: Progress = silent) -> ShownInspection:
-    """The same without writing anything: what was measured is measured again, to be drawn."""
-    return _shown(*_inspected(folder, project, progress))
+    """The same without writing anything: as it was kept, or else measured again, to be drawn."""
+    progress("features", 0, 1)
+    kept = read_shown(results_folder(folder) / NAME, plan_tables(project.inspection))
+    return kept or _shown(*_inspected(folder, project, progress))
 
 
 def _inspected(folder: Path, project: Project, progress: Progress) -> tuple[Inspection, InspectedScan]:

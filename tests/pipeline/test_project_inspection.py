@@ -2,7 +2,7 @@
 
 import json
 import shutil
-from dataclasses import replace
+from dataclasses import fields, is_dataclass, replace
 
 import numpy as np
 import pytest
@@ -12,6 +12,7 @@ from core.files.inspection_plan_file import write_plan
 from core.files.ply import read_mesh
 from core.files.stl import write_stl
 from core.inspect.inspection_plan import Auto, Deviation, FeatureSpec, InspectionPlan, Section
+from core.pipeline import project_inspection
 from core.pipeline.inspect_step import inspect_step
 from core.pipeline.project_inspection import look_at_features, measure_features
 from core.pipeline.project_steps import project_content, results_folder
@@ -50,6 +51,29 @@ def test_looking_writes_nothing(done, folder):
     assert not (results_folder(folder) / "inspection.json").exists()
 
 
+def drawn(value):
+    """Everything in it, arrays by their values."""
+    if isinstance(value, np.ndarray):
+        return (str(value.dtype), value.tolist())
+    if isinstance(value, tuple):
+        return [drawn(one) for one in value]
+    if is_dataclass(value):
+        return {one.name: drawn(getattr(value, one.name)) for one in fields(value)}
+    return value
+
+
+def test_what_was_kept_of_another_inspection_is_not_drawn(done, folder):
+    project = replace(done.project, inspection=PLAN)
+    measure_features(folder, project)
+    other = InspectionPlan(PLAN.features[:1])
+    assert [one.name for one in look_at_features(folder, replace(project, inspection=other)).features] == ["table"]
+    results = results_folder(folder)
+    inspect_step(results, other, folder, results)  # the command line writes inspection.json, and draws nothing
+    assert len(look_at_features(folder, project).features) == len(PLAN.features)
+    (results / "shown.npz").write_bytes(b"damaged")
+    assert len(look_at_features(folder, project).features) == len(PLAN.features)
+
+
 def test_what_cannot_be_measured_says_why_and_the_rest_is_measured(done, folder):
     plan = InspectionPlan((*PLAN.features[:3], FeatureSpec("far plane", "plane", (Auto(9),))))
     shown = measure_features(folder, replace(done.project, inspection=plan))
@@ -57,7 +81,7 @@ def test_what_cannot_be_measured_says_why_and_the_rest_is_measured(done, folder)
     assert shown.features[2].rows
 
 
-def test_what_is_drawn_of_a_section_and_of_deviations_is_of_the_scan(done, folder):
+def test_what_is_drawn_is_of_the_scan_and_kept_so_that_it_need_not_be_measured_again(done, folder, monkeypatch):
     write_stl(folder / "nominal.stl", read_mesh(results_folder(folder) / "mesh.ply"))
     across = Section(
         (
@@ -69,15 +93,20 @@ def test_what_is_drawn_of_a_section_and_of_deviations_is_of_the_scan(done, folde
         (
             FeatureSpec("cut", "section", section=across),
             FeatureSpec("itself", "deviation", deviation=Deviation("nominal.stl", "as measured", 0.4)),
+            FeatureSpec("far plane", "plane", (Auto(9),)),
         )
     )
-    cut, itself = measure_features(folder, replace(done.project, inspection=plan)).features
+    project = replace(done.project, inspection=plan)
+    shown = measure_features(folder, project)
+    cut, itself, _ = shown.features
     assert not cut.problem and not itself.problem
     assert np.all(np.diff(cut.profile.position) >= 0) and len(cut.profile.position) == len(cut.profile.height)
     shares = [one.share for one in itself.deviations.classes]
     assert sum(shares) == pytest.approx(1) and shares[4] > 0.9
     assert [one.mark for one in itself.deviations.classes][:2] == ["−!", "−−−"]
     assert int(itself.deviations.counts.sum()) > 0
+    monkeypatch.setattr(project_inspection, "inspect", lambda *_: pytest.fail("measured again"))
+    assert drawn(look_at_features(folder, project)) == drawn(shown)
 
 
 def test_the_report_has_the_thickness_beside_the_features_and_none_that_were_taken_out(done, folder):

@@ -1,0 +1,119 @@
+"""shown.npz beside inspection.json: what a window draws of an inspection, so that it need not be measured again for it.
+
+The rows themselves stand in inspection.json alone; shown.npz knows by its hash which one it was written with.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.errors import InputError
+from core.files.arrays_file import Arrays, pack_texts, read_arrays, write_arrays
+from core.files.inspection_file import read_inspection
+from core.files.json_text import read_json, to_json
+from core.files.pictures import read_bytes
+from core.inspect.characteristic import Characteristic
+from core.inspect.deviation_map import bounds, mark
+from core.inspect.shown_features import ShownClass, ShownDeviations, ShownFeature, ShownInspection, ShownProfile
+
+NAME = "shown.npz"
+"""Among the results of a scan."""
+_PROFILE = ("position", "height", "mean_position", "mean_height")
+
+
+def write_shown(inspection: Path, shown: ShownInspection) -> None:
+    """Write what is drawn of the inspection just written to `inspection`; InputError if it cannot be written."""
+    arrays: dict[str, NDArray[Any]] = {}
+    features = []
+    for number, one in enumerate(shown.features):
+        arrays |= {f"places_{number}": one.places, f"uv_{number}": one.uv}
+        if one.profile is not None:
+            arrays |= {f"{name}_{number}": getattr(one.profile, name) for name in _PROFILE}
+        if one.deviations is not None:
+            arrays |= _deviation_arrays(number, one.deviations)
+        about = {"name": one.name, "kind": one.kind, "used": one.used, "problem": one.problem, "rows": len(one.rows)}
+        tolerance = None if one.deviations is None else one.deviations.tolerance_mm
+        features.append(about | {"profile": one.profile is not None, "tolerance_mm": tolerance})
+    about = {"features": features, "verdict": shown.verdict, "of": _hash(inspection)}
+    write_arrays(inspection.with_name(NAME), {**arrays, "about": pack_texts([to_json(about)])})
+
+
+def read_shown(inspection: Path, plan: Mapping[str, Any]) -> ShownInspection | None:
+    """What is drawn of the inspection in `inspection`; None if nothing was kept of this one or of this plan.
+
+    `plan` is what is to be shown, by the keys of plan.toml.
+
+    Raises
+    ------
+    InputError
+        If inspection.json is damaged.
+    """
+    path = inspection.with_name(NAME)
+    if not path.exists() or not inspection.exists():
+        return None
+    if read_json(inspection).get("plan") != json.loads(to_json(plan)):
+        return None
+    try:
+        arrays = read_arrays(path, ("about",), todo="")
+        about = json.loads(str(arrays["about"][0]))
+        if about["of"] != _hash(inspection):
+            return None
+        return _shown(about, arrays, inspection)
+    except (InputError, KeyError, ValueError, IndexError):
+        return None  # damaged: what is drawn is made anew
+
+
+def _shown(about: Mapping[str, Any], arrays: Arrays, inspection: Path) -> ShownInspection:
+    file = read_inspection(inspection)
+    rows, features = list(file.characteristics), []
+    for number, one in enumerate(about["features"]):
+        mine: tuple[Characteristic, ...] = tuple(rows[: one["rows"]])
+        del rows[: one["rows"]]
+        features.append(
+            ShownFeature(
+                name=one["name"],
+                kind=one["kind"],
+                rows=mine,
+                used=one["used"],
+                places=arrays[f"places_{number}"],
+                uv=arrays[f"uv_{number}"],
+                problem=one["problem"],
+                profile=ShownProfile(*(arrays[f"{name}_{number}"] for name in _PROFILE)) if one["profile"] else None,
+                deviations=None if one["tolerance_mm"] is None else _deviations(number, one["tolerance_mm"], arrays),
+            )
+        )
+    return ShownInspection(tuple(features), about["verdict"], file.notes, file.calibration_id)
+
+
+def _deviation_arrays(number: int, found: ShownDeviations) -> dict[str, NDArray[Any]]:
+    """Classes one after the other: their numbers, shares and how many places are drawn of each."""
+    return {
+        f"classes_{number}": np.array([one.number for one in found.classes]),
+        f"shares_{number}": np.array([one.share for one in found.classes]),
+        f"drawn_{number}": np.array([len(one.places) for one in found.classes]),
+        f"deviating_{number}": np.concatenate([one.places for one in found.classes]),
+        f"edges_{number}": found.edges,
+        f"counts_{number}": found.counts,
+    }
+
+
+def _deviations(number: int, tolerance_mm: float, arrays: Arrays) -> ShownDeviations:
+    ends = np.cumsum(arrays[f"drawn_{number}"])[:-1]
+    places = np.split(arrays[f"deviating_{number}"], ends)
+    numbers, shares = arrays[f"classes_{number}"].tolist(), arrays[f"shares_{number}"].tolist()
+    classes = tuple(
+        ShownClass(mark(one), one, *bounds(one, tolerance_mm), share, mine)
+        for one, share, mine in zip(numbers, shares, places, strict=True)
+    )
+    return ShownDeviations(classes, arrays[f"edges_{number}"], arrays[f"counts_{number}"], tolerance_mm)
+
+
+def _hash(path: Path) -> str:
+    return hashlib.sha256(read_bytes(path)).hexdigest()
