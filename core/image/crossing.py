@@ -27,6 +27,8 @@ from core.image.segments import CELL_REACH, CELLS, Stack, meeting_segments
 from core.model.arrays import Array, frozen_array, set_field
 
 _REASONS = ("angle too small", "arm too short", "lines do not meet")
+MEETING = 10
+"""Figures that `cross_segments` gives of a meeting."""
 _SHORTEST_ARM = 0.75  # of the correlation length
 
 
@@ -148,7 +150,7 @@ def _cross_at(
     arc_a, arc_b = 0.5 * (piece_a.arc[k] + piece_a.arc[k + 1]), 0.5 * (piece_b.arc[m] + piece_b.arc[m + 1])
     cell_a, cell_b = (max(0, math.floor(arc / cell) - CELL_REACH) for arc in (arc_a, arc_b))
     share = np.zeros((2, CELLS))
-    row = _cross(
+    row = cross_segments(
         piece_a.points, k, piece_a.bins, piece_a.broken, arc_a, piece_a.correlation_px, cell_a,
         piece_b.points, m, piece_b.bins, piece_b.broken, arc_b, piece_b.correlation_px, cell_b,
         cell, min_angle, share,
@@ -195,7 +197,7 @@ def _arm_too_short(points: Array, at: int, origin: Array, half: float, correlati
 
 
 @njit(cache=True, nogil=True)
-def _cross(
+def cross_segments(
     a: Array,
     k: int,
     bins_a: Array,
@@ -216,9 +218,10 @@ def _cross(
 ) -> Array:
     """Meeting of two lines near the segments k and m.
 
-    Returns (10,): 0 or the number of a reason, u, v, both tangents, σ_a, σ_b, whether curved; and what cells share.
+    Returns (MEETING,): 0 or the number of a reason, u, v, both tangents, σ_a, σ_b, whether curved; into `share` (2, K)
+    what cells share.
     """
-    result = np.zeros(10)
+    result = np.zeros(MEETING)
     fits = np.zeros((2, FIT))
     origin = 0.25 * (a[k, :2] + a[k + 1, :2] + b[m, :2] + b[m + 1, :2])
     reach = CELL_REACH * half

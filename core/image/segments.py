@@ -120,16 +120,13 @@ def meeting_segments(
     count = 0
     for p in range(len(boxes_a)):
         for q in range(len(boxes_b)):
-            if (
-                boxes_a[p, 5] < boxes_b[q, 3]
-                or boxes_b[q, 5] < boxes_a[p, 3]
-                or boxes_a[p, 6] < boxes_b[q, 4]
-                or boxes_b[q, 6] < boxes_a[p, 4]
-            ):
+            if boxes_apart(boxes_a[p], boxes_b[q]):
                 continue
             for k in range(int(boxes_a[p, 1]), int(boxes_a[p, 2])):
+                if segment_apart(a[k], a[k + 1], boxes_b[q]):
+                    continue
                 for m in range(int(boxes_b[q, 1]), int(boxes_b[q, 2])):
-                    if not _segments_cut(a[k], a[k + 1], b[m], b[m + 1]):
+                    if not segments_cut(a[k], a[k + 1], b[m], b[m + 1]):
                         continue
                     if count == len(found):
                         found = np.concatenate((found, np.empty_like(found)))
@@ -141,7 +138,22 @@ def meeting_segments(
 
 
 @njit(cache=True, nogil=True)
-def _segments_cut(p: Array, q: Array, r: Array, s: Array) -> bool:
+def boxes_apart(one: Array, other: Array) -> bool:
+    """Whether the boxes of two runs have nothing in common."""
+    return bool(one[5] < other[3] or other[5] < one[3] or one[6] < other[4] or other[6] < one[4])
+
+
+@njit(cache=True, nogil=True)
+def segment_apart(p: Array, q: Array, box: Array) -> bool:
+    """Whether the segment from p to q passes a run's box on one of its sides."""
+    return bool(
+        max(p[0], q[0]) < box[3] or box[5] < min(p[0], q[0]) or max(p[1], q[1]) < box[4] or box[6] < min(p[1], q[1])
+    )
+
+
+@njit(cache=True, nogil=True)
+def segments_cut(p: Array, q: Array, r: Array, s: Array) -> bool:
+    """Whether the segment from p to q cuts the one from r to s; the last point belongs to the next segment."""
     du, dv, eu, ev = q[0] - p[0], q[1] - p[1], s[0] - r[0], s[1] - r[1]
     cross = du * ev - dv * eu
     if cross == 0.0:

@@ -1,4 +1,4 @@
-"""All crossings of a scan, as arrays: where a sweep's centreline meets the fan's or another sweep's."""
+"""Crossings as arrays: where a sweep's centreline meets the fan's or another sweep's."""
 
 from __future__ import annotations
 
@@ -13,7 +13,6 @@ from core.image.crossing import Crossing, cross_centrelines
 from core.image.segments import CELLS, Stack
 from core.image.shading import shading_sigma
 from core.model.arrays import Array, set_field
-from core.progress import Progress, silent, steps
 
 Index = NDArray[np.int64]
 
@@ -118,23 +117,6 @@ class CrossingWindow:
 
     half_length_px: float = 40.0
     min_angle: float = float(np.deg2rad(15.0))
-
-
-def all_crossings(
-    fan: Sequence[Centreline],
-    sweeps: Sequence[Sequence[Centreline]],
-    window: CrossingWindow,
-    progress: Progress = silent,
-) -> CrossingTable:
-    """Every crossing of each sweep with the fan and with each later sweep."""
-    rows: list[Meeting] = []
-    stripes = [shaded(pieces, window) for pieces in sweeps]
-    fixed = shaded(fan, window)
-    for a, pieces in steps(enumerate(stripes), progress, "crossings", len(sweeps)):
-        rows.extend(meetings(pieces, fixed, a, -1, window))
-        for b in range(a + 1, len(sweeps)):
-            rows.extend(meetings(pieces, stripes[b], a, b, window))
-    return crossing_table(rows, window)
 
 
 @dataclass(frozen=True, eq=False, slots=True)

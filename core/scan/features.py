@@ -20,7 +20,8 @@ from core.image.stripe import StripeSettings
 from core.image.stripe_settings import choose_settings
 from core.model import Camera
 from core.progress import Progress, Told, silent, steps
-from core.scan.crossings import CrossingTable, CrossingWindow, all_crossings
+from core.scan.crossing_search import all_crossings
+from core.scan.crossings import CrossingTable, CrossingWindow
 from core.scan.feature_notes import notes_on
 from core.scan.frame_reader import LOST, MOVED, NO_STRIPE, Frame, FrameFeatures, FrameReader
 from core.scan.reference import Picture

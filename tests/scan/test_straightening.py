@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from core.scan.crossings import CrossingWindow, all_crossings
+from core.scan.crossing_search import all_crossings
+from core.scan.crossings import CrossingWindow
 from core.scan.straightening import bent_back, straightened
 from core.simulate.scenario import Scenario
 from tests.scan.centreline_scan import ExactCrossings, ExactScan
