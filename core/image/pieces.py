@@ -10,6 +10,7 @@ import math
 import numpy as np
 from numba import njit
 
+from core.image.ridge import kernel_radius
 from core.model.arrays import Array
 
 END_TRIM_PX = 4.0
@@ -19,6 +20,8 @@ _FADE_REACH = 20.0  # filter σ from an end that a fading shadow is looked for
 _FADED = 0.8  # less than this share of what is further in
 _NARROWED = 0.9  # of the square of the width, averaged over some points
 _EVEN_REACH = 1.5  # filter σ
+_BORDER_PX = 3.0  # a run stops so near to where the filter would leave the picture, if that is why it stops
+_UNDIMMED = 0.9  # of the response further in
 
 
 @njit(cache=True, nogil=True)
@@ -35,28 +38,56 @@ def correlation_length(filter_px: float) -> float:
     return 2 * math.sqrt(math.pi) * filter_px
 
 
-def cut_ends(run: Array, filter_px: float) -> Array:
-    """Cut a run (N, 5) where its response falls to half at an end, and END_TRIM_PX more."""
-    first, last = _lit(run, arc_length(run), filter_px, max(END_TRIM_PX, _END_TRIM * filter_px))
+def cut_ends(run: Array, filter_px: float, shape: tuple[int, ...]) -> Array:
+    """Cut a run (N, 5) where its response falls to half at an end, and END_TRIM_PX more.
+
+    Where it only stops because the filter would leave the picture (`shape`), the stripe goes on: nothing is cut.
+    """
+    height, width = shape
+    border = kernel_radius(filter_px) + _BORDER_PX
+    trim = max(END_TRIM_PX, _END_TRIM * filter_px)
+    first, last = _lit(run, arc_length(run), filter_px, trim, border, (height, width))
     return run[first:last]
 
 
 @njit(cache=True, nogil=True)
-def _lit(run: Array, arc: Array, filter_px: float, trim: float) -> tuple[int, int]:
+def _lit(
+    run: Array, arc: Array, filter_px: float, trim: float, border: float, shape: tuple[int, int]
+) -> tuple[int, int]:
     """First and past-the-last point of a run between its ends and `trim` px more."""
-    whole = arc[-1]
-    start = _real_end(arc, run[:, 4], filter_px) + trim
-    end = whole - _real_end(whole - arc[::-1], run[::-1, 4], filter_px) - trim
+    whole, back = arc[-1], run[::-1]
+    start, end = 0.0, whole
+    if not _leaves_picture(arc, run, filter_px, border, shape):
+        start = _real_end(arc, run[:, 4], filter_px) + trim
+    if not _leaves_picture(whole - arc[::-1], back, filter_px, border, shape):
+        end = whole - _real_end(whole - arc[::-1], back[:, 4], filter_px) - trim
     return int(np.searchsorted(arc, start)), int(np.searchsorted(arc, end, side="right"))
+
+
+@njit(cache=True, nogil=True)
+def _leaves_picture(arc: Array, run: Array, filter_px: float, border: float, shape: tuple[int, int]) -> bool:
+    """Whether a run starts at the border of the picture as bright as it is further in."""
+    u, v = run[0, 0], run[0, 1]
+    if min(min(u, shape[1] - 1 - u), min(v, shape[0] - 1 - v)) > border:
+        return False
+    usual = _usual_response(arc, run[:, 4], filter_px)
+    at_end = np.searchsorted(arc, filter_px)  # a few points tell it more surely than one
+    return usual > 0 and run[: at_end + 1, 4].min() >= _UNDIMMED * usual
+
+
+@njit(cache=True, nogil=True)
+def _usual_response(arc: Array, response: Array, filter_px: float) -> float:
+    """The response a little way in from the start of a run; 0 for one that is too short."""
+    first, last = np.searchsorted(arc, 3 * filter_px), np.searchsorted(arc, 9 * filter_px, side="right")
+    return float(np.median(response[first:last])) if last > first else 0.0
 
 
 @njit(cache=True, nogil=True)
 def _real_end(arc: Array, response: Array, filter_px: float) -> float:
     """Where the response first reaches half of what it is further in."""
-    first, last = np.searchsorted(arc, 3 * filter_px), np.searchsorted(arc, 9 * filter_px, side="right")
-    if last <= first:
+    half = 0.5 * _usual_response(arc, response, filter_px)
+    if half == 0.0:
         return 0.0
-    half = 0.5 * np.median(response[first:last])
     for k in range(len(arc)):
         if response[k] >= half:
             return float(arc[k])

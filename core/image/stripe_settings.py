@@ -101,7 +101,7 @@ def _sections(
     for traced in link(picture, state.copy(), stripe_px, filter_px, limits):
         if len(traced) < _LONG * filter_px:
             continue
-        run = cut_ends(traced, filter_px)
+        run = cut_ends(traced, filter_px, picture.shape)
         if len(run) > 1:
             profiles = measure_profiles(picture, state, run, stripe_px, filter_px)
             seen = profiles.height > 0

@@ -13,7 +13,8 @@ pixel phase                        the model is compared with each pixel where i
 curvature, radius R                distances are measured from the stripe's own curve (`core.image.guide`): below
                                    0.003 px for R > 40 s
 background slope                   the weights do not see a slope: below 0.001 px for 0.1 grey/px
-end of a stripe, kink, jump        4 px (2.5 g) and 2 g are left out; a piece never crosses them
+end of a stripe, kink, jump        4 px (2.5 g) and 2 g are left out, but nothing where a stripe goes on beyond the
+                                   picture's border; a piece never crosses them
 neighbour, crossing line           points nearer than 3.5·√(s² + g²) are left out, nearer than 8.1 s they stay
                                    Steger's, freed of the pull of curvature and background
 border of the picture              points nearer than 4 g are never found; cuts that leave the picture are not used
@@ -155,7 +156,7 @@ def _smooth_pieces(
 ) -> list[Piece]:
     """One run cut at its ends, kinks and jumps, with the cross-sections of each piece."""
     g = settings.filter_px
-    run = cut_ends(run, g)
+    run = cut_ends(run, g, picture.shape)
     if len(run) < _SHORTEST_PIECE * g:
         return []
     saturated = saturated_points(state, run, g)

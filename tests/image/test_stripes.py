@@ -7,6 +7,7 @@ import pytest
 
 from core.image.centreline import Centreline
 from core.image.noise import NoiseModel, estimate_noise, estimate_noise_of_pair
+from core.image.ridge import kernel_radius
 from core.image.stripes import StripeSettings, choose_settings, correlation_length_px, extract_centrelines
 from tests.image.synthetic_stripes import Distance, circle, draw, expose, speckle, straight
 
@@ -90,12 +91,25 @@ def test_sloping_background_bias_is_removed() -> None:
     assert np.abs(errors(line, truth)).max() < 0.003
 
 
-def test_points_keep_away_from_the_border() -> None:
-    truth = straight((110.0, 80.0), 0.3)
+@pytest.mark.parametrize("angle_deg", [0.0, 17.0, 60.0, 90.0])
+def test_points_reach_to_where_the_filter_would_leave_the_picture(angle_deg: float) -> None:
+    """A stripe that leaves the picture has no end there: nothing is trimmed, and its last points are as true."""
+    angle = np.radians(angle_deg)
+    truth = straight((110.0, 80.0), angle)
     (line,) = find(draw(SHAPE, truth, S, 150.0))
-    reach = 3 * SETTINGS.filter_px
-    assert line.uv.min() >= reach
-    assert np.all(line.uv <= np.array(SHAPE[::-1]) - 1 - reach)
+    nearest = np.minimum(line.uv, np.array(SHAPE[::-1]) - 1 - line.uv).min(axis=1)
+    reach = kernel_radius(SETTINGS.filter_px)
+    assert nearest.min() >= reach
+    assert nearest[0] < reach + 2 and nearest[-1] < reach + 2
+    assert np.abs(errors(line, truth)).max() < 0.003
+
+
+def test_a_stripe_that_ends_beside_the_border_is_trimmed_like_any_other() -> None:
+    truth = straight((110.0, 80.0), 0.0)
+    for end in (198, 204, 207):
+        (line,) = find(draw(SHAPE, truth, S, lambda u, v, end=end: 150.0 * (u < end)))
+        assert line.uv[:, 0].max() < end - 3
+        assert np.abs(errors(line, truth)).max() < 0.01
 
 
 def test_a_stripe_along_the_border_is_not_found() -> None:
