@@ -16,7 +16,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from core.calibrate.fan_bundle import Bundle, BundlePose, solve
+from core.calibrate.board_shape import Board
+from core.calibrate.fan_bundle import Bundle, BundlePose, Plate, solve
 from core.calibrate.fan_cross_validation import prediction_errors
 from core.calibrate.fan_summary import summarise
 from core.calibrate.fan_verdict import Constrained, judge
@@ -56,23 +57,29 @@ class FanOptions:
         nothing; "auto" takes the first of these that suits the laser.
     scale_sd
         Standard uncertainty of the target's size as a share of it.
+    flatness_mm
+        Standard deviation of how far the edges of what is used of the target may be off its plane: then its bow is
+        solved for. 0 or None: it is flat.
 
     Raises
     ------
     ValueError
-        If there is no line, or the angle is not between 0 and π/2.
+        If there is no line, the angle is not between 0 and π/2, or the flatness is negative.
     """
 
     lines: int = 3
     angle: float | None = None
     constrained: Constrained = "auto"
     scale_sd: float = 0.0
+    flatness_mm: float | None = None
 
     def __post_init__(self) -> None:
         if self.lines < 1:
             raise ValueError(f"a fan has at least one line, not {self.lines}")
         if self.angle is not None and self.lines > 1 and not 0 < self.angle < np.pi / 2:
             raise ValueError(f"the angle between neighbouring lines must be between 0 and π/2 rad, not {self.angle}")
+        if self.flatness_mm is not None and self.flatness_mm < 0:
+            raise ValueError(f"a flatness of {self.flatness_mm} mm is below 0")
 
 
 def fit_fan(
@@ -111,15 +118,18 @@ def fit_fan(
     located, rough = _assigned(located, camera, options)
     _check_spread(located, options.lines)
     further = _further_line(located, camera, rough)
-    located, free = _solve_without_odd_poses(FreePlanes(rough), located, camera)
+    plate = _plate(located, options.flatness_mm)
+    located, free = _solve_without_odd_poses(FreePlanes(rough), located, camera, plate)
     volume = _points_by_line(located, free)
     verdict = judge(free, volume, options.angle, options.constrained)
     if camera_covariance is not None and camera_covariance.any():
-        joint = solve(verdict.start, _bundle_poses(located), camera, camera_covariance)
+        joint = solve(verdict.start, _bundle_poses(located), camera, camera_covariance, plate=plate)
         again = fit_fan(features, joint.camera, options, progress, excluded)
         return replace(again, camera=joint.camera, camera_covariance=joint.camera_covariance)
-    used = free if isinstance(verdict.start, FreePlanes) else solve(verdict.start, _bundle_poses(located), camera)
-    errors = prediction_errors(used, _bundle_poses(located), camera)
+    used = free
+    if not isinstance(verdict.start, FreePlanes):
+        used = solve(verdict.start, _bundle_poses(located), camera, plate=plate)
+    errors = prediction_errors(used, _bundle_poses(located), camera, plate)
     return replace(summarise(located, free, used, verdict, errors, further), scale_sd=options.scale_sd)
 
 
@@ -189,6 +199,17 @@ def _check_spread(located: Sequence[LocatedPose], lines: int) -> None:
             )
 
 
+def _plate(located: Sequence[LocatedPose], flatness_mm: float | None) -> Plate | None:
+    """The part of the target that points and stripes are on, if it may be bowed."""
+    if not flatness_mm:
+        return None
+    used = [pose for pose in located if pose.used and pose.features.view is not None]
+    points = [pose.features.view.points for pose in used if pose.features.view is not None]
+    for pose in used:
+        points += [pose.pose.inverse().apply(on_target(stripe.rays, pose.pose)) for stripe in pose.stripes.values()]
+    return Plate(Board.of(points), flatness_mm)
+
+
 def _bundle_poses(located: Sequence[LocatedPose]) -> list[BundlePose]:
     """The poses that are used."""
     return [
@@ -199,12 +220,12 @@ def _bundle_poses(located: Sequence[LocatedPose]) -> list[BundlePose]:
 
 
 def _solve_without_odd_poses(
-    planes: PlaneSet, located: list[LocatedPose], camera: Camera
+    planes: PlaneSet, located: list[LocatedPose], camera: Camera, plate: Plate | None
 ) -> tuple[list[LocatedPose], Bundle]:
     """The fit; poses far worse than the others are left out one by one, at most a third of them."""
     dispensable = sum(pose.used for pose in located) // 3
     while True:
-        bundle = solve(planes, _bundle_poses(located), camera)
+        bundle = solve(planes, _bundle_poses(located), camera, plate=plate)
         used = [index for index, pose in enumerate(located) if pose.used]
         worst = int(np.argmax(bundle.pose_errors))
         times = float(bundle.pose_errors[worst] / np.median(bundle.pose_errors))
@@ -227,5 +248,5 @@ def _points_by_line(located: Sequence[LocatedPose], bundle: Bundle) -> list[Arra
     lines: list[list[Array]] = [[] for _ in bundle.planes.pis]
     for pose, adjusted in zip((pose for pose in located if pose.used), bundle.poses, strict=True):
         for line, stripe in pose.stripes.items():
-            lines[line].append(on_target(stripe.rays, adjusted))
+            lines[line].append(on_target(stripe.rays, adjusted, bundle.shape))
     return [np.vstack(points) for points in lines]

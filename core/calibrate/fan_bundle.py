@@ -7,6 +7,10 @@ trust each is taken from the data: target points get a common factor on their st
 standard deviation in mm for their offset and another for their slope (a plate not quite flat, a lens not quite
 modelled), all such that residuals are as large as they should be.
 
+A plate whose flatness is only known to a tolerance is a second-degree surface (`core.calibrate.board_shape`), the same
+in all poses, its three bows unknowns with that tolerance as prior. The bend of the stripes tells them, and how stripes
+and target points of differently held plates agree.
+
 The poses are views of a flat target too. With the camera's covariance its parameters are unknowns as well, held by
 what its own views know of them: a calibration with its covariance is the normal equations of all its views with their
 poses eliminated, so this is, to first order, the adjustment of all pictures in one.
@@ -25,9 +29,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.calibrate import reprojection
+from core.calibrate.board_shape import SHAPE_PARAMETERS, Board, BoardShape
 from core.calibrate.levenberg import Solution, minimise
 from core.calibrate.pencil import PlaneSet, huber_weights
-from core.calibrate.stripe_distances import Distances, Stripes
+from core.calibrate.stripe_distances import BOWS, Distances, Stripes
 from core.calibrate.stripe_lines import StripeLine
 from core.image.target_view import TargetView
 from core.model import Camera, Pose
@@ -50,6 +55,14 @@ class BundlePose:
 
 
 @dataclass(frozen=True, eq=False, slots=True)
+class Plate:
+    """A plate that may be bowed: its extent, and the standard deviation of how far its edges are off its plane."""
+
+    board: Board
+    flatness_mm: float
+
+
+@dataclass(frozen=True, eq=False, slots=True)
 class Bundle:
     """The solution.
 
@@ -67,6 +80,8 @@ class Bundle:
         (10, 10) of the corrected camera; None where it was given.
     poses
         The poses, improved.
+    shape
+        Of the plate; flat where it was said to be.
     freedom
         Redundancy of the stripes' residuals (a real number).
     corner_scale
@@ -84,6 +99,7 @@ class Bundle:
     camera: Camera
     camera_covariance: Array | None
     poses: tuple[Pose, ...]
+    shape: BoardShape
     freedom: float
     corner_scale: float
     extra_mm: float
@@ -96,6 +112,7 @@ def solve(
     camera: Camera,
     camera_covariance: Array | None = None,
     *,
+    plate: Plate | None = None,
     rounds: int = ROUNDS,
 ) -> Bundle:
     """Solve planes and poses together, from `planes` near the answer, robustly (Huber per stripe).
@@ -108,40 +125,53 @@ def solve(
         The calibrated camera, with which the stripes were found.
     camera_covariance
         (10, 10) of its parameters: then the camera is corrected, too. None: it stays as it is.
+    plate
+        None: the target is flat.
     rounds
         How often the standard deviations are improved, at most.
     """
-    return _Problem(poses, camera, camera_covariance).solve(planes, rounds)
+    return _Problem(poses, camera, camera_covariance, plate).solve(planes, rounds)
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class _State:
-    """`camera` (10,) is the change of the camera's parameters."""
+    """`bow` (3 or 0,) in mm of the plate; `camera` (10,) is the change of the camera's parameters."""
 
     planes: PlaneSet
     poses: tuple[Pose, ...]
+    bow: Array
     camera: Array
 
 
 class _Problem:
     """Observations stacked once; standard deviations improve from round to round.
 
-    Columns of all Jacobians are the planes' unknowns, six for each pose, the camera's ten parameters.
+    Columns of all Jacobians are the planes' unknowns, six for each pose, the plate's bows if it may have any, and the
+    camera's ten parameters. What is known of camera and bows stands in the first rows.
     """
 
-    def __init__(self, poses: Sequence[BundlePose], camera: Camera, camera_covariance: Array | None) -> None:
+    def __init__(
+        self, poses: Sequence[BundlePose], camera: Camera, camera_covariance: Array | None, plate: Plate | None
+    ) -> None:
         self.given = camera
         self.known = poses
-        self.stripes = Stripes([pose.stripes for pose in poses])
+        self.plate = plate
+        self.bows = 0 if plate is None else BOWS
+        self.stripes = Stripes(
+            [pose.stripes for pose in poses], [pose.pose for pose in poses], None if plate is None else plate.board
+        )
+        self.heights = [np.zeros((len(pose.view.points), self.bows)) for pose in poses]
+        if plate is not None:
+            self.heights = [plate.board.changes(pose.view.points)[:, 2, :BOWS] for pose in poses]
         self.corners = 2 * sum(len(pose.view.points) for pose in poses)
         self.free, self.whiten = _whitening(camera_covariance)
         self.corner_scale = 1.0
-        self.extra = np.zeros(2)
+        self.extra = np.zeros(self.stripes.parts)
         self.noise = np.ones(len(self.stripes))
         self.weight = np.ones(len(self.stripes))
 
     def solve(self, planes: PlaneSet, rounds: int) -> Bundle:
-        state = _State(planes, tuple(pose.pose for pose in self.known), np.zeros(PARAMETERS))
+        state = _State(planes, tuple(pose.pose for pose in self.known), np.zeros(self.bows), np.zeros(PARAMETERS))
         self.noise = self.stripes.noise_mm(state.planes, state.poses)
         self.extra = np.median(np.abs(self._distances(state).mm), axis=0)
         solution = minimise(state, self._linearise, self._move)
@@ -160,10 +190,10 @@ class _Problem:
         return reprojection.camera_of(reprojection.parameters_of(self.given) + state.camera, self.given.image_size)
 
     def _distances(self, state: _State) -> Distances:
-        return self.stripes.distances(state.planes, state.poses, state.camera)
+        return self.stripes.distances(state.planes, state.poses, state.camera, state.bow)
 
     def _sd(self) -> Array:
-        """Standard deviations (S, 2) in mm of the stripes' offsets and slopes."""
+        """Standard deviations (S, K) in mm of the stripes' offsets, slopes and bends."""
         return np.asarray(np.hypot(self.noise[:, None], self.extra), dtype=np.float64)
 
     def _linearise(self, state: _State) -> tuple[Array, Array]:
@@ -180,54 +210,69 @@ class _Problem:
         )
 
     def _observed(self, state: _State) -> tuple[Array, Array]:
-        """Residuals of target points and stripes in standard deviations, and their Jacobian, all columns."""
+        """Residuals of the bows, target points and stripes in standard deviations, and their Jacobian, all columns."""
         unknowns = state.planes.jacobian.shape[1]
-        width = unknowns + 6 * len(state.poses) + PARAMETERS
+        width = unknowns + 6 * len(state.poses) + self.bows + PARAMETERS
+        bows = slice(width - PARAMETERS - self.bows, width - PARAMETERS)
         camera = self._camera(state)
-        residuals, blocks = [], []
+        residuals, blocks = self._known_of_bows(state, width, bows)
         for index, (known, pose) in enumerate(zip(self.known, state.poses, strict=True)):
-            uv, by_camera, by_pose = reprojection.linearise(camera, pose, known.view.points)
+            points = known.view.points + np.outer(self.heights[index] @ state.bow, [0.0, 0.0, 1.0])
+            uv, by_camera, by_pose = reprojection.linearise(camera, pose, points)
+            by_bow = (by_pose[:, :, 3:] @ pose.rotation[:, 2])[:, :, None] * self.heights[index][:, None]
             residuals.append(known.view.whitened(uv - known.view.uv) / self.corner_scale)
             block = np.zeros((2 * len(uv), width))
             block[:, unknowns + 6 * index : unknowns + 6 * index + 6] = known.view.whitened(by_pose) / self.corner_scale
+            block[:, bows] = known.view.whitened(by_bow) / self.corner_scale
             block[:, -PARAMETERS:] = known.view.whitened(by_camera) / self.corner_scale
             blocks.append(block)
         distances = self._distances(state)
         weight = np.sqrt(self.weight)[:, None] / self._sd()
         block = np.zeros((*distances.mm.shape, width))
         block[..., :unknowns] = distances.by_planes
+        block[..., bows] = distances.by_bow
         block[..., -PARAMETERS:] = distances.by_camera
         columns = unknowns + 6 * self.stripes.pose_of[:, None] + np.arange(6)
-        np.put_along_axis(block, np.repeat(columns[:, None], 2, axis=1), distances.by_pose, axis=2)
+        np.put_along_axis(block, np.repeat(columns[:, None], self.stripes.parts, axis=1), distances.by_pose, axis=2)
         residuals.append((distances.mm * weight).ravel())
         blocks.append((block * weight[..., None]).reshape(-1, width))
         return np.concatenate(residuals), np.vstack(blocks)
 
+    def _known_of_bows(self, state: _State, width: int, columns: slice) -> tuple[list[Array], list[Array]]:
+        """Residuals and rows of the Jacobian that hold the plate to its flatness."""
+        if self.plate is None:
+            return [], []
+        rows = np.zeros((self.bows, width))
+        rows[:, columns] = np.eye(self.bows) / self.plate.flatness_mm
+        return [state.bow / self.plate.flatness_mm], [rows]
+
     def _move(self, state: _State, step: Array) -> _State:
         first = state.planes.jacobian.shape[1]
         last = first + 6 * len(state.poses)
+        bow = state.bow + step[last : last + self.bows]
         steps: list[NDArray[np.float64]] = list(step[first:last].reshape(-1, 6))
         poses = tuple(reprojection.moved(pose, own) for pose, own in zip(state.poses, steps, strict=True))
         camera = state.camera.copy()
-        camera[self.free] += step[last:]
-        return _State(state.planes.moved(step[:first]), poses, camera)
+        camera[self.free] += step[last + self.bows :]
+        return _State(state.planes.moved(step[:first]), poses, bow, camera)
 
     def _reweight(self, solution: Solution[_State]) -> None:
         """Improve the standard deviations and the stripes' weights from residuals and redundancies."""
         share = ((solution.jacobian @ solution.covariance) * solution.jacobian).sum(axis=1)
-        end = len(self.free) + self.corners
-        of_corners = slice(len(self.free), end)
+        first = len(self.free) + self.bows
+        end = first + self.corners
+        of_corners = slice(first, end)
         corner = _variance_factor(solution.residuals[of_corners], share[of_corners])
         self.corner_scale = float(np.clip(self.corner_scale * np.sqrt(corner), *CORNER_SCALE_RANGE))
         own = float(np.median(self.noise) ** 2)
-        for part in range(2):
-            rows = slice(end + part, None, 2)
+        for part in range(self.stripes.parts):
+            rows = slice(end + part, None, self.stripes.parts)
             factor = _variance_factor(solution.residuals[rows], share[rows])
             self.extra[part] = np.sqrt(max(factor * self.extra[part] ** 2 + (factor - 1) * own, 0.0))
         self.weight = huber_weights(self._errors(solution))
 
     def _errors(self, solution: Solution[_State]) -> Array:
-        """RMS (S,) of each stripe's two residuals in their standard deviations."""
+        """RMS (S,) of each stripe's residuals in their standard deviations."""
         distances = self._distances(solution.state).mm / self._sd()
         return np.asarray(np.sqrt((distances**2).mean(axis=1)), dtype=np.float64)
 
@@ -237,7 +282,7 @@ class _Problem:
         residuals, jacobian = self._observed(state)
         alone, by_camera = jacobian[:, :-PARAMETERS], jacobian[:, -PARAMETERS:]
         local = Solution(state, residuals, alone, solution.converged).covariance
-        stripes = alone[-2 * len(self.stripes) :]
+        stripes = alone[-self.stripes.parts * len(self.stripes) :]
         to_pis = state.planes.jacobian
         corrected = None
         if len(self.free):
@@ -251,11 +296,19 @@ class _Problem:
             camera=self._camera(state),
             camera_covariance=corrected,
             poses=state.poses,
+            shape=self._shape(state.bow, local[len(local) - self.bows :, len(local) - self.bows :]),
             freedom=len(stripes) - float(((stripes @ local) * stripes).sum()),
             corner_scale=self.corner_scale,
             extra_mm=float(self.extra[0] / np.sqrt(2)),
             pose_errors=self._pose_errors(solution, residuals),
         )
+
+    def _shape(self, bow: Array, covariance: Array) -> BoardShape:
+        if self.plate is None:
+            return BoardShape()
+        values, own = np.zeros(len(SHAPE_PARAMETERS)), np.zeros((len(SHAPE_PARAMETERS), len(SHAPE_PARAMETERS)))
+        values[:BOWS], own[:BOWS, :BOWS] = bow, covariance
+        return BoardShape(self.plate.board, values, own)
 
     def _pose_errors(self, solution: Solution[_State], residuals: Array) -> Array:
         count = len(self.known)
@@ -263,7 +316,8 @@ class _Problem:
         summed = np.bincount(pose_of, self._errors(solution) ** 2, minlength=count)
         stripes = summed / np.maximum(np.bincount(pose_of, minlength=count), 1)
         ends = np.cumsum([2 * len(pose.view.points) for pose in self.known])[:-1]
-        corners = [float((own**2).mean()) for own in np.split(residuals[: self.corners], ends)]
+        of_corners = residuals[self.bows : self.bows + self.corners]
+        corners = [float((own**2).mean()) for own in np.split(of_corners, ends)]
         return np.asarray(np.sqrt(np.maximum(stripes, corners)), dtype=np.float64)
 
 

@@ -15,18 +15,22 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from core.calibrate.fan_bundle import Bundle, BundlePose, solve
-from core.calibrate.stripe_distances import Stripes
-from core.model import Camera
+from core.calibrate import reprojection
+from core.calibrate.board_shape import BoardShape
+from core.calibrate.fan_bundle import Bundle, BundlePose, Plate, solve
+from core.calibrate.stripe_distances import BOWS, Stripes
+from core.model import Camera, Pose
 from core.model.arrays import Array
 
 FEWEST = 4
 """Poses; with fewer, those that are left say too little of a plane."""
 ROUNDS = 2
 """Of new weights; they differ little from those of all poses."""
+POSE_STEPS = 3
+"""Of Gauss and Newton from the pose of a flat target to that of a bowed one."""
 
 
-def prediction_errors(used: Bundle, poses: Sequence[BundlePose], camera: Camera) -> Array:
+def prediction_errors(used: Bundle, poses: Sequence[BundlePose], camera: Camera, plate: Plate | None = None) -> Array:
     """RMS distance (P,) in mm of each pose's stripes from the light planes that the other poses give.
 
     NaN for a pose without which a line is seen on fewer than two poses, and for all with fewer than four poses.
@@ -37,15 +41,31 @@ def prediction_errors(used: Bundle, poses: Sequence[BundlePose], camera: Camera)
         The fit of all `poses`; the planes are fitted under the same constraint.
     poses
         Each where its own points put it.
+    plate
+        As of the fit.
     """
     errors = np.full(len(poses), np.nan)
     for index, left_out in enumerate(poses):
         others = [pose for number, pose in enumerate(poses) if number != index]
         if len(others) + 1 >= FEWEST and _seen_twice(others, len(used.planes.pis)):
-            planes = solve(used.planes, others, camera, rounds=ROUNDS).planes
-            distances = Stripes([left_out.stripes]).distances(planes, [left_out.pose], np.zeros(10)).mm
+            fit = solve(used.planes, others, camera, plate=plate, rounds=ROUNDS)
+            pose = _posed(left_out, fit.shape, camera)
+            stripes = Stripes([left_out.stripes], [pose], None if plate is None else plate.board)
+            distances = stripes.distances(fit.planes, [pose], np.zeros(10), fit.shape.values[:BOWS]).mm[:, :2]
             errors[index] = np.sqrt((distances**2).mean())
     return errors
+
+
+def _posed(seen: BundlePose, shape: BoardShape, camera: Camera) -> Pose:
+    """Where a target of this `shape` is by its own points."""
+    pose, view = seen.pose, seen.view
+    if not shape.values.any():
+        return pose
+    for _ in range(POSE_STEPS):
+        uv, _, by_pose = reprojection.linearise(camera, pose, shape.shaped(view.points))
+        step: Array = np.linalg.lstsq(view.whitened(by_pose), view.whitened(view.uv - uv), rcond=None)[0]
+        pose = reprojection.moved(pose, step)
+    return pose
 
 
 def _seen_twice(poses: Sequence[BundlePose], lines: int) -> bool:

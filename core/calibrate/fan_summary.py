@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from core.calibrate.board_shape import BoardShape
 from core.calibrate.fan_bundle import Bundle
 from core.calibrate.fan_verdict import Verdict, fan_of
 from core.calibrate.located_pose import LocatedPose
@@ -19,6 +20,7 @@ ODDLY_PREDICTED = 4.0
 """A pose that the others foretell this many times worse than the median pose is worth a word."""
 
 WORTH_A_WORD_MM = 0.05
+"""Of a prediction that is odd, and of a bow."""
 
 SATURATED_SHARE = 1 / 3
 """A share of saturated stripe points worth a warning."""
@@ -39,7 +41,9 @@ def summarise(
     pis = used.planes.pis
     adjusted, errors = iter(used.poses), iter(prediction_errors.tolist())
     poses = tuple(
-        _plane_pose(pose, next(adjusted), pis, next(errors)) if pose.used else _plane_pose(pose, None, pis)
+        _plane_pose(pose, next(adjusted), pis, used.shape, next(errors))
+        if pose.used
+        else _plane_pose(pose, None, pis, used.shape)
         for pose in located
     )
     free_fan = fan_of(free.planes, free.covariance)
@@ -53,20 +57,23 @@ def summarise(
         constraint_suits=verdict.suits,
         verdict=verdict.sentence,
         poses=poses,
-        notes=(*notes, *_notes(located), *_notes_on_predictions(poses)),
+        notes=(*notes, *_notes(located), *_notes_on_predictions(poses), *_notes_on_bow(used.shape)),
         constraint_p=verdict.p,
         stripe_sd_mm=used.extra_mm,
         corner_scale=used.corner_scale,
         by_camera=used.by_camera,
         cross_validation_mm=float(np.sqrt(np.mean(prediction_errors**2))),
+        board=used.shape,
     )
 
 
-def _plane_pose(located: LocatedPose, adjusted: Pose | None, pis: Array, prediction_mm: float = math.nan) -> PlanePose:
+def _plane_pose(
+    located: LocatedPose, adjusted: Pose | None, pis: Array, shape: BoardShape, prediction_mm: float = math.nan
+) -> PlanePose:
     points = [np.zeros((0, 3)) for _ in pis]
     if adjusted is not None:
         for line, stripe in located.stripes.items():
-            points[line] = on_target(stripe.rays, adjusted)
+            points[line] = on_target(stripe.rays, adjusted, shape)
     distances = [LightPlane(pi).distances(own) for pi, own in zip(pis, points, strict=True)]
     return PlanePose(
         name=located.features.name,
@@ -111,4 +118,13 @@ def _notes_on_predictions(poses: Sequence[PlanePose]) -> tuple[str, ...]:
         f"pose to {usual:.3f} mm: look at its pictures, or take more poses like it"
         for pose in known
         if pose.prediction_mm > max(ODDLY_PREDICTED * usual, WORTH_A_WORD_MM)
+    )
+
+
+def _notes_on_bow(shape: BoardShape) -> tuple[str, ...]:
+    if not shape.surely_bowed or shape.departure_mm < WORTH_A_WORD_MM:
+        return ()
+    return (
+        f"the plane target is bowed by {shape.departure_mm:.2f} mm from its lowest to its highest place, which is "
+        "taken into account: better fix it to something flat",
     )

@@ -115,7 +115,8 @@ class FanCalibration:
     same; None where that is not known. `scale_sd` is the standard uncertainty of the target's size, as a share of it:
     no picture shows it, and all lengths have it in common. `cross_validation_mm` is the RMS of the poses' prediction
     errors. `camera` and `camera_covariance` are the camera that the target's poses have corrected, which belongs to
-    this fan; None where it was left as it is.
+    this fan; None where it was left as it is. `board` is the shape of the plane target where its flatness was said to
+    be uncertain; else it is flat.
     """
 
     fan: Fan
@@ -136,6 +137,7 @@ class FanCalibration:
     cross_validation_mm: float = math.nan
     camera: Camera | None = None
     camera_covariance: Array | None = None
+    board: BoardShape = field(default_factory=BoardShape)
 
     def camera_used(self, given: CameraCalibration) -> CameraCalibration:
         """The camera this fan is to be used with: the `given` calibration, corrected if the poses did so."""

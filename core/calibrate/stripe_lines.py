@@ -40,8 +40,10 @@ class StripeLine:
     uncertainty of each across the line, in ray units (mm per mm of depth), from the scatter of the data, grain of
     the speckle included. `across` (2,) is the unit normal of the line in (x, y). `rays` (N, 3) are all its points,
     `uv` (N, 2) where they were seen in pixels. `saturated` is the share of points whose section is saturated.
-    `by_camera` (2, 10) tells how far the pivots move across the line per unit of each camera parameter, the pixels
-    the same.
+    `moments` (3, N) are the weights with which the points' offsets across the line give its offset, slope and bend, in
+    standard deviations of the spread: of these a straight line has but the first two, and `bend` in ray units is what
+    it leaves of the third. `by_camera` (3, 10) tells how far the two pivots and the bend move across the line per unit
+    of each camera parameter, the pixels the same.
     """
 
     pivots: Array
@@ -50,6 +52,8 @@ class StripeLine:
     rays: Array
     uv: Array
     saturated: float
+    moments: Array
+    bend: float
     by_camera: Array
 
     def __len__(self) -> int:
@@ -175,10 +179,22 @@ def _fit(chunks: _Chunks, members: NDArray[np.intp], camera: Camera) -> StripeLi
     sigma_of_pivots = float(np.sqrt(2 * _mean_variance((xy - centre) @ across, weight, owner)))
     rays = np.column_stack([xy, np.ones(len(xy))])
     shifts = np.einsum("i,nij->nj", across, ray_changes(camera, rays))
-    along_line = (xy - centre) @ along / spread
-    moved, turned = weight @ shifts / weight.sum(), (weight * along_line) @ shifts / weight.sum()
-    by_camera = np.array([moved - turned, moved + turned])
-    return StripeLine(pivots, sigma_of_pivots, across, rays, uv, saturated, by_camera)
+    moments = _offset_slope_and_bend((xy - centre) @ along / spread, weight)
+    moved, turned, bent = moments @ shifts
+    by_camera = np.array([moved - turned, moved + turned, bent])
+    bend = float(moments[2] @ ((xy - centre) @ across))
+    return StripeLine(pivots, sigma_of_pivots, across, rays, uv, saturated, moments, bend, by_camera)
+
+
+def _offset_slope_and_bend(t: Array, weight: Array) -> Array:
+    """Rows (3, N) that give the coefficients of the orthonormal polynomials 1, t, q(t) of what is on them.
+
+    `t` (N,) has the weighted mean 0 and variance 1.
+    """
+    share = weight / weight.sum()
+    q = t**2 - 1 - (share @ t**3) * t
+    q /= np.sqrt(share @ q**2)
+    return np.asarray(share * np.array([np.ones_like(t), t, q]))
 
 
 def _moments(xy: Array, weight: Array) -> tuple[Array, Array, float]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from core.calibrate import reprojection
+from core.calibrate.board_shape import BoardShape
 from core.image.target_view import TargetView
 from core.model import Camera, Pose
 from core.model.arrays import Array
@@ -15,9 +16,15 @@ def target_plane(pose: Pose) -> Array:
     return target_plane_changes(pose)[0]
 
 
-def on_target(rays: Array, pose: Pose) -> Array:
-    """Points (N, 3) in mm where `rays` (N, 3) meet the plane of a target at `pose`."""
-    return np.asarray(rays / (rays @ target_plane(pose))[:, None], dtype=np.float64)
+def on_target(rays: Array, pose: Pose, shape: BoardShape | None = None) -> Array:
+    """Points (N, 3) in mm where `rays` (N, 3) meet a target at `pose`: its plane, or its surface of this `shape`."""
+    plane = target_plane(pose)
+    flat: Array = rays / (rays @ plane)[:, None]
+    if shape is None or not shape.values.any():
+        return flat
+    height = shape.shaped(pose.inverse().apply(flat))[:, 2]
+    # what lies h above the plane through distance d lies on the plane through d + h
+    return np.asarray(flat * (1 + height * (plane @ pose.rotation[:, 2]))[:, None], dtype=np.float64)
 
 
 def target_plane_changes(pose: Pose) -> tuple[Array, Array]:

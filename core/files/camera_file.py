@@ -56,7 +56,7 @@ class _View(ResultFile):
     counted: list[bool] = Field(default_factory=list)
 
 
-class _Board(ResultFile):
+class BoardTable(ResultFile):
     """The shape of the target."""
 
     shape: list[Finite] = Field(min_length=4, max_length=4, description="four finite numbers")
@@ -79,7 +79,7 @@ class _CameraFile(ResultFile):
     coverage: Maybe = None
     tilt_range_deg: Maybe = None
     cross_validation_mm: Maybe = None
-    board: _Board | None = None
+    board: BoardTable | None = None
     views: list[_View] = Field(default_factory=list)
     notes: list[str] = Field(default_factory=list)
 
@@ -123,7 +123,7 @@ def write_camera(path: Path, calibration: CameraCalibration) -> None:
                 "version": __version__,
                 "parameters": CAMERA_PARAMETERS,
                 "covariance": calibration.covariance,
-                "board": _board(calibration.board),
+                "board": board_table(calibration.board),
                 "views": [_view(quality) for quality in calibration.views],
             }
         ),
@@ -160,7 +160,7 @@ def read_camera(path: Path) -> CameraCalibration:
         tilt_range=math.radians(number(file.tilt_range_deg)),
         cross_validation_mm=number(file.cross_validation_mm),
         notes=tuple(file.notes),
-        board=BoardShape() if file.board is None else _shape(file.board),
+        board=board_shape(file.board),
     )
 
 
@@ -169,7 +169,8 @@ def number(value: float | None) -> float:
     return math.nan if value is None else value
 
 
-def _board(shape: BoardShape) -> dict[str, Any]:
+def board_table(shape: BoardShape) -> dict[str, Any]:
+    """A target's shape as files have it."""
     return {
         "parameters": SHAPE_PARAMETERS,
         "shape": shape.values,
@@ -181,7 +182,10 @@ def _board(shape: BoardShape) -> dict[str, Any]:
     }
 
 
-def _shape(table: _Board) -> BoardShape:
+def board_shape(table: BoardTable | None) -> BoardShape:
+    """The shape in a file; flat if there is none."""
+    if table is None:
+        return BoardShape()
     board = Board(np.array(table.middle_mm), np.array(table.half_mm))
     return BoardShape(board, np.array(table.shape), np.array(table.covariance))
 

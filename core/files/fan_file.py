@@ -14,7 +14,17 @@ from core import __version__
 from core.calibrate.results import CAMERA_PARAMETERS, FanCalibration, PlanePose
 from core.errors import InputError
 from core.files.atomic import write_text
-from core.files.camera_file import Finite, Maybe, ResultFile, Row3, camera_id, number
+from core.files.camera_file import (
+    BoardTable,
+    Finite,
+    Maybe,
+    ResultFile,
+    Row3,
+    board_shape,
+    board_table,
+    camera_id,
+    number,
+)
 from core.files.complaints import Clash, complaint
 from core.files.json_text import read_json, to_json
 from core.model import Camera, Fan, LightPlane, Pose
@@ -75,6 +85,7 @@ class _PlanesFile(ResultFile):
     scale_sd: Finite = Field(0.0, ge=0, le=0.1, description="a share of the target's size from 0 to 0.1")
     cross_validation_mm: Maybe = None
     camera: _Camera | None = None
+    board: BoardTable | None = None
     pencil_gap_mm: Maybe = None
     constraint_suits: bool | None = None
     verdict: str = ""
@@ -127,6 +138,7 @@ def write_fan(path: Path, calibration: FanCalibration, camera: Camera) -> None:
                 "by_camera": calibration.by_camera,
                 "scale_sd": calibration.scale_sd,
                 "camera": _corrected_camera(calibration),
+                "board": board_table(calibration.board) if calibration.board.values.any() else None,
                 "poses": [_pose(pose) for pose in calibration.poses],
             }
         ),
@@ -175,6 +187,7 @@ def read_fan(path: Path, camera: Camera) -> FanCalibration:
         cross_validation_mm=number(file.cross_validation_mm),
         camera=_camera(path, file.camera, camera.image_size),
         camera_covariance=None if file.camera is None else np.array(file.camera.covariance),
+        board=board_shape(file.board),
     )
 
 

@@ -55,8 +55,7 @@ class GaugeSpec:
 class Rig:
     """What rig.toml says. `angle` between neighbouring lines is in rad (0 with one line).
 
-    `camera_board` says how true the camera's target is, `plane_scale_sd` how sure the size of the plane target: its
-    standard uncertainty as a share of it.
+    `camera_board` and `plane_board` say how true the two targets are.
     """
 
     camera_target: Target
@@ -66,7 +65,7 @@ class Rig:
     gauge: GaugeSpec | None = None
     channel: Channel | None = None
     camera_board: BoardTolerance = field(default_factory=BoardTolerance)
-    plane_scale_sd: float = 0.0
+    plane_board: BoardTolerance = field(default_factory=BoardTolerance)
 
 
 def default_rig() -> Rig:
@@ -131,7 +130,7 @@ def rig_of(tables: RigTables, path: Path, within: str = "") -> Rig:
         _gauge(tables.gauge) if tables.gauge else None,
         tables.channel,
         _tolerance(tables.camera_target),
-        tables.plane_target.scale_sd,
+        _tolerance(tables.plane_target),
     )
 
 
@@ -140,7 +139,7 @@ def rig_tables(rig: Rig) -> dict[str, Any]:
     tables = {
         "channel": rig.channel,
         "camera_target": _target_table(rig.camera_target) | _tolerance_table(rig.camera_board),
-        "plane_target": _target_table(rig.plane_target) | _tolerance_table(BoardTolerance(scale_sd=rig.plane_scale_sd)),
+        "plane_target": _target_table(rig.plane_target) | _tolerance_table(rig.plane_board),
         "laser_fan": _present({"lines": rig.lines, "angle_deg": _in_degrees(rig.angle) if rig.angle else None}),
         "gauge": None if rig.gauge is None else _gauge_table(rig.gauge),
     }
@@ -166,7 +165,7 @@ def _target(path: Path, name: str, table: TargetTable) -> Target:
 
 
 def _tolerance(table: TargetTable) -> BoardTolerance:
-    return BoardTolerance(getattr(table, "flatness_mm", None), table.scale_sd)
+    return BoardTolerance(table.flatness_mm, table.scale_sd)
 
 
 def _tolerance_table(tolerance: BoardTolerance) -> dict[str, Any]:

@@ -31,15 +31,10 @@ class _Printed(Table):
     scale_sd: float = Field(
         0.0, ge=0, le=0.1, allow_inf_nan=False, description="a standard uncertainty as a share of the size, 0 to 0.1"
     )
-
-
-class _Board(_Printed):
-    """Of a target with many points."""
-
     flatness_mm: float | None = Field(None, ge=0, le=100, allow_inf_nan=False, description="a length in mm, 0 to 100")
 
 
-class _Checkerboard(_Board):
+class _Checkerboard(_Printed):
     kind: Literal["checkerboard"]
     inner_corners: list[_Count] = Field(min_length=2, max_length=2, description=_TWO_COUNTS)
     square_mm: _Length = Field(description=_A_LENGTH)
@@ -49,7 +44,7 @@ class _Checkerboard(_Board):
         return Checkerboard(columns, rows, self.square_mm)
 
 
-class _Charuco(_Board):
+class _Charuco(_Printed):
     kind: Literal["charuco"]
     squares: list[_Count] = Field(min_length=2, max_length=2, description=_TWO_COUNTS)
     square_mm: _Length = Field(description=_A_LENGTH)
@@ -69,7 +64,7 @@ class _Charuco(_Board):
         return Charuco(columns, rows, self.square_mm, self.marker_mm, self.dictionary)
 
 
-class _CircleGrid(_Board):
+class _CircleGrid(_Printed):
     kind: Literal["circle_grid"]
     circles: list[_Count] = Field(min_length=2, max_length=2, description=_TWO_COUNTS)
     pitch_mm: _Length = Field(description=_A_LENGTH)
@@ -171,15 +166,6 @@ class RigTables(Table):
     gauge: GaugeTable | None = Field(None, description="a table [gauge]")
     channel: Literal["red", "green", "blue"] | None = Field(None, description='"red", "green" or "blue"')
     plan: PlanTable | None = Field(None, description="a table [plan]")
-
-    @model_validator(mode="after")
-    def _flatness_where_it_counts(self) -> RigTables:
-        if getattr(self.plane_target, "flatness_mm", None) is not None:
-            raise Clash(
-                "plane_target.flatness_mm",
-                "is for the camera target only; how flat the plane target is, the stripes on it tell",
-            )
-        return self
 
 
 class PlannedRigTables(Table):

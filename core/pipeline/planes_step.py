@@ -106,7 +106,8 @@ def solve_planes(
 def fan_options(rig: Rig, options: Options) -> FanOptions:
     """What is known of the laser, and whether its planes may be held to one pencil."""
     constrained: Constrained = "auto" if options.constrain_fan else "never"
-    return FanOptions(rig.lines, rig.angle or None, constrained, rig.plane_scale_sd)
+    board = rig.plane_board
+    return FanOptions(rig.lines, rig.angle or None, constrained, board.scale_sd, board.flatness_mm)
 
 
 def planes_settings(rig: Rig, options: Options) -> dict[str, object]:
@@ -115,6 +116,8 @@ def planes_settings(rig: Rig, options: Options) -> dict[str, object]:
     told: dict[str, object] = {"lines": fan.lines, "angle_rad": fan.angle, "constrained": fan.constrained}
     if fan.scale_sd:
         told["scale_sd"] = fan.scale_sd
+    if fan.flatness_mm is not None:
+        told["flatness_mm"] = fan.flatness_mm
     if options.adjust_camera:
         told["camera"] = "adjusted"
     return {**told, **options.excluded_settings("planes")}

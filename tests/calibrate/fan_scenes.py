@@ -8,6 +8,7 @@ import numpy as np
 from scipy.ndimage import gaussian_filter1d
 from scipy.spatial.transform import Rotation
 
+from core.calibrate.board_shape import Board, BoardShape
 from core.calibrate.pencil import pencil_near
 from core.calibrate.plane_pose import PoseFeatures
 from core.image.centreline import Centreline
@@ -25,6 +26,8 @@ ALPHA = np.deg2rad(5)
 PAPER = pencil_near(PUBLISHED, ALPHA).pis
 SQUARE = BlackSquare(60.0).points
 GRID = Checkerboard(9, 7, 10.0).points
+PLATE = Board(np.array([30.0, 30.0]), np.array([75.0, 75.0]))
+"""What the stripes lie on."""
 
 
 @dataclass(frozen=True)
@@ -48,7 +51,19 @@ def poses(count: int, seed: int) -> list[Pose]:
     return found
 
 
-def stripe(pi: np.ndarray, pose: Pose, noise: Noise, rng: np.random.Generator, reach: float = 70.0) -> Centreline:
+def bowed(*bow: float) -> BoardShape:
+    """The plate with these bows in mm at its edges."""
+    return BoardShape(PLATE, np.array([*bow, 0.0]), np.zeros((4, 4)))
+
+
+def stripe(
+    pi: np.ndarray,
+    pose: Pose,
+    noise: Noise,
+    rng: np.random.Generator,
+    reach: float = 70.0,
+    shape: BoardShape | None = None,
+) -> Centreline:
     """The centreline of a light plane on the target, points about one pixel apart, within `reach` mm of its middle."""
     normal = pose.rotation[:, 2]
     direction = np.cross(pi, normal)
@@ -59,6 +74,10 @@ def stripe(pi: np.ndarray, pose: Pose, noise: Noise, rng: np.random.Generator, r
     system = np.array([pi, normal, direction])
     foot = np.linalg.solve(system, [1.0, normal @ pose.translation, direction @ middle])
     points = foot + np.linspace(-reach, reach, int(2 * reach * CAMERA.focal / foot[2]))[:, None] * direction
+    for _ in range(4 if shape else 0):
+        height = shape.shaped(pose.inverse().apply(points) * [1, 1, 0])[:, 2]
+        known = np.column_stack([np.ones(len(points)), normal @ pose.translation + height, points @ direction])
+        points = np.linalg.solve(system, known.T).T
     uv = CAMERA.project(points)
     inside = ((uv > 4) & (uv < np.array(CAMERA.image_size) - 5)).all(axis=1)
     uv = uv[inside]
@@ -87,17 +106,19 @@ def features(
     pis: np.ndarray = PAPER,
     points: np.ndarray = SQUARE,
     flatness_mm: float = 0.0,
+    shape: BoardShape | None = None,
 ) -> list[PoseFeatures]:
     """What pictures of the poses would show; the stripes in an order that tells nothing."""
     rng = np.random.default_rng(seed)
     found = []
     for number, pose in enumerate(where):
-        uv = CAMERA.project_pose(pose, points) + rng.normal(0, noise.corner_px, (len(points), 2))
+        seen = points if shape is None else shape.shaped(points)
+        uv = CAMERA.project_pose(pose, seen) + rng.normal(0, noise.corner_px, (len(points), 2))
         view = TargetView(points, uv, np.full(len(points), noise.corner_px), f"p{number}")
         lines = []
         for pi in pis:
             bent = Pose(pose.rotation, pose.translation + pose.rotation[:, 2] * rng.normal(0, flatness_mm))
-            lines.append(stripe(pi, bent, noise, rng))
+            lines.append(stripe(pi, bent, noise, rng, shape=shape))
         rng.shuffle(lines)
         found.append(PoseFeatures(f"p{number}", view, tuple(lines)))
     return found

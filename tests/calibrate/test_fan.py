@@ -7,14 +7,34 @@ from core.calibrate.fan import FanOptions, fit_fan
 from core.calibrate.pencil import Pencil, pencil_near, plane_distances
 from core.calibrate.plane_pose import PoseFeatures
 from core.calibrate.reprojection import camera_of, parameters_of
-from core.calibrate.results import LEFT_OUT
+from core.calibrate.results import LEFT_OUT, FanCalibration
 from core.errors import InputError
 from core.image.target_view import TargetView
 from core.model import Pose
-from tests.calibrate.fan_scenes import ALPHA, CAMERA, GRID, PAPER, PUBLISHED, QUIET, Noise, features, poses, stripe
+from tests.calibrate.fan_scenes import (
+    ALPHA,
+    CAMERA,
+    GRID,
+    PAPER,
+    PLATE,
+    PUBLISHED,
+    QUIET,
+    Noise,
+    bowed,
+    features,
+    poses,
+    stripe,
+)
 
 THREE = FanOptions(3, ALPHA)
 WHERE = poses(7, 1)
+
+
+def normalised(result: FanCalibration) -> float:
+    """Mean square of the fan's error in units of its stated covariance: 1 where that is true."""
+    error = (result.fan.pis - PAPER).ravel()
+    freedom = np.linalg.matrix_rank(result.fan.covariance, tol=1e-9 * np.trace(result.fan.covariance), hermitian=True)
+    return float(error @ np.linalg.pinv(result.fan.covariance, rcond=1e-9, hermitian=True) @ error) / freedom
 
 
 def worst_mm(pis: np.ndarray, truth: np.ndarray) -> float:
@@ -62,8 +82,7 @@ def test_covariance_is_that_of_repeated_calibrations(flatness_mm, corner_px, see
         where = poses(8, seed + number)
         noisy = features(where, Noise(corner_px), seed + number, flatness_mm=flatness_mm)
         result = fit_fan(noisy, CAMERA, FanOptions(3, ALPHA, "always"))
-        error = (result.fan.pis - PAPER).ravel()
-        tied.append(error @ np.linalg.pinv(result.fan.covariance, rcond=1e-9, hermitian=True) @ error / 5)
+        tied.append(normalised(result))
         error = (result.free.pis - PAPER).ravel()
         free.append(error @ np.linalg.solve(result.free.covariance, error) / 9)
     assert 0.5 < np.mean(tied) < 1.8
@@ -171,6 +190,40 @@ def test_poses_of_many_points_correct_a_camera_that_is_off():
     assert corrected[9] == 0
     assert worst_mm(joint.fan.pis, PAPER) < 0.5 * worst_mm(alone.fan.pis, PAPER)
     assert (fit_fan(seen, joint.camera, THREE).fan.pis == joint.fan.pis).all()
+
+
+def test_a_fan_from_a_bowed_target_is_right_within_its_covariance_once_the_bow_is_solved_for():
+    """Bowed by 0.3 and 0.4 mm at the plate's edges: the same in every pose, so poses do not average it out."""
+    shaped, blind = [], []
+    for seed in (2, 4, 5):
+        seen = features(poses(9, 300 + seed), Noise(), seed, shape=bowed(0.3, 0.4, 0.0))
+        shaped.append(fit_fan(seen, CAMERA, replace(THREE, constrained="always", flatness_mm=0.3)))
+        blind.append(fit_fan(seen, CAMERA, replace(THREE, constrained="always")))
+        assert worst_mm(shaped[-1].fan.pis, PAPER) < 0.5 * worst_mm(blind[-1].fan.pis, PAPER)
+        assert shaped[-1].cross_validation_mm < 0.8 * blind[-1].cross_validation_mm
+    assert np.mean([normalised(result) for result in shaped]) < 1.5
+    assert np.mean([normalised(result) for result in blind]) > 3
+    found = shaped[0].board
+    expected = np.array([0.3, 0.4]) * (found.board.half / PLATE.half) ** 2
+    assert (np.abs(found.values[:2] - expected) < 4 * found.sd[:2]).all()
+    assert (found.sd[:2] < 0.05).all()
+    assert any("plane target is bowed by 0." in note for note in shaped[0].notes)
+
+
+def test_a_flat_target_of_uncertain_flatness_is_found_flat_and_costs_little():
+    seen = features(poses(9, 303), Noise(), 3)
+    unsure, flat = (fit_fan(seen, CAMERA, replace(THREE, flatness_mm=flatness)) for flatness in (0.3, 0.0))
+    assert (np.abs(unsure.board.values[:3]) < 3.5 * unsure.board.sd[:3]).all()
+    assert 1 <= np.trace(unsure.fan.covariance) / np.trace(flat.fan.covariance) < 1.2
+    assert unsure.notes == flat.notes
+    assert not flat.board.values.any()
+
+
+def test_twist_of_a_target_is_told_by_its_points():
+    seen = features(WHERE, Noise(), 12, points=GRID, shape=bowed(0.0, 0.0, 0.4))
+    result = fit_fan(seen, CAMERA, replace(THREE, flatness_mm=0.3))
+    assert np.abs(result.board.values[2]) > 10 * result.board.sd[2]
+    assert worst_mm(result.fan.pis, PAPER) < 0.01
 
 
 def test_each_pose_is_foretold_by_the_others():

@@ -144,6 +144,7 @@ def test_what_the_fan_knows_of_its_camera_and_its_target_is_kept(tmp_path, camer
         fan,
         by_camera=rng.normal(size=(9, 10)),
         scale_sd=2e-4,
+        board=BoardShape(Board(np.zeros(2), np.full(2, 70.0)), np.array([0.1, 0.2, 0, 0]), 1e-4 * np.eye(4)),
         cross_validation_mm=0.02,
         poses=(replace(fan.poses[0], prediction_mm=0.03),),
         camera=corrected,
@@ -152,6 +153,8 @@ def test_what_the_fan_knows_of_its_camera_and_its_target_is_kept(tmp_path, camer
     write_fan(path, known, camera.camera)
     back = read_fan(path, camera.camera)
     assert np.array_equal(back.by_camera, known.by_camera)
+    assert (back.board.values == known.board.values).all()
+    assert (back.board.sd == known.board.sd).all()
     assert (back.scale_sd, back.cross_validation_mm, back.poses[0].prediction_mm) == (2e-4, 0.02, 0.03)
     used = back.camera_used(camera)
     assert camera_id(used.camera) == camera_id(corrected)

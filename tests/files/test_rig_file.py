@@ -89,18 +89,12 @@ def test_every_kind_of_target_channel_and_polygons(tmp_path):
 def test_how_true_the_targets_are_can_be_said(tmp_path):
     said = GOOD.replace("square_mm = 10.0", "square_mm = 10.0\nflatness_mm = 0.05\nscale_sd = 1e-4", 1)
     path = tmp_path / "rig.toml"
-    path.write_text(said.replace("side_mm = 60.0", "side_mm = 60.0\nscale_sd = 2e-4", 1))
+    path.write_text(said.replace("side_mm = 60.0", "side_mm = 60.0\nscale_sd = 2e-4\nflatness_mm = 0.1", 1))
     rig = read_rig(path)
     assert rig.camera_board == BoardTolerance(0.05, 1e-4)
-    assert rig.plane_scale_sd == 2e-4
+    assert rig.plane_board == BoardTolerance(0.1, 2e-4)
     assert written(tmp_path, rig) == rig
     assert default_rig().camera_board == BoardTolerance()
-
-
-def test_flatness_of_a_plane_target_is_not_asked_for(tmp_path):
-    boards = 'kind = "checkerboard"\ninner_corners = [9, 7]\nsquare_mm = 8.0\nflatness_mm = 0.1'
-    sentence = complaint(tmp_path, GOOD.replace('kind = "black_square"\nside_mm = 60.0', boards, 1))
-    assert "plane_target.flatness_mm is for the camera target only" in sentence
 
 
 def test_without_gauge(tmp_path):
