@@ -18,6 +18,7 @@ from core import __version__
 from core.errors import InputError
 from workbench import association
 from workbench.bench import Bench, make_bench
+from workbench.garbage import GarbageCollector
 from workbench.main_window import MainWindow
 from workbench.notices import log_to_file
 from workbench.settings import THEMES
@@ -67,6 +68,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         return _associate(association.install if given.install_desktop else association.uninstall)
     signal.signal(signal.SIGINT, signal.SIG_DFL)  # Ctrl-C in the terminal ends it like a crash: the autosave is there
     app = Application(sys.argv[:1])
+    garbage = GarbageCollector(app)
     translator = QTranslator()
     if translator.load(QLocale(), "trisect", "_", str(files("resources") / "translations")):
         app.installTranslator(translator)
@@ -81,6 +83,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         return app.exec()
     finally:
         bench.close()
+        garbage.stop()
         bench.notices.release()
 
 

@@ -298,7 +298,7 @@ class Lane(QObject):
             process.kill()
             process.join()
         process.close()
+        if self._reader is not None:
+            self._reader.join(2)  # the process is gone, so it reads to the end; closed before, it might read another's
         if connection is not None:
             connection.close()
-        if self._reader is not None:
-            self._reader.join(2)

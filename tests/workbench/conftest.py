@@ -75,6 +75,15 @@ def nothing_hangs() -> Iterator[None]:
     faulthandler.cancel_dump_traceback_later()
 
 
+@pytest.fixture(scope="module", autouse=True)
+def garbage_stays_here() -> Iterator[None]:
+    """As in the program, no thread but this one collects windows of tests that are over."""
+    gc.disable()
+    yield
+    gc.collect()
+    gc.enable()
+
+
 @pytest.fixture(scope="session")
 def lanes() -> Iterator[dict[str, Lane]]:
     """Processes shared by all tests of this worker: starting one takes seconds."""
@@ -113,6 +122,7 @@ def window(bench: Bench, qapp: QApplication, monkeypatch: pytest.MonkeyPatch) ->
     made.deleteLater()
     del made
     QCoreApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete)
+    gc.collect(1)
     bench.settings.theme_changed.disconnect()
     qapp.setStyleSheet(sheet)
     qapp.setStyle(style)
