@@ -63,8 +63,8 @@ def _posed(seen: BundlePose, shape: BoardShape, camera: Camera) -> Pose:
         return pose
     for _ in range(POSE_STEPS):
         uv, _, by_pose = reprojection.linearise(camera, pose, shape.shaped(view.points))
-        step: Array = np.linalg.lstsq(view.whitened(by_pose), view.whitened(view.uv - uv), rcond=None)[0]
-        pose = reprojection.moved(pose, step)
+        step = np.linalg.lstsq(view.whitened(by_pose), view.whitened(view.uv - uv), rcond=None)[0]
+        pose = reprojection.moved(pose, np.asarray(step, dtype=np.float64))
     return pose
 
 
