@@ -62,7 +62,7 @@ def measured_in(folder: Path, name: str) -> Measured:
 def _find(folder: Path, name: str) -> Characteristic:
     if not folder.is_dir():
         raise InputError("there is no such folder of results", where=folder)
-    known = list(_characteristics(folder))
+    known = list(characteristics_in(folder))
     found = [one for one in known if one.name == name]
     if not found:
         names = ", ".join(one.name for one in known)
@@ -74,8 +74,11 @@ def _find(folder: Path, name: str) -> Characteristic:
     return found[0]
 
 
-def _characteristics(folder: Path) -> tuple[Characteristic, ...]:
-    """All of a folder: those of inspection.json, and the thickness of gauge.json where the inspection has none."""
+def characteristics_in(folder: Path) -> tuple[Characteristic, ...]:
+    """All of a folder: those of inspection.json, and the thickness of gauge.json where the inspection has none.
+
+    InputError if one of the two is damaged.
+    """
     gauge, inspection = folder / GAUGE, folder / INSPECTION
     found = read_inspection(inspection).characteristics if inspection.is_file() else ()
     if not gauge.is_file() or any(one.kind == "thickness" for one in found):

@@ -10,10 +10,12 @@ import pytest
 from core.errors import InputError
 from core.files.inspection_plan_file import write_plan
 from core.files.ply import read_mesh
+from core.files.project import ProjectFile, write_project
 from core.files.stl import write_stl
 from core.inspect.inspection_plan import Auto, Deviation, FeatureSpec, InspectionPlan, Section
 from core.pipeline import project_inspection
 from core.pipeline.inspect_step import inspect_step
+from core.pipeline.master_step import measured_master
 from core.pipeline.project_inspection import look_at_features, measure_features
 from core.pipeline.project_steps import project_content, results_folder
 
@@ -121,3 +123,15 @@ def test_the_report_has_the_thickness_beside_the_features_and_none_that_were_tak
 def test_without_a_scan_it_is_one_sentence(done, tmp_path):
     with pytest.raises(InputError, match="scan"):
         measure_features(tmp_path, replace(done.project, inspection=PLAN))
+
+
+def test_a_master_is_taken_from_a_project_as_it_was_measured(done, folder):
+    project = replace(done.project, info=replace(done.project.info, part="Block 50", serial="no. 7"))
+    write_project(folder, ProjectFile(project))
+    thickness = done.summary.gauge
+    master = measured_master(folder, 50.0, folder)
+    assert (master.name, master.measured_mm) == ("Block 50 no. 7", thickness.thickness_mm)
+    assert [u for _, u in master.budget] == [row.u_mm for row in thickness.budget] and master.same_calibration
+    assert measured_master(results_folder(folder), None).measured_mm == master.measured_mm
+    with pytest.raises(InputError, match="no length was measured"):
+        measured_master(folder.parent, 50.0)

@@ -14,6 +14,7 @@ from core.files.project_keys import changed as changes
 from core.files.project_keys import finished, rests_on
 from core.inspect.inspection_plan import FeatureSpec, InspectionPlan, PointsOf
 from workbench import jobs
+from workbench.pages.inspect_conditions import InspectConditions
 from workbench.pages.inspect_feature_edit import InspectFeatureEdit
 from workbench.pages.inspect_templates import InspectTemplates
 from workbench.problems import sentence
@@ -38,6 +39,7 @@ class InspectFeatures(QObject):
         self.problem = ""
         self.chosen = ""
         self.edit = InspectFeatureEdit(self)
+        self.conditions = InspectConditions(self)
         self.templates = InspectTemplates(self)
 
     # ---- the plan
@@ -72,7 +74,7 @@ class InspectFeatures(QObject):
         plan = self._with(spec, instead_of)
         label = self.tr("change {0}").format(spec.name) if instead_of else self.tr("add {0}").format(spec.name)
         self.chosen = spec.name
-        self._put(plan, label)
+        self.put_plan(plan, label)
 
     def remove(self, name: str) -> None:
         """Take a feature out of the plan; undoable. One that others rest on stays, and a notice says which."""
@@ -81,7 +83,10 @@ class InspectFeatures(QObject):
             self._owner.bench.notices.warning(why_not)
             return
         kept = tuple(one for one in self.plan.features if one.name != name)
-        self._put(replace(self.plan, features=kept), self.tr("remove {0}").format(name))
+        master = self.plan.master
+        if master is not None:
+            master = replace(master, features=tuple(one for one in master.features if one != name))
+        self.put_plan(replace(self.plan, features=kept, master=master), self.tr("remove {0}").format(name))
 
     def cannot_remove(self, name: str) -> str:
         """Why a feature cannot be taken out, or ""."""
@@ -91,6 +96,8 @@ class InspectFeatures(QObject):
         resting = [one.name for one in self.plan.features if name in one.needs]
         if name in frame:
             resting.append(self.tr("the part's coordinates"))
+        if self.plan.master is not None and self.plan.master.features == (name,):
+            resting.append(self.tr("the comparison with the master"))
         if resting:
             return self.tr("{0} cannot be removed: {1} rests on it.").format(name, ", ".join(resting))
         return ""
@@ -102,11 +109,17 @@ class InspectFeatures(QObject):
             return
         features = list(self.plan.features)
         features.insert(names.index(name) + by, features.pop(names.index(name)))
-        self._put(replace(self.plan, features=tuple(features)), self.tr("move {0}").format(name))
+        self.put_plan(replace(self.plan, features=tuple(features)), self.tr("move {0}").format(name))
 
     def take_template(self, plan: InspectionPlan, name: str) -> None:
         """Measure this plan from now on; undoable."""
-        self._put(plan, self.tr("take the plan {0}").format(name))
+        self.put_plan(plan, self.tr("take the plan {0}").format(name))
+
+    def put_plan(self, plan: InspectionPlan, label: str) -> None:
+        """Measure this plan from now on; undoable."""
+        self._owner.model.edit(label, replace(self._owner.project, inspection=plan))
+        if self.chosen not in plan.names:
+            self.chosen = ""
 
     # ---- measuring
 
@@ -228,12 +241,11 @@ class InspectFeatures(QObject):
         if frame is not None:
             names = {key: getattr(frame, key) for key in ("primary", "secondary", "tertiary")}
             frame = replace(frame, **{key: spec.name if name == instead_of else name for key, name in names.items()})
-        return replace(self.plan, features=renamed, frame=frame)
-
-    def _put(self, plan: InspectionPlan, label: str) -> None:
-        self._owner.model.edit(label, replace(self._owner.project, inspection=plan))
-        if self.chosen not in plan.names:
-            self.chosen = ""
+        master = self.plan.master
+        if master is not None:
+            compared = tuple(spec.name if name == instead_of else name for name in master.features)
+            master = replace(master, features=compared)
+        return replace(self.plan, features=renamed, frame=frame, master=master)
 
 
 def _following(spec: FeatureSpec, before: str, now: str) -> FeatureSpec:

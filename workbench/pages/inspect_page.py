@@ -8,6 +8,7 @@ from PySide6.QtCore import QEvent, QTimer
 from PySide6.QtWidgets import QTabWidget, QWidget
 
 from workbench.pages import inspect_words as words
+from workbench.pages.inspect_conditions_panel import ConditionsPanel
 from workbench.pages.inspect_features_panel import FeaturesPanel
 from workbench.pages.inspect_panels import FacesPanel, ResultPanel
 from workbench.pages.inspect_picks_panel import PicksPanel
@@ -55,6 +56,8 @@ class InspectPage(StepPage):
         self.add_panel(self.tr("What is measured"), self.faces)
         self.features = FeaturesPanel(presenter)
         self.add_panel(self.tr("Features"), self.features)
+        self.conditions = ConditionsPanel(presenter)
+        self.conditions_fold = self.add_panel(self.tr("Conditions and frame"), self.conditions, collapsed=True)
         self.picks = PicksPanel(presenter)
         self.add_panel(self.tr("Points and distances"), self.picks)
         self.tabs.currentChanged.connect(self._tab_changed)
@@ -68,7 +71,12 @@ class InspectPage(StepPage):
         p = self.presenter
         self._show_stage(p.stage)
         self.result_fold.setVisible(p.gauge is not None)
-        for panel in (self.result, self.faces, self.features, self.picks):
+        self.conditions_fold.setVisible(bool(p.features.plan.features))
+        said = p.features.conditions.in_short
+        self.conditions_fold.setText(
+            self.tr("Conditions and frame ({0})").format(said) if said else self.tr("Conditions and frame")
+        )
+        for panel in (self.result, self.faces, self.features, self.conditions, self.picks):
             panel.refresh()
         count = len(p.repeats.all)
         self.tabs.setTabText(REPEATS, self.tr("Repeats ({0})").format(count) if count else self.tr("Repeats"))

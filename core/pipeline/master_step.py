@@ -1,0 +1,53 @@
+"""A master block as it was measured: taken from the results of a project, or from a folder of results."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from core.errors import InputError
+from core.files.project_folder import is_project, read_project
+from core.files.study_results import characteristics_in
+from core.inspect.conditions import Master
+from core.inspect.temperature import LENGTHS
+from core.pipeline.project_steps import results_folder
+from core.pipeline.workspace import read_calibration
+from core.progress import Progress, silent
+
+
+def measured_master(
+    folder: Path, certified_mm: float | None, project: Path | None = None, progress: Progress = silent
+) -> Master:
+    """What was measured of a master, as the length nearest to its certified one, with what its uncertainty is made of.
+
+    Parameters
+    ----------
+    folder
+        A project's, or one of results.
+    certified_mm
+        Its length by the certificate; None: the first length there is.
+    project
+        Whose part is to be compared with it: whether both were measured with one calibration is looked up there.
+    progress
+        Told what is being done; may cancel.
+
+    Raises
+    ------
+    InputError
+        If there is no length among the results, or they are damaged.
+    """
+    progress("results", 0, 1)
+    results = results_folder(folder) if is_project(folder) else folder
+    lengths = [one for one in characteristics_in(results) if one.kind in LENGTHS and one.quantity == "length"]
+    if not lengths:
+        raise InputError(
+            "no length was measured in it", where=folder, todo="choose the project in which the master was measured"
+        )
+    certified = lengths[0].value if certified_mm is None else certified_mm
+    row = min(lengths, key=lambda one: abs(one.value - certified))
+    name = folder.name
+    if is_project(folder):
+        info = read_project(folder).project.info
+        name = " ".join(part for part in (info.part or info.name, info.serial) if part) or name
+    same = project is None or read_calibration(results).id == read_calibration(results_folder(project)).id
+    budget = tuple((one.source, one.u_mm) for one in row.budget)
+    return Master(name, certified, 0.0, row.value, budget or (("measurement", row.u),), (), same)

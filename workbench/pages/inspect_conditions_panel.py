@@ -1,0 +1,178 @@
+"""Part coordinates, temperature and master of the features, in one form with a line of help each."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from PySide6.QtCore import QEvent
+from PySide6.QtGui import QShowEvent
+from PySide6.QtWidgets import QLabel, QPushButton, QVBoxLayout, QWidget
+
+from core.inspect.inspection_plan import InspectionPlan
+from workbench.pages import inspect_condition_values as fields
+from workbench.pages.inspect_presenter import InspectPresenter
+from workbench.pages.step_page import muted
+from workbench.theme import icon, shades
+from workbench.views import ask
+from workbench.views.dressing import dress
+from workbench.views.forms import SettingsForm
+
+LONGEST = 5000.0
+
+
+class ConditionsPanel(QWidget):
+    """The form is made anew where other features can be chosen, or a group is switched on or off."""
+
+    def __init__(self, presenter: InspectPresenter, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._presenter, self._conditions = presenter, presenter.features.conditions
+        self._made: object = None
+        self._inside = QWidget()
+        self.forms: dict[str, SettingsForm] = {}
+        self.complaints: dict[str, QLabel] = {}
+        self.take = QPushButton()
+        self._column = QVBoxLayout(self)
+        self._column.setContentsMargins(0, 0, 0, 0)
+        self._column.addWidget(muted(
+            self.tr("They hold for the features. Add the thickness as a feature to have it at 20 °C, or compared, too.")
+        ))  # fmt: skip
+        self._column.addWidget(self._inside)
+
+    def refresh(self) -> None:
+        """Show what the presenter says now."""
+        conditions, plan = self._conditions, self._conditions.plan
+        if not self.isVisible():
+            return
+        choices = [fields.frame_choices(plan, place) for place in fields.FRAME]
+        framed = bool(conditions.values()["primary"])
+        made = (choices, fields.comparable(plan), framed, conditions.temperature_is_on, conditions.master_is_on)
+        if made != self._made:
+            self._made = made
+            self._make(plan)
+        values = conditions.values()
+        for form in self.forms.values():
+            form.set_values(values)
+        for group, label in self.complaints.items():
+            label.setText(conditions.complaint(group))
+            label.setVisible(bool(label.text()))
+
+    def showEvent(self, event: QShowEvent) -> None:
+        super().showEvent(event)
+        self.refresh()
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "_column"):
+            self._dress()
+
+    # ---- making it
+
+    def _make(self, plan: InspectionPlan) -> None:
+        self._column.removeWidget(self._inside)
+        self._inside.hide()
+        self._inside.deleteLater()  # its editors may be telling of the very edit that ends them
+        self._inside, self.forms, self.complaints = QWidget(), {}, {}
+        column = QVBoxLayout(self._inside)
+        column.setContentsMargins(0, 4, 0, 0)
+        column.setSpacing(4)
+        for group, add in (("frame", self._add_frame), ("temperature", self._add_temperature)):
+            self._add_group(column, group, add, plan)
+        self._add_group(column, "master", self._add_master, plan)
+        if self._conditions.master_is_on:
+            self.take = QPushButton(self.tr("Take from its results"))
+            self.take.setToolTip(self.tr("The project, or folder of results, in which the master was measured"))
+            self.take.clicked.connect(self._take)
+            column.addWidget(self.take)
+        self._column.addWidget(self._inside)
+        self._dress()
+
+    def _add_group(
+        self, column: QVBoxLayout, group: str, add: Callable[[SettingsForm, InspectionPlan], None], plan: InspectionPlan
+    ) -> None:
+        form, complaint = SettingsForm(), QLabel()
+        complaint.setWordWrap(True)
+        add(form, plan)
+        form.edited.connect(self._conditions.set_value)
+        self.forms[group], self.complaints[group] = form, complaint
+        column.addWidget(form)
+        column.addWidget(complaint)
+
+    def _add_frame(self, form: SettingsForm, plan: InspectionPlan) -> None:
+        form.add_section(self.tr("Part coordinates (3-2-1)"))
+        none = {"primary": self.tr("the camera's"), "secondary": self.tr("choose"), "tertiary": self.tr("none")}
+        said = {
+            "primary": (self.tr("z points out of"), self.tr("A plane: z is 0 on it. The camera's: none are needed.")),
+            "secondary": (self.tr("x points out of"), self.tr("A second plane, or an axis to point along.")),
+            "tertiary": (self.tr("Origin at"), self.tr("A third feature that fixes y; none: amid the second.")),
+        }
+        shown = tuple(said) if self._conditions.values()["primary"] else ("primary",)
+        for place in shown:
+            choices = [("", none[place]), *((name, name) for name in fields.frame_choices(plan, place))]
+            form.add_choice(place, said[place][0], choices, said[place][1])
+
+    def _add_temperature(self, form: SettingsForm, plan: InspectionPlan) -> None:
+        form.add_section(self.tr("Temperature"))
+        form.add_check(fields.AT_20, self.tr("State lengths at 20 °C"), self.tr("Off: as the part was when scanned."))
+        if not self._conditions.temperature_is_on:
+            return
+        self._celsius(form, "part", self.tr("Part"), self.tr("Its temperature while it was scanned."))
+        self._celsius(form, "u_part", self.tr("Part, u"), self.tr("Standard uncertainty; 0.3 for ±0.5 °C."))
+        self._per_kelvin(form, "alpha", self.tr("Expansion"), self.tr("Steel 11.5, aluminium 23, brass 19, glass 8."))
+        self._per_kelvin(form, "u_alpha", self.tr("Expansion, u"), self.tr("Standard uncertainty; 0.6 for ±1."))
+        self._celsius(form, "scale", self.tr("Target"), self.tr("The target's when the camera was calibrated."))
+        self._celsius(form, "u_scale", self.tr("Target, u"), self.tr("Standard uncertainty of that."))
+        help = self.tr("Of the target's plate; 0: its size holds as it is.")
+        self._per_kelvin(form, "scale_alpha", self.tr("Target's expansion"), help)
+        self._per_kelvin(form, "u_scale_alpha", self.tr("Target's, u"), self.tr("Standard uncertainty of that."))
+
+    def _celsius(self, form: SettingsForm, key: str, label: str, help: str) -> None:
+        u = key.startswith("u_")
+        form.add_number(
+            f"{key}_celsius", label, "°C", help,
+            minimum=0.0 if u else -50.0, maximum=20.0 if u else 200.0, decimals=2, step=0.1,
+        )  # fmt: skip
+
+    def _per_kelvin(self, form: SettingsForm, key: str, label: str, help: str) -> None:
+        least = 0.0 if key.startswith("u_") else -100.0
+        form.add_number(key, label, "10⁻⁶/K", help, minimum=least, maximum=1000.0, decimals=2, step=0.5)
+
+    def _add_master(self, form: SettingsForm, plan: InspectionPlan) -> None:
+        form.add_section(self.tr("Master"))
+        form.add_check(
+            fields.WITH_MASTER, self.tr("Compare with a master"),
+            self.tr("What the rig gets wrong on a known block is taken off the part."),
+        )  # fmt: skip
+        if not self._conditions.master_is_on:
+            return
+        form.add_text("name", self.tr("Name"), self.tr("With its number, as the certificate has it."))
+        for key, label, help in (
+            ("certified_mm", self.tr("Certified length"), self.tr("By the certificate, at 20 °C.")),
+            ("u_certified_mm", self.tr("Certified, u"), self.tr("Standard uncertainty: the certificate's U over k.")),
+            ("measured_mm", self.tr("Measured length"), self.tr("As this rig measured it; at 20 °C if the part's is.")),
+            (fields.U_MEASURED, self.tr("Measured, u"), self.tr("Typed in, it is one row of the budget.")),
+        ):
+            u = key.startswith("u_")
+            form.add_number(
+                key, label, "mm", help, minimum=0.0 if u else 0.001, maximum=LONGEST, decimals=5,
+                step=0.001 if u else 1.0, none_text=None if u else self.tr("none"), first=None if u else 50.0,
+            )  # fmt: skip
+        form.add_check(
+            "same_calibration", self.tr("Measured with this calibration"),
+            self.tr("Then what camera and laser get wrong cancels."),
+        )  # fmt: skip
+        for name in fields.comparable(plan):
+            form.add_check(fields.COMPARED + name, self.tr("Compare {0}").format(name))
+        if not fields.comparable(plan):
+            form.add_section(self.tr("There is no feature with a length yet: add one first."))
+
+    def _take(self) -> None:
+        folder = ask.choose_folder(
+            self, self.tr("Project or results of the master"), self._presenter.bench.settings.projects_folder
+        )
+        if folder is not None:
+            self._conditions.take_master(folder)
+
+    def _dress(self) -> None:
+        self.take.setIcon(icon("mdi6.folder-open-outline"))
+        for label in self.complaints.values():
+            dress(label, f"font-size: 11px; color: {shades().bad};")
