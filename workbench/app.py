@@ -78,6 +78,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     window = app.window = build_window(app, bench, given.theme)
     window.log_file = log_file
     window.show()
+    garbage.spare_what_is_there()
     QTimer.singleShot(0, lambda: _after_start(window, given.path))
     try:
         return app.exec()

@@ -27,6 +27,10 @@ class GarbageCollector(QObject):
         self._timer.timeout.connect(self.collect_due)
         self._timer.start()
 
+    def spare_what_is_there(self) -> None:
+        """What the program has made so far stays for good: later collections need not go through it, and are short."""
+        gc.freeze()
+
     def collect_due(self) -> int:
         """Collect the oldest generation that is due, which takes the younger ones with it; how many objects went.
 
