@@ -9,43 +9,65 @@ from numba import njit
 
 from core.model.arrays import Array
 
-_HOLE = 2.6  # px from one point to the next; what lies in a hole is not known
+_HOLE = 0.6  # px more than usual from one point to the next: what lies between is not known
 
 
 @njit(cache=True, nogil=True)
-def filled(run: Array) -> Array:
-    """A run (N, 5) u, v, n_u, n_v, response traced at every second pixel, with points between its points.
+def filled(run: Array, stride: int) -> Array:
+    """A run (N, 5) u, v, n_u, n_v, response traced `stride` px apart, with points a pixel apart between its points.
 
-    They lie on the cubic through the two neighbours on either side, or on the chord's parabola that the normals ask
-    for where a neighbour is missing. What a filter of σ g leaves of noise is as smooth as g, so that for g > 2 px a
-    point between differs from one that was looked for by less than 0.001 px.
+    They lie on the cubic through the two neighbours on either side, or on Hermite's along the normals where a
+    neighbour is missing. What a filter of σ g leaves of noise is as smooth as g, so that for g > 1.1 `stride` a point
+    between differs from one that was looked for by less than 0.001 px.
     """
-    count = len(run)
-    out = np.empty((2 * count, 5))
-    number = 0
+    count, hole = len(run), stride + _HOLE
+    out, weights = np.empty((stride * count, 5)), _cubic_weights(stride)
+    number, before, chord = 0, math.inf, _chord(run, 0)
     for k in range(count):
         out[number] = run[k]
         number += 1
-        if k + 1 == count or _apart(run, k) > _HOLE:
-            continue
-        new, here, behind = out[number], run[k], run[k + 1]
-        if k > 0 and k + 2 < count and _apart(run, k - 1) <= _HOLE and _apart(run, k + 1) <= _HOLE:
-            for a in range(5):
-                new[a] = (9 * (here[a] + behind[a]) - run[k - 1, a] - run[k + 2, a]) / 16
-        else:
-            for a in range(5):
-                new[a] = 0.5 * (here[a] + behind[a])
-            # tangents (−n_v, n_u) of Hermite's cubic, as long as the chord
-            chord = _apart(run, k)
-            new[0] += chord / 8 * (behind[3] - here[3])
-            new[1] -= chord / 8 * (behind[2] - here[2])
-        norm = math.hypot(new[2], new[3])
-        new[2] /= norm
-        new[3] /= norm
-        number += 1
+        after = _chord(run, k + 1)
+        if chord <= hole:
+            for step in range(1, stride):
+                point = out[number]
+                if before <= hole and after <= hole:
+                    for a in range(5):
+                        point[a] = 0.0
+                        for i in range(4):
+                            point[a] += weights[step, i] * run[k - 1 + i, a]
+                else:
+                    _on_chord(run[k], run[k + 1], step / stride, chord, point)
+                norm = math.sqrt(point[2] * point[2] + point[3] * point[3])
+                point[2] /= norm
+                point[3] /= norm
+                number += 1
+        before, chord = chord, after
     return out[:number]
 
 
 @njit(cache=True, nogil=True)
-def _apart(run: Array, k: int) -> float:
-    return math.hypot(run[k + 1, 0] - run[k, 0], run[k + 1, 1] - run[k, 1])
+def _cubic_weights(stride: int) -> Array:
+    """Lagrange's weights (stride, 4) of four points for the place k/stride of the way from the second to the third."""
+    weights = np.empty((stride, 4))
+    for k in range(stride):
+        x = k / stride
+        weights[k, 0], weights[k, 3] = -x * (1 - x) * (2 - x) / 6, -x * (1 - x) * (1 + x) / 6
+        weights[k, 1], weights[k, 2] = (1 + x) * (1 - x) * (2 - x) / 2, (1 + x) * x * (2 - x) / 2
+    return weights
+
+
+@njit(cache=True, nogil=True)
+def _on_chord(here: Array, behind: Array, x: float, chord: float, point: Array) -> None:
+    """The `point` (5,) at the share `x` of the way, by Hermite's cubic with tangents as long as the chord."""
+    y = 1 - x
+    for a in range(5):
+        point[a] = y * here[a] + x * behind[a]
+    lean, from_here, from_behind = x * y * (y - x), chord * x * y * y, chord * x * x * y
+    point[0] += lean * (here[0] - behind[0]) - from_here * here[3] + from_behind * behind[3]
+    point[1] += lean * (here[1] - behind[1]) + from_here * here[2] - from_behind * behind[2]
+
+
+@njit(cache=True, nogil=True)
+def _chord(run: Array, k: int) -> float:
+    """From point k to the next; infinite where there is none."""
+    return math.hypot(run[k + 1, 0] - run[k, 0], run[k + 1, 1] - run[k, 1]) if k + 1 < len(run) else math.inf

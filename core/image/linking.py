@@ -29,7 +29,8 @@ SATURATED, IGNORED, VISITED = 1, 2, 4
 """Bits of the picture's state map."""
 
 _MARK_EVERY = 2  # points: discs much larger than that leave no gap between them
-_WIDE_FILTER_PX = 2.4  # every second point tells all, then: the filter has averaged over 2√π·g px
+_PER_FILTER = 1.1  # points to a filter σ tell all: what the filter leaves is as smooth as g, see `core.image.filling`
+_NEAR_ENOUGH = 0.08  # filter σ from the crest: seen from there, Taylor's step errs by less than 0.0005 px
 _LARGEST_TURN = math.cos(math.radians(30))  # from one point to the next
 
 
@@ -59,19 +60,19 @@ def link(
     if min(picture.shape) <= 2 * radius + 3:
         return []
     unit = ridge_response(1.0, stripe_px, filter_px)
-    stride = 2.0 if filter_px > _WIDE_FILTER_PX else 1.0
+    stride = max(1, int(filter_px / _PER_FILTER))
     flat: Any = np.ascontiguousarray(picture).reshape(-1)  # float32 or int16
     points, ends = _trace_all(
         flat,
         state,
         seeds(picture, stripe_px, filter_px, limits.high, limits.noise_grey),
         kernel_table(filter_px),
-        (filter_px, unit * limits.high, unit * limits.low, limits.hold_px, limits.saturated_hold_px, stride),
+        (filter_px, unit * limits.high, unit * limits.low, limits.hold_px, limits.saturated_hold_px, float(stride)),
         radius,
         math.ceil(2 * stripe_px + 1),
     )
     runs = np.split(points, ends[:-1]) if len(ends) else []
-    return [filled(run) for run in runs] if stride > 1 else runs
+    return [filled(run, stride) for run in runs] if stride > 1 else runs
 
 
 @njit(cache=True, nogil=True, fastmath=True)
@@ -173,10 +174,9 @@ def _follow(
         if here & (IGNORED | VISITED):
             break
         across, nu, nv, offset = ridge_at(picture, width, u, v, radius, kernels)
-        far = 0.5 + 0.05 * (missed + blind)  # straight ahead drifts off while nothing is seen
-        if across < -low and abs(offset) <= far and abs(offset) > 0.1:
-            moved = offset
-            u2, v2 = u + moved * nu, v + moved * nv
+        far = max(0.5, 0.25 * stride) + 0.05 * (missed + blind)  # straight ahead drifts off while nothing is seen
+        if across < -low and _NEAR_ENOUGH * filter_px < abs(offset) <= far:
+            u2, v2 = u + offset * nu, v + offset * nv
             if not _inside(u2, v2, width, height, radius):
                 break
             across, nu, nv, offset = ridge_at(picture, width, u2, v2, radius, kernels)
