@@ -12,12 +12,13 @@ triangle is left out when one of its edges
 from __future__ import annotations
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
-from scipy.spatial import Delaunay, QhullError
 
 from core.errors import InputError
 from core.model.arrays import Array
 from core.progress import Progress, silent
+from core.scan.delaunay import delaunay
 from core.scan.normals import pixel_angle
 from core.scan.surface import Mesh, Surface
 
@@ -60,11 +61,10 @@ def build_mesh(
         If no triangle is left.
     """
     progress("mesh", 0, 3)
-    triangles = _delaunay(surface.uv)
+    triangles = delaunay(surface.uv)
     progress("mesh", 1, 3)
     if len(triangles):
-        triangles = triangles[_continuous(surface, triangles, max_edge_px, steepest, largest_kink)]
-        triangles = _towards_camera(surface.points, triangles)
+        triangles = _continuous(surface, triangles, max_edge_px, steepest, largest_kink)
     if not len(triangles):
         raise InputError(
             f"the {len(surface)} fused points leave no triangle between them, so there is no mesh",
@@ -76,47 +76,75 @@ def build_mesh(
     return mesh
 
 
-def _delaunay(uv: Array) -> NDArray[np.int64]:
-    """Triangles (T, 3) over `uv` (M, 2); none when the points do not span a plane."""
-    if len(uv) < 3:
-        return np.empty((0, 3), dtype=np.int64)
-    try:
-        return np.asarray(Delaunay(uv - uv.mean(axis=0)).simplices, dtype=np.int64)
-    except QhullError:  # all points on one line: what Qhull calls a flat initial simplex
-        return np.empty((0, 3), dtype=np.int64)
-
-
 def _continuous(
     surface: Surface, triangles: NDArray[np.int64], max_edge_px: float | None, steepest: float, largest_kink: float
-) -> NDArray[np.bool_]:
-    """Which triangles lie on one continuous surface."""
-    a, b = triangles, np.roll(triangles, -1, axis=1)
-    length_px = np.linalg.norm(surface.uv[b] - surface.uv[a], axis=2)
-    longest = length_px.max(axis=1)
-    limit = 3 * float(np.quantile(longest, 0.9)) if max_edge_px is None else max_edge_px
-    edge = surface.points[b] - surface.points[a]
-    length = np.linalg.norm(edge, axis=2)
-    noise = JUMP_SIGMAS * np.hypot(surface.sigma[a], surface.sigma[b])
-    across = length_px * pixel_angle(surface.points, surface.uv) * surface.points[a, 2]
-    jump = np.abs(edge[:, :, 2])
-    steep = (jump > noise) & (jump > across * np.tan(steepest))
-    known = np.linalg.norm(surface.normals, axis=1) > 0
+) -> NDArray[np.int64]:
+    """The triangles that lie on one continuous surface, turned so that the camera sees their front."""
+    limit = 3 * float(np.quantile(_longest(surface.uv, triangles), 0.9)) if max_edge_px is None else max_edge_px
+    known = (surface.normals != 0).any(axis=1)
     facing = np.where(known[:, None], surface.normals, [0.0, 0.0, -1.0])  # unknown: as if it faced the camera
-    off = np.minimum(*(np.abs((edge * facing[end]).sum(axis=2)) for end in (a, b)))
-    step = (off > noise) & (off > length * np.sin(largest_kink))
-    continuous: NDArray[np.bool_] = (longest <= limit) & ~(steep | step).any(axis=1)
-    return continuous
-
-
-def _towards_camera(points: Array, triangles: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Triangles turned so that the camera sees their front; edge-on ones left out."""
-    a, b, c = (points[triangles[:, corner]] for corner in range(3))
-    facing = (np.cross(b, c) * a).sum(axis=1)  # n·a with n = (b − a) × (c − a): negative when seen from its front
+    steep = pixel_angle(surface.points, surface.uv) * np.tan(steepest)
     turned = triangles.copy()
-    away = facing > 0
-    turned[away, 1], turned[away, 2] = triangles[away, 2], triangles[away, 1]
-    seen: NDArray[np.int64] = turned[facing != 0]
-    return seen
+    kept = _kept(surface.points, surface.uv, surface.sigma, facing, turned, limit, steep, float(np.sin(largest_kink)))
+    return np.asarray(turned[kept], dtype=np.int64)
+
+
+@njit(cache=True, nogil=True)
+def _longest(uv: Array, triangles: NDArray[np.int64]) -> Array:
+    """Length (T,) in pixels of the longest edge of each triangle."""
+    longest = np.empty(len(triangles))
+    for t in range(len(triangles)):
+        squared = 0.0
+        for k in range(3):
+            a, b = triangles[t, k], triangles[t, (k + 1) % 3]
+            squared = max(squared, (uv[b, 0] - uv[a, 0]) ** 2 + (uv[b, 1] - uv[a, 1]) ** 2)
+        longest[t] = np.sqrt(squared)
+    return longest
+
+
+@njit(cache=True, nogil=True)
+def _kept(
+    points: Array,
+    uv: Array,
+    sigma: Array,
+    facing: Array,
+    triangles: NDArray[np.int64],
+    limit: float,
+    steep: float,
+    kink: float,
+) -> NDArray[np.bool_]:
+    """Which triangles stay; each is turned in place towards the camera, and those seen edge-on are left out."""
+    kept = np.zeros(len(triangles), dtype=np.bool_)
+    for t in range(len(triangles)):
+        a, b, c = triangles[t]
+        u, v = points[b] - points[a], points[c] - points[a]
+        away = (
+            (u[1] * v[2] - u[2] * v[1]) * points[a, 0]
+            + (u[2] * v[0] - u[0] * v[2]) * points[a, 1]
+            + (u[0] * v[1] - u[1] * v[0]) * points[a, 2]
+        )
+        if away > 0:
+            triangles[t, 1], triangles[t, 2] = c, b
+        kept[t] = away != 0
+        for one, other in ((a, b), (b, c), (c, a)):
+            kept[t] &= _joins(points, uv, sigma, facing, one, other, limit, steep, kink)
+    return kept
+
+
+@njit(cache=True, nogil=True)
+def _joins(
+    points: Array, uv: Array, sigma: Array, facing: Array, a: int, b: int, limit: float, steep: float, kink: float
+) -> bool:
+    """Whether the edge from a to b lies on one continuous surface; see the module's docstring."""
+    length_px = np.hypot(uv[b, 0] - uv[a, 0], uv[b, 1] - uv[a, 1])
+    x, y, z = points[b, 0] - points[a, 0], points[b, 1] - points[a, 1], points[b, 2] - points[a, 2]
+    noise = JUMP_SIGMAS * np.hypot(sigma[a], sigma[b])
+    if length_px > limit or (abs(z) > noise and abs(z) > steep * length_px * 0.5 * (points[a, 2] + points[b, 2])):
+        return False
+    off_a = abs(x * facing[a, 0] + y * facing[a, 1] + z * facing[a, 2])
+    off_b = abs(x * facing[b, 0] + y * facing[b, 1] + z * facing[b, 2])
+    off = min(off_a, off_b)
+    return bool(off <= noise or off <= kink * np.sqrt(x * x + y * y + z * z))
 
 
 def _canonical(triangles: NDArray[np.int64]) -> NDArray[np.int64]:
@@ -129,8 +157,9 @@ def _canonical(triangles: NDArray[np.int64]) -> NDArray[np.int64]:
 
 def _compact(surface: Surface, triangles: NDArray[np.int64]) -> Mesh:
     """The mesh of the vertices that `triangles` use."""
-    used, renumbered = np.unique(triangles, return_inverse=True)
-    triangles = renumbered.reshape(-1, 3).astype(np.int64)
+    is_used = np.zeros(len(surface), dtype=np.bool_)
+    is_used[triangles] = True
+    used, triangles = np.flatnonzero(is_used), (np.cumsum(is_used) - 1)[triangles]
     vertices = surface.points[used]
     known = np.linalg.norm(surface.normals[used], axis=1) > 0
     normals = np.where(known[:, None], surface.normals[used], vertex_normals(vertices, triangles))
