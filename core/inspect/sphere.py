@@ -14,17 +14,14 @@ from core.inspect.results import Contribution
 from core.inspect.shapes import Ball
 from core.inspect.surface_fit import FEWEST, SurfaceFit, fit_surface
 from core.inspect.uncertainty import combined
+from core.inspect.uneven_light import with_uneven_light
 from core.model.arrays import Array
 from core.progress import Progress, silent
 from core.scan.cloud import Cloud
-from core.scan.normals import pixel_angle, with_normals
+from core.scan.normals import with_normals
 
 HYPOTHESES = 600
 SEARCH_POINTS = 4000
-SECTION = 2.5
-"""How far a section of light of σ w on a sphere of radius R is off at the flanks, radially, in w²/R: 2 to 3 on rendered
-spheres of 50 mm. Which way hangs on where the lasers are, which is not known: see `core.image.shading`."""
-UNEVEN_LIGHT = "light that lies unevenly on the curved surface"
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -137,34 +134,12 @@ def fit_sphere(
     if len(indices) < FEWEST:
         raise InputError(f"{len(indices)} points are too few for a sphere", where="point cloud")
     errors = errors or PointErrors()
-    fit = fit_surface(cloud, indices, through(cloud.points[indices]), errors)
-    rows = radius_budget(cloud, fit, errors)
+    fit = with_uneven_light(fit_surface(cloud, indices, through(cloud.points[indices]), errors), cloud, errors)
+    rows = fit.budget(np.array([0.0, 0.0, 0.0, 1.0]))
     ball = fit.shape
     return SphereFit(
         ball.centre, ball.radius, combined(rows), fit.form.value, fit.indices, fit.residuals, rows, fit.form.u, fit
     )
-
-
-def radius_budget(cloud: Cloud, fit: SurfaceFit[Ball], errors: PointErrors) -> tuple[Contribution, ...]:
-    """What makes the radius of a sphere fitted to points of `cloud` uncertain."""
-    rows = fit.budget(np.array([0.0, 0.0, 0.0, 1.0]))
-    if not errors.stripe_px > 0:
-        return rows
-    return (*rows, Contribution(UNEVEN_LIGHT, _uneven_light(cloud.select(fit.indices), fit.shape, errors.stripe_px)))
-
-
-def _uneven_light(cloud: Cloud, ball: Ball, stripe_px: float) -> float:
-    """What uneven sections of light do to the radius, as a standard uncertainty in mm.
-
-    They pull the flanks, where the normal and the line of sight make an angle of cosine c, against the top. Radius and
-    centre follow, the further the less of the sphere is seen: by 1/(1 − c).
-    """
-    width = stripe_px * pixel_angle(cloud.points, cloud.uv) * float(np.median(cloud.points[:, 2]))
-    outwards = cloud.points - ball.centre
-    cosine = np.abs((outwards * cloud.points).sum(axis=1))
-    cosine /= np.linalg.norm(outwards, axis=1) * np.linalg.norm(cloud.points, axis=1)
-    flank = float(np.quantile(cosine, 0.05))
-    return SECTION * width**2 / ball.radius / max(1 - flank, 0.1)
 
 
 def through(points: Array) -> Ball:

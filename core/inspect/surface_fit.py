@@ -70,6 +70,11 @@ class SurfaceFit(Generic[S]):
         return budget_of([(gradient, self.effects)])
 
     @property
+    def parameters(self) -> int:
+        """How many parameters the shape has."""
+        return len(self.effects[0].factor)
+
+    @property
     def rms_mm(self) -> float:
         """Root mean square of the residuals."""
         return float(np.sqrt(np.mean(self.residuals**2)))

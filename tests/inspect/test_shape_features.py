@@ -31,6 +31,9 @@ DERIVED = (
     FeatureSpec("gap", "distance", of=("ball", "pin")),
     FeatureSpec("lean", "angle", of=("pin", "table")),
 )
+ACROSS = np.array([np.cos(0.4), np.sin(0.4), 0.0])
+ENDS = [tuple(end[:2] / end[2] * FOCAL + CENTRE) for end in (BALL - 30 * ACROSS, BALL + 30 * ACROSS)]
+THROUGH_BALL = Section((ENDS[0], ENDS[1]), half_width_mm=1.0, cuts=(Cut("round", "radius", (14.0, 46.0)),))
 BETWEEN = BALL - PIN
 TRUTH = {
     "ball diameter": 40.0,
@@ -78,15 +81,11 @@ def test_regions_in_part_coordinates_hold_what_lies_there():
 
 
 def test_the_section_through_a_ball_has_its_radius():
-    across = np.array([np.cos(0.4), np.sin(0.4), 0.0])
-    ends = np.array([BALL - 30 * across, BALL + 30 * across])
-    first, second = (tuple(end[:2] / end[2] * FOCAL + CENTRE) for end in ends)
-    section = Section((first, second), half_width_mm=1.0, cuts=(Cut("round", "radius", (14.0, 46.0)),))
     relative = []
     for seed in range(6):
         cloud = SCAN.measure(np.random.default_rng(seed))
         inspection = evaluate(
-            InspectionPlan((FeatureSpec("cut", "section", section=section),)), cloud, errors=SCAN.errors
+            InspectionPlan((FeatureSpec("cut", "section", section=THROUGH_BALL),)), cloud, errors=SCAN.errors
         )
         (row,) = inspection.characteristics
         relative.append((row.value - 20.0) / row.u)

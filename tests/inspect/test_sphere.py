@@ -5,7 +5,8 @@ import pytest
 
 from core.errors import InputError
 from core.inspect.point_errors import PointErrors
-from core.inspect.sphere import UNEVEN_LIGHT, find_sphere, fit_sphere
+from core.inspect.sphere import find_sphere, fit_sphere
+from core.inspect.uneven_light import UNEVEN_LIGHT
 from core.scan.cloud import Cloud
 from tests.inspect.block_scan import CENTRE, FOCAL
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from core.inspect.cylinder import find_cylinder
 from core.inspect.elements import Element
 from core.inspect.features.measured import FeatureResult, Scene
@@ -11,6 +9,7 @@ from core.inspect.features.regions import points_in
 from core.inspect.features.round import round_result
 from core.inspect.inspection_plan import Auto, FeatureSpec
 from core.inspect.surface_fit import fit_surface
+from core.inspect.uneven_light import with_uneven_light
 
 
 def measure_cylinder(spec: FeatureSpec, scene: Scene) -> FeatureResult:
@@ -21,5 +20,5 @@ def measure_cylinder(spec: FeatureSpec, scene: Scene) -> FeatureResult:
     on, start = find_cylinder(cloud.select(indices), on_table=isinstance(region, Auto), progress=scene.progress)
     filters = spec.filters
     fit = fit_surface(cloud, indices[on], start, scene.errors, tukey=filters.outliers, cell_mm=filters.cell_mm)
-    rows = fit.budget(np.array([0.0, 0.0, 0.0, 0.0, 2.0]))
-    return round_result(spec, scene, fit, rows, Element.of_tube(fit))
+    fit = with_uneven_light(fit, cloud, scene.errors)
+    return round_result(spec, scene, fit, Element.of_tube(fit))

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from core.inspect.elements import Element
 from core.inspect.features.measured import FeatureResult, Scene
 from core.inspect.inspection_plan import FeatureSpec
-from core.inspect.results import Contribution
 from core.inspect.shapes import Ball, Tube
 from core.inspect.surface_fit import SurfaceFit
 
@@ -14,10 +15,11 @@ def round_result(
     spec: FeatureSpec,
     scene: Scene,
     fit: SurfaceFit[Ball] | SurfaceFit[Tube],
-    rows: tuple[Contribution, ...],
     element: Element,
 ) -> FeatureResult:
-    """The result of a fitted round surface; `rows` is the budget of its diameter."""
+    """The result of a fitted round surface."""
+    twice_the_radius = np.append(np.zeros(fit.parameters - 1), 2.0)
+    rows = fit.budget(twice_the_radius)
     rule = f"diameter of the {spec.kind} of least squares, by the points' covariance"
     form_rule = f"range that holds 95 % of the deviations from the {spec.kind}"
     return FeatureResult(

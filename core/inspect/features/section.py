@@ -15,6 +15,7 @@ from core.inspect.inspection_plan import Cut, FeatureSpec, Pixel, Section
 from core.inspect.profile import Profile, averaged
 from core.inspect.shapes import Levels, Tube
 from core.inspect.surface_fit import fit_surface
+from core.inspect.uneven_light import with_uneven_light
 from core.model.arrays import Array
 from core.scan.cloud import Cloud
 
@@ -116,7 +117,7 @@ def _cut(spec: FeatureSpec, cut: Cut, profile: Profile, scene: Scene) -> Charact
     tukey = spec.filters.outliers
     if cut.kind == "radius":
         round_ = fit_surface(scene.cloud, indices, _circle(profile, chosen[0]), scene.errors, tukey=tukey)
-        rows = round_.budget(np.array([0.0, 0.0, 1.0]))
+        rows = with_uneven_light(round_, scene.cloud, scene.errors).budget(np.array([0.0, 0.0, 1.0]))
         value, rule = round_.shape.radius, "radius of the circle of least squares in the section"
     else:
         points = scene.cloud.points

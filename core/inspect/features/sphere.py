@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from core.errors import InputError
@@ -12,8 +10,9 @@ from core.inspect.features.measured import FeatureResult, Scene
 from core.inspect.features.regions import points_in
 from core.inspect.features.round import round_result
 from core.inspect.inspection_plan import Auto, FeatureSpec, PointsOf
-from core.inspect.sphere import find_sphere, radius_budget, through
+from core.inspect.sphere import find_sphere, through
 from core.inspect.surface_fit import FEWEST, fit_surface
+from core.inspect.uneven_light import with_uneven_light
 
 
 def measure_sphere(spec: FeatureSpec, scene: Scene) -> FeatureResult:
@@ -29,5 +28,5 @@ def measure_sphere(spec: FeatureSpec, scene: Scene) -> FeatureResult:
     start = through(cloud.points[indices])
     filters = spec.filters
     fit = fit_surface(cloud, np.sort(indices), start, scene.errors, tukey=filters.outliers, cell_mm=filters.cell_mm)
-    rows = tuple(replace(row, u_mm=2 * row.u_mm) for row in radius_budget(cloud, fit, scene.errors))
-    return round_result(spec, scene, fit, rows, Element.of_ball(fit))
+    fit = with_uneven_light(fit, cloud, scene.errors)
+    return round_result(spec, scene, fit, Element.of_ball(fit))
