@@ -5,6 +5,7 @@ from __future__ import annotations
 from core.files.project_data import (
     Accepted,
     Done,
+    KeptStudy,
     Project,
     ProjectFile,
     ProjectInfo,
@@ -36,6 +37,7 @@ __all__ = [
     "OPENER",
     "Accepted",
     "Done",
+    "KeptStudy",
     "NewerProject",
     "Project",
     "ProjectFile",

@@ -61,6 +61,16 @@ class Repeat:
 
 
 @dataclass(frozen=True, slots=True)
+class KeptStudy:
+    """A study kept in the project: `id` names its folder below studies, `included` puts it into the report."""
+
+    id: str
+    kind: str
+    title: str
+    included: bool = True
+
+
+@dataclass(frozen=True, slots=True)
 class ReportChoices:
     """How the report is made: the sections left out, the paper, the language of its fixed words, the template file.
 
@@ -90,6 +100,7 @@ class Project:
     repeats: tuple[Repeat, ...] = ()
     report: ReportChoices = field(default_factory=ReportChoices)
     inspection: InspectionPlan = field(default_factory=InspectionPlan)
+    studies: tuple[KeptStudy, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

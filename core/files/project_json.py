@@ -20,6 +20,7 @@ from core.files.options import Options
 from core.files.project_data import (
     Accepted,
     Done,
+    KeptStudy,
     Project,
     ProjectFile,
     ProjectInfo,
@@ -31,13 +32,14 @@ from core.files.project_tables import OptionsTable, ProjectTables
 from core.files.rig import rig_of, rig_tables
 from core.image.stripe import StripeSettings
 
-SCHEMA = 4
+SCHEMA = 5
 """Raised with every change of the keys: an older program then says that the project is too new for it."""
 
 MIGRATIONS: Mapping[int, Callable[[dict[str, Any]], dict[str, Any]]] = {
     1: lambda tables: {**tables, "rejected": []},
     2: lambda tables: tables,  # language and template of the report, which have defaults
     3: lambda tables: tables,  # the plan of the inspection, which may be empty
+    4: lambda tables: tables,  # studies, which may be none
 }
 """By schema: the tables as the next schema has them, from those of this one."""
 
@@ -71,6 +73,7 @@ def project_text(file: ProjectFile, path: Path) -> str:
         "repeats": [{**asdict(repeat), "measured_at": _stamp(repeat.measured_at)} for repeat in project.repeats],
         "report": {**asdict(project.report), "hidden": sorted(project.report.hidden)},
         "inspection": plan_tables(project.inspection),
+        "studies": [asdict(study) for study in project.studies],
         "results": {step: _done_table(done) for step, done in sorted(file.results.items())},
     }
     _checked(tables, path)
@@ -125,6 +128,7 @@ def _project_file(file: ProjectTables, path: Path) -> ProjectFile:
         repeats=tuple(Repeat(**dict(repeat)) for repeat in repeats),
         report=ReportChoices(**{**dict(report), "hidden": frozenset(report.hidden)}),
         inspection=plan_of(file.inspection, path),
+        studies=tuple(KeptStudy(**dict(study)) for study in file.studies),
     )
     results = {step: Done(done.key, done.rests_on, done.at) for step, done in file.results.items()}
     return ProjectFile(project, results, file.created, file.saved)

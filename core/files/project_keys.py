@@ -117,11 +117,13 @@ def _features(project: Project, results: Mapping[str, Done]) -> dict[str, str]:
 
 
 def _report(project: Project, results: Mapping[str, Done]) -> dict[str, str]:
+    studies = [study.id for study in project.studies if study.included]
     inspected = {"features": _key_of("features", results)} if "features" in results else {}
     return {
         "scan": _key_of("scan", results),
         "thickness": _key_of("inspect", results),
         **inspected,
+        **({"studies": _digest(studies)} if studies else {}),
         "project fields": _digest(asdict(project.info)),
         "repeats": _digest([[*asdict(repeat).values()] for repeat in project.repeats]),
         "sections of the report": _digest([sorted(project.report.hidden), *_printing(project.report)]),

@@ -118,6 +118,17 @@ class ReportTable(Table):
     template: str = ""
 
 
+class StudyTable(Table):
+    """One of "studies"."""
+
+    id: Annotated[str, Field(pattern=r"^[0-9a-f]+$")] = Field(description="the name of a folder below studies")
+    kind: Literal["repeats", "type1", "grr", "acceptance"] = Field(
+        description='"repeats", "type1", "grr" or "acceptance"'
+    )
+    title: str
+    included: bool = True
+
+
 class DoneTable(Table):
     """One of "results"."""
 
@@ -142,4 +153,5 @@ class ProjectTables(Table):
     repeats: list[RepeatTable] = Field(default_factory=list)
     report: ReportTable = ReportTable()
     inspection: PlanTables = PlanTables()
+    studies: list[StudyTable] = Field(default_factory=list)
     results: dict[str, DoneTable] = Field(default_factory=dict)

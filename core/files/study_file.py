@@ -20,6 +20,8 @@ Study: TypeAlias = RepeatStudy | Type1Study | GrrStudy | AcceptanceCheck
 
 SCHEMA = 1
 NAME = "study.json"
+STUDIES = "studies"
+"""The folder of studies in a project."""
 
 
 def write_study(folder: Path, study: Study) -> Path:
@@ -27,6 +29,11 @@ def write_study(folder: Path, study: Study) -> Path:
     path = make_folder(folder) / NAME
     write_text(path, to_json({"schema": SCHEMA, **study_values(study), "version": __version__}))
     return path
+
+
+def study_path(folder: Path, id_: str) -> Path:
+    """Where the project in `folder` keeps the study called `id_`."""
+    return folder / STUDIES / id_ / NAME
 
 
 def study_values(study: Study) -> dict[str, Any]:

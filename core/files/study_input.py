@@ -98,6 +98,13 @@ def read_repeats(paths: Sequence[Path], name: str = THICKNESS) -> Repeats:
 
 
 def read_crossed(path: Path, name: str = THICKNESS) -> Crossed:
+    """A gauge R&R study from the table at `path`; InputError as `crossed_of`, or if it cannot be read."""
+    if path.is_dir():
+        raise InputError("a gauge R&R study needs a table of part, operator and value", where=path)
+    return crossed_of(read_table(path), name)
+
+
+def crossed_of(table: Table, name: str = THICKNESS) -> Crossed:
     """A gauge R&R study from a table, every part measured as often by every operator.
 
     Raises
@@ -105,9 +112,7 @@ def read_crossed(path: Path, name: str = THICKNESS) -> Crossed:
     InputError
         As `read_repeats`, or if a part was measured more or less often by one operator than by another.
     """
-    if path.is_dir():
-        raise InputError("a gauge R&R study needs a table of part, operator and value", where=path)
-    table = read_table(path)
+    path = table.path
     parts, operators = table.texts("part"), table.texts("operator")
     unit = "mm"
     if "result" in table.columns:
@@ -136,8 +141,13 @@ def read_crossed(path: Path, name: str = THICKNESS) -> Crossed:
 
 
 def read_readings(path: Path) -> tuple[Reading, ...]:
-    """Readings of an acceptance check from a table; InputError as `read_repeats`."""
-    table = read_table(path)
+    """Readings of an acceptance check from the table at `path`; InputError as `read_repeats`."""
+    return readings_of(read_table(path))
+
+
+def readings_of(table: Table) -> tuple[Reading, ...]:
+    """Readings of an acceptance check from a table; InputError if something in it is wrong."""
+    path = table.path
     quantities = table.texts("quantity")
     for line, quantity in zip(table.lines, quantities, strict=True):
         if quantity not in QUANTITIES:

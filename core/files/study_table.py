@@ -91,7 +91,7 @@ def read_table(path: Path) -> Table:
     Raises
     ------
     InputError
-        If the file is missing or no text, has no rows, a column twice, or a row with more or fewer cells than the head.
+        If the file is missing or no text; else as `table_of`.
     """
     try:
         text = path.read_text(encoding="utf-8-sig")
@@ -99,6 +99,17 @@ def read_table(path: Path) -> Table:
         raise InputError("the file is missing", where=path) from error
     except (OSError, UnicodeDecodeError) as error:
         raise InputError(f"cannot be read as UTF-8 text ({error})", where=path) from error
+    return table_of(text, path)
+
+
+def table_of(text: str, path: Path) -> Table:
+    """The table that stands in `text`; `path` is for complaints, and names in it are seen from its folder.
+
+    Raises
+    ------
+    InputError
+        If it has no rows, a column twice, or a row with more or fewer cells than the head.
+    """
     lines = [
         (number, line)
         for number, line in enumerate(text.splitlines(), start=1)

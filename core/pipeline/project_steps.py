@@ -33,6 +33,7 @@ from core.files.project_results import ScanSummary
 from core.files.recording_set import RecordingSet, gather_set, require_scan
 from core.files.report_template import read_report_template
 from core.files.run_file import write_run
+from core.files.study_file import study_path
 from core.inspect.results import GaugeResult
 from core.model import Camera
 from core.pipeline.camera_step import see_views, solve_camera
@@ -42,6 +43,7 @@ from core.pipeline.gauge_step import gauge_if_possible, gauge_step
 from core.pipeline.planes_step import measure_poses, planes_settings, solve_planes
 from core.pipeline.project_results import load_results
 from core.pipeline.report_step import report_content, report_step
+from core.pipeline.reported_inspection import with_studies
 from core.pipeline.scan_step import scan_step
 from core.pipeline.staging import staged
 from core.pipeline.workspace import FILES, Workspace
@@ -337,10 +339,11 @@ def with_words(content: ReportContent, folder: Path, project: Project) -> Report
     Raises
     ------
     InputError
-        If the project's template of reports cannot be read.
+        If the project's template of reports, or one of its studies, cannot be read.
     """
     info, choices = project.info, project.report
     template = read_report_template(folder / choices.template) if choices.template else ReportTemplate()
+    content = with_studies(content, [study_path(folder, one.id) for one in project.studies if one.included])
     return replace(
         content,
         serial=info.serial,

@@ -15,6 +15,7 @@ from core.files.options import Options
 from core.files.project import (
     Accepted,
     Done,
+    KeptStudy,
     Project,
     ProjectFile,
     ProjectInfo,
@@ -43,7 +44,7 @@ def full_project():
     return Project(
         ProjectInfo("Block 50", "gauge", "S/N 7", "Ö. Ärzt", "ACME", "Lab 3", 20.5, 21, 'quotes " and\nlines — σ'),
         Rig(Charuco(9, 7, 20, 15), CircleGrid(7, 6, 37.5), 2, math.radians(4.0), GaugeSpec(50, 0.2, POLYGON, POLYGON),
-            "green", BoardTolerance(0.1, 2e-4), 3e-4),
+            "green", BoardTolerance(0.1, 2e-4), BoardTolerance(0.05, 3e-4)),
         Sources("/data/set/camera", "recordings/planes-1", "C:/pictures/scan"),
         Options("three-crossings", 0.3, CameraOptions(False, frozenset({"p1", "k2"}), True, "all"), "my part",
                 StripeSettings(8.5, 120), frozenset({"camera/b.png", "planes/pose02", "scan/ä ö.png"}), False, True),
@@ -52,6 +53,7 @@ def full_project():
         (REPEAT, replace(REPEAT, thickness_mm=50.001)),
         ReportChoices(frozenset({"plots", "frames"}), "Letter", "de", "house/template.toml"),
         full_plan(),
+        (KeptStudy("c0ffee012345", "grr", "3 parts", False),),
     )  # fmt: skip
 
 
@@ -141,7 +143,7 @@ def test_the_file_is_for_people_too(tmp_path):
     tables = json.loads(text)
     assert list(tables) == [
         "schema_version", "version", "created", "saved", "info", "rig", "sources", "options", "accepted", "rejected",
-        "repeats", "report", "inspection", "results",
+        "repeats", "report", "inspection", "studies", "results",
     ]  # fmt: skip
     assert tables["schema_version"] == SCHEMA
     assert tables["options"]["excluded"] == ["camera/b.png", "planes/pose02", "scan/ä ö.png"]

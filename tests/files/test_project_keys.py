@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from core.files.project_data import Accepted, Repeat, ReportChoices, Sources, new_project
+from core.files.project_data import Accepted, KeptStudy, Repeat, ReportChoices, Sources, new_project
 from core.files.project_keys import STEPS, changed, finished, rests_on
 from core.files.rig import GaugeSpec
 from core.image.targets import Checkerboard
@@ -128,3 +128,11 @@ def test_features_rest_on_the_scan_and_on_the_plan_and_the_report_on_them():
 
 def test_a_report_of_a_project_without_features_does_not_speak_of_them():
     assert "features" not in rests_on("report", new_project(""), {})
+
+
+def test_a_report_rests_on_the_studies_that_are_ticked():
+    project, kept = new_project("block"), KeptStudy("c0ffee", "grr", "3 parts")
+    plain = rests_on("report", project, {})
+    left_out = rests_on("report", replace(project, studies=(replace(kept, included=False),)), {})
+    assert left_out == plain
+    assert changed(plain, rests_on("report", replace(project, studies=(kept,)), {})) == ("studies",)

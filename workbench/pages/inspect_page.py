@@ -16,6 +16,7 @@ from workbench.pages.inspect_picture import PictureTab
 from workbench.pages.inspect_plot import PlotTab
 from workbench.pages.inspect_presenter import InspectPresenter, Stage
 from workbench.pages.inspect_series import RepeatsTab
+from workbench.pages.inspect_studies_tab import StudiesTab
 from workbench.pages.inspect_surface import SurfaceTab
 from workbench.pages.step_page import StepPage
 from workbench.views.stage_card import CardButton, StageCard
@@ -33,12 +34,13 @@ class InspectPage(StepPage):
         super().__init__(presenter, parent)
         self.tabs = QTabWidget()
         self.surface, self.picture, self.series = SurfaceTab(presenter), PictureTab(presenter), RepeatsTab(presenter)
-        self.plot = PlotTab(presenter)
+        self.plot, self.studies = PlotTab(presenter), StudiesTab(presenter)
         for tab, title, tip in (
             (self.surface, self.tr("Surface"), self.tr("The measured points and the mesh in 3D")),
             (self.picture, self.tr("Picture"), self.tr("The two faces in the camera's picture; draw regions here")),
             (self.series, self.tr("Repeats"), self.tr("The thickness over several scans of the part")),
             (self.plot, self.tr("Plot"), self.tr("The profile or the deviations of the chosen feature")),
+            (self.studies, self.tr("Studies"), self.tr("How good the way of measuring is: gauge R&R, acceptance")),
         ):
             self.tabs.setTabToolTip(self.tabs.addTab(tab, title), tip)
         self.centre.addWidget(self.tabs, 1)

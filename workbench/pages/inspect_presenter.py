@@ -20,6 +20,7 @@ from workbench.pages.inspect_features import InspectFeatures
 from workbench.pages.inspect_picks import InspectPicks
 from workbench.pages.inspect_repeats import InspectRepeats
 from workbench.pages.inspect_scan import InspectScan
+from workbench.pages.inspect_studies import InspectStudies
 from workbench.pages.presenter import StepPresenter
 from workbench.problems import sentence
 from workbench.step_state import State
@@ -72,6 +73,7 @@ class InspectPresenter(StepPresenter):
         self.faces = InspectFaces(self)
         self.picks = InspectPicks(self)
         self.repeats = InspectRepeats(self)
+        self.studies = InspectStudies(self)
         self.features = InspectFeatures(self)
         self.faces.changed.connect(self.changed)
         self.features.changed.connect(self.changed)
@@ -286,6 +288,7 @@ class InspectPresenter(StepPresenter):
         self._just_measured = False
         self.faces.forget()
         self.features.forget()
+        self.studies.forget()
         self.scan.forget()
         self.scan.look(seen=self._seen)
 

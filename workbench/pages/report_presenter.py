@@ -61,6 +61,9 @@ class ReportPresenter(StepPresenter):
         """Why a section has nothing to print yet, or ""."""
         nothing = {
             "repeats": "" if self.project.repeats else self.tr("No scan has been added to the repeats yet."),
+            "studies": ""
+            if any(study.included for study in self.project.studies)
+            else self.tr("No study is ticked on the Inspect page, tab Studies."),
             "remarks": "" if self.project.info.notes else self.tr("There are no notes on the Project page yet."),
             "budget": "" if "inspect" in self.model.results else self.tr("The thickness has not been measured yet."),
         }
@@ -260,6 +263,7 @@ class ReportPresenter(StepPresenter):
             project.rig,
             project.sources,
             project.repeats,
+            project.studies,
             project.report,
             project.options.part,
             results.get("scan"),

@@ -1,0 +1,186 @@
+"""Studies of a project: made from a table, kept beside it by what they say, looked at, handed over."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Literal, cast
+
+from core.errors import InputError
+from core.files.atomic import write_bytes, write_text
+from core.files.json_text import to_json
+from core.files.pictures import read_bytes
+from core.files.project_data import KeptStudy
+from core.files.project_folder import is_project, read_project
+from core.files.study_file import Study, study_path, study_values, write_study
+from core.files.study_input import THICKNESS, crossed_of, readings_of
+from core.files.study_reader import read_study
+from core.files.study_results import measured_in
+from core.files.study_table import read_table, table_of
+from core.pipeline.acceptance_step import Artefact, read_positions
+from core.pipeline.project_steps import results_folder
+from core.progress import Progress, silent
+from core.study.acceptance import AcceptanceCheck, Quantity, acceptance_check
+from core.study.grr import GrrStudy, grr_study
+from core.study.type1 import Type1Study, type1_study
+
+Kind = Literal["grr", "acceptance"]
+TABLE = "table.csv"
+"""What a study was made of, beside its study.json."""
+HEADS: Mapping[str, str] = {
+    "grr": "part;operator;value",
+    "acceptance": "quantity;position;measured_mm;calibrated_mm;u_mm",
+}
+_ID = 12
+
+
+def keep_study(
+    folder: Path, kind: Kind, text: str, base: Path, limits: Mapping[str, float], progress: Progress = silent
+) -> KeptStudy:
+    """Make a study of a table and keep it with the table in the project: the caller puts it into the project's list.
+
+    Parameters
+    ----------
+    folder
+        The project's.
+    kind
+        "grr" or "acceptance".
+    text
+        The table as CSV with a head line; see `core.files.study_input`.
+    base
+        The folder that names of results in the table are seen from.
+    limits
+        In mm. Of a gauge R&R study "tolerance": T, its full width. Of an acceptance check the limit of each quantity.
+    progress
+        Told what is being done; may cancel.
+
+    Raises
+    ------
+    InputError
+        If something in the table is wrong or too little, a limit is not above 0, or nothing can be written.
+    """
+    progress("study", 0, 1)
+    try:
+        table = table_of(text, base / "table")
+        study: Study
+        if kind == "grr":
+            found = crossed_of(table)
+            study = grr_study(
+                found.values, parts=found.parts, operators=found.operators,
+                tolerance=limits.get("tolerance"), unit=found.unit,
+            )  # fmt: skip
+        else:
+            study = acceptance_check(readings_of(table), cast(Mapping[Quantity, float], limits))
+    except InputError as error:
+        raise InputError(error.what, where="table", todo=error.todo) from error
+    except ValueError as error:
+        raise InputError(str(error), where="table") from error
+    return _kept(folder, study, text)
+
+
+def keep_type1(folder: Path, values: Sequence[float], nominal: float, tolerance: float) -> KeptStudy:
+    """Keep the type-1 study of repeats against T = `tolerance`, the full width; all in mm.
+
+    Raises
+    ------
+    InputError
+        If there are too few values, or nothing can be written.
+    """
+    try:
+        study = type1_study(values, nominal, tolerance)
+    except ValueError as error:
+        raise InputError(str(error), where="repeats") from error
+    return _kept(folder, study, "\n".join(["value_mm", *(repr(float(value)) for value in values)]) + "\n")
+
+
+def look_at_study(folder: Path, id_: str) -> Study:
+    """The study called `id_` of the project in `folder`; InputError if it is gone or damaged."""
+    return read_study(study_path(folder, id_))
+
+
+def export_study(folder: Path, id_: str, path: Path) -> Path:
+    """Write a copy of a study to `path`: its table as CSV, else study.json; InputError if it cannot be done."""
+    source = study_path(folder, id_)
+    source = source.with_name(TABLE) if path.suffix.lower() == ".csv" else source
+    if not source.exists():
+        raise InputError("is not there any more", where=source, todo="make the study again")
+    write_bytes(path, read_bytes(source))
+    return path
+
+
+def read_study_table(path: Path) -> str:
+    """The text of a table, once it is known to be one; InputError if it is none."""
+    read_table(path)
+    return path.read_text(encoding="utf-8-sig")
+
+
+def project_rows(
+    kind: Kind, folder: Path, artefact: Artefact, calibrated_mm: float, u_mm: float, diameter_mm: float,
+    progress: Progress = silent,
+) -> str:  # fmt: skip
+    """Rows of a study's table, under its HEADS, from another project's results.
+
+    For a gauge R&R study its part, operator and thickness, a row for each of its repeats if there are any. For an
+    acceptance check what `read_positions` finds in its cloud, the project standing for the position.
+
+    Parameters
+    ----------
+    kind
+        Of the study.
+    folder
+        The other project's.
+    artefact, calibrated_mm, u_mm, diameter_mm
+        As for `read_positions`; of an acceptance check.
+    progress
+        Told what is being done; may cancel.
+
+    Raises
+    ------
+    InputError
+        If it is no project, nothing was measured in it, or the artefact is not in its cloud.
+    """
+    if not is_project(folder):
+        raise InputError("this is no project", where=folder, todo="choose the folder of a project")
+    project = read_project(folder).project
+    if kind == "grr":
+        info = project.info
+        part, operator = info.serial or info.part or info.name, info.operator
+        if not operator:
+            raise InputError("the project names no operator", where=folder, todo="enter one on its Project page")
+        values = [one.thickness_mm for one in project.repeats]
+        values = values or [measured_in(results_folder(folder), THICKNESS).value]
+        rows: list[Sequence[object]] = [(part, operator, value) for value in values]
+    else:
+        readings = read_positions(
+            [results_folder(folder)], artefact, calibrated_mm=calibrated_mm, u_mm=u_mm, diameter_mm=diameter_mm,
+            progress=progress,
+        )  # fmt: skip
+        name = project.info.name or folder.name
+        rows = [(one.quantity, name, one.measured, one.calibrated, one.u) for one in readings]
+    return "".join(";".join(_cell(cell) for cell in row) + "\n" for row in rows)
+
+
+def _cell(value: object) -> str:
+    return repr(float(value)) if isinstance(value, float) else " ".join(str(value).replace(";", " ").split())
+
+
+def _kept(folder: Path, study: Study, table: str) -> KeptStudy:
+    """Write a study into a folder called after what it says."""
+    id_ = hashlib.sha256(to_json(study_values(study)).encode()).hexdigest()[:_ID]
+    path = study_path(folder, id_)
+    write_study(path.parent, study)
+    write_text(path.with_name(TABLE), table)
+    return KeptStudy(id_, str(study_values(study)["kind"]), _title(study))
+
+
+def _title(study: Study) -> str:
+    match study:
+        case GrrStudy():
+            return "{} parts × {} operators × {} repeats".format(*study.values.shape)
+        case Type1Study():
+            return f"{study.n} repeats, reference {study.reference:g} {study.unit}, T {study.tolerance:g} {study.unit}"
+        case AcceptanceCheck():
+            return ", ".join(f"{one.title} ×{len(one.readings)}" for one in study.quantities)
+        case _:
+            return f"{len(study.values)} × {study.name}"

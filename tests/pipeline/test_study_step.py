@@ -1,0 +1,109 @@
+"""Studies kept in a project: of tables and repeats, the same as on the command line, and in the report."""
+
+import json
+import shutil
+from dataclasses import replace
+from datetime import UTC, datetime
+
+import numpy as np
+import pytest
+
+from core.cli import studying
+from core.errors import InputError
+from core.files.project import ProjectFile, Repeat, write_project
+from core.files.study_file import study_path, study_values, write_study
+from core.pipeline.project_steps import project_content
+from core.pipeline.study_step import (
+    HEADS,
+    export_study,
+    keep_study,
+    keep_type1,
+    look_at_study,
+    project_rows,
+    read_study_table,
+)
+from tests.study.grr_tables import AIAG
+
+pytestmark = pytest.mark.xdist_group("small simulated set")
+
+
+def crossed(values):
+    """Rows of part, operator, value."""
+    cells = np.ndenumerate(np.asarray(values, dtype=float))
+    rows = [f"{part};{operator};{float(value)!r}" for (part, operator, _), value in cells]
+    return "\n".join([HEADS["grr"], *rows]) + "\n"
+
+
+READINGS = HEADS["acceptance"] + "\nsize;left;25.012;25.0;0.001\nsize;right;25.03;25.0;0.001\nform;left;0.05;;\n"
+
+
+def test_a_kept_study_has_the_numbers_of_the_command_line_and_its_table_beside_it(tmp_path):
+    kept = keep_study(tmp_path, "grr", crossed(AIAG), tmp_path, {"tolerance": 8.0})
+    path = study_path(tmp_path, kept.id)
+    table = path.with_name("table.csv")
+    write_study(tmp_path / "theirs", studying.grr(table, "thickness", 4.0))
+    assert json.loads(path.read_text()) == json.loads((tmp_path / "theirs" / "study.json").read_text())
+    assert (kept.kind, kept.title, kept.included) == ("grr", "10 parts × 3 operators × 3 repeats", True)
+    assert study_values(look_at_study(tmp_path, kept.id))["ndc"]["categories"] == 4
+    assert keep_study(tmp_path, "grr", crossed(AIAG), tmp_path, {"tolerance": 8.0}) == kept
+    assert keep_study(tmp_path, "grr", crossed(AIAG), tmp_path, {"tolerance": 9.0}).id != kept.id
+
+
+def test_an_acceptance_check_and_a_type1_study_are_kept_and_handed_over(tmp_path):
+    check = keep_study(tmp_path, "acceptance", READINGS, tmp_path, {"size": 0.02})
+    assert look_at_study(tmp_path, check.id).verdict == "not conforming"
+    type1 = keep_type1(tmp_path, [50.0, 50.01, 49.99, 50.0], 50.0, 0.4)
+    study = look_at_study(tmp_path, type1.id)
+    assert (study.n, study.tolerance, type1.kind) == (4, 0.4, "type1")
+    assert export_study(tmp_path, check.id, tmp_path / "readings.csv").read_text() == READINGS
+    assert json.loads(export_study(tmp_path, type1.id, tmp_path / "t.json").read_text())["n"] == 4
+    assert read_study_table(tmp_path / "readings.csv") == READINGS
+
+
+@pytest.mark.parametrize(
+    ("kind", "text", "limits", "says"),
+    [
+        ("grr", "part;operator;value\n1;A;x\n1;A;2\n", {}, "table: line 2, column value"),
+        ("grr", "part;value\n1;2\n", {}, "the column operator is missing"),
+        ("grr", "part;operator;value\n1;A;2\n1;A;2\n2;A;2\n2;A;2\n", {}, "values that differ"),
+        ("grr", "", {}, "no rows"),
+        ("grr", "result;part;operator\ngone;1;A\n", {}, "no such folder"),
+        ("acceptance", READINGS.replace("form", "colour"), {}, 'column quantity is "colour"'),
+    ],
+)
+def test_a_table_that_is_no_study_says_why_and_keeps_nothing(tmp_path, kind, text, limits, says):
+    with pytest.raises(InputError) as told:
+        keep_study(tmp_path, kind, text, tmp_path, limits)
+    assert says in str(told.value)
+    assert not (tmp_path / "studies").exists()
+
+
+def test_rows_come_from_other_projects(done, tmp_path):
+    folder = tmp_path / "copy"
+    shutil.copytree(done.folder, folder)
+    info = replace(done.project.info, part="Block", serial="no; 7", operator="Ada", name="left below")
+    write_project(folder, ProjectFile(replace(done.project, info=info)))
+    thickness = done.summary.gauge.thickness_mm
+    assert project_rows("grr", folder, "plane", 0, 0, 0) == f"no 7;Ada;{thickness!r}\n"
+    repeats = tuple(Repeat("scan", 50 + 0.25 * n, 0.02, 2.0, "c", datetime(2026, 1, 2, tzinfo=UTC)) for n in range(2))
+    write_project(folder, ProjectFile(replace(done.project, info=info, repeats=repeats)))
+    assert project_rows("grr", folder, "plane", 0, 0, 0) == "no 7;Ada;50.0\nno 7;Ada;50.25\n"
+    quantity, position, flatness, _, u = project_rows("acceptance", folder, "plane", 0.0, 0.0002, 0).strip().split(";")
+    assert (quantity, position, u) == ("flatness", "left below", "0.0002") and 0 < float(flatness) < 2
+    with pytest.raises(InputError, match="no project"):
+        project_rows("grr", tmp_path, "plane", 0, 0, 0)
+    write_project(folder, ProjectFile(replace(done.project, info=replace(info, operator=""))))
+    with pytest.raises(InputError, match="no operator"):
+        project_rows("grr", folder, "plane", 0, 0, 0)
+
+
+def test_the_report_has_the_studies_that_are_included(done, tmp_path):
+    folder = tmp_path / "copy"
+    shutil.copytree(done.folder, folder)
+    kept = keep_study(folder, "grr", crossed(AIAG), folder, {})
+    check = keep_study(folder, "acceptance", READINGS, folder, {})
+    project = replace(done.project, studies=(kept, replace(check, included=False)))
+    assert [study["kind"] for study in project_content(folder, project).studies] == ["grr"]
+    shutil.rmtree(folder / "studies")
+    with pytest.raises(InputError, match="study"):
+        project_content(folder, project)

@@ -1,0 +1,154 @@
+"""Studies in the window: made from a table, from repeats and other projects, listed, ticked for the report, undone."""
+
+import json
+from dataclasses import replace
+from typing import cast
+
+import pytest
+from PySide6.QtCore import Qt
+
+from core.errors import InputError
+from core.files.study_file import study_path
+from tests.study.grr_tables import AIAG
+from tests.workbench.hand_lane import HandLane
+from tests.workbench.pages import inspect_cases as cases
+from workbench import jobs
+from workbench.pages.inspect_page import InspectPage
+from workbench.pages.inspect_presenter import InspectPresenter
+from workbench.views import ask
+
+STUDIES = 4
+"""Place of the tab."""
+ROWS = "".join(
+    f"{part}\t{'ABC'[operator]}\t{AIAG[part, operator, repeat]:.2f}\n"
+    for part in range(10)
+    for operator in range(3)
+    for repeat in range(3)
+)
+
+
+@pytest.fixture
+def presenter(hand_bench, tmp_path, qtbot):
+    quick = cast(HandLane, hand_bench.quick)
+    quick.answers[jobs.INSPECTION_VIEW] = lambda folder, project: cases.view(cases.gauge())
+    made = InspectPresenter(hand_bench)
+    project = cases.project(nominal_mm=50.0, tolerance_mm=0.2)
+    repeats = tuple(cases.repeat(number, 50 + 0.01 * number) for number in range(3))
+    hand_bench.model.create(tmp_path / "project", replace(project, repeats=repeats))
+    for step, done in cases.results(made.project).items():
+        made.model.record(step, done)
+    made.entered()
+    qtbot.waitUntil(lambda: made.view is not None and not made.stale)
+    return made
+
+
+@pytest.fixture
+def studies(presenter):
+    return presenter.studies
+
+
+@pytest.fixture
+def tab(presenter, qtbot, monkeypatch):
+    monkeypatch.setenv("TRISECT_NO_OPENGL", "painter")
+    made = InspectPage(presenter)
+    qtbot.addWidget(made)
+    made.resize(1280, 800)
+    made.show()
+    made.tabs.setCurrentIndex(STUDIES)
+    yield made.studies
+    made.close()
+
+
+def undo(presenter):
+    presenter.model.undo_stack.undo()
+
+
+def made(studies, qtbot):
+    """Wait until the study is there; the first one of a process imports what makes studies."""
+    qtbot.waitUntil(lambda: studies.study is not None and not studies.working, timeout=60_000)
+    assert len(studies.all) == 1
+
+
+def test_a_gauge_rr_study_is_pasted_made_shown_and_undone(tab, studies, presenter, qtbot):
+    tab.buttons["grr"].click()
+    assert tab.stack.currentWidget() is tab.editor and tab.editor.text.toPlainText() == "part;operator;value\n"
+    assert tab.editor.forms["grr"].values()["tolerance_mm"] == 0.2
+    tab.editor.text.appendPlainText(ROWS)
+    studies.set_value("tolerance_mm", None)
+    tab.editor.make.click()
+    made(studies, qtbot)
+    assert tab.stack.currentIndex() == 0 and tab.list.topLevelItem(0).text(1) == "10 parts × 3 operators × 3 repeats"
+    assert tab.rows.text_of("%GRR of the total") == "27.9 %" and tab.rows.text_of("ndc") == "4"
+    assert tab.table.table.rowCount() == 7 and "gauge R&R" in tab.table.copied()
+    undo(presenter)
+    assert studies.all == () and not tab.table.isVisible()
+
+
+def test_a_table_with_something_wrong_stays_with_a_sentence(tab, studies, qtbot):
+    tab.buttons["grr"].click()
+    tab.editor.text.setPlainText("part;operator;value\n1;A;2.0\n1;A;two\n")
+    tab.editor.make.click()
+    qtbot.waitUntil(lambda: not studies.working, timeout=60_000)
+    assert "line 3" in tab.editor.problem.text() and tab.editor.problem.isVisible()
+    assert studies.all == () and "two" in tab.editor.text.toPlainText()
+    tab.editor.cancel.click()
+    assert tab.stack.currentIndex() == 0 and studies.draft is None
+
+
+def test_an_acceptance_check_has_its_limits(tab, studies, qtbot):
+    tab.buttons["acceptance"].click()
+    tab.editor.text.appendPlainText("size;left;25.012;25.0;0.001\nsize;right;25.03;25.0;0.001")
+    studies.set_value("size", 0.02)
+    tab.editor.make.click()
+    made(studies, qtbot)
+    assert tab.rows.text_of("Decision") == "not conforming" and "not a certificate" in tab.notes.text()
+    assert tab.table.copied().split("\n")[1].split("\t")[1:4] == ["2", "+0.0300", "right"]
+
+
+def test_rows_of_other_projects_and_of_a_file_go_into_the_table(tab, studies, presenter, qtbot, monkeypatch, tmp_path):
+    lane = cast(HandLane, presenter.bench.measuring)
+    asked = []
+    lane.answers[jobs.PROJECT_ROWS] = lambda *what: asked.append(what) or "7;Ada;50.01\n"
+    (tmp_path / "other.csv").write_text("part;operator;result\n1;A;run1\n")
+    tab.buttons["grr"].click()
+    monkeypatch.setattr(ask, "choose_folder", lambda *_: tmp_path)
+    tab.editor.add.click()
+    qtbot.waitUntil(lambda: "Ada" in tab.editor.text.toPlainText())
+    assert tab.editor.text.toPlainText() == "part;operator;value\n7;Ada;50.01\n" and asked[0][:2] == ("grr", tmp_path)
+    monkeypatch.setattr(ask, "choose_file_to_open", lambda *_: tmp_path / "other.csv")
+    tab.editor.open.click()
+    qtbot.waitUntil(lambda: "run1" in tab.editor.text.toPlainText())
+    assert studies.draft.base == tmp_path
+    lane.answers[jobs.PROJECT_ROWS] = lambda *_: (_ for _ in ()).throw(InputError("the project names no operator"))
+    tab.editor.add.click()
+    qtbot.waitUntil(lambda: "no operator" in tab.editor.problem.text())
+
+
+def test_the_type1_study_of_the_repeats_is_kept_ticked_unticked_removed_and_exported(
+    tab, studies, presenter, qtbot, monkeypatch, tmp_path
+):
+    tab.buttons["type1"].click()
+    made(studies, qtbot)
+    kept = studies.all[0]
+    assert (kept.kind, kept.included) == ("type1", True)
+    tab.list.topLevelItem(0).setCheckState(0, Qt.CheckState.Unchecked)
+    assert not studies.all[0].included
+    undo(presenter)
+    assert studies.all[0].included and tab.list.topLevelItem(0).checkState(0) is Qt.CheckState.Checked
+    monkeypatch.setattr(ask, "choose_file_to_save", lambda *_: tmp_path / "mine.json")
+    tab.buttons["export"].click()
+    qtbot.waitUntil(lambda: (tmp_path / "mine.json").exists() and not studies.working)
+    assert json.loads((tmp_path / "mine.json").read_text())["n"] == 3
+    tab.buttons["remove"].click()
+    assert studies.all == () and study_path(presenter.model.folder, kept.id).exists()
+    undo(presenter)
+    assert [one.id for one in studies.all] == [kept.id]
+
+
+def test_every_button_says_what_it_does_or_why_it_cannot(tab, studies, presenter, qtbot):
+    presenter.model.edit("no repeats", replace(presenter.project, repeats=()))
+    assert not tab.buttons["type1"].isEnabled() and "two repeats" in tab.buttons["type1"].toolTip()
+    assert all(button.toolTip() for button in tab.buttons.values())
+    studies.begin("acceptance")
+    buttons = [tab.editor.open, tab.editor.add, tab.editor.make, tab.editor.cancel]
+    assert all(button.toolTip() for button in buttons) and "certificate" in tab.editor.help.text()

@@ -1,0 +1,198 @@
+"""Studies of the measurement: the list with what goes into the report, and what the chosen one says."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QEvent, Qt
+from PySide6.QtWidgets import (
+    QHBoxLayout,
+    QHeaderView,
+    QLabel,
+    QPushButton,
+    QStackedWidget,
+    QTreeWidget,
+    QTreeWidgetItem,
+    QVBoxLayout,
+    QWidget,
+)
+
+from workbench.pages import inspect_study_words as words
+from workbench.pages.inspect_presenter import InspectPresenter
+from workbench.pages.inspect_study_editor import StudyEditor
+from workbench.pages.step_page import muted
+from workbench.theme import icon
+from workbench.views import ask
+from workbench.views.tables import DataTable
+from workbench.views.value_rows import ValueRows
+
+LIST_HEIGHT = 150
+
+
+class StudiesTab(QWidget):
+    """The list above, the study below; in its place the editor while one is being made."""
+
+    def __init__(self, presenter: InspectPresenter, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._presenter, self._studies = presenter, presenter.studies
+        self._shown: object = None
+        self._shown_study: object = None
+        self.list, self.rows, self.table = QTreeWidget(), ValueRows(), DataTable()
+        self.title, self.words, self.notes = QLabel(), muted(), muted()
+        self.title.setObjectName("heading")
+        self.editor = StudyEditor(presenter)
+        self.buttons: dict[str, QPushButton] = {}
+        self.stack = QStackedWidget()
+        self.stack.addWidget(self._kept())
+        self.stack.addWidget(self.editor)
+        outer = QVBoxLayout(self)
+        outer.setContentsMargins(6, 6, 6, 4)
+        outer.addWidget(self.stack)
+        self._dress()
+
+    def refresh(self) -> None:
+        """Show what the presenter says now."""
+        studies = self._studies
+        self.stack.setCurrentIndex(0 if studies.draft is None else 1)
+        if studies.draft is not None:
+            self.editor.refresh()
+            return
+        self._show_list()
+        self._show_buttons()
+        self._show_study()
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "stack"):
+            self._dress()
+
+    # ---- making it
+
+    def _kept(self) -> QWidget:
+        inside = QWidget()
+        column = QVBoxLayout(inside)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.addWidget(self.words)
+        column.addLayout(self._row((
+            ("grr", self.tr("Gauge R&&R …"), lambda: self._studies.begin("grr")),
+            ("acceptance", self.tr("Acceptance check …"), lambda: self._studies.begin("acceptance")),
+            ("type1", self.tr("Keep type-1 of the repeats"), self._studies.keep_type1),
+        )))  # fmt: skip
+        self.list.setColumnCount(2)
+        self.list.setHeaderLabels([self.tr("In the report"), self.tr("Made of")])
+        self.list.setAccessibleName(self.tr("Studies"))
+        self.list.setRootIsDecorated(False)
+        self.list.setFixedHeight(LIST_HEIGHT)
+        self.list.header().setSectionResizeMode(0, QHeaderView.ResizeMode.ResizeToContents)
+        self.list.currentItemChanged.connect(lambda item: self._studies.choose(_id(item)))
+        self.list.itemChanged.connect(
+            lambda item: self._studies.include(_id(item), item.checkState(0) is Qt.CheckState.Checked)
+        )
+        column.addWidget(self.list)
+        column.addLayout(self._row((
+            ("remove", self.tr("Remove"), lambda: self._studies.remove(self._studies.chosen)),
+            ("export", self.tr("Export …"), self._export),
+        )))  # fmt: skip
+        column.addWidget(self.title)
+        row = QHBoxLayout()
+        row.setSpacing(14)
+        row.addWidget(self.table, 1)
+        row.addWidget(self.rows, 0, Qt.AlignmentFlag.AlignTop)
+        self.rows.setMinimumWidth(250)
+        column.addLayout(row, 1)
+        column.addWidget(self.notes)
+        return inside
+
+    def _row(self, wanted: tuple[tuple[str, str, object], ...]) -> QHBoxLayout:
+        row = QHBoxLayout()
+        for key, text, does in wanted:
+            button = QPushButton(text)
+            button.clicked.connect(lambda _=False, does=does: does())
+            self.buttons[key] = button
+            row.addWidget(button)
+        row.addStretch(1)
+        return row
+
+    # ---- showing it
+
+    def _show_list(self) -> None:
+        studies = self._studies
+        if studies.all != self._shown:
+            self._shown = studies.all
+            self.list.blockSignals(True)
+            self.list.clear()
+            for one in studies.all:
+                item = QTreeWidgetItem([words.kind_title(one.kind), one.title])
+                item.setData(0, Qt.ItemDataRole.UserRole, one.id)
+                item.setCheckState(0, Qt.CheckState.Checked if one.included else Qt.CheckState.Unchecked)
+                item.setToolTip(0, self.tr("Ticked studies are printed in the report"))
+                self.list.addTopLevelItem(item)
+                if one.id == studies.chosen:
+                    self.list.setCurrentItem(item)
+            self.list.blockSignals(False)
+        self.list.setVisible(bool(studies.all))
+        self.words.setText(
+            self.tr("Ticked studies go into the report.")
+            if studies.all
+            else self.tr(
+                "How good is the way of measuring? A gauge R&R study compares parts, operators and repeats; an "
+                "acceptance check measures a sphere, a ball bar or a plane in several positions, after the pattern of "
+                "VDI/VDE 2634-2; a type-1 study judges the repeats of a reference part."
+            )
+        )
+
+    def _show_buttons(self) -> None:
+        studies = self._studies
+        busy = self.tr("A study is being worked out.") if studies.working else ""
+        closed = "" if self._presenter.model.is_open else self.tr("Open a project first.")
+        chosen = any(one.id == studies.chosen for one in studies.all)
+        choose = "" if chosen else self.tr("Choose a study in the list first.")
+        for key, why_not, tip in (
+            ("grr", closed, self.tr("Parts × operators × repeats, by analysis of variance")),
+            ("acceptance", closed, self.tr("Probing error of a sphere, spacing of a ball bar, flatness of a plane")),
+            ("type1", studies.cannot_keep_type1, self.tr("Bias, Cg and Cgk of the repeats as they are now")),
+            ("remove", choose, self.tr("Take the chosen study out of the project")),
+            ("export", choose, self.tr("Write the study (JSON), or the table it was made of (CSV)")),
+        ):
+            self.buttons[key].setEnabled(not (why_not or busy))
+            self.buttons[key].setToolTip(why_not or busy or tip)
+        for key in ("remove", "export"):
+            self.buttons[key].setVisible(bool(studies.all))
+
+    def _show_study(self) -> None:
+        studies = self._studies
+        kept = next((one for one in studies.all if one.id == studies.chosen), None)
+        study = None if kept is None else studies.study
+        for widget in (self.title, self.table, self.rows, self.notes):
+            widget.setVisible(study is not None)
+        if kept is None or study is None or study is self._shown_study:
+            return
+        self._shown_study = study
+        headers, body = words.table(kept.kind, study)
+        self.title.setText(f"{words.kind_title(kept.kind)}: {kept.title}".replace("&", "&&"))
+        self.rows.set_rows(words.rows(kept.kind, study))
+        self.table.set_headers(headers)
+        self.table.set_rows(body)
+        self.notes.setText("\n".join(study.notes))
+
+    def _export(self) -> None:
+        kept = next((one for one in self._studies.all if one.id == self._studies.chosen), None)
+        folder = self._presenter.model.folder
+        if kept is None or folder is None:
+            return
+        kinds = self.tr("Study (*.json);;Table (*.csv)")
+        path = ask.choose_file_to_save(self, self.tr("Write a copy"), folder.parent / f"{kept.kind}.json", kinds)
+        if path is not None:
+            self._studies.export(kept.id, path)
+
+    def _dress(self) -> None:
+        for key, symbol in (
+            ("grr", "mdi6.account-group-outline"),
+            ("acceptance", "mdi6.clipboard-check-outline"),
+            ("type1", "mdi6.chart-bell-curve"),
+            ("remove", "mdi6.delete-outline"),
+            ("export", "mdi6.export"),
+        ):
+            self.buttons[key].setIcon(icon(symbol))
+
+
+def _id(item: QTreeWidgetItem | None) -> str:
+    return "" if item is None else str(item.data(0, Qt.ItemDataRole.UserRole))

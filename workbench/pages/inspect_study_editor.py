@@ -1,0 +1,167 @@
+"""A study being made: its table, pasted, from a file or from other projects; its limits."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QEvent
+from PySide6.QtGui import QFontDatabase
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QPlainTextEdit, QPushButton, QVBoxLayout, QWidget
+
+from workbench.pages import inspect_study_words as words
+from workbench.pages.inspect_presenter import InspectPresenter
+from workbench.pages.inspect_studies import LIMITS, Draft
+from workbench.pages.step_page import heading, muted
+from workbench.theme import icon, shades
+from workbench.views import ask
+from workbench.views.dressing import dress
+from workbench.views.forms import SettingsForm
+
+FORM_WIDTH = 300
+LONGEST = 5000.0
+
+
+class StudyEditor(QWidget):
+    """The table at the left, settings at the right, buttons below."""
+
+    def __init__(self, presenter: InspectPresenter, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._presenter, self._studies = presenter, presenter.studies
+        self.title, self.help, self.problem = heading(""), muted(), QLabel()
+        self.problem.setWordWrap(True)
+        self.text = QPlainTextEdit()
+        self.text.setFont(QFontDatabase.systemFont(QFontDatabase.SystemFont.FixedFont))
+        self.text.setAccessibleName(self.tr("Table of the study"))
+        self.text.setTabChangesFocus(True)
+        self.text.textChanged.connect(lambda: self._studies.write(self.text.toPlainText()))
+        self.forms = {"grr": self._grr_form(), "acceptance": self._acceptance_form()}
+        self.open, self.add = QPushButton(self.tr("Open a table …")), QPushButton(self.tr("Add a project …"))
+        self.make, self.cancel = QPushButton(self.tr("Make the study")), QPushButton(self.tr("Cancel"))
+        self.make.setObjectName("primary")
+        self.open.setToolTip(self.tr("A CSV file with these columns, in any order"))
+        self.cancel.setToolTip(self.tr("Make no study; the table is given up"))
+        self.open.clicked.connect(self._open)
+        self.add.clicked.connect(self._add)
+        self.make.clicked.connect(lambda: self._studies.finish())
+        self.cancel.clicked.connect(lambda: self._studies.give_up())
+        row = QHBoxLayout()
+        row.setSpacing(14)
+        row.addWidget(self.text, 1)
+        side = QVBoxLayout()
+        for form in self.forms.values():
+            form.setFixedWidth(FORM_WIDTH)
+            side.addWidget(form)
+        side.addStretch(1)
+        row.addLayout(side)
+        buttons = QHBoxLayout()
+        for button in (self.open, self.add):
+            buttons.addWidget(button)
+        buttons.addStretch(1)
+        for button in (self.cancel, self.make):
+            buttons.addWidget(button)
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.addWidget(self.title)
+        column.addWidget(self.help)
+        column.addLayout(row, 1)
+        column.addWidget(self.problem)
+        column.addLayout(buttons)
+        self._dress()
+
+    def refresh(self) -> None:
+        """Show what the presenter says now."""
+        studies, draft = self._studies, self._studies.draft
+        if draft is None:
+            return
+        self.title.setText(words.kind_title(draft.kind).replace("&", "&&"))
+        self.help.setText(self._help(draft))
+        if self.text.toPlainText() != draft.text:
+            self.text.setPlainText(draft.text)
+        for kind, form in self.forms.items():
+            form.setVisible(kind == draft.kind)
+        self.forms[draft.kind].set_values(draft.values)
+        self.problem.setText(studies.problem)
+        self.problem.setVisible(bool(studies.problem))
+        busy = self.tr("Something is being read.") if studies.working else ""
+        for button in (self.open, self.add, self.make):
+            button.setEnabled(not busy)
+        self.make.setToolTip(busy or self.tr("Work the study out and keep it in the project"))
+        self.add.setToolTip(busy or self._add_tip(draft))
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "make"):
+            self._dress()
+
+    def _help(self, draft: Draft) -> str:
+        if draft.kind == "grr":
+            return self.tr(
+                "One line a measurement: part, operator, value in mm, with semicolons, commas or tabs between them, or "
+                "pasted from a spreadsheet. Every operator measures every part as often; 10 parts, 3 operators and "
+                "2 to 3 repeats are usual."
+            )
+        return self.tr(
+            "One line a reading: quantity (form, size, spacing or flatness), position, measured and calibrated value "
+            "and u of the latter in mm. After the pattern of VDI/VDE 2634-2: 10 positions for a sphere, 7 for a ball "
+            "bar, 6 for a plane. It is no certificate."
+        )
+
+    def _add_tip(self, draft: Draft) -> str:
+        if draft.kind == "grr":
+            return self.tr("Add part, operator and thickness of another project, a line for each of its repeats")
+        return self.tr("Look for the artefact in another project's scan, and add what is found as one position")
+
+    def _grr_form(self) -> SettingsForm:
+        form = SettingsForm()
+        form.add_number(
+            "tolerance_mm", self.tr("Tolerance ±"), "mm",
+            self.tr("Of the parts; %GRR is told of its full width T. None: of the scatter of the parts alone."),
+            minimum=0.0001, maximum=LONGEST, decimals=4, step=0.01, none_text=self.tr("none"), first=0.1,
+        )  # fmt: skip
+        form.edited.connect(self._studies.set_value)
+        return form
+
+    def _acceptance_form(self) -> SettingsForm:
+        form = SettingsForm()
+        form.add_section(self.tr("Largest permitted error"))
+        titles = {
+            "form": (self.tr("Form"), self.tr("Probing error of a sphere: range about it.")),
+            "size": (self.tr("Size"), self.tr("Probing error of a sphere: its diameter.")),
+            "spacing": (self.tr("Spacing"), self.tr("Distance of a ball bar's spheres.")),
+            "flatness": (self.tr("Flatness"), self.tr("Range about a plane.")),
+        }
+        for key in LIMITS:
+            form.add_number(
+                key, titles[key][0], "mm", titles[key][1], minimum=0.0001, maximum=100.0, decimals=4, step=0.01,
+                none_text=self.tr("none"), first=0.05,
+            )  # fmt: skip
+        form.add_section(self.tr("Artefact of the projects added"))
+        kinds = [("sphere", self.tr("sphere")), ("bar", self.tr("ball bar")), ("plane", self.tr("plane"))]
+        form.add_choice("artefact", self.tr("Kind"), kinds, self.tr("What stands in their scans."))
+        for key, title, help in (
+            ("calibrated_mm", self.tr("Calibrated"), self.tr("Diameter of the sphere, or spacing of the bar.")),
+            ("u_mm", self.tr("Calibrated, u"), self.tr("Standard uncertainty of that.")),
+            ("diameter_mm", self.tr("Spheres of the bar"), self.tr("Their diameter, by which they are found.")),
+        ):
+            form.add_number(key, title, "mm", help, minimum=0.0, maximum=LONGEST, decimals=4, step=1.0)
+        form.edited.connect(self._studies.set_value)
+        return form
+
+    def _open(self) -> None:
+        path = ask.choose_file_to_open(
+            self, self.tr("Table of the study"), self._presenter.model.folder, self.tr("Table (*.csv *.txt *.tsv)")
+        )
+        if path is not None:
+            self._studies.open_table(path)
+
+    def _add(self) -> None:
+        folder = ask.choose_folder(self, self.tr("Project"), self._presenter.bench.settings.projects_folder)
+        if folder is not None:
+            self._studies.add_project(folder)
+
+    def _dress(self) -> None:
+        dress(self.problem, f"color: {shades().bad};")
+        for button, symbol in (
+            (self.open, "mdi6.table-arrow-left"),
+            (self.add, "mdi6.folder-plus-outline"),
+            (self.make, "mdi6.check"),
+        ):
+            button.setIcon(icon(symbol))

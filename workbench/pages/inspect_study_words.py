@@ -1,0 +1,145 @@
+"""Studies in words and numbers: their kinds, figures and tables."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from PySide6.QtCore import QCoreApplication
+
+from core.report.wording import fixed
+from workbench.pages import inspect_words
+from workbench.pages.inspect_words import Row
+from workbench.views.colours import Level
+
+if TYPE_CHECKING:
+    from core.study.acceptance import AcceptanceCheck
+    from core.study.grr import GrrStudy
+
+LEVELS: dict[str, Level] = {
+    "acceptable": "good",
+    "acceptable with reservations": "warn",
+    "not acceptable": "bad",
+    "conforming": "good",
+    "not proven": "warn",
+    "not conforming": "bad",
+}
+Table = tuple[list[tuple[str, str]], list[Sequence[str]]]
+"""Headers (title, unit) and rows of texts."""
+
+
+def kind_title(kind: str) -> str:
+    """What a kind of study is called."""
+    return {
+        "repeats": _tr("Repeats"),
+        "type1": _tr("Type-1 study"),
+        "grr": _tr("Gauge R&R"),
+        "acceptance": _tr("Acceptance check"),
+    }[kind]
+
+
+def rows(kind: str, study: Any) -> list[Row]:
+    """The figures of a study."""
+    made: Mapping[str, Callable[[Any], list[Row]]] = {
+        "type1": inspect_words.type1_rows,
+        "grr": _grr_rows,
+        "acceptance": _acceptance_rows,
+    }
+    return made[kind](study) if kind in made else []
+
+
+def table(kind: str, study: Any) -> Table:
+    """The table of a study; without headers where it has none."""
+    made: Mapping[str, Callable[[Any], Table]] = {"grr": _components, "acceptance": _quantities}
+    return made[kind](study) if kind in made else ([], [])
+
+
+def verdict_row(verdict: str) -> Row:
+    """What was decided."""
+    words = {
+        "": _tr("no limit stated"),
+        "acceptable": _tr("acceptable"),
+        "acceptable with reservations": _tr("with reservations"),
+        "not acceptable": _tr("not acceptable"),
+        "conforming": _tr("conforming"),
+        "not proven": _tr("not proven"),
+        "not conforming": _tr("not conforming"),
+    }
+    return _tr("Decision"), words[verdict], "", LEVELS.get(verdict, "")
+
+
+def _grr_rows(study: GrrStudy) -> list[Row]:
+    of_total, of_tolerance = study.component("gauge R&R").of_total, study.component("gauge R&R").of_tolerance
+    said: list[Row] = [verdict_row(study.verdict)]
+    if of_tolerance is not None and study.tolerance is not None:
+        tip = _tr("6 s of gauge R&R over T = {0} mm; up to 10 % is good, above 30 % is not acceptable")
+        said.append((_tr("%GRR of T"), _percent(of_tolerance), tip.format(f"{study.tolerance:g}"), ""))
+    low, high = (_percent(end) for end in study.grr_interval)
+    tip = _tr("s of gauge R&R over the whole scatter; 95 % interval {0} to {1}").format(low, high)
+    said.append((_tr("%GRR of the total"), _percent(of_total), tip, ""))
+    categories = "∞" if study.categories is None else str(study.categories)
+    tip = _tr("Number of distinct categories: how many groups of parts it can tell apart; 5 or more are wanted")
+    said.append((_tr("ndc"), categories, tip, "" if study.categories is None or study.categories >= 5 else "warn"))
+    interaction = next((row for row in study.anova if row.source == "interaction"), None)
+    if interaction is not None and interaction.p is not None:
+        pooled = _tr("pooled") if study.pooled else _tr("kept")
+        tip = _tr("p = {0}: pooled with the error above 0.05").format(f"{interaction.p:.2g}")
+        said.append((_tr("Interaction"), pooled, tip, ""))
+    return said
+
+
+def _components(study: GrrStudy) -> Table:
+    names = {
+        "gauge R&R": _tr("gauge R&R"),
+        "repeatability": _tr("repeatability"),
+        "reproducibility": _tr("reproducibility"),
+        "operators": _tr("  operators"),
+        "interaction": _tr("  interaction"),
+        "parts": _tr("parts"),
+        "total": _tr("total"),
+    }
+    with_tolerance = study.tolerance is not None
+    headers = [(_tr("Source"), ""), (_tr("s"), study.unit), (_tr("Share of s²"), "%"), (_tr("Of the total"), "%")]
+    headers += [(_tr("Of T"), "%")] if with_tolerance else []
+    body: list[Sequence[str]] = []
+    for one in study.components:
+        shares = [one.contribution, one.of_total] + ([one.of_tolerance or 0.0] if with_tolerance else [])
+        said = names.get(one.source, one.source)
+        body.append([said, fixed(one.sigma, 5), *(fixed(100 * share, 1) for share in shares)])
+    return headers, body
+
+
+def _acceptance_rows(study: AcceptanceCheck) -> list[Row]:
+    return [verdict_row(study.verdict)]
+
+
+def _quantities(study: AcceptanceCheck) -> Table:
+    headers = [
+        (_tr("Quantity"), ""),
+        (_tr("Positions"), ""),
+        (_tr("Largest error"), "mm"),
+        (_tr("At"), ""),
+        (_tr("Limit"), "mm"),
+        (_tr("Decision"), ""),
+    ]
+    body: list[Sequence[str]] = [
+        [
+            one.title,
+            str(len(one.readings)),
+            fixed(one.largest_error, 4, signed=True),
+            one.worst.position,
+            "" if one.limit is None else f"{one.limit:g}",
+            verdict_row(one.verdict)[1] if one.verdict else "",
+        ]
+        for one in study.quantities
+    ]
+    return headers, body
+
+
+def _percent(share: float) -> str:
+    return f"{fixed(100 * share, 1)} %" if math.isfinite(share) else "–"
+
+
+def _tr(text: str) -> str:
+    return QCoreApplication.translate("Inspect", text)
