@@ -52,6 +52,8 @@ class LiveRequest:
         When the older of the two calibrations was made, in s since 1970; None if that is not known.
     ending
         Of the files of a scan's frames: ".png" takes half the room, ".pgm" a tenth of the time.
+    kept_fan
+        The project whose history holds the fan, and its id there: it says how sharp the fan's stripes were then.
     """
 
     step: Step
@@ -68,6 +70,7 @@ class LiveRequest:
     there: tuple[TargetView, ...] = ()
     calibrated_s: float | None = None
     ending: Ending = ".png"
+    kept_fan: tuple[Path, str] | None = None
 
 
 @dataclass(frozen=True, slots=True)

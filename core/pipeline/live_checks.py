@@ -5,8 +5,12 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 
+import numpy as np
+
+from core.errors import InputError
+from core.files.calibration_store import read_stored_poses
 from core.image.centreline import Centreline
-from core.live.events import LiveChecks
+from core.live.events import LiveChecks, LiveRequest
 from core.pipeline.live_desk import Desk
 from core.pipeline.live_exposure import ExposureAdviser
 from core.pipeline.live_preview import ScanPreviewer
@@ -22,6 +26,7 @@ class ScanChecks:
     def __init__(self, desk: Desk, previewer: ScanPreviewer) -> None:
         self._desk, self._previewer = desk, previewer
         self._image_size = (0, 0)
+        self._stripe_px = calibrated_stripe_px(desk.request)
         self._adviser = ExposureAdviser()
         self._told: tuple[Check, ...] = ()
         self._looked_s = 0.0
@@ -63,7 +68,20 @@ class ScanChecks:
             camera=request.camera,
             fan=request.fan,
             age_s=None if request.calibrated_s is None else max(0.0, time.time() - request.calibrated_s),
+            stripe_px=self._stripe_px,
         ).checks()
         if checks != self._told:
             self._told = checks
             self._desk.emit(LiveChecks(checks))
+
+
+def calibrated_stripe_px(request: LiveRequest) -> float | None:
+    """Median width of the fan's stripes in its calibration, in pixels; None if that cannot be known any more."""
+    if request.kept_fan is None:
+        return None
+    try:
+        poses = read_stored_poses(*request.kept_fan)
+    except InputError:
+        return None
+    widths = [piece.width for pose in poses for piece in pose.centrelines]
+    return float(np.median(np.concatenate(widths))) if widths else None

@@ -18,8 +18,13 @@ State = Literal["ok", "failed", "unknown"]
 FRESH_DAYS = 30.0
 """A calibration older than this is asked for again: screws settle and lasers age."""
 
+AS_SHARP, BLURRED = 1.25, 1.6
+"""Width of the fan's stripes over that in its calibration: up to the first the focus is the same, from the second on
+it is not. Parts nearer or farther than the plate was, or rough ones, account for what is between.
+"""
+
 IN_FOCUS, OUT_OF_FOCUS = 1 / 600, 1 / 250
-"""Gaussian σ of the fan's stripes over the picture's width: up to the first they are sharp, from the second on not."""
+"""Where the calibration's width is not known: Gaussian σ of the stripes over the picture's width, in the same way."""
 
 _NO_REFERENCE = "Take the reference first."
 _DAY_S = 86_400.0
@@ -54,6 +59,8 @@ class Preflight:
         The calibrations; None where there is none.
     age_s
         Time since the older of the two was made; None if that is not known.
+    stripe_px
+        Median width (σ) of the fan's stripes when it was calibrated; None if that is not known.
     """
 
     lines: int
@@ -64,6 +71,7 @@ class Preflight:
     camera: Camera | None = None
     fan: Fan | None = None
     age_s: float | None = None
+    stripe_px: float | None = None
 
     def checks(self) -> tuple[Check, ...]:
         """All checks, the reference first: the next three rest on it."""
@@ -103,10 +111,16 @@ class Preflight:
             return Check("focus", "unknown", _NO_REFERENCE)
         width = float(np.median(np.concatenate([piece.width for piece in stripes])))
         said = f"The fan's stripes are {width:.1f} px wide (σ)"
-        share = width / self.image_size[0]
-        if share >= OUT_OF_FOCUS:
-            return Check("focus", "failed", f"{said}: focus camera and laser, then calibrate again.")
-        return Check("focus", "ok" if share <= IN_FOCUS else "unknown", f"{said}.")
+        if self.stripe_px is None:
+            sharp, blurred = IN_FOCUS * self.image_size[0], OUT_OF_FOCUS * self.image_size[0]
+            todo = "focus camera and laser, then calibrate again"
+        else:
+            sharp, blurred = AS_SHARP * self.stripe_px, BLURRED * self.stripe_px
+            said = f"{said}, {self.stripe_px:.1f} px when the fan was calibrated"
+            todo = "set the focus of camera and laser back, and look for a smeared lens; else calibrate again"
+        if width >= blurred:
+            return Check("focus", "failed", f"{said}: {todo}.")
+        return Check("focus", "ok" if width <= sharp else "unknown", f"{said}.")
 
     def _calibration(self) -> Check:
         if self.camera is None or self.fan is None:

@@ -1,11 +1,14 @@
 import time
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from core.acquire.source import Lasers, SourceSettings
+from core.calibrate.plane_pose import PoseFeatures
 from core.errors import InputError
 from core.files.pictures import is_picture, read_picture, write_picture
+from core.files.poses_file import write_poses
 from core.files.recording_log import read_log
 from core.files.rig import Rig
 from core.image.targets import BlackSquare, Checkerboard
@@ -29,6 +32,7 @@ from core.live.events import (
     TakeReference,
 )
 from core.pipeline import live, live_checks, live_preview
+from core.scan.features import read_reference
 from core.simulate.recording import scan_of
 from core.simulate.scenario import Scenario
 from tests.pipeline.live_bench import ScriptedSource, Window, after, answer_to, record
@@ -263,11 +267,16 @@ def test_resume_goes_on_counting_names(monkeypatch, tmp_path, stage):
 
 
 def test_stop_ends_at_once_with_everything_on_the_disk(monkeypatch, tmp_path, stage):
+    told = []
+
     def hand(event):
-        return Stop() if isinstance(event, LiveView) and event.recorded >= 5 else None
+        if isinstance(event, LiveView) and event.recorded >= 5:
+            told.append(event.recorded)
+            return Stop()
+        return None
 
     ended = scan(monkeypatch, tmp_path, stage, swept(stage, 10**6, pace_s=0.005), Window(hand))
-    assert 5 <= ended.recorded < 20
+    assert ended.recorded == told[0]
     assert len(names(tmp_path)) == ended.recorded + 1
 
 
@@ -353,6 +362,29 @@ def test_before_a_scan_what_it_needs_is_looked_at_and_told(monkeypatch, tmp_path
     before, after_reference = window.all(LiveChecks)
     assert set(checks(before).values()) == {"unknown", "ok"}
     assert set(checks(after_reference).values()) == {"ok"}
+
+
+@pytest.mark.parametrize(("sharper", "state"), [(1.0, "ok"), (2.0, "failed")])
+def test_the_focus_is_held_against_the_stripes_the_fan_was_calibrated_with(
+    monkeypatch, tmp_path, stage, sharper, state
+):
+    stripes = tuple(replace(piece, width=piece.width / sharper) for piece in read_reference(stage.reference).fan)
+    history = tmp_path / "calibrations"
+    history.mkdir()
+    (history / "planes-f1.json").touch()
+    write_poses(history / "planes-f1.npz", "f1", [PoseFeatures("pose0", None, stripes)])
+    window = Window()
+    scan(monkeypatch, tmp_path, stage, swept(stage, 1, pace_s=0.05), window, kept_fan=(tmp_path, "f1"))
+    focus = next(check for check in window.all(LiveChecks)[-1].checks if check.name == "focus")
+    assert focus.state == state
+    assert "px when the fan was calibrated" in focus.sentence
+
+
+def test_a_calibration_whose_poses_are_gone_leaves_the_focus_to_the_picture_alone(monkeypatch, tmp_path, stage):
+    window = Window()
+    ended = scan(monkeypatch, tmp_path, stage, swept(stage, 1, pace_s=0.05), window, kept_fan=(tmp_path, "f1"))
+    assert ended.error == ""
+    assert checks(window.all(LiveChecks)[-1])["focus"] == "ok"
 
 
 def test_a_reference_that_does_not_hold_any_more_is_told_while_nothing_is_recorded(monkeypatch, tmp_path, stage):

@@ -62,6 +62,15 @@ def test_before_the_reference_only_the_calibration_is_known():
         ({"fan_lines": ((stripe(count=10),),) * 3}, "exposure", "unknown", "Too little of the fan"),
         ({"fan_lines": ((stripe(width=9.0),),) * 3}, "focus", "failed", "9.0 px wide (σ): focus camera and laser"),
         ({"fan_lines": ((stripe(width=5.0),),) * 3}, "focus", "unknown", "5.0 px wide"),
+        ({"stripe_px": 1.4}, "focus", "ok", "1.5 px wide (σ), 1.4 px when the fan was calibrated."),
+        ({"stripe_px": 1.1}, "focus", "unknown", "1.5 px wide (σ), 1.1 px when the fan was calibrated."),
+        (
+            {"stripe_px": 0.9},
+            "focus",
+            "failed",
+            "0.9 px when the fan was calibrated: set the focus of camera and laser",
+        ),
+        ({"stripe_px": 9.0, "fan_lines": ((stripe(width=9.0),),) * 3}, "focus", "ok", "9.0 px wide"),
         (
             {"image_size": (960, 687)},
             "calibration",

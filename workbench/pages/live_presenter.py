@@ -168,6 +168,7 @@ class LivePresenter(LiveCommands):
             there=self.there() if self.adding and self.can_add else (),
             calibrated_s=calibrated_s(self.model.results),
             ending=self.settings.ending,
+            kept_fan=(project, self.model.project.accepted.fan) if self.model.project.accepted.fan else None,
         )
 
     def _on_view(self, view: LiveView) -> None:
