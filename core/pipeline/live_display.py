@@ -8,6 +8,9 @@ from numpy.typing import NDArray
 
 from core.acquire.source import Picture
 
+Reduced = tuple[NDArray[np.uint8], int]
+"""A small picture (h, w), and the whole factor it was reduced by."""
+
 _FEWEST_BITS = 10  # of cameras that give 16-bit pictures
 
 
@@ -20,7 +23,7 @@ class Display:
     def __init__(self, width_px: int) -> None:
         self._width_px, self._bits = width_px, _FEWEST_BITS
 
-    def reduced(self, picture: Picture) -> tuple[NDArray[np.uint8], int]:
+    def reduced(self, picture: Picture) -> Reduced:
         """The small picture (h, w), and the factor."""
         height, width = picture.shape
         factor = max(1, -(-width // self._width_px))

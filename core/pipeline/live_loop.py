@@ -21,7 +21,7 @@ from core.live.events import (
     Switch,
 )
 from core.pipeline.live_desk import Desk, LiveStep
-from core.pipeline.live_display import Display
+from core.pipeline.live_display import Display, Reduced
 
 RETRY_S = 1.0
 """How often a source that was unplugged is looked for."""
@@ -57,6 +57,7 @@ class LiveLoop:
         self._waiting: deque[Command] = deque()
         self._newest: Frame | None = None
         self._fresh: Frame | None = None
+        self._ahead: tuple[Frame, Reduced] | None = None
         self._shown_index = -1
         self._shown_s = 0.0
         self._times: deque[float] = deque()
@@ -130,7 +131,10 @@ class LiveLoop:
         self._times.append(frame.time_s)
         while len(self._times) > 2 and frame.time_s - self._times[0] > _RATE_OVER_S:
             self._times.popleft()
+        was_busy = self._desk.worker.busy
         self._step.frame(frame)
+        if self._step.paired and self._desk.worker.busy and not was_busy:
+            self._ahead = frame, self._display.reduced(frame.picture)  # it will be shown when it has been looked at
 
     def _obey(self) -> None:
         """Act on all commands that have come."""
@@ -166,7 +170,8 @@ class LiveLoop:
         if frame.index == self._shown_index and fresh is None:
             return
         self._fresh, self._shown_index, self._shown_s = None, frame.index, now
-        picture, scale = self._display.reduced(frame.picture)
+        ahead = self._ahead
+        picture, scale = ahead[1] if ahead and ahead[0] is frame else self._display.reduced(frame.picture)
         self._desk.emit(
             LiveView(picture, scale, frame.index, self._rate(), self._desk.recorded, self.dropped, self._step.detail())
         )
@@ -181,7 +186,7 @@ class LiveLoop:
         self._desk.emit(LiveUnplugged(sentence))
         self._source.close()
         self._dropped_before, self._dropped_now = self._dropped_before + self._dropped_now, 0
-        self._newest = self._fresh = None
+        self._newest = self._fresh = self._ahead = None
         self._shown_index = -1
         self._times.clear()
         tried = time.monotonic()
