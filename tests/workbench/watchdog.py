@@ -50,14 +50,16 @@ class Watchdog(QObject):
         Names the situation, for the report.
     stacks
         Look where the GUI thread is; costs it a little time.
+    keep_ms
+        Shorter stretches are forgotten: a long watch must not fill the memory it watches.
     """
 
-    def __init__(self, during: Callable[[], str] = lambda: "", *, stacks: bool = True) -> None:
+    def __init__(self, during: Callable[[], str] = lambda: "", *, stacks: bool = True, keep_ms: float = 0.0) -> None:
         super().__init__()
         self._timer = QTimer(self)
         self._timer.setInterval(BEAT_MS)
         self._timer.timeout.connect(self._beat)
-        self._during, self._stacks = during, stacks
+        self._during, self._stacks, self._keep_ms = during, stacks, keep_ms
         self._situation = ""
         self._seen: list[tuple[str, ...]] = []
         self._before: Any = None
@@ -99,9 +101,10 @@ class Watchdog(QObject):
         seen, self._seen = self._seen, []
         away = 1e3 * (busy - self._busy)
         where = tuple(dict.fromkeys(" < ".join(stack) for stack in seen if stack)) if away > 20 else ()
-        self.absences.append(
-            Absence(away, 1e3 * (clock - self._clock), clock - self._started, self._situation, where[:12])
-        )
+        if away >= self._keep_ms:
+            self.absences.append(
+                Absence(away, 1e3 * (clock - self._clock), clock - self._started, self._situation, where[:12])
+            )
         self._situation = self._during()
         self._busy, self._clock = time.thread_time(), time.perf_counter()
 
