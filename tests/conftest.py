@@ -1,6 +1,15 @@
+import faulthandler
+import os
 from pathlib import Path
 
 import pytest
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_configure(config: pytest.Config) -> None:
+    """A crash tells of the thread that crashed, not of all: logs that are cut short lose the one that matters."""
+    if faulthandler.is_enabled():
+        faulthandler.enable(os.dup(2), all_threads=False)
 
 
 @pytest.fixture(scope="session")
