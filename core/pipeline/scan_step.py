@@ -21,6 +21,7 @@ from core.pipeline.kept_features import features_key, kept_features
 from core.pipeline.options import Options
 from core.pipeline.workspace import Calibration, Workspace, check_size
 from core.progress import Progress, silent, steps
+from core.scan.calibration_check import check_calibration
 from core.scan.common_errors import solve_common
 from core.scan.features import (
     FeatureOptions,
@@ -94,6 +95,9 @@ def scan_step(
         common = solve_common(features, scan, camera, fan, deviations, options.method, progress)
         cloud = replace(scan.cloud, sigma_common=common.sigma(scan.cloud))
         scan = replace(scan, cloud=with_normals(cloud, progress=progress))
+        if options.method == "network":
+            check = check_calibration(features, scan, camera, fan, deviations)
+            scan = replace(scan, notes=scan.notes + check.notes)
         log.frames.extend(scan.frames)
         log.notes.extend(left_out_sentences(scan.frames))
         log.notes.extend(scan.notes)
