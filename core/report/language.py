@@ -12,12 +12,17 @@ from decimal import ROUND_HALF_EVEN, Decimal
 from types import MappingProxyType
 
 from core.report.german import GERMAN
+from core.report.german_notes import GERMAN_NOTES
+from core.report.sentences import Sentences
 from core.report.template import Language
 
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 TABLES: Mapping[Language, Mapping[str, str]] = MappingProxyType({"de": GERMAN})
 """By language: its words by the English ones."""
+
+SENTENCES: Mapping[Language, Sentences] = MappingProxyType({"de": Sentences(GERMAN_NOTES, GERMAN)})
+"""By language: what other rooms say, by patterns."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,8 +37,10 @@ class Words:
         return text.format(**values) if values else text
 
     def known(self, sentence: str) -> str:
-        """A sentence that comes from elsewhere: in the report's language if the table has it, else as it is."""
-        return sentence if self.language == "en" else TABLES[self.language].get(sentence, sentence)
+        """A sentence that comes from elsewhere: in the report's language if it is known there, else as it is."""
+        if self.language == "en":
+            return sentence
+        return SENTENCES[self.language].find(sentence) or sentence
 
     def fixed(self, value: float, decimals: int, *, signed: bool = False) -> str:
         """`value` with so many decimals (negative: rounded to tens, hundreds), true minus sign, no minus zero."""

@@ -135,7 +135,7 @@ def fan_calibration():
     poses = []
     for number in range(8):
         used = number != 3
-        reason = "" if used else "the target moved by 0.9 px between its two pictures"
+        reason = "" if used else "the target moved by 0.90 px between the pictures with the fan off and on"
         poses.append(
             PlanePose(
                 f"planes/pose_{number}",

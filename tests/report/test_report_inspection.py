@@ -2,6 +2,7 @@
 
 import io
 import math
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -12,6 +13,8 @@ from pypdf import PdfReader
 from core.inspect.characteristic import Characteristic, Limits
 from core.inspect.results import Contribution
 from core.report.content import SECTIONS
+from core.report.german import GERMAN
+from core.report.german_notes import GERMAN_NOTES
 from core.report.pdf import build_report
 from core.report.template import ReportTemplate
 from core.scan.surface import Mesh
@@ -173,6 +176,11 @@ def test_in_german_words_and_numbers_are_german_and_the_file_says_so(content):
         assert expected in text, expected
     for english in ("Uncertainty", "deviation", "Calibration", "page 1", "Report", "share"):
         assert english not in text, english
+    pieces = [re.split(r"{\w+}", sentence) for sentence in (*GERMAN, *GERMAN_NOTES)]
+    whole = {piece.strip() for sentence in pieces for piece in sentence if piece.count(" ") > 3}
+    assert len(whole) > 150
+    assert [piece for piece in whole if piece in text] == []
+    assert "die Tafel hat sich zwischen den Bildern ohne und mit Fächer um 0,90 px bewegt" in text
     document = reader(data)
     assert document.trailer["/Root"]["/Lang"] == "de"
     assert document.metadata.title.startswith("Messbericht TR-")
