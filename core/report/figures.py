@@ -20,7 +20,8 @@ from matplotlib.ticker import Formatter, ScalarFormatter
 from numpy.typing import NDArray
 
 from core.model.arrays import Array
-from core.report.style import INK, MUTED
+from core.report.foreign_fonts import embedded_font
+from core.report.style import INK, MUTED, has_character
 
 DPI = 200
 """Pixels per inch of every picture on paper."""
@@ -30,8 +31,10 @@ MM_PER_INCH = 25.4
 NO_DATA = "#E9EDEF"
 """Ground of maps: shows where there is no value."""
 
+FAMILY = "DejaVu Sans"
+
 RC: dict[Any, Any] = {
-    "font.family": "DejaVu Sans",
+    "font.family": FAMILY,
     "font.size": 7,
     "axes.edgecolor": MUTED,
     "axes.labelcolor": INK,
@@ -54,6 +57,17 @@ RC: dict[Any, Any] = {
 def plot_style() -> AbstractContextManager[None]:
     """The looks of the report's plots, for the time of a `with`."""
     return matplotlib.style.context(["default", RC])
+
+
+def drawable(text: str) -> str:
+    """`text` as a plot can show it: what neither the report's font nor one of this computer has is a question mark."""
+    return "".join(character if has_character(character) or embedded_font(character)[0] else "?" for character in text)
+
+
+def families(text: str) -> list[str]:
+    """Families of fonts that have all of a `drawable` text, the report's own first."""
+    foreign = dict.fromkeys(embedded_font(character)[1] for character in text if not has_character(character))
+    return [FAMILY, *(family for family in foreign if family)]
 
 
 def new_figure(width_mm: float, height_mm: float) -> Figure:

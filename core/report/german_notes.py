@@ -379,6 +379,19 @@ _INSPECTION = {
     "give the plan a frame.": "dem Plan ein Bezugssystem geben.",
 }
 
+_FONTS = {
+    (
+        "No font of this computer has some of the East Asian characters in this report: the program that shows it has "
+        "to bring them."
+    ): (
+        "Einige ostasiatische Zeichen dieses Berichts hat keine Schrift dieses Rechners: das anzeigende Programm muss "
+        "sie mitbringen."
+    ),
+    "No font of this computer has some of the characters in this report: they are printed by their code points.": (
+        "Einige Zeichen dieses Berichts hat keine Schrift dieses Rechners: sie stehen als Codepunkte da."
+    ),
+}
+
 _RULES = {
     "distance of level {upper} from level {lower}, parallel planes fitted jointly to all levels": (
         "Abstand der Stufe {upper} von der Stufe {lower}, parallele Ebenen gemeinsam an alle Stufen angepasst"
@@ -452,4 +465,6 @@ _STUDIES = {
     "flatness error": "Ebenheitsmessabweichung",
 }
 
-GERMAN_NOTES: Mapping[str, str] = MappingProxyType({**_CAMERA, **_FAN, **_SCAN, **_INSPECTION, **_RULES, **_STUDIES})
+GERMAN_NOTES: Mapping[str, str] = MappingProxyType(
+    {**_CAMERA, **_FAN, **_SCAN, **_INSPECTION, **_FONTS, **_RULES, **_STUDIES}
+)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -20,7 +20,7 @@ from core.report.head import TITLE
 from core.report.layout import Limits
 from core.report.look import Look
 from core.report.sections import story
-from core.report.style import HAIRLINE, INK, MUTED, SANS, TEXT_WIDTH, color, markup, prepare_reportlab
+from core.report.style import HAIRLINE, INK, MUTED, SANS, TEXT_WIDTH, color, font_note, markup, prepare_reportlab
 from core.report.template import Paper
 from core.report.wording import shown_name
 
@@ -54,7 +54,7 @@ def build_report(content: ReportContent, progress: Progress = silent) -> bytes:
     """The report as the bytes of a PDF; nothing is written to disk.
 
     The same content gives the same bytes: no clock and no random number is in it. Text is selectable and the fonts
-    are embedded (except East Asian ones, which the viewer brings).
+    are embedded; where this computer has none for an East Asian text, a note says that the reader's program brings it.
 
     Raises
     ------
@@ -62,6 +62,8 @@ def build_report(content: ReportContent, progress: Progress = silent) -> bytes:
         If `progress` asks to stop.
     """
     prepare_reportlab()
+    if note := font_note(_names(content)):
+        content = replace(content, notes=(*content.notes, note))
     progress = told = Told(progress)
     look = Look.of(content)
     step, pending = "report", drawings(look, content, told.again)
@@ -85,6 +87,18 @@ def build_report(content: ReportContent, progress: Progress = silent) -> bytes:
     _, data = _typeset(look, content, pictures, limits, pages)
     progress(step, total, total)
     return data
+
+
+def _names(content: ReportContent) -> Iterator[str]:
+    """What people have called things, and what else may be in any script."""
+    people, company = (content.laboratory, content.operator, content.customer), content.template
+    yield from (content.part, content.serial, content.remarks, *people, *content.notes, *content.rig.values())
+    yield from (company.name, company.text, company.footer, *company.address, *company.signatures)
+    yield from (one.name for one in content.inspected)
+    yield from (one.name for one in content.deviations)
+    yield from (frame.name for frame in content.frames)
+    yield from (*content.hashes, *content.points)
+    yield from (str(study.get("characteristic", "")) for study in content.studies)
 
 
 def _most_pages(content: ReportContent) -> int:

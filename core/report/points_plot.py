@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from core.report.figures import new_figure, plot_style
+from core.report.figures import drawable, families, new_figure, plot_style
 from core.report.look import Look
 from core.report.style import HAIRLINE
 from core.scan.cloud import Cloud
@@ -46,12 +46,13 @@ def points_figure(
             # what lies below another keeps a rim
             axes.plot(*drawn.T, ".", ms=max(3.2 - 0.8 * number, 1.2), color=color, zorder=2)
             count = look.words.count(len(indices), "point")
-            axes.plot([], [], mark, ms=4, color=color, label=f"{_short(name)}\n{count}")
+            axes.plot([], [], mark, ms=4, color=color, label=f"{_short(drawable(name))}\n{count}")
         axes.set(xlim=(-0.5, columns - 0.5), ylim=(rows - 0.5, -0.5))
         axes.set_xlabel("u, px", labelpad=1)
         axes.set_ylabel("v, px", labelpad=0)
         axes.set_aspect("equal")
-        axes.legend(loc="upper left", bbox_to_anchor=(1.02, 1.02), frameon=False, fontsize=6.5, handletextpad=0.6)
+        axes.legend(loc="upper left", bbox_to_anchor=(1.02, 1.02), frameon=False, handletextpad=0.6,
+                    prop={"family": families("".join(points)), "size": 6.5})  # fmt: skip
     return figure
 
 

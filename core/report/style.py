@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from functools import cache
 from pathlib import Path
 from xml.sax.saxutils import escape
@@ -15,9 +15,10 @@ from reportlab.lib.enums import TA_CENTER, TA_RIGHT
 from reportlab.lib.styles import ParagraphStyle
 from reportlab.lib.units import mm
 from reportlab.pdfbase import pdfmetrics
-from reportlab.pdfbase.cidfonts import UnicodeCIDFont
 from reportlab.pdfbase.ttfonts import TTFont
 from reportlab.platypus import Paragraph
+
+from core.report.foreign_fonts import east_asian_font, embedded_font, is_east_asian
 
 ACCENT, INK, MUTED, HAIRLINE, TINT = "#14586E", "#1D2327", "#5C6870", "#CBD3D7", "#EFF4F6"
 """The accent, text, secondary text, thin rules, and the ground of the result box; hex, for plots as well."""
@@ -27,6 +28,12 @@ MOST_CHARACTERS = 900
 
 TEXT_WIDTH = 170 * mm
 """On every paper, centred: so tables and pictures are the same on all of them."""
+
+NOT_EMBEDDED = (
+    "No font of this computer has some of the East Asian characters in this report: the program that shows it has to "
+    "bring them."
+)
+NO_FONT = "No font of this computer has some of the characters in this report: they are printed by their code points."
 
 MOST_REMARKS = 6000
 """Longest remarks of an operator, in characters."""
@@ -38,7 +45,6 @@ _FILES = {
     OBLIQUE: "DejaVuSans-Oblique.ttf",
     MONO: "DejaVuSansMono.ttf",
 }
-_HANGUL, _JAPANESE, _CHINESE = "HYSMyeongJo-Medium", "HeiseiKakuGo-W5", "STSong-Light"
 
 
 def color(value: str) -> HexColor:
@@ -61,56 +67,49 @@ def _covered() -> frozenset[int]:
     return covered or frozenset()
 
 
+def has_character(character: str) -> bool:
+    """Whether the report's own fonts have it, or it is a space of some kind."""
+    return ord(character) in _covered() or character.isspace()
+
+
 def prepare_reportlab() -> None:
     """Make the embedded fonts known to reportlab, and let it write binary streams; further calls change nothing."""
     _covered()
     rl_config.useA85 = 0  # its base-85 text costs more time than all the layout, and a quarter of the size
 
 
-@cache
-def _east_asian(name: str) -> str:
-    """Register one of Adobe's East Asian fonts: not embedded, the viewer brings it."""
-    pdfmetrics.registerFont(UnicodeCIDFont(name))
-    return name
-
-
-def _east_asian_font(text: str) -> str:
-    """The font for the East Asian characters of `text`, or "" where it has none beyond it."""
-    if any(0xAC00 <= ord(c) <= 0xD7A3 or 0x1100 <= ord(c) <= 0x11FF for c in text):
-        return _HANGUL
-    if any(0x3040 <= ord(c) <= 0x30FF for c in text):
-        return _JAPANESE
-    return _CHINESE
-
-
-def _is_east_asian(character: str) -> bool:
-    point = ord(character)
-    return (
-        0x1100 <= point <= 0x11FF
-        or 0x2E80 <= point <= 0x9FFF
-        or 0xAC00 <= point <= 0xD7A3
-        or (0xF900 <= point <= 0xFAFF or 0xFF00 <= point <= 0xFFEF)
-    )
-
-
 def markup(text: str) -> str:
     """`text` as markup of a Paragraph, nothing lost whatever its script.
 
-    Characters the embedded fonts lack are set in an East Asian font of the viewer where it has them, and else
-    printed by their code point, [U+1F600]. Only what is longer than MOST_CHARACTERS is shortened, and says so.
+    Characters the report's own fonts lack are set in a font of this computer, else in an East Asian one that the
+    reader's program brings, and else printed by their code point, [U+1F600]: `font_note` says so. Only what is longer
+    than MOST_CHARACTERS is shortened, and says so.
     """
-    covered, parts, asian = _covered(), [], ""
+    covered, parts, last = _covered(), [], ""
     if len(text) > MOST_CHARACTERS:
         text = f"{text[:MOST_CHARACTERS]}… (shortened from {len(text)} characters; all of it is in run.json)"
     for character in re.sub(r"[ \t\r\n\f\v]+", " ", text):
-        if ord(character) in covered:
-            parts.append(escape(character))
-        elif _is_east_asian(character):
-            asian = asian or _east_asian(_east_asian_font(text))
-            parts.append(f'<font name="{asian}">{escape(character)}</font>')
-        else:
-            parts.append(f"[U+{ord(character):04X}]")
-    return "".join(parts).replace(f'</font><font name="{asian}">', "")
+        font = "" if ord(character) in covered else _foreign(character, text)
+        shown = escape(character) if font or ord(character) in covered else f"[U+{ord(character):04X}]"
+        if font != last:
+            parts.append(("</font>" if last else "") + (f'<font name="{font}">' if font else ""))
+            last = font
+        parts.append(shown)
+    return "".join(parts) + ("</font>" if last else "")
+
+
+def _foreign(character: str, text: str) -> str:
+    """The font for a character of `text` that the report's own lack, or ""."""
+    return embedded_font(character)[0] or (east_asian_font(text) if is_east_asian(character) else "")
+
+
+def font_note(texts: Iterable[str]) -> str:
+    """What a reader must know of characters in `texts`: that some are not embedded, or have no font at all; or ""."""
+    foreign = {character for text in texts for character in text if not has_character(character)}
+    lacking = {character for character in foreign if not embedded_font(character)[0]}
+    if not lacking:
+        return ""
+    return NOT_EMBEDDED if all(is_east_asian(character) for character in lacking) else NO_FONT
 
 
 def _style(name: str, size: float, leading: float, **options: object) -> ParagraphStyle:

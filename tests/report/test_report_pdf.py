@@ -190,10 +190,6 @@ def test_names_in_any_script_and_of_any_length_are_whole(quick, name):
     assert bare(name[::-1]) in text
 
 
-def test_a_character_no_font_has_is_printed_by_its_code_point(quick):
-    assert "part [U+0E01][U+10330] two" in words(build_report(replace(quick, part="part \u0e01\U00010330\ntwo")))
-
-
 def test_a_text_beyond_measure_is_shortened_and_says_so(quick):
     text = words(build_report(replace(quick, part="W" * 20000, rig={"key": "v " * 9000}, notes=("n " * 9000,))))
     assert "shortened from 20000 characters" in text

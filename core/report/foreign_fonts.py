@@ -1,0 +1,92 @@
+"""Fonts for the scripts that the report's own do not have: this computer's, else those a reader's program brings.
+
+A font of this computer is embedded like the report's own. Adobe's four East Asian ones are only named in the file, so
+that whether their characters are seen hangs on the program that shows it. What no font has is printed by code point.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from functools import cache
+from pathlib import Path
+
+import matplotlib
+from matplotlib import font_manager
+from matplotlib.ft2font import FT2Font
+from reportlab.pdfbase import pdfmetrics
+from reportlab.pdfbase.cidfonts import UnicodeCIDFont
+from reportlab.pdfbase.ttfonts import TTFError, TTFont
+
+USUAL = ("CJK", "Sans SC", "Sans JP", "Sans KR", "YaHei", "SimSun", "SimHei", "Meiryo", "Yu Gothic", "MS Gothic",
+         "Malgun", "Batang", "PingFang", "Hiragino", "SD Gothic", "AppleGothic", "WenQuanYi", "Droid Sans Fallback", "IPA",
+         "Takao", "Nanum", "Unicode MS", "Noto Sans", "Segoe UI", "Tahoma")  # fmt: skip
+"""In the names of fonts of many scripts: looked into before all others."""
+NO_LETTERS = "Last Resort"
+"""A font that has a box for every character."""
+_HANGUL, _JAPANESE, _CHINESE = "HYSMyeongJo-Medium", "HeiseiKakuGo-W5", "STSong-Light"
+
+
+def system_fonts() -> Sequence[tuple[str, str]]:
+    """(family, path) of the TrueType fonts of this computer, those of many scripts first."""
+    own = str(Path(matplotlib.get_data_path()))
+    found = {
+        font.fname: font.name
+        for font in font_manager.fontManager.ttflist
+        if not font.fname.startswith(own) and NO_LETTERS not in font.name and font.style == "normal"
+    }
+    rank = {name: next((at for at, part in enumerate(USUAL) if part in name), len(USUAL)) for name in found.values()}
+    return tuple((name, path) for path, name in sorted(found.items(), key=lambda one: (rank[one[1]], one[0])))
+
+
+@cache
+def embedded_font(character: str) -> tuple[str, str]:
+    """(name for reportlab, family for matplotlib) of a font of this computer that has `character`; ("", "") if none."""
+    for family, path in _having(character):
+        name = f"Foreign-{Path(path).stem}"
+        if name in pdfmetrics.getRegisteredFontNames():
+            return name, family
+        try:
+            font = TTFont(name, path)
+        except (TTFError, OSError, ValueError):  # outlines or licences that cannot be embedded
+            continue
+        if ord(character) in font.face.charToGlyph:
+            pdfmetrics.registerFont(font)
+            return name, family
+    return "", ""
+
+
+def _having(character: str) -> Iterator[tuple[str, str]]:
+    """Those of this computer's fonts that have it."""
+    for family, path in system_fonts():
+        try:
+            if FT2Font(path).get_char_index(ord(character)):
+                yield family, path
+        except (RuntimeError, OSError):
+            continue
+
+
+@cache
+def named_font(name: str) -> str:
+    """Register one of Adobe's East Asian fonts: not embedded, the reader's program brings it."""
+    pdfmetrics.registerFont(UnicodeCIDFont(name))
+    return name
+
+
+def east_asian_font(text: str) -> str:
+    """The named font for the East Asian characters of `text`."""
+    if any(0xAC00 <= ord(c) <= 0xD7A3 or 0x1100 <= ord(c) <= 0x11FF for c in text):
+        return named_font(_HANGUL)
+    if any(0x3040 <= ord(c) <= 0x30FF for c in text):
+        return named_font(_JAPANESE)
+    return named_font(_CHINESE)
+
+
+def is_east_asian(character: str) -> bool:
+    """Whether a named font has it."""
+    point = ord(character)
+    return (
+        0x1100 <= point <= 0x11FF
+        or 0x2E80 <= point <= 0x9FFF
+        or 0xAC00 <= point <= 0xD7A3
+        or (0xF900 <= point <= 0xFAFF or 0xFF00 <= point <= 0xFFEF)
+    )

@@ -1,0 +1,121 @@
+"""Scripts that the report's own fonts lack: set in a font of this computer, or a note says what is missing."""
+
+import io
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from fontTools.fontBuilder import FontBuilder
+from fontTools.pens.ttGlyphPen import TTGlyphPen
+from pypdf import PdfReader
+
+from core.report import foreign_fonts
+from core.report.content import SECTIONS
+from core.report.figures import drawable, families
+from core.report.pdf import build_report
+from core.report.points_plot import points_figure
+from core.report.style import NO_FONT, NOT_EMBEDDED, font_note, markup, prepare_reportlab
+
+from .report_samples import block_content
+
+CHINESE, THAI = "量块", "ก"
+
+
+def font_file(path, characters):
+    """A TrueType font with a square for each of these characters."""
+    pen = TTGlyphPen(None)
+    for move, at in ((pen.moveTo, (0, 0)), (pen.lineTo, (0, 900)), (pen.lineTo, (900, 900)), (pen.lineTo, (900, 0))):
+        move(at)
+    pen.closePath()
+    square, names = pen.glyph(), {ord(character): f"g{ord(character):X}" for character in characters}
+    builder = FontBuilder(1000, isTTF=True)
+    builder.setupGlyphOrder([".notdef", *names.values()])
+    builder.setupCharacterMap(names)
+    builder.setupGlyf({name: square for name in (".notdef", *names.values())})
+    builder.setupHorizontalMetrics({name: (1000, 0) for name in (".notdef", *names.values())})
+    builder.setupHorizontalHeader(ascent=900, descent=-100)
+    builder.setupNameTable({"familyName": "Squares", "styleName": "Regular", "psName": "Squares"})
+    builder.setupOS2(sTypoAscender=900, sTypoDescender=-100, fsType=0)
+    builder.setupPost()
+    builder.save(str(path))
+
+
+@pytest.fixture
+def computer(monkeypatch):
+    """A computer with these fonts alone: (family, path)."""
+    prepare_reportlab()
+
+    def has(*fonts):
+        monkeypatch.setattr(foreign_fonts, "system_fonts", lambda: fonts)
+        foreign_fonts.embedded_font.cache_clear()
+
+    yield has
+    foreign_fonts.embedded_font.cache_clear()
+
+
+@pytest.fixture(scope="module")
+def bare():
+    return replace(block_content(), hidden=frozenset(SECTIONS), gauge=None)
+
+
+def fonts_and_text(data):
+    pages = PdfReader(io.BytesIO(data)).pages
+    fonts = [font.get_object() for page in pages for font in page["/Resources"]["/Font"].values()]
+    return fonts, " ".join("".join(page.extract_text() for page in pages).split())
+
+
+def test_a_font_of_this_computer_is_embedded_for_its_characters_alone(computer, bare, tmp_path):
+    font_file(tmp_path / "squares.ttf", CHINESE)
+    computer(("Squares", str(tmp_path / "squares.ttf")))
+    fonts, text = fonts_and_text(build_report(replace(bare, part=f"Teil {CHINESE} 7")))
+    assert f"Teil {CHINESE} 7" in text
+    assert any("Squares" in font["/BaseFont"] for font in fonts)
+    assert all("/FontFile2" in font["/FontDescriptor"] for font in fonts)
+    assert NOT_EMBEDDED not in text
+    assert markup(f"a{CHINESE}b") == f'a<font name="Foreign-squares">{CHINESE}</font>b'
+    assert (drawable(CHINESE), families(CHINESE)) == (CHINESE, ["DejaVu Sans", "Squares"])
+
+
+def test_east_asian_text_without_a_font_is_left_to_the_readers_program_and_a_note_says_so(computer, bare):
+    computer()
+    fonts, text = fonts_and_text(build_report(replace(bare, part=CHINESE)))
+    assert CHINESE in text
+    assert NOT_EMBEDDED in text
+    assert any("/FontDescriptor" not in font or "/FontFile2" not in font["/FontDescriptor"] for font in fonts)
+    german = fonts_and_text(build_report(replace(bare, part=CHINESE, language="de")))[1]
+    assert "Einige ostasiatische Zeichen dieses Berichts" in german
+
+
+def test_a_character_no_font_has_is_printed_by_its_code_point_and_a_note_says_so(computer, bare):
+    computer()
+    text = fonts_and_text(build_report(replace(bare, part=f"part {THAI}\U00010330\ntwo")))[1]
+    assert "part [U+0E01][U+10330] two" in text
+    assert NO_FONT in text
+
+
+def test_a_font_that_cannot_be_read_or_embedded_is_passed_over(computer, tmp_path):
+    (tmp_path / "broken.ttf").write_bytes(b"no font")
+    font_file(tmp_path / "thai.ttf", THAI)
+    computer(("Broken", str(tmp_path / "broken.ttf")), ("Thai", str(tmp_path / "thai.ttf")))
+    assert foreign_fonts.embedded_font(THAI) == ("Foreign-thai", "Thai")
+    assert font_note([f"x {THAI}"]) == ""
+
+
+def test_what_the_reports_own_fonts_have_needs_no_note(computer):
+    computer()
+    assert font_note(["Größe Κύβος Концевая 50 µm ± σ\u00a0\n"]) == ""
+
+
+def test_this_computers_fonts_are_files_and_none_has_a_box_for_everything():
+    assert all("Last Resort" not in family for family, _ in foreign_fonts.system_fonts())
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_plot_has_no_empty_boxes(computer, bare):
+    """Matplotlib warns of each character that its font lacks."""
+    from core.report.look import Look
+
+    computer()
+    figure = points_figure(Look.of(bare), bare.cloud, {CHINESE: np.arange(50)}, (1920, 1374), 160.0, 70.0)
+    figure.canvas.draw()
+    assert [text.get_text().split("\n")[0] for text in figure.axes[0].get_legend().get_texts()] == ["??"]
