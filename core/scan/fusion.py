@@ -11,14 +11,12 @@ The points of one cell are averaged with weights 1/σ², but
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from core.errors import InputError
-from core.model.arrays import Array
 from core.progress import Progress, silent
-from core.scan.cells import fuse_cells, sorted_by_cell
+from core.scan.cells import cells_of, fuse_cells, sorted_by_cell
 from core.scan.cloud import Cloud
-from core.scan.normals import STEEPEST, pixel_angle, with_normals
+from core.scan.normals import ENOUGH, STEEPEST, pixel_angle, with_normals
 from core.scan.surface import Surface, grid_shape
 
 __all__ = ["CELLS_ACROSS", "fuse", "with_normals"]
@@ -57,48 +55,31 @@ def fuse(
         If the cloud holds no point with finite depth and positive σ.
     """
     cell = max(1.0, image_size[0] / CELLS_ACROSS) if cell_px is None else float(cell_px)
-    usable = np.isfinite(cloud.points).all(axis=1) & (cloud.points[:, 2] > 0) & (cloud.sigma > 0)
-    if not usable.any():
+    shape = grid_shape(image_size, cell)
+    progress("fusion", 0, 2)
+    cell_of = cells_of(cloud.points, cloud.uv, cloud.sigma, shape, cell)
+    usable = np.flatnonzero(cell_of >= 0)
+    if not len(usable):
         raise InputError(
             "the cloud holds no point with a depth, so there is no surface to fuse",
             todo="check the stripes and crossings found in the frames of the scan",
         )
-    progress("fusion", 0, 2)
-    index = np.flatnonzero(usable)
-    cell_of = _cell_index(cloud.uv[index], image_size, cell)
+    sample = usable[:: max(1, len(usable) // ENOUGH)].copy()
+    del usable  # a cloud may fill a good part of the memory: nothing is kept longer than it is of use
+    uv = cloud.uv[sample]
+    angle = pixel_angle(cloud.points[sample], uv) if np.ptp(uv, axis=0).any() else 0.0
+    slope = STEEPEST * cell * angle / 2  # neighbours in depth lie about half a cell apart at most
     progress("fusion", 1, 2)
-    surface = _average(cloud, index, cell_of, image_size, cell)
-    progress("fusion", 2, 2)
-    return surface
-
-
-def _cell_index(uv: Array, image_size: tuple[int, int], cell_px: float) -> NDArray[np.int64]:
-    """Flat index of the cell of each pixel position; positions on the rim belong to the outermost cells."""
-    rows, columns = grid_shape(image_size, cell_px)
-    column, row = (np.floor((uv[:, axis] + 0.5) / cell_px).astype(np.int64) for axis in range(2))
-    flat: NDArray[np.int64] = np.clip(row, 0, rows - 1) * columns + np.clip(column, 0, columns - 1)
-    return flat
-
-
-def _average(
-    cloud: Cloud, index: NDArray[np.int64], cell_of: NDArray[np.int64], image_size: tuple[int, int], cell_px: float
-) -> Surface:
-    """Weighted means per cell of the points `index` of the layer that stays there, each sweep one observation."""
-    usable = index if len(index) < len(cloud) else slice(None)
-    points, uv, sigma = cloud.points[usable], cloud.uv[usable], cloud.sigma[usable]
-    angle = pixel_angle(points, uv) if np.ptp(uv, axis=0).any() else 0.0
-    slope = STEEPEST * cell_px * angle / 2  # neighbours in depth lie about half a cell apart at most
-    sweep = cloud.sweep[usable]
-    sweep = sweep - sweep.min()
-    order, starts = sorted_by_cell(cell_of, int(np.prod(grid_shape(image_size, cell_px))))
+    order, starts = sorted_by_cell(cell_of, shape[0] * shape[1])
     cells = np.flatnonzero(np.diff(starts))
-    values = np.column_stack([points, uv, cloud.intensity[usable]])
-    means, total, count, fused = fuse_cells(order, starts, cells, values, sigma, sweep, GAP, slope)
-    member = np.full(len(cloud), -1, dtype=np.int64)
-    member[index] = fused
+    means, total, count, member = fuse_cells(
+        order, starts, cells, cloud.points, cloud.uv, cloud.intensity, cloud.sigma, cloud.sweep, GAP, slope
+    )
+    del cell_of, order
+    progress("fusion", 2, 2)
     return Surface(
         image_size=image_size,
-        cell_px=cell_px,
+        cell_px=cell,
         cells=cells,
         points=means[:, :3],
         uv=means[:, 3:5],
