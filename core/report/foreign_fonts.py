@@ -18,8 +18,8 @@ from reportlab.pdfbase.cidfonts import UnicodeCIDFont
 from reportlab.pdfbase.ttfonts import TTFError, TTFont
 
 USUAL = ("CJK", "Sans SC", "Sans JP", "Sans KR", "YaHei", "SimSun", "SimHei", "Meiryo", "Yu Gothic", "MS Gothic",
-         "Malgun", "Batang", "PingFang", "Hiragino", "SD Gothic", "AppleGothic", "WenQuanYi", "Droid Sans Fallback", "IPA",
-         "Takao", "Nanum", "Unicode MS", "Noto Sans", "Segoe UI", "Tahoma")  # fmt: skip
+         "Malgun", "Batang", "PingFang", "Hiragino", "SD Gothic", "AppleGothic", "WenQuanYi", "Droid Sans Fallback",
+         "IPA", "Takao", "Nanum", "Unicode MS", "Noto Sans", "Segoe UI", "Tahoma")  # fmt: skip
 """In the names of fonts of many scripts: looked into before all others."""
 NO_LETTERS = "Last Resort"
 """A font that has a box for every character."""

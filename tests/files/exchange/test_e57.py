@@ -1,13 +1,13 @@
-import struct
 from datetime import UTC, datetime
 
 import numpy as np
 import pye57
 import pytest
-from lxml import etree
 
 from core.errors import InputError
 from core.files.exchange.e57 import write_e57
+
+from .e57_reader import points_of, xml_of
 
 AT = datetime(2026, 3, 14, 15, 9, 26, tzinfo=UTC)
 
@@ -18,21 +18,18 @@ def written(tmp_path, content):
     return tmp_path / "c.e57"
 
 
-def xml_of(path):
-    """The XML section by the standard's own layout: pages of 1024 bytes, the last four of each a check sum."""
-    data = path.read_bytes()
-    assert data[:8] == b"ASTM-E57"
-    assert len(data) % 1024 == 0
-    place, length = struct.unpack_from("<QQ", data, 24)
-    logical = b"".join(data[start : start + 1020] for start in range(0, len(data), 1024))
-    start = place // 1024 * 1020 + place % 1024
-    return etree.fromstring(logical[start : start + length])
-
-
 def test_another_program_reads_the_points_in_metres_and_sigma_as_intensity(written, content):
     read = pye57.E57(str(written)).read_scan(0, intensity=True, ignore_missing_fields=True)
     xyz = np.column_stack([read[f"cartesian{axis}"] for axis in "XYZ"])
     assert np.allclose(xyz, content.cloud.points / 1000, rtol=0, atol=1e-12)
+    assert np.array_equal(read["intensity"], content.cloud.sigma.astype(np.float32))
+
+
+def test_a_reader_made_from_the_standard_alone_finds_the_same_points_and_right_check_sums(written, content):
+    read = points_of(written)
+    assert list(read) == ["cartesianX", "cartesianY", "cartesianZ", "intensity"]
+    for n, axis in enumerate("XYZ"):
+        assert np.allclose(read[f"cartesian{axis}"], content.cloud.points[:, n] / 1000, rtol=0, atol=1e-12)
     assert np.array_equal(read["intensity"], content.cloud.sigma.astype(np.float32))
 
 
