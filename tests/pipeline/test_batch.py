@@ -13,9 +13,12 @@ from types import SimpleNamespace
 import pytest
 
 from core.errors import Cancelled, InputError
-from core.pipeline import batch
+from core.files.pictures import read_picture, write_picture
+from core.pipeline import Options, batch, run
 from core.pipeline.batch import STEP, STOP, run_batch
 from core.pipeline.executors import executor_of
+from core.simulate.recording import simulate_set
+from core.simulate.scenario import Scenario
 from tests.simulated import trisect
 
 
@@ -139,34 +142,50 @@ def test_without_dask_one_sentence_says_what_to_install(quick, tmp_path, monkeyp
     assert "pip install 'trisect[cluster]'" in said.sentence
 
 
-def test_processes_of_their_own_measure_the_sets(tmp_path):
+QUICK = Options(method="three-crossings", sigma_cut_mm=0.5)
+SAME = ("camera.json", "planes.json", "cloud.ply", "mesh.ply", "gauge.json")
+
+
+@pytest.fixture(scope="module")
+def tiny(tmp_path_factory):
+    """A set that is quickly measured, what a run makes of it, and the same set with its frames recorded as PGM."""
+    folder = tmp_path_factory.mktemp("tiny")
+    simulate_set(Scenario(scale=0.2, frames=8, camera_views=6, plane_poses=4, seed=3), folder / "png")
+    run(folder / "png", folder / "out", QUICK)
+    shutil.copytree(folder / "png", folder / "pgm")
+    frames = sorted((folder / "pgm" / "scan").glob("frame*.png"))
+    assert len(frames) == 8
+    for frame in frames:
+        write_picture(frame.with_suffix(".pgm"), read_picture(frame))
+        frame.unlink()
+    return folder
+
+
+def measures_what_a_run_measures(executor, tiny, out):
+    """A set of PGM frames and an empty folder, as a batch."""
+    block, empty = run_batch([tiny / "pgm", *sets(out, "empty")], out / "results", executor, QUICK)
+    assert block.error == ""
+    assert block.frames == 8
+    assert "rig.toml" in empty.error
+    for name in SAME:
+        assert (block.out / name).read_bytes() == (tiny / "out" / name).read_bytes(), name
+
+
+@pytest.mark.slow
+def test_processes_measure_the_very_same_as_a_run_and_pgm_frames_as_png_frames(tiny, tmp_path):
     with executor_of("processes", 1) as executor:
-        results = run_batch(sets(tmp_path, "empty", "hollow"), tmp_path / "out", executor)
-    assert all("rig.toml" in result.error for result in results)
+        measures_what_a_run_measures(executor, tiny, tmp_path)
 
 
-def test_a_dask_cluster_of_separate_processes_measures_the_sets(tmp_path):
+@pytest.mark.slow
+def test_a_dask_cluster_of_separate_processes_measures_the_very_same_as_a_run(tiny, tmp_path):
     distributed = pytest.importorskip("distributed", reason="pip install 'trisect[cluster]'")
     with distributed.LocalCluster(
         n_workers=1, threads_per_worker=1, processes=True, dashboard_address=None, local_directory=str(tmp_path)
     ) as cluster:
         address = cluster.scheduler_address.removeprefix("tcp://")
         with executor_of(f"dask://{address}") as executor:
-            results = run_batch(sets(tmp_path, "empty", "hollow"), tmp_path / "out", executor)
-    assert all("rig.toml" in result.error for result in results)
-
-
-@pytest.mark.slow
-def test_processes_measure_the_same_as_one_run(simulated, measured, tmp_path):
-    one = shutil.copytree(simulated, tmp_path / "one")
-    (tmp_path / "empty").mkdir()
-    said = trisect("batch", one, tmp_path / "empty", "--out", tmp_path / "out", "--sigma-cut", "0.3", "--json")
-    assert said.code == 2
-    whole, empty = json.loads(said.out)["sets"]
-    expected = json.loads((measured / "gauge.json").read_text())
-    assert whole["thickness_mm"] == pytest.approx(expected["thickness_mm"], abs=1e-4)  # linear algebra on fewer threads
-    assert empty["thickness_mm"] is None
-    assert (tmp_path / "out" / "one" / "report.pdf").is_file()
+            measures_what_a_run_measures(executor, tiny, tmp_path)
 
 
 @pytest.mark.slow
