@@ -123,7 +123,7 @@ class Lane(QObject):
         offers
             Keywords the function takes and what it gets for them: "progress" (default), "watch", "channel".
         replace_waiting
-            Drop waiting jobs with the same label: only the newest matters.
+            Drop waiting ones of this job with the same label: only the newest matters.
         """
         self._numbers += 1
         task = Task(self, self._numbers, label)
@@ -133,7 +133,7 @@ class Lane(QObject):
         if on_cancelled:
             task.cancelled.connect(on_cancelled)
         if replace_waiting:
-            for waiting, *_ in [entry for entry in self._waiting if entry[0].label == label]:
+            for waiting in [one for one, other, *_ in self._waiting if (one.label, other) == (label, job)]:
                 self.cancel(waiting)
         self._waiting.append((task, job, args, {"progress": "progress"} if offers is None else offers))
         self._next()

@@ -60,7 +60,7 @@ class HandLane(QObject):
         if on_cancelled:
             task.cancelled.connect(on_cancelled)
         if replace_waiting:
-            for old in [entry for entry in self.waiting[1:] if entry[0].label == label]:
+            for old in [entry for entry in self.waiting[1:] if (entry[0].label, entry[1]) == (label, job)]:
                 self.waiting.remove(old)
                 old[0].cancelled.emit()
         self.waiting.append((task, job, args, {"progress": "progress"} if offers is None else offers))

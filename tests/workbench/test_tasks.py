@@ -71,6 +71,15 @@ def test_only_the_newest_waiting_job_of_a_label_is_run_if_asked(qtbot: Any, lane
     assert answers.got == [("cancelled", None), ("done", 2), ("done", 6)]
 
 
+def test_another_job_of_the_same_label_keeps_waiting(qtbot: Any, lane: Lane) -> None:
+    answers = Answers()
+    answers.run(lane, "double", 1)
+    answers.run(lane, "double", 2)
+    lane.run(job("refuse"), label="double", on_done=lambda _: None, replace_waiting=True)
+    finish(qtbot, lane)
+    assert answers.got == [("done", 2), ("done", 4)]
+
+
 def test_bad_input_arrives_as_its_one_sentence(qtbot: Any, lane: Lane) -> None:
     answers = Answers()
     answers.run(lane, "refuse")
