@@ -5,27 +5,51 @@ With --readme only the four that the README shows, small (make pictures).
 
 from __future__ import annotations
 
+import math
 import sys
 import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any, cast
 
+import numpy as np
 from PIL import Image
-from PySide6.QtCore import QSize, Qt
+from PySide6.QtCore import QPoint, QSize, Qt
 from PySide6.QtGui import QImage, QPainter
-from PySide6.QtWidgets import QApplication
+from PySide6.QtWidgets import QApplication, QScrollArea, QWidget
 
+from core.files.stl import write_stl
+from core.inspect.characteristic import Limits
+from core.inspect.inspection_plan import Auto, Deviation, FeatureSpec, InspectionPlan, Section
+from core.scan.surface import Mesh
+from core.simulate.objects import gauge_block
+from tests.study.grr_tables import AIAG
 from workbench.app import Application, build_window
 from workbench.bench import Bench, make_bench
 from workbench.main_window import MainWindow
 from workbench.settings import AppSettings
 from workbench.steps import STEPS
+from workbench.style_sheet import is_polishing
 
 SIZES = (QSize(1280, 800), QSize(1920, 1080))
 THEMES = ("light", "dark")
 README = ("camera", "scan", "inspect", "report")
 README_WIDTH = 900
+PATIENCE_S = 600.0
+NOMINAL = "block.stl"
+PLAN = InspectionPlan(
+    (
+        FeatureSpec("thickness", "thickness", limits=(("thickness", Limits(50.0, -0.1, 0.1)),)),
+        FeatureSpec("table", "plane", (Auto(1),)),
+        FeatureSpec("top", "plane", (Auto(2),), limits=(("flatness", Limits(0.0, -math.inf, 0.1)),)),
+        FeatureSpec("middle", "point", (Auto(2),)),
+        FeatureSpec("height", "distance", of=("middle", "table")),
+        FeatureSpec("profile", "section", section=Section(((300.0, 820.0), (1600.0, 820.0)))),
+        FeatureSpec("nominal", "deviation", deviation=Deviation(NOMINAL, tolerance_mm=0.1)),
+    )
+)
+"""Measured on the sample before its pictures are taken."""
 
 
 def main() -> int:
@@ -47,19 +71,102 @@ def main() -> int:
 
 def _all(app: QApplication, bench: Bench, window: MainWindow, folder: Path) -> None:
     _each(app, bench, window, folder, "0-welcome")
-    window.doors.open_sample()
-    _wait(app, lambda: window.model.is_open and not bench.measuring.busy, 300)
+    _open_sample(app, bench, window)
     for number, step in enumerate(STEPS, start=1):
         window.go_to(step.name)
         _settle(app, bench, 2.0)
-        _each(app, bench, window, folder, f"{number}-{step.name}")
+        if step.name == "inspect":
+            for name in _inspect_tabs(app, bench, window):
+                _each(app, bench, window, folder, f"{number}-inspect-{name}")
+        else:
+            _each(app, bench, window, folder, f"{number}-{step.name}")
+
+
+def _open_sample(app: QApplication, bench: Bench, window: MainWindow) -> None:
+    """The finished sample, with features measured on it and a repeat."""
+    window.doors.open_sample()
+    _wait(app, lambda: window.model.is_open and not bench.measuring.busy, PATIENCE_S)
+    assert window.model.folder is not None
+    _write_nominal(window.model.folder / NOMINAL)
+    window.go_to("inspect")
+    inspect: Any = window.presenters["inspect"]
+    _wait(app, lambda: inspect.view is not None, PATIENCE_S)
+    inspect.repeats.add()
+    inspect.features.put_plan(PLAN, "features")
+    inspect.features.measure()
+    _wait(app, lambda: not inspect.features.measuring, PATIENCE_S)
+    inspect.features.choose(PLAN.names[0])
+
+
+def _inspect_tabs(app: QApplication, bench: Bench, window: MainWindow) -> Iterator[str]:
+    """Name after name of what there is to be seen on the inspect page, each shown before it is named."""
+    inspect, page = cast(Any, window.presenters["inspect"]), cast(Any, window.pages["inspect"])
+
+    def shown(tab: Any, feature: str = "") -> None:
+        page.tabs.setCurrentWidget(tab)
+        inspect.features.choose(feature)
+        _settle(app, bench, 1.0)
+
+    for name, tab, feature in (
+        ("surface", page.surface, ""),
+        ("feature", page.surface, "top"),
+        ("deviations", page.surface, "nominal"),
+        ("picture", page.picture, "profile"),
+        ("plot", page.plot, "profile"),
+        ("histogram", page.plot, "nominal"),
+        ("repeats", page.series, ""),
+        ("no-studies", page.studies, ""),
+    ):
+        shown(tab, feature)
+        if feature:
+            _side_to(page, page.features)
+        yield name
+    inspect.studies.begin("grr")
+    inspect.studies.write(_published_study())
+    inspect.studies.set_value("tolerance_mm", 4.0)
+    yield "study-editor"
+    inspect.studies.finish()
+    _wait(app, lambda: inspect.studies.study is not None, PATIENCE_S)
+    yield "studies"
+    for key, value in (("primary", "table"), ("at 20 °C", True), ("with master", True), ("name", "Block 50 no. 7")):
+        inspect.features.conditions.set_value(key, value)
+    shown(page.surface)
+    page.conditions_fold.expand(animate=False)
+    _wait(app, lambda: not inspect.features.measuring, PATIENCE_S)
+    _settle(app, bench, 0.5)
+    _side_to(page, page.conditions_fold)
+    yield "conditions"
+    page.conditions_fold.collapse(animate=False)
+
+
+def _side_to(page: Any, widget: QWidget) -> None:
+    """Scroll the side panel so that `widget` begins at its top."""
+    QApplication.processEvents()
+    for area in page.findChildren(QScrollArea):
+        inside = area.widget()
+        if inside is not None and inside.isAncestorOf(widget):
+            area.verticalScrollBar().setValue(widget.mapTo(inside, QPoint(0, 0)).y())
+
+
+def _write_nominal(path: Path) -> None:
+    """The sample's block as a designer would draw it, from the program's own scene."""
+    corners = gauge_block(50.0).triangles
+    triangles = np.arange(3 * len(corners)).reshape(-1, 3)
+    vertices = corners.reshape(-1, 3)
+    write_stl(path, Mesh(vertices, np.zeros_like(vertices), np.zeros(len(vertices)), triangles))
+
+
+def _published_study() -> str:
+    """AIAG's example of a gauge R&R study."""
+    cells = np.ndenumerate(AIAG)
+    rows = [f"{part + 1};{'ABC'[operator]};{value:.2f}" for (part, operator, _), value in cells]
+    return "\n".join(["part;operator;value", *rows])
 
 
 def _readme(app: QApplication, bench: Bench, window: MainWindow, folder: Path) -> None:
     """The README's pictures: few colours are enough, and keep them small."""
     window.resize(SIZES[0])
-    window.doors.open_sample()
-    _wait(app, lambda: window.model.is_open and not bench.measuring.busy, 300)
+    _open_sample(app, bench, window)
     for name in README:
         window.go_to(name)
         _settle(app, bench, 8.0)
@@ -95,7 +202,7 @@ def grab(window: MainWindow) -> QImage:
 
 def _settle(app: QApplication, bench: Bench, seconds: float) -> None:
     until = time.monotonic() + seconds
-    _wait(app, lambda: time.monotonic() > until and not bench.quick.busy, 30)
+    _wait(app, lambda: time.monotonic() > until and not bench.quick.busy and not is_polishing(app), 60)
 
 
 def _wait(app: QApplication, done: Callable[[], bool], seconds: float) -> None:

@@ -70,7 +70,7 @@ def source_of_none(spec: FeatureSpec) -> str:
         return _tr("the whole scan")
     if spec.kind in ("thickness", "steps") and len(spec.regions) == 1:
         return _tr("found automatically")
-    return _tr("found, by number") if spec.kind in ("plane", "point", "thickness", "steps") else _tr("found")
+    return _tr("by number") if spec.kind in ("plane", "point", "thickness", "steps") else _tr("found")
 
 
 def value(row: Characteristic) -> str:

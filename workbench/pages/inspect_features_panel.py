@@ -153,6 +153,8 @@ class FeaturesPanel(QWidget):
         else:
             tips += [words.used(result), *(words.tip(row) for row in rows)]
             self._mark(item, words.verdict(result))
+            if not rows:
+                item.setText(1, self.tr("measured"))
             if len(rows) > 1:
                 item.addChildren([self._row(words.short_name(row, name), row, name) for row in rows])
         for column in (0, 1):

@@ -34,7 +34,7 @@ class PlotTab(QWidget):
         row.setSpacing(14)
         row.addWidget(self.chart, 1)
         row.addWidget(self.rows, 0, Qt.AlignmentFlag.AlignTop)
-        self.rows.setMinimumWidth(260)
+        self.rows.setMinimumWidth(320)
         column.addLayout(row, 1)
 
     def refresh(self) -> None:
@@ -53,6 +53,7 @@ class PlotTab(QWidget):
         else:
             self.rows.set_rows([])
             self.chart.clear(self._message(result))
+        self.rows.setVisible(result is not None and bool(result.rows))
 
     def _message(self, result: ShownFeature | None) -> str:
         if result is not None and result.problem:

@@ -167,7 +167,7 @@ class StudiesTab(QWidget):
             return
         self._shown_study = study
         headers, body = words.table(kept.kind, study)
-        self.title.setText(f"{words.kind_title(kept.kind)}: {kept.title}".replace("&", "&&"))
+        self.title.setText(f"{words.kind_title(kept.kind)}: {kept.title}")
         self.rows.set_rows(words.rows(kept.kind, study))
         self.table.set_headers(headers)
         self.table.set_rows(body)

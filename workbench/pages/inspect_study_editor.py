@@ -71,7 +71,7 @@ class StudyEditor(QWidget):
         studies, draft = self._studies, self._studies.draft
         if draft is None:
             return
-        self.title.setText(words.kind_title(draft.kind).replace("&", "&&"))
+        self.title.setText(words.kind_title(draft.kind))
         self.help.setText(self._help(draft))
         if self.text.toPlainText() != draft.text:
             self.text.setPlainText(draft.text)

@@ -100,8 +100,8 @@ def _components(study: GrrStudy) -> Table:
         "total": _tr("total"),
     }
     with_tolerance = study.tolerance is not None
-    headers = [(_tr("Source"), ""), (_tr("s"), study.unit), (_tr("Share of s²"), "%"), (_tr("Of the total"), "%")]
-    headers += [(_tr("Of T"), "%")] if with_tolerance else []
+    headers = [(_tr("Source"), ""), (_tr("s"), study.unit), (_tr("% of s²"), ""), (_tr("% of total"), "")]
+    headers += [(_tr("% of T"), "")] if with_tolerance else []
     body: list[Sequence[str]] = []
     for one in study.components:
         shares = [one.contribution, one.of_total] + ([one.of_tolerance or 0.0] if with_tolerance else [])

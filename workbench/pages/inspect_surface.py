@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from html import escape
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -215,6 +216,22 @@ class SurfaceTab(QWidget):
         for one in result.deviations.classes:
             self._highlight(f"deviation {one.number}", one.places, DEVIATIONS[one.number + len(DEVIATIONS) // 2])
 
+    def _legend(self) -> str:
+        """What the colours of the chosen feature mean, each with its sign, behind what is shown."""
+        features = self._presenter.features
+        result = features.result(features.chosen)
+        if result is None or not result.used:
+            return ""
+        dot = "<span style='color:{0}'>●</span> {1}"
+        name = escape(result.name)
+        if result.deviations is None:
+            return self.tr("; {0}").format(dot.format(FEATURE, self.tr("used for {0}").format(name)))
+        middle = len(DEVIATIONS) // 2
+        signs = [dot.format(DEVIATIONS[one.number + middle], one.mark or "0") for one in result.deviations.classes]
+        return self.tr("; {0} in quarters of ±{1} mm: {2}").format(
+            name, f"{result.deviations.tolerance_mm:g}", " ".join(signs)
+        )
+
     def _highlight(self, name: str, places: Any, colour: str) -> None:
         if len(places):
             self.scene.set_highlight(name, places, colour)
@@ -271,5 +288,5 @@ class SurfaceTab(QWidget):
             shown += self.tr(": <span style='color:{0}'>●</span> {1} used on the upper face, ").format(
                 FACE_UPPER, grouped(upper)
             ) + self.tr("<span style='color:{0}'>●</span> {1} on the lower").format(FACE_LOWER, grouped(lower))
-        self.line.setText(shown)
+        self.line.setText(shown + self._legend())
         self.hint.setText(self.tr("Outlining …") if p.outlining else p.picks.hint())

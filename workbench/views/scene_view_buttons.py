@@ -4,7 +4,18 @@ from __future__ import annotations
 
 import qtawesome
 from PySide6.QtCore import QCoreApplication, QPointF, QSize, Qt, Signal
-from PySide6.QtGui import QAction, QColor, QIcon, QKeySequence, QPainter, QPalette, QPen, QPixmap, QPolygonF
+from PySide6.QtGui import (
+    QAction,
+    QColor,
+    QGuiApplication,
+    QIcon,
+    QKeySequence,
+    QPainter,
+    QPalette,
+    QPen,
+    QPixmap,
+    QPolygonF,
+)
 from PySide6.QtWidgets import QToolBar, QToolButton, QWidget
 
 ICON = 20
@@ -77,7 +88,8 @@ class SceneButtons(QToolBar):
     def dress(self) -> None:
         """Make the icons follow the palette."""
         role = QPalette.ColorRole
-        text, accent = self.palette().color(role.WindowText), self.palette().color(role.Highlight)
+        palette = QGuiApplication.palette()  # the bar's own is told of a new theme after the view it belongs to
+        text, accent = palette.color(role.WindowText), palette.color(role.Highlight)
         library = {
             "iso": "mdi6.cube-outline",
             "camera": "mdi6.camera-outline",

@@ -379,6 +379,7 @@ def test_deviations_are_drawn_by_class_and_their_shares_are_told(page, features,
     assert page.plot.rows.text_of("+!  over +0.1 mm") == "12.5%"
     assert page.plot.rows.text_of("−!  under −0.1 mm") == "0.0%"
     page.tabs.setCurrentWidget(page.surface)
+    assert all(f"</span> {sign}" in page.surface.line.text() for sign in ("−!", "−−−", "0", "++", "+!"))
     features.choose("")
     assert not {name for kind, name in page.surface.scene._scene.items if kind is Marks}
 
