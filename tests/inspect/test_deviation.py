@@ -9,10 +9,10 @@ from core.errors import InputError
 from core.inspect.alignment import best_fit
 from core.inspect.deviation_map import classes_of, mark
 from core.inspect.evaluate import evaluate
-from core.inspect.inspection_plan import Deviation, FeatureSpec, InspectionPlan
+from core.inspect.inspection_plan import Deviation, FeatureSpec, InspectionPlan, PartFrame, Polygon
 from core.scan.triangles import Surroundings, Triangles
 from core.simulate.objects import step_block
-from tests.inspect.shape_scan import BALL, BALL_RADIUS, ShapeScan
+from tests.inspect.shape_scan import BALL, BALL_RADIUS, PIN, PIN_AXIS, ShapeScan
 
 STEPS = Triangles(step_block((12.0, 20.0, 31.0), (60.0, 35.0)).triangles)
 
@@ -102,6 +102,35 @@ def test_a_ball_too_large_by_a_twentieth_shows_it_with_an_honest_uncertainty():
         assert counts.sum() == len(deviations.deviation)
         assert edges[np.argmax(counts)] == pytest.approx(0.05, abs=0.03)
     assert 0.4 < np.sqrt(np.mean(np.square(relative))) < 1.6
+
+
+def test_a_nominal_surface_in_part_coordinates_is_laid_on_by_the_parts_frame():
+    """z up from the table, x along the pin, which way is not said: so the nominal ball stands on both sides."""
+    scan = ShapeScan(spacing_px=24.0)
+    aside = BALL - PIN - PIN_AXIS * (PIN_AXIS @ (BALL - PIN))
+    mesh = trimesh.creation.icosphere(subdivisions=4, radius=BALL_RADIUS - 0.05)
+    places = [[0.0, side * np.hypot(*aside[:2]), BALL_RADIUS] for side in (-1, 1)]
+    nominal = Triangles(np.concatenate([np.asarray(mesh.triangles) + place for place in places]))
+    boxes = [
+        Polygon(((low[0], low[1]), (high[0], low[1]), (high[0], high[1]), (low[0], high[1])))
+        for low, high in ((scan.uv[scan.on == one].min(axis=0), scan.uv[scan.on == one].max(axis=0)) for one in (0, 1))
+    ]
+    features = (
+        FeatureSpec("table", "plane"),
+        FeatureSpec("pin", "cylinder", (boxes[1],)),
+        FeatureSpec("ball", "sphere", (boxes[0],)),
+        FeatureSpec("form", "deviation", deviation=Deviation("ball.stl", "frame", 0.1, 1.0)),
+    )
+    cloud, nominals = scan.measure(np.random.default_rng(3)), {"ball.stl": nominal}
+    plan = InspectionPlan(features, PartFrame("table", "pin", "ball"))
+    inspection = evaluate(plan, cloud, errors=scan.errors, nominals=nominals)
+    mean = next(row for row in inspection.characteristics if row.name == "form mean")
+    assert mean.value == pytest.approx(0.05, abs=2 * mean.u)
+    assert mean.u < 0.025
+    used = inspection.result("form").indices
+    assert np.mean(scan.on[used] == 0) > 0.98
+    without = evaluate(InspectionPlan(features[3:]), cloud, nominals=nominals)
+    assert "no part coordinates to align it by" in without.problems[0]
 
 
 def test_without_its_file_a_deviation_is_a_problem():
