@@ -3,6 +3,11 @@
 Edges are collapsed in the order of their quadric error. That measure says nothing of millimetres, so afterwards every
 vertex of the old mesh is held against the new one.
 
+The quadrics of a flat surface say nothing against moving its border inwards, and the library has no weights for border
+edges. So the mesh is given a low wall along every border, square to the surface: the wall's planes hold the border as
+those of the surface hold the rest, and it is taken off again afterwards. The library collapses vertices of the wall's
+outer rim among themselves only, so which triangles are the wall's is known.
+
 References
 ----------
 Garland, Heckbert, Surface simplification using quadric error metrics, SIGGRAPH 1997, doi:10.1145/258734.258849.
@@ -22,10 +27,13 @@ from core.progress import Progress, silent
 from core.scan.mesh import vertex_normals
 from core.scan.mesh_holes import border
 from core.scan.surface import Mesh
-from core.scan.triangles import Surroundings, Triangles
+from core.scan.triangles import AT_ONCE, Surroundings, Triangles
 
 FEWEST = 4
 ON_EDGE_MM = 1e-4
+TRIES = 6
+CLOSE = 0.03
+"""A number of triangles so near to what was asked for, as a share, is taken without trying again."""
 ROUNDS = 7
 """Halvings of the number of triangles looked for when an error is given."""
 
@@ -41,7 +49,7 @@ class Decimated:
     largest_mm, most_mm
         The farthest vertex over the new mesh, and what 95 % of all do not exceed.
     edge_mm
-        The farthest vertex beside the new mesh: collapsing edges takes from the outer edge too.
+        The farthest vertex beside the new mesh: how far its border has drawn back.
     """
 
     mesh: Mesh
@@ -61,7 +69,7 @@ def decimate(mesh: Mesh, triangles: int, progress: Progress = silent) -> Decimat
     if triangles < FEWEST:
         raise InputError(f"{triangles} triangles are no surface", where="decimation", todo=f"ask for {FEWEST} or more")
     progress("decimation", 0, 2)
-    fewer = mesh if triangles >= len(mesh.triangles) else _collapsed(mesh, triangles)
+    fewer = mesh if triangles >= len(mesh.triangles) else _of_about(mesh, triangles)
     progress("decimation", 1, 2)
     result = _stated(mesh, fewer)
     progress("decimation", 2, 2)
@@ -69,7 +77,7 @@ def decimate(mesh: Mesh, triangles: int, progress: Progress = silent) -> Decimat
 
 
 def decimate_to(mesh: Mesh, largest_mm: float, progress: Progress = silent) -> Decimated:
-    """The mesh of fewest triangles found whose largest error over it stays below `largest_mm`.
+    """The mesh of fewest triangles found from which no vertex of the whole one lies farther than `largest_mm`.
 
     Raises
     ------
@@ -78,13 +86,14 @@ def decimate_to(mesh: Mesh, largest_mm: float, progress: Progress = silent) -> D
     """
     if not largest_mm > 0:
         raise InputError(f"an error of {largest_mm:g} mm leaves every triangle", where="decimation", todo="allow more")
-    best = Decimated(mesh, 0.0, 0.0, 0.0)
-    low, high = np.log(FEWEST), np.log(max(len(mesh.triangles), FEWEST + 1))
+    best, walled = Decimated(mesh, 0.0, 0.0, 0.0), _walled(mesh)
+    low, high = np.log(FEWEST), np.log(max(len(walled.triangles), FEWEST + 1))
     for round_ in range(ROUNDS):
         progress("decimation", round_, ROUNDS)
         middle = (low + high) / 2
-        tried = _stated(mesh, _collapsed(mesh, int(np.exp(middle))))
-        if tried.largest_mm <= largest_mm:
+        fewer = _collapsed(mesh, walled, int(np.exp(middle)))
+        tried = _stated(mesh, fewer) if len(fewer.triangles) else None
+        if tried and max(tried.largest_mm, tried.edge_mm) <= largest_mm:
             best, high = tried, middle
         else:
             low = middle
@@ -92,15 +101,59 @@ def decimate_to(mesh: Mesh, largest_mm: float, progress: Progress = silent) -> D
     return best
 
 
-def _collapsed(mesh: Mesh, triangles: int) -> Mesh:
+@dataclass(frozen=True, eq=False, slots=True)
+class _Walled:
+    """A mesh with a wall along its border: `surface` (V,) is True for the vertices that its own triangles use."""
+
+    vertices: Array
+    triangles: NDArray[np.int64]
+    surface: NDArray[np.bool_]
+
+
+def _walled(mesh: Mesh) -> _Walled:
+    edges, count = border(mesh.triangles), len(mesh.vertices)
+    rim, number = np.unique(edges, return_inverse=True)
+    a, b = edges.T
+    below_a, below_b = (number.reshape(-1, 2) + count).T
+    height = float(np.linalg.norm(mesh.vertices[b] - mesh.vertices[a], axis=1).mean()) if len(edges) else 0.0
+    wall = np.vstack([np.column_stack([b, a, below_a]), np.column_stack([b, below_a, below_b])])
+    surface = np.zeros(count + len(rim), dtype=np.bool_)
+    surface[mesh.triangles] = True
+    return _Walled(
+        np.vstack([mesh.vertices, mesh.vertices[rim] - height * mesh.normals[rim]]),
+        np.vstack([mesh.triangles, wall]),
+        surface,
+    )
+
+
+def _of_about(mesh: Mesh, triangles: int) -> Mesh:
+    """The mesh decimated to about so many triangles; how many more the wall takes is found by trying."""
+    walled = _walled(mesh)
+    best, total = mesh, triangles * len(walled.triangles) / len(mesh.triangles)
+    for _ in range(TRIES):
+        fewer = _collapsed(mesh, walled, round(total))
+        found = len(fewer.triangles)
+        if found and abs(found - triangles) < abs(len(best.triangles) - triangles):
+            best = fewer
+        if abs(found - triangles) <= CLOSE * triangles:
+            break
+        total *= float(np.clip(triangles / max(found, 1), 0.5, 2.0))
+    return best
+
+
+def _collapsed(mesh: Mesh, walled: _Walled, total: int) -> Mesh:
+    """The mesh after its edges were collapsed until with the wall `total` triangles were left; it may have none."""
     import fast_simplification  # type: ignore[import-untyped]  # only this function needs it
 
-    points, faces = fast_simplification.simplify(
-        mesh.vertices.astype(np.float32), mesh.triangles.astype(np.int32), target_count=triangles
-    )
+    middle = walled.vertices.mean(axis=0)
+    points, faces = (walled.vertices - middle).astype(np.float32), walled.triangles.astype(np.int32)
+    _, _, collapses = fast_simplification.simplify(points, faces, target_count=total, return_collapses=True)
+    points, faces, number = fast_simplification.replay_simplification(points, faces, collapses)
+    on_surface = np.zeros(len(points), dtype=np.bool_)
+    on_surface[number[walled.surface]] = True
     corners = np.asarray(faces, dtype=np.int64)
-    used, corners = np.unique(corners, return_inverse=True)
-    vertices = np.asarray(points, dtype=np.float64)[used]
+    used, corners = np.unique(corners[on_surface[corners].all(axis=1)], return_inverse=True)
+    vertices = np.asarray(points, dtype=np.float64)[used] + middle
     corners = corners.reshape(-1, 3)
     nearest = cKDTree(mesh.vertices).query(vertices)[1]
     filled = _filled(mesh, vertices, corners)
@@ -118,12 +171,13 @@ def _filled(mesh: Mesh, vertices: Array, corners: NDArray[np.int64]) -> NDArray[
 def _stated(mesh: Mesh, fewer: Mesh) -> Decimated:
     if fewer is mesh:
         return Decimated(mesh, 0.0, 0.0, 0.0)
-    near = Surroundings(Triangles(fewer.vertices[fewer.triangles])).nearest(mesh.vertices)
+    used = np.unique(mesh.triangles)
+    near = Surroundings(Triangles(fewer.vertices[fewer.triangles])).nearest(mesh.vertices[used])
     away = np.abs(near.distance)
-    order = np.argsort(-away)
+    worst = np.argsort(-away)[: max(1, len(away) // 20)]
     beside = np.zeros(len(away), dtype=np.bool_)
     ends = fewer.vertices[border(fewer.triangles)]
-    for chunk in np.array_split(order[: max(1, len(order) // 20)], max(1, len(order) // 10_000)):
+    for chunk in np.array_split(worst, 1 + len(worst) * len(ends) // AT_ONCE):
         beside[chunk] = _on_edges(near.foot[chunk], ends)
     largest, edge = (float(away[which].max(initial=0.0)) for which in (~beside, beside))
     return Decimated(fewer, largest, float(np.quantile(away, 0.95)), edge)

@@ -66,6 +66,7 @@ def test_the_stated_error_of_a_decimated_mesh_is_that_of_its_worst_vertex():
     assert len(result.mesh.triangles) < 450
     corners = result.mesh.vertices[result.mesh.triangles]
     away = np.abs(Surroundings(Triangles(corners)).nearest(whole.vertices).distance)
+    assert len(corners) > 360
     assert max(result.largest_mm, result.edge_mm) == pytest.approx(away.max())
     assert 0 < result.most_mm < result.largest_mm < 0.3
     assert (result.mesh.normals[:, 2] < 0).all()
@@ -74,9 +75,35 @@ def test_the_stated_error_of_a_decimated_mesh_is_that_of_its_worst_vertex():
 def test_fewest_triangles_for_an_error():
     whole = surface(lambda x, y: 3 * np.sin(x / 6) * np.cos(y / 7))
     fine, coarse = decimate_to(whole, 0.02), decimate_to(whole, 0.2)
-    assert fine.largest_mm <= 0.02
-    assert coarse.largest_mm <= 0.2
+    assert max(fine.largest_mm, fine.edge_mm) <= 0.02
+    assert max(coarse.largest_mm, coarse.edge_mm) <= 0.2
     assert len(coarse.mesh.triangles) < len(fine.mesh.triangles) < len(whole.triangles)
+
+
+@pytest.mark.parametrize(("height", "most_mm"), [(lambda x, y: 0 * x, 1e-3), (bowl, 0.1)])
+@pytest.mark.parametrize("without", [[], [((3.0, 2.0), 5.0)]])
+def test_the_border_stays_when_decimated(height, most_mm, without):
+    """A flat square must stay that square, and a hole in it that hole: no quadric of a plane says so."""
+    whole = surface(height, without=without)
+    result = decimate(whole, 60)
+    assert result.edge_mm < most_mm
+    assert 40 < len(result.mesh.triangles) < 80
+    corners = result.mesh.vertices[result.mesh.triangles]
+    used = np.unique(whole.triangles)
+    assert np.abs(Surroundings(Triangles(corners)).nearest(whole.vertices[used]).distance).max() < 0.5
+    assert flat_area(result.mesh) == pytest.approx(flat_area(whole), rel=0.005)
+
+
+def flat_area(mesh):
+    a, b, c = (mesh.vertices[mesh.triangles[:, corner], :2] for corner in range(3))
+    return 0.5 * np.abs((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]).sum()
+
+
+def test_pieces_that_touch_in_one_corner_keep_their_borders():
+    whole = surface(lambda x, y: 0 * x, without=[((-10.5, 10.5), 10.5), ((10.5, -10.5), 10.5)])
+    result = decimate(whole, 40)
+    assert result.edge_mm < 1e-3
+    assert flat_area(result.mesh) == pytest.approx(flat_area(whole), rel=1e-3)
 
 
 def test_filled_triangles_stay_marked_when_decimated():
