@@ -40,7 +40,7 @@ def main(folder, times):
     for time_number in range(times):
         place = Path(folder) / f"{time_number:03d}"
         reading, writing = os.pipe()
-        ending = rng.choice((".png", ".pgm"))
+        ending = (".png", ".pgm")[time_number % 2]
         child = os.fork()
         if child == 0:
             record(place, ending, writing)

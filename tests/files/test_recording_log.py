@@ -30,8 +30,10 @@ def test_killed_at_100_moments_every_acknowledged_frame_is_there_and_readable(tm
     runs = [line.rsplit(" ", 1) for line in told.splitlines()]
     assert len(runs) == 100
     assert sum(int(count) > 0 for _, count in runs) > 50
+    kept = set()
     for folder, acknowledged in runs:
         frames = read_log(Path(folder))
+        kept |= {Path(one.name).suffix for one in frames}
         assert len(frames) >= int(acknowledged)
         assert [one.index for one in frames] == list(range(len(frames)))
         for one in frames:
@@ -40,6 +42,7 @@ def test_killed_at_100_moments_every_acknowledged_frame_is_there_and_readable(tm
         assert len(frames) <= len(listed) <= len(frames) + 1  # a last one whose line was not written
         for path in listed:
             assert read_picture(path).shape == SIZE
+    assert kept == {".png", ".pgm"}
 
 
 @pytest.mark.parametrize("ending", [".png", ".pgm"])
