@@ -16,9 +16,13 @@ from typing import Any
 import numpy as np
 
 from core.errors import InputError
+from core.files.ply import read_cloud
 from core.files.recording_set import open_set
+from core.files.scan_file import read_scan
+from core.inspect.gauge import fit_gauge
 from core.inspect.sphere import fit_sphere
-from core.pipeline import Options, Workspace, gauge_step, scan_step
+from core.pipeline import Options, Workspace, scan_step
+from core.pipeline.gauge_step import point_errors
 from tests.accuracy.cases import Case, calibration_key
 from tests.accuracy.twin import Measured, measure
 
@@ -97,20 +101,33 @@ def figures_of(measured: Measured) -> Figures:
 
 
 def _paper(place: Path, measured: Measured) -> Figures:
-    """The paper's procedure on the same pictures and calibration."""
+    """The paper's procedure on the same pictures and calibration.
+
+    The paper fits its two planes to what the hand-held laser has scanned; its three-line laser only says where that
+    was. So `error_of_sweeps` is of the sweeps' points alone. `error` is with the fan's own points, which this program
+    measures too: by them a thickness is good even where hardly any sweep is. Both are better than the paper's procedure
+    as it is printed, which knows no σ: here its points are cut at 0.05 mm and weighed by their covariance. Of a block
+    of 50 mm at full resolution (seed 1) that leaves 7 % of those on the table; all of them, taken alike, give 49.0 mm,
+    for a sheet of light that crosses the fan three times in one line is free to turn about it.
+    """
     shutil.copytree(place / "out", place / "paper")
     work = Workspace.open(open_set(place / "set"), place / "paper")
     try:
         scan = scan_step(work, Options(method="three-crossings")).scan
     except InputError as problem:
         return {"why": str(problem)}
+    of_sweeps = scan.cloud.sweep >= 0
     beside = Measured(measured.truth, measured.camera, scan.cloud, None, measured.errors)
     errors = beside.depth_errors()
-    of_sweeps = np.isfinite(errors) & (scan.cloud.sweep >= 0)
-    figures: Figures = {"points": len(scan.cloud), "median_depth": float(np.median(np.abs(errors[of_sweeps])))}
+    known = np.isfinite(errors) & of_sweeps
+    figures: Figures = {"points": len(scan.cloud), "median_depth": float(np.median(np.abs(errors[known])))}
     if measured.gauge is not None:
-        try:
-            figures["error"] = gauge_step(work).thickness_mm - measured.truth.thing["thickness_mm"]
-        except InputError as problem:
-            figures["why"] = str(problem)
+        cloud, hang_together = read_cloud(work.path("cloud")).cloud, point_errors(read_scan(work.path("scan")))
+        for name, points in (("error_of_sweeps", cloud.select(cloud.sweep >= 0)), ("error", cloud)):
+            try:
+                thickness = fit_gauge(points, errors=hang_together).thickness_mm
+            except InputError as problem:
+                figures["why"] = str(problem)
+            else:
+                figures[name] = thickness - measured.truth.thing["thickness_mm"]
     return figures

@@ -8,13 +8,18 @@ and is computed once for each block.
     from tests.accuracy.coverage import run
     result = run(scans=200, seed=1)
     print(result)
+
+or, with what has come out so far after every scan, `python -m tests.accuracy.coverage 200 1`.
 """
 
 from __future__ import annotations
 
+import sys
+from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cache
+from itertools import islice
 from multiprocessing import get_context
 
 import numpy as np
@@ -85,8 +90,28 @@ def run(scans: int = 200, seed: int = 1, *, blocks: int = len(BLOCKS), frames: i
     return Coverage(*np.concatenate(parts, axis=1))
 
 
+def told(scans: int, seed: int) -> None:
+    """As `run`, but the blocks take turns and every scan is printed, with the figures of all so far."""
+    begun = [_scans(index, seed, 60) for index in range(len(BLOCKS))]
+    rows: list[np.ndarray] = []
+    for number in range(scans):
+        index = number % len(BLOCKS)
+        rows.append(next(begun[index]))
+        error, expanded, points, _ = rows[-1]
+        kind, height = BLOCKS[index]
+        print(
+            f"{kind} {height:g}: error {1000 * error:+.1f} um, U {1000 * expanded:.1f} um, points {100 * points:.1f} %"
+        )
+        print(Coverage(*np.array(rows).T), flush=True)
+
+
 def _block(index: int, scans: int, seed: int, frames: int) -> np.ndarray:
     """Errors, U, shares of points and independent errors (4, scans) of scans of one block."""
+    return np.array(list(islice(_scans(index, seed, frames), scans))).reshape(-1, 4).T
+
+
+def _scans(index: int, seed: int, frames: int) -> Iterator[np.ndarray]:
+    """Error, U, share of points and independent error (4,) of one scan of the block after another."""
     kind, height = BLOCKS[index]
     exact = ExactScan.of(Scenario(object=kind, height_mm=height, seed=seed + index, scale=0.5, frames=frames))
     rig, lines = exact.rig, FanLines.settled_as(exact.fan_line)
@@ -96,8 +121,7 @@ def _block(index: int, scans: int, seed: int, frames: int) -> np.ndarray:
     first = reconstruct(features, rig.camera, rig.fan, fan_lines=lines)
     displaced = [Deviation(source, *_off(rig.camera, rig.fan, step)) for source, step in steps]
     template = solve_common(features, first, rig.camera, rig.fan, displaced)
-    rows = []
-    for _ in range(scans):
+    while True:
         draw = sum(rng.normal() * step for _, step in steps)
         camera, fan = _off(rig.camera, rig.fan, draw)
         features = exact.measured(seed=int(rng.integers(2**31)))
@@ -105,15 +129,14 @@ def _block(index: int, scans: int, seed: int, frames: int) -> np.ndarray:
         common = _about(template, first, scan, camera, fan)
         cloud = replace(scan.cloud, sigma_common=common.sigma(scan.cloud))
         fit = fit_gauge(cloud, errors=PointErrors.of_scan(features, scan.covariance, common, scan.speckle))
-        rows.append(
-            (
+        yield np.array(
+            [
                 fit.thickness_mm - height,
                 2 * combined(fit.budget),
                 _points_within(exact, height, cloud),
                 fit.robust.thickness - height,
-            )
+            ]
         )
-    return np.array(rows).reshape(-1, 4).T
 
 
 @cache
@@ -159,3 +182,7 @@ def _points_within(exact: ExactScan, height: float, cloud) -> float:
     error = errors[nearest, np.arange(len(cloud))]
     within = np.abs(error) <= 2 * np.hypot(cloud.sigma, cloud.sigma_common)
     return float(np.mean(within[np.abs(error) < ON_FACE_MM]))
+
+
+if __name__ == "__main__":
+    told(int(sys.argv[1]), int(sys.argv[2]))

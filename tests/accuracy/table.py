@@ -124,13 +124,21 @@ def table(cases: Sequence[Case], results: Mapping[str, Figures]) -> list[str]:
 
 
 def _papers(row: Row, mine: Sequence[Case], results: Mapping[str, Figures]) -> str:
-    """What the paper's procedure makes of the same pictures, where it was tried and the row's figure can be taken."""
+    """What the paper's procedure makes of the same pictures, where it was tried and the row's figure can be taken.
+
+    A thickness is that of the sweeps' points, as in the paper, and then with the fan's own as well.
+    """
     tried = [results[case.name]["paper"] for case in mine if case.paper]
-    key = {largest_error: "error", median_depth: "median_depth"}.get(row.figure)
-    if not tried or key is None:
-        return "–"
-    found = [each for each in tried if key in each]
+    if tried and row.figure is largest_error:
+        of_sweeps, with_fan = (_told(row, key, tried, len(mine)) for key in ("error_of_sweeps", "error"))
+        return f"{of_sweeps}; with the fan's own points {with_fan}"
+    return _told(row, "median_depth", tried, len(mine)) if tried and row.figure is median_depth else "–"
+
+
+def _told(row: Row, key: str, tried: Chosen, scans: int) -> str:
+    """The row's figure of the paper's procedure, which was tried on some of so many scans, from what `key` names."""
+    found = [{"error": each[key], "median_depth": each[key]} for each in tried if key in each]
     if not found:
         return f"none in {len(tried)} scans"
     told = row.form.format(row.figure(found))
-    return told if len(found) == len(tried) == len(mine) else f"{told} ({len(found)} of {len(tried)} scans)"
+    return told if len(found) == len(tried) == scans else f"{told} ({len(found)} of {len(tried)} scans)"

@@ -31,9 +31,13 @@ def test_a_result_beyond_its_stated_uncertainty_counts_against_it():
 
 
 def test_what_the_papers_procedure_could_not_measure_is_said():
-    assert line(table(SCANS, results(0, 0, 0, 0)), "largest")[3] == "none in 1 scans"
-    told = line(table(SCANS, results(0, 0, 0, 0, paper={"error": -3.25})), "largest")[3]
-    assert told == "3.250 mm (1 of 1 scans)"
+    told = line(table(SCANS, results(0, 0, 0, 0)), "largest")[3]
+    assert told == "none in 1 scans; with the fan's own points none in 1 scans"
+
+
+def test_the_papers_thickness_is_that_of_the_sweeps_points_and_the_fans_own_are_told_apart():
+    told = line(table(SCANS, results(0, 0, 0, 0, paper={"error_of_sweeps": -3.25, "error": 0.5})), "largest")[3]
+    assert told == "3.250 mm (1 of 1 scans); with the fan's own points 0.500 mm (1 of 1 scans)"
 
 
 def test_rows_without_scans_are_left_out():
