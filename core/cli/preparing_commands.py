@@ -63,11 +63,16 @@ def plan(
         bool, typer.Option("--no-changes", help="Do not try which change of the rig helps most: sooner done.")
     ] = False,
     sigma_cut: SigmaCut = 0.05,
+    bounds: Annotated[
+        bool, typer.Option("--bounds", help="Also say what no program could do better (Cramér–Rao), as a table.")
+    ] = False,
     json: Json = False,
 ) -> None:
     """Predict what a rig will measure, before anything is bolted down: U of a thickness, σ, what helps most."""
     from core.cli import planning
 
     with bars() as progress:
-        shown = planning.run_plan(rig, out, scans=scans, changes=not no_changes, sigma_cut=sigma_cut, progress=progress)
+        shown = planning.run_plan(
+            rig, out, scans=scans, changes=not no_changes, sigma_cut=sigma_cut, bounds=bounds, progress=progress
+        )
     shown.show(as_json=json)

@@ -12,6 +12,7 @@ import numpy as np
 from core import __version__
 from core.files.atomic import make_folder, write_bytes, write_text
 from core.files.json_text import rounded, to_json
+from core.plan.bounds import Bound, bounds_of
 from core.plan.changes import Effect, advice, compare
 from core.plan.design import Design
 from core.plan.from_rig import read_design
@@ -26,13 +27,14 @@ PLAN_FILE, MAP_FILE = "plan.json", "sigma.png"
 class PlanResult:
     """What a plan will give: one prediction for each height, and what changes do to that of the largest height.
 
-    `advice` is empty when no changes were tried.
+    `advice` is empty when no changes were tried, `bounds` when they were not asked for.
     """
 
     design: Design
     predictions: tuple[Prediction, ...]
     effects: tuple[Effect, ...]
     advice: str
+    bounds: tuple[Bound, ...] = ()
 
     @property
     def largest(self) -> Prediction:
@@ -41,7 +43,13 @@ class PlanResult:
 
 
 def plan(
-    rig: Path, *, scans: int = 2, changes: bool = True, sigma_cut_mm: float = 0.05, progress: Progress = silent
+    rig: Path,
+    *,
+    scans: int = 2,
+    changes: bool = True,
+    sigma_cut_mm: float = 0.05,
+    bounds: bool = False,
+    progress: Progress = silent,
 ) -> PlanResult:
     """Predict what the rig in the rig.toml at `rig` (or in that folder) will measure.
 
@@ -53,6 +61,8 @@ def plan(
         Whether to try which change helps most.
     sigma_cut_mm
         Points with a larger σ are left out, as in a scan.
+    bounds
+        Whether to say also what no program could do better.
 
     Raises
     ------
@@ -64,7 +74,8 @@ def plan(
     predictions = tuple(planner.predict(design, height, scans) for height in design.heights_mm)
     base = max(predictions, key=lambda prediction: prediction.height_mm)
     effects = compare(planner, design, base, progress=progress) if changes else ()
-    return PlanResult(design, predictions, effects, advice(effects) if changes else "")
+    limits = bounds_of(design, progress=progress) if bounds else ()
+    return PlanResult(design, predictions, effects, advice(effects) if changes else "", limits)
 
 
 def write_plan(result: PlanResult, folder: Path) -> Mapping[str, Path]:
@@ -96,6 +107,7 @@ def plan_values(result: PlanResult) -> dict[str, Any]:
             {"change": effect.change, "to": effect.to, "U_mm": effect.U_mm, "reason": effect.reason}
             for effect in result.effects
         ],
+        "bounds": [asdict(bound) for bound in result.bounds],
     }
 
 

@@ -53,10 +53,23 @@ def plan_camera(design: Design, seed: int, progress: Progress = silent) -> Camer
         If the target does not fit into the picture, or the views do not determine the camera.
     """
     camera, target = design.camera(), design.camera_target
-    rng = generator(seed, "camera poses")
+    noise = generator(seed, "corner noise")
+    views = [_view(f"view{i:02d}", camera, pose, target, noise) for i, pose in enumerate(view_poses(design, seed))]
+    return calibrate_camera(views, camera.image_size, progress=progress)
+
+
+def view_poses(design: Design, seed: int) -> list[Pose]:
+    """How the camera target is held in the planned views.
+
+    Raises
+    ------
+    InputError
+        If it does not fit into the picture.
+    """
+    outline, rng = _plate(design.camera_target, "[camera_target]").outline, generator(seed, "camera poses")
     nearest = NEAREST_VIEW * design.distance_mm
     try:
-        poses = camera_poses(camera, _plate(target, "[camera_target]").outline, design.views, rng, nearest_mm=nearest)
+        return camera_poses(design.camera(), outline, design.views, rng, nearest_mm=nearest)
     except ValueError as error:
         raise InputError(
             "the target does not fit into the picture at any distance up to three times the table's, so the camera "
@@ -64,9 +77,6 @@ def plan_camera(design: Design, seed: int, progress: Progress = silent) -> Camer
             where="[camera_target]",
             todo="plan a smaller target, a shorter focal_mm or more pixels",
         ) from error
-    noise = generator(seed, "corner noise")
-    views = [_view(f"view{i:02d}", camera, pose, target, noise) for i, pose in enumerate(poses)]
-    return calibrate_camera(views, camera.image_size, progress=progress)
 
 
 def plan_fan(design: Design, camera: Camera, seed: int, progress: Progress = silent) -> FanCalibration:
@@ -77,31 +87,37 @@ def plan_fan(design: Design, camera: Camera, seed: int, progress: Progress = sil
     InputError
         If the fan meets the target in too few poses to be calibrated.
     """
-    rig, true, target = design.rig(), design.camera(), design.plane_target
-    plate = _plate(target, "[plane_target]")
-    near, far = NEAREST_POSE * design.distance_mm, FARTHEST_POSE * design.distance_mm
-    poses = plane_poses(fan_centres(rig, design.poses, near, far), plate.outline, generator(seed, "plane poses"))
+    true, target = design.camera(), design.plane_target
     stripes = SeenStripes.of_plates(design)
-    lines = [
-        [
-            piece
-            for sheet in fan_sheets(rig, pose.translation)
-            for piece in _on_plate(
-                lit_lines(sheet, (_face(plate, pose),), np.empty((0, 3, 3)), true, rig.blur_px, stripes.filter_px),
-                plate,
-                pose,
-            )
-        ]
-        for pose in poses
-    ]
     noise = generator(seed, "plate noise")
     features = []
-    for number, (pose, pieces) in enumerate(zip(poses, lines, strict=True)):
+    for number, (pose, pieces) in enumerate(plates_under_fan(design, seed)):
         view = _view(f"pose{number:02d}", true, pose, target, noise)
         tried = stripes.tried(pieces, WHITE * float(room_shade(pose, PLANE_GREY)))  # each pose has its own sharpness
         features.append(_features(view, tuple(tried.centreline(piece, noise) for piece in pieces), true))
     options = FanOptions(design.lines, np.radians(design.angle_deg) if design.lines > 1 else None)
     return fit_fan(features, camera, options, progress)
+
+
+def plates_under_fan(design: Design, seed: int) -> list[tuple[Pose, list[LitLine]]]:
+    """How the plane target is held in the planned poses, and the fan's stripes on the light parts of each."""
+    rig, plate = design.rig(), _plate(design.plane_target, "[plane_target]")
+    near, far = NEAREST_POSE * design.distance_mm, FARTHEST_POSE * design.distance_mm
+    poses = plane_poses(fan_centres(rig, design.poses, near, far), plate.outline, generator(seed, "plane poses"))
+    filter_px, nothing = SeenStripes.of_plates(design).filter_px, np.empty((0, 3, 3))
+    return [
+        (
+            pose,
+            [
+                piece
+                for sheet in fan_sheets(rig, pose.translation)
+                for piece in _on_plate(
+                    lit_lines(sheet, (_face(plate, pose),), nothing, rig.camera, rig.blur_px, filter_px), plate, pose
+                )
+            ],
+        )
+        for pose in poses
+    ]
 
 
 def _plate(target: Target, where: str) -> Pattern:
@@ -124,7 +140,7 @@ def _view(name: str, camera: Camera, pose: Pose, target: Target, rng: np.random.
     """What the detector would find of a target; what it states is a little more than the errors drawn."""
     uv = camera.project_pose(pose, target.points)
     if isinstance(target, BlackSquare):
-        covariance = _square_covariance(uv)
+        covariance = square_covariance(uv, EDGE_PX)
         error = (np.linalg.cholesky(covariance) @ rng.standard_normal(2 * len(uv))).reshape(-1, 2)
         sigma = STATED * np.sqrt(np.diag(covariance).reshape(-1, 2).mean(axis=1))
         return TargetView(target.points, uv + error, sigma, name, STATED**2 * covariance)
@@ -132,8 +148,10 @@ def _view(name: str, camera: Camera, pose: Pose, target: Target, rng: np.random.
     return TargetView(target.points, found, np.full(len(uv), STATED * CORNER_PX), name)
 
 
-def _square_covariance(uv: Array) -> Array:
+def square_covariance(uv: Array, edge_px: float) -> Array:
     """(8, 8) of a square's corners `uv` (4, 2) in order round it, each where two straight edges meet.
+
+    `edge_px` is the error of one pixel's length of an edge.
 
     A line fitted to n points of standard deviation s has variance 4 s²/n at its ends, and −2 s²/n between them.
     """
@@ -143,7 +161,7 @@ def _square_covariance(uv: Array) -> Array:
     ends = np.zeros((8, 8))  # of edge k: its start in row 2k, its end in row 2k + 1
     by_ends = np.zeros((8, 8))
     for k in range(4):
-        ends[2 * k : 2 * k + 2, 2 * k : 2 * k + 2] = EDGE_PX**2 / length[k] * np.array([[4.0, -2.0], [-2.0, 4.0]])
+        ends[2 * k : 2 * k + 2, 2 * k : 2 * k + 2] = edge_px**2 / length[k] * np.array([[4.0, -2.0], [-2.0, 4.0]])
         meeting = np.linalg.inv(normals[[k - 1, k]])
         by_ends[2 * k : 2 * k + 2, [2 * ((k - 1) % 4) + 1, 2 * k]] = meeting
     return np.asarray(by_ends @ ends @ by_ends.T, dtype=np.float64)

@@ -27,7 +27,7 @@ from core.simulate.rig import (
     pencil_fan,
 )
 from core.simulate.scenario import YAW_DEG
-from core.simulate.scene import Scene
+from core.simulate.scene import Scene, Sphere
 from core.simulate.stage import TABLE_DEPTH_MM, WORK_POINT, aim_of, table_pose
 from core.simulate.sweep import hand_course, sweep_range
 
@@ -38,6 +38,9 @@ _FAN_FOCUS_MM, _HAND_FOCUS_MM = 240.0, 550.0
 _HAND_BASELINE_MM = 240.0
 _UNDER_FAN_MM = TABLE_DEPTH_MM - float(WORK_POINT[2])
 """How far above the table the fan's middle line passes through the middle of the work."""
+
+BALL_AWAY_MM = 3.0
+"""So that the outer fan lines are equally far from its rims."""
 
 RANGES: dict[str, tuple[float, float, str]] = {
     "pixel_um": (0.5, 50.0, "µm"),
@@ -193,6 +196,11 @@ class Design:
         """A block of this height on the table, under the fan, as the twin stands it there."""
         block = turned(gauge_block(height_mm, self.block_mm), np.radians(YAW_DEG))
         return Scene.on_table(self.table(), block)
+
+    def ball(self, diameter_mm: float) -> Scene:
+        """A ball of this diameter on the table, where the twin lays it."""
+        radius = diameter_mm / 2
+        return Scene.on_table(self.table(), Sphere(np.array([0.0, BALL_AWAY_MM, radius]), radius))
 
     def table(self) -> Pose:
         """Pose of the table, tilted as the twin's."""

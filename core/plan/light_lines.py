@@ -16,7 +16,7 @@ from core.image.pieces import arc_length
 from core.model import Camera, Pose
 from core.model.arrays import Array
 from core.simulate.laser import Sheet
-from core.simulate.scene import Scene
+from core.simulate.scene import Scene, Sphere
 
 END_IN_FILTERS = 2.5
 """What the extraction leaves out at either end of a stripe, in σ of its filter."""
@@ -26,6 +26,8 @@ _FINE_STEPS = 200
 _CLEAR = 1e-4
 """A surface does not hide itself: shadow rays end this share of their length before it."""
 _PIXEL_AREA = 1 / 12
+_GRAZING = 0.02
+"""Cosine of the light on a face below which there is no stripe to speak of."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -126,6 +128,44 @@ def lit_lines(
     return tuple(lines)
 
 
+def lit_ball(sheet: Sheet, ball: Sphere, number: int, camera: Camera, blur_px: float) -> tuple[LitLine, ...]:
+    """The stripe of one sheet of light on a ball, called face `number`; nothing else hides or shades it."""
+    off = float(sheet.plane.distances(ball.centre[None])[0])
+    if abs(off) >= ball.radius:
+        return ()
+    across = np.linalg.svd(sheet.plane.normal[None])[2][1:]
+    turn = np.linspace(0, 2 * np.pi, _FINE_STEPS * 20, endpoint=False)
+    circle = np.column_stack([np.cos(turn), np.sin(turn)]) @ across * np.sqrt(ball.radius**2 - off**2)
+    points = ball.centre - off * sheet.plane.normal + circle
+    outwards = (points - ball.centre) / ball.radius
+    towards = points - sheet.emitter
+    cosine = -np.einsum("ni,ni->n", towards, outwards) / np.linalg.norm(towards, axis=1)
+    lit = (cosine > _GRAZING) & (np.einsum("ni,ni->n", points, outwards) < 0)
+    shift = int(np.flatnonzero(~lit)[0])  # a stripe does not begin in the middle
+    points, outwards, towards, cosine, lit = (
+        np.roll(a, -shift, axis=0) for a in (points, outwards, towards, cosine, lit)
+    )
+    lines = []
+    for first, last in runs(lit):
+        arc = arc_length(camera.project(points[first:last]))
+        at = first + np.unique(
+            np.round(np.interp(np.arange(0.0, arc[-1]), arc, np.arange(last - first))).astype(np.intp)
+        )
+        if len(at) < 3:
+            continue
+        uv = camera.project(points[at])
+        tangent = np.gradient(uv, axis=0)
+        tangent /= np.linalg.norm(tangent, axis=1, keepdims=True)
+        normal = np.column_stack([tangent[:, 1], -tangent[:, 0]])
+        aside = camera.rays(uv + normal)
+        depth = np.einsum("ni,ni->n", outwards[at], points[at]) / np.einsum("ni,ni->n", outwards[at], aside)
+        step = aside * depth[:, None] - points[at]
+        gap = np.abs(step @ sheet.plane.normal)
+        height, width = _section(sheet, towards[at], cosine[at] * ball.albedo, gap, blur_px)
+        lines.append(LitLine(uv, normal, height, width, points[at], number))
+    return tuple(lines)
+
+
 def runs(keep: NDArray[np.bool_]) -> list[tuple[int, int]]:
     """First and one past the last index of every unbroken run of True."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], keep, [False]]).astype(np.int8)))
@@ -148,7 +188,7 @@ def _followed(
     inside = ((uv >= 0) & (uv <= np.array(camera.image_size) - 1)).all(axis=1)
     towards = points - sheet.emitter
     cosine = -(towards @ face.normal) / np.linalg.norm(towards, axis=1)
-    lit = inside & (cosine > 0.02)
+    lit = inside & (cosine > _GRAZING)
     lit[lit] = _free(np.zeros(3), points[lit], occluders) & _free(sheet.emitter, points[lit], occluders)
     step = face.seen_along(camera.rays(uv + normal)) - points
     height, width = _section(sheet, towards, cosine * face.albedo, np.abs(step @ sheet.plane.normal), blur_px)

@@ -20,6 +20,7 @@ from core.simulate.image import generator
 from core.simulate.laser import Sheet, fan_sheets
 from core.simulate.rig import Rig
 from core.simulate.scan import LAMP
+from core.simulate.scene import Scene
 
 _FAINT = 0.2  # quantile of the heights along all stripes that counts as their contrast
 
@@ -32,7 +33,7 @@ def plan_scan(design: Design, height_mm: float, seed: int, progress: Progress = 
     InputError
         If the camera would see no stripe of the fan or of the hand-held laser.
     """
-    stage = _Stage(design, height_mm)
+    stage = Stage(design, height_mm)
     fan_lines = stage.lines(fan_sheets(stage.rig, design.work_point), SeenStripes.of_fan(design))
     sheets = design.sweeps_over(stage.scene, seed)
     hand = SeenStripes.of_hand(design)
@@ -59,15 +60,15 @@ def plan_scan(design: Design, height_mm: float, seed: int, progress: Progress = 
     )
 
 
-class _Stage:
-    """A block under the rig, its flat faces listed once."""
+class Stage:
+    """A block under the rig, or another `scene` there, its flat faces listed once: the table first."""
 
-    def __init__(self, design: Design, height_mm: float) -> None:
+    def __init__(self, design: Design, height_mm: float, scene: Scene | None = None) -> None:
         self.rig: Rig = design.rig()
         self.camera: Camera = self.rig.camera
-        self.scene = design.scene(height_mm)
+        self.scene = scene or design.scene(height_mm)
         self._ambient = design.ambient_grey
-        self._faces: tuple[FlatFace, ...] = faces_of(self.scene, design.table(), 2 * design.distance_mm)
+        self.faces: tuple[FlatFace, ...] = faces_of(self.scene, design.table(), 2 * design.distance_mm)
 
     def lines(self, sheets: Sequence[Sheet], seen: SeenStripes) -> list[LitLine]:
         """The stripes of some sheets of light."""
@@ -75,15 +76,15 @@ class _Stage:
             line
             for sheet in sheets
             for line in lit_lines(
-                sheet, self._faces, self.scene.occluders, self.camera, self.rig.blur_px, seen.filter_px
+                sheet, self.faces, self.scene.occluders, self.camera, self.rig.blur_px, seen.filter_px
             )
         ]
 
     def background_grey(self) -> float:
         """The room's light on table and block, in the mean."""
         lamp = LAMP / np.linalg.norm(LAMP)
-        table, *others = self._faces
-        top = min(others, key=lambda face: float(face.corners[:, 2].mean()))
+        table = self.faces[0]
+        top = min(self.faces, key=lambda face: float(face.corners[:, 2].mean()))
         facing = [max(float(face.normal @ lamp), 0.0) * 0.6 + 0.4 for face in (table, top)]
         return self._ambient * float(np.mean([table.albedo * facing[0], top.albedo * facing[1]]))
 

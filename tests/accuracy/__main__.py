@@ -8,7 +8,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from core.files.atomic import write_text
-from tests.accuracy import coverage
+from tests.accuracy import bounds, coverage
 from tests.accuracy.campaign import PROCESSES, run
 from tests.accuracy.cases import Case, cases
 from tests.accuracy.table import table
@@ -30,6 +30,7 @@ def main() -> None:
     results = run(scans, kept, chosen.processes)
     simulated = coverage.run(60 if chosen.short else 200, seed=1, workers=chosen.processes)
     lines = [*table(scans, results), *_coverage_rows(simulated), "", _origin(scans, commit)]
+    lines += ["", "What the pictures allow at best (Cramér–Rao):", "", *bounds.table(bounds.all_bounds())]
     print("\n".join(lines))
     write_text(chosen.out / "table.md", "\n".join(lines) + "\n")
     if chosen.readme:

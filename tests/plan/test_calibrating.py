@@ -6,7 +6,7 @@ import pytest
 from core.calibrate.results import CAMERA_PARAMETERS
 from core.errors import InputError
 from core.image.targets import Charuco, Checkerboard, CircleGrid
-from core.plan.calibrating import EDGE_PX, _square_covariance, plan_camera, plan_fan
+from core.plan.calibrating import EDGE_PX, plan_camera, plan_fan, square_covariance
 from tests.plan.small import SMALL
 
 
@@ -68,7 +68,7 @@ def test_corners_of_a_square_scatter_as_lines_fitted_to_its_edges():
             (p, d), (q, e) = lines[k - 1], lines[k]
             meeting.append(p + d * np.linalg.solve(np.column_stack([d, -e]), q - p)[0])
         found.append(np.ravel(np.array(meeting) - corners))
-    sampled, stated = np.cov(np.array(found).T), _square_covariance(corners)
+    sampled, stated = np.cov(np.array(found).T), square_covariance(corners, EDGE_PX)
 
     assert np.abs(sampled - stated).max() < 0.1 * np.diag(stated).max()
 

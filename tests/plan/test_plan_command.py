@@ -73,11 +73,12 @@ def test_the_same_plan_writes_the_same_bytes(rig, told, result):
 
 
 def test_people_are_told_in_lines(rig):
-    said = trisect("plan", rig, "--scans", 1, "--no-changes", "--sigma-cut", CUT_MM)
+    said = trisect("plan", rig, "--scans", 1, "--no-changes", "--sigma-cut", CUT_MM, "--bounds")
 
     assert said.code == 0
     assert "block 40 mm" in said.out and "U = 0." in said.out
     assert "common to the scan" in said.out
+    assert "no program below" in said.out and "thickness of 50 mm: u 0.0" in said.out
 
 
 @pytest.mark.parametrize(

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from core.errors import Cancelled, InputError
+from core.plan.bounds import bounds_of
 from core.plan.changes import CHANGES, Change, Effect, advice, compare
 from core.plan.predict import Planner
 from tests.plan.small import CUT_MM, SMALL
@@ -28,6 +29,14 @@ def test_u_is_the_sum_of_its_budget_and_holds_the_errors_drawn(base):
     assert base.U_mm == pytest.approx(base.k * base.u_mm)
     assert np.all(np.abs(base.errors_mm) < 5 * np.array(base.each_u_mm))
     assert 0.01 < base.u_mm < 0.15
+
+
+def test_no_plan_promises_more_than_the_pictures_hold(base):
+    """Nor much less: between lie smoothing that stops at edges, and a network that knows no shapes."""
+    floor = next(one for one in bounds_of(SMALL, (HEIGHT,)) if one.quantity == "thickness of 50 mm").with_speckle
+    print(f"planned u {base.u_mm:.4f} mm, bound {floor:.4f} mm")
+
+    assert floor < base.u_mm < 3 * floor
 
 
 def test_the_map_shows_sigma_where_block_and_table_are_seen(base):

@@ -1,0 +1,170 @@
+"""What no program could do better on a planned rig's pictures: Cramér–Rao bounds from the centreline to the part.
+
+Each quantity twice: with the planned speckle and without any. All pictures count together here, camera, fan, sweeps
+and part adjusted in one, and shapes are known to be flat or round: so these are floors, and what a program leaves above
+them is its own. Errors that no noise explains, of a light that lies unevenly on round flanks or of a lens that is not
+its model's, are not in them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from core.calibrate.reprojection import ray_changes
+from core.model.arrays import Array
+from core.plan.design import Design
+from core.plan.information import CAMERA, Sensing, calibration_information, covariance
+from core.plan.light_bounds import crossing_bound
+from core.plan.scan_information import PlannedScan, Seen, ball_scan, block_scan
+from core.progress import Progress, silent
+
+STRETCH_PX = 100
+"""Length of stripe over which a mean is stated."""
+ARMS_PX = 120.0
+"""Length of both stripes seen about a crossing."""
+FREE_FORM_MM = 1.0
+"""Length along a stripe that a point of a surface of unknown shape may be averaged over."""
+BALL_MM = 50.0
+
+
+@dataclass(frozen=True, slots=True)
+class Bound:
+    """The least standard uncertainty of a `quantity`, in `unit`: of pictures `without` speckle, and `with_speckle`."""
+
+    quantity: str
+    unit: str
+    without: float
+    with_speckle: float
+
+
+def bounds_of(
+    design: Design,
+    heights_mm: Sequence[float] | None = None,
+    *,
+    ball_mm: float = BALL_MM,
+    seed: int = 1,
+    progress: Progress = silent,
+) -> tuple[Bound, ...]:
+    """The bounds of a `design` for blocks of `heights_mm` (None: those of the design) and a ball, in one table.
+
+    Raises
+    ------
+    InputError
+        If the camera target does not fit into the picture.
+    """
+    heights = design.heights_mm if heights_mm is None else tuple(heights_mm)
+    found = []
+    for number, speckle in enumerate((False, True)):
+        progress("bounds", number, 2)
+        found.append(list(_Bounds(Sensing.of(design, speckle=speckle), seed).rows(heights, ball_mm)))
+    progress("bounds", 2, 2)
+    pairs = zip(*found, strict=True)
+    return tuple(Bound(quantity, unit, clean, grainy) for (quantity, unit, clean), (_, _, grainy) in pairs)
+
+
+@dataclass(frozen=True, eq=False)
+class _Bounds:
+    """The bounds of one kind of light."""
+
+    sensing: Sensing
+    seed: int
+
+    def rows(self, heights_mm: Sequence[float], ball_mm: float) -> Iterator[tuple[str, str, float]]:
+        """Quantity, unit and standard uncertainty."""
+        scans = [block_scan(self.sensing, height, self.seed) for height in heights_mm]
+        yield from _of_lines(scans[-1])
+        known = covariance(self.calibration)
+        yield "focal length", "px", float(np.sqrt(known[0, 0]))
+        yield "depth on the fan's lines, from camera and fan", "mm", self._of_fan(scans[-1], known)
+        yield "depth on a sweep from its light plane, camera and fan known", "mm", self._of_sweeps(scans[-1])
+        yield f"depth of a point of free form, {FREE_FORM_MM:g} mm of stripe", "mm", self._of_points(scans[-1])
+        for height, scan in zip(heights_mm, scans, strict=True):
+            yield f"thickness of {height:g} mm", "mm", self._thickness(scan, known=False)
+            yield f"thickness of {height:g} mm, camera and fan known", "mm", self._thickness(scan, known=True)
+        yield f"diameter of a ball of {ball_mm:g} mm", "mm", self._diameter(ball_scan(self.sensing, ball_mm, self.seed))
+
+    @cached_property
+    def calibration(self) -> Array:
+        """(U, U) information of the calibrations' pictures."""
+        return calibration_information(self.sensing, self.seed)
+
+    def _together(self, scan: PlannedScan) -> Array:
+        """Covariance of camera, fan and the scan's surfaces from all pictures."""
+        information = scan.information()
+        information[: self.sensing.unknowns, : self.sensing.unknowns] += self.calibration
+        return covariance(information)
+
+    def _thickness(self, scan: PlannedScan, *, known: bool) -> float:
+        first = self.sensing.unknowns
+        own = covariance(scan.information()[first:, first:]) if known else self._together(scan)[first:, first:]
+        difference = np.array([0.0, 0.0, 1.0, -1.0])
+        return float(np.sqrt(difference @ own @ difference))
+
+    def _diameter(self, scan: PlannedScan) -> float:
+        return 2 * float(np.sqrt(self._together(scan)[-1, -1]))
+
+    def _of_fan(self, scan: PlannedScan, known: Array) -> float:
+        """RMS over the points of the fan's lines on table and block."""
+        camera, variance = self.sensing.camera, []
+        for number, seen in enumerate(scan.fan):
+            for line, *_ in seen.stripes:
+                rays = camera.rays(line.uv)
+                by = np.hstack(
+                    [
+                        np.einsum("i,nij->nj", seen.pi[:2], ray_changes(camera, rays)[:, :, :CAMERA]),
+                        rays @ self.sensing.of_line(number),
+                    ]
+                )
+                variance.append(line.points[:, 2] ** 4 * np.einsum("ni,ij,nj->n", by, known, by))
+        return float(np.sqrt(np.concatenate(variance).mean()))
+
+    def _of_sweeps(self, scan: PlannedScan) -> float:
+        """Median over the points of all sweeps."""
+        first = self.sensing.unknowns
+        surfaces = covariance(scan.information()[first:, first:])
+        sigma = []
+        for seen in scan.sweeps:
+            if not seen.stripes:
+                continue
+            information = scan.of_sweep(seen)[first:, first:]
+            own = np.linalg.pinv(information[-3:, -3:], rcond=1e-13, hermitian=True)
+            moved = own @ information[-3:, :-3]
+            of_plane = own + moved @ surfaces @ moved.T
+            for line, *_ in seen.stripes:
+                rays = self.sensing.camera.rays(line.uv)
+                sigma.append(line.points[:, 2] ** 2 * np.sqrt(np.einsum("ni,ij,nj->n", rays, of_plane, rays)))
+        return float(np.median(np.concatenate(sigma)))
+
+    def _of_points(self, scan: PlannedScan) -> float:
+        """Median over all points, from their own stretch of stripe alone."""
+        camera, sigma = self.sensing.camera, []
+        for seen in scan.sweeps:
+            for line, _, density in seen.stripes:
+                rays, depth = camera.rays(line.uv), line.points[:, 2]
+                slope = np.einsum("i,nij,nj->n", seen.pi[:2], camera.ray_jacobian(rays), line.normal)
+                length_px = FREE_FORM_MM * camera.focal / depth
+                sigma.append(depth**2 * np.abs(slope) * density / np.sqrt(length_px))
+        return float(np.median(np.concatenate(sigma)))
+
+
+def _of_lines(scan: PlannedScan) -> Iterator[tuple[str, str, float]]:
+    """Of centrelines and crossings."""
+    fan, hand = (_median_density(part) for part in (scan.fan, scan.sweeps))
+    for name, density in (("fan's", fan), ("sweeps'", hand)):
+        yield f"centreline of the {name} stripes, mean of {STRETCH_PX} px", "px", density / np.sqrt(STRETCH_PX)
+    for degrees in (90, 45, 20):
+        own = crossing_bound(fan, hand, ARMS_PX, np.radians(degrees))
+        yield (
+            f"crossing at {degrees}°, arms of {ARMS_PX / 2:g} px, per coordinate",
+            "px",
+            float(np.sqrt(np.trace(own) / 2)),
+        )
+
+
+def _median_density(part: Sequence[Seen]) -> float:
+    weighted = [(density, len(line)) for seen in part for line, _, density in seen.stripes]
+    return float(np.median(np.repeat(*np.array(weighted, dtype=object).T.tolist())))

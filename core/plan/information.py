@@ -1,0 +1,184 @@
+"""Fisher information of a planned measurement: what all its pictures together can tell of camera, fan and part.
+
+Every pixel of every stripe tells, to N0 of `core.plan.light_bounds`, where a light plane π cuts a surface in the
+picture. On a flat surface τ (τ·X = 1 on it) that is where (π − τ)·r = 0, on a sphere where |r/(π·r) − c| = R. With D =
+∂/∂(u, v) of the left side, a pixel's length of stripe adds J Jᵀ/(N0² |D|²), J being the derivatives by all unknowns.
+Poses and sweeps are unknowns of a few pictures each and eliminated one by one; camera and fan stay, and what is
+measured.
+
+The shape of the surfaces is taken as known (flat, round), corners and stripes as found at their bounds: no program can
+be better with these pictures, and one that must find out the shape is worse.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.calibrate.pencil import FreePlanes, PlaneSet, pencil_near
+from core.calibrate.reprojection import linearise, ray_changes
+from core.calibrate.target_plane import target_plane_changes
+from core.image.noise import NoiseModel
+from core.image.speckle import NO_SPECKLE, Speckle
+from core.image.target_view import TargetView
+from core.image.targets import BlackSquare, Target
+from core.model import Camera, Pose
+from core.model.arrays import Array
+from core.plan.calibrating import plates_under_fan, square_covariance, view_poses
+from core.plan.design import Design
+from core.plan.light_bounds import edge_density, point_bound, stripe_density
+from core.plan.light_lines import LitLine
+from core.simulate.boards import BLACK, WHITE
+from core.simulate.calibration import CAMERA_GREY, PLANE_GREY
+from core.simulate.targets import room_shade
+
+CAMERA = 9
+"""Unknowns of the camera: `core.calibrate.results.CAMERA_PARAMETERS` without k3."""
+_POSE = 6
+_PIXEL = 1 / 12
+_ROUNDING = 1 / 12
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Sensing:
+    """A planned rig's light and camera, with or without `speckle`."""
+
+    design: Design
+    camera: Camera
+    fan: PlaneSet
+    noise: NoiseModel
+    speckle: Speckle
+    blur_px: float
+
+    @classmethod
+    def of(cls, design: Design, *, speckle: bool) -> Sensing:
+        """What a `design` sees by."""
+        rig = design.rig()
+        shot = 1 / design.electrons_per_grey
+        read = np.sqrt(design.read_noise_grey**2 + _ROUNDING)
+        grains = Speckle(design.speckle, rig.grain_px) if speckle and design.speckle > 0 else NO_SPECKLE
+        pis = rig.fan.pis
+        fan = pencil_near(pis, np.radians(design.angle_deg)) if len(pis) > 1 else FreePlanes(pis)
+        blur_px = float(np.sqrt(rig.blur_px**2 + _PIXEL))
+        return cls(design, rig.camera, fan, NoiseModel(float(read), shot), grains, blur_px)
+
+    @property
+    def unknowns(self) -> int:
+        """Of camera and fan."""
+        return CAMERA + len(self.fan.jacobian.T)
+
+    def of_line(self, number: int) -> Array:
+        """∂π/∂(the fan's unknowns) (3, P) of one of its planes."""
+        return np.asarray(self.fan.jacobian[3 * number : 3 * number + 3])
+
+    def line_of(self, piece: LitLine) -> int:
+        """The number of the fan's plane that a stripe is of."""
+        off = np.abs(self.fan.pis @ piece.points.mean(axis=0) - 1)
+        return int(off.argmin())
+
+    def density(self, line: LitLine, background: float, pictures: int = 1) -> float:
+        """N0 of a stripe of this brightness and width seen in so many pictures, its speckle the same in all."""
+        noise = NoiseModel(self.noise.read_grey / np.sqrt(pictures), self.noise.grey_per_electron / pictures)
+        return stripe_density(
+            float(np.median(line.width)), float(np.median(line.height)), background, noise, self.speckle
+        )
+
+
+def calibration_information(sensing: Sensing, seed: int) -> Array:
+    """(U, U) information on camera and fan of the planned views and poses, all in one adjustment."""
+    information = np.zeros((sensing.unknowns, sensing.unknowns))
+    information[:CAMERA, :CAMERA] += _of_views(sensing, seed)
+    return information + _of_plates(sensing, seed)
+
+
+def flat_stripe(sensing: Sensing, line: LitLine, density: float, pi: Array, tau: Array, by: Array) -> Array:
+    """(C, C) information of a stripe of light plane `pi` on the flat surface `tau`, both (3,) in 1/mm.
+
+    `by` (6, C) are the derivatives of π and τ, one above the other, by the unknowns; the camera's are the first.
+    """
+    rays = sensing.camera.rays(line.uv)
+    difference = (pi - tau)[:2]
+    gradient = difference @ sensing.camera.ray_jacobian(rays)
+    rows = np.hstack([rays, -rays]) @ by
+    rows[:, :CAMERA] += difference @ ray_changes(sensing.camera, rays)[:, :, :CAMERA]
+    return _summed(rows, gradient, density)
+
+
+def round_stripe(sensing: Sensing, line: LitLine, density: float, pi: Array, centre: Array, by: Array) -> Array:
+    """The same on a sphere about `centre` (3,); `by` (7, C) are the derivatives of π, the centre and the radius."""
+    rays = sensing.camera.rays(line.uv)
+    inverse = 1 / (rays @ pi)
+    points = rays * inverse[:, None]
+    outwards = points - centre
+    outwards /= np.linalg.norm(outwards, axis=1)[:, None]
+    along = np.einsum("ni,ni->n", outwards, rays) * inverse**2
+    by_ray = inverse[:, None] * outwards - along[:, None] * pi
+    gradient = np.einsum("ni,nij->nj", by_ray[:, :2], sensing.camera.ray_jacobian(rays))
+    rows = np.hstack([-along[:, None] * rays, -outwards, -np.ones((len(rays), 1))]) @ by
+    rows[:, :CAMERA] += np.einsum("ni,nij->nj", by_ray[:, :2], ray_changes(sensing.camera, rays)[:, :, :CAMERA])
+    return _summed(rows, gradient, density)
+
+
+def eliminated(information: Array, last: int) -> Array:
+    """What is left of an `information` matrix when its `last` unknowns are unknown and of no interest."""
+    keep = len(information) - last
+    own, shared = information[keep:, keep:], information[:keep, keep:]
+    unit = 1 / np.sqrt(np.maximum(np.diag(own), 1e-300))
+    inverse = np.linalg.pinv(own * np.outer(unit, unit), rcond=1e-12, hermitian=True) * np.outer(unit, unit)
+    return np.asarray(information[:keep, :keep] - shared @ inverse @ shared.T)
+
+
+def covariance(information: Array) -> Array:
+    """The inverse, with unknowns scaled so that px, mm and 1/mm do not upset it."""
+    unit = 1 / np.sqrt(np.maximum(np.diag(information), 1e-300))
+    return np.asarray(np.linalg.inv(information * np.outer(unit, unit)) * np.outer(unit, unit))
+
+
+def _summed(rows: Array, gradient: Array, density: float) -> Array:
+    weighted = rows / (density * np.linalg.norm(gradient, axis=1))[:, None]
+    return np.asarray(weighted.T @ weighted)
+
+
+def _of_views(sensing: Sensing, seed: int) -> Array:
+    """(9, 9) information on the camera of the views of its target."""
+    design = sensing.design
+    information = np.zeros((CAMERA, CAMERA))
+    for pose in view_poses(design, seed):
+        rows = _target_rows(sensing, design.camera_target, pose, CAMERA_GREY)
+        information += eliminated(rows.T @ rows, _POSE)
+    return information
+
+
+def _of_plates(sensing: Sensing, seed: int) -> Array:
+    """(U, U) information on camera and fan of the poses of the plane target and the stripes on them."""
+    size = sensing.unknowns
+    information = np.zeros((size, size))
+    columns = np.concatenate([np.arange(CAMERA), size + np.arange(_POSE)])
+    for pose, pieces in plates_under_fan(sensing.design, seed):
+        own = np.zeros((size + _POSE, size + _POSE))
+        rows = _target_rows(sensing, sensing.design.plane_target, pose, PLANE_GREY)
+        own[np.ix_(columns, columns)] += rows.T @ rows
+        tau, by_pose = target_plane_changes(pose)
+        background = WHITE * float(room_shade(pose, PLANE_GREY))
+        for piece in pieces:
+            number = sensing.line_of(piece)
+            by = np.zeros((6, size + _POSE))
+            by[:3, CAMERA:size], by[3:, size:] = sensing.of_line(number), by_pose
+            density = sensing.density(piece, background)
+            own += flat_stripe(sensing, piece, density, sensing.fan.pis[number], tau, by)
+        information += eliminated(own, _POSE)
+    return information
+
+
+def _target_rows(sensing: Sensing, target: Target, pose: Pose, white_grey: float) -> Array:
+    """Derivatives (2N, 9 + 6) of a target's points by camera and pose, in units of their bound."""
+    uv, by_camera, by_pose = linearise(sensing.camera, pose, target.points)
+    grey = float(room_shade(pose, white_grey))
+    density = edge_density(grey * (WHITE - BLACK), grey * BLACK, sensing.blur_px, sensing.noise)
+    if isinstance(target, BlackSquare):
+        view = TargetView(target.points, uv, np.ones(len(uv)), covariance=square_covariance(uv, density))
+    else:
+        sigma = point_bound(target, density, sensing.camera.focal / float(pose.translation[2]))
+        view = TargetView(target.points, uv, np.full(len(uv), sigma))
+    return view.whitened(np.concatenate([by_camera[:, :, :CAMERA], by_pose], axis=2))
