@@ -1,13 +1,16 @@
 """`trisect inspect` on a rendered recording: a table for people, the same numbers for machines, exit codes."""
 
 import json
+import shutil
+from dataclasses import replace
 
 import pytest
 
 from core.files.inspection_file import read_inspection
 from core.files.inspection_plan_file import read_plan
 from core.pipeline.inspect_step import inspect, open_scan
-from tests.simulated import copy_of, trisect
+from core.simulate.recording import simulate_set
+from tests.simulated import CUT, SMALL, copy_of, trisect
 
 PLAN = """
 [[feature]]
@@ -23,6 +26,29 @@ name = "steps"
 kind = "steps"
 nominal_heights_mm = [50]
 limits.height = { lower_mm = -2, upper_mm = 2 }
+"""
+
+
+STEPS = """
+[[feature]]
+name = "stairs"
+kind = "steps"
+nominal_heights_mm = [40, 50, 60, 70]
+limits.height = { lower_mm = -1, upper_mm = 1 }
+"""
+SHAFT = """
+[[feature]]
+name = "table"
+kind = "plane"
+[[feature]]
+name = "shaft"
+kind = "cylinder"
+limits.diameter = { nominal_mm = 40, tolerance_mm = 3 }
+[[feature]]
+name = "axis"
+kind = "distance"
+of = ["shaft", "table"]
+limits.distance = { nominal_mm = 20, tolerance_mm = 3 }
 """
 
 
@@ -54,6 +80,28 @@ def test_machines_files_and_windows_get_the_same_numbers_to_the_last_digit(resul
     assert told == [(row.name, row.value, row.u, row.verdict) for row in again.characteristics]
     assert told == [(row["name"], row["value"], row["u"], row["verdict"]) for row in file["characteristics"]]
     assert [feature["name"] for feature in file["plan"]["feature"]] == ["block", "table", "steps"]
+
+
+@pytest.mark.parametrize(
+    ("scenario", "plan", "names"),
+    [
+        (replace(SMALL, object="steps"), STEPS, [f"stairs height {number}" for number in (1, 2, 3, 4)]),
+        (replace(SMALL, object="cylinder", height_mm=40.0, frames=30), SHAFT, ["shaft diameter", "axis distance"]),
+    ],
+    ids=["the block of 40, 50, 60 and 70 mm", "a lying shaft"],
+)
+def test_rendered_parts_have_their_true_measures(simulated, measured, tmp_path, scenario, plan, names):
+    simulate_set(scenario, tmp_path / "set", calibration_from=simulated)
+    for name in ("camera.json", "planes.json", "planes.npz"):
+        shutil.copy(measured / name, tmp_path / name)
+    assert trisect("scan", tmp_path / "set", "--out", tmp_path, *CUT).code == 0
+    (tmp_path / "plan.toml").write_text(plan)
+    said = json.loads(trisect("inspect", tmp_path, "--plan", tmp_path / "plan.toml", "--json").out)
+    rows = {row["name"]: row for row in said["characteristics"]}
+    errors = {name: rows[name]["value"] - rows[name]["limits"]["nominal"] for name in names}
+    print({name: (round(error, 4), round(rows[name]["u"], 4)) for name, error in errors.items()})
+    assert all(abs(error) < 3 * rows[name]["u"] for name, error in errors.items()), errors
+    assert all(rows[name]["u"] < 0.5 for name in names)
 
 
 def test_a_recording_set_is_inspected_with_its_results(simulated, results):
