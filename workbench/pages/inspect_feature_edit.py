@@ -11,6 +11,7 @@ from PySide6.QtCore import QObject
 
 from core.files.project import stored_source
 from core.inspect.inspection_plan import FeatureSpec, Kind, Polygon
+from core.inspect.stretches import usual_stretches
 from workbench.pages import inspect_feature_values as fields
 
 if TYPE_CHECKING:
@@ -128,9 +129,17 @@ class InspectFeatureEdit(QObject):
             self.set_value("nominal", stored_source(folder, path))
 
     def add_cut(self) -> None:
-        """One measurement more in the chosen section; undoable."""
-        if self.spec is not None:
-            self._put(self.spec, fields.with_new_cut(self.spec))
+        """One measurement more in the chosen section, where its profile has levels; undoable."""
+        spec = self.spec
+        if spec is None:
+            return
+        shown = self._owner.result(spec.name)
+        profile = None if shown is None else shown.profile
+        if profile is None or len(profile.mean_position) < 2:
+            self._put(spec, fields.with_new_cut(spec))  # nothing measured yet
+        else:
+            at = usual_stretches(profile.mean_position, profile.mean_height)
+            self._put(spec, fields.with_new_cut(spec, at))
 
     def remove_cut(self, place: int) -> None:
         """One measurement less in the chosen section; undoable."""

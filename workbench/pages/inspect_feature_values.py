@@ -254,14 +254,16 @@ def _with_cut(spec: FeatureSpec, section: Section, place: int, field: str, value
     return replace(spec, limits=limits, section=replace(section, cuts=_put(section.cuts, place, changed)))
 
 
-def with_new_cut(spec: FeatureSpec) -> FeatureSpec:
-    """A section with one measurement more."""
+def with_new_cut(
+    spec: FeatureSpec, stretches: tuple[tuple[float, float], tuple[float, float]] = ((0.0, 10.0), (20.0, 30.0))
+) -> FeatureSpec:
+    """A section with one measurement more, the height over the second of two `stretches` above the first."""
     if spec.section is None:
         return spec
     names, number = {cut.name for cut in spec.section.cuts}, 1
     while f"height {number}" in names:
         number += 1
-    cut = Cut(f"height {number}", "height", (0.0, 10.0), (20.0, 30.0))
+    cut = Cut(f"height {number}", "height", *stretches)
     return replace(spec, section=replace(spec.section, cuts=(*spec.section.cuts, cut)))
 
 

@@ -363,6 +363,17 @@ def test_the_plot_shows_the_profile_of_the_chosen_section(page, features, measur
     assert "Choose a cross-section" in page.plot.chart.empty_state.message
 
 
+def test_a_new_measurement_in_a_section_begins_on_the_levels_of_its_profile(features, measuring, qtbot):
+    position = np.arange(0.5, 100.0)
+    profile = ShownProfile(position, position, position, np.where(position < 40, 0.0, 10.0))
+    measuring.answers[jobs.MEASURE_FEATURES] = lambda folder, project: with_drawn(project, profile=profile)
+    features.edit.add("section")
+    measured(features, qtbot)
+    features.edit.add_cut()
+    (cut,) = features.plan.feature("section 1").section.cuts
+    assert (cut.kind, cut.first, cut.second) == ("height", (8.3, 31.7), (52.3, 87.7))
+
+
 def test_deviations_are_drawn_by_class_and_their_shares_are_told(page, features, measuring, qtbot, tmp_path):
     classes = tuple(
         ShownClass(mark(number), number, *bounds(number, 0.1), 0.125 * (number > -4), np.ones((int(number > -4), 3)))
