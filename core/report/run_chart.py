@@ -1,18 +1,23 @@
-"""The run chart: values in the order of measuring, with lines to compare them with."""
+"""The run chart: values in the order of measuring, with lines to compare them with; beside it their histogram."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from core.report.content import RepeatLine
-from core.report.figures import new_figure, plot_style
+from core.report.figures import DPI, MM_PER_INCH, mixed, new_figure, plot_style
 from core.report.look import Look
 from core.report.style import MUTED
+from core.study.repeats import histogram
 
+LEFT_MM, WORDS_MM, HISTOGRAM_MM = 15.0, 34.0, 22.0
+"""Room for the axis, for the words beside the lines, and for the histogram."""
+FEWEST_FOR_HISTOGRAM = 5
 FORMS = ("--", ":", ":", "-.")
 """Of the lines after the first: told apart without colour."""
 
@@ -45,20 +50,21 @@ def run_chart_figure(
     width_mm: float,
     height_mm: float,
 ) -> Figure:
-    """Values with ±U (nothing for none) over their number; `lines` by the fixed words they are called."""
+    """Values with ±U (nothing for none) over their number, a histogram beside them where they are enough for one.
+
+    `lines` by the fixed words they are called.
+    """
     with plot_style():
         figure = new_figure(width_mm, height_mm)
-        room = 34.0
-        box = (15 / width_mm, 9 / height_mm, (width_mm - 15 - room) / width_mm, (height_mm - 11) / height_mm)
-        axes = figure.add_axes(box)
+        beside = HISTOGRAM_MM if len(values) >= FEWEST_FOR_HISTOGRAM else 0.0
+        foot, height = 9 / height_mm, (height_mm - 11) / height_mm
+        chart_mm = width_mm - LEFT_MM - WORDS_MM - beside
+        axes = figure.add_axes((LEFT_MM / width_mm, foot, chart_mm / width_mm, height))
         numbers = np.arange(1, len(values) + 1)
         bars = np.nan_to_num(U, nan=0.0, posinf=0.0) if len(U) else None
         axes.errorbar(
             numbers, values, bars, fmt="o-", color=look.accent, ms=3.5, lw=0.6, elinewidth=0.9, capsize=2, zorder=4
         )
-        tones = [look.accent] + [MUTED] * len(lines)
-        for value, form, tone in zip(lines.values(), ("-", *FORMS), tones, strict=False):
-            axes.axhline(value, color=tone, lw=0.7, ls=form, zorder=2)
         axes.set_xlim(0.5, len(values) + 0.5)
         axes.set_xlabel(look.words("number of the scan"), labelpad=1)
         axes.set_ylabel(label if label not in ("thickness, mm",) else look.words(label), labelpad=2)
@@ -66,19 +72,47 @@ def run_chart_figure(
         axes.xaxis.set_major_locator(MaxNLocator(integer=True))
         axes.yaxis.set_major_locator(MaxNLocator(5))
         axes.spines[["top", "right"]].set_visible(False)
-        places = _apart(list(lines.values()), axes.get_ylim())
-        for (name, value), tone, place in zip(lines.items(), tones, places, strict=False):
-            axes.annotate(
-                look.words(name),
-                (1.0, value),
-                (1.03, place),
-                xycoords=axes.get_yaxis_transform(),
-                textcoords=axes.get_yaxis_transform(),
-                va="center",
-                color=tone,
-                arrowprops={"arrowstyle": "-", "lw": 0.4, "color": tone, "shrinkA": 1, "shrinkB": 0},
-            )
+        last = axes
+        if beside:
+            place = ((LEFT_MM + chart_mm + 2) / width_mm, foot, (beside - 2) / width_mm, height)
+            last = _histogram(look, figure.add_axes(place, sharey=axes), values)
+        _lines(look, axes, last, lines)
     return figure
+
+
+def _histogram(look: Look, axes: Axes, values: Sequence[float]) -> Axes:
+    """How many of the values lie in each bin, along the same axis as theirs."""
+    found = histogram(np.asarray(values, dtype=np.float64))
+    axes.barh(
+        found.edges[:-1], found.counts, np.diff(found.edges), align="edge", color=mixed(look.accent, 0.35),
+        edgecolor=look.accent, lw=0.4,
+    )  # fmt: skip
+    axes.set_xlabel(look.words("scans"), labelpad=1)
+    axes.xaxis.set_major_locator(MaxNLocator(2, integer=True))
+    axes.tick_params(axis="y", left=False, labelleft=False)
+    axes.spines[["top", "right"]].set_visible(False)
+    return axes
+
+
+def _lines(look: Look, axes: Axes, last: Axes, lines: Mapping[str, float]) -> None:
+    """The lines to compare with, across all axes, and their words behind the last ones."""
+    tones = [look.accent] + [MUTED] * len(lines)
+    for value, form, tone in zip(lines.values(), ("-", *FORMS), tones, strict=False):
+        for one in dict.fromkeys((axes, last)):
+            one.axhline(value, color=tone, lw=0.7, ls=form, zorder=2)
+    room_mm = float(last.get_window_extent().width) / DPI * MM_PER_INCH
+    places = _apart(list(lines.values()), axes.get_ylim())
+    for (name, value), tone, place in zip(lines.items(), tones, places, strict=False):
+        last.annotate(
+            look.words(name),
+            (1.0, value),
+            (1.0 + 3 / room_mm, place),
+            xycoords=last.get_yaxis_transform(),
+            textcoords=last.get_yaxis_transform(),
+            va="center",
+            color=tone,
+            arrowprops={"arrowstyle": "-", "lw": 0.4, "color": tone, "shrinkA": 1, "shrinkB": 0},
+        )
 
 
 def _apart(values: Sequence[float], limits: tuple[float, float]) -> list[float]:

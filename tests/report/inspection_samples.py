@@ -11,7 +11,10 @@ from core.inspect.characteristic import Characteristic, Limits
 from core.inspect.results import Contribution
 from core.report.content import CalibrationMark, Deviations
 from core.report.template import ReportTemplate
+from core.study.acceptance import Reading, acceptance_check
 from core.study.grr import grr_study
+from core.study.repeats import repeat_study
+from core.study.repeats_budget import from_stated
 from core.study.type1 import type1_study
 
 from .report_samples import block_content, repeats
@@ -50,7 +53,18 @@ def studies():
     rng = np.random.default_rng(4)
     values = 50.0 + rng.normal(0.002, 0.004, 25)
     parts = 49.9 + 0.05 * rng.standard_normal((5, 1, 1)) + 0.002 * rng.standard_normal((5, 3, 2))
-    return study_values(type1_study(values, 50.0, 0.4)), study_values(grr_study(parts, tolerance=0.4))
+    repeated = (50.004 + 0.006 * rng.standard_normal(12)).tolist()
+    budget = from_stated(repeated, [0.01] * 12)
+    known = {"complete": True, "U": [0.02] * 12, "nominal": 50.0, "limits": (-0.1, 0.1)}
+    readings = [Reading("form", f"p{place}", 0.02 + 0.001 * place) for place in range(10)]
+    readings += [Reading("size", f"p{place}", 50.01 - 0.002 * place, 50.0, 0.001) for place in range(4)]
+    made = (
+        type1_study(values, 50.0, 0.4),
+        grr_study(parts, tolerance=0.4),
+        repeat_study(repeated, budget, **known),
+        acceptance_check(readings, {"form": 0.05, "size": 0.012}),
+    )
+    return tuple(study_values(study) for study in made)
 
 
 def logo():

@@ -15,7 +15,9 @@ from core.inspect.results import Contribution
 from core.report.content import SECTIONS
 from core.report.german import GERMAN
 from core.report.german_notes import GERMAN_NOTES
+from core.report.look import Look
 from core.report.pdf import build_report
+from core.report.run_chart import run_chart_figure
 from core.report.template import ReportTemplate
 from core.scan.surface import Mesh
 
@@ -98,6 +100,23 @@ def test_studies_are_printed_with_figures_and_notes(data):
     assert "Gauge R&R (ANOVA) Source of variation σ, mm share of σ², % of the total, % of T, %" in text
     assert "%GRR of the total %GRR of T ndc verdict" in text
     assert "is pooled with the error" in text
+    assert "Repeats of thickness n mean error RMSE s (n − 1) largest error 12 50.00" in text
+    assert "U of the mean verdict 0.0" in text
+    assert "Quantity positions largest error, mm at limit, mm decision" in text
+    assert "probing error, form 10 +0.0290 p9 0.05 conforming" in text
+    assert "probing error, size 4 +0.0100 p0 0.012 conforming" in text
+    assert "4 of the 10 positions the guideline asks for" in text
+
+
+@pytest.mark.parametrize(("count", "panels"), [(12, 2), (4, 1)])
+def test_a_run_chart_has_a_histogram_beside_it_once_there_are_values_for_one(content, count, panels):
+    values = (50.0 + 0.01 * np.random.default_rng(0).standard_normal(count)).tolist()
+    figure = run_chart_figure(Look.of(content), values, (), {"mean": 50.0}, "mm", 170.0, 42.0)
+    assert len(figure.axes) == panels
+    bars = [bar.get_width() for axes in figure.axes[1:] for bar in axes.patches]
+    assert sum(bars) == (count if panels == 2 else 0)
+    lines = [line for axes in figure.axes for line in axes.lines if list(line.get_ydata()) == [50.0, 50.0]]
+    assert len(lines) == panels, "the mean goes across both"
 
 
 def test_template_gives_name_address_colour_footer_text_and_signatures(content, data):
