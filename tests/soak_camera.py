@@ -22,7 +22,6 @@ import numpy as np
 from core.acquire import basler_driver
 from core.acquire.genicam import GenICamSource
 from core.acquire.source import Region, SourceSettings
-from core.files.pictures import write_picture
 from core.files.recorder import Recorder
 from core.files.rig import Rig
 from core.image.targets import BlackSquare, Checkerboard
@@ -123,7 +122,7 @@ class SweepingRecorder(Recorder):
         return taken
 
     def _put_and_sweep(self, path: Path, picture) -> None:
-        write_picture(path, picture)
+        self._put_direct(path, picture)
         self._there.append(path)
         if len(self._there) > KEPT:
             self._there.popleft().unlink()

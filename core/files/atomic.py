@@ -7,6 +7,7 @@ import errno
 import os
 import secrets
 import tempfile
+from collections.abc import Callable
 from pathlib import Path
 
 from core.errors import InputError
@@ -44,13 +45,22 @@ def write_bytes(path: Path, *data: bytes | memoryview, sync: bool = True) -> Non
     InputError
         If the disk is full, or the folder cannot be written to. Nothing half written stays behind.
     """
-    beside = path.with_name(f".{path.name}.{secrets.token_hex(4)}.part")
-    try:
+
+    def put(beside: Path) -> None:
         with beside.open("xb") as file:
             file.writelines(data)
             file.flush()
             if sync:
                 os.fsync(file.fileno())
+
+    write_beside(path, put)
+
+
+def write_beside(path: Path, put: Callable[[Path], None]) -> None:
+    """Have `put` write a new file beside `path`, and rename it to `path` when it is whole; raises as `write_bytes`."""
+    beside = path.with_name(f".{path.name}.{secrets.token_hex(4)}.part")
+    try:
+        put(beside)
         beside.replace(path)
     except BaseException as error:
         with contextlib.suppress(OSError):

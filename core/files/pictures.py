@@ -95,9 +95,13 @@ def write_picture(path: Path, picture: Picture) -> None:
     ValueError
         If the name does not end in .png or .pgm or the array is no picture.
     """
+    write_bytes(path, *picture_parts(path, picture), sync=False)
+
+
+def picture_parts(path: Path, picture: Picture) -> tuple[bytes | memoryview, ...]:
+    """What the file `path` of a picture holds, in one piece or several; ValueError as `write_picture`."""
     if path.suffix.lower() == ".pgm":
-        write_bytes(path, *pgm_parts(picture), sync=False)
-        return
+        return pgm_parts(picture)
     if path.suffix.lower() != ".png":
         raise ValueError(f"{path.name} ends neither in .png nor in .pgm")
     if picture.ndim != 2 or picture.dtype not in (np.uint8, np.uint16):
@@ -105,7 +109,7 @@ def write_picture(path: Path, picture: Picture) -> None:
     done, data = cv2.imencode(".png", picture, _QUICKLY)
     if not done:
         raise ValueError(f"{path.name} could not be encoded")
-    write_bytes(path, data.tobytes(), sync=False)
+    return (data.data,)
 
 
 def _damage(data: bytes) -> str:

@@ -11,12 +11,13 @@ from typing import Literal
 from core.acquire.source import Frame, Picture
 from core.errors import InputError
 from core.files.atomic import make_folder
-from core.files.pictures import write_picture
+from core.files.direct_file import DirectWriter
+from core.files.pictures import picture_parts
 from core.files.recording_log import LoggedFrame, RecordingLog
 
 Ending = Literal[".png", ".pgm"]
 
-WAITING_BYTES = 256 * 2**20
+WAITING_BYTES = 512 * 2**20
 """Pictures waiting for the disk may take so much memory; what comes on top is dropped and counted."""
 
 
@@ -36,7 +37,7 @@ class Recorder:
     waiting_bytes
         How much may wait for the disk; at least one picture always may.
     put
-        Writes one picture.
+        Writes one picture; None: straight to the disk (:mod:`core.files.direct_file`).
 
     Raises
     ------
@@ -50,10 +51,11 @@ class Recorder:
         *,
         ending: Ending = ".png",
         waiting_bytes: int = WAITING_BYTES,
-        put: Callable[[Path, Picture], None] = write_picture,
+        put: Callable[[Path, Picture], None] | None = None,
     ) -> None:
         self._folder = make_folder(folder)
-        self._ending, self._limit, self._put = ending, waiting_bytes, put
+        self._writer = DirectWriter()
+        self._ending, self._limit, self._put = ending, waiting_bytes, put or self._put_direct
         self._log = RecordingLog(folder)
         self._changed = threading.Condition()
         self._queue: deque[tuple[Path, Picture, LoggedFrame | None]] = deque()
@@ -149,6 +151,9 @@ class Recorder:
         self._log.close()
         if self._problem is not None:
             raise self._problem
+
+    def _put_direct(self, path: Path, picture: Picture) -> None:
+        self._writer.write(path, *picture_parts(path, picture))
 
     def _tell(self) -> None:
         """Raise the problem once; the writing goes on."""

@@ -15,20 +15,27 @@ import numpy as np
 from core.acquire.source import Frame
 from core.files.recorder import Recorder
 
-SIZE = (24, 32)
+SIZE, LARGE = (24, 32), (1100, 1000)
+"""Frames that are written plainly, and frames that go straight to the disk."""
 
 
-def picture(number):
-    return np.full(SIZE, number % 251, np.uint8)
+def size_of(time_number):
+    """Every tenth recording is one of large frames."""
+    return LARGE if time_number % 10 == 1 else SIZE
 
 
-def record(folder, ending, acknowledged):
+def picture(number, size=SIZE):
+    return np.full(size, number % 251, np.uint8)
+
+
+def record(folder, ending, size, acknowledged):
     """Record until killed; each time more frames are on the disk, say how many."""
     recorder = Recorder(folder, ending=ending)
     told = number = 0
     while True:
         if recorder.waiting < 20:
-            recorder.write(f"frame{number:05d}", picture(number), Frame(picture(number), number, number / 100, 0))
+            levels = picture(number, size)
+            recorder.write(f"frame{number:05d}", levels, Frame(levels, number, number / 100, 0))
             number += 1
         if (written := recorder.written) > told:
             os.write(acknowledged, f"{written}\n".encode())
@@ -43,7 +50,7 @@ def main(folder, times):
         ending = (".png", ".pgm")[time_number % 2]
         child = os.fork()
         if child == 0:
-            record(place, ending, writing)
+            record(place, ending, size_of(time_number), writing)
         os.close(writing)
         with os.fdopen(reading) as pipe:
             said = [pipe.readline()] if rng.random() < 0.8 else []  # a few are killed while they begin

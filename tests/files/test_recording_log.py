@@ -16,7 +16,7 @@ from core.files.pictures import read_picture, write_picture
 from core.files.recorder import Recorder
 from core.files.recording_log import LOG, LoggedFrame, RecordingLog, lost_frames, read_log
 from core.files.set_listing import check_sizes, scan_frames
-from tests.files.killed_recorder import SIZE, picture
+from tests.files.killed_recorder import picture, size_of
 
 
 def frame(number, dropped=0):
@@ -31,17 +31,18 @@ def test_killed_at_100_moments_every_acknowledged_frame_is_there_and_readable(tm
     assert len(runs) == 100
     assert sum(int(count) > 0 for _, count in runs) > 50
     kept = set()
-    for folder, acknowledged in runs:
+    for number, (folder, acknowledged) in enumerate(runs):
+        size = size_of(number)
         frames = read_log(Path(folder))
         kept |= {Path(one.name).suffix for one in frames}
         assert len(frames) >= int(acknowledged)
         assert [one.index for one in frames] == list(range(len(frames)))
         for one in frames:
-            assert np.array_equal(read_picture(Path(folder) / one.name), picture(one.index))
+            assert np.array_equal(read_picture(Path(folder) / one.name), picture(one.index, size))
         listed = scan_frames(Path(folder))[1]
         assert len(frames) <= len(listed) <= len(frames) + 1  # a last one whose line was not written
         for path in listed:
-            assert read_picture(path).shape == SIZE
+            assert read_picture(path).shape == size
     assert kept == {".png", ".pgm"}
 
 
