@@ -28,6 +28,7 @@ from tests.study.grr_tables import AIAG
 from workbench.app import Application, build_window
 from workbench.bench import Bench, make_bench
 from workbench.main_window import MainWindow
+from workbench.pages.report_presenter import Stage
 from workbench.settings import AppSettings
 from workbench.steps import STEPS
 from workbench.style_sheet import is_polishing
@@ -74,7 +75,10 @@ def _all(app: QApplication, bench: Bench, window: MainWindow, folder: Path) -> N
     _open_sample(app, bench, window)
     for number, step in enumerate(STEPS, start=1):
         window.go_to(step.name)
+        if step.name == "report":
+            _make_report(app, window)
         _settle(app, bench, 2.0)
+        _drawn(app, bench, window, step.name)
         if step.name == "inspect":
             for name in _inspect_tabs(app, bench, window):
                 _each(app, bench, window, folder, f"{number}-inspect-{name}")
@@ -95,7 +99,14 @@ def _open_sample(app: QApplication, bench: Bench, window: MainWindow) -> None:
     inspect.features.put_plan(PLAN, "features")
     inspect.features.measure()
     _wait(app, lambda: not inspect.features.measuring, PATIENCE_S)
-    inspect.features.choose(PLAN.names[0])
+    _make_report(app, window)
+
+
+def _make_report(app: QApplication, window: MainWindow) -> None:
+    """The report of what there is now."""
+    report: Any = window.presenters["report"]
+    report.do_run()
+    _wait(app, lambda: report.stage is Stage.MADE, PATIENCE_S)
 
 
 def _inspect_tabs(app: QApplication, bench: Bench, window: MainWindow) -> Iterator[str]:
@@ -137,6 +148,7 @@ def _inspect_tabs(app: QApplication, bench: Bench, window: MainWindow) -> Iterat
     _side_to(page, page.conditions_fold)
     yield "conditions"
     page.conditions_fold.collapse(animate=False)
+    _wait(app, lambda: not bench.measuring.busy, PATIENCE_S)
 
 
 def _side_to(page: Any, widget: QWidget) -> None:
@@ -169,7 +181,13 @@ def _readme(app: QApplication, bench: Bench, window: MainWindow, folder: Path) -
     _open_sample(app, bench, window)
     for name in README:
         window.go_to(name)
+        if name == "inspect":
+            page: Any = window.pages[name]
+            page.presenter.features.choose("top")
+            _settle(app, bench, 1.0)
+            _side_to(page, page.features)
         _settle(app, bench, 8.0)
+        _drawn(app, bench, window, name)
         small = grab(window).scaledToWidth(README_WIDTH, Qt.TransformationMode.SmoothTransformation)
         path = folder / f"{name}.png"
         small.save(str(path))
@@ -186,6 +204,14 @@ def _each(app: QApplication, bench: Bench, window: MainWindow, folder: Path, nam
             _settle(app, bench, 0.7)
             path = folder / f"{name}-{theme}-{size.width()}x{size.height()}.png"
             grab(window).save(str(path))
+
+
+def _drawn(app: QApplication, bench: Bench, window: MainWindow, step: str) -> None:
+    """Wait for the report's pages, which are drawn by another process."""
+    if step == "report":
+        report: Any = window.presenters[step]
+        _wait(app, lambda: report.pages and not report.drawing, PATIENCE_S)
+        _settle(app, bench, 1.0)
 
 
 def grab(window: MainWindow) -> QImage:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from PySide6.QtCore import QEvent
+from PySide6.QtCore import QEvent, QTimer
 from PySide6.QtGui import QShowEvent
 from PySide6.QtWidgets import QLabel, QPushButton, QVBoxLayout, QWidget
 
@@ -48,7 +48,15 @@ class ConditionsPanel(QWidget):
         made = (choices, fields.comparable(plan), framed, conditions.temperature_is_on, conditions.master_is_on)
         if made != self._made:
             self._made = made
-            self._make(plan)
+            QTimer.singleShot(0, self, self._make_anew)  # in a turn of its own: the edit took its time
+        self._show()
+
+    def _make_anew(self) -> None:
+        self._make(self._conditions.plan)
+        self._show()
+
+    def _show(self) -> None:
+        conditions = self._conditions
         values = conditions.values()
         for form in self.forms.values():
             form.set_values(values)

@@ -57,7 +57,7 @@ def page(presenter, qtbot, monkeypatch):
     made.resize(1280, 800)
     made.show()
     made.conditions_fold.expand(animate=False)
-    made.conditions.refresh()
+    qtbot.waitUntil(lambda: "master" in made.conditions.forms)
     yield made
     made.close()
 
@@ -158,16 +158,17 @@ def test_the_panel_shows_what_is_set_and_sets_what_is_clicked(page, presenter, q
     panel.forms["temperature"].editor(fields.AT_20).click()
     assert presenter.features.plan.temperature is not None
     assert page.conditions_fold.text() == "Conditions and frame (20 °C)"
-    assert panel.forms["temperature"].values()["part_celsius"] == 23.5
+    qtbot.waitUntil(lambda: panel.forms["temperature"].values().get("part_celsius") == 23.5)
     choice = panel.forms["frame"].editor("primary")
     choice.setCurrentIndex(choice.findText("top"))
     choice.activated.emit(choice.currentIndex())
-    assert panel.complaints["frame"].text() and "secondary" in panel.forms["frame"].values()
+    qtbot.waitUntil(lambda: "secondary" in panel.forms["frame"].values())
+    assert "second feature" in panel.complaints["frame"].text()
     panel.forms["master"].editor(fields.WITH_MASTER).click()
-    qtbot.waitUntil(panel.take.isVisible)
+    qtbot.waitUntil(lambda: panel.take.isVisible())
     assert fields.COMPARED + "ball" in panel.forms["master"].values()
     undo(presenter)
-    assert set(panel.forms["temperature"].values()) == {fields.AT_20}
+    qtbot.waitUntil(lambda: set(panel.forms["temperature"].values()) == {fields.AT_20})
     assert all(
         form.help_of(key) for form in panel.forms.values() for key in form.values() if not key.startswith("comp")
     )
@@ -179,7 +180,8 @@ def test_the_panel_takes_a_master_from_the_folder_that_is_chosen(
     conditions.set_value(fields.WITH_MASTER, True)
     conditions.set_value("certified_mm", 50.001)
     monkeypatch.setattr(ask, "choose_folder", lambda *_: tmp_path)
+    qtbot.waitUntil(lambda: page.conditions.take.isVisible())
     page.conditions.take.click()
     qtbot.waitUntil(lambda: presenter.features.plan.master is not None)
-    assert page.conditions.forms["master"].values()["measured_mm"] == 50.004
+    qtbot.waitUntil(lambda: page.conditions.forms["master"].values()["measured_mm"] == 50.004)
     assert np.isclose(page.conditions.forms["master"].values()[fields.U_MEASURED], 0.005)

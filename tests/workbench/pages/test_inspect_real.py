@@ -131,3 +131,37 @@ def test_looking_and_measuring_never_stop_the_window(presenter, qtbot):
         qtbot.waitUntil(lambda: presenter.stage is Stage.MEASURED, timeout=60_000)
     page.close()
     assert too_long(watchdog, slowness()) == []
+
+
+def test_features_and_their_plots_never_keep_the_window_waiting(presenter, qtbot, monkeypatch):
+    from workbench.pages.inspect_page import InspectPage
+
+    monkeypatch.setenv("TRISECT_NO_OPENGL", "painter")
+    page = InspectPage(presenter)
+    qtbot.addWidget(page)
+    page.resize(1100, 700)
+    page.show()
+    page.tabs.setCurrentWidget(page.picture)
+    qtbot.wait(300)
+    features, conditions = presenter.features, presenter.features.conditions
+    with Watchdog(lambda: features.chosen) as watchdog:
+        for kind in ("plane", "plane", "thickness", "distance", "section"):
+            features.edit.add(kind)
+            qtbot.wait(40)
+        features.measure()
+        qtbot.waitUntil(lambda: features.shown is not None and not features.measuring, timeout=60_000)
+        page.tabs.setCurrentWidget(page.plot)
+        for name in features.plan.names:
+            features.choose(name)
+            qtbot.wait(40)
+        page.conditions_fold.expand(animate=False)
+        qtbot.wait(40)
+        conditions.set_value("at 20 °C", True)
+        qtbot.waitUntil(lambda: features.shown is not None and not features.measuring, timeout=60_000)
+        page.tabs.setCurrentWidget(page.studies)
+        for kind in ("grr", "acceptance"):
+            presenter.studies.begin(kind)
+            qtbot.wait(40)
+    page.close()
+    assert all(one.rows for one in features.shown.features if one.kind != "section")
+    assert too_long(watchdog, slowness()) == []
