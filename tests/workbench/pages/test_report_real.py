@@ -54,7 +54,7 @@ def test_the_preview_follows_what_is_chosen_typed_and_undone(technician: Technic
     assert not np.array_equal(page.presenter.pages[0], whole[0])
 
 
-def test_everything_is_handed_over_and_the_report_is_what_was_seen(
+def test_everything_is_handed_over_the_report_is_what_was_seen_and_what_cannot_be_written_is_one_sentence(
     technician: Technician, page: Any, tmp_path: Path
 ) -> None:
     t = technician
@@ -93,12 +93,6 @@ def test_everything_is_handed_over_and_the_report_is_what_was_seen(
     assert json.loads(written["Thickness (JSON)"].read_text())["thickness_mm"] == pytest.approx(50.0, abs=0.5)
     assert t.errors() == []
 
-
-def test_what_cannot_be_written_is_one_sentence_and_nothing_is_lost(
-    technician: Technician, page: Any, tmp_path: Path
-) -> None:
-    t = technician
-    drawn(t, page)
     (tmp_path / "file").write_text("in the way")
     t.will_choose(tmp_path / "file" / "a.stl")
     t.press("Surface (STL)")
