@@ -24,6 +24,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,6 +44,7 @@ PRIOR_FREEDOM = 6.0
 ROUNDS = 12
 CORNER_SCALE_RANGE = (0.3, 30.0)
 PARAMETERS = 10
+_UP = np.array([0.0, 0.0, 1.0])
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -163,7 +165,9 @@ class _Problem:
         self.heights = [np.zeros((len(pose.view.points), self.bows)) for pose in poses]
         if plate is not None:
             self.heights = [plate.board.changes(pose.view.points)[:, 2, :BOWS] for pose in poses]
-        self.corners = 2 * sum(len(pose.view.points) for pose in poses)
+        ends = np.cumsum([0, *(2 * len(pose.view.points) for pose in poses)])
+        self.rows = [slice(int(first), int(last)) for first, last in pairwise(ends)]
+        self.corners = int(ends[-1])
         self.free, self.whiten = _whitening(camera_covariance)
         self.corner_scale = 1.0
         self.extra = np.zeros(self.stripes.parts)
@@ -214,18 +218,14 @@ class _Problem:
         unknowns = state.planes.jacobian.shape[1]
         width = unknowns + 6 * len(state.poses) + self.bows + PARAMETERS
         bows = slice(width - PARAMETERS - self.bows, width - PARAMETERS)
-        camera = self._camera(state)
         residuals, blocks = self._known_of_bows(state, width, bows)
-        for index, (known, pose) in enumerate(zip(self.known, state.poses, strict=True)):
-            points = known.view.points + np.outer(self.heights[index] @ state.bow, [0.0, 0.0, 1.0])
-            uv, by_camera, by_pose = reprojection.linearise(camera, pose, points)
-            by_bow = (by_pose[:, :, 3:] @ pose.rotation[:, 2])[:, :, None] * self.heights[index][:, None]
-            residuals.append(known.view.whitened(uv - known.view.uv) / self.corner_scale)
-            block = np.zeros((2 * len(uv), width))
-            block[:, unknowns + 6 * index : unknowns + 6 * index + 6] = known.view.whitened(by_pose) / self.corner_scale
-            block[:, bows] = known.view.whitened(by_bow) / self.corner_scale
-            block[:, -PARAMETERS:] = known.view.whitened(by_camera) / self.corner_scale
-            blocks.append(block)
+        points = self._target_points(state)
+        block = np.zeros((self.corners, width))
+        block[:, -PARAMETERS - self.bows :] = points[:, 7:]
+        for index, rows in enumerate(self.rows):
+            block[rows, unknowns + 6 * index : unknowns + 6 * index + 6] = points[rows, 1:7]
+        residuals.append(points[:, 0])
+        blocks.append(block)
         distances = self._distances(state)
         weight = np.sqrt(self.weight)[:, None] / self._sd()
         block = np.zeros((*distances.mm.shape, width))
@@ -237,6 +237,32 @@ class _Problem:
         residuals.append((distances.mm * weight).ravel())
         blocks.append((block * weight[..., None]).reshape(-1, width))
         return np.concatenate(residuals), np.vstack(blocks)
+
+    def _target_points(self, state: _State) -> Array:
+        """Residuals of all target points in standard deviations and their derivatives by pose, bows and camera.
+
+        (2N, 1 + 6 + B + 10). All poses are seen at once: most of the time of a fit goes here.
+        """
+        heights = np.concatenate(self.heights)
+        turned = np.concatenate(
+            [
+                (known.view.points + np.outer(own @ state.bow, _UP)) @ pose.rotation.T
+                for known, own, pose in zip(self.known, self.heights, state.poses, strict=True)
+            ]
+        )
+        count = [len(own) for own in self.heights]
+        places = turned + np.repeat([pose.translation for pose in state.poses], count, axis=0)
+        uv, by_camera, by_pose = reprojection.linearise(self._camera(state), Pose.identity(), places)
+        by_place = by_pose[:, :, 3:]
+        up = np.repeat([pose.rotation[:, 2] for pose in state.poses], count, axis=0)
+        by_bow = np.einsum("nij,nj->ni", by_place, up)[:, :, None] * heights[:, None]
+        off = (uv - np.concatenate([known.view.uv for known in self.known]))[..., None]
+        every = np.concatenate([off, np.cross(turned[:, None], by_place), by_place, by_bow, by_camera], axis=2)
+        whitened = [
+            known.view.whitened(every[rows.start // 2 : rows.stop // 2])
+            for known, rows in zip(self.known, self.rows, strict=True)
+        ]
+        return np.concatenate(whitened) / self.corner_scale
 
     def _known_of_bows(self, state: _State, width: int, columns: slice) -> tuple[list[Array], list[Array]]:
         """Residuals and rows of the Jacobian that hold the plate to its flatness."""
@@ -315,9 +341,8 @@ class _Problem:
         pose_of = self.stripes.pose_of
         summed = np.bincount(pose_of, self._errors(solution) ** 2, minlength=count)
         stripes = summed / np.maximum(np.bincount(pose_of, minlength=count), 1)
-        ends = np.cumsum([2 * len(pose.view.points) for pose in self.known])[:-1]
         of_corners = residuals[self.bows : self.bows + self.corners]
-        corners = [float((own**2).mean()) for own in np.split(of_corners, ends)]
+        corners = [float((of_corners[rows] ** 2).mean()) for rows in self.rows]
         return np.asarray(np.sqrt(np.maximum(stripes, corners)), dtype=np.float64)
 
 
