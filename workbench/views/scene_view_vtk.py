@@ -69,7 +69,13 @@ class _Interactor(QtInteractor):
             self.started, self._drawn_size = True, self.size()
             self.setUpdatesEnabled(False)
             self.before_paint()
-            QTimer.singleShot(SOON_MS, self, lambda: self.setUpdatesEnabled(True))
+            QTimer.singleShot(SOON_MS, self, self._reveal)
+
+    def _reveal(self) -> None:
+        """Be seen, and draw once more: the first picture is lost where the page itself has only just been shown."""
+        self.setUpdatesEnabled(True)
+        if self.before_paint is not None:
+            self.before_paint()
 
 
 class EmbeddedSurface:

@@ -12,7 +12,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 from PySide6.QtCore import QEvent, QPoint, QPointF, Qt
 from PySide6.QtGui import QColor, QMouseEvent, QPalette
-from PySide6.QtWidgets import QApplication, QFileDialog, QMainWindow, QWidget
+from PySide6.QtWidgets import QApplication, QFileDialog, QMainWindow, QStackedWidget, QWidget
 
 from core.errors import InputError
 from tests.workbench.views.test_scene_view_numbers import crossing_number
@@ -64,6 +64,30 @@ def view(kind, qtbot) -> Iterator[SceneView]:
 
 def complete(view: SceneView, qtbot) -> None:
     qtbot.waitUntil(lambda: view.state()["complete"], timeout=20_000)
+
+
+def test_a_cloud_given_before_the_view_is_first_shown_is_seen(kind, qtbot):
+    pages, view = QStackedWidget(), SceneView()
+    qtbot.addWidget(pages)
+    for page in (QWidget(), view):
+        pages.addWidget(page)
+    pages.resize(500, 400)
+    pages.show()
+    qtbot.waitExposed(pages)
+    view.set_cloud(FLAT, colours=RED)
+    pages.setCurrentWidget(view)
+    complete(view, qtbot)
+    qtbot.wait(300)
+    shot = pages.screen().grabWindow(pages.winId()) if kind == "embedded" else pages.grab()
+    image = shot.toImage()
+    reddish = [
+        colour.red() - colour.blue() > 100
+        for x in range(0, image.width(), 2)
+        for y in range(0, image.height(), 2)
+        for colour in (image.pixelColor(x, y),)
+    ]
+    assert sum(reddish) > 50
+    pages.close()
 
 
 def ground(view: SceneView) -> np.ndarray:
