@@ -88,11 +88,13 @@ def report(
     operator: Operator = "",
     study: Annotated[
         list[Path] | None,
-        typer.Option("--study", metavar="FILE", help="Print this study.json as well; repeat for more."),
+        typer.Option(
+            "--study", metavar="FILE", help="Print this study as well: a study.json or its folder; repeat for more."
+        ),
     ] = None,
     json: Json = False,
 ) -> None:
-    """Put the results in DIR into report.pdf."""
+    """Put the results of SET in DIR into report.pdf, with inspection.json where there is one."""
     from core.cli import reporting
 
     chosen = reporting.ReportOptions(

@@ -13,6 +13,7 @@ from core.errors import InputError
 from core.files.arrays_file import read_arrays
 from core.files.inspection_file import NAME, InspectionFile, read_inspection
 from core.files.json_text import read_json
+from core.files.study_file import NAME as STUDY
 from core.files.study_file import study_values
 from core.files.study_reader import read_study
 from core.inspect.inspection_plan import Deviation
@@ -54,8 +55,8 @@ def with_inspection(content: ReportContent, out: Path) -> ReportContent:
 
 
 def with_studies(content: ReportContent, paths: Sequence[Path]) -> ReportContent:
-    """The content with the studies in `paths`, each a study.json; InputError if one cannot be read."""
-    read = tuple(study_values(read_study(path)) for path in paths)
+    """The content with the studies in `paths`, each a study.json or its folder; InputError if one cannot be read."""
+    read = tuple(study_values(read_study(path / STUDY if path.is_dir() else path)) for path in paths)
     return replace(content, studies=(*content.studies, *read)) if read else content
 
 

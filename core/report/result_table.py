@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Collection
 
 from reportlab.lib.units import mm
 from reportlab.platypus import Flowable, Table, TableStyle
@@ -19,13 +20,12 @@ WIDTHS = [size * mm for size in (17, 27, 21, 16, 8, 18, 27)]
 """Nominal, permitted deviations, measured, U, k, deviation, decision; the name has the rest."""
 
 
-def result_table(look: Look, content: ReportContent) -> Table:
-    """One row for each characteristic; its name leads to its uncertainty budget, if that is printed."""
+def result_table(look: Look, content: ReportContent, budgets: Collection[int]) -> Table:
+    """One row for each characteristic; the names of those whose numbers are in `budgets` lead to their budgets."""
     names = ("Characteristic", "nominal", "permitted", "measured", "U", "k", "deviation", "decision")
     rows: list[list[Flowable | list[Flowable]]] = [[*heads(look, *names, numbers=(1, 2, 3, 4, 5, 6))]]
-    linked = "budget" in content.printable and "budget" not in content.hidden
     for number, one in enumerate(content.characteristics):
-        rows.append(_row(look, one, budget_key(number) if linked and one.budget else ""))
+        rows.append(_row(look, one, budget_key(number) if number in budgets else ""))
     table = ruled_table(rows, [TEXT_WIDTH - sum(WIDTHS), *WIDTHS])
     table.setStyle(TableStyle([("LEFTPADDING", (7, 0), (7, -1), 5)]))
     return table

@@ -54,18 +54,24 @@ def story(look: Look, content: ReportContent, pictures: Pictures, limits: Limits
         Spacer(0, 4 * mm),
         Bookmark("result", look.words("Result")),
         result_box(look, content, TEXT_WIDTH),
-        *_results(look, content),
+        *_results(look, content, limits),
         *_not_covered(look, content),
         *chosen,
         *evidence.end(look, content),
     ]
 
 
-def _results(look: Look, content: ReportContent) -> list[Flowable]:
+def _results(look: Look, content: ReportContent, limits: Limits) -> list[Flowable]:
     """The table of all results; one alone is told in full above."""
     if len(content.characteristics) < 2:
         return []
-    return [Spacer(0, 3 * mm), result_table(look, content)]
+    budgets = () if "budget" in content.hidden else _with_budget(content)[: limits.budgets]
+    return [Spacer(0, 3 * mm), result_table(look, content, budgets)]
+
+
+def _with_budget(content: ReportContent) -> tuple[int, ...]:
+    """Numbers of the characteristics that have a budget."""
+    return tuple(number for number, one in enumerate(content.characteristics) if one.budget)
 
 
 def _not_covered(look: Look, content: ReportContent) -> list[Flowable]:
@@ -183,9 +189,10 @@ def _deviations(look: Look, content: ReportContent, pictures: Pictures, limits: 
 
 def _budgets(look: Look, content: ReportContent, limits: Limits) -> list[Flowable]:
     """Of every characteristic that has one, each with a heading that the table of results leads to."""
-    known = [(number, one) for number, one in enumerate(content.characteristics) if one.budget]
+    known = _with_budget(content)
     parts: list[Flowable] = []
-    for place, (number, one) in enumerate(known[: limits.budgets]):
+    for place, number in enumerate(known[: limits.budgets]):
+        one = content.characteristics[number]
         title = look.words("Uncertainty budget of {name}", name=shown_name(one, look.words))
         body: list[Flowable] = [
             Heading(look, budget_key(number), title, *(("small_strong", 1) if len(known) > 1 else ())),

@@ -80,6 +80,7 @@ def test_a_study_is_printed_from_its_file(tmp_path, content):
     values = 50 + np.linspace(-0.01, 0.012, 25)
     write_study(tmp_path, type1_study(values, 50.0, 0.4))
     (study,) = with_studies(content, [tmp_path / "study.json"]).studies
+    assert [one["kind"] for one in with_studies(content, [tmp_path]).studies] == ["type1"], "its folder will do"
     assert study["kind"] == "type1"
     assert study["mean"] == pytest.approx(50.001)
     with pytest.raises(InputError, match=r"missing\.json"):

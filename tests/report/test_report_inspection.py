@@ -157,6 +157,16 @@ def test_sections_are_in_the_outline_and_results_lead_to_their_budgets(data):
     )
 
 
+def test_results_whose_budgets_are_left_out_for_want_of_room_have_no_link(quick):
+    one = quick.inspected[2]
+    many = tuple(replace(one, name=f"angle {number}") for number in range(45))
+    document = reader(build_report(replace(quick, inspected=many, gauge=None)))
+    text = " ".join(" ".join(page.extract_text() for page in document.pages).split())
+    assert text.count("Uncertainty budget of angle") == 40
+    assert "and 5 more, listed in inspection.json" in text
+    assert sum(len(page.get("/Annots", ())) for page in document.pages) == 40 + 1, "and one to the notes"
+
+
 def links_of_first_page(document):
     """Numbers of the pages that links on page one lead to, sorted."""
     numbers = {page.indirect_reference.idnum: number for number, page in enumerate(document.pages)}
