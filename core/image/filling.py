@@ -9,7 +9,14 @@ from numba import njit
 
 from core.model.arrays import Array
 
+_PER_FILTER = 1.1  # points to a filter σ
 _HOLE = 0.6  # px more than usual from one point to the next: what lies between is not known
+
+
+@njit(cache=True, nogil=True)
+def points_apart(filter_px: float) -> int:
+    """How many px points of a line may be apart and tell all that a filter of σ `filter_px` leaves of it."""
+    return max(1, int(filter_px / _PER_FILTER))
 
 
 @njit(cache=True, nogil=True)
@@ -21,7 +28,7 @@ def filled(run: Array, stride: int) -> Array:
     between differs from one that was looked for by less than 0.001 px.
     """
     count, hole = len(run), stride + _HOLE
-    out, weights = np.empty((stride * count, 5)), _cubic_weights(stride)
+    out, weights = np.empty((stride * count, 5)), cubic_weights(stride)
     number, before, chord = 0, math.inf, _chord(run, 0)
     for k in range(count):
         out[number] = run[k]
@@ -46,7 +53,7 @@ def filled(run: Array, stride: int) -> Array:
 
 
 @njit(cache=True, nogil=True)
-def _cubic_weights(stride: int) -> Array:
+def cubic_weights(stride: int) -> Array:
     """Lagrange's weights (stride, 4) of four points for the place k/stride of the way from the second to the third."""
     weights = np.empty((stride, 4))
     for k in range(stride):

@@ -14,15 +14,6 @@ _ARM, _SHORTEST_ARM = 8.0, 3.0  # filter σ
 _LARGEST_ANGLE = 0.2  # rad from the middle of a parabola to its end: beyond, an arc is none
 
 
-def guide(run: Array, arc: Array, weight: Array, filter_px: float) -> Array:
-    """The curve through a run (N, ≥ 2) as `parabolas` of ± 8 filter σ give it, of fewer where the run is bent."""
-    curve: Array = parabolas(run, arc, weight, _ARM * filter_px)
-    bend = quantile_of_sizes(curve[:, 4], 0.9)
-    if bend * _ARM * filter_px > _LARGEST_ANGLE:
-        curve = parabolas(run, arc, weight, max(_LARGEST_ANGLE / bend, _SHORTEST_ARM * filter_px))
-    return curve
-
-
 @njit(cache=True, nogil=True)
 def parabolas(run: Array, arc: Array, weight: Array, arm: float) -> Array:
     """Parabolas u(s), v(s) over ± `arm` px of arc around every point of a run, (N, 5): u, v, n_u, n_v, curvature.
@@ -97,3 +88,13 @@ def _solve(m: Array, x: float, fit: Array) -> bool:
         fit[3 * axis + 1] = (c01 * t0 + c11 * t1 + c12 * t2) / determinant
         fit[3 * axis + 2] = 2 * (c02 * t0 + c12 * t1 + c22 * t2) / determinant
     return True
+
+
+@njit(cache=True, nogil=True)
+def guide(run: Array, arc: Array, weight: Array, filter_px: float) -> Array:
+    """The curve through a run (N, ≥ 2) as `parabolas` of ± 8 filter σ give it, of fewer where the run is bent."""
+    curve = parabolas(run, arc, weight, _ARM * filter_px)
+    bend = quantile_of_sizes(curve[:, 4], 0.9)
+    if bend * _ARM * filter_px > _LARGEST_ANGLE:
+        curve = parabolas(run, arc, weight, max(_LARGEST_ANGLE / bend, _SHORTEST_ARM * filter_px))
+    return curve

@@ -42,16 +42,27 @@ def influence(height: float, background: float, width_px: float, noise: NoiseMod
 
     All figures are rounded to steps of 8 %, which costs nothing noticeable, so that few different ones are computed.
     """
-    return influences([height], background, width_px, noise, speckle)[0]
+    return _influence(_coarse(height), *_figures(background, width_px, noise, speckle))
 
 
 def influences(
-    heights: list[float], background: float, width_px: float, noise: NoiseModel, speckle: Speckle
-) -> list[Influence]:
-    """The weights for sections that differ in their height alone."""
+    heights: tuple[float, ...], background: float, width_px: float, noise: NoiseModel, speckle: Speckle
+) -> tuple[Array, Array]:
+    """Weights (K, 2·NODES + 1) for sections that differ in their height alone, and the shares of speckle (K,)."""
+    return _stacked(heights, _figures(background, width_px, noise, speckle))
+
+
+def _figures(background: float, width_px: float, noise: NoiseModel, speckle: Speckle) -> tuple[float, ...]:
     floor = _coarse(noise.read_grey**2 + noise.grey_per_electron * max(background, 0.0))
-    figures = (floor, _coarse(width_px), noise.grey_per_electron, _coarse(speckle.contrast), _coarse(speckle.grain_px))
-    return [_influence(_coarse(height), *figures) for height in heights]
+    return floor, _coarse(width_px), noise.grey_per_electron, _coarse(speckle.contrast), _coarse(speckle.grain_px)
+
+
+@lru_cache(maxsize=1024)
+def _stacked(heights: tuple[float, ...], figures: tuple[float, ...]) -> tuple[Array, Array]:
+    found = [_influence(_coarse(height), *figures) for height in heights]
+    weights, shares = np.array([f.weight for f in found]), np.array([f.speckle_share for f in found])
+    weights.flags.writeable = shares.flags.writeable = False
+    return weights, shares
 
 
 def _coarse(value: float) -> float:

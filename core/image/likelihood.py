@@ -28,6 +28,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from core.image.cuts import averages, cut_residuals, cuts_of, score_cuts
@@ -84,23 +85,47 @@ def refine(
     filter_px
         σ in px of the window along the stripe.
     """
-    curve, arc = curve.copy(), arc_length(curve)
     kind, tables, shares = _weights(sections, noise, speckle)
-    model = np.column_stack(sections)
     law = (noise.read_grey**2, noise.grey_per_electron)
-    for last in (False, True):
-        cuts = cuts_of(curve, arc, 1 if last else 2)  # every second one says well enough where to look from
-        sums = score_cuts(picture, state, curve, cuts, clear, model, kind, tables, law)
-        offset, variance, support = averages(arc, cuts[:, 0], sums, filter_px)
-        curve[:, :2] += offset[:, None] * curve[:, 2:4]
-        if not last:
-            curve = guide(curve, arc, weight, filter_px)
-    curve[:, :2] += (_PIXEL_VARIANCE / 2 * curve[:, 4])[:, None] * curve[:, 2:4]  # an arc seen through square pixels
+    model = np.column_stack(sections)
+    curve, variance, support = _likeliest(picture, state, curve, weight, clear, model, kind, tables, law, filter_px)
     # grains reach further along the stripe than the pixel: the window averages over fewer of them than of pixels
     grown = math.sqrt(1 + median(shares[kind]) * (speckle.grain_px / (2 * filter_px)) ** 2)
     usual = 1 / math.sqrt(2 * math.pi) / filter_px
     sigma = np.where(support * usual > _ENOUGH, np.sqrt(variance / grown), np.inf)
     return Refined(curve, sigma, 2 * math.sqrt(math.pi) * filter_px * grown)
+
+
+@njit(cache=True, nogil=True)
+def _likeliest(
+    picture: Picture,
+    state: NDArray[np.uint8],
+    start: Array,
+    weight: Array,
+    clear: NDArray[np.bool_],
+    model: Array,
+    kind: NDArray[np.int64],
+    tables: Array,
+    law: tuple[float, float],
+    filter_px: float,
+) -> tuple[Array, Array, Array]:
+    """The curve (N, 5) after two steps, the variance of its points and the weight of all cuts they rest on, (N,)."""
+    curve, arc = start.copy(), arc_length(start)
+    found = np.empty((0, 3))
+    for every in (2, 1):  # every second cut says well enough where to look from
+        cuts = cuts_of(curve, arc, every)
+        sums = score_cuts(picture, state, curve, cuts, clear, model, kind, tables, law)
+        found = averages(arc, cuts[:, 0], sums, filter_px)
+        for k in range(len(curve)):
+            curve[k, 0] += found[k, 0] * curve[k, 2]
+            curve[k, 1] += found[k, 0] * curve[k, 3]
+        if every > 1:
+            curve = guide(curve, arc, weight, filter_px)
+    for k in range(len(curve)):
+        seen = 0.5 * _PIXEL_VARIANCE * curve[k, 4]  # an arc through square pixels
+        curve[k, 0] += seen * curve[k, 2]
+        curve[k, 1] += seen * curve[k, 3]
+    return curve, found[:, 1], found[:, 2]
 
 
 def residuals(
@@ -120,10 +145,20 @@ def residuals(
 
 def _weights(sections: Sections, noise: NoiseModel, speckle: Speckle) -> tuple[NDArray[np.int64], Array, Array]:
     """Which weight suits each point (N,), the weights (K, 2·NODES + 1), and the share of speckle in their variance."""
-    level = np.round(np.log(np.maximum(sections.height, 1e-3)) / _HEIGHT_CLASS).astype(np.int64)
-    lowest = int(level.min())
-    there = np.bincount(level - lowest) > 0
-    levels, kind = np.flatnonzero(there) + lowest, (np.cumsum(there) - 1)[level - lowest]
+    kind, heights = _height_classes(sections.height)
     background, width = median(sections.background), median(sections.width)
-    found = influences(np.exp(levels * _HEIGHT_CLASS).tolist(), background, width, noise, speckle)
-    return kind, np.array([f.weight for f in found]), np.array([f.speckle_share for f in found])
+    return kind, *influences(tuple(heights.tolist()), background, width, noise, speckle)
+
+
+@njit(cache=True, nogil=True)
+def _height_classes(height: Array) -> tuple[NDArray[np.int64], Array]:
+    """For each point which of some heights (K,) is nearest to its own."""
+    level = np.empty(len(height), dtype=np.int64)
+    for k in range(len(height)):
+        level[k] = round(math.log(max(height[k], 1e-3)) / _HEIGHT_CLASS)
+    lowest = level.min()
+    number = np.zeros(level.max() - lowest + 1, dtype=np.int64)
+    for k in range(len(level)):
+        number[level[k] - lowest] = 1
+    heights = np.exp((np.flatnonzero(number) + lowest) * _HEIGHT_CLASS)
+    return (np.cumsum(number) - 1)[level - lowest], heights

@@ -20,7 +20,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from core.image.filling import filled
+from core.image.filling import filled, points_apart
 from core.image.ridge import kernel_radius, kernel_table, ridge_at, ridge_response
 from core.image.seeds import Picture, seeds
 from core.model.arrays import Array
@@ -29,7 +29,6 @@ SATURATED, IGNORED, VISITED = 1, 2, 4
 """Bits of the picture's state map."""
 
 _MARK_EVERY = 2  # points: discs much larger than that leave no gap between them
-_PER_FILTER = 1.1  # points to a filter σ tell all: what the filter leaves is as smooth as g, see `core.image.filling`
 _NEAR_ENOUGH = 0.08  # filter σ from the crest: seen from there, Taylor's step errs by less than 0.0005 px
 _LARGEST_TURN = math.cos(math.radians(30))  # from one point to the next
 
@@ -60,7 +59,7 @@ def link(
     if min(picture.shape) <= 2 * radius + 3:
         return []
     unit = ridge_response(1.0, stripe_px, filter_px)
-    stride = max(1, int(filter_px / _PER_FILTER))
+    stride = points_apart(filter_px)
     flat: Any = np.ascontiguousarray(picture).reshape(-1)  # float32 or int16
     points, ends = _trace_all(
         flat,

@@ -14,10 +14,12 @@ NEIGHBOUR = 3.5
 _CHUNK = 32  # points that share a bounding box
 
 
-def beside_another(runs: list[Array], reach: float) -> list[Array]:
+def beside_another(runs: list[Array], ways: list[Array], touching: float, reach: float) -> list[Array]:
     """For each run, how far in px each point is from another run beside or across it; infinite beyond `reach`.
 
-    Another run that goes on where this one ends (ahead of it, not beside it) does not count.
+    Another run that goes on where this one ends (ahead of it, not beside it) does not count, unless it is nearer than
+    `touching`: from there, no direction can be told. `ways` are those of each run across its gaps, empty without one:
+    they count whatever their direction, for where they cross another run that is bent.
     """
     apart_px = [np.full(len(run), np.inf) for run in runs]
     chunks = [_boxes(run) for run in runs]
@@ -26,7 +28,8 @@ def beside_another(runs: list[Array], reach: float) -> list[Array]:
         near = (boxes[i, :2] - reach <= boxes[:, 2:]).all(axis=1) & (boxes[:, :2] <= boxes[i, 2:] + reach).all(axis=1)
         for j in np.flatnonzero(near):
             if i != j:
-                _add_nearest(run, chunks[i], runs[j], chunks[j], reach, apart_px[i])
+                _add_nearest(run, chunks[i], runs[j], chunks[j], touching, reach, apart_px[i])
+                _add_nearest(run, chunks[i], ways[j], _boxes(ways[j]), reach, reach, apart_px[i])
     return apart_px
 
 
@@ -42,8 +45,10 @@ def _boxes(run: Array) -> Array:
 
 
 @njit(cache=True, nogil=True)
-def _add_nearest(run: Array, boxes: Array, other: Array, others: Array, reach: float, apart_px: Array) -> None:
-    """Lower `apart_px` (N,) to the distance of the nearest point of the `other` run where that lies beside."""
+def _add_nearest(
+    run: Array, boxes: Array, other: Array, others: Array, touching: float, reach: float, apart_px: Array
+) -> None:
+    """Lower `apart_px` (N,) to the distance of the nearest point of the `other` run lying beside it or touching."""
     square, nearest = np.empty(_CHUNK), np.empty(_CHUNK, dtype=np.int64)
     for k in range(len(boxes)):
         square[:] = reach * reach
@@ -66,5 +71,5 @@ def _add_nearest(run: Array, boxes: Array, other: Array, others: Array, reach: f
             if nearest[p] >= 0:
                 du, dv = other[nearest[p], 0] - part[p, 0], other[nearest[p], 1] - part[p, 1]
                 nu, nv = part[p, 2], part[p, 3]
-                if abs(du * nu + dv * nv) > abs(dv * nu - du * nv):
+                if square[p] < touching * touching or abs(du * nu + dv * nv) > abs(dv * nu - du * nv):
                     apart_px[k * _CHUNK + p] = min(apart_px[k * _CHUNK + p], math.sqrt(square[p]))

@@ -29,7 +29,8 @@ def arc_length(run: Array) -> Array:
     """Length along a run (N, ≥ 2) up to each point, in pixels."""
     arc = np.zeros(len(run))
     for k in range(1, len(run)):
-        arc[k] = arc[k - 1] + math.hypot(run[k, 0] - run[k - 1, 0], run[k, 1] - run[k - 1, 1])
+        du, dv = run[k, 0] - run[k - 1, 0], run[k, 1] - run[k - 1, 1]
+        arc[k] = arc[k - 1] + math.sqrt(du * du + dv * dv)
     return arc
 
 

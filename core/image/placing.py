@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, field
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from core.image.guide import guide
 from core.image.likelihood import Refined, refine, residuals
 from core.image.noise import NoiseModel
 from core.image.pieces import arc_length, correlation_length
-from core.image.precision import FLOOR_PX, noise_sigma
+from core.image.precision import FLOOR_PX, noise_sigma, roughness
 from core.image.profile import Profiles, Sections, smooth_sections
 from core.image.seeds import Picture
 from core.image.speckle import Speckle, measure_speckle
 from core.image.stripe import StripeSettings
-from core.model.arrays import Array
+from core.model.arrays import Array, set_field
 
 _CUTS_FOR_SPECKLE = 3000  # more tell nothing new
 _LARGEST_PULL_PX = 0.03  # of Steger's points against the likelihood's
@@ -24,26 +26,28 @@ _LARGEST_PULL_PX = 0.03  # of Steger's points against the likelihood's
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Piece:
-    """Line points (N, ≥ 4) on one smooth surface, their cross-sections, and which are saturated (N,)."""
+    """Line points (N, ≥ 4) on one smooth surface, their cross-sections, and which are saturated (N,).
+
+    `usable` (N,) are the points to judge the line by: those not saturated, or all where most of them are.
+    """
 
     run: Array
     profiles: Profiles
     saturated: NDArray[np.bool_]
+    usable: NDArray[np.bool_] = field(init=False)
+
+    def __post_init__(self) -> None:
+        mostly = 2 * np.count_nonzero(self.saturated) >= len(self.saturated)
+        set_field(self, "usable", np.ones_like(self.saturated) if mostly else ~self.saturated)
 
     @property
     def weight(self) -> Array:
         """What each point counts for the smooth curve through them, (N,)."""
         return self.usable.astype(np.float64)
 
-    @property
-    def usable(self) -> NDArray[np.bool_]:
-        """Points to judge the line by: those not saturated, or all where most of them are."""
-        mostly = 2 * np.count_nonzero(self.saturated) >= len(self.saturated)
-        return np.ones_like(self.saturated) if mostly else ~self.saturated
-
     def judged(self, run: Array, sigma: Array) -> tuple[Array, Array]:
         """Those of the points `run`, and of their standard uncertainties, that are usable."""
-        return run[self.usable], sigma[self.usable]
+        return (run, sigma) if self.usable.all() else (run[self.usable], sigma[self.usable])
 
 
 def place(
@@ -61,7 +65,7 @@ def place(
     flanks that a likelihood with speckle listens to pull more.
     """
     g = settings.filter_px
-    curves = [guide(piece.run, arc_length(piece.run), piece.weight, g) for piece in pieces]
+    curves: list[Array] = [guide(piece.run, arc_length(piece.run), piece.weight, g) for piece in pieces]
     sections = [smooth_sections(piece.profiles, g) for piece in pieces]
     lines = [_stegers(piece, curve, settings, noise) for piece, curve in zip(pieces, curves, strict=True)]
     speckle = _speckle(picture, state, curves, sections, settings)
@@ -69,10 +73,13 @@ def place(
         refine(picture, state, curve, piece.weight, ok, section, noise, speckle, g)
         for piece, curve, ok, section in zip(pieces, curves, clear, sections, strict=True)
     ]
-    differences = [_difference(*three) for three in zip(pieces, lines, refined, strict=True)]
+    differences = [
+        _difference(line.run, better.run, better.sigma, piece.usable)
+        for piece, line, better in zip(pieces, lines, refined, strict=True)
+    ]
     if _apart_px(differences, correlation_length(g)) > _LARGEST_PULL_PX:
         return lines
-    return [_joined(line, better) for line, better in zip(lines, refined, strict=True)]
+    return [_joined(*three) for three in zip(pieces, lines, refined, strict=True)]
 
 
 def _speckle(
@@ -91,39 +98,54 @@ def _speckle(
     return measure_speckle(cuts, settings.stripe_px)
 
 
-def _difference(piece: Piece, line: Refined, better: Refined) -> Array:
-    """How far across the stripe the usable points of two lines are apart, in px."""
-    both = piece.usable & np.isfinite(better.sigma)
-    across: Array = np.sum((better.run[both, :2] - line.run[both, :2]) * better.run[both, 2:4], axis=1)
-    return across
+@njit(cache=True, nogil=True)
+def _difference(run: Array, better: Array, sigma: Array, usable: NDArray[np.bool_]) -> tuple[int, float, float]:
+    """Number of the usable points of two lines, and mean and variance of how far across they are apart, in px."""
+    number, total, square = 0, 0.0, 0.0
+    for k in range(len(run)):
+        if usable[k] and sigma[k] < math.inf:
+            across = (better[k, 0] - run[k, 0]) * better[k, 2] + (better[k, 1] - run[k, 1]) * better[k, 3]
+            number, total, square = number + 1, total + across, square + across * across
+    mean = total / max(number, 1)
+    return number, mean, max(square / max(number, 1) - mean * mean, 0.0)
 
 
-def _apart_px(differences: list[Array], correlation: float) -> float:
+def _apart_px(differences: list[tuple[int, float, float]], correlation: float) -> float:
     """How far two kinds of lines usually are apart on the whole, beyond what their points' scatter explains."""
-    found = [(len(d), float(np.mean(d)) ** 2 - float(np.var(d)) * correlation / len(d)) for d in differences if len(d)]
+    found = [(n, mean**2 - variance * correlation / n) for n, mean, variance in differences if n]
     number = sum(n for n, _ in found)
     return max(0.0, sum(n * square for n, square in found) / number) ** 0.5 if number else 0.0
 
 
-def _joined(line: Refined, better: Refined) -> Refined:
-    """The better line, and the other one where that has no points."""
+def _joined(piece: Piece, line: Refined, better: Refined) -> Refined:
+    """The better line, and the other one, as rough as it is, where that has no points."""
     there = np.isfinite(better.sigma)
-    return Refined(
-        np.where(there[:, None], better.run, line.run),
-        np.where(there, np.hypot(better.sigma, FLOOR_PX), line.sigma),
-        better.correlation_px,
-    )
+    sigma = np.hypot(better.sigma, FLOOR_PX)
+    if there.all():
+        return Refined(better.run, sigma, better.correlation_px)
+    (extra,) = roughness([piece.judged(line.run, line.sigma)], line.correlation_px)
+    run = np.where(there[:, None], better.run, line.run)
+    return Refined(run, np.where(there, sigma, np.hypot(line.sigma, extra)), better.correlation_px)
 
 
 def _stegers(piece: Piece, curve: Array, settings: StripeSettings, noise: NoiseModel) -> Refined:
     """Steger's points freed of the curvature's and the background's pull."""
     g, profiles = settings.filter_px, piece.profiles
-    run = curve.copy()
-    shift = run[:, 4] * (g**2 + 1 / 12) / 2
-    slope = np.where(np.abs(profiles.slope) > 3 * profiles.slope_sigma, profiles.slope, 0.0)
-    visible = profiles.height > 0
-    height = np.where(visible, profiles.height, 1.0)
-    tilt = slope * (profiles.width**2 + g**2) ** 1.5 / (height * profiles.width)
-    shift += np.where(visible, np.clip(tilt, -0.5, 0.5), 0.0)
-    run[:, :2] = piece.run[:, :2] - shift[:, None] * run[:, 2:4]
-    return Refined(run, noise_sigma(profiles, noise, g), correlation_length(g))
+    light = (profiles.height, profiles.width, profiles.slope, profiles.slope_sigma)
+    return Refined(_freed(piece.run, curve, light, g), noise_sigma(profiles, noise, g), correlation_length(g))
+
+
+@njit(cache=True, nogil=True)
+def _freed(points: Array, curve: Array, light: tuple[Array, Array, Array, Array], filter_px: float) -> Array:
+    """`points` (N, ≥ 2) less the pulls of the `curve` (N, 5) and of the background's slope where it is significant."""
+    height, width, slope, slope_sigma = light
+    run, square = curve.copy(), filter_px * filter_px
+    for k in range(len(run)):
+        shift = run[k, 4] * (square + 1 / 12) / 2
+        if height[k] > 0 and abs(slope[k]) > 3 * slope_sigma[k]:
+            both = width[k] * width[k] + square
+            tilt = slope[k] * both * math.sqrt(both) / (height[k] * width[k])
+            shift += min(max(tilt, -0.5), 0.5)
+        run[k, 0] = points[k, 0] - shift * run[k, 2]
+        run[k, 1] = points[k, 1] - shift * run[k, 3]
+    return run

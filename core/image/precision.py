@@ -37,13 +37,22 @@ def response_noise(pixel_noise: float, stripe_px: float, filter_px: float) -> fl
 
 def noise_sigma(profiles: Profiles, noise: NoiseModel, filter_px: float) -> Array:
     """Standard uncertainty (N,) in px of line points along their normals, from read and shot noise."""
-    height = np.maximum(profiles.height, 1e-6)
-    width = profiles.width
-    shot = noise.grey_per_electron * height * (1 + filter_px**2 / (2 * width**2)) ** -1.5
-    slope_variance = (noise.variance(profiles.background) + shot) / (8 * math.pi * filter_px**4)
-    bend = height * width / (width**2 + filter_px**2) ** 1.5
-    sigma: Array = np.minimum(np.sqrt(slope_variance) / bend, 1.0)
-    return np.hypot(sigma, FLOOR_PX)
+    read, shot = noise.read_grey**2, noise.grey_per_electron
+    sigma: Array = _noise_sigma(profiles.height, profiles.width, profiles.background, read, shot, filter_px)
+    return sigma
+
+
+@njit(cache=True, nogil=True)
+def _noise_sigma(height: Array, width: Array, background: Array, read: float, shot: float, filter_px: float) -> Array:
+    sigma, square = np.empty(len(height)), filter_px * filter_px
+    for k in range(len(height)):
+        light, s = max(height[k], 1e-6), width[k] * width[k]
+        blur = 1 + square / (2 * s)
+        variance = read + shot * (max(background[k], 0.0) + light / (blur * math.sqrt(blur)))
+        bend = light * width[k] / ((s + square) * math.sqrt(s + square))
+        lost = min(math.sqrt(variance / (8 * math.pi)) / (square * bend), 1.0)
+        sigma[k] = math.sqrt(lost * lost + FLOOR_PX * FLOOR_PX)
+    return sigma
 
 
 def roughness(lines: list[tuple[Array, Array]], correlation: float) -> list[float]:

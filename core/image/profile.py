@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from core.image.pieces import arc_length
@@ -56,46 +57,93 @@ class Sections(NamedTuple):
     slope: Array
 
 
+class Fits(NamedTuple):
+    """What was fitted at some points of a run: which they are (K,); height, background, slope and width (K, 4)."""
+
+    at: NDArray[np.int64]
+    figures: Array
+
+
 def smooth_sections(profiles: Profiles, filter_px: float) -> Sections:
     """Medians of the cross-sections along the stripe, over many grains of speckle, blurred by the pixel."""
     at, stride = _places(len(profiles.height), filter_px)
-    every = np.arange(len(profiles.height))
     length = _odd(_LONG_STRETCH * filter_px / stride)
-    height, background, width = (
-        np.interp(every, at, running_median(values[at], length))
-        for values in (profiles.height, profiles.background, profiles.width)
-    )
-    blurred = np.sqrt(width**2 + _PIXEL_VARIANCE)
-    return Sections(height * width / blurred, blurred, background, profiles.slope)
+    height, background, width = _smoothed(profiles.height, profiles.background, profiles.width, at, length)
+    return Sections(height, width, background, profiles.slope)
 
 
 def measure_profiles(
     picture: Picture, state: NDArray[np.uint8], run: Array, stripe_px: float, filter_px: float
 ) -> Profiles:
-    """Cross-sections along a `run` (N, ≥ 4): u, v, n_u, n_v.
+    """Cross-sections along a `run` (N, ≥ 4): u, v, n_u, n_v."""
+    fits = fit_profiles(picture, state, run, stripe_px, filter_px)
+    return profiles_along(arc_length(run), slice(0, len(run)), fits, stripe_px, filter_px)
 
-    They are measured every two filter σ or so, freed of outliers by a running median, and interpolated.
-    """
-    arc = arc_length(run)
-    at, stride = _places(len(run), filter_px)
+
+def fit_profiles(picture: Picture, state: NDArray[np.uint8], run: Array, stripe_px: float, filter_px: float) -> Fits:
+    """Cross-sections at points of a `run` (N, ≥ 4) every two filter σ or so, each from the nearest pixels alone."""
+    at, _ = _places(len(run), filter_px)
     fits = fit_sections(picture, state, run[at, :4], stripe_px, _STRIDE / 2 * filter_px)
     good = fits[:, 0] > 0
-    if not good.any():
-        flat = np.ones(len(run))
+    return Fits(at, fits) if good.all() else Fits(at[good], fits[good])
+
+
+def profiles_along(arc: Array, part: slice, fits: Fits, stripe_px: float, filter_px: float) -> Profiles:
+    """Cross-sections at every point of a `part` of a run, from those fitted within that part.
+
+    They are freed of outliers by a running median and interpolated over the length `arc` (N,) along the run.
+    """
+    arc = arc[part]
+    first, last = np.searchsorted(fits.at, (part.start, part.stop))
+    if first == last:
+        flat = np.ones(len(arc))
         return Profiles(0 * flat, 0 * flat, 0 * flat, np.inf * flat, stripe_px * flat)
-    where, fits = arc[at][good], fits[good]
+    _, stride = _places(len(arc), filter_px)
     short, long = (_odd(stretch * filter_px / stride) for stretch in (_SHORT_STRETCH, _LONG_STRETCH))
-    height, background, width = (running_median(fits[:, k], short) for k in (0, 1, 3))
-    freed = np.sqrt(np.maximum(width**2 - _PIXEL_VARIANCE, 0.04))  # the pixel lowers what it widens
+    return Profiles(*_along(arc, fits.at[first:last] - part.start, fits.figures[first:last], short, long))
+
+
+@njit(cache=True, nogil=True)
+def _along(arc: Array, at: NDArray[np.int64], figures: Array, short: int, long: int) -> Array:
+    """Height, background, slope, its σ and width (5, N) from those fitted at some of the points."""
+    smooth = np.empty((5, len(at)))
+    smooth[0], smooth[1] = running_median(figures[:, 0].copy(), short), running_median(figures[:, 1].copy(), short)
+    width = running_median(figures[:, 3].copy(), short)
     # the slope moves the point itself, so it must be far less noisy than a point: average it over a long stretch
-    slope, slope_sigma = running_mean(fits[:, 2], long)
-    return Profiles(
-        np.interp(arc, where, height * width / freed),
-        np.interp(arc, where, background),
-        np.interp(arc, where, slope),
-        np.interp(arc, where, slope_sigma),
-        np.interp(arc, where, freed),
-    )
+    smooth[2], smooth[3] = running_mean(figures[:, 2].copy(), long)
+    smooth[4] = np.sqrt(np.maximum(width**2 - _PIXEL_VARIANCE, 0.04))
+    smooth[0] *= width / smooth[4]  # the pixel lowers what it widens
+    return _interpolated(arc, arc[at], smooth)
+
+
+@njit(cache=True, nogil=True)
+def _smoothed(height: Array, background: Array, width: Array, at: NDArray[np.int64], length: int) -> Array:
+    """Height, background and width (3, N), both as pixels blur them, from running medians at some of the points."""
+    smooth = np.empty((3, len(at)))
+    smooth[0], smooth[1] = running_median(height[at], length), running_median(background[at], length)
+    smooth[2] = running_median(width[at], length)
+    found = _interpolated(np.arange(len(height)).astype(np.float64), at.astype(np.float64), smooth)
+    blurred = np.sqrt(found[2] ** 2 + _PIXEL_VARIANCE)
+    found[0] *= found[2] / blurred
+    found[2] = blurred
+    return found
+
+
+@njit(cache=True, nogil=True)
+def _interpolated(x: Array, at: Array, values: Array) -> Array:
+    """Figures (C, N) at rising `x`, on straight lines between `values` (C, K) at rising places; level beyond them."""
+    found = np.empty((len(values), len(x)))
+    k = 0
+    for i in range(len(x)):
+        while k + 1 < len(at) and at[k + 1] < x[i]:
+            k += 1
+        behind = min(k + 1, len(at) - 1)
+        step = at[behind] - at[k]
+        share = min(max((x[i] - at[k]) / step, 0.0), 1.0) if step > 0 else 0.0
+        for c in range(len(values)):
+            here = values[c, k]
+            found[c, i] = here + share * (values[c, behind] - here) if share > 0 else here  # an infinite σ stays one
+    return found
 
 
 def _places(count: int, filter_px: float) -> tuple[NDArray[np.int64], int]:

@@ -16,7 +16,8 @@ background slope                   the weights do not see a slope: below 0.001 p
 end of a stripe, kink, jump        4 px (2.5 g) and 2 g are left out, but nothing where a stripe goes on beyond the
                                    picture's border; a piece never crosses them
 neighbour, crossing line           points nearer than 3.5·√(s² + g²) are left out, nearer than 8.1 s they stay
-                                   Steger's, freed of the pull of curvature and background
+                                   Steger's, freed of the pull of curvature and background; behind a crossing a line
+                                   goes on as one (`core.image.joining`)
 border of the picture              points nearer than 4 g are never found; cuts that leave the picture are not used
 skewed section, halo               0.1 to 0.2 px for flanks that differ by 10 %, whatever the estimator, and twice
                                    that with the weights that speckle asks for; so where they disagree by more than
@@ -40,13 +41,15 @@ from numpy.typing import NDArray
 
 from core.image.centreline import Centreline
 from core.image.influence import REACH
+from core.image.joining import joined_at_crossings
+from core.image.likelihood import Refined
 from core.image.linking import IGNORED, SATURATED, Hysteresis, link
 from core.image.neighbours import NEIGHBOUR, beside_another
 from core.image.noise import NoiseModel
 from core.image.pieces import arc_length, correlation_length, cut_ends, fully_lit
 from core.image.placing import Piece, place
 from core.image.precision import noise_sigma, response_noise, roughness, saturated_points
-from core.image.profile import measure_profiles
+from core.image.profile import fit_profiles, profiles_along
 from core.image.seeds import Picture
 from core.image.splitting import split_at_breaks
 from core.image.stripe import StripeSettings
@@ -103,23 +106,16 @@ def extract_centrelines(
         for piece in _smooth_pieces(picture, state, run, settings, noise)
         if len(piece.run) >= shortest
     ]
+    pieces, ways = joined_at_crossings(pieces, settings.filter_px)
     pulled = NEIGHBOUR * float(np.hypot(settings.stripe_px, settings.filter_px))
     blended = (REACH + _OTHER_TAIL) * settings.stripe_px
-    apart = beside_another([piece.run for piece in pieces], max(pulled, blended))
+    apart = beside_another([piece.run for piece in pieces], ways, 2 * settings.filter_px, max(pulled, blended))
     clear = [near > blended for near in apart]
     placed = place(picture, state, pieces, clear, settings, noise)
     correlation = max([line.correlation_px for line in placed], default=correlation_length_px(settings))
     excess = roughness([p.judged(line.run, line.sigma) for p, line in zip(pieces, placed, strict=True)], correlation)
     found = [
-        Centreline(
-            line.run[:, :2],
-            line.run[:, 2:4],
-            piece.profiles.width,
-            piece.profiles.height,
-            np.hypot(line.sigma, extra),
-            piece.saturated,
-            line.correlation_px,
-        ).select(near > pulled)
+        _centreline(piece, line, extra, near > pulled)
         for piece, line, extra, near in zip(pieces, placed, excess, apart, strict=True)
         if np.count_nonzero(near > pulled) >= shortest
     ]
@@ -159,15 +155,31 @@ def _smooth_pieces(
     run = cut_ends(run, g, picture.shape)
     if len(run) < _SHORTEST_PIECE * g:
         return []
-    saturated = saturated_points(state, run, g)
-    whole = Piece(run, measure_profiles(picture, state, run, settings.stripe_px, g), saturated)
+    saturated, arc = saturated_points(state, run, g), arc_length(run)
+    fits = fit_profiles(picture, state, run, settings.stripe_px, g)
+    whole = Piece(run, profiles_along(arc, slice(0, len(run)), fits, settings.stripe_px, g), saturated)
     sigma = noise_sigma(whole.profiles, noise, g)
     (extra,) = roughness([whole.judged(run, sigma)], correlation_length_px(settings))
     pieces = []
     for part in split_at_breaks(run, whole.usable, g, np.hypot(sigma, extra)):
-        piece, profiles = run[part], whole.profiles
-        if len(piece) < len(run):  # the running median must not reach across the break
-            profiles = measure_profiles(picture, state, piece, settings.stripe_px, g)
-        lit = slice(*fully_lit(arc_length(piece), profiles.height, profiles.width, g))
-        pieces.append(Piece(piece[lit], profiles.select(lit), saturated[part][lit]))
+        profiles = whole.profiles
+        if part.stop - part.start < len(run):  # the running median must not reach across the break
+            profiles = profiles_along(arc, part, fits, settings.stripe_px, g)
+        first, last = fully_lit(arc[part] - arc[part.start], profiles.height, profiles.width, g)
+        lit = slice(part.start + first, part.start + last)
+        pieces.append(Piece(run[lit], profiles.select(slice(first, last)), saturated[lit]))
     return pieces
+
+
+def _centreline(piece: Piece, line: Refined, extra: float, keep: NDArray[np.bool_]) -> Centreline:
+    """The points of a placed piece that are to be kept; `extra` is their scatter in px beyond the law."""
+    part = slice(None) if keep.all() else keep
+    return Centreline(
+        line.run[part, :2],
+        line.run[part, 2:4],
+        piece.profiles.width[part],
+        piece.profiles.height[part],
+        np.hypot(line.sigma[part], extra),
+        piece.saturated[part],
+        line.correlation_px,
+    )
