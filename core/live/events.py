@@ -245,7 +245,7 @@ class LiveView:
     recorded
         Pictures recorded so far: views, poses or frames of the scan.
     dropped
-        Frames lost so far, by the source or because the disk is too slow.
+        Frames lost since the first picture was recorded, by the source or because the disk is too slow.
     detail
         What was found in it, or in a frame a little before.
     """

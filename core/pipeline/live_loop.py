@@ -61,12 +61,12 @@ class LiveLoop:
         self._shown_index = -1
         self._shown_s = 0.0
         self._times: deque[float] = deque()
-        self._dropped_before = self._dropped_now = self._damaged = 0
+        self._dropped_before = self._dropped_now = self._unmissed = self._damaged = 0
 
     @property
     def dropped(self) -> int:
-        """Frames lost so far, by the source and by the disk."""
-        return self._dropped_before + self._dropped_now + self._desk.lost
+        """Frames lost since the first picture was recorded, by the source and by the disk."""
+        return self._dropped_before + self._dropped_now - self._unmissed + self._desk.lost
 
     def run(self) -> str:
         """Until the end; the sentence of what ended it too early, or ""."""
@@ -128,6 +128,8 @@ class LiveLoop:
             height, width = frame.picture.shape
             self._desk.emit(LiveStarted(self._source.name, (width, height), self._desk.capabilities))
         self._newest, self._dropped_now = frame, frame.dropped
+        if not self._desk.recorded:
+            self._unmissed = self._dropped_before + self._dropped_now
         self._times.append(frame.time_s)
         while len(self._times) > 2 and frame.time_s - self._times[0] > _RATE_OVER_S:
             self._times.popleft()

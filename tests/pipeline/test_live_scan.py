@@ -142,6 +142,19 @@ def test_a_source_unplugged_in_the_middle_comes_back_and_nothing_is_lost(monkeyp
     assert source.lit == Lasers(fan=True, hand=True)
 
 
+def test_frames_the_source_lost_before_the_first_recorded_one_do_not_count(monkeypatch, tmp_path, stage):
+    source = swept(stage, 20)
+    read = source.read
+
+    def losing(timeout_s):
+        frame = read(timeout_s)
+        return replace(frame, dropped=9 if source.counted > 10 else 7)
+
+    source.read = losing
+    ended = scan(monkeypatch, tmp_path, stage, source, Window())
+    assert ended.dropped == 2
+
+
 def test_a_damaged_frame_is_told_and_left_out(monkeypatch, tmp_path, stage):
     source = swept(stage, 20)
     read, told = source.read, []
