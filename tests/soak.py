@@ -87,6 +87,7 @@ class Soaked:
     lost_by_disk: int = 0
     span: int = 0
     lost_in_span: int = 0
+    told_lost: int = 0
     memory: dict[str, Memory] = field(default_factory=dict)
     waiting_mb: float = 0.0
     latency_ms: list[float] = field(default_factory=list)
@@ -94,16 +95,18 @@ class Soaked:
     views: int = 0
     notices: list[str] = field(default_factory=list)
     freezes: list[str] = field(default_factory=list)
-    longest_ms: float = float("nan")
+    busiest: list[str] = field(default_factory=list)
     log_is_whole: bool = False
 
     @property
     def adds_up(self) -> bool:
         """Whether every frame the camera numbered came or is counted as lost, and from the first recorded one on every
-        frame is recorded or counted as lost.
+        frame is recorded or counted as lost; and whether as many were told as lost as the log says, but for those that
+        were lost after the last one recorded.
         """
         came = self.sent == self.delivered + self.lost_by_driver
-        return came and self.span == self.recorded + self.lost_in_span
+        told = self.lost_in_span <= self.told_lost <= self.sent - self.recorded
+        return came and told and self.span == self.recorded + self.lost_in_span
 
     @property
     def is_flat(self) -> bool:
@@ -113,10 +116,10 @@ class Soaked:
     def count(self, figures: dict, folder: Path, recorded: int, dropped: int) -> None:
         """Take what camera and recorder counted, and what the log in the recording's `folder` says."""
         log = read_log(folder)
-        self.sent, self.delivered, self.lost_by_driver = (
-            figures[name] for name in ("sent", "delivered", "lost_by_driver")
+        self.sent, self.delivered, self.lost_by_driver, self.lost_by_disk = (
+            figures[name] for name in ("sent", "delivered", "lost_by_driver", "lost_by_disk")
         )
-        self.recorded, self.lost_by_disk = recorded, dropped - self.lost_by_driver
+        self.recorded, self.told_lost = recorded, dropped
         self.span, self.lost_in_span = log[-1].index - log[0].index + 1, lost_frames(log)
         self.log_is_whole = len(log) == recorded and all(b.index > a.index for a, b in pairwise(log))
         self.waiting_mb = max(mb for _, mb in figures["waiting_mb"])
@@ -138,7 +141,7 @@ class Soaked:
             f"            besides, frames that wait for the disk: {self.waiting_mb:.0f} MB at most",
             f"latency     {latency[0]:.0f} ms median, {latency[1]:.0f} ms 95 %, {latency[2]:.0f} ms at most, "
             f"from a frame's arrival to {self.latency_to} ({len(self.latency_ms)} overlays, {self.views} views)",
-            *([] if np.isnan(self.longest_ms) else [f"window      busy in one go {self.longest_ms:.0f} ms at most"]),
+            *(f"window      busy in one go for {one}" for one in self.busiest),
             *(f"freeze      {freeze}" for freeze in self.freezes),
             *(f"notice      {sentence}" for sentence in self.notices),
         ]

@@ -158,6 +158,7 @@ class Tally:
             "sent": camera.last + 1,
             "delivered": camera.delivered,
             "lost_by_driver": camera.lost,
+            "lost_by_disk": recorder.dropped,
             "arrived": recorder.arrived,
             "waiting_mb": recorder.waiting_mb,
         }

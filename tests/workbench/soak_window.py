@@ -27,7 +27,7 @@ from core.files.project import Accepted, new_project
 from core.live.events import LiveEnded, LiveView, ScanDetail
 from tests.soak import LOOK_EVERY_S, Memory, Soaked, prepared
 from tests.soak_camera import FOLDER, RIG, SERIAL, calibration, settings_for, sweep
-from tests.workbench.watchdog import LIMIT_MS, Watchdog, slowness
+from tests.workbench.watchdog import Watchdog, slowness, too_long
 from workbench import jobs
 from workbench.app import build_window
 from workbench.bench import make_bench
@@ -181,8 +181,8 @@ def soak_window(seconds: float, scale: float = 1.0, rate_hz: float = 14.0, endin
                 "recording": job.memory["recording"].without(figures["waiting_mb"]),
             }
             result.late(job.shown.at, figures["arrived"])
-            result.freezes = [str(one) for one in watch.longer_than(LIMIT_MS * slowness())]
-            result.longest_ms = watch.longest_ms
+            result.freezes = too_long(watch, slowness())
+            result.busiest = [str(one) for one in watch.worst(3)]
             result.notices = [notice.text for notice in bench.notices.all[job.told_before :]]
             return result
         finally:
