@@ -24,6 +24,7 @@ _LONGEST_GAP = 40.0  # filter σ between ends
 _SIGNIFICANT = 6.0  # standard uncertainties
 _SMALLEST_JUMP, _LARGEST_JUMP = 0.3, 3.0  # px
 _SMALLEST_KINK, _LARGEST_KINK = 0.06, 0.12  # rad
+_STRAIGHT = math.cos(math.radians(30))  # at least, between an arm and the way across the gap
 _HOLE = 4.0  # filter σ: a run may go so far without seeing its line
 
 
@@ -80,7 +81,7 @@ def _gaps(pieces: list[Piece], filter_px: float) -> list[_Gap]:
     for one, other in combinations(ends, 2):
         if one.piece != other.piece and math.dist(one.point, other.point) < _LONGEST_GAP * filter_px:
             gap = _gap(one, other, filter_px)
-            if gap is not None and gap.misfit < 1:
+            if gap is not None:
                 found.append(gap)
     return found
 
@@ -100,7 +101,7 @@ def _ends(number: int, run: Array, filter_px: float) -> list[_End]:
 def _gap(one: _End, other: _End, filter_px: float) -> _Gap | None:
     """The curve through two arms, and how large jump and kink are that it would need in the middle, of those allowed.
 
-    None where the arms do not point at each other.
+    None where the arms do not point at each other, or need more than is allowed.
     """
     start, end = one.arm[-1], other.arm[-1]
     length = math.dist(start, end)
@@ -108,21 +109,27 @@ def _gap(one: _End, other: _End, filter_px: float) -> _Gap | None:
         return None
     t = (end - start) / length
     n, middle = np.array([t[1], -t[0]]), 0.5 * (start + end)
-    ahead = [(one.arm[-1] - one.arm[0]) @ t, (other.arm[0] - other.arm[-1]) @ t, (other.point - one.point) @ t]
-    if min(ahead) <= 0:
+    arms = (one.arm[-1] - one.arm[0], other.arm[0] - other.arm[-1])
+    if (other.point - one.point) @ t <= 0 or any(arm @ t < _STRAIGHT * math.hypot(*arm) for arm in arms):
         return None
-    x = np.concatenate([one.arm, other.arm]) - middle
+    thin = max(1, round(0.5 * filter_px))
+    x = np.concatenate([one.arm[::-thin], other.arm[::-thin]]) - middle
     along, across = (x @ t) / length, x @ n
-    side = np.repeat([-0.5, 0.5], [len(one.arm), len(other.arm)])
-    powers = np.column_stack([np.ones(len(along)), along, along**2])
-    broken = np.column_stack([powers, side, side * along])
-    fit, *_ = np.linalg.lstsq(broken, across)
-    smooth, *_ = np.linalg.lstsq(powers, across)
-    variance = float(np.mean((across - broken @ fit) ** 2)) * correlation_length(filter_px)
-    scatter = np.sqrt(np.maximum(variance * np.diag(np.linalg.pinv(broken.T @ broken)), 0))
-    jump = min(max(_SIGNIFICANT * scatter[3], _SMALLEST_JUMP), _LARGEST_JUMP)
-    kink = min(max(_SIGNIFICANT * scatter[4] / length, _SMALLEST_KINK), _LARGEST_KINK)
-    misfit = max(abs(fit[3]) / jump, abs(fit[4]) / length / kink)
+    side = np.where(along > 0, 0.5, -0.5)
+    broken = np.array([np.ones(len(along)), along, along**2, side, side * along])
+    normal, right = broken @ broken.T, broken @ across
+    normal[np.diag_indices(5)] *= 1 + 1e-9
+    inverse = np.linalg.inv(normal)
+    fit = inverse @ right
+    variance = float(np.mean((across - fit @ broken) ** 2)) * correlation_length(filter_px) / thin
+    jump, kink = _SIGNIFICANT * math.sqrt(variance * inverse[3, 3]), _SIGNIFICANT * math.sqrt(variance * inverse[4, 4])
+    misfit = max(
+        abs(fit[3]) / min(max(jump, _SMALLEST_JUMP), _LARGEST_JUMP),
+        abs(fit[4]) / length / min(max(kink / length, _SMALLEST_KINK), _LARGEST_KINK),
+    )
+    if misfit >= 1:
+        return None
+    smooth = np.linalg.solve(normal[:3, :3], right[:3])
     at = np.linspace(-0.5, 0.5, max(2, round(length)))
     way = middle + (at * length)[:, None] * t + (smooth[0] + smooth[1] * at + smooth[2] * at**2)[:, None] * n
     return _Gap((one, other), misfit, np.column_stack([way, np.broadcast_to(n, way.shape)]))

@@ -14,6 +14,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from core.image.centreline import Centreline
+from core.image.running import median
 from core.model.arrays import Array
 
 SAMPLE = 15
@@ -67,16 +68,16 @@ def check_reference(difference: NDArray[np.int16] | NDArray[np.float32], fan: Se
     light = float(np.median(difference[::16, ::16]))
     worst, lost = 0.0, False
     for piece in fan:
-        thin = piece.select(slice(None, None, 3))
-        if len(thin) < 20:
+        uv, width, strength = piece.uv[::3].copy(), piece.width[::3], piece.strength[::3]
+        if len(uv) < 20:
             continue
-        offset = thin.normal * thin.width[:, None]
-        flank_plus = _sample(difference, thin.uv + offset)
-        flank_minus = _sample(difference, thin.uv - offset)
-        centre = _sample(difference, thin.uv)
-        slope = 2 * np.exp(-0.5) * thin.strength / thin.width
-        shift = abs(float(np.median((flank_plus - flank_minus) / slope)))
-        lost = lost or float(np.median((centre - light) / thin.strength)) < -0.5
+        offset = piece.normal[::3] * width[:, None]
+        flank_plus = _sample(difference, uv + offset)
+        flank_minus = _sample(difference, uv - offset)
+        centre = _sample(difference, uv)
+        slope = 2 * np.exp(-0.5) * strength / width
+        shift = abs(median((flank_plus - flank_minus) / slope))
+        lost = lost or median((centre - light) / strength) < -0.5
         worst = max(worst, shift)
     return ReferenceCheck(worst, lost, light)
 
