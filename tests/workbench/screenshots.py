@@ -41,7 +41,7 @@ PATIENCE_S = 600.0
 NOMINAL = "block.stl"
 PLAN = InspectionPlan(
     (
-        FeatureSpec("thickness", "thickness", limits=(("thickness", Limits(50.0, -0.1, 0.1)),)),
+        FeatureSpec("block", "thickness", limits=(("thickness", Limits(50.0, -0.1, 0.1)),)),
         FeatureSpec("table", "plane", (Auto(1),)),
         FeatureSpec("top", "plane", (Auto(2),), limits=(("flatness", Limits(0.0, -math.inf, 0.1)),)),
         FeatureSpec("middle", "point", (Auto(2),)),

@@ -29,7 +29,7 @@ def quality_rows(calibration: CameraCalibration | None, judgement: ViewsJudgemen
             "",
         ),
         (_tr("Mean"), px(calibration.mean_px), _tr("Mean distance of the corners from where they should be"), ""),
-        (_tr("Views"), _tr("{0} of {1} count").format(used, total), _tr("Views used, and all there are"), ""),
+        (_tr("Views"), _tr("{0} of {1}").format(used, total), _tr("Views used, and all there are"), ""),
         (
             _tr("Coverage"),
             f"{100 * calibration.coverage:.0f} %",

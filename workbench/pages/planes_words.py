@@ -33,7 +33,7 @@ def quality_rows(calibration: FanCalibration | None) -> list[Row]:
         )
         for line, rms in enumerate(calibration.rms_mm, start=1)
     ]
-    rows.append((_tr("Poses"), _tr("{0} of {1} count").format(used, total), _tr("Poses used, and all there are"), ""))
+    rows.append((_tr("Poses"), _tr("{0} of {1}").format(used, total), _tr("Poses used, and all there are"), ""))
     if not math.isnan(calibration.stripe_sd_mm):
         tip = _tr("How far a whole stripe is off its plane beyond its own noise: flatness of the plate, the lens")
         off = calibration.stripe_sd_mm

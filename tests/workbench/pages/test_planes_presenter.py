@@ -189,7 +189,7 @@ def test_the_poses_left_out_are_counted_by_reason(found: PlanesPresenter, qtbot:
     assert words.left_out_lines(found.poses()) == ["2 × left out by hand: pose01, pose03", f"1 × {NO_PLATE}: pose06"]
     assert "left out" not in words.notes(found.work.calibration), "said once"
     rows = {row[0]: row[1] for row in words.quality_rows(found.work.calibration)}
-    assert rows["Poses"] == "4 of 7 count"
+    assert rows["Poses"] == "4 of 7"
 
 
 def test_too_few_poses_are_told_and_undone(found: PlanesPresenter, qtbot: Any) -> None:
