@@ -70,6 +70,13 @@ _CAMERA = {
     "lower left": "unten links",
     "bottom": "unten",
     "lower right": "unten rechts",
+    (
+        "The camera was calibrated by another program and read from {name}: its standard deviations are not known, so "
+        "no uncertainty here holds the camera's share."
+    ): (
+        "Die Kamera ist mit einem anderen Programm kalibriert und aus {name} gelesen: ihre Standardabweichungen sind "
+        "nicht bekannt, und keine Unsicherheit hier enthält den Anteil der Kamera."
+    ),
     "left out by hand": "von Hand ausgelassen",
     "its residuals (median {rms} px) are out of line with the other views' ({usual} px): blurred, moved, or not the "
     "same target": (
@@ -411,6 +418,8 @@ _RULES = {
         "Abstand zweier paralleler Linien, gemeinsam an zwei Abschnitte des Schnitts angepasst"
     ),
     "distance of the middles of two stretches of the section": "Abstand der Mitten zweier Abschnitte des Schnitts",
+    "network": "Netz",
+    "three-crossings": "drei Kreuzungen",
     "σ up to {limit} mm": "σ bis {limit} mm",
     "points, their noise included": "Punkte samt ihrem Rauschen",
 }

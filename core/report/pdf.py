@@ -26,8 +26,8 @@ from core.report.wording import shown_name
 
 MOST_PAGES = 4
 """Of one scan with one result; more results, repeats, studies or long remarks may have more."""
-RESULTS_A_PAGE = 4
-"""Results whose budgets and rows ask for one page more."""
+RESULTS_A_PAGE = 2
+"""Results whose rows and budgets ask for one page more: no budget is to be left out for want of a page."""
 LONG_REMARKS = 1000
 """Characters of remarks beyond which they need room of their own."""
 

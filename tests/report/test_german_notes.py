@@ -17,6 +17,7 @@ NOTES = (
     "scan/feature_notes.py", "scan/still_part.py", "scan/locate.py", "scan/fan_lines.py", "scan/calibration_check.py",
     "scan/reconstruct.py", "inspect/gauge.py", "inspect/evaluate.py", "inspect/temperature.py", "study/type1.py",
     "study/grr.py", "study/repeats.py", "study/repeats_budget.py", "study/acceptance.py", "pipeline/scan_step.py",
+    "files/exchange/imported.py",
 )  # fmt: skip
 """Modules that say something in notes, reasons and rules."""
 PROBLEMS = (*(f"inspect/features/{path.name}" for path in sorted((ROOT / "inspect" / "features").glob("*.py"))),
