@@ -285,7 +285,11 @@ class _Eye:
         """Cut the triangles with the sheet: segments in its plane, each met by the rays between its ends."""
         reach, face, cosine = hits
         off = mesh.triangles @ sheet.plane.normal - sheet.plane.d_mm
-        for index in np.flatnonzero((off.min(axis=1) < 0) & (off.max(axis=1) > 0)):
+        cut = np.flatnonzero((off.min(axis=1) < 0) & (off.max(axis=1) > 0))
+        a, b, c = mesh.triangles[cut].transpose(1, 0, 2)
+        normals = np.cross(b - a, c - a)
+        normals /= np.linalg.norm(normals, axis=1)[:, None]
+        for index, normal in zip(cut, normals, strict=True):
             corners, side = mesh.triangles[index], off[index]
             ends = [
                 corners[i] + side[i] / (side[i] - side[j]) * (corners[j] - corners[i])
@@ -301,10 +305,9 @@ class _Eye:
             c, s = np.cos(angles[rays]), np.sin(angles[rays])
             distance = (p[0] * along[1] - p[1] * along[0]) / (c * along[1] - s * along[0])
             nearer = np.flatnonzero((distance > 0) & (distance < reach[rays])) + rays.start
-            normal = np.cross(corners[1] - corners[0], corners[2] - corners[0])
             reach[nearer] = distance[nearer - rays.start]
             face[nearer] = numbers[index]
-            cosine[nearer] = np.abs(directions[nearer] @ normal) / np.linalg.norm(normal)
+            cosine[nearer] = np.abs(directions[nearer] @ normal)
 
 
 def _face_numbers(mesh) -> np.ndarray:
