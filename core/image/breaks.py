@@ -91,11 +91,14 @@ def _frame(bins: Array, first: int, last: int, at: int) -> Array:
 
 @njit(cache=True, nogil=True)
 def _explained(bins: Array, at: int, arm: int, reach: float) -> tuple[float, float]:
-    """χ² that a jump and a kink in bin `at` take off a parabola over ± `arm` bins, and χ² per bin that is left."""
+    """χ² that a jump and a kink in bin `at` take off a parabola over ± `arm` bins, and χ² per bin that is left.
+
+    Nothing where too few of the bins are within `reach` on either side, as beside a long saturated stretch.
+    """
     first, last = max(0, at - arm), min(len(bins) - 1, at + arm)
     frame = _frame(bins, first, last, at)
     normal, rhs, row = np.zeros((5, 5)), np.zeros(5), np.empty(5)
-    square, used = 0.0, 0
+    square, used, before = 0.0, 0, 0
     for k in range(first, last + 1):
         if k == at or abs(bins[k, ARC] - bins[at, ARC]) > reach:
             continue
@@ -105,10 +108,13 @@ def _explained(bins: Array, at: int, arm: int, reach: float) -> tuple[float, flo
         row[0], row[1], row[2], row[3], row[4] = 1.0, x, x * x, side, side * x
         square += bins[k, INFORMATION] * y * y
         used += 1
+        before += k < at
         for i in range(5):
             rhs[i] += bins[k, INFORMATION] * row[i] * y
             for j in range(5):
                 normal[i, j] += bins[k, INFORMATION] * row[i] * row[j]
+    if min(before, used - before) < _FEWEST:
+        return 0.0, np.inf
     for i in range(5):
         normal[i, i] *= 1 + 1e-9
     with_break = np.linalg.solve(normal, rhs)

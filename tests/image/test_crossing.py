@@ -7,6 +7,7 @@ import time
 import numpy as np
 import pytest
 
+from core.image.breaks import breaks
 from core.image.centreline import Centreline
 from core.image.crossing import cross_centrelines, search_crossings
 
@@ -131,3 +132,12 @@ def test_long_pictures_take_a_millisecond_or_so() -> None:
     for _ in range(5):
         cross_centrelines(pieces_a, pieces_b, HALF, FIFTEEN)
     assert (time.perf_counter() - start) / 5 < 0.05
+
+
+def test_a_line_of_which_only_islands_are_not_saturated_has_no_break_to_be_judged():
+    """Its bins lie further apart than a break is judged from: nothing lies to the left or right of any."""
+    bins = np.zeros((9, 5))
+    bins[:, 0] = bins[:, 1] = 200.0 * np.arange(9)
+    bins[:, 3] = 1e4
+
+    assert not breaks(bins, 120.0).any()
