@@ -228,7 +228,7 @@ def grab(window: MainWindow) -> QImage:
 
 def _settle(app: QApplication, bench: Bench, seconds: float) -> None:
     until = time.monotonic() + seconds
-    _wait(app, lambda: time.monotonic() > until and not bench.quick.busy and not is_polishing(app), 60)
+    _wait(app, lambda: time.monotonic() > until and not bench.quick.busy and not is_polishing(app), PATIENCE_S)
 
 
 def _wait(app: QApplication, done: Callable[[], bool], seconds: float) -> None:
