@@ -12,7 +12,7 @@ import pytest
 
 from core.errors import InputError
 from core.files.export_list import EXPORTS
-from core.files.project import Project, Repeat, new_project
+from core.files.project import KeptStudy, Project, Repeat, new_project
 from core.files.project_keys import finished
 from core.inspect.inspection_plan import FeatureSpec, InspectionPlan
 from tests.workbench.hand_lane import HandLane
@@ -175,9 +175,12 @@ def test_each_choice_is_one_edit_that_can_be_undone(report: ReportPresenter) -> 
 
 def test_sections_with_nothing_to_print_say_why(report: ReportPresenter) -> None:
     empty = {name for name, _, _ in report.sections() if report.empty_section(name)}
-    assert empty == {"repeats", "remarks", "budget"}
+    assert empty == {"repeats", "studies", "remarks", "budget"}
     at = finished("scan", report.project, {}).at
-    report.model.edit("add", replace(report.project, repeats=(Repeat("a", 50.0, 0.02, 2.0, "c", at),)))
+    repeats, study = (Repeat("a", 50.0, 0.02, 2.0, "c", at),), KeptStudy("c0ffee", "grr", "3 parts", included=False)
+    report.model.edit("add", replace(report.project, repeats=repeats, studies=(study,)))
+    assert "ticked" in report.empty_section("studies")
+    report.model.edit("tick", replace(report.project, studies=(replace(study, included=True),)))
     with_info(report, notes="A remark")
     measured(report, "scan", "inspect")
     assert not any(report.empty_section(name) for name, _, _ in report.sections())
