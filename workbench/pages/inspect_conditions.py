@@ -113,6 +113,7 @@ class InspectConditions(QObject):
         self._pending = {key: value for key, value in self._pending.items() if _group_of(key) != group}
         self._complaints.pop(group, None)
         if plan != self.plan:
+            self._of = self._set_in(plan)  # its own edit: what is half entered of the other groups stays
             self._owner.put_plan(plan, label)
         else:
             self._owner.changed.emit()
@@ -126,10 +127,13 @@ class InspectConditions(QObject):
 
     def _follow(self) -> None:
         """The conditions were changed elsewhere, by an undo or a template: what was half entered is forgotten."""
-        now = self._owner.owner.model.folder, self.plan.frame, self.plan.temperature, self.plan.master
+        now = self._set_in(self.plan)
         if now != self._of:
             self._of = now
             self._pending, self._complaints = {}, {}
+
+    def _set_in(self, plan: InspectionPlan) -> object:
+        return self._owner.owner.model.folder, plan.frame, plan.temperature, plan.master
 
 
 def _group_of(key: str) -> str:

@@ -83,6 +83,14 @@ def test_a_frame_waits_for_its_second_feature_and_is_undone_as_one_edit(presente
     assert presenter.features.plan.frame == PartFrame("top", "side")
 
 
+def test_what_is_half_entered_stays_while_another_group_is_edited(presenter, conditions):
+    conditions.set_value("primary", "top")
+    conditions.set_value(fields.AT_20, True)
+    assert conditions.values()["primary"] == "top" and conditions.complaint("frame")
+    conditions.set_value("secondary", "side")
+    assert presenter.features.plan.frame == PartFrame("top", "side") and presenter.features.plan.temperature is not None
+
+
 def test_only_what_can_be_measured_as_such_is_offered_for_the_frame():
     plan = replace(PLAN, features=(*PLAN.features, FeatureSpec("bore", "cylinder")))
     assert fields.frame_choices(plan, "primary") == ("top", "side", "front")
