@@ -38,8 +38,8 @@ from core.scan.line_errors import LineErrors
 from core.scan.locate import by_sweep, numbered
 from core.scan.results import ScanResult
 
-KNOWN = 1e-4
-"""Motions of which the scan knows less than this share of what it knows of the best-known one, it does not see."""
+KNOWN = 1e-6
+"""A scan does not see a motion of which less than this share is left once the sweeps may follow it."""
 SURE = 1e-4
 """Something has moved for sure if chance alone would look so more rarely than this."""
 MUCH = 3.0
@@ -118,15 +118,20 @@ def check_calibration(
     scatter = max(1.0, scan.scale) ** 2 * (noise.T @ noise + cells.T @ cells)
     gradient = -changes.T @ (weight * solution.residuals * solution.sigma)
     z, m = slice(0, len(calibrated)), slice(len(calibrated), None)
-    squares, freedom = _squares(gradient[m], information[m, m], information[m, z] @ information[z, m] + scatter[m, m])
+    followed = np.einsum("mk,m,mk->k", changes, weight, changes)[m]
+    expected = information[m, z] @ information[z, m] + scatter[m, m]
+    squares, freedom = _squares(gradient[m], information[m, m], followed, expected)
     return CalibrationCheck(information[z, z], scatter[z, z], squares, freedom)
 
 
-def _squares(gradient: Array, information: Array, expected: Array) -> tuple[float, int]:
-    """Sum of squares of `gradient` (6,) in units of the covariance `expected`, where `information` is; and how many."""
-    unit = 1 / np.sqrt(np.maximum(np.diag(information), 1e-300))
+def _squares(gradient: Array, information: Array, followed: Array, expected: Array) -> tuple[float, int]:
+    """Sum of squares of `gradient` (6,) in units of the covariance `expected`, where `information` is; and how many.
+
+    `followed` (6,) is what the information would be if the sweeps could not follow.
+    """
+    unit = 1 / np.sqrt(np.maximum(followed, 1e-300))
     values, vectors = np.linalg.eigh(information * np.outer(unit, unit))
-    seen = unit[:, None] * vectors[:, values > KNOWN * values[-1]]
+    seen = unit[:, None] * vectors[:, values > KNOWN]
     part = seen.T @ gradient
     return float(part @ np.linalg.solve(seen.T @ expected @ seen, part)), len(part)
 

@@ -113,3 +113,12 @@ def test_frames_that_left_the_scan_do_not_matter(exact, fan_steps):
     scan = reconstruct(seen, camera, fan, fan_lines=FanLines.settled_as(exact.fan_line))
     fewer = replace(scan, pis=scan.pis[:-2], sweep_frames=scan.sweep_frames[:-2])
     assert check_calibration(seen, fewer, camera, fan, []).freedom == 3
+
+
+def test_a_scan_over_one_line_cannot_tell_whether_anything_moved(exact):
+    """The sweeps follow whatever one plane does."""
+    lines = FanLines.settled_as([number if number == 1 else -1 for number in exact.fan_line])
+    seen = measured(exact, 2)
+    scan = reconstruct(seen, exact.rig.camera, exact.rig.fan, fan_lines=lines)
+    check = check_calibration(seen, scan, exact.rig.camera, exact.rig.fan, [])
+    assert (check.freedom, check.p, check.notes) == (0, 1.0, ())
