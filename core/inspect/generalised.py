@@ -46,7 +46,10 @@ PRIOR_FREEDOM = 10.0
 """Belief in the stated noise, counted in stretches: few of them cannot overthrow it."""
 SMALLEST_FORM_MM, LARGEST_FORM_MM = 1e-4, 0.5
 GRAZING = 0.35
-"""|cos| of incidence below which own noise across the surface falls no further: the pixel is uncertain as well."""
+"""|cos| of incidence below which own noise across the surface falls no further where light planes are not known: the
+pixel is uncertain as well."""
+LEAST_GAIN, LARGEST_GAIN = 0.1, 3.0
+"""Of a misfit by its depth's own noise; it runs away where a stripe lies so that noise hardly changes depths."""
 FLOOR_MM = 2e-4
 """No stretch is known better than this across the surface."""
 LEAST_REST = 0.3
@@ -99,7 +102,8 @@ class Sources:
         depth = cloud.points[:, 2]
         rays = cloud.points / depth[:, None]
         gain = np.asarray((direction * rays).sum(axis=1), dtype=np.float64)
-        own = np.maximum(np.abs(gain), GRAZING) * errors.own_sigma(cloud)
+        of_noise = _gain_of_noise(cloud, np.broadcast_to(direction, cloud.points.shape), gain, errors)
+        own = np.abs(of_noise) * errors.own_sigma(cloud)
         weight = weights / own**2
         share = weight / np.bincount(stretch, weight)[stretch]
         count = int(stretch.max()) + 1
@@ -118,7 +122,7 @@ class Sources:
         speckle, sweeps = _of_sweeps(cloud.sweep[first], lever, errors)
         if errors.speckle is not None:
             known = np.flatnonzero(place >= 0)
-            _add_fan(speckle, errors.speckle, place[known], stretch[known], (share * gain)[known])
+            _add_fan(speckle, errors.speckle, place[known], stretch[known], (share * of_noise)[known])
             of_cells = (errors.speckle.shares[place[known]] ** 2).sum(axis=1)
             left = own.copy()
             left[known] *= np.sqrt(np.maximum(1 - of_cells / cloud.sigma[known] ** 2, 0.0))
@@ -208,6 +212,25 @@ def _variance_factor(weights: Array, residuals: Array, spent: float) -> float:
     """Sum of squares over redundancy, held to 1 by PRIOR_FREEDOM further residuals of expected size."""
     freedom = max(float(weights.sum()) - spent, 0.0)
     return (float(weights @ residuals**2) + PRIOR_FREEDOM) / (freedom + PRIOR_FREEDOM)
+
+
+def _gain_of_noise(cloud: Cloud, direction: Array, gain: Array, errors: PointErrors) -> Array:
+    """(N,) how the misfit follows the depth when it is the stripe's own noise that changes it.
+
+    Noise moves the pixel by ε square to the stripe, along m in the plane of the rays, and the point stays on its light
+    plane: δX = r δz + z (m, 0) ε with δz = −z² (π·m) ε. Where the surface faces the camera the second part does not
+    matter; on a slanting one it adds as much as the first. The stripe runs along π × normal.
+    """
+    if errors.common is None:
+        return np.copysign(np.maximum(np.abs(gain), GRAZING), gain)
+    pis, depth = errors.common.planes(cloud.sweep), cloud.points[:, 2]
+    along = np.cross(pis, direction)
+    seen = along[:, :2] - cloud.points[:, :2] / depth[:, None] * along[:, 2:]
+    across = np.column_stack([seen[:, 1], -seen[:, 0]])
+    slope = depth * (pis[:, :2] * across).sum(axis=1)
+    moved = (direction[:, :2] * across).sum(axis=1)
+    follows = gain - moved / np.where(np.abs(slope) > 1e-12, slope, 1e-12)
+    return np.asarray(np.copysign(np.clip(np.abs(follows), LEAST_GAIN, LARGEST_GAIN), follows))
 
 
 def _of_sweeps(sweep: NDArray[np.int64], lever: Array, errors: PointErrors) -> tuple[Array, Array]:

@@ -74,11 +74,15 @@ class CommonErrors:
             variance += change[:, 2] ** 2
         return np.asarray(np.sqrt(variance), dtype=np.float64)
 
+    def planes(self, sweep: Index, row: int = 0) -> Array:
+        """Light planes (N, 3) in 1/mm of points of `sweep` (N,) as calibrated, or with the displacement `row` − 1."""
+        by_number = np.concatenate([self.fans[row][::-1], self.sweeps[row]])  # fan line k is sweep FAN − k = −1 − k
+        pis: Array = by_number[sweep + len(self.fans[row])]
+        return pis
+
     def _points(self, row: int, uv: Array, sweep: Index) -> Array:
         rays = camera_of(self.cameras[row], self.image_size).rays(uv)
-        by_number = np.concatenate([self.fans[row][::-1], self.sweeps[row]])  # fan line k is sweep FAN − k = −1 − k
-        pis = by_number[sweep + len(self.fans[row])]
-        points: Array = rays / np.einsum("ni,ni->n", rays, pis)[:, None]
+        points: Array = rays / np.einsum("ni,ni->n", rays, self.planes(sweep, row))[:, None]
         return points
 
 
