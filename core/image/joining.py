@@ -76,7 +76,7 @@ def joined_at_crossings(pieces: list[Piece], filter_px: float) -> tuple[list[Pie
 
 def _gaps(pieces: list[Piece], filter_px: float) -> list[_Gap]:
     """All pairs of ends through which one smooth curve goes."""
-    ends = [end for k, piece in enumerate(pieces) for end in _ends(k, piece.run, filter_px)]
+    ends = [end for k, piece in enumerate(pieces) for end in _ends(k, piece, filter_px)]
     found = []
     for one, other in combinations(ends, 2):
         if one.piece != other.piece and math.dist(one.point, other.point) < _LONGEST_GAP * filter_px:
@@ -86,10 +86,11 @@ def _gaps(pieces: list[Piece], filter_px: float) -> list[_Gap]:
     return found
 
 
-def _ends(number: int, run: Array, filter_px: float) -> list[_End]:
-    """Both ends of a run, unless it is too short to say where it goes."""
+def _ends(number: int, piece: Piece, filter_px: float) -> list[_End]:
+    """Both ends of a piece, unless it is too short, or too saturated, to say where it goes."""
+    run = piece.run
     skip, arm = min(round(_SKIP * filter_px), len(run) // 2), round(_ARM * filter_px)
-    if len(run) - skip < _SHORTEST_ARM * filter_px:
+    if len(run) - skip < _SHORTEST_ARM * filter_px or 2 * np.count_nonzero(piece.saturated) >= len(run):
         return []
     back = run[::-1]
     return [

@@ -29,6 +29,7 @@ SATURATED, IGNORED, VISITED = 1, 2, 4
 """Bits of the picture's state map."""
 
 _MARK_EVERY = 2  # points: discs much larger than that leave no gap between them
+_LONGEST_STEP = 2  # px: longer ones lose short, saturated pieces of real stripes at their ends
 _NEAR_ENOUGH = 0.08  # filter σ from the crest: seen from there, Taylor's step errs by less than 0.0005 px
 _LARGEST_TURN = math.cos(math.radians(30))  # from one point to the next
 
@@ -59,7 +60,7 @@ def link(
     if min(picture.shape) <= 2 * radius + 3:
         return []
     unit = ridge_response(1.0, stripe_px, filter_px)
-    stride = points_apart(filter_px)
+    stride = min(points_apart(filter_px), _LONGEST_STEP)
     flat: Any = np.ascontiguousarray(picture).reshape(-1)  # float32 or int16
     points, ends = _trace_all(
         flat,
