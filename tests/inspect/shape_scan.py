@@ -31,8 +31,9 @@ def _pin(rays):
     a, b, c = (across**2).sum(axis=1), across @ to, to @ to - PIN_RADIUS**2
     under = b**2 - a * c
     depth = np.where(under > 0, (b - np.sqrt(np.maximum(under, 0))) / a, np.inf)
-    along = (rays * depth[:, None] - PIN)[np.isfinite(depth)] @ PIN_AXIS
-    depth[np.isfinite(depth)] = np.where(np.abs(along) < 25.0, depth[np.isfinite(depth)], np.inf)
+    met = np.isfinite(depth)
+    along = (rays[met] * depth[met, None] - PIN) @ PIN_AXIS
+    depth[met] = np.where(np.abs(along) < 25.0, depth[met], np.inf)
     return depth
 
 

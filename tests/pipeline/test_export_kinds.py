@@ -57,7 +57,7 @@ def test_results_are_handed_over_as_the_report_has_them(done, folder, tmp_path):
     value = content.gauge.thickness_mm
     paths = {kind: export(folder, done.project, kind, tmp_path / EXPORTS[kind].file)
              for kind in ("table", "xlsx", "results", "dfq", "qif", "e57", "opencv", "opencv-json")}  # fmt: skip
-    assert load_workbook(paths["xlsx"])["result"]["G2"].value == value
+    assert load_workbook(paths["xlsx"])["result"]["G2"].value == pytest.approx(value, rel=1e-15)
     tables = json.loads(paths["results"].read_text())
     assert (tables["characteristics"][0]["value"], tables["report_id"]) == (value, content.report_id)
     assert f"K0001/1 {value:.9f}".rstrip("0") in paths["dfq"].read_text("cp1252")
