@@ -41,8 +41,8 @@ accuracy: $(READY)        ## measure the README's accuracy table anew: about 80 
 	$(BIN)/python -m tests.accuracy --readme
 
 soak: export OPENBLAS_NUM_THREADS = 1
-soak: $(READY)            ## ten minutes of an emulated camera at full size through a live scan: frames counted, memory flat
-	$(BIN)/python -m tests.soak --seconds 600
+soak: $(READY)            ## ten minutes of an emulated camera at full size through the live scan page: counts, memory, freezes
+	$(BIN)/python -m tests.soak --window --seconds 600
 
 bench: export OPENBLAS_NUM_THREADS = 1
 bench: export OMP_NUM_THREADS = 1
