@@ -28,7 +28,7 @@ class ProjectPage(StepPage):
         w.add_text("part", p.label("part"), self.tr("What is measured, as on the drawing."))
         w.add_text("serial", p.label("serial"), self.tr("Serial or inventory number of the part."))
         for key, highest, words in (
-            ("air_celsius", 60.0, self.tr("Printed with the result; nothing is corrected to 20 °C.")),
+            ("air_celsius", 60.0, self.tr("Printed with the result; lengths at 20 °C are chosen on Inspect.")),
             ("part_celsius", 100.0, self.tr("A steel part grows by 11.5 µm per metre and kelvin.")),
         ):
             none = self.tr("not measured")
