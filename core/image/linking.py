@@ -20,7 +20,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from core.image.filling import filled, points_apart
+from core.image.filling import filled
 from core.image.ridge import kernel_radius, kernel_table, ridge_at, ridge_response
 from core.image.seeds import Picture, seeds
 from core.model.arrays import Array
@@ -29,7 +29,7 @@ SATURATED, IGNORED, VISITED = 1, 2, 4
 """Bits of the picture's state map."""
 
 _MARK_EVERY = 2  # points: discs much larger than that leave no gap between them
-_LONGEST_STEP = 2  # px: longer ones lose short, saturated pieces of real stripes at their ends
+_WIDE_FILTER_PX = 2.4  # every second point tells all, then; longer steps lose faint, short, saturated pieces
 _NEAR_ENOUGH = 0.08  # filter σ from the crest: seen from there, Taylor's step errs by less than 0.0005 px
 _LARGEST_TURN = math.cos(math.radians(30))  # from one point to the next
 
@@ -60,7 +60,7 @@ def link(
     if min(picture.shape) <= 2 * radius + 3:
         return []
     unit = ridge_response(1.0, stripe_px, filter_px)
-    stride = min(points_apart(filter_px), _LONGEST_STEP)
+    stride = 2 if filter_px > _WIDE_FILTER_PX else 1
     flat: Any = np.ascontiguousarray(picture).reshape(-1)  # float32 or int16
     points, ends = _trace_all(
         flat,
