@@ -13,6 +13,7 @@ from core.files.rig import GaugeSpec
 from core.inspect.inspection import DEPTH, HEIGHT, LOWER, UPPER, InspectionView, Relief, ShownMesh
 from core.inspect.results import Contribution, Face, GaugeResult
 from core.model import LightPlane
+from workbench.pages.inspect_presenter import InspectPresenter
 
 POINTS = 600
 SIZE = (64, 48)
@@ -92,3 +93,14 @@ def _mesh() -> ShownMesh:
 def repeat(number: int, thickness_mm: float, *, calibration: str = "cal-1") -> Repeat:
     """A repeat of another scan."""
     return Repeat(f"recordings/scan-{number}", thickness_mm, 0.024, 2.0, calibration, AT)
+
+
+def entered(bench, folder, project, qtbot) -> InspectPresenter:
+    """The Inspect page's presenter, with a measured `project` in `folder` shown."""
+    made = InspectPresenter(bench)
+    bench.model.create(folder, project)
+    for step, done in results(made.project).items():
+        made.model.record(step, done)
+    made.entered()
+    qtbot.waitUntil(lambda: made.view is not None and not made.stale)
+    return made

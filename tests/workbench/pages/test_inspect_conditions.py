@@ -13,7 +13,6 @@ from tests.workbench.pages import inspect_cases as cases
 from workbench import jobs
 from workbench.pages import inspect_condition_values as fields
 from workbench.pages.inspect_page import InspectPage
-from workbench.pages.inspect_presenter import InspectPresenter
 from workbench.views import ask
 
 PLAN = InspectionPlan(
@@ -33,15 +32,9 @@ def presenter(hand_bench, tmp_path, qtbot):
     quick = cast(HandLane, hand_bench.quick)
     quick.answers[jobs.INSPECTION_VIEW] = lambda folder, project: cases.view(cases.gauge())
     quick.answers[jobs.MEASURED_MASTER] = lambda folder, certified, project: MASTER
-    made = InspectPresenter(hand_bench)
     project = cases.project()
     info = replace(project.info, part_celsius=23.5)
-    hand_bench.model.create(tmp_path / "project", replace(project, inspection=PLAN, info=info))
-    for step, done in cases.results(made.project).items():
-        made.model.record(step, done)
-    made.entered()
-    qtbot.waitUntil(lambda: made.view is not None and not made.stale)
-    return made
+    return cases.entered(hand_bench, tmp_path / "project", replace(project, inspection=PLAN, info=info), qtbot)
 
 
 @pytest.fixture

@@ -20,7 +20,6 @@ from workbench import jobs
 from workbench.pages import inspect_feature_values as fields
 from workbench.pages.inspect_feature_edit import LINE
 from workbench.pages.inspect_page import InspectPage
-from workbench.pages.inspect_presenter import InspectPresenter
 from workbench.views import ask
 from workbench.views.scene_view_contents import Marks
 
@@ -63,13 +62,7 @@ def presenter(hand_bench, measuring, tmp_path, qtbot):
     quick = cast(HandLane, hand_bench.quick)
     quick.answers[jobs.INSPECTION_VIEW] = lambda folder, project: cases.view(cases.gauge())
     quick.answers[jobs.OUTLINE_SELECTED] = lambda folder, numbers, face: np.array(CORNERS)
-    made = InspectPresenter(hand_bench)
-    hand_bench.model.create(tmp_path / "project", cases.project())
-    for step, done in cases.results(made.project).items():
-        made.model.record(step, done)
-    made.entered()
-    qtbot.waitUntil(lambda: made.view is not None and not made.stale)
-    return made
+    return cases.entered(hand_bench, tmp_path / "project", cases.project(), qtbot)
 
 
 @pytest.fixture

@@ -14,7 +14,6 @@ from tests.workbench.hand_lane import HandLane
 from tests.workbench.pages import inspect_cases as cases
 from workbench import jobs
 from workbench.pages.inspect_page import InspectPage
-from workbench.pages.inspect_presenter import InspectPresenter
 from workbench.views import ask
 
 STUDIES = 4
@@ -31,15 +30,9 @@ ROWS = "".join(
 def presenter(hand_bench, tmp_path, qtbot):
     quick = cast(HandLane, hand_bench.quick)
     quick.answers[jobs.INSPECTION_VIEW] = lambda folder, project: cases.view(cases.gauge())
-    made = InspectPresenter(hand_bench)
     project = cases.project(nominal_mm=50.0, tolerance_mm=0.2)
     repeats = tuple(cases.repeat(number, 50 + 0.01 * number) for number in range(3))
-    hand_bench.model.create(tmp_path / "project", replace(project, repeats=repeats))
-    for step, done in cases.results(made.project).items():
-        made.model.record(step, done)
-    made.entered()
-    qtbot.waitUntil(lambda: made.view is not None and not made.stale)
-    return made
+    return cases.entered(hand_bench, tmp_path / "project", replace(project, repeats=repeats), qtbot)
 
 
 @pytest.fixture
