@@ -102,7 +102,7 @@ class PlanesPage(StepPage):
     def _fold(self, stage: Stage) -> None:
         """Once there is a result, it takes the room of what it was made from; the user may unfold that again."""
         live, work = stage is Stage.LIVE, self.presenter.work
-        wanted = "live" if live else "result" if work.measuring or work.poses is not None else "pictures"
+        wanted = "live" if live else "result" if work.searching or work.poses is not None else "pictures"
         if wanted == self._folded:
             return
         self._folded = wanted

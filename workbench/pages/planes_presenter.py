@@ -105,7 +105,7 @@ class PlanesPresenter(StepPresenter):
         """Take the pictures of a folder, and measure them."""
         self.live.stop()
         put_source(self.model, "planes", folder, self.tr("choose the laser planes' pictures"))
-        self.work.measure()
+        self.work.search()
 
     def set_laser(self, field: str, value: Any) -> None:
         """Change "lines", "angle" (rad; None where nobody states it) or "constrain"; undoable."""
@@ -178,7 +178,7 @@ class PlanesPresenter(StepPresenter):
 
     def do_run(self) -> None:
         if not self.can_measure:
-            self.work.measure()
+            self.work.search()
 
     def do_accept(self) -> None:
         self.accept()
@@ -220,7 +220,7 @@ class PlanesPresenter(StepPresenter):
 
     def _cannot_record(self) -> str:
         """Why no poses can be taken now, or ""."""
-        if self.work.measuring:
+        if self.work.searching:
             return self.tr("The pictures are being measured; wait for it, or cancel it.")
         if self.seen_by.reading:
             return self.tr("The camera calibration is being read.")
@@ -231,7 +231,7 @@ class PlanesPresenter(StepPresenter):
 
     def _live_ended(self, ended: LiveEnded) -> None:
         if ended.recorded and self.folder == ended.folder:
-            self.work.measure()
+            self.work.search()
 
     def _work_changed(self) -> None:
         self.look.follow()

@@ -36,7 +36,7 @@ def stage_of(p: PlanesPresenter) -> Stage:
     work, accepted = p.work, p.project.accepted.fan
     if p.live.running:
         return Stage.LIVE
-    if work.measuring:
+    if work.searching:
         return Stage.MEASURING
     if work.poses is not None and work.solving:
         return Stage.SOLVING
@@ -84,7 +84,7 @@ def why_not_measure(p: PlanesPresenter) -> str:
         return _tr("Accept a camera calibration first.")
     if not p.project.sources.planes:
         return _tr("Choose or record pictures first.")
-    return _tr("The pictures are being measured.") if p.work.measuring else ""
+    return _tr("The pictures are being measured.") if p.work.searching else ""
 
 
 def why_not_accept(p: PlanesPresenter) -> str:

@@ -84,6 +84,16 @@ def test_choosing_a_folder_is_undone_and_its_search_is_not_lost(solved, qtbot):
     assert solved.bench.measuring.ran == ran
 
 
+def test_a_search_of_a_project_that_was_left_does_not_end_that_of_the_next(presenter, views_folder, tmp_path):
+    presenter.bench.measuring.held = {jobs.FIND_VIEWS}
+    presenter.use_folder(views_folder)
+    project, left = presenter.project, presenter.work.search_task
+    presenter.model.create(tmp_path / "next", replace(project, sources=Sources(camera=views_folder.as_posix())))
+    presenter.work.search()
+    left.cancelled.emit()  # a process takes its time to stop
+    assert presenter.stage is Stage.SEARCHING
+
+
 def test_what_cannot_be_calibrated_says_why(presenter, views_folder, qtbot):
     presenter.target.set_target("kind", "circle_grid")
     presenter.use_folder(views_folder)

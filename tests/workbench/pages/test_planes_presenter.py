@@ -149,8 +149,11 @@ def test_measurements_of_a_project_that_was_left_do_not_end_those_of_the_next(
 ) -> None:
     planes.measuring.held = {jobs.FIND_POSES}
     page.use_folder(pictures)
+    left = page.work.search_task
     page.model.create(tmp_path / "next", project_with(planes=pictures))
-    page.work.measure()
+    page.work.search()
+    assert left is not None
+    left.cancelled.emit()  # a process takes its time to stop
     assert page.stage is Stage.MEASURING
 
 

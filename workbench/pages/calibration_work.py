@@ -1,0 +1,218 @@
+"""What is known of a calibration's pictures: found, solved; kept for every state that undo may come back to."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections import OrderedDict
+from pathlib import Path
+from typing import Any, Literal
+
+from PySide6.QtCore import QObject, Signal
+
+from core.files.project import Project
+from core.files.project_keys import rests_on
+from workbench.bench import Bench
+from workbench.jobs import Job
+from workbench.pages.step_pictures import StepPictures
+from workbench.problems import sentence
+from workbench.tasks import Task
+
+KEPT = 12
+"""So many solutions are kept for undo and redo."""
+
+Key = tuple[str, ...]
+
+
+class CalibrationWork(QObject):
+    """Finds what one step's pictures show, and solves.
+
+    `found` and `calibration` are of the project as it is, or None; while a new solution is on its way (`solving`) the
+    last one stands. `problem` says why there is none. What finding rests on is `FOUND_BY`; solving rests on all of the
+    step's other keys, too, but for `ACCEPTED`.
+    """
+
+    changed = Signal()
+    searched = Signal()
+
+    STEP: Literal["camera", "planes"]
+    FOUND_BY: tuple[str, ...]
+    ACCEPTED: str
+    FIND: Job
+    SOLVE: Job
+
+    def __init__(self, bench: Bench, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self._bench, self._model = bench, bench.model
+        self._pictures = StepPictures(bench, self.STEP, self.name_of, self)
+        self._pictures.changed.connect(self.changed)
+        self._forget()
+
+    def _forget(self) -> None:
+        self.found: Any = None
+        self.calibration: Any = None
+        self.problem = ""
+        self.solving = False
+        self.search_task: Task | None = None
+        self._found: dict[Key, Any] = {}
+        self._solved: OrderedDict[Key, tuple[Any, str]] = OrderedDict()
+        self._found_key: Key = ()
+        self._solve_key: Key = ()
+        self._pictures.forget()
+
+    @staticmethod
+    @abstractmethod
+    def name_of(path: Path) -> str:
+        """What the project calls a picture; "" for one that belongs to another."""
+
+    @abstractmethod
+    def _recall(self, folder: Path, project: Project) -> None:
+        """Ask for what was found in the pictures, and made of it, before the project was opened."""
+
+    @abstractmethod
+    def _can_search(self, project: Project) -> bool:
+        """Whether all that finding needs is there."""
+
+    @abstractmethod
+    def _labels(self) -> tuple[str, str]:
+        """What the tasks that find and solve are called."""
+
+    def _in_words(self, problem: Any) -> str:
+        return sentence(problem)
+
+    def _calibration_changed(self) -> None:
+        """Another calibration is shown, or none."""
+
+    @property
+    def pictures(self) -> tuple[Path, ...] | None:
+        """The pictures there are; None until they are listed."""
+        return self._pictures.paths
+
+    @property
+    def thumbnails(self) -> dict[str, Any]:
+        """Small pictures, by name."""
+        return self._pictures.thumbnails
+
+    @property
+    def searching(self) -> bool:
+        """Whether the pictures are being searched."""
+        return self.search_task is not None
+
+    def opened(self) -> None:
+        """Another project: forget, list its pictures, and take up what has been found in them."""
+        if self.search_task is not None:
+            self.search_task.cancel()
+        self._forget()
+        folder = self._model.folder
+        if folder is not None:
+            self.follow()
+            self._recall(folder, self._model.project)
+
+    def follow(self) -> None:
+        """The project is another: show what is known for it, and solve again if it is known what its pictures show."""
+        project = self._model.project
+        self._pictures.follow()
+        found, solve = self.found_key(project), self.solve_key(project)
+        if found != self._found_key:
+            self._found_key, self._solve_key = found, ()
+            self.found = self._found.get(found)
+            if self.found is None:
+                self.calibration, self.problem = None, ""
+                self._calibration_changed()
+        if self.found is None:
+            self.solving = False
+        elif solve != self._solve_key:
+            self._solve_key = solve
+            self._solve(solve)
+        self.changed.emit()
+
+    def search(self) -> None:
+        """Find what there is in all pictures, then solve."""
+        folder, project = self._model.folder, self._model.project
+        if folder is None or self.searching or not self._can_search(project):
+            return
+        key = self.found_key(project)
+        self.problem = ""
+        self.search_task = self._bench.measure(
+            self.FIND,
+            folder,
+            project,
+            label=self._labels()[0],
+            on_done=lambda found: self._search_done(folder, key, found),
+            on_failed=lambda problem: self._search_failed(folder, key, self._in_words(problem)),
+            on_cancelled=lambda: self._search_failed(folder, key, ""),
+        )
+        self.changed.emit()
+
+    def found_key(self, project: Project) -> Key:
+        """What finding rests on, as it is in `project`."""
+        keys = rests_on(self.STEP, project, {})
+        return tuple(keys[name] for name in self.FOUND_BY)
+
+    def solve_key(self, project: Project) -> Key:
+        """What solving rests on, as it is in `project`; it begins with `found_key`."""
+        keys = rests_on(self.STEP, project, {})
+        others = [value for name, value in keys.items() if name not in (*self.FOUND_BY, self.ACCEPTED)]
+        return (*self.found_key(project), *others)
+
+    def _search_done(self, folder: Path, key: Key, found: Any) -> None:
+        if folder != self._model.folder:
+            return  # the project has been left; another one may be searched by now
+        self.search_task = None
+        for solved in [one for one in self._solved if one[: len(key)] == key]:
+            del self._solved[solved]
+        self._found[key], self._found_key = found, ()
+        self._pictures.list_again()
+        self.follow()
+        self.searched.emit()
+        self.changed.emit()
+
+    def _search_failed(self, folder: Path, key: Key, problem: str) -> None:
+        if folder != self._model.folder:
+            return
+        self.search_task = None
+        if key == self._found_key:
+            self.problem = problem
+        self.changed.emit()
+
+    def _take_up(self, folder: Path, project: Project, found: Any, calibration: Any = None) -> None:
+        """What the pictures of `project` show is known, and perhaps the `calibration` solved from it.
+
+        It is of no interest where they were searched since, or the project was left.
+        """
+        key = self.found_key(project)
+        if folder != self._model.folder or not found or key in self._found:
+            return
+        if calibration is not None:
+            self._solved[self.solve_key(project)] = calibration, ""
+        self._found[key], self._found_key = found, ()
+        self.follow()
+
+    def _solve(self, key: Key) -> None:
+        if key in self._solved:
+            self._solved.move_to_end(key)
+            self._show(key)
+            return
+        self.solving = True
+        self._bench.quick.run(
+            self.SOLVE,
+            self._model.folder,
+            self._model.project,
+            self.found,
+            label=self._labels()[1],
+            on_done=lambda calibration: self._solved_for(key, calibration, ""),
+            on_failed=lambda problem: self._solved_for(key, None, self._in_words(problem)),
+            replace_waiting=True,
+        )
+
+    def _solved_for(self, key: Key, calibration: Any, problem: str) -> None:
+        self._solved[key] = calibration, problem
+        while len(self._solved) > KEPT:
+            self._solved.popitem(last=False)
+        if key == self._solve_key:
+            self._show(key)
+            self.changed.emit()
+
+    def _show(self, key: Key) -> None:
+        self.calibration, self.problem = self._solved[key]
+        self.solving = False
+        self._calibration_changed()
