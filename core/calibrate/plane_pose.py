@@ -22,7 +22,7 @@ from core.image.centreline import Centreline
 from core.image.noise import estimate_noise
 from core.image.stripes import StripeSettings, choose_settings, extract_centrelines
 from core.image.target_view import TargetView
-from core.image.targets import Target, TargetNotFound, camera_shift, detect
+from core.image.targets import Target, TargetNotFound, camera_shift, detect, picture_shift
 from core.model import Camera
 from core.model.arrays import Array
 
@@ -85,7 +85,7 @@ def measure_plane_pose(
         view = detect(target, plate, name, camera)
     except TargetNotFound as error:
         return PoseFeatures(name, None, (), error.what)
-    moved = None if off is None else _movement(on, view, target, camera)
+    moved = None if off is None else _movement(on, off, view, target, camera)
     if moved is not None and moved >= options.moved_px:
         reason = f"the target moved by {moved:.2f} px between the pictures with the fan off and on"
         return PoseFeatures(name, view, (), reason)
@@ -118,12 +118,15 @@ def _stripes(
     return () if chosen is None else extract_centrelines(picture, chosen, noise=noise, saturated=saturated)
 
 
-def _movement(on: Picture, view: TargetView, target: Target, camera: Camera | None) -> float | None:
-    """How far in pixels the target is from `view` in the picture with the fan on; None if the fan hides it there."""
+def _movement(on: Picture, off: Picture, view: TargetView, target: Target, camera: Camera | None) -> float | None:
+    """How far in pixels the target is from `view` in the picture with the fan on; None if that cannot be told.
+
+    Where a line of the fan lies along an edge, the target is not found, but its other edges tell.
+    """
     try:
         return camera_shift(view, detect(target, on, view.name, camera))
     except TargetNotFound:
-        return None
+        return picture_shift(view, off, on)
 
 
 def _window(view: TargetView, shape: tuple[int, ...], margin: float) -> tuple[slice, slice]:

@@ -1,3 +1,4 @@
+import re
 from dataclasses import dataclass
 
 import numpy as np
@@ -6,7 +7,7 @@ from scipy.special import expit
 
 from core.calibrate.fan import FanOptions, fit_fan
 from core.calibrate.plane_pose import PoseFeatures, measure_plane_pose
-from core.image.targets import BlackSquare
+from core.image.targets import BlackSquare, TargetNotFound, detect
 from core.model import Pose
 from tests.calibrate import fan_scenes
 from tests.calibrate.fan_scenes import ALPHA, PAPER
@@ -115,6 +116,28 @@ def test_a_target_that_moved_between_the_pictures_is_left_out():
     spoilt = render(POSE, seed=2, moved=moved)
     features = measure_plane_pose("p", spoilt.on, spoilt.off, TARGET, CAMERA)
     assert "moved by" in features.reason
+
+
+def with_a_line_along_the_upper_edge(picture: np.ndarray, pose: Pose) -> np.ndarray:
+    """`picture` with so bright a stripe along the upper edge of the square at `pose` that the square is not found."""
+    uv = CAMERA.project_pose(pose, TARGET.points)
+    start, end = uv[np.argsort(uv[:, 1])[:2]]
+    along = (end - start) / np.linalg.norm(end - start)
+    across = (np.stack([U, V], axis=-1) - start) @ [-along[1], along[0]]
+    return np.clip(picture + 160 * np.exp(-0.5 * (across / 2.0) ** 2), 0, 255).astype(np.uint8)
+
+
+@pytest.mark.parametrize(
+    ("moved_mm", "told"), [(0.0, "$"), (0.6, "the target moved by 1.6"), (20.0, "p: .* not checked whether it moved")]
+)
+def test_a_line_of_the_fan_along_an_edge_does_not_hide_a_movement(moved_mm, told):
+    there = Pose(POSE.rotation, POSE.translation + [moved_mm, moved_mm / 2, 0.0])
+    pair = render(POSE, seed=4, moved=there)
+    on = with_a_line_along_the_upper_edge(pair.on, there)
+    with pytest.raises(TargetNotFound, match="edge cannot be followed"):
+        detect(TARGET, on, camera=CAMERA)
+    features = measure_plane_pose("p", on, pair.off, TARGET, CAMERA)
+    assert re.match(told, features.reason or "".join(features.notes))
 
 
 def test_no_target_and_no_stripe_are_reasons_not_errors(pair):

@@ -4,7 +4,7 @@ from core.image.targets.detect import detect
 from core.image.targets.kinds import BlackSquare, Charuco, Checkerboard, CircleGrid, Target
 from core.image.targets.not_found import TargetNotFound
 from core.image.targets.pose import PoseEstimate, estimate_pose
-from core.image.targets.shift import camera_shift
+from core.image.targets.shift import camera_shift, picture_shift
 
 __all__ = [
     "BlackSquare",
@@ -17,4 +17,5 @@ __all__ = [
     "camera_shift",
     "detect",
     "estimate_pose",
+    "picture_shift",
 ]

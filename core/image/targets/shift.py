@@ -2,10 +2,32 @@
 
 from __future__ import annotations
 
+import cv2
 import numpy as np
+from scipy.ndimage import map_coordinates
 from scipy.spatial import cKDTree
 
 from core.image.target_view import TargetView
+from core.image.targets.picture import Picture
+from core.model.arrays import Array
+
+BLUR = 1.5
+"""σ in pixels of the smoothing before pictures are compared: a movement of a few pixels is then nearly linear."""
+
+ROUNDS = 10
+"""Of least squares: the shift has settled long before."""
+
+SLACK = 0.1
+"""Share of the edges' contrast by which pixels that look alike may differ."""
+
+EDGE = 0.3
+"""Share of the steepest slope from which a pixel counts as an edge."""
+
+FARTHEST_PX = 8.0
+"""Movement up to which pictures are compared: beyond it the slopes of one say nothing of the other."""
+
+ALIKE = 0.5
+"""Least share of the edges' pixels that must agree, and least contrast left; with less, something else is seen."""
 
 
 def camera_shift(view_a: TargetView, view_b: TargetView) -> float:
@@ -29,3 +51,48 @@ def camera_shift(view_a: TargetView, view_b: TargetView) -> float:
     by_place = float(np.median(cKDTree(view_a.uv).query(view_b.uv)[0]))
     renumbered = len(view_a.uv) == len(view_b.uv) and by_place < 0.5 * by_number
     return by_place if renumbered else by_number
+
+
+def picture_shift(view: TargetView, before: Picture, after: Picture) -> float | None:
+    """How far, in pixels, the target of `view` moved from picture `before` to `after`, without finding it in `after`.
+
+    The shift under which most pixels at the target's edges look alike in both pictures, refined by robust least
+    squares on the slopes (B. D. Lucas, T. Kanade, An iterative image registration technique, IJCAI 1981) together with
+    a change of brightness. An edge under a laser line looks different and loses its weight; the others tell. None
+    where too little looks alike, as after a movement much farther than FARTHEST_PX.
+    """
+    low = np.floor(view.uv.min(axis=0) - 4 * BLUR).astype(int).clip(0)
+    high = np.ceil(view.uv.max(axis=0) + 4 * BLUR).astype(int) + 1
+    window = slice(low[1], high[1]), slice(low[0], high[0])
+    first, second = (_smooth(picture[window]) for picture in (before, after))
+    slope_v, slope_u = (np.asarray(np.gradient(first, axis=axis)) for axis in (0, 1))
+    steepness = np.hypot(slope_u, slope_v)
+    vu = np.argwhere(steepness > EDGE * np.quantile(steepness, 0.999))
+    level = first[tuple(vu.T)]
+    terms = np.column_stack([slope_v[tuple(vu.T)], slope_u[tuple(vu.T)], level, np.ones(len(vu))])
+    slack = SLACK * float(np.ptp(level))
+
+    def after_at(shift: Array) -> Array:
+        return np.asarray(map_coordinates(second, (vu + shift).T, order=1, mode="nearest"), dtype=np.float64)
+
+    def left_at(shift: Array) -> Array:
+        brighter = after_at(shift) - level
+        return np.asarray(brighter - np.median(brighter))
+
+    gain, steps = 1.0, np.arange(-FARTHEST_PX, FARTHEST_PX + 1)
+    tried = np.stack(np.meshgrid(steps, steps), axis=-1).reshape(-1, 2)
+    best = int(np.argmax([np.mean(np.abs(left_at(each)) < slack) for each in tried]))
+    shift: Array = tried[best]
+    left = left_at(shift)
+    for _ in range(ROUNDS):
+        seen, weight = after_at(shift), np.clip(1 - (left / (2 * slack)) ** 2, 0, None)
+        solved: Array = np.linalg.lstsq(terms * weight[:, None], seen * weight, rcond=None)[0]
+        left, gain = np.asarray(seen - terms @ solved, dtype=np.float64), float(solved[2])
+        shift = np.asarray(shift - solved[:2] / max(gain, ALIKE), dtype=np.float64)
+    distance = float(np.linalg.norm(shift))
+    alike = float(np.mean(np.abs(left) < slack)) > ALIKE and gain > ALIKE
+    return distance if alike and distance < 1.5 * FARTHEST_PX else None
+
+
+def _smooth(picture: Picture) -> Array:
+    return np.asarray(cv2.GaussianBlur(picture.astype(np.float32), (0, 0), BLUR), dtype=np.float64)
