@@ -86,9 +86,10 @@ def picture_shift(view: TargetView, before: Picture, after: Picture) -> float | 
     left = left_at(shift)
     for _ in range(ROUNDS):
         seen, weight = after_at(shift), np.clip(1 - (left / (2 * slack)) ** 2, 0, None)
-        solved: Array = np.linalg.lstsq(terms * weight[:, None], seen * weight, rcond=None)[0]
-        left, gain = np.asarray(seen - terms @ solved, dtype=np.float64), float(solved[2])
-        shift = np.asarray(shift - solved[:2] / max(gain, ALIKE), dtype=np.float64)
+        fitted = np.linalg.lstsq(terms * weight[:, None], seen * weight, rcond=None)[0]
+        solved = np.asarray(fitted, dtype=np.float64)
+        left, gain = seen - terms @ solved, float(solved[2])
+        shift = shift - solved[:2] / max(gain, ALIKE)
     distance = float(np.linalg.norm(shift))
     alike = float(np.mean(np.abs(left) < slack)) > ALIKE and gain > ALIKE
     return distance if alike and distance < 1.5 * FARTHEST_PX else None
