@@ -7,7 +7,7 @@ OUT    ?= out
 
 # Two tests at a time, each on one core: linear algebra on more threads than cores is many times slower.
 # A test process that crashes ends the run at once: with these scopes a new one would wait for work for ever.
-SIDE_BY_SIDE := -n 2 --dist loadscope --max-worker-restart=0
+SIDE_BY_SIDE := -n 2 --dist loadscope --no-loadscope-reorder --max-worker-restart=0
 test quick: export OPENBLAS_NUM_THREADS = 1
 test quick: export OMP_NUM_THREADS = 1
 

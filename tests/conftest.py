@@ -4,6 +4,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.shared import made_once
+
 
 @pytest.hookimpl(trylast=True)
 def pytest_configure(config: pytest.Config) -> None:
@@ -12,20 +14,28 @@ def pytest_configure(config: pytest.Config) -> None:
         faulthandler.enable(os.dup(2), all_threads=False)
 
 
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Modules with long proofs first, then windows: a long module handed out last would keep one process busy alone."""
+    long = {item.path for item in items if item.get_closest_marker("slow")}
+    items.sort(key=lambda item: (item.path not in long, "workbench" not in item.path.parts))
+
+
 @pytest.fixture(scope="session")
-def simulated(tmp_path_factory) -> Path:
-    """A small simulated recording set; copy it before changing it."""
+def simulated(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A small simulated recording set, made once for all test processes; copy it before changing it."""
     from tests.simulated import small_set
 
-    return small_set(tmp_path_factory.mktemp("simulated") / "block")
+    return made_once(tmp_path_factory, "simulated", lambda folder: small_set(folder / "block")) / "block"
 
 
 @pytest.fixture(scope="session")
-def measured(simulated, tmp_path_factory) -> Path:
-    """All results of the small set; copy them before changing them."""
+def measured(simulated: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """All results of the small set, made once for all test processes; copy them before changing them."""
+    return made_once(tmp_path_factory, "measured", lambda folder: _measure(simulated, folder / "out")) / "out"
+
+
+def _measure(simulated: Path, out: Path) -> None:
     from tests.simulated import CUT, trisect
 
-    out = tmp_path_factory.mktemp("measured") / "out"
     said = trisect("run", simulated, "--out", out, *CUT)
     assert said.code in (0, 1), said.err
-    return out

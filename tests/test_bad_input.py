@@ -15,8 +15,6 @@ import pytest
 from core.files.pictures import read_picture, write_picture
 from tests.simulated import CUT, SMALL, copy_of, trisect
 
-pytestmark = pytest.mark.xdist_group("small simulated set")
-
 
 @pytest.fixture
 def folder(simulated, tmp_path):

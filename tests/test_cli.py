@@ -16,8 +16,6 @@ from core import __version__
 from core.report.wording import with_uncertainty
 from tests.simulated import CUT, SMALL, copy_of, trisect
 
-pytestmark = pytest.mark.xdist_group("small simulated set")
-
 RESULTS = {"camera.json", "planes.json", "cloud.ply", "mesh.ply", "gauge.json", "report.pdf", "run.json"}
 COMPANIONS = {"planes.npz", "scan.npz", "gauge.npz"}
 

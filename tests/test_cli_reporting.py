@@ -9,8 +9,6 @@ from pypdf import PdfReader
 
 from tests.simulated import trisect
 
-pytestmark = pytest.mark.xdist_group("small simulated set")
-
 TEMPLATE = 'name = "House of Gauges"\nlanguage = "de"\nwithout = ["frame"]\nsignatures = ["A. Brandt"]\n'
 
 

@@ -1,5 +1,6 @@
 """One small project, done from the first step to the last; copy it before changing it."""
 
+import pickle
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -21,6 +22,9 @@ from core.pipeline.project_steps import (
     solve_views,
 )
 from core.scan.frame_preview import FramePreview
+from tests.shared import made_once
+
+GIVEN = "given.pickle"
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,9 +46,16 @@ class DoneProject:
 
 
 @pytest.fixture(scope="session")
-def done(simulated, tmp_path_factory) -> DoneProject:
-    folder = tmp_path_factory.mktemp("project") / "block"
-    folder.mkdir()
+def done(simulated: Path, tmp_path_factory: pytest.TempPathFactory) -> DoneProject:
+    common = made_once(tmp_path_factory, "done-project", lambda folder: _do(simulated, folder))
+    done: DoneProject = pickle.loads((common / GIVEN).read_bytes())
+    return replace(done, folder=common / "block")
+
+
+def _do(simulated: Path, made: Path) -> None:
+    """Do every step of a project in `made`/block and keep beside it what the steps gave."""
+    folder = made / "block"
+    folder.mkdir(parents=True)
     project = project_from_set(simulated, "block")
     project = replace(project, options=replace(project.options, sigma_cut_mm=0.3))
     told, watched = [], []
@@ -60,4 +71,5 @@ def done(simulated, tmp_path_factory) -> DoneProject:
     project = replace(project, accepted=replace(project.accepted, fan=accept_fan(folder, project, fan, poses)))
     summary = measure_scan(folder, project, progress, watched.append)
     make_report(folder, project, progress)
-    return DoneProject(folder, project, seen, camera, poses, fan, summary, tuple(watched), tuple(told))
+    done = DoneProject(folder, project, seen, camera, poses, fan, summary, tuple(watched), tuple(told))
+    (made / GIVEN).write_bytes(pickle.dumps(done))

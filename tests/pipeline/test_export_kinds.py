@@ -25,8 +25,6 @@ from core.pipeline.handing_over import choose_template, export, export_results, 
 from core.pipeline.project_steps import make_report, project_content, results_folder
 from tests.simulated import copy_of
 
-pytestmark = pytest.mark.xdist_group("small simulated set")
-
 
 @pytest.fixture
 def folder(done, tmp_path):

@@ -16,8 +16,6 @@ from core.image.targets import Checkerboard
 from core.pipeline.project_steps import find_views, found_poses, found_views, solve_poses, solve_views
 from tests.simulated import copy_of
 
-pytestmark = pytest.mark.xdist_group("small simulated set")
-
 
 def test_a_camera_nobody_accepted_is_solved_again_from_what_was_found_to_the_last_digit(done):
     project = replace(done.project, accepted=Accepted())

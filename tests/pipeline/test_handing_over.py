@@ -17,8 +17,6 @@ from core.pipeline.project_steps import make_report, report_bytes, results_folde
 from core.report.content import SECTIONS
 from tests.simulated import copy_of
 
-pytestmark = pytest.mark.xdist_group("small simulated set")
-
 
 @pytest.fixture
 def folder(done, tmp_path):

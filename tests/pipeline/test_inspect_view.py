@@ -15,8 +15,6 @@ from core.pipeline.inspect_view import inspection_view, outline_selected
 from core.pipeline.project_steps import measure_gauge, results_folder
 from tests.simulated import copy_of
 
-pytestmark = pytest.mark.xdist_group("small simulated set")
-
 
 @pytest.fixture(scope="module")
 def view(done):

@@ -11,8 +11,6 @@ from core.files.scan_file import read_scan
 from core.pipeline.project_steps import measure_scan, results_folder
 from tests.simulated import copy_of
 
-pytestmark = pytest.mark.xdist_group("small simulated set")
-
 RESULTS = ("cloud.ply", "mesh.ply", "scan.npz", "gauge.json", "gauge.npz")
 
 

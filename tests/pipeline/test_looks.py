@@ -17,8 +17,6 @@ from core.pipeline.project_looks import recall_poses, show_frame, show_pose
 from core.pipeline.project_steps import results_folder
 from tests.simulated import copy_of
 
-pytestmark = pytest.mark.xdist_group("small simulated set")
-
 
 def frame(number):
     return f"scan/frame{number:04d}.png"

@@ -19,8 +19,6 @@ from core.pipeline.master_step import measured_master
 from core.pipeline.project_inspection import look_at_features, measure_features
 from core.pipeline.project_steps import project_content, results_folder
 
-pytestmark = pytest.mark.xdist_group("small simulated set")
-
 PLAN = InspectionPlan(
     (
         FeatureSpec("table", "plane", (Auto(1),)),

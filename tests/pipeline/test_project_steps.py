@@ -28,8 +28,6 @@ from core.pipeline.project_steps import (
 )
 from tests.simulated import SMALL, copy_of
 
-pytestmark = pytest.mark.xdist_group("small simulated set")
-
 MEASURED = ("camera.json", "planes.json", "planes.npz", "cloud.ply", "mesh.ply", "scan.npz", "gauge.json", "gauge.npz")
 
 

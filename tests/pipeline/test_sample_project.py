@@ -10,8 +10,6 @@ from core.files.project_keys import STEPS, changed, rests_on
 from core.pipeline import sample_project as module
 from core.pipeline.sample_project import clear_unfinished, sample_project
 
-pytestmark = pytest.mark.xdist_group("small simulated set")
-
 
 @pytest.fixture
 def small(simulated, tmp_path, monkeypatch) -> Path:

@@ -24,8 +24,6 @@ from core.pipeline.study_step import (
 )
 from tests.study.grr_tables import AIAG
 
-pytestmark = pytest.mark.xdist_group("small simulated set")
-
 
 def crossed(values):
     """Rows of part, operator, value."""

@@ -3,11 +3,7 @@
 import subprocess
 import sys
 
-import pytest
-
 from tests.simulated import copy_of
-
-pytestmark = pytest.mark.xdist_group("small simulated set")
 
 PROGRAM = """
 import gc, sys

@@ -15,8 +15,6 @@ from core.pipeline.thumbnails import display_picture
 from core.pipeline.watched_scan import Watched, measure_watched
 from tests.simulated import copy_of
 
-pytestmark = pytest.mark.xdist_group("small simulated set")
-
 
 @pytest.fixture(scope="module")
 def details(done) -> list[ScanDetail]:

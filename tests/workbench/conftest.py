@@ -22,9 +22,8 @@ import shiboken6
 from PySide6.QtCore import QCoreApplication, QEvent, QTimer
 from PySide6.QtWidgets import QApplication, QWidget
 
-from tests.simulated import SMALL
+from tests.shared import made_once
 from tests.workbench import screen
-from tests.workbench.shared import made_once
 from tests.workbench.technician import Technician
 from workbench import jobs
 from workbench.app import build_window
@@ -136,17 +135,9 @@ def technician(window: MainWindow, qtbot: Any, monkeypatch: pytest.MonkeyPatch) 
 
 
 @pytest.fixture(scope="session")
-def small_recordings(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A small simulated recording set, made once for all test processes; do not change it."""
-    from core.simulate.recording import simulate_set
-
-    return made_once(tmp_path_factory, "small-recordings", lambda folder: simulate_set(SMALL, folder))
-
-
-@pytest.fixture(scope="session")
-def finished_project_folder(small_recordings: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def finished_project_folder(simulated: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A project with every step done, its pictures within, made once for all test processes; do not change it."""
-    return made_once(tmp_path_factory, "finished-project", lambda folder: _finish_project(folder, small_recordings))
+    return made_once(tmp_path_factory, "finished-project", lambda folder: _finish_project(folder, simulated))
 
 
 @pytest.fixture

@@ -48,9 +48,7 @@ def tab_to(t: Technician, name: str) -> None:
 
 
 @pytest.mark.slow
-def test_from_new_project_to_report_without_the_mouse(
-    technician: Technician, small_recordings: Path, tmp_path: Path
-) -> None:
+def test_from_new_project_to_report_without_the_mouse(technician: Technician, simulated: Path, tmp_path: Path) -> None:
     t = technician
     t.activate()
     with t.names_project("By keys"):
@@ -64,7 +62,7 @@ def test_from_new_project_to_report_without_the_mouse(
 
     for page in ("camera", "planes"):
         assert t.window.current == page
-        t.will_choose(small_recordings / page)
+        t.will_choose(simulated / page)
         tab_to(t, "Recorded folder")
         press(t, Qt.Key.Key_Space)
         tab_to(t, "Choose folder …")
@@ -75,7 +73,7 @@ def test_from_new_project_to_report_without_the_mouse(
         press(t, Qt.Key.Key_Right, ALT)
 
     assert t.window.current == "scan"
-    t.will_choose(small_recordings / "scan")
+    t.will_choose(simulated / "scan")
     tab_to(t, "Recorded folder")
     press(t, Qt.Key.Key_Space)
     tab_to(t, "Choose folder …")

@@ -20,9 +20,9 @@ TIMES = 8
 
 
 @pytest.fixture
-def camera_folder(small_recordings: Path, tmp_path: Path) -> Path:
+def camera_folder(simulated: Path, tmp_path: Path) -> Path:
     """A set that stands for a camera: it can be unplugged by moving it away."""
-    folder = Path(shutil.copytree(small_recordings, tmp_path / "unpluggable"))
+    folder = Path(shutil.copytree(simulated, tmp_path / "unpluggable"))
     frames = sorted((folder / "scan").glob("frame*.png"))
     for time in range(1, TIMES):
         for number, frame in enumerate(frames):

@@ -60,16 +60,16 @@ def do_the_whole_job(t: Technician, recordings: Path, exports: Path) -> Path:
 
 @pytest.mark.slow
 def test_from_new_project_to_report_and_cloud_with_the_numbers_of_the_pipeline(
-    technician: Technician, small_recordings: Path, tmp_path: Path
+    technician: Technician, simulated: Path, tmp_path: Path
 ) -> None:
     t = technician
     with Watchdog(t.doing) as dog:
-        folder = do_the_whole_job(t, small_recordings, tmp_path)
+        folder = do_the_whole_job(t, simulated, tmp_path)
     watched.append(dog)
     assert t.errors() == []
     assert [t.window.rail.state_of(step) for step in t.window.pages] == ["done"] * 6
 
-    expected = run(small_recordings, tmp_path / "out", Options(sigma_cut_mm=0.3))
+    expected = run(simulated, tmp_path / "out", Options(sigma_cut_mm=0.3))
     gauge = json.loads((folder / "results" / FILES["gauge"]).read_text())
     assert expected.gauge is not None
     assert gauge["thickness_mm"] == expected.gauge.thickness_mm
