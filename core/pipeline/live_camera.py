@@ -92,6 +92,9 @@ class LiveCamera:
             auto=self._auto,
         )
 
+    def rest(self) -> None:
+        """Nothing waits."""
+
     def tell(self, command: Command) -> None:
         """Capture, Auto and Discard."""
         match command:

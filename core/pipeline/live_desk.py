@@ -44,6 +44,9 @@ class LiveStep(Protocol):
     def detail(self) -> Detail | None:
         """What is known now; asked for when it is really shown."""
 
+    def rest(self) -> None:
+        """What is known has been shown: have some of what could wait done, if there is time."""
+
     def tell(self, command: Command) -> None:
         """A command that is not for the loop itself."""
 

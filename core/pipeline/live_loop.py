@@ -93,6 +93,7 @@ class LiveLoop:
                 self._take_in(frame)
             self._fresh = self._step.poll() or self._fresh
             self._show()
+            self._step.rest()
         except Unplugged as gone:
             self._wait_for_source(str(gone))
 

@@ -108,6 +108,9 @@ class LivePlanes:
             auto=self._auto,
         )
 
+    def rest(self) -> None:
+        """Nothing waits."""
+
     def tell(self, command: Command) -> None:
         """Capture, Auto and Discard; and that the source has been told other settings."""
         match command:

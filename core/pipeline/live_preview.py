@@ -106,11 +106,28 @@ class ScanPreviewer:
         try:
             return PreviewedFrame(frame, self._shown(self._reference, index, name, frame.picture))
         except Exception as error:  # noqa: BLE001  a preview is never worth a recording
-            self._failed = True
-            return PreviewFailed(
-                f"The preview has stopped because of an error in it ({type(error).__name__}: {error}). "
-                "The frames are recorded all the same."
-            )
+            return self._fail(error)
+
+    @property
+    def has_more(self) -> bool:
+        """Whether there is something that could wait until a frame was shown."""
+        return self._preview is not None and not self._failed and self._preview.has_more
+
+    def go_on(self) -> PreviewFailed | None:
+        """Do some of it."""
+        try:
+            if self._preview is not None:
+                self._preview.go_on()
+            return None
+        except Exception as error:  # noqa: BLE001  as above
+            return self._fail(error)
+
+    def _fail(self, error: Exception) -> PreviewFailed:
+        self._failed = True
+        return PreviewFailed(
+            f"The preview has stopped because of an error in it ({type(error).__name__}: {error}). "
+            "The frames are recorded all the same."
+        )
 
     def _shown(self, reference: ReferenceFeatures, index: int, name: str, picture: Picture) -> FramePreview:
         features = self._features(reference, index, name, picture)

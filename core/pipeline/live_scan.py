@@ -86,6 +86,7 @@ class LiveScan:
         self._preview: FramePreview | None = None
         self._coverage: CoverageMap | None = None
         self._moved = 0
+        self._looked = False
         self._new: list[PreviewCloud] = []
         self._renewed = False
         self._checks = ScanChecks(desk, self._previewer)
@@ -131,6 +132,7 @@ class LiveScan:
                 self._desk.notice(sentence)
             case PreviewedFrame(frame, preview):
                 self._add(preview)
+                self._looked = True
                 self._checks.stripes(preview.centrelines)
                 return frame
             case Departed(reason):
@@ -138,6 +140,11 @@ class LiveScan:
             case np.ndarray() if self._stage == "reference":
                 self._accept(result)
         return None
+
+    def rest(self) -> None:
+        """After each look a little of what waits is done: not more, so that the next frame finds the worker free."""
+        if self._looked and self._previewer.has_more and self._desk.worker.start(self._previewer.go_on):
+            self._looked = False
 
     def detail(self) -> ScanDetail | None:
         """The last preview, and all points since the last time this was asked for."""

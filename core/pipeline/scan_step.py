@@ -145,7 +145,12 @@ def _look(
 
 
 def _shown_to(watch: Callable[[FramePreview], None], preview: Preview) -> Callable[[FrameFeatures], None]:
-    return lambda features: watch(preview(features))
+    def show(features: FrameFeatures) -> None:
+        watch(preview(features))
+        while preview.has_more:
+            preview.go_on()
+
+    return show
 
 
 def _write(work: Workspace, scan: ScanResult, mesh: Mesh, file: ScanFile) -> None:

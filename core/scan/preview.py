@@ -2,11 +2,12 @@
 
 The network over all frames is the result; this is only the preview. Each sweep is located as it comes
 (`core.scan.tracking`), the numbers of the fan's lines are settled on the way, and the cloud shown so far is renewed
-when more is known.
+when more is known, a little after each frame: no frame waits for it.
 """
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
@@ -20,25 +21,30 @@ from core.scan.crossing_marks import CrossingMarks, mark_crossings
 from core.scan.crossings import CrossingWindow
 from core.scan.fan_lines import UNASSIGNED, FanLines
 from core.scan.features import FrameFeatures, ReferenceFeatures
-from core.scan.frame_preview import FramePreview, empty_preview
+from core.scan.frame_preview import FramePreview, cloud_of, empty_preview
 from core.scan.hints import HandState, HintLimits, hints_for
 from core.scan.movement import movement_px
 from core.scan.preview_cloud import PreviewCloud, StripeRays
 from core.scan.sweep_plane import plane_condition
 from core.scan.tracking import SweepTracker, TrackedSweep
 
+RENEWED_AT_ONCE = 128
+"""So many sweeps are renewed in one go, if they lie where they lay before,"""
+RELOCATION = 8
+"""but so many times fewer if they must be located anew."""
+
 
 @dataclass(frozen=True, slots=True)
 class PreviewOptions:
     """How a preview is made.
 
-    Points up to `sigma_cut_mm` are shown, every `thin`-th of a stripe; of a long scan fewer, so that the whole cloud
-    has not many more than `most_points`.
+    Points up to `sigma_cut_mm` are shown, every `thin`-th of a stripe; of a long scan fewer, of all its frames alike,
+    so that the sweeps' stripes have no more than `most_points`.
     """
 
     sigma_cut_mm: float = 1.0
     thin: int = 3
-    most_points: int = 600_000
+    most_points: int = 200_000
     window: CrossingWindow = field(default_factory=CrossingWindow)
     hints: HintLimits = field(default_factory=HintLimits)
 
@@ -64,7 +70,11 @@ class Preview:
         self._thin_fan = [piece.select(slice(None, None, options.thin)) for piece in reference.fan]
         self._fan_rays = [StripeRays.of(-1, [piece], camera) for piece in self._thin_fan]
         self._stripes: dict[int, StripeRays] = {}
-        self._kept = 0
+        self._kept, self._step = 0, 1
+        self._waiting: deque[int] = deque()
+        self._coming: list[PreviewCloud] | None = None
+        self._whole: PreviewCloud | None = None
+        self._thinned = False
         self._before: Sequence[Centreline] = ()
         self._before_index = -1
         self._speed_before = float("nan")
@@ -79,29 +89,42 @@ class Preview:
 
     def cloud(self) -> PreviewCloud:
         """All points so far, the fan's own first."""
-        clouds = self._fan_clouds()
-        self._limits = _depth_limits(clouds)
-        for sweep in self._tracker.sweeps():
-            if sweep.plane is not None:
-                stripe = self._stripes[sweep.frame]
-                depth, sigma = stripe.depth(sweep.plane.pi, sweep.plane.covariance)
-                clouds.append(stripe.cloud(depth, sigma, self._worth_showing(depth, sigma)))
-        return PreviewCloud.joined(clouds)
+        return PreviewCloud.joined([*self._fan_clouds(), *map(self._points_of, self._stripes)])
+
+    @property
+    def has_more(self) -> bool:
+        """Whether there is something to do that can wait until a frame is shown."""
+        return self._coming is not None or self._thinned or self._tracker.is_due
+
+    def go_on(self) -> None:
+        """Do some of what can wait.
+
+        Called again and again it adjusts the anchors when that is due, and then makes the cloud anew by them,
+        RENEWED_AT_ONCE sweeps at a time. The next frame brings the cloud once it is complete.
+        """
+        if self._coming is None:
+            self._begin()
+            return
+        work = 0
+        while self._waiting and work < RENEWED_AT_ONCE:
+            frame = self._waiting.popleft()
+            work += RELOCATION if self._tracker.is_outdated(frame) else 1
+            self._coming.append(self._points_of(frame))
+        if not self._waiting:
+            self._whole, self._coming = PreviewCloud.joined(self._coming), None
 
     def __call__(self, features: FrameFeatures) -> FramePreview:
         """What `features` show; frames in the order of time."""
         if not features.centrelines:
             self._before, self._speed_before = (), float("nan")
-            return self._with_news(empty_preview(features.index, features.name, features.reason), renewed=False)
-        sweep, renewed = self._tracker.add(features.index, features.centrelines)
+            return self._with_news(empty_preview(features.index, features.name, features.reason))
+        sweep = self._tracker.add(features.index, features.centrelines)
         thin = tuple(piece.select(slice(None, None, self._options.thin)) for piece in features.centrelines)
         stripe = StripeRays.of(features.index, thin, self._camera)
-        self._keep(stripe)
-        nowhere = np.full(len(stripe.rays), np.nan)
         plane = sweep.plane
-        depth, sigma = (nowhere, nowhere) if plane is None else stripe.depth(plane.pi, plane.covariance)
-        shown = self._worth_showing(depth, sigma)
-        points = stripe.cloud(depth, sigma, shown)
+        sigma = np.full(len(stripe), np.nan) if plane is None else stripe.depth(plane.pi, plane.covariance)[1]
+        self._keep(stripe)
+        points = self._points_of(features.index)
         marks = mark_crossings(sweep, self._tracker.lines)
         lines_met, condition = self._met(sweep)
         speed = movement_px(features.centrelines, self._before) / max(1, features.index - self._before_index)
@@ -125,23 +148,49 @@ class Preview:
             self._hints(stripe, lines_met, sigma, lasting),
             "" if len(points) else _why_no_points(marks, located=plane is not None),
         )
-        return self._with_news(preview, renewed=renewed)
+        return self._with_news(preview)
 
     def _keep(self, stripe: StripeRays) -> None:
-        """Keep the points of a frame, and every second of all when they become too many."""
-        self._stripes[stripe.frame] = stripe
-        self._kept += len(stripe)
+        """Keep the points of a frame as dense as those before, and every second of all when they become too many."""
+        self._stripes[stripe.frame] = kept = stripe.thinned(self._step)
+        self._kept += len(kept)
         if self._kept > self._options.most_points:
+            self._step *= 2
             self._stripes = {frame: stripe.thinned() for frame, stripe in self._stripes.items()}
             self._kept = sum(map(len, self._stripes.values()))
+            self._thinned, self._coming = True, None
+        elif self._coming is not None:
+            self._waiting.append(stripe.frame)
 
-    def _with_news(self, preview: FramePreview, *, renewed: bool) -> FramePreview:
+    def _begin(self) -> None:
+        """Adjust the anchors if that is due, and begin to make the cloud anew if there is a reason."""
+        before, anew = self._tracker.lines.line, self._thinned
+        if self._tracker.is_due:
+            anew |= self._tracker.adjust() or self._tracker.lines.line != before
+        if anew:
+            self._thinned, self._waiting = False, deque(self._stripes)
+            self._coming = self._fan_clouds()
+            self._limits = _depth_limits(self._coming)
+
+    def _points_of(self, frame: int) -> PreviewCloud:
+        """The points of one sweep that are worth showing, by what is known now."""
+        plane = self._tracker.located_anew(frame).plane
+        if plane is None:
+            return PreviewCloud.joined([])
+        stripe = self._stripes[frame]
+        depth, sigma = stripe.depth(plane.pi, plane.covariance)
+        return stripe.cloud(depth, sigma, self._worth_showing(depth, sigma))
+
+    def _with_news(self, preview: FramePreview) -> FramePreview:
         """The preview with the whole cloud and the fan's lines, if they are new."""
         line = self._tracker.lines.line
+        whole, self._whole = self._whole, None
+        if self._told is None:
+            whole = self.cloud()
+        elif whole is not None:
+            whole = PreviewCloud.joined([whole, cloud_of(preview)])
         changed, self._told = line != self._told, line
-        if not (renewed or changed):
-            return preview
-        return replace(preview, renewed=self.cloud(), fan_lines=self.fan_lines if changed else None)
+        return replace(preview, renewed=whole, fan_lines=self.fan_lines if changed else None)
 
     def _met(self, sweep: TrackedSweep) -> tuple[int, float]:
         """How many lines of the fan the sweep crosses, and the condition of those crossings."""

@@ -64,15 +64,15 @@ class StripeRays:
         across = np.einsum("nij,nj->ni", camera.ray_jacobian(rays), normal) * sigma[:, None]
         return cls(frame, uv, rays, across, strength, ~saturated & np.isfinite(rays).all(axis=1))
 
-    def thinned(self) -> StripeRays:
-        """Every second point; copied, so that the others' memory is free."""
+    def thinned(self, step: int = 2) -> StripeRays:
+        """Every `step`-th point; copied, so that the others' memory is free."""
         return StripeRays(
             self.frame,
-            self.uv[::2].copy(),
-            self.rays[::2].copy(),
-            self.across[::2].copy(),
-            self.intensity[::2].copy(),
-            self.usable[::2].copy(),
+            self.uv[::step].copy(),
+            self.rays[::step].copy(),
+            self.across[::step].copy(),
+            self.intensity[::step].copy(),
+            self.usable[::step].copy(),
         )
 
     def __len__(self) -> int:

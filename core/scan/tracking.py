@@ -3,7 +3,7 @@
 The anchors are spread over the sweeps so far and adjusted together as a small network, anew each time there are a
 third more sweeps. Every other sweep is located by its crossings with the fan and with them (`core.scan.one_sweep`). So
 the work for a frame does not grow with the length of the scan. When the anchors have been adjusted, all sweeps before
-are located anew, also by the anchors that came after them.
+can be located anew, also by the anchors that came after them: one at a time, by whoever has the time for it.
 """
 
 from __future__ import annotations
@@ -39,7 +39,8 @@ GROWTH = 4 / 3
 """The anchors are adjusted again when there are so many times as many sweeps as the last time."""
 
 MOST_RENEWED = 1500
-"""With more sweeps than this those before are not located anew: by then they are known well, and it takes long."""
+"""With more sweeps than this those before are not located anew: by then they are known well, and crossings fill the
+memory."""
 
 SURE_AFTER = 3
 """A numbering of the fan's lines that has been chosen so often in a row is kept."""
@@ -94,9 +95,15 @@ class SweepTracker:
         self._most_anchors, self._stride_px = most_anchors, stride_px
         self._adjusted: LocatedSweeps | None = None
         self._due = FIRST_ADJUSTMENT
+        self._outdated: set[int] = set()
 
-    def add(self, frame: int, pieces: Sequence[Centreline]) -> tuple[TrackedSweep, bool]:
-        """Locate the sweep of `frame`; True if all sweeps before it were located anew as well."""
+    @property
+    def is_due(self) -> bool:
+        """Whether it is time to adjust the anchors again."""
+        return len(self._sweeps) >= self._due and len(self._anchors) >= FIRST_ADJUSTMENT
+
+    def add(self, frame: int, pieces: Sequence[Centreline]) -> TrackedSweep:
+        """Locate the sweep of `frame`."""
         window = self._window
         lines = shaded(pieces, window)
         search = search_crossings(lines.stack, self._fixed.stack, window.half_length_px, window.min_angle)
@@ -113,14 +120,39 @@ class SweepTracker:
             self._anchors[frame] = lines
             self._last_anchor = pieces
             self._thin_out()
-        renewed = False
-        if len(self._sweeps) >= self._due and len(self._anchors) >= FIRST_ADJUSTMENT:
-            self._due = round(GROWTH * len(self._sweeps))
-            renewed = self._adjust()
-            sweep = self._sweeps[frame]
         if len(self._sweeps) > MOST_RENEWED and frame not in self._anchors:
             self._sweeps[frame] = sweep.without_crossings()
-        return sweep, renewed
+        return sweep
+
+    def adjust(self) -> bool:
+        """Adjust the anchors as a network; True if all sweeps can be located anew by them."""
+        self._due = round(GROWTH * len(self._sweeps))
+        table = self._among_anchors()
+        if table is None or not np.any(table.with_fan):
+            return False
+        if self._chosen_alike < SURE_AFTER:
+            lines = choose_numbering(self._numberings, table, self._camera, self._fan)
+            self._chosen_alike = self._chosen_alike + 1 if lines.line == self.lines.line else 0
+            self.lines = lines
+        table, line = numbered(table, self.lines)
+        if not np.any(table.with_fan):
+            return False
+        self._adjusted = locate_together(table, line, self._camera, self._fan)
+        if len(self._sweeps) > MOST_RENEWED:
+            return False
+        self._outdated = set(self._sweeps)
+        return True
+
+    def is_outdated(self, frame: int) -> bool:
+        """Whether the sweep of `frame` is located by an earlier adjustment."""
+        return frame in self._outdated
+
+    def located_anew(self, frame: int) -> TrackedSweep:
+        """The sweep of `frame` by the latest adjustment."""
+        if frame in self._outdated:
+            self._outdated.discard(frame)
+            self._sweeps[frame] = self._located(self._sweeps[frame])
+        return self._sweeps[frame]
 
     def sweeps(self) -> Iterator[TrackedSweep]:
         """All sweeps so far, in the order they came."""
@@ -147,27 +179,9 @@ class SweepTracker:
             return
         if len(self._sweeps) > MOST_RENEWED:
             for frame in list(self._anchors)[1::2]:
-                self._sweeps[frame] = self._sweeps[frame].without_crossings()
+                self._sweeps[frame] = self.located_anew(frame).without_crossings()
         self._anchors = {frame: self._anchors[frame] for frame in list(self._anchors)[::2]}
         self._stride_px *= 2
-
-    def _adjust(self) -> bool:
-        """Adjust the anchors as a network and locate all sweeps by them; False if they are not tied to the fan."""
-        table = self._among_anchors()
-        if table is None or not np.any(table.with_fan):
-            return False
-        if self._chosen_alike < SURE_AFTER:
-            lines = choose_numbering(self._numberings, table, self._camera, self._fan)
-            self._chosen_alike = self._chosen_alike + 1 if lines.line == self.lines.line else 0
-            self.lines = lines
-        table, line = numbered(table, self.lines)
-        if not np.any(table.with_fan):
-            return False
-        self._adjusted = locate_together(table, line, self._camera, self._fan)
-        if len(self._sweeps) > MOST_RENEWED:
-            return False
-        self._sweeps = {frame: self._located(sweep) for frame, sweep in self._sweeps.items()}
-        return True
 
     def _among_anchors(self) -> CrossingTable | None:
         """The crossings of the anchors with the fan and with each other, each once."""

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from core.model import LightPlane
+from core.scan import preview as preview_module
 from core.scan import tracking
 from core.scan.coverage_map import CoverageMap
 from core.scan.crossing_marks import GOOD, LEFT_OUT, WEAK
@@ -15,6 +16,14 @@ from core.scan.preview import Preview, PreviewOptions
 from core.scan.reconstruct import ReconstructOptions, reconstruct
 from core.simulate.recording import scan_of
 from core.simulate.scenario import Scenario
+
+
+def shown(preview: Preview, features: FrameFeatures, index: int | None = None):
+    """What a frame shows, with all that can wait done after it."""
+    frame = preview(features if index is None else replace(features, index=index))
+    while preview.has_more:
+        preview.go_on()
+    return frame
 
 
 class Scan:
@@ -30,7 +39,7 @@ class Scan:
         reader = FrameReader(self.reference, choose_sweep_stripe(self.pictures[:4], self.reference))
         self.features = [reader((i, frame)) for i, frame in enumerate(self.pictures)]
         self.preview = Preview(self.reference, self.camera, self.fan)
-        self.frames = [self.preview(features) for features in self.features]
+        self.frames = [shown(self.preview, features) for features in self.features]
 
     def depth_errors(self, index: int) -> np.ndarray:
         frame = self.frames[index]
@@ -143,7 +152,7 @@ def test_a_laser_at_rest_does_not_wear_the_preview_out(block):
     preview = Preview(block.reference, block.camera, block.fan)
     still = block.features[3]
     for index in range(60):
-        preview(FrameFeatures(index, still.name, still.centrelines))
+        shown(preview, still, index)
     assert len(preview._tracker._anchors) == 1
 
 
@@ -152,7 +161,7 @@ def test_a_long_scan_keeps_few_anchors(block):
     index = 0
     for _ in range(4):
         for features in block.features:
-            preview(FrameFeatures(index, features.name, features.centrelines, features.reason))
+            shown(preview, features, index)
             index += 1
     assert len(preview._tracker._anchors) <= 40
     assert {0, 1, 2} >= {status for frame in block.frames for status in frame.crossing_status}
@@ -227,9 +236,68 @@ def test_speed_is_per_frame_even_when_frames_were_not_looked_at(block):
 def test_a_cloud_that_grows_too_large_is_thinned(block):
     preview = Preview(block.reference, block.camera, block.fan, PreviewOptions(most_points=1500))
     for features in block.features:
-        preview(features)
+        shown(preview, features)
     assert len(preview.cloud()) < 3500
     assert len(block.preview.cloud()) > 4000
+
+
+def test_a_window_that_adds_and_replaces_as_it_is_told_never_holds_many_more_than_the_most_points(block):
+    preview = Preview(block.reference, block.camera, block.fan, PreviewOptions(most_points=1500))
+    fan = sum(len(piece) for line in block.preview.fan_lines for piece in line)
+    held, counts = [], []
+    for index in range(4 * len(block.features)):
+        features = block.features[index % len(block.features)]
+        frame = shown(preview, features, index)
+        held = [*held, frame.points] if frame.renewed is None else [frame.renewed.points]
+        counts.append(sum(map(len, held)) - fan)
+    per_frame = max(len(frame.points) for frame in block.frames)
+    assert max(counts) <= 1500 + 2 * per_frame
+    assert counts[-1] > 300
+
+
+def test_a_long_scan_is_thinned_alike_from_its_first_frame_to_its_last(block):
+    preview = Preview(block.reference, block.camera, block.fan, PreviewOptions(most_points=1500))
+    count = len(block.features)
+    for index in range(4 * count):
+        shown(preview, block.features[index % count], index)
+    kept = [sum(len(preview._stripes[index]) for index in range(k * count, (k + 1) * count)) for k in (0, 3)]
+    assert kept[0] == pytest.approx(kept[1], rel=0.1)
+
+
+def test_no_frame_waits_for_the_cloud_to_be_renewed_and_no_renewal_takes_long_at_a_time(block, monkeypatch):
+    monkeypatch.setattr(preview_module, "RENEWED_AT_ONCE", 3 * preview_module.RELOCATION)
+    preview = Preview(block.reference, block.camera, block.fan)
+    located, together = [], []
+    one, all_of_them = tracking.SweepTracker._located, tracking.locate_together
+    monkeypatch.setattr(tracking.SweepTracker, "_located", lambda *a: (located.append(a), one(*a))[1])
+    monkeypatch.setattr(tracking, "locate_together", lambda *a: (together.append(a), all_of_them(*a))[1])
+    renewed, most = 0, 0
+    for features in block.features:
+        located.clear()
+        together.clear()
+        renewed += preview(features).renewed is not None
+        assert len(located) <= 1
+        assert not together
+        located.clear()
+        if preview.has_more:
+            preview.go_on()
+            most = max(most, len(located))
+    assert renewed >= 3
+    assert most == 3
+
+
+def test_points_that_come_while_the_cloud_is_being_renewed_are_in_it(block, monkeypatch):
+    monkeypatch.setattr(preview_module, "RENEWED_AT_ONCE", preview_module.RELOCATION)
+    preview = Preview(block.reference, block.camera, block.fan)
+    for features in block.features[:24]:
+        frame = preview(features)
+        if frame.renewed is not None and features.index > 12:
+            break
+        for _ in range(2):
+            if preview.has_more:
+                preview.go_on()
+    assert 12 < features.index < 24
+    assert set(np.unique(frame.renewed.frame)) >= {k for k in range(8, features.index) if len(block.frames[k].points)}
 
 
 def test_a_scan_that_goes_on_for_long_keeps_no_more_and_more(block, monkeypatch):
@@ -237,7 +305,7 @@ def test_a_scan_that_goes_on_for_long_keeps_no_more_and_more(block, monkeypatch)
     preview = Preview(block.reference, block.camera, block.fan, PreviewOptions(most_points=1500))
     tracker, points, crossed = preview._tracker, [], []
     for index in range(60):
-        preview(replace(block.features[3 * index % len(block.features)], index=index))
+        shown(preview, block.features[3 * index % len(block.features)], index)
         points.append(sum(map(len, preview._stripes.values())))
         crossed.append(sum(len(sweep.crossings) > 0 for sweep in tracker.sweeps()))
     assert max(points) <= 1500
