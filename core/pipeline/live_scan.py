@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import replace
+from threading import Thread
 from typing import Protocol
 
 import numpy as np
@@ -23,6 +24,7 @@ from core.live.events import (
 from core.pipeline.live_checks import ScanChecks
 from core.pipeline.live_desk import Desk
 from core.pipeline.live_preview import Departed, PreviewedFrame, PreviewFailed, ScanPreviewer
+from core.pipeline.live_warm_up import get_ready_for_live
 from core.scan.coverage_map import CoverageMap
 from core.scan.features import LOST, MOVED
 from core.scan.frame_preview import FramePreview, cloud_of
@@ -113,6 +115,8 @@ class LiveScan:
             height, width = frame.picture.shape
             self._coverage = CoverageMap((width, height))
             self._checks.begin((width, height))
+            levels = np.uint8 if frame.picture.dtype == np.uint8 else np.uint16
+            Thread(target=get_ready_for_live, args=(levels,), name="warm up", daemon=True).start()
         if self._stage == "reference" and self._looking:
             self._try_reference(frame.picture)
         elif self._stage == "ready" and self._checks.are_due:

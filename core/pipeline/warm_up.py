@@ -9,7 +9,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from core.model import Camera
+from core.pipeline.live_warm_up import CAMERA, SIZE, Levels, exposed
 from core.scan.cloud import Cloud
 from core.scan.features import extract_features
 from core.scan.fusion import fuse
@@ -18,12 +18,8 @@ from core.scan.normals import with_normals
 from core.scan.reference import Picture
 from core.scan.reference_features import FeatureOptions
 
-SIZE = 320, 240
-_CAMERA = Camera(SIZE, np.array([[400.0, 0.0, 160.0], [0.0, 400.0, 120.0], [0.0, 0.0, 1.0]]))
 _FAN = (70.0, 84.0, 170.0)
 _SWEEPS = (90.0, 150.0, 210.0)
-
-Levels = type[np.uint8] | type[np.uint16]
 
 
 def stages() -> tuple[Callable[[], None], ...]:
@@ -35,18 +31,15 @@ def _stripes(levels: Levels) -> None:
     """Three level lines of a fan, two of them close together, and three upright sweeps: found, refined, crossed."""
     reference = _picture(levels, rows=_FAN)
     frames = [(f"{number}", _picture(levels, rows=_FAN, column=place)) for number, place in enumerate(_SWEEPS)]
-    extract_features(reference, frames, len(frames), FeatureOptions(camera=_CAMERA))
+    extract_features(reference, frames, len(frames), FeatureOptions(camera=CAMERA))
 
 
 def _picture(levels: Levels, rows: tuple[float, ...], column: float | None = None) -> Picture:
-    full = float(np.iinfo(levels).max)
     v, u = np.mgrid[: SIZE[1], : SIZE[0]]
     light = sum(np.exp(-0.5 * ((v - row - 0.02 * u) / 2.0) ** 2) for row in rows)
     if column is not None:
         light = light + np.exp(-0.5 * ((u - column - 0.1 * v) / 2.0) ** 2)
-    noise = np.random.default_rng(0).normal(0, 0.004, light.shape)
-    picture: Picture = np.clip(full * (0.04 + 0.5 * light + noise), 0, full).astype(levels)
-    return picture
+    return exposed(levels, light)
 
 
 def _surface() -> None:

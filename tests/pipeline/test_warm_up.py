@@ -3,31 +3,64 @@
 import subprocess
 import sys
 
+import pytest
+
 from tests.simulated import copy_of
 
-PROGRAM = """
+COMPILED = """
 import gc, sys
 from pathlib import Path
 from core.files.recording_set import open_set
-from core.pipeline import Options, Workspace, scan_step
-from core.pipeline.warm_up import stages
 
 def compiled():
     return {
         (one.py_func.__module__, one.py_func.__name__, str(signature))
         for one in gc.get_objects() if type(one).__name__ == "CPUDispatcher" for signature in one.signatures
     }
+"""
+
+SCAN = """
+from core.pipeline import Options, Workspace, scan_step
+from core.pipeline.warm_up import stages
 
 for stage in stages():
     stage()
 before = compiled()
 scan_step(Workspace.open(open_set(Path(sys.argv[1])), Path(sys.argv[2])), Options(sigma_cut_mm=0.3))
+"""
+
+LIVE = """
+import numpy as np
+from core.acquire.source import Frame
+from core.pipeline import Options
+from core.pipeline.live_preview import ScanPreviewer
+from core.pipeline.live_warm_up import get_ready_for_live
+from core.pipeline.workspace import Workspace
+
+found = open_set(Path(sys.argv[1]))
+calibration = Workspace.open(found, Path(sys.argv[2])).calibration()
+get_ready_for_live(np.uint8)
+before = compiled()
+previewer = ScanPreviewer(calibration.camera.camera, calibration.fan.fan, Options())
+previewer.read_reference(found.read(found.reference))
+located = 0
+for number, path in enumerate(found.frames):
+    looked = previewer.look(number, path.name, Frame(found.read(path), number, 0.0, 0))
+    located += len(looked.preview.points)
+    while previewer.has_more:
+        previewer.go_on()
+assert located > 100
+"""
+
+NEW = """
 new = sorted(name for name in compiled() - before if name[0].startswith("core."))
 sys.exit("\\n".join(map(str, new)) or None)
 """
 
 
-def test_a_scan_after_it_compiles_nothing(simulated, measured, tmp_path):
+@pytest.mark.parametrize("work", [SCAN, LIVE], ids=["measuring a scan", "looking at a live one"])
+def test_after_warming_up_nothing_is_compiled_nor_loaded(simulated, measured, tmp_path, work):
     out = copy_of(measured, tmp_path / "out")
-    ran = subprocess.run([sys.executable, "-c", PROGRAM, simulated, out], capture_output=True, text=True, check=False)
+    program = [sys.executable, "-c", COMPILED + work + NEW, simulated, out]
+    ran = subprocess.run(program, capture_output=True, text=True, check=False)
     assert ran.returncode == 0, ran.stderr
