@@ -37,6 +37,14 @@ JUDGED_FROM_S = 60.0
 
 LOOK_EVERY_S = 0.5
 
+TOLD_AFTER = (0.0, 0.1, 0.5, 1.0)
+"""Shares of the time after which memory is told."""
+
+QUANTILES = (0.5, 0.9, 0.95, 0.99, 1.0)
+
+UNDER_WAY_S = 1.0
+"""From so long after the first frame on a recording is under way."""
+
 
 @dataclass
 class Memory:
@@ -67,10 +75,15 @@ class Memory:
         late = [mb for at, mb in self.mb if at - first >= 2 * third]
         return float(np.median(late) / np.median(early) - 1) if early and late else float("nan")
 
+    def after(self, share: float) -> float:
+        """MB when this share of the time was over."""
+        at, mb = np.transpose(self.mb)
+        return float(np.interp(at[0] + share * (at[-1] - at[0]), at, mb))
+
     def __str__(self) -> str:
-        mb = [mb for _, mb in self.mb]
+        at_times = ", ".join(f"{self.after(share):.0f} MB after {share:.0%}" for share in TOLD_AFTER)
         return (
-            f"{mb[0]:.0f} MB at first, {max(mb):.0f} MB at most, {mb[-1]:.0f} MB at the end; "
+            f"{at_times} of the time, {max(mb for _, mb in self.mb):.0f} MB at most; "
             f"{self.drift:+.1%} from the second third to the last"
         )
 
@@ -90,7 +103,7 @@ class Soaked:
     told_lost: int = 0
     memory: dict[str, Memory] = field(default_factory=dict)
     waiting_mb: float = 0.0
-    latency_ms: list[float] = field(default_factory=list)
+    latency_ms: dict[str, list[float]] = field(default_factory=dict)
     latency_to: str = "the event with its overlay"
     views: int = 0
     notices: list[str] = field(default_factory=list)
@@ -124,13 +137,23 @@ class Soaked:
         self.log_is_whole = len(log) == recorded and all(b.index > a.index for a, b in pairwise(log))
         self.waiting_mb = max(mb for _, mb in figures["waiting_mb"])
 
-    def late(self, shown: dict[str, float], arrived: dict[str, float]) -> None:
-        """Overlays: when each frame's was there, and when the frame had arrived."""
-        self.latency_ms = [1000 * (at - arrived[name]) for name, at in shown.items() if name in arrived]
+    def late(self, shown: dict[str, float], figures: dict) -> None:
+        """Overlays: when each frame's was there; `figures` say when the frame had arrived, was looked at and sent."""
+        arrived = figures["arrived"]
+        began = min(arrived.values(), default=0.0) + UNDER_WAY_S
+        names = [name for name in shown if name in arrived]
+        self.latency_ms = {
+            "in all": _ms_between(arrived, shown, names),
+            "after the first second": _ms_between(arrived, shown, [name for name in names if arrived[name] >= began]),
+        }
+        steps = {"arrived": arrived, "looked at": figures["looked_s"], "sent": figures["sent_s"], "shown": shown}
+        for (before, start), (after, end) in pairwise((name, when) for name, when in steps.items() if when):
+            self.latency_ms[f"of that from {before} to {after}"] = _ms_between(
+                start, end, [name for name in names if name in start and name in end and arrived[name] >= began]
+            )
 
     def lines(self) -> list[str]:
         """The figures, for people."""
-        latency = np.quantile(self.latency_ms, [0.5, 0.95, 1.0]) if self.latency_ms else [float("nan")] * 3
         return [
             f"frames      {self.span} sent in {self.seconds:.0f} s ({self.span / self.seconds:.1f}/s): {self.recorded} "
             f"recorded, {self.lost_in_span} lost, {self.lost_by_disk} of them because of the disk; "
@@ -139,12 +162,21 @@ class Soaked:
             f"log         {'names every recorded frame' if self.log_is_whole else 'IS NOT WHOLE'}",
             *(f"memory      {who}: {memory}" for who, memory in self.memory.items()),
             f"            besides, frames that wait for the disk: {self.waiting_mb:.0f} MB at most",
-            f"latency     {latency[0]:.0f} ms median, {latency[1]:.0f} ms 95 %, {latency[2]:.0f} ms at most, "
-            f"from a frame's arrival to {self.latency_to} ({len(self.latency_ms)} overlays, {self.views} views)",
+            f"latency     from a frame's arrival to {self.latency_to}; {self.views} views",
+            *(f"            {what}: {_told(ms)}" for what, ms in self.latency_ms.items() if ms),
             *(f"window      busy in one go for {one}" for one in self.busiest),
             *(f"freeze      {freeze}" for freeze in self.freezes),
             *(f"notice      {sentence}" for sentence in self.notices),
         ]
+
+
+def _ms_between(start: dict[str, float], end: dict[str, float], names: list[str]) -> list[float]:
+    return [1000 * (end[name] - start[name]) for name in names]
+
+
+def _told(ms: list[float]) -> str:
+    quantiles = zip(QUANTILES, np.quantile(ms, QUANTILES), strict=True)
+    return ", ".join(f"{value:.0f} ms {share:.0%}" for share, value in quantiles) + f" ({len(ms)} overlays)"
 
 
 def prepared(folder: Path, scale: float) -> None:
@@ -210,7 +242,7 @@ def _record(request: LiveRequest, folder: Path, seconds: float) -> Soaked:
     result.seconds = time.monotonic() - began[0]
     result.count(figures, request.folder, ended.recorded, ended.dropped)
     result.memory["recording"] = memory.without(figures["waiting_mb"])
-    result.late(shown, figures["arrived"])
+    result.late(shown, figures)
     return result
 
 

@@ -28,6 +28,7 @@ from core.image.targets import BlackSquare, Checkerboard
 from core.live.events import LiveEnded, LiveRequest
 from core.model import Camera, Fan
 from core.pipeline import live
+from core.pipeline.live_preview import ScanPreviewer
 from core.progress import Progress
 from workbench.live_job import run_live_job
 
@@ -133,11 +134,14 @@ class Tally:
 
     def __init__(self, folder: Path) -> None:
         self.camera, self._recorders = EmulatedCamera(folder), []
+        self.looked: dict[str, float] = {}
+        self.sent: dict[str, float] = {}
 
     def __enter__(self) -> Tally:
         self._patches = (
             mock.patch.object(live, "make_source", lambda choice, rig: self.camera),
             mock.patch.object(live, "Recorder", self._recorder),
+            mock.patch.object(ScanPreviewer, "look", self._timed(ScanPreviewer.look)),
         )
         for patch in self._patches:
             patch.start()
@@ -151,6 +155,14 @@ class Tally:
         self._recorders.append(SweepingRecorder(self.camera, folder, **how))
         return self._recorders[-1]
 
+    def _timed(self, look):
+        def timed(previewer, index, name, frame):
+            seen = look(previewer, index, name, frame)
+            self.looked[name] = time.monotonic()
+            return seen
+
+        return timed
+
     @property
     def figures(self) -> dict:
         camera, (recorder,) = self.camera, self._recorders
@@ -160,6 +172,8 @@ class Tally:
             "lost_by_driver": camera.lost,
             "lost_by_disk": recorder.dropped,
             "arrived": recorder.arrived,
+            "looked_s": self.looked,
+            "sent_s": self.sent,
             "waiting_mb": recorder.waiting_mb,
         }
 
@@ -167,7 +181,15 @@ class Tally:
 def run_live(request: LiveRequest, channel) -> LiveEnded:
     """The window's live job, with the emulated camera; its figures are left in the folder."""
     folder = Path(os.environ[FOLDER])
+    offer = channel.offer
     with Tally(folder) as tally:
+
+        def timed(view):
+            offer(view)
+            if view.detail is not None and view.detail.preview is not None:
+                tally.sent.setdefault(view.detail.preview.name, time.monotonic())
+
+        channel.offer = timed
         ended = run_live_job(request, channel)
     (folder / "figures.json").write_text(json.dumps(tally.figures))
     return ended

@@ -180,7 +180,7 @@ def soak_window(seconds: float, scale: float = 1.0, rate_hz: float = 14.0, endin
                 "window": job.memory["window"],
                 "recording": job.memory["recording"].without(figures["waiting_mb"]),
             }
-            result.late(job.shown.at, figures["arrived"])
+            result.late(job.shown.at, figures)
             result.freezes = too_long(watch, slowness())
             result.busiest = [str(one) for one in watch.worst(3)]
             result.notices = [notice.text for notice in bench.notices.all[job.told_before :]]
