@@ -22,7 +22,7 @@ from workbench.garbage import GarbageCollector
 from workbench.main_window import MainWindow
 from workbench.notices import log_to_file
 from workbench.settings import THEMES
-from workbench.theme import apply_theme
+from workbench.theme import apply_colours, apply_sheet, apply_theme
 from workbench.views import scene_view
 
 
@@ -46,11 +46,17 @@ class Application(QApplication):
 
 
 def build_window(app: QApplication, bench: Bench, theme: str = "") -> MainWindow:
-    """Dress the application and build its window, not yet shown."""
-    apply_theme(app, theme or bench.settings.theme)
+    """Dress the application and build its window, not yet shown.
+
+    The style sheet comes last: under one, Qt looks up the rules of all widgets anew each time a part is put into
+    another, which takes longer than all the rest.
+    """
+    apply_colours(app, theme or bench.settings.theme)
+    window = MainWindow(bench)
+    apply_sheet(app)
     bench.settings.theme_changed.connect(lambda name: apply_theme(app, name))
     app.styleHints().colorSchemeChanged.connect(lambda _: apply_theme(app, bench.settings.theme))
-    return MainWindow(bench)
+    return window
 
 
 def main(argv: Sequence[str] | None = None) -> int:

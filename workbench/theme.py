@@ -49,6 +49,12 @@ def is_dark() -> bool:
 
 def apply_theme(app: QApplication, name: str) -> None:
     """Dress the application: "light", "dark", or as the system is set for "system"."""
+    apply_colours(app, name)
+    apply_sheet(app)
+
+
+def apply_colours(app: QApplication, name: str) -> None:
+    """Style and palette of a theme, which icons are drawn in."""
     if app.property("dressed") != "fusion":  # under a style sheet the style no longer tells its name
         app.setStyle("Fusion")
         app.setProperty("dressed", "fusion")
@@ -57,6 +63,10 @@ def apply_theme(app: QApplication, name: str) -> None:
     chosen = DARK if name == "dark" else LIGHT
     qtawesome.reset_cache()
     app.setPalette(_palette(chosen))
+
+
+def apply_sheet(app: QApplication) -> None:
+    """The style sheet, if it is not there yet; else its rules take the palette's colours."""
     if not app.styleSheet():
         app.setStyleSheet(SHEET)
     else:
