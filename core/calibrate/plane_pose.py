@@ -110,7 +110,7 @@ def _stripes(
         noise = estimate_noise(picture)
     else:
         without = off.astype(np.float32)
-        common = float(np.median(without[::8, ::8]))
+        common = _plate_level(without, view)  # the stripes lie on the plate; the rest of the picture may be dark
         noise = estimate_noise(without).of_difference(common)
         picture = picture - without
     around = picture[_window(view, picture.shape, margin=1.0)]

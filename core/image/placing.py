@@ -22,6 +22,7 @@ from core.model.arrays import Array, set_field
 
 _CUTS_FOR_SPECKLE = 3000  # more tell nothing new
 _LARGEST_PULL_PX = 0.03  # of Steger's points against the likelihood's
+_UNUSABLE_WEIGHT = 0.02
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -42,8 +43,11 @@ class Piece:
 
     @property
     def weight(self) -> Array:
-        """What each point counts for the smooth curve through them, (N,)."""
-        return self.usable.astype(np.float64)
+        """What each point counts for the smooth curve through them, (N,).
+
+        Those that are not usable count for little: without any, a curve through the few left swings past the light.
+        """
+        return np.where(self.usable, 1.0, _UNUSABLE_WEIGHT)
 
     def judged(self, run: Array, sigma: Array) -> tuple[Array, Array]:
         """Those of the points `run`, and of their standard uncertainties, that are usable."""

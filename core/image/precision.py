@@ -71,7 +71,7 @@ def roughness(lines: list[tuple[Array, Array]], correlation: float) -> list[floa
 
 @njit(cache=True, nogil=True)
 def _excess(points: Array, sigma: Array, lag: int, correlation: float) -> tuple[float, float]:
-    """Sum of the excess variance over independent third differences, and their number."""
+    """Sum of the excess variance over independent third differences, and their number, both weighted."""
     count = max(0, len(points) - 3 * lag)
     observed, law = np.empty(count), np.empty(count)
     # a third difference of points with correlation ρ one lag apart has variance 20 − 30 ρ
@@ -89,11 +89,13 @@ def _excess(points: Array, sigma: Array, lag: int, correlation: float) -> tuple[
         number += 1
     if number == 0:
         return 0.0, 0.0
-    highest = 25 * np.median(observed[:number])
-    total = 0.0
+    usual = np.median(observed[:number])
+    total, counted, least = 0.0, 0.0, law[:number].min() + usual
     for k in range(number):
-        total += min(observed[k], highest) - law[k]
-    return total / lag, number / lag
+        weight = (least / (law[k] + usual)) ** 2  # where a line is faint its noise hides what is looked for
+        total += weight * (min(observed[k], 25 * usual) - law[k])
+        counted += weight
+    return total / lag, counted / lag
 
 
 @njit(cache=True, nogil=True, fastmath=True)

@@ -39,15 +39,16 @@ def fit_sections(picture: Picture, state: NDArray[np.uint8], places: Array, stri
         if high <= low:
             continue
         settled = False
-        if warm:  # the neighbour's answer is nearly this one's
+        if warm:  # the neighbour's answer is nearly this one's, and wrong if its own was: it must settle
             x[3] = 0.0
             settled = _fit(section, stripe_px, x, work)
-        if not settled:
+        if not (settled and _is_likely(x, stripe_px)):
             x[0], x[1], x[2], x[3], x[4] = low, 0.0, high - low, 0.0, stripe_px
             settled = _fit(section, stripe_px, x, work)
-        warm = settled
-        if settled:
+        warm = _is_likely(x, stripe_px)
+        if warm:
             fits[k, 0], fits[k, 1], fits[k, 2], fits[k, 3] = x[2], x[0], x[1], x[4]
+        warm = warm and settled
     return fits
 
 
@@ -131,7 +132,13 @@ def _fit(section: Array, stripe_px: float, x: Array, work: Array) -> bool:
         for a in range(_UNKNOWNS):
             x[a] += step[a]
         if abs(step[3]) + abs(step[4]) < 1e-3 * stripe_px:
-            break
+            return True
+    return False
+
+
+@njit(cache=True, nogil=True, fastmath=True)
+def _is_likely(x: Array, stripe_px: float) -> bool:
+    """Whether a fit `x` (5,) can be the section of a stripe of about this σ."""
     return bool(x[2] > 0 and 0.3 * stripe_px < x[4] < 3 * stripe_px and abs(x[3]) < stripe_px)
 
 
