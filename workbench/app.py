@@ -21,6 +21,7 @@ from workbench.bench import Bench, make_bench
 from workbench.garbage import GarbageCollector
 from workbench.main_window import MainWindow
 from workbench.notices import log_to_file
+from workbench.processes import share_python_willingly
 from workbench.settings import THEMES
 from workbench.theme import apply_colours, apply_sheet, apply_theme
 from workbench.views import scene_view
@@ -73,6 +74,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     if given.install_desktop or given.uninstall_desktop:
         return _associate(association.install if given.install_desktop else association.uninstall)
     signal.signal(signal.SIGINT, signal.SIG_DFL)  # Ctrl-C in the terminal ends it like a crash: the autosave is there
+    share_python_willingly()
     app = Application(sys.argv[:1])
     garbage = GarbageCollector(app)
     translator = QTranslator()

@@ -12,6 +12,16 @@ ONE_THREAD: Mapping[str, str] = {name: "1" for name in ("OPENBLAS_NUM_THREADS", 
 """Linear algebra on one core: for many small problems beside other work, more threads are slower."""
 
 
+SWITCH_S = 0.001
+"""A thread that waits for Python's lock is given it after so long, five times as soon as by itself: a picture that the
+window receives piece by piece, or that a recording sends while it looks at the next, waits for the lock many times."""
+
+
+def share_python_willingly() -> None:
+    """Have the threads of this process take turns often."""
+    sys.setswitchinterval(SWITCH_S)
+
+
 @contextmanager
 def lean_start(environment: Mapping[str, str]) -> Iterator[None]:
     """While a process is spawned: give it `environment`, and keep it from importing the program that spawns it.

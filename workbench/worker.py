@@ -14,6 +14,7 @@ from typing import Any
 
 from core.errors import Cancelled, InputError
 from workbench.jobs import Job, resolve
+from workbench.processes import share_python_willingly
 
 TELL_EVERY_S = 0.05
 """Progress is passed on at most this often."""
@@ -90,6 +91,7 @@ def serve(connection: Connection, cancel: Any, warm: tuple[Job, ...], ahead: Job
     one by one while no job waits.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the window decides
+    share_python_willingly()
     try:
         for job in warm:
             with suppress(ImportError, AttributeError):  # told when the job is asked for

@@ -29,7 +29,7 @@ RETRY_S = 1.0
 LISTEN_S = 0.05
 """Commands are heard at least this often."""
 
-WORKING_LISTEN_S = 0.005
+WORKING_LISTEN_S = 0.002
 """The same while a frame is being looked at."""
 
 PATIENCE_S = 0.25

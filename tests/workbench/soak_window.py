@@ -31,7 +31,9 @@ from tests.workbench.watchdog import Watchdog, slowness, too_long
 from workbench import jobs
 from workbench.app import build_window
 from workbench.bench import make_bench
+from workbench.garbage import GarbageCollector
 from workbench.main_window import MainWindow
+from workbench.processes import share_python_willingly
 from workbench.settings import AppSettings
 
 SWEPT_MS = 500
@@ -159,11 +161,14 @@ def soak_window(seconds: float, scale: float = 1.0, rate_hz: float = 14.0, endin
         settings = AppSettings(folder / "settings.ini")
         app = QApplication.instance() or QApplication(["trisect"])
         signal.signal(signal.SIGINT, signal.SIG_DFL)
+        share_python_willingly()
+        garbage = GarbageCollector(app)
         bench = make_bench(settings)
         window = build_window(app, bench, "light")
         try:
             window.resize(1280, 800)
             window.show()
+            garbage.spare_what_is_there()
             bench.model.create(folder / "project", replace(new_project("Soak"), rig=RIG, accepted=Accepted("a", "b")))
             window.go_to("scan")
             job = Soak(window, folder, seconds)
@@ -188,6 +193,7 @@ def soak_window(seconds: float, scale: float = 1.0, rate_hz: float = 14.0, endin
         finally:
             bench.close()
             window.close()
+            garbage.stop()
 
 
 def _choose_camera(settings: Any, folder: Path, rate_hz: float, ending: str) -> None:

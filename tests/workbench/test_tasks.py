@@ -55,6 +55,13 @@ def test_a_job_gives_its_result_and_tells_its_progress(qtbot: Any, lane: Lane) -
     assert told == [("doubling", 1, 1)]
 
 
+def test_threads_of_a_lane_do_not_wait_long_for_one_another(qtbot: Any, lane: Lane) -> None:
+    got: list[float] = []
+    lane.run(Job("sys:getswitchinterval"), label="lock", on_done=got.append, offers={})
+    finish(qtbot, lane)
+    assert got == [pytest.approx(0.001)]
+
+
 def test_jobs_run_in_the_order_they_were_given(qtbot: Any, lane: Lane) -> None:
     answers = Answers()
     for value in (1, 2, 3):

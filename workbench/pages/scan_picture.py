@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from enum import StrEnum
 from typing import Any
 
 import numpy as np
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
+from core.image.centreline import Centreline
 from core.live.events import LiveView, ScanDetail
 from workbench.pages import scan_overlays as overlays
 from workbench.pages.scan_presenter import ScanPresenter
@@ -35,6 +36,7 @@ class ScanPicture(QWidget):
         super().__init__(parent)
         self._presenter, self._choose_folder = presenter, choose_folder
         self._shown: Any = None
+        self._fan: tuple[Any, bool] | None = None
         self.image, self.wanted = ImageView(), View.CROSSINGS
         self.image.setAccessibleName(self.tr("Picture of the scan"))
         column = QVBoxLayout(self)
@@ -77,13 +79,20 @@ class ScanPicture(QWidget):
     def _show_detail(self, detail: ScanDetail) -> None:
         calibrated, preview = self._presenter.calibrated, detail.preview
         overlays.show_coverage(self.image, detail.cells, detail.lit)
-        overlays.show_fan(self.image, detail.fan_lines, numbered=calibrated)
+        self._show_fan(detail.fan_lines, numbered=calibrated)
         pieces = preview.centrelines if preview is not None and detail.stage == "scanning" else ()
         overlays.show_sweep(
             self.image, pieces, preview.sigma_mm if preview is not None and calibrated and pieces else ()
         )
         if calibrated:
             overlays.show_crossings(self.image, preview if pieces else None)
+
+    def _show_fan(self, lines: Sequence[Sequence[Centreline]], *, numbered: bool) -> None:
+        """The fan's lines, if they are not there already: they come with every frame, and hardly ever change."""
+        uv = [[piece.uv for piece in line] for line in lines]
+        if self._fan is None or self._fan[1] != numbered or not _same(self._fan[0], uv):
+            overlays.show_fan(self.image, lines, numbered=numbered)
+            self._fan = uv, numbered
 
     def _show_frame(self) -> None:
         scrub = self._presenter.scrub
@@ -113,6 +122,7 @@ class ScanPicture(QWidget):
         before = self._shown if isinstance(self._shown, str) else "frame"
         if before != kind:
             self.image.clear_layers()
+            self._fan = None
         self._shown = kind
 
     def _empty(self) -> None:
@@ -123,6 +133,13 @@ class ScanPicture(QWidget):
         )
 
     def _clear(self, message: str, button: str = "", do: Callable[[], None] | None = None) -> None:
-        self._shown = None
+        self._shown = self._fan = None
         if self.image.has_picture or self.image.empty_state.message != message:
             self.image.clear(message, button, do)
+
+
+def _same(before: Sequence[Sequence[Any]], now: Sequence[Sequence[Any]]) -> bool:
+    """Whether arrays in two lists of lists are equal, one by one."""
+    return [len(line) for line in before] == [len(line) for line in now] and all(
+        np.array_equal(a, b) for one, other in zip(before, now, strict=True) for a, b in zip(one, other, strict=True)
+    )

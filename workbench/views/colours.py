@@ -7,7 +7,7 @@ symbols are drawn with a dark rim, which makes them readable on light ones too.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from typing import Literal
 
 import numpy as np
@@ -80,7 +80,16 @@ def to_colour(colour: ColourLike) -> QColor:
 
 def to_rgba(colour: ColourLike) -> tuple[int, int, int, int]:
     """Any way of naming a colour as four numbers, 0 … 255."""
+    if isinstance(colour, str):
+        return _named(colour)
     chosen = to_colour(colour)
+    return chosen.red(), chosen.green(), chosen.blue(), chosen.alpha()
+
+
+@lru_cache(maxsize=256)
+def _named(name: str) -> tuple[int, int, int, int]:
+    """The four numbers of a colour: a picture that changes many times a second asks for the same ones."""
+    chosen = QColor(name)
     return chosen.red(), chosen.green(), chosen.blue(), chosen.alpha()
 
 

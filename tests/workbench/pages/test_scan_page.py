@@ -336,6 +336,21 @@ def test_a_live_scan_goes_from_the_reference_to_the_result(page, lane, measuring
     qtbot.waitUntil(lambda: page.presenter.stage is Stage.MEASURED and page.presenter.scrub.up_to_date)
 
 
+def test_the_fan_s_lines_are_drawn_anew_when_they_have_changed_and_only_then(page, lane, qtbot):
+    start_live(page, lane, qtbot)
+    layers = page.picture.image._layers
+    lane.current.view.emit(cases.live_view(0))
+    fan, sweep = layers["fan 1"], layers["sweep"]
+    lane.current.view.emit(cases.live_view(1))
+    assert layers["fan 1"] is fan and layers["sweep"] is not sweep
+    moved = cases.live_view(2)
+    detail = replace(moved.detail, fan_lines=((cases.line(2, 62, 9.0),), *moved.detail.fan_lines[1:]))
+    lane.current.view.emit(replace(moved, detail=detail))
+    assert layers["fan 1"] is not fan
+    lane.current.view.emit(replace(moved, detail=replace(moved.detail, fan_lines=((), (), ()))))
+    assert not any(name.startswith("fan") for name in layers)
+
+
 def test_checks_stand_there_until_the_scan_begins_and_those_that_failed_after_that(page, lane, qtbot):
     start_live(page, lane, qtbot)
     good, bad = Check("reference", "ok", "It holds."), Check("lines", "failed", "Only 2 lines.")
