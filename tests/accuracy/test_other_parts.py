@@ -5,8 +5,7 @@ import pytest
 
 from core.files.recording_set import open_set
 from core.inspect.sphere import find_sphere, fit_sphere
-from core.pipeline import Options, Workspace, camera_step, planes_step, scan_step
-from core.simulate.recording import simulate_set
+from core.pipeline import Options, Workspace, scan_step
 from core.simulate.scenario import Scenario
 from tests.accuracy.twin import measure
 
@@ -58,11 +57,9 @@ def test_a_mask_with_folded_ears_is_reconstructed(sphere, tmp_path):
     assert np.nanmedian(np.abs(errors[on_mask])) <= 0.12
 
 
-def test_the_papers_own_method_works_on_the_same_recording_and_is_far_less_complete(tmp_path):
-    simulate_set(Scenario(seed=8, scale=0.5, frames=30), tmp_path / "set")
+def test_the_papers_own_method_works_on_the_same_recording_and_is_far_less_complete(sphere, tmp_path):
+    calibrated, _ = sphere
+    network = len(measure(Scenario(seed=8, scale=0.5, frames=30), tmp_path, calibrated).cloud)
     work = Workspace.open(open_set(tmp_path / "set"), tmp_path / "out")
-    camera_step(work)
-    planes_step(work)
-    network = len(scan_step(work).scan.cloud)
     paper = len(scan_step(work, Options(method="three-crossings")).scan.cloud)
     assert 0 < paper < 0.6 * network

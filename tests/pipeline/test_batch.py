@@ -171,6 +171,13 @@ def measures_what_a_run_measures(executor, tiny, out):
         assert (block.out / name).read_bytes() == (tiny / "out" / name).read_bytes(), name
 
 
+def test_a_run_measures_pgm_frames_as_png_frames(tiny, tmp_path):
+    said = trisect("run", tiny / "pgm", "--out", tmp_path, "--method", QUICK.method, "--sigma-cut", QUICK.sigma_cut_mm)
+    assert said.code in (0, 1), said.err
+    for name in SAME:
+        assert (tmp_path / name).read_bytes() == (tiny / "out" / name).read_bytes(), name
+
+
 @pytest.mark.slow
 def test_processes_measure_the_very_same_as_a_run_and_pgm_frames_as_png_frames(tiny, tmp_path):
     with executor_of("processes", 1) as executor:
