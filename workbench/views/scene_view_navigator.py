@@ -49,7 +49,7 @@ class Navigator(QObject):
         self.orientation = CAMERA_FRAME
         self._name = "iso"
         self._touched = False
-        self._extent = 0.0
+        self._extent, self._box = 0.0, np.empty((0, 3))
         self.camera = SceneCamera.looking(*CAMERA_FRAME.direction("iso"), np.zeros(3), 500.0)
 
     def view(self, name: str) -> None:
@@ -79,6 +79,10 @@ class Navigator(QObject):
 
     def follow(self, *, afresh: bool = False) -> bool:
         """Fit a scene that is new or has grown, unless somebody has turned the view. Whether the camera moved."""
+        box = self._scene.box()
+        before, self._box = self._box, box
+        if not afresh and self._extent > 0 and (self._touched or np.array_equal(box, before)):
+            return False  # a cloud that grows within its box many times a second
         points = self._scene.to_fit()
         extent = _extent(points)
         if extent == 0:

@@ -20,6 +20,7 @@ from tests.workbench.watchdog import LIMIT_MS, Watchdog
 from workbench.views import scene_view_backing
 from workbench.views import scene_view_choice as choice
 from workbench.views.scene_view import SceneView
+from workbench.views.scene_view_contents import Scene
 from workbench.views.scene_view_painter import PainterSurface
 
 RED, LEFT = "#ff0000", Qt.MouseButton.LeftButton
@@ -193,6 +194,19 @@ def test_points_added_beyond_the_view_are_brought_into_it_until_somebody_turns_i
     turned = view.screen_positions(SPARSE)
     view.add_points(FLAT * [9, 9, 1])
     assert_allclose(view.screen_positions(SPARSE), turned)
+
+
+def test_a_cloud_that_grows_within_its_box_is_not_fitted_again_each_time(view, qtbot, monkeypatch):
+    fitted, to_fit = [], Scene.to_fit
+    monkeypatch.setattr(Scene, "to_fit", lambda scene: (fitted.append(1), to_fit(scene))[1])
+    view.set_cloud(FLAT)
+    fitted.clear()
+    view.add_points(FLAT * [0.5, 0.5, 1])
+    assert not fitted
+    wide = FLAT * [3, 3, 1]
+    view.add_points(wide)
+    assert fitted
+    assert ((view.screen_positions(wide) > 0) & (view.screen_positions(wide) < [700, 520])).all()
 
 
 def test_highlights_planes_and_lines_come_and_go(view, qtbot):
