@@ -49,7 +49,9 @@ class DoneProject:
 def done(simulated: Path, tmp_path_factory: pytest.TempPathFactory) -> DoneProject:
     common = made_once(tmp_path_factory, "done-project", lambda folder: _do(simulated, folder))
     done: DoneProject = pickle.loads((common / GIVEN).read_bytes())
-    return replace(done, folder=common / "block")
+    folder = common / "block"  # where the one it was made in has been moved to
+    files = {key: folder / path.relative_to(done.folder) for key, path in done.summary.files.items()}
+    return replace(done, folder=folder, summary=replace(done.summary, files=files))
 
 
 def _do(simulated: Path, made: Path) -> None:
