@@ -35,15 +35,7 @@ class Measured:
 
     def depth_errors(self) -> np.ndarray:
         """Measured minus true depth of every point in mm; NaN within two pixels of a depth edge."""
-        u, v = self.cloud.uv.T
-        true = map_coordinates(self.truth.depth.astype(float), [v, u], order=1, mode="nearest")
-        near = [
-            map_coordinates(self.truth.depth.astype(float), [v + dv, u + du], order=1, mode="nearest")
-            for du, dv in ((2, 0), (-2, 0), (0, 2), (0, -2))
-        ]
-        errors = self.cloud.points[:, 2] - true
-        errors[np.abs(np.array(near) - true).max(axis=0) > 2.0] = np.nan
-        return errors
+        return depth_errors(self.truth, self.cloud)
 
     def camera_errors(self) -> dict[str, float]:
         """Error of each camera parameter in its own stated standard deviations."""
@@ -56,6 +48,20 @@ class Measured:
             for i, name in enumerate(CAMERA_PARAMETERS)
             if self.camera.sd[name] > 0
         }
+
+
+def depth_errors(truth: Truth, cloud: Cloud) -> np.ndarray:
+    """Measured minus true depth of every point of a cloud in mm; NaN within two pixels of a depth edge."""
+    u, v = cloud.uv.T
+    depth = truth.depth.astype(float)
+    true = map_coordinates(depth, [v, u], order=1, mode="nearest")
+    near = [
+        map_coordinates(depth, [v + dv, u + du], order=1, mode="nearest")
+        for du, dv in ((2, 0), (-2, 0), (0, 2), (0, -2))
+    ]
+    errors = cloud.points[:, 2] - true
+    errors[np.abs(np.array(near) - true).max(axis=0) > 2.0] = np.nan
+    return errors
 
 
 def measure(scenario: Scenario, folder: Path, calibrated: Path | None = None) -> Measured:
