@@ -13,6 +13,7 @@ prints what has come out after each of 24 calibrations; a second argument is the
 
 from __future__ import annotations
 
+import shutil
 import sys
 import tempfile
 from collections.abc import Iterator
@@ -98,7 +99,9 @@ def shown(errors: np.ndarray, sigma: np.ndarray) -> tuple[float, float]:
 
 def _scan(seed: int, scale: float, folder: Path) -> tuple[Truth, ScanFeatures]:
     truth = measure(Scenario(height_mm=HEIGHT_MM, seed=seed, scale=scale), folder).truth
-    return truth, read_scan(folder / "out" / "scan.npz").features
+    features = read_scan(folder / "out" / "scan.npz").features
+    shutil.rmtree(folder)
+    return truth, features
 
 
 def _calibration(seed: int, scale: float, folder: Path) -> Calibration:
@@ -107,7 +110,9 @@ def _calibration(seed: int, scale: float, folder: Path) -> Calibration:
     work = Workspace.open(open_set(folder / "set"), folder / "out")
     camera_step(work)
     planes_step(work)
-    return work.calibration()
+    calibration = work.calibration()
+    shutil.rmtree(folder)
+    return calibration
 
 
 def _points(truth: Truth, features: ScanFeatures, calibration: Calibration) -> tuple[np.ndarray, np.ndarray]:
