@@ -60,6 +60,7 @@ class ScanPreviewer:
         self._reference: ReferenceFeatures | None = None
         self._preview: Preview | None = None
         self._seen: list[StripeSettings] = []
+        self._to_learn_from: Picture | None = None
         self._failed = False
 
     @property
@@ -111,12 +112,16 @@ class ScanPreviewer:
     @property
     def has_more(self) -> bool:
         """Whether there is something that could wait until a frame was shown."""
-        return self._preview is not None and not self._failed and self._preview.has_more
+        waits = self._to_learn_from is not None or (self._preview is not None and self._preview.has_more)
+        return waits and not self._failed
 
     def go_on(self) -> PreviewFailed | None:
         """Do some of it."""
+        picture, self._to_learn_from = self._to_learn_from, None
         try:
-            if self._preview is not None:
+            if self._reference is not None and picture is not None:
+                self._learn(self._reference, picture)
+            elif self._preview is not None:
                 self._preview.go_on()
             return None
         except Exception as error:  # noqa: BLE001  as above
@@ -136,13 +141,17 @@ class ScanPreviewer:
         return replace(empty_preview(index, name, features.reason), centrelines=features.centrelines)
 
     def _features(self, reference: ReferenceFeatures, index: int, name: str, picture: Picture) -> FrameFeatures:
-        stripe, frame = self._options.stripe, (name, picture)
-        if stripe is None and len(self._seen) < SETTINGS_FROM:
-            blind = FrameReader(reference, None)((index, frame))
-            if blind.reason != NO_STRIPE:  # moved, dark: nothing to be learned of the stripe
-                return blind
-            found = choose_sweep_stripe([frame], reference)
-            self._seen += [] if found is None else [found]
+        """With the stripe as it is known; before it has been seen once, as if it were like the fan's."""
+        stripe = self._options.stripe
         if stripe is None and self._seen:
             stripe = sorted(self._seen, key=lambda seen: seen.contrast)[len(self._seen) // 2]
-        return FrameReader(reference, stripe)((index, frame))
+        features = FrameReader(reference, stripe or reference.stripe)((index, (name, picture)))
+        learning = self._options.stripe is None and len(self._seen) < SETTINGS_FROM
+        if learning and features.reason in ("", NO_STRIPE):  # moved, dark: nothing to be learned of the stripe
+            self._to_learn_from = picture
+        return features
+
+    def _learn(self, reference: ReferenceFeatures, picture: Picture) -> None:
+        """Look for the stripe's width and contrast, which takes several times as long as to look at a frame."""
+        found = choose_sweep_stripe([("", picture)], reference)
+        self._seen += [] if found is None else [found]

@@ -4,9 +4,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from core.acquire.source import Lasers, SourceSettings
+from core.acquire.source import Frame, Lasers, SourceSettings
 from core.calibrate.plane_pose import PoseFeatures
 from core.errors import InputError
+from core.files.options import Options
 from core.files.pictures import is_picture, read_picture, write_picture
 from core.files.poses_file import write_poses
 from core.files.recording_log import read_log
@@ -299,6 +300,27 @@ def test_without_calibrations_stripes_are_shown_but_no_points(monkeypatch, tmp_p
     previews = [detail.preview for detail in window.details if detail.preview is not None]
     assert any(len(preview.centrelines) for preview in previews)
     assert not any(len(detail.points) for detail in window.details)
+
+
+def test_no_look_waits_until_the_stripe_s_width_is_found_and_three_frames_tell_it(monkeypatch, stage):
+    searched, search = [], live_preview.choose_sweep_stripe
+    monkeypatch.setattr(live_preview, "choose_sweep_stripe", lambda *a: (searched.append(a), search(*a))[1])
+    previewer = live_preview.ScanPreviewer(stage.camera, stage.fan, Options())
+    previewer.read_reference(stage.reference)
+    found = []
+    for number, picture in enumerate([stage.dark, stage.reference, *stage.frames[:6]]):
+        before = len(searched)
+        preview = previewer.look(number, "", Frame(picture, number, 0.0, 0)).preview
+        assert len(searched) == before
+        found.append(sum(map(len, preview.centrelines)))
+        while previewer.has_more:
+            previewer.go_on()
+    again = live_preview.ScanPreviewer(stage.camera, stage.fan, Options(stripe=previewer._seen[0]))
+    again.read_reference(stage.reference)
+    known = again.look(0, "", Frame(stage.frames[0], 0, 0.0, 0)).preview
+    assert found[:2] == [0, 0]
+    assert found[2] == pytest.approx(sum(map(len, known.centrelines)), rel=0.1)
+    assert len(searched) == 1 + live_preview.SETTINGS_FROM
 
 
 def test_a_fault_in_the_preview_never_ends_the_recording(monkeypatch, tmp_path, stage):
