@@ -120,14 +120,9 @@ def test_recording_does_not_wait_for_a_slow_window_nor_for_the_preview(monkeypat
 
 
 def test_points_of_frames_that_were_not_shown_come_with_the_next_view(monkeypatch, tmp_path, stage):
-    calls = [0]
-
-    def now_and_then():
-        calls[0] += 1
-        return calls[0] % 40 == 0
-
-    window = Window(ready=now_and_then)
-    scan(monkeypatch, tmp_path, stage, swept(stage, 40, pace_s=0.04), window)
+    source = swept(stage, 50, pace_s=0.04)
+    window = Window(ready=lambda: source.counted == 50)  # however long the reference takes
+    scan(monkeypatch, tmp_path, stage, source, window)
     frames = np.unique(np.concatenate([detail.points.frame for detail in window.details]))
     assert len(frames) > len(window.all(LiveView))
 
