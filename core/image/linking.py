@@ -20,16 +20,17 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from core.image.filling import filled
+from core.image.filling import filled, points_apart
+from core.image.passed import Passed, nothing_passed, put_down, room_for, was_passed
 from core.image.ridge import kernel_radius, kernel_table, ridge_at, ridge_response
 from core.image.seeds import Picture, seeds
 from core.model.arrays import Array
 
-SATURATED, IGNORED, VISITED = 1, 2, 4
+SATURATED, IGNORED = 1, 2
 """Bits of the picture's state map."""
 
 _MARK_EVERY = 2  # points: discs much larger than that leave no gap between them
-_WIDE_FILTER_PX = 2.4  # every second point tells all, then; longer steps lose faint, short, saturated pieces
+_LONGEST_STEP = 2  # px: longer ones lose short, saturated pieces of photographed stripes at their ends
 _NEAR_ENOUGH = 0.08  # filter σ from the crest: seen from there, Taylor's step errs by less than 0.0005 px
 _LARGEST_TURN = math.cos(math.radians(30))  # from one point to the next
 
@@ -54,13 +55,13 @@ def link(
     """Runs of line points, each (N, 5): u, v, n_u, n_v, response; one px apart along the tangent (−n_v, n_u).
 
     The response is the second derivative across the stripe with its sign reversed. `state` (H, W) holds the bits
-    SATURATED and IGNORED and is marked VISITED along what was found.
+    SATURATED and IGNORED.
     """
     radius = kernel_radius(filter_px)
     if min(picture.shape) <= 2 * radius + 3:
         return []
     unit = ridge_response(1.0, stripe_px, filter_px)
-    stride = 2 if filter_px > _WIDE_FILTER_PX else 1
+    stride = min(points_apart(filter_px), _LONGEST_STEP)
     flat: Any = np.ascontiguousarray(picture).reshape(-1)  # float32 or int16
     points, ends = _trace_all(
         flat,
@@ -90,7 +91,7 @@ def _trace_all(
     high, stride = limits[1], limits[5]
     ahead = np.empty((4 * (height + width), 5))
     behind = np.empty_like(ahead)
-    points = np.empty((16384, 5))
+    points, passed = np.empty((16384, 5)), nothing_passed((height, width), reach, 16384)
     ends = np.empty(64, dtype=np.int64)
     count, runs = 0, 0
     for k in range(len(starts)):
@@ -101,7 +102,7 @@ def _trace_all(
             if not _inside(u, v, width, height, radius):
                 found = False
                 break
-            if state[int(v + 0.5), int(u + 0.5)] & (IGNORED | VISITED):
+            if state[int(v + 0.5), int(u + 0.5)] & IGNORED or was_passed(passed, points, u, v, reach):
                 found = False
                 break
             across, nu, nv, offset = ridge_at(picture, width, u, v, radius, kernels)
@@ -117,15 +118,16 @@ def _trace_all(
                 break
         if not found:
             continue
-        backwards = _follow(picture, state, (u, v, -nu, -nv), limits, radius, kernels, behind)
+        so_far = (points, passed, reach)
+        backwards = _follow(picture, state, so_far, (u, v, -nu, -nv), limits, radius, kernels, behind)
         last = max(backwards - 1, 0)
         closed = backwards > 20 and math.hypot(behind[last, 0] - u, behind[last, 1] - v) < 1.5 * stride
-        forwards = 0 if closed else _follow(picture, state, (u, v, nu, nv), limits, radius, kernels, ahead)
+        forwards = 0 if closed else _follow(picture, state, so_far, (u, v, nu, nv), limits, radius, kernels, ahead)
         needed = backwards + 1 + forwards
         if len(points) < count + needed:
             more = np.empty((2 * (count + needed), 5))
             more[:count] = points[:count]
-            points = more
+            points, passed = more, room_for(passed, len(more))
         run = points[count : count + needed]
         for i in range(backwards):
             for a in range(5):
@@ -134,7 +136,7 @@ def _trace_all(
         run[backwards, 4] = response
         run[backwards + 1 :] = ahead[:forwards]
         for i in range(0, needed + _MARK_EVERY - 1, _MARK_EVERY):
-            _mark(state, run[min(i, needed - 1), 0], run[min(i, needed - 1), 1], reach)
+            put_down(passed, points, count + min(i, needed - 1), reach)
         count += needed
         if runs == len(ends):
             ends = np.concatenate((ends, np.empty_like(ends)))
@@ -153,14 +155,19 @@ def _inside(u: float, v: float, width: int, height: int, radius: int) -> bool:
 def _follow(
     picture: Picture,
     state: NDArray[np.uint8],
+    so_far: tuple[Array, Passed, int],
     start: tuple[float, float, float, float],
     limits: tuple[float, float, float, float, float, float],
     radius: int,
     kernels: NDArray[np.float32],
     out: Array,
 ) -> int:
-    """Points ahead of `start` (u, v, n_u, n_v) along its tangent, written to `out`; their number."""
+    """Points ahead of `start` (u, v, n_u, n_v) along its tangent, written to `out`; their number.
+
+    `so_far` are the points of other runs, where they are (see `core.image.passed`), and how near to them none may come.
+    """
     height, width = state.shape
+    points, passed, reach = so_far
     filter_px, _, low, hold, saturated_hold, stride = limits
     u, v = start[0], start[1]
     tu, tv = -start[3], start[2]
@@ -171,7 +178,7 @@ def _follow(
         if not _inside(u, v, width, height, radius):
             break
         here = state[int(v + 0.5), int(u + 0.5)]
-        if here & (IGNORED | VISITED):
+        if here & IGNORED or was_passed(passed, points, u, v, reach):
             break
         across, nu, nv, offset = ridge_at(picture, width, u, v, radius, kernels)
         far = max(0.5, 0.25 * stride) + 0.05 * (missed + blind)  # straight ahead drifts off while nothing is seen
@@ -212,15 +219,3 @@ def _follow(
         if missed > hold or blind > saturated_hold:
             break
     return count
-
-
-@njit(cache=True, nogil=True)
-def _mark(state: NDArray[np.uint8], u: float, v: float, reach: int) -> None:
-    """Mark a disc VISITED."""
-    height = len(state)
-    column, row = int(u + 0.5), int(v + 0.5)
-    for j in range(max(row - reach, 0), min(row + reach + 1, height)):
-        half = int(math.sqrt(reach * reach - (j - row) ** 2))
-        part = state[j, max(column - half, 0) : column + half + 1]
-        for i in range(len(part)):
-            part[i] |= VISITED

@@ -98,7 +98,7 @@ def _sections(
 ) -> Array:
     """Heights and widths (2, N) along all long stripes within the `limits`."""
     sections = [np.empty((2, 0))]
-    for traced in link(picture, state.copy(), stripe_px, filter_px, limits):
+    for traced in link(picture, state, stripe_px, filter_px, limits):
         if len(traced) < _LONG * filter_px:
             continue
         run = cut_ends(traced, filter_px, picture.shape)

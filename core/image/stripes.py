@@ -43,7 +43,7 @@ from core.image.centreline import Centreline
 from core.image.influence import REACH
 from core.image.joining import joined_at_crossings
 from core.image.likelihood import Refined
-from core.image.linking import IGNORED, SATURATED, Hysteresis, link
+from core.image.linking import IGNORED, Hysteresis, link
 from core.image.neighbours import NEIGHBOUR, beside_another
 from core.image.noise import NoiseModel
 from core.image.pieces import arc_length, correlation_length, cut_ends, fully_lit
@@ -130,10 +130,11 @@ def _state_map(
     for mask in (saturated, ignore):
         if mask is not None and mask.shape != picture.shape:
             raise ValueError(f"a mask of shape {mask.shape} does not suit a picture of shape {picture.shape}")
-    state = np.zeros(picture.shape, np.uint8) if saturated is None else np.multiply(saturated, np.uint8(SATURATED))
-    if ignore is not None:
-        state[ignore] |= IGNORED
-    return state
+    if saturated is None:
+        state = np.zeros(picture.shape, np.uint8)
+    else:  # not copied: True is SATURATED
+        state = np.ascontiguousarray(saturated, dtype=np.bool_).view(np.uint8)
+    return state if ignore is None else np.where(ignore, state | np.uint8(IGNORED), state)
 
 
 def _limits(settings: StripeSettings, noise: NoiseModel, knows_saturation: bool) -> Hysteresis:
