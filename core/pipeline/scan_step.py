@@ -37,10 +37,11 @@ from core.scan.mesh import build_mesh
 from core.scan.network import SILENCED
 from core.scan.normals import with_normals
 from core.scan.preview import Preview
-from core.scan.reconstruct import ReconstructOptions, reconstruct
+from core.scan.reconstruct import ReconstructOptions
 from core.scan.reference import quantile_reference, sample_indices
 from core.scan.results import FrameRecord, ScanResult
 from core.scan.surface import Mesh
+from core.scan.uneven_sections import reconstruct_twice
 from core.stage_times import StageTimes, stage
 
 FEWEST_FOR_QUANTILE = 3
@@ -90,13 +91,13 @@ def scan_step(
         if features is None or features.image_size != camera.image_size:
             features = _look(found, calibration, options, progress, watch)
         solving = ReconstructOptions(method=options.method, sigma_cut_mm=options.sigma_cut_mm)
-        scan = reconstruct(features, camera, fan, solving, progress)
+        even, scan = reconstruct_twice(features, camera, fan, solving, progress)
         deviations = calibration_deviations(calibration.camera, calibration.fan)
-        common = solve_common(features, scan, camera, fan, deviations, options.method, progress)
+        common = solve_common(even, scan, camera, fan, deviations, options.method, progress)
         cloud = replace(scan.cloud, sigma_common=common.sigma(scan.cloud))
         scan = replace(scan, cloud=with_normals(cloud, progress=progress))
         if options.method == "network":
-            check = check_calibration(features, scan, camera, fan, deviations)
+            check = check_calibration(even, scan, camera, fan, deviations)
             scan = replace(scan, notes=scan.notes + check.notes)
         log.frames.extend(scan.frames)
         log.notes.extend(left_out_sentences(scan.frames))

@@ -62,12 +62,17 @@ class Noise:
 
 @dataclass(frozen=True)
 class Curve:
-    """Exact light on one face in one picture: pixels (N, 2) a px apart, their normals and the points (N, 3) in mm."""
+    """Exact light on one face in one picture: pixels (N, 2) a px apart, their normals and the points (N, 3) in mm.
+
+    `width` in px and `strength` in grey levels, of all points or (N,), are only handed on.
+    """
 
     uv: np.ndarray
     normal: np.ndarray
     points: np.ndarray
     face: int
+    width: float | np.ndarray = 1.5
+    strength: float | np.ndarray = 100.0
 
     def measured(self, sigma_px: float, correlation_px: float, rng: np.random.Generator) -> Centreline:
         """The curve with noise across itself."""
@@ -79,8 +84,8 @@ class Curve:
         return Centreline(
             self.uv + noise[:, None] * self.normal,
             self.normal,
-            np.full(count, 1.5),
-            np.full(count, 100.0),
+            np.broadcast_to(self.width, count),
+            np.broadcast_to(self.strength, count),
             np.full(count, max(sigma_px, 1e-9)),
             np.zeros(count, dtype=bool),
             correlation_px,

@@ -1,0 +1,162 @@
+"""How a scanned surface bends: a quadric fitted to what lies around each of its nodes.
+
+The nodes are the cloud's points averaged over squares of the picture (`core.scan.fusion`). Around each, the others
+within a few squares are laid over its tangent plane, and with ξ, η in that plane and h above it
+
+    h = h₀ + p ξ + q η + (a ξ² + 2 b ξη + c η²)/2
+
+is fitted by Tukey's biweight, twice: the second time over the plane that p and q ask for, so that the surface's normal
+is h's axis and (a, b, c) its second fundamental form. A sphere is a quadric over its tangent plane at a rim as well as
+on top, where the picture sees it as anything but one.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from core.model.arrays import Array
+from core.scan.cloud import Cloud
+from core.scan.fusion import fuse
+from core.scan.normals import pixel_angle
+
+NODES_ACROSS = 320
+"""Squares along the picture's width."""
+REACH = 8.0
+"""Neighbours are looked for within so many squares, as long as they are on a face that the camera looks at straight."""
+NEIGHBOURS = 64
+FEWEST = 20
+CORRELATED = 4.0
+"""Nodes that share one error: light planes, and stripes averaged along themselves, are wrong over several."""
+SURE = 2.0
+"""A bend smaller than this many standard uncertainties is none."""
+STRONGEST = 2.0
+"""Times the reach: what bends more is an edge, or a ball no larger than what it is fitted to."""
+ROUNDS = 4
+TUKEY = 4.685
+LEAST_COSINE = 0.2
+OFF_SURFACE_MM = 0.5
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Bends:
+    """Nodes of a surface, its unit normals towards the camera (M, 3) and how they turn with the place.
+
+    `curvature` (M, 3, 3) in 1/mm: the normal changes by K·δX over δX, so K is positive where the surface is convex;
+    all zero where no bend is sure, and less than was fitted where it is hardly. `known` (M,) where there is a normal.
+    """
+
+    points: Array
+    normals: Array
+    curvature: Array
+    known: NDArray[np.bool_]
+
+    @property
+    def flat(self) -> bool:
+        """Whether no bend is sure anywhere."""
+        return not self.curvature.any()
+
+    def at(self, points: Array) -> tuple[Array, Array]:
+        """Unit normals (N, 3) and curvature (N, 3, 3) at `points` (N, 3), zeros where no node is near."""
+        normals, curvature = np.zeros((len(points), 3)), np.zeros((len(points), 3, 3))
+        nodes = np.flatnonzero(self.known)
+        if not len(nodes) or not len(points):
+            return normals, curvature
+        near = nodes[cKDTree(self.points[nodes]).query(points)[1]]
+        away = points - self.points[near]
+        turned = self.normals[near] + np.einsum("nij,nj->ni", self.curvature[near], away)
+        turned /= np.linalg.norm(turned, axis=1)[:, None]
+        height = (away * (self.normals[near] + turned)).sum(axis=1) / 2
+        on = np.abs(height) < OFF_SURFACE_MM
+        normals[on], curvature[on] = turned[on], self.curvature[near[on]]
+        return normals, curvature
+
+
+def bends_of(cloud: Cloud, image_size: tuple[int, int]) -> Bends:
+    """The bends of the surface that a cloud shows in pictures of `image_size` (width, height)."""
+    cell_px = image_size[0] / NODES_ACROSS
+    nodes = fuse(cloud, image_size, cell_px)
+    points, sigma = nodes.points, np.maximum(nodes.sigma, 0.2 * float(np.median(nodes.sigma)))
+    count = len(points)
+    if count <= FEWEST or not np.ptp(nodes.uv, axis=0).any():
+        return Bends(points, np.zeros((count, 3)), np.zeros((count, 3, 3)), np.zeros(count, dtype=np.bool_))
+    reach = REACH * cell_px * pixel_angle(points, nodes.uv) * float(np.median(points[:, 2]))
+    distance, near = cKDTree(points).query(points, min(NEIGHBOURS, count), distance_upper_bound=reach)
+    inside = np.isfinite(distance)
+    near = np.where(inside, near, 0)
+    away = np.where(inside[..., None], points[near] - points[:, None, :], 0.0)
+    taper = np.where(inside, 1 - (np.where(inside, distance, 0.0) / reach) ** 2, 0.0)
+    fit = _Quadrics.over(-points / np.linalg.norm(points, axis=1)[:, None], away, taper, sigma[near], points)
+    fit = _Quadrics.over(fit.normal, away, taper, sigma[near], points)
+    fit = _Quadrics.over(fit.normal, away, taper, sigma[near], points)
+    size = np.sqrt((fit.curvature**2).sum(axis=(1, 2)))
+    known = (inside.sum(axis=1) >= FEWEST) & fit.sound & (size * reach < STRONGEST)
+    sure = np.where(known, np.maximum(1 - (SURE * fit.sigma / np.maximum(size, 1e-12)) ** 2, 0.0), 0.0)
+    return Bends(points, fit.normal, fit.curvature * sure[:, None, None], known)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class _Quadrics:
+    """A quadric around each of M nodes: `normal` (M, 3), `curvature` (M, 3, 3), its standard uncertainty `sigma`."""
+
+    normal: Array
+    curvature: Array
+    sigma: Array
+    sound: NDArray[np.bool_]
+
+    @classmethod
+    def over(cls, axis: Array, away: Array, taper: Array, sigma: Array, seen: Array) -> _Quadrics:
+        """Fits over planes square to `axis` (M, 3) to neighbours that lie `away` (M, K, 3); `sigma` of their depth."""
+        first, second = _beside(axis)
+        xi, eta, height = (np.einsum("mki,mi->mk", away, to) for to in (first, second, axis))
+        design = np.stack([np.ones_like(xi), xi, eta, xi**2 / 2, xi * eta, eta**2 / 2], axis=2)
+        scale = np.sqrt(np.maximum((taper * (xi**2 + eta**2)).sum(axis=1) / np.maximum(taper.sum(axis=1), 1e-9), 1e-9))
+        design /= scale[:, None, None] ** np.array([0, 1, 1, 2, 2, 2])
+        cosine = np.abs((axis * seen).sum(axis=1)) / np.linalg.norm(seen, axis=1)
+        noise = sigma * np.maximum(cosine, LEAST_COSINE)[:, None]
+        weight, spread = taper / noise**2, np.ones(len(axis))
+        solved, inverse = np.zeros((len(axis), 6)), np.zeros((len(axis), 6, 6))
+        robust = np.ones_like(taper)
+        for _ in range(ROUNDS):
+            weighted = design * (weight * robust)[..., None]
+            matrix = weighted.transpose(0, 2, 1) @ design
+            matrix += 1e-9 * np.trace(matrix, axis1=1, axis2=2)[:, None, None] * np.eye(6) + 1e-12 * np.eye(6)
+            inverse = np.linalg.inv(matrix)
+            solved = np.einsum("mij,mj->mi", inverse, np.einsum("mki,mk->mi", weighted, height))
+            off = np.where(taper > 0, (height - np.einsum("mki,mi->mk", design, solved)) / noise, np.nan)
+            spread = np.maximum(1.4826 * np.nan_to_num(_median(np.abs(off)), nan=1.0), 1.0)
+            robust = np.clip(1 - (np.nan_to_num(off) / (TUKEY * spread[:, None])) ** 2, 0.0, None) ** 2
+        p, q, a, b, c = (solved[:, k] / scale**power for k, power in zip(range(1, 6), (1, 1, 2, 2, 2), strict=True))
+        normal = axis - p[:, None] * first - q[:, None] * second
+        normal /= np.linalg.norm(normal, axis=1)[:, None]
+        form = a, b, c
+        curvature = -_tensor(first, second, form)
+        own = np.sqrt(CORRELATED * np.maximum(inverse[:, 3, 3] + 2 * inverse[:, 4, 4] + inverse[:, 5, 5], 0)) / scale**2
+        sound = (np.hypot(p, q) < 5) & np.isfinite(own) & ((robust * (taper > 0)).sum(axis=1) > FEWEST / 2)
+        return cls(normal, curvature, own * spread, sound)
+
+
+def _median(values: Array) -> Array:
+    """Medians (M,) of rows (M, K) with NaN; NaN where there is nothing else."""
+    empty = np.asarray(np.isnan(values).all(axis=1))
+    return np.asarray(np.nanmedian(np.where(empty[:, None], 1.0, values), axis=1))
+
+
+def _beside(axis: Array) -> tuple[Array, Array]:
+    """Two unit vectors (M, 3) square to unit `axis` (M, 3) and to each other."""
+    helper = np.zeros_like(axis)
+    helper[np.arange(len(axis)), np.argmin(np.abs(axis), axis=1)] = 1.0
+    first = np.cross(axis, helper)
+    first /= np.linalg.norm(first, axis=1)[:, None]
+    return first, np.cross(axis, first)
+
+
+def _tensor(first: Array, second: Array, form: tuple[Array, Array, Array]) -> Array:
+    """(M, 3, 3) of a second fundamental form given in the frame of two tangents."""
+    a, b, c = (one[:, None, None] for one in form)
+    ff, ss = first[:, :, None] * first[:, None, :], second[:, :, None] * second[:, None, :]
+    fs = first[:, :, None] * second[:, None, :]
+    return np.asarray(a * ff + b * (fs + fs.transpose(0, 2, 1)) + c * ss)
