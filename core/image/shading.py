@@ -6,17 +6,8 @@ the stripe g is not known, but along it the brightness can be read off, and on a
 s² |∂ln I/∂s| is what the crest may be off by, and it counts as uncertainty. On an evenly lit face it vanishes.
 
 It is a bound on the safe side: what counts is the width of the light on the surface, and the lens, which blurs what
-is shaded already, is in s as well. Nothing is corrected. What would be is known: with s the light's own width, b the
-lens, S² = s² + b², κ the second over the first derivative of the distance from the light plane across the stripe, and c
-the stripe's curvature in the picture, the centre lies off the plane by
-
-    s² (g − 3κ/2) − κ s⁴/S² + b² c/2
-
-(the second term with weights that trust the flanks, as speckle asks for). On a rendered sphere of 50 mm at half
-resolution (s = 1, b = 1.03 px) that foretells the offset, 0.012 px rms and 0.03 px at the rim, to 0.0025 px rms where
-bend and emitter are given. Radially it is 0.010 mm on the flanks against nothing on the top, the same for all stripes,
-and the radius follows with 0.03 to 0.05 mm, the more the less of the sphere is seen; `core.inspect.sphere` counts it.
-A fit of the bends to the measured surface does not reach the flanks, where most of it is, well enough to take it off.
+is shaded already, is in s as well. What a bend does is known better, and taken off, once a first solution has shown the
+surface: `core.scan.sections`.
 """
 
 from __future__ import annotations

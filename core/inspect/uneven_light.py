@@ -1,9 +1,10 @@
-"""What light that lies unevenly on a curved surface does to the surface fitted: one more effect on its parameters.
+"""What is left of light that lies unevenly on a curved surface, in the surface fitted: an effect on its parameters.
 
-On a flank a stripe's section is brighter on the side turned to the laser, so its middle is off to there (see
-`core.image.shading`). That pulls the flanks, where the surface's normal and the line of sight make an angle of cosine
-c, against the top. Radius and centre follow, the further the less of the surface is seen, by 1/(1 − c): the centre
-along the line of sight, as far as the radius grows, for the top stays where it is.
+On a flank a stripe's section is brighter on the side turned to the laser, so its middle is off to there. A scan that is
+solved twice has taken that off (`core.scan.uneven_sections`), but for a part. That pulls the flanks, where surface
+normal and line of sight make an angle of cosine c, against the top. Radius and centre follow, the further the less of
+the surface is seen, by 1/(1 − c): the centre along the line of sight, as far as the radius grows, for the top stays
+where it is.
 """
 
 from __future__ import annotations
@@ -23,9 +24,9 @@ from core.scan.normals import pixel_angle
 
 Round = TypeVar("Round", Ball, Tube)
 
-SECTION = 2.5
-"""How far a section of light of σ w on a surface of radius R is off at the flanks, radially, in w²/R: 2 to 3 on
-rendered spheres of 50 mm. Which way hangs on where the lasers are, which is not known: see `core.image.shading`."""
+SECTION = 0.8
+"""How far a section of light of σ w on a surface of radius R may be off at the flanks, radially, in w²/R: 2 to 3 on
+rendered spheres of 50 mm as they are seen, of which a third at most is left where the scan was solved twice."""
 LEAST_SEEN = 0.1
 """1 − c of what is seen of a surface is taken to be at least this."""
 UNEVEN_LIGHT = "light that lies unevenly on the curved surface"

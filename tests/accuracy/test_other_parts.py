@@ -29,7 +29,7 @@ def test_a_sphere_of_50_mm_has_its_radius(sphere):
 
 
 def test_a_sphere_has_its_radius_on_the_worst_of_five_seeds_too(tmp_path):
-    """Too small, as all are: light lies unevenly on the flanks (core.image.shading)."""
+    """The one that wide light made smallest, when scans were solved only once (core.scan.uneven_sections)."""
     measured = measure(Scenario(object="sphere", height_mm=50.0, seed=5, scale=0.5, frames=60), tmp_path)
     fit = fit_sphere(measured.cloud, find_sphere(measured.cloud), errors=measured.errors)
     print(f"radius error {fit.radius_mm - 25.0:+.4f} mm, u {fit.u_mm:.4f} mm")
