@@ -11,6 +11,7 @@ from core.image.running import quantile_of_sizes
 from core.model.arrays import Array
 
 _ARM, _SHORTEST_ARM = 8.0, 3.0  # filter σ
+_SAMPLE = 4  # points: a bend changes as slowly as the window is long
 _LARGEST_ANGLE = 0.2  # rad from the middle of a parabola to its end: beyond, an arc is none
 
 
@@ -60,8 +61,8 @@ def parabolas(run: Array, arc: Array, weight: Array, arm: float) -> Array:
             before, behind = max(k - 1, 0), min(k + 1, count - 1)
             fit[0], fit[1], fit[2] = run[k, 0] - centre_u, run[behind, 0] - run[before, 0], 0.0
             fit[3], fit[4], fit[5] = run[k, 1] - centre_v, run[behind, 1] - run[before, 1], 0.0
-        length = math.hypot(fit[1], fit[4])
-        nu, nv = fit[4] / length, -fit[1] / length
+        scale = 1 / math.sqrt(fit[1] * fit[1] + fit[4] * fit[4])
+        nu, nv = fit[4] * scale, -fit[1] * scale
         result[k, 0], result[k, 1], result[k, 2], result[k, 3] = fit[0] + centre_u, fit[3] + centre_v, nu, nv
         result[k, 4] = (fit[2] * nu + fit[5] * nv) / (arm * arm)
     return result
@@ -80,13 +81,14 @@ def _solve(m: Array, x: float, fit: Array) -> bool:
     determinant = s0 * c00 + s1 * c01 + s2 * c02
     if determinant <= 1e-6 * s0**3:
         return False
+    inverse = 1 / determinant
     for axis in range(2):
         t0, t1, t2 = m[5 + 3 * axis], m[6 + 3 * axis], m[7 + 3 * axis]
         t2 -= x * (2 * t1 - x * t0)
         t1 -= x * t0
-        fit[3 * axis] = (c00 * t0 + c01 * t1 + c02 * t2) / determinant
-        fit[3 * axis + 1] = (c01 * t0 + c11 * t1 + c12 * t2) / determinant
-        fit[3 * axis + 2] = 2 * (c02 * t0 + c12 * t1 + c22 * t2) / determinant
+        fit[3 * axis] = (c00 * t0 + c01 * t1 + c02 * t2) * inverse
+        fit[3 * axis + 1] = (c01 * t0 + c11 * t1 + c12 * t2) * inverse
+        fit[3 * axis + 2] = 2 * (c02 * t0 + c12 * t1 + c22 * t2) * inverse
     return True
 
 
@@ -94,7 +96,7 @@ def _solve(m: Array, x: float, fit: Array) -> bool:
 def guide(run: Array, arc: Array, weight: Array, filter_px: float) -> Array:
     """The curve through a run (N, ≥ 2) as `parabolas` of ± 8 filter σ give it, of fewer where the run is bent."""
     curve = parabolas(run, arc, weight, _ARM * filter_px)
-    bend = quantile_of_sizes(curve[:, 4], 0.9)
+    bend = quantile_of_sizes(curve[::_SAMPLE, 4], 0.9)
     if bend * _ARM * filter_px > _LARGEST_ANGLE:
         curve = parabolas(run, arc, weight, max(_LARGEST_ANGLE / bend, _SHORTEST_ARM * filter_px))
     return curve

@@ -222,9 +222,9 @@ def _work_out(grey: Float32, seen: Float32, figures: Float32, weight: Float32, r
 @njit(cache=True, nogil=True, fastmath=True)
 def _score(results: Float32, k: int, height: float, width: float) -> tuple[float, float]:
     """Σ ψ·(I − model) and Σ ψ·d; where pixels are left out, the height is estimated together with the place."""
-    n, nt, eh = results[0, k], results[1, k], results[5, k]
+    n, nt, e, eh = results[0, k], results[1, k], results[3, k], results[5, k]
     if results[6, k] > 0 and eh > 0:
         share = results[2, k] / eh
-        n, nt = n - share * results[3, k], nt - share * results[4, k]
+        n, nt = n - share * e, nt - share * results[4, k]
     inverse = 1 / width
     return n * inverse, max(nt * height * inverse * inverse * inverse, 0.0)

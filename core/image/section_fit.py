@@ -18,6 +18,9 @@ REACH = 3.2
 _BINS_PER_PX = 2
 _UNKNOWNS = 5
 _ROUNDS = 8
+_SETTLED = 0.01  # stripe σ: after a step so small the next one would be nothing
+_LANES = 8  # there are as many bins as a multiple of what the processor multiplies at once
+_EVERY = 2  # rows: grains are as wide, and white noise hardly matters to a fit that rests on a hundred pixels
 
 
 @njit(cache=True, nogil=True, fastmath=True)
@@ -27,7 +30,7 @@ def fit_sections(picture: Picture, state: NDArray[np.uint8], places: Array, stri
     Each rests on the pixels up to `along_px` away along the stripe and 3.2 σ `stripe_px` across it.
     """
     reach = REACH * stripe_px + 1.0
-    bins = 2 * math.ceil(reach * _BINS_PER_PX) + 1
+    bins = _LANES * (2 * math.ceil(reach * _BINS_PER_PX) // _LANES + 1)
     section = np.empty((3, bins))
     work = np.empty((_UNKNOWNS + 1, _UNKNOWNS))
     x = np.zeros(_UNKNOWNS)  # background, slope, height, centre, width
@@ -66,7 +69,7 @@ def _gather(
     section[:] = 0.0
     half = math.ceil(abs(nv) * reach + abs(nu) * along_px)
     row = int(v + 0.5)
-    for j in range(max(row - half, 0), min(row + half + 1, height)):
+    for j in range(max(row - half, 0), min(row + half + 1, height), _EVERY):
         at, spread = u - nv * (j - v) / nu, reach / abs(nu)
         for i in range(max(math.ceil(at - spread), 0), min(math.floor(at + spread) + 1, width)):
             across = nu * (i - u) + nv * (j - v)
@@ -131,7 +134,7 @@ def _fit(section: Array, stripe_px: float, x: Array, work: Array) -> bool:
         step[4] = min(max(step[4], -0.3 * width), 0.5 * width)
         for a in range(_UNKNOWNS):
             x[a] += step[a]
-        if abs(step[3]) + abs(step[4]) < 1e-3 * stripe_px:
+        if abs(step[3]) + abs(step[4]) < _SETTLED * stripe_px:
             return True
     return False
 

@@ -14,14 +14,17 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+from numba import njit
 
-from core.image.running import median, running_median
+from core.image.running import running_median
 from core.model.arrays import Array
 
 _COARSEST = 3.0  # stripe σ
 _FEWEST_CUTS = 30
 _LEVEL_CUTS = 41
 _OUTLIER = 6.0  # median deviations, four standard ones
+_SAMPLE = 4  # every so many cuts tell the median
+_LAGS = 3  # pixels from one to the other: 0 to 2
 _SIGNIFICANT = 4.0
 _SMALLEST_GRAIN_PX = 0.8
 _LARGEST_CONTRAST = 1.0
@@ -47,16 +50,14 @@ def measure_speckle(stripes: list[Array], width_px: float) -> Speckle:
     width_px
         σ of the stripes; speckle is not much coarser than they are wide.
     """
-    sums = np.zeros((3, 2))
+    sums = np.zeros((_LAGS, 2))
     square, number = 0.0, 0.0
     for seen, m in stripes:
         if len(seen) < _FEWEST_CUTS:
             continue
         r = _levelled(seen, m)
-        for lag in range(3):
-            width = m.shape[1] - lag
-            sums[lag] += [float(np.sum(p[:, :width] * p[:, lag:])) for p in (r, m)]
-        square += float(np.sum(r**2))
+        sums += _products(r, m)
+        square += float(np.vdot(r, r))
         number += float(np.count_nonzero(m))
     if not np.all(sums[:, 1] > 0):
         return NO_SPECKLE
@@ -71,12 +72,53 @@ def measure_speckle(stripes: list[Array], width_px: float) -> Speckle:
     return Speckle(min(contrast, _LARGEST_CONTRAST), grain)
 
 
+@njit(cache=True, nogil=True, fastmath=True)
+def _products(r: Array, m: Array) -> Array:
+    """Sums of products of neighbours in each cut, of residuals and of the model, (_LAGS, 2)."""
+    sums, width = np.zeros((_LAGS, 2)), m.shape[1]
+    for c in range(len(m)):
+        for lag in range(_LAGS):
+            for i in range(width - lag):
+                sums[lag, 0] += r[c, i] * r[c, i + lag]
+                sums[lag, 1] += m[c, i] * m[c, i + lag]
+    return sums
+
+
+@njit(cache=True, nogil=True, fastmath=True)
 def _levelled(r: Array, m: Array) -> Array:
     """Residuals freed of brightness that changes along the stripe, of the section's shape, and of what stands out."""
-    height = np.sum(r * m, axis=1) / np.maximum(np.sum(m**2, axis=1), 1e-9)
-    levelled = r - running_median(height, _LEVEL_CUTS)[:, None] * m
-    levelled -= np.sum(levelled * m, axis=0) / np.maximum(np.sum(m**2, axis=0), 1e-9) * m
-    seen = m > 0
-    limit = _OUTLIER * median(np.abs(levelled[seen]) / m[seen]) * m if seen.any() else m
-    clipped: Array = np.clip(levelled, -limit, limit)
-    return clipped
+    cuts, width = m.shape
+    height, levelled = np.empty(cuts), np.empty_like(r)
+    for c in range(cuts):
+        product, square = 0.0, 1e-9
+        for i in range(width):
+            product += r[c, i] * m[c, i]
+            square += m[c, i] * m[c, i]
+        height[c] = product / square
+    height = running_median(height, _LEVEL_CUTS)
+    shape, light = np.zeros(width), np.zeros(width)
+    for c in range(cuts):
+        for i in range(width):
+            levelled[c, i] = r[c, i] - height[c] * m[c, i]
+            shape[i] += levelled[c, i] * m[c, i]
+            light[i] += m[c, i] * m[c, i]
+    for c in range(cuts):
+        for i in range(width):
+            levelled[c, i] -= shape[i] / max(light[i], 1e-9) * m[c, i]
+    limit = _OUTLIER * _median_share(levelled[::_SAMPLE], m[::_SAMPLE])
+    for c in range(cuts):
+        for i in range(width):
+            levelled[c, i] = min(max(levelled[c, i], -limit * m[c, i]), limit * m[c, i])
+    return levelled
+
+
+@njit(cache=True, nogil=True)
+def _median_share(r: Array, m: Array) -> float:
+    """Median of |r/m| where m > 0; 1 if that is nowhere."""
+    shares, count = np.empty(m.size), 0
+    for c in range(len(m)):
+        for i in range(m.shape[1]):
+            if m[c, i] > 0:
+                shares[count] = abs(r[c, i]) / m[c, i]
+                count += 1
+    return float(np.median(shares[:count])) if count else 1.0
