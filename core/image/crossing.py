@@ -158,9 +158,9 @@ def _cross_at(
     if row[0] > 0:
         return _REASONS[int(row[0]) - 1], None
     _, u, v, tau, tav, tbu, tbv, sigma_a, sigma_b, curved = row.tolist()
-    normals = np.array([[-tav, tau], [-tbv, tbu]])
-    spread = np.linalg.inv(normals) * np.array([sigma_a, sigma_b])
     sine, cosine = abs(tau * tbv - tav * tbu), abs(tau * tbu + tav * tbv)
+    a, b = sigma_a / sine, sigma_b / sine
+    spread = np.array([[a * tbu, -b * tau], [a * tbv, -b * tav]])  # the inverse of both normals, or its negative
     crossing = Crossing(
         uv=np.array([u, v]),
         tangent_a=np.array([tau, tav]),

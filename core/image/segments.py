@@ -19,7 +19,7 @@ from core.image.pieces import arc_length
 from core.model.arrays import Array
 
 _CHUNK = 16
-
+_GROUP = 8  # boxes that share a larger one
 
 CELL_REACH = 3
 """A local fit reaches so many cells to either side, if the line goes on so far."""
@@ -116,25 +116,44 @@ def meeting_segments(
     a: Array, starts_a: NDArray[np.int64], boxes_a: Array, b: Array, starts_b: NDArray[np.int64], boxes_b: Array
 ) -> NDArray[np.int64]:
     """Segments that cut each other: (K, 4) piece and first point within it, of a and of b."""
-    found = np.empty((16, 4), dtype=np.int64)
-    count = 0
-    for p in range(len(boxes_a)):
-        for q in range(len(boxes_b)):
-            if boxes_apart(boxes_a[p], boxes_b[q]):
+    found, count = np.empty((16, 4), dtype=np.int64), 0
+    for p, q in _overlapping(boxes_a, boxes_b):
+        for k in range(int(boxes_a[p, 1]), int(boxes_a[p, 2])):
+            if segment_apart(a[k], a[k + 1], boxes_b[q]):
                 continue
-            for k in range(int(boxes_a[p, 1]), int(boxes_a[p, 2])):
-                if segment_apart(a[k], a[k + 1], boxes_b[q]):
+            for m in range(int(boxes_b[q, 1]), int(boxes_b[q, 2])):
+                if not segments_cut(a[k], a[k + 1], b[m], b[m + 1]):
                     continue
-                for m in range(int(boxes_b[q, 1]), int(boxes_b[q, 2])):
-                    if not segments_cut(a[k], a[k + 1], b[m], b[m + 1]):
-                        continue
-                    if count == len(found):
-                        found = np.concatenate((found, np.empty_like(found)))
-                    i, j = int(boxes_a[p, 0]), int(boxes_b[q, 0])
-                    found[count, 0], found[count, 1] = i, k - starts_a[i]
-                    found[count, 2], found[count, 3] = j, m - starts_b[j]
-                    count += 1
+                if count == len(found):
+                    found = np.concatenate((found, np.empty_like(found)))
+                i, j = int(boxes_a[p, 0]), int(boxes_b[q, 0])
+                found[count, 0], found[count, 1] = i, k - starts_a[i]
+                found[count, 2], found[count, 3] = j, m - starts_b[j]
+                count += 1
     return found[:count]
+
+
+@njit(cache=True, nogil=True)
+def _overlapping(a: Array, b: Array) -> NDArray[np.int64]:
+    """Pairs (K, 2) of boxes that have something in common; boxes of `b` are passed over by the group."""
+    groups = np.empty((-(-len(b) // _GROUP), 7))
+    for g in range(len(groups)):
+        part = b[g * _GROUP : (g + 1) * _GROUP]
+        groups[g, 3], groups[g, 4] = part[:, 3].min(), part[:, 4].min()
+        groups[g, 5], groups[g, 6] = part[:, 5].max(), part[:, 6].max()
+    pairs, count = np.empty((64, 2), dtype=np.int64), 0
+    for p in range(len(a)):
+        for g in range(len(groups)):
+            if boxes_apart(a[p], groups[g]):
+                continue
+            for q in range(g * _GROUP, min((g + 1) * _GROUP, len(b))):
+                if boxes_apart(a[p], b[q]):
+                    continue
+                if count == len(pairs):
+                    pairs = np.concatenate((pairs, np.empty_like(pairs)))
+                pairs[count, 0], pairs[count, 1] = p, q
+                count += 1
+    return pairs[:count]
 
 
 @njit(cache=True, nogil=True)

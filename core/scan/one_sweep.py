@@ -131,7 +131,7 @@ def _shared(rays: Array, known: KnownPlanes) -> Array:
     shared = np.zeros((len(rays), len(rays)))
     columns = (3 * known.sweep[rows, None] + np.arange(3)).ravel()
     among = known.covariance[np.ix_(columns, columns)].reshape(len(rows), 3, len(rows), 3)
-    shared[np.ix_(rows, rows)] = np.einsum("mi,minj,nj->mn", rays[rows], among, rays[rows], optimize=True)
+    shared[np.ix_(rows, rows)] = np.einsum("mnj,nj->mn", np.einsum("mi,minj->mnj", rays[rows], among), rays[rows])
     return shared
 
 
