@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+from itertools import count
+
 import numpy as np
 from scipy.spatial import cKDTree
 
+from core.image.centreline import Centreline
 from core.image.linking import link
 from core.image.pieces import END_TRIM_PX
 from core.image.ridge import ridge_response
 from core.image.stripes import _limits, extract_centrelines
+from core.scan.crossings import CrossingWindow
 from core.scan.features import FrameReader
 from core.scan.frame_reader import saturated_pixels
 from core.scan.reference import check_reference
+from core.scan.tracking import SweepTracker
+from core.scan.triangulate import triangulate
 from core.simulate.scenario import Scenario
 from tests.benchmarks.conftest import FullFrame, processor_ms, table
 from tests.benchmarks.peers import opencv_steger, skimage_hessian
@@ -21,6 +27,17 @@ from tests.scan.centreline_scan import Curve, ExactScan
 def found(frame: FullFrame, picture: np.ndarray, saturated: np.ndarray) -> list[np.ndarray]:
     limits = _limits(frame.stripe, frame.noise, knows_saturation=True)
     return link(picture, saturated.view(np.uint8), frame.stripe.stripe_px, frame.stripe.filter_px, limits)
+
+
+def after_forty_sweeps(full: FullFrame, exact: ExactScan) -> SweepTracker:
+    """A tracker of the frame's scan that knows forty other sweeps, nearly all of them anchors."""
+    rng = np.random.default_rng(1)
+    tracker = SweepTracker(full.reference.fan, exact.rig.camera, exact.rig.fan, CrossingWindow())
+    for frame, curves in enumerate(exact.sweeps):
+        tracker.add(frame, [curve.measured(0.1, 10.0, rng) for curve in curves if len(curve.uv) > 40])
+        if tracker.is_due:
+            tracker.adjust()
+    return tracker
 
 
 def test_tracing_against_filtering_every_pixel(benchmark, speckled, capsys):
@@ -48,7 +65,7 @@ def test_tracing_against_filtering_every_pixel(benchmark, speckled, capsys):
 
 
 def test_a_whole_frame(benchmark, speckled, capsys):
-    """Difference, tracing and likelihood of one frame against its reference, and of four stripes at once."""
+    """One frame against its reference, from the difference to points with σ, and four stripes at once."""
     reader = FrameReader(speckled.reference, speckled.stripe)
     picture = speckled.frame.astype(np.int16)
     saturated = saturated_pixels(speckled.frame)
@@ -56,18 +73,31 @@ def test_a_whole_frame(benchmark, speckled, capsys):
     def four() -> object:
         return extract_centrelines(picture, speckled.stripe, noise=speckled.noise, saturated=saturated)
 
+    exact = ExactScan.of(Scenario(frames=40, seed=3))
+    tracker, number = after_forty_sweeps(speckled, exact), count(100)
+
+    def read() -> tuple[Centreline, ...]:
+        return reader((0, ("frame", speckled.frame))).centrelines
+
+    def located(lines: tuple[Centreline, ...]) -> object:
+        plane = tracker.add(next(number), lines).plane
+        return [triangulate(line, plane.pi, plane.covariance, exact.rig.camera, 0, 0) for line in lines]
+
     opencv = processor_ms(
         lambda: opencv_steger(speckled.four, speckled.stripe.filter_px, ridge_response(30.0, 2.4, 3.4)), 3
     )
+    lines = read()
     difference = speckled.reference.difference(speckled.frame)
     rows = {
         "frame − reference": processor_ms(lambda: speckled.reference.difference(speckled.frame)),
         "the reference still holds": processor_ms(lambda: check_reference(difference, speckled.reference.fan)),
-        "one frame read, difference to σ of each point": processor_ms(lambda: reader((0, ("frame", speckled.frame)))),
+        "one frame read, difference to σ of each point": processor_ms(read),
+        "crossings with fan and 40 sweeps, plane, points": processor_ms(lambda: located(lines)),
+        "all of a frame (required: 15 ms)": processor_ms(lambda: located(read())),
         "four stripes found": processor_ms(lambda: found(speckled, picture, saturated)),
         "four stripes found and measured": processor_ms(four),
     }
-    benchmark(lambda: reader((0, ("frame", speckled.frame))))
+    benchmark(lambda: located(read()))
     shown = {
         name: f"{ms:8.1f} ms   OpenCV's line points alone: {opencv / ms:.0f} times as long" for name, ms in rows.items()
     }
