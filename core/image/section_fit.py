@@ -20,7 +20,7 @@ _UNKNOWNS = 5
 _ROUNDS = 8
 _SETTLED = 0.01  # stripe σ: after a step so small the next one would be nothing
 _LANES = 8  # there are as many bins as a multiple of what the processor multiplies at once
-_EVERY = 2  # rows: grains are as wide, and white noise hardly matters to a fit that rests on a hundred pixels
+_FEW_ROWS = 6.0  # of more, every second one tells enough: grains are as wide, and a hundred pixels are left
 
 
 @njit(cache=True, nogil=True, fastmath=True)
@@ -68,8 +68,8 @@ def _gather(
     middle = section.shape[1] // 2
     section[:] = 0.0
     half = math.ceil(abs(nv) * reach + abs(nu) * along_px)
-    row = int(v + 0.5)
-    for j in range(max(row - half, 0), min(row + half + 1, height), _EVERY):
+    row, every = int(v + 0.5), 2 if 2 * along_px > _FEW_ROWS else 1
+    for j in range(max(row - half, 0), min(row + half + 1, height), every):
         at, spread = u - nv * (j - v) / nu, reach / abs(nu)
         for i in range(max(math.ceil(at - spread), 0), min(math.floor(at + spread) + 1, width)):
             across = nu * (i - u) + nv * (j - v)
