@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import cv2
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
@@ -44,6 +45,28 @@ def quantile_reference(pictures: Sequence[Picture], quantile: float = 0.35) -> P
         for row in range(len(pictures[0]))
     ]
     return np.stack(rows)
+
+
+def picture_difference(picture: Picture, base: Picture) -> NDArray[np.int16] | NDArray[np.float32]:
+    """`picture` minus `base`, both (H, W): 16-bit integers where they hold it, which moves less memory; else float32.
+
+    Pictures of 8 bits are what a camera sends a hundred times a second: a compiled loop takes a third of the time that
+    OpenCV takes for different types of input and output.
+    """
+    if picture.dtype == np.uint8 == base.dtype:
+        return _difference(picture, base)
+    return np.asarray(cv2.subtract(picture, base, dtype=cv2.CV_32F), dtype=np.float32)
+
+
+@njit(cache=True, nogil=True)
+def _difference(picture: Picture, base: Picture) -> NDArray[np.int16]:
+    height, width = picture.shape
+    found = np.empty((height, width), np.int16)
+    for j in range(height):
+        line, under, out = picture[j], base[j], found[j]
+        for i in range(width):
+            out[i] = np.int16(line[i]) - np.int16(under[i])
+    return found
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -16,7 +15,7 @@ from core.image.stripe_settings import choose_settings
 from core.image.stripes import extract_centrelines
 from core.model import Camera
 from core.scan.crossings import CrossingWindow
-from core.scan.reference import Picture
+from core.scan.reference import Picture, picture_difference
 
 LIGHT_SHARE, LIGHT_FLOOR = 0.2, 0.02
 """A change of the background counts as one of the room's light from this share of it, and of the full scale, on."""
@@ -58,10 +57,8 @@ class ReferenceFeatures:
         return width, height
 
     def difference(self, picture: Picture) -> NDArray[np.int16] | NDArray[np.float32]:
-        """A frame minus the picture, both (H, W); in 16-bit integers where they hold it, for that is twice as quick."""
-        if picture.dtype == np.uint8 == self.base.dtype:
-            return np.asarray(cv2.subtract(picture, self.base, dtype=cv2.CV_16S), dtype=np.int16)
-        return np.asarray(cv2.subtract(picture, self.base, dtype=cv2.CV_32F), dtype=np.float32)
+        """A frame minus the picture, both (H, W)."""
+        return picture_difference(picture, self.base)
 
     def light_change(self, grey: float) -> float:
         """A change of the background by `grey` levels as a share of it; 0 where stripes do not feel it."""

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from core.image.centreline import Centreline
-from core.scan.reference import check_reference, quantile_reference, sample_indices
+from core.scan.reference import check_reference, picture_difference, quantile_reference, sample_indices
 
 WIDTH = 2.0
 
@@ -68,3 +68,14 @@ def test_samples_are_spread_over_the_scan():
     assert len(sample_indices(1000)) == 15
     assert sample_indices(1000)[-1] == 999
     assert sample_indices(0) == []
+
+
+@pytest.mark.parametrize(("levels", "kind"), [(np.uint8, np.int16), (np.uint16, np.float32)])
+def test_a_picture_darker_than_the_reference_differs_by_less_than_nothing(levels, kind):
+    rng = np.random.default_rng(3)
+    highest = np.iinfo(levels).max
+    one, other = (rng.integers(0, highest, (37, 53), endpoint=True).astype(levels) for _ in range(2))
+    one[0, 0], other[0, 0], one[0, 1], other[0, 1] = 0, highest, highest, 0
+    found = picture_difference(one[:, ::2], other[:, ::2])
+    assert found.dtype == kind
+    assert np.array_equal(found, one[:, ::2].astype(float) - other[:, ::2])
