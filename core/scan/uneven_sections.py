@@ -46,12 +46,16 @@ def reconstruct_twice(
 ) -> tuple[ScanFeatures, ScanResult]:
     """Solve the scan, and where its surface bends again: the features it rests on in the end, and the solution.
 
+    By the paper's method it is solved once: nothing of ours is in it.
+
     Raises
     ------
     InputError
         As `core.scan.reconstruct.reconstruct`.
     """
     first = reconstruct(features, camera, fan, options, progress)
+    if options is not None and options.method != "network":
+        return features, first
     even = evened(features, first, camera, fan)
     if even is features:
         return features, first

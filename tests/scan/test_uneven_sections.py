@@ -9,7 +9,7 @@ from core.image.pieces import arc_length
 from core.inspect.sphere import through
 from core.scan.bent_crossings import BentLine, met_again
 from core.scan.fan_lines import FanLines
-from core.scan.reconstruct import reconstruct
+from core.scan.reconstruct import ReconstructOptions, reconstruct
 from core.scan.sections import LARGEST
 from core.scan.straightening import straightened
 from core.scan.uneven_sections import evened, reconstruct_twice
@@ -73,6 +73,13 @@ def test_a_flat_part_is_solved_once_and_nothing_of_it_moves():
     exact = ExactScan.of(Scenario(scale=0.5, frames=30))
     features = exact.measured(1)
     even, _ = reconstruct_twice(features, exact.rig.camera, exact.rig.fan)
+    assert even is features
+
+
+def test_by_the_paper_s_method_a_ball_is_solved_once(scans):
+    exact, (features, _), _ = scans
+    options = ReconstructOptions(method="three-crossings")
+    even, _ = reconstruct_twice(features, exact.rig.camera, exact.rig.fan, options)
     assert even is features
 
 
