@@ -1,12 +1,14 @@
 """The two parallel faces of a part, found in the cloud or given as polygons in the picture.
 
 Planes are found one after the other by RANSAC: three points near each other and of like normals make a hypothesis,
-the area it explains is its vote, and the best few are refined before the winner is chosen (locally optimised RANSAC).
+the area it explains is its vote, more where points are closer (MSAC), and the best few are refined before the winner is
+chosen (locally optimised RANSAC).
 Of all pairs of parallel planes the pair whose smaller face is largest wins.
 
 References
 ----------
 Fischler, Bolles, Random sample consensus, Comm. ACM 24 (1981), doi:10.1145/358669.358692.
+Torr, Zisserman, MLESAC, CVIU 78 (2000), doi:10.1006/cviu.1999.0832.
 Chum, Matas, Kittler, Locally optimized RANSAC, DAGM 2003, doi:10.1007/978-3-540-45243-0_31.
 """
 
@@ -29,6 +31,7 @@ from core.scan.normals import pixel_angle, with_normals
 SEARCH_POINTS = 8000
 """About as many points, spread evenly over the picture, are enough to find the planes."""
 HYPOTHESES = 300
+FINALISTS = 5
 MOST_PLANES = 8
 FEWEST_POINTS = 12
 LIKE_NORMALS = np.cos(np.radians(30.0))
@@ -223,24 +226,31 @@ def _largest_plane(cloud: Cloud, tolerance: float, margin_mm: float, seed: int) 
         return None
     points, normals = cloud.points[sample], cloud.normals[sample]
     candidates = _hypotheses(points, normals, rng)
-    votes = np.array([area[_near(points, normals, n, d, tolerance)].sum() for n, d in candidates])
-    best: tuple[float, Array, float] | None = None
-    for index in np.argsort(-votes, kind="stable")[:5]:
+    votes = np.array([_vote(points, normals, area, n, d, tolerance) for n, d in candidates])
+    finalists = []
+    for index in np.argsort(-votes, kind="stable")[:FINALISTS]:
         normal, distance = candidates[index]
         for _ in range(4):
             near = _near(points, normals, normal, distance, tolerance)
             if near.sum() < 6:
                 break
             normal, distance = _mean_plane(points[near], area[near])
-        vote = float(area[_near(points, normals, normal, distance, tolerance)].sum())
-        if best is None or vote > best[0]:
-            best = vote, normal, distance
-    if best is None or best[0] <= 0:
-        return None
-    _, normal, distance = best
-    near = _on_plane(cloud, normal, distance, tolerance)
-    region = Region.of(cloud.points, np.flatnonzero(near), normal, margin_mm)
-    return FoundPlane(normal, distance, region) if len(region.indices) else None
+        finalists.append((_vote(points, normals, area, normal, distance, tolerance), normal, distance))
+    for vote, normal, distance in sorted(finalists, key=lambda one: -one[0]):
+        on = np.flatnonzero(_on_plane(cloud, normal, distance, tolerance))
+        region = Region.of(cloud.points, on, normal, margin_mm)
+        if vote > 0 and len(region.indices):  # nothing may be left of a plane that slants through stairs
+            return FoundPlane(normal, distance, region)
+    return None
+
+
+def _vote(points: Array, normals: Array, area: Array, normal: Array, distance: float, tolerance: float) -> float:
+    """The area in mm² that a plane explains, the less of it the farther it is away (MSAC).
+
+    A plane that slants through stairs has as much within the tolerance as one of them, but little close by.
+    """
+    near = _near(points, normals, normal, distance, tolerance)
+    return float(area[near] @ (1 - ((points[near] @ normal - distance) / tolerance) ** 2))
 
 
 def _even_sample(cloud: Cloud, rng: np.random.Generator) -> tuple[NDArray[np.int64], Array]:
