@@ -5,7 +5,7 @@ within a few squares are laid over its tangent plane, and with ξ, η in that pl
 
     h = h₀ + p ξ + q η + (a ξ² + 2 b ξη + c η²)/2
 
-is fitted by Tukey's biweight, twice: the second time over the plane that p and q ask for, so that the surface's normal
+is fitted by Tukey's biweight, then again over the plane that p and q ask for, twice, so that the surface's normal
 is h's axis and (a, b, c) its second fundamental form. A sphere is a quadric over its tangent plane at a rim as well as
 on top, where the picture sees it as anything but one.
 """
@@ -36,6 +36,7 @@ SURE = 2.0
 STRONGEST = 2.0
 """Times the reach: what bends more is an edge, or a ball no larger than what it is fitted to."""
 ROUNDS = 4
+TURNS = 2
 TUKEY = 4.685
 LEAST_COSINE = 0.2
 OFF_SURFACE_MM = 0.5
@@ -90,8 +91,8 @@ def bends_of(cloud: Cloud, image_size: tuple[int, int]) -> Bends:
     away = np.where(inside[..., None], points[near] - points[:, None, :], 0.0)
     taper = np.where(inside, 1 - (np.where(inside, distance, 0.0) / reach) ** 2, 0.0)
     fit = _Quadrics.over(-points / np.linalg.norm(points, axis=1)[:, None], away, taper, sigma[near], points)
-    fit = _Quadrics.over(fit.normal, away, taper, sigma[near], points)
-    fit = _Quadrics.over(fit.normal, away, taper, sigma[near], points)
+    for _ in range(TURNS):
+        fit = _Quadrics.over(fit.normal, away, taper, sigma[near], points)
     size = np.sqrt((fit.curvature**2).sum(axis=(1, 2)))
     known = (inside.sum(axis=1) >= FEWEST) & fit.sound & (size * reach < STRONGEST)
     sure = np.where(known, np.maximum(1 - (SURE * fit.sigma / np.maximum(size, 1e-12)) ** 2, 0.0), 0.0)
