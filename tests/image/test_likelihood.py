@@ -136,6 +136,18 @@ def test_bent_stripes_are_where_they_are(radius: float, width: float) -> None:
     assert np.abs(np.concatenate([errors(line, truth) for line in lines])).max() < 0.003
 
 
+@pytest.mark.parametrize("width", [1.5, 2.5])
+def test_the_tightest_circles_keep_their_size(width: float) -> None:
+    """Of 17 stripe σ radius: a bend does not pull, even where the open ends of a stripe are a hundredth of a px off."""
+    radius = 17 * width
+    truth = circle((radius + 40.2, radius + 40.4), radius)
+    lines = find(draw((int(2 * radius) + 90,) * 2, truth, width, 150.0), Stripe(width, 150.0))
+    error = np.concatenate([errors(line, truth) for line in lines])
+    assert abs(error.mean()) < 0.003
+    assert np.abs(error).max() < 0.02
+    assert len(error) > 0.75 * 2 * np.pi * radius
+
+
 @pytest.mark.parametrize("over", [1.5, 4.0])
 @pytest.mark.parametrize("angle_deg", [3.0, 30.0])
 def test_saturation_does_not_pull(over: float, angle_deg: float) -> None:

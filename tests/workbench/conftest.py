@@ -175,6 +175,7 @@ def nothing_left_behind(request: pytest.FixtureRequest) -> Iterator[None]:
         return
     assert isinstance(app, QApplication)
     app.processEvents()
+    app.sendPostedEvents(None, QEvent.Type.DeferredDelete)  # what is closed is gone: no later test's theme shows it
     shown = [w for w in app.topLevelWidgets() if isinstance(w, QWidget) and w.isVisible()]
     assert not shown, f"windows left open: {shown}"
     threads = [t for t in threading.enumerate() if t not in before and not t.name.startswith(("lane-", "pyvista"))]

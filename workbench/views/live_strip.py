@@ -39,12 +39,11 @@ class LiveStrip(QWidget):
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Maximum)
         live.changed.connect(self.refresh)
         live.view.connect(lambda _: self._show_lost())
+        self._dress()
         self.refresh()
 
     def refresh(self) -> None:
         """Show what is asked and what is wrong now."""
-        for card in self._cards():
-            card.dress()
         sentence, button = self.live.question
         self.answer.setText(button)
         self._ask.say(sentence)
@@ -60,7 +59,11 @@ class LiveStrip(QWidget):
     def changeEvent(self, event: QEvent) -> None:
         super().changeEvent(event)
         if event.type() == QEvent.Type.PaletteChange and hasattr(self, "_gone"):
-            self.refresh()
+            self._dress()
+
+    def _dress(self) -> None:
+        for card in self._cards():
+            card.dress()
 
     def _cards(self) -> tuple[_Card, ...]:
         return self._gone, self._lost, self._advice, self._ask

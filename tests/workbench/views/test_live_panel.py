@@ -294,6 +294,18 @@ def test_the_strip_asks_and_its_button_answers(live, lane, qtbot):
     assert lane.sent == [TakeReference()]
 
 
+def test_a_strip_that_was_closed_is_not_opened_by_another_theme(live, lane, qtbot, theme):
+    strip = LiveStrip(live)
+    qtbot.addWidget(strip)
+    live.start()
+    open_source(lane)
+    lane.current.told.emit(LiveUnplugged("gone"))
+    strip.close()
+    for name in ("dark", "light"):
+        theme(name)
+        assert strip.isHidden()
+
+
 def test_the_strip_says_that_the_source_is_unplugged(live, lane, qtbot):
     strip = LiveStrip(live)
     qtbot.addWidget(strip)
