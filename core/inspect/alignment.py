@@ -19,9 +19,9 @@ from scipy.spatial.transform import Rotation
 
 from core.errors import InputError
 from core.inspect.elements import Element
-from core.inspect.shapes import square_to
 from core.model import Pose
 from core.model.arrays import Array
+from core.model.directions import square_to
 from core.progress import Progress, silent
 from core.scan.triangles import Surroundings, Triangles
 

@@ -12,10 +12,11 @@ from typing import Literal
 import numpy as np
 
 from core.inspect.results import Contribution
-from core.inspect.shapes import Ball, Levels, Tube, square_to
+from core.inspect.shapes import Ball, Levels, Tube
 from core.inspect.surface_fit import SurfaceFit
 from core.inspect.uncertainty import Effect, budget_of
 from core.model.arrays import Array
+from core.model.directions import square_to
 
 PARALLEL = 1e-9
 

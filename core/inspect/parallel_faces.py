@@ -17,6 +17,7 @@ from core.inspect.generalised import Generalised, Sources, generalised_fit
 from core.inspect.plane_fit import ParallelPlanes
 from core.inspect.point_errors import PointErrors, patches
 from core.model.arrays import Array
+from core.model.directions import square_to
 from core.scan.cloud import Cloud
 from core.scan.triangulate import join
 
@@ -61,7 +62,7 @@ def fit_faces(upper: Cloud, lower: Cloud, planes: ParallelPlanes, errors: PointE
     cloud = join([upper, lower]).select(used)
     along = cloud.sigma * np.maximum(np.abs(points[used] @ normal / points[used, 2]), 0.1)
     robust = np.minimum(weights[used] * along**2, 1.0)  # the stated σ is the errors' business
-    across = _square_to(normal)
+    across = square_to(normal)
     sources = Sources.of(cloud, normal, robust, face[used], patches(points[used] @ across, face[used]), errors)
     axes = across if planes.tilt_determined else _along_the_lines(points[used], face[used], normal)
     for _ in range(ITERATIONS):
@@ -87,12 +88,6 @@ def fit_faces(upper: Cloud, lower: Cloud, planes: ParallelPlanes, errors: PointE
         gains=(gains[:split], gains[split:]),
     )
     return FittedFaces(refined, of_stretches, sources, fit)
-
-
-def _square_to(normal: Array) -> Array:
-    """Two unit vectors, the columns (3, 2), square to `normal` and to each other."""
-    axes: Array = np.linalg.svd(normal[None, :])[2][1:].T
-    return axes
 
 
 def _along_the_lines(points: Array, face: NDArray[np.int64], normal: Array) -> Array:

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.model.arrays import Array, frozen_array, set_field
+from core.model.directions import square_to
 
 Parts = NDArray[np.int64]
 
@@ -165,12 +166,6 @@ class Tube:
         away = points - self.centre
         across: Array = away - (away @ self.direction)[:, None] * self.direction
         return across
-
-
-def square_to(direction: Array) -> Array:
-    """Two unit vectors, the columns (3, 2), square to `direction` and to each other."""
-    axes: Array = np.linalg.svd(np.asarray(direction)[None, :])[2][1:].T
-    return axes
 
 
 def _turned(axes: Array, normal: Array) -> Array:

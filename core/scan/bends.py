@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from core.model.arrays import Array
+from core.model.directions import square_to
 from core.scan.cloud import Cloud
 from core.scan.fusion import fuse
 from core.scan.normals import pixel_angle
@@ -111,7 +112,7 @@ class _Quadrics:
     @classmethod
     def over(cls, axis: Array, away: Array, taper: Array, sigma: Array, seen: Array) -> _Quadrics:
         """Fits over planes square to `axis` (M, 3) to neighbours that lie `away` (M, K, 3); `sigma` of their depth."""
-        first, second = _beside(axis)
+        first, second = np.moveaxis(square_to(axis), 2, 0)
         xi, eta, height = (np.einsum("mki,mi->mk", away, to) for to in (first, second, axis))
         design = np.stack([np.ones_like(xi), xi, eta, xi**2 / 2, xi * eta, eta**2 / 2], axis=2)
         scale = np.sqrt(np.maximum((taper * (xi**2 + eta**2)).sum(axis=1) / np.maximum(taper.sum(axis=1), 1e-9), 1e-9))
@@ -144,15 +145,6 @@ def _median(values: Array) -> Array:
     """Medians (M,) of rows (M, K) with NaN; NaN where there is nothing else."""
     empty = np.asarray(np.isnan(values).all(axis=1))
     return np.asarray(np.nanmedian(np.where(empty[:, None], 1.0, values), axis=1))
-
-
-def _beside(axis: Array) -> tuple[Array, Array]:
-    """Two unit vectors (M, 3) square to unit `axis` (M, 3) and to each other."""
-    helper = np.zeros_like(axis)
-    helper[np.arange(len(axis)), np.argmin(np.abs(axis), axis=1)] = 1.0
-    first = np.cross(axis, helper)
-    first /= np.linalg.norm(first, axis=1)[:, None]
-    return first, np.cross(axis, first)
 
 
 def _tensor(first: Array, second: Array, form: tuple[Array, Array, Array]) -> Array:
