@@ -25,7 +25,8 @@ import numpy as np
 
 from core.acquire.source import SourceChoice
 from core.files.recording_log import lost_frames, read_log
-from core.live.events import LiveAsk, LiveNotice, LiveRequest, LiveView, Resume, Stop, TakeReference
+from core.live.commands import LiveRequest, Resume, Stop, TakeReference
+from core.live.events import LiveAsk, LiveNotice, LiveView
 from core.pipeline.live import run_live
 from tests.soak_camera import RIG, SERIAL, Tally, calibration, settings_for, sweep
 

@@ -25,7 +25,8 @@ from core.acquire.source import Region, SourceSettings
 from core.files.recorder import Recorder
 from core.files.rig import Rig
 from core.image.targets import BlackSquare, Checkerboard
-from core.live.events import LiveEnded, LiveRequest
+from core.live.commands import LiveRequest
+from core.live.events import LiveEnded
 from core.model import Camera, Fan
 from core.pipeline import live
 from core.pipeline.live_preview import ScanPreviewer

@@ -1,4 +1,4 @@
-"""What a window tells a live recording, and what it hears of it. All of it can be pickled."""
+"""What a window hears of a live recording. All of it can be pickled."""
 
 from __future__ import annotations
 
@@ -9,124 +9,13 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from core.acquire.source import Capabilities, Lasers, SourceChoice, SourceSettings, Step
-from core.files.options import Options
-from core.files.recorder import Ending
-from core.files.rig import Rig
+from core.acquire.source import Capabilities, SourceSettings
 from core.image.centreline import Centreline
-from core.image.target_view import TargetView
-from core.model import Camera, Fan
+from core.live.commands import Command
 from core.model.arrays import Array
 from core.scan.frame_preview import FramePreview
 from core.scan.preflight import Check
 from core.scan.preview_cloud import PreviewCloud
-
-
-@dataclass(frozen=True, eq=False, slots=True)
-class LiveRequest:
-    """A live recording to be made.
-
-    Parameters
-    ----------
-    step
-        What is recorded.
-    source, settings
-        The source, and what it is told at first.
-    rig
-        Targets and lasers.
-    folder
-        Made for the pictures; must not hold anything yet.
-    camera, fan
-        The calibrations as far as they are known; a scan without both shows stripes, but no points.
-    options
-        How the scan will be measured.
-    display_px
-        Width of the pictures for display, at most.
-    auto
-        Take views and poses without being told.
-    pairs
-        Take each pose of the plane target with the fan on and off.
-    there
-        What the target showed in the pictures that these are added to.
-    calibrated_s
-        When the older of the two calibrations was made, in s since 1970; None if that is not known.
-    ending
-        Of the files of a scan's frames: ".png" takes half the room, ".pgm" a tenth of the time.
-    kept_fan
-        The project whose history holds the fan, and its id there: it says how sharp the fan's stripes were then.
-    """
-
-    step: Step
-    source: SourceChoice
-    settings: SourceSettings
-    rig: Rig
-    folder: Path
-    camera: Camera | None = None
-    fan: Fan | None = None
-    options: Options = field(default_factory=Options)
-    display_px: int = 1280
-    auto: bool = True
-    pairs: bool = True
-    there: tuple[TargetView, ...] = ()
-    calibrated_s: float | None = None
-    ending: Ending = ".png"
-    kept_fan: tuple[Path, str] | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class Capture:
-    """Take this view or pose now, whatever is thought of it."""
-
-
-@dataclass(frozen=True, slots=True)
-class Auto:
-    """Take views and poses without being told, or no longer."""
-
-    on: bool
-
-
-@dataclass(frozen=True, slots=True)
-class Switch:
-    """Switch the lasers, if the source can."""
-
-    lasers: Lasers
-
-
-@dataclass(frozen=True, slots=True)
-class TakeReference:
-    """The hand-held laser is off, the fan on: take the reference. Said again while waiting: take it as it is."""
-
-
-@dataclass(frozen=True, slots=True)
-class Pause:
-    """Record nothing until Resume."""
-
-
-@dataclass(frozen=True, slots=True)
-class Resume:
-    """Record."""
-
-
-@dataclass(frozen=True, slots=True)
-class Stop:
-    """Finish: what has been recorded is complete."""
-
-
-@dataclass(frozen=True, slots=True)
-class Configure:
-    """Tell the source new settings."""
-
-    settings: SourceSettings
-
-
-@dataclass(frozen=True, slots=True)
-class Discard:
-    """Put the view or pose of this name aside, into the folder `discarded`."""
-
-    name: str
-
-
-Command = Capture | Auto | Switch | TakeReference | Pause | Resume | Stop | Configure | Discard
 
 
 @dataclass(frozen=True, eq=False, slots=True)

@@ -12,12 +12,20 @@ from collections.abc import Callable
 from core.errors import InputError
 from core.files.atomic import make_folder
 from core.files.recorder import Recorder
-from core.live.events import (
+from core.live.commands import (
     Auto,
     Capture,
     Command,
     Configure,
     Discard,
+    LiveRequest,
+    Pause,
+    Resume,
+    Stop,
+    Switch,
+    TakeReference,
+)
+from core.live.events import (
     LiveAdvice,
     LiveAnswered,
     LiveAsk,
@@ -26,17 +34,11 @@ from core.live.events import (
     LiveEnded,
     LiveEvent,
     LiveNotice,
-    LiveRequest,
     LiveSaving,
     LiveStarted,
     LiveTaken,
     LiveUnplugged,
     LiveView,
-    Pause,
-    Resume,
-    Stop,
-    Switch,
-    TakeReference,
 )
 from core.pipeline.live_camera import LiveCamera
 from core.pipeline.live_desk import Desk, LiveStep

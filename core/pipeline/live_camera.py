@@ -10,7 +10,8 @@ from core.errors import InputError
 from core.image.sharpness import edge_blur_px
 from core.image.target_view import TargetView
 from core.image.targets import Target, detect
-from core.live.events import Auto, CameraDetail, Capture, Command, Discard
+from core.live.commands import Auto, Capture, Command, Discard
+from core.live.events import CameraDetail
 from core.model import Camera
 from core.pipeline.live_desk import Desk, as_sentence
 

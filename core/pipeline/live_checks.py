@@ -10,7 +10,8 @@ import numpy as np
 from core.errors import InputError
 from core.files.calibration_store import read_stored_poses
 from core.image.centreline import Centreline
-from core.live.events import LiveChecks, LiveRequest
+from core.live.commands import LiveRequest
+from core.live.events import LiveChecks
 from core.pipeline.live_desk import Desk
 from core.pipeline.live_exposure import ExposureAdviser
 from core.pipeline.live_preview import ScanPreviewer

@@ -8,16 +8,8 @@ from typing import Any, Protocol
 
 from core.acquire.source import Capabilities, Frame, FrameSource, Lasers, Picture
 from core.files.pictures import write_picture
-from core.live.events import (
-    Command,
-    Detail,
-    LiveAnswered,
-    LiveAsk,
-    LiveEvent,
-    LiveNotice,
-    LiveRequest,
-    LiveTaken,
-)
+from core.live.commands import Command, LiveRequest
+from core.live.events import Detail, LiveAnswered, LiveAsk, LiveEvent, LiveNotice, LiveTaken
 from core.pipeline.live_display import Display
 
 THUMBNAIL_PX = 240

@@ -9,17 +9,8 @@ from collections.abc import Callable
 from core.acquire.settings import TITLES
 from core.acquire.source import Ended, Frame, FrameSource, Unplugged
 from core.errors import InputError
-from core.live.events import (
-    Command,
-    Configure,
-    LiveBack,
-    LiveNotice,
-    LiveStarted,
-    LiveUnplugged,
-    LiveView,
-    Stop,
-    Switch,
-)
+from core.live.commands import Command, Configure, Stop, Switch
+from core.live.events import LiveBack, LiveNotice, LiveStarted, LiveUnplugged, LiveView
 from core.pipeline.live_desk import Desk, LiveStep
 from core.pipeline.live_display import Display, Reduced
 

@@ -11,7 +11,8 @@ from core.acquire.source import Frame, Lasers, Picture
 from core.calibrate.capture import CaptureJudge, moved_px
 from core.calibrate.missing import PLANE_POSES
 from core.image.target_view import TargetView
-from core.live.events import Auto, Capture, Command, Configure, Discard, PlanesDetail
+from core.live.commands import Auto, Capture, Command, Configure, Discard
+from core.live.events import PlanesDetail
 from core.model.arrays import Array
 from core.pipeline.live_camera import named
 from core.pipeline.live_desk import Desk, as_sentence

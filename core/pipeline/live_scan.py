@@ -11,16 +11,8 @@ import numpy as np
 
 from core.acquire.source import Frame, Lasers, Picture
 from core.errors import InputError
-from core.live.events import (
-    Command,
-    Configure,
-    LiveSaving,
-    Pause,
-    Resume,
-    ScanDetail,
-    ScanStage,
-    TakeReference,
-)
+from core.live.commands import Command, Configure, Pause, Resume, TakeReference
+from core.live.events import LiveSaving, ScanDetail, ScanStage
 from core.pipeline.live_checks import ScanChecks
 from core.pipeline.live_desk import Desk
 from core.pipeline.live_preview import Departed, PreviewedFrame, PreviewFailed, ScanPreviewer

@@ -16,7 +16,8 @@ from core.acquire.source import Region, SourceSettings
 from core.errors import InputError
 from core.files.rig import Rig
 from core.image.targets import BlackSquare, Checkerboard
-from core.live.events import LiveBack, LiveUnplugged, LiveView, Stop
+from core.live.commands import Stop
+from core.live.events import LiveBack, LiveUnplugged, LiveView
 from tests.pipeline.live_bench import Window, record
 
 FAKE = "arv-fake-gv-camera-0.8"

@@ -8,7 +8,8 @@ from pathlib import Path
 from core.acquire.source import Capabilities, Ended, Frame, Lasers, SourceChoice, SourceSettings, Unplugged
 from core.errors import InputError
 from core.files.rig import Rig
-from core.live.events import LiveRequest, LiveView
+from core.live.commands import LiveRequest
+from core.live.events import LiveView
 from core.pipeline import live, live_loop
 
 

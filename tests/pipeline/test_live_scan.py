@@ -13,8 +13,8 @@ from core.files.poses_file import write_poses
 from core.files.recording_log import read_log
 from core.files.rig import Rig
 from core.image.targets import BlackSquare, Checkerboard
+from core.live.commands import Configure, Pause, Resume, Stop, Switch, TakeReference
 from core.live.events import (
-    Configure,
     LiveAdvice,
     LiveAnswered,
     LiveAsk,
@@ -26,11 +26,6 @@ from core.live.events import (
     LiveTaken,
     LiveUnplugged,
     LiveView,
-    Pause,
-    Resume,
-    Stop,
-    Switch,
-    TakeReference,
 )
 from core.pipeline import live, live_checks, live_preview
 from core.scan.features import read_reference

@@ -5,7 +5,8 @@ import numpy as np
 from core.acquire.source import SourceChoice, SourceSettings
 from core.files.rig import Rig
 from core.image.targets import BlackSquare, Checkerboard
-from core.live.events import LiveRequest, LiveTaken, LiveView, Stop
+from core.live.commands import LiveRequest, Stop
+from core.live.events import LiveTaken, LiveView
 from core.pipeline.live import run_live
 from core.pipeline.sources import make_source
 from core.simulate.stage import table_pose

@@ -5,18 +5,8 @@ from core.acquire.source import Lasers
 from core.files.pictures import read_picture
 from core.files.rig import Rig
 from core.image.targets import BlackSquare, Checkerboard, detect
-from core.live.events import (
-    Auto,
-    Capture,
-    Discard,
-    LiveAnswered,
-    LiveAsk,
-    LiveNotice,
-    LiveStarted,
-    LiveTaken,
-    LiveView,
-    Stop,
-)
+from core.live.commands import Auto, Capture, Discard, Stop
+from core.live.events import LiveAnswered, LiveAsk, LiveNotice, LiveStarted, LiveTaken, LiveView
 from core.simulate.calibration import CalibrationPictures
 from core.simulate.rays import ray_map
 from core.simulate.recording import scenario_rig

@@ -7,18 +7,8 @@ from collections.abc import Callable
 from PySide6.QtCore import QObject, Signal
 
 from core.acquire.source import Lasers, Step
-from core.live.events import (
-    Auto,
-    Capture,
-    Command,
-    Configure,
-    Discard,
-    LiveView,
-    Pause,
-    Resume,
-    Switch,
-    TakeReference,
-)
+from core.live.commands import Auto, Capture, Command, Configure, Discard, Pause, Resume, Switch, TakeReference
+from core.live.events import LiveView
 from workbench.bench import Bench
 from workbench.live import LiveSession
 from workbench.pages.live_settings import LiveSettings

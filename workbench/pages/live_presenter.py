@@ -15,6 +15,7 @@ from PySide6.QtCore import QObject, QTimer, Signal
 from core.acquire.source import Step
 from core.errors import InputError
 from core.image.target_view import TargetView
+from core.live.commands import LiveRequest, Stop
 from core.live.events import (
     LiveAnswered,
     LiveAsk,
@@ -22,13 +23,11 @@ from core.live.events import (
     LiveEnded,
     LiveEvent,
     LiveNotice,
-    LiveRequest,
     LiveSaving,
     LiveStarted,
     LiveTaken,
     LiveUnplugged,
     LiveView,
-    Stop,
 )
 from core.model import Camera, Fan
 from workbench.bench import Bench

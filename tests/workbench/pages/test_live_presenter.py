@@ -10,11 +10,8 @@ from PySide6.QtCore import QTimer
 
 from core.acquire.source import Lasers, SourceInfo
 from core.files.project import Done
+from core.live.commands import Auto, Capture, Configure, Discard, Pause, Resume, Stop, Switch, TakeReference
 from core.live.events import (
-    Auto,
-    Capture,
-    Configure,
-    Discard,
     LiveAdvice,
     LiveAnswered,
     LiveAsk,
@@ -25,11 +22,6 @@ from core.live.events import (
     LiveTaken,
     LiveUnplugged,
     LiveView,
-    Pause,
-    Resume,
-    Stop,
-    Switch,
-    TakeReference,
 )
 from core.scan.preflight import Check
 from tests.workbench.hand_lane import HandLane

@@ -13,7 +13,8 @@ from PySide6.QtGui import QDragEnterEvent, QDropEvent
 from PySide6.QtWidgets import QApplication, QWidget
 
 from core.files.project_keys import finished
-from core.live.events import LiveAsk, LiveEnded, LiveStarted, LiveTaken, LiveView, PlanesDetail, Stop
+from core.live.commands import Stop
+from core.live.events import LiveAsk, LiveEnded, LiveStarted, LiveTaken, LiveView, PlanesDetail
 from tests.workbench.hand_lane import HandLane
 from tests.workbench.pages.planes_cases import NO_PLATE, Planes, folder_with_poses, project_with
 from workbench import jobs

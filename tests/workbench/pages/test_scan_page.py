@@ -10,7 +10,8 @@ from PySide6.QtCore import Qt
 from core.errors import InputError
 from core.files.pictures import write_picture
 from core.files.project_keys import finished
-from core.live.events import LiveAsk, LiveChecks, LiveEnded, LiveStarted, Resume
+from core.live.commands import Resume
+from core.live.events import LiveAsk, LiveChecks, LiveEnded, LiveStarted
 from core.scan.preflight import Check
 from tests.workbench.hand_lane import HandLane
 from tests.workbench.pages import scan_cases as cases

@@ -11,19 +11,8 @@ from PySide6.QtWidgets import QApplication, QLabel
 
 from core.acquire.source import Capabilities, Region, SourceInfo, SourceSettings
 from core.files.project import new_project
-from core.live.events import (
-    Auto,
-    Capture,
-    LiveAdvice,
-    LiveAsk,
-    LiveEnded,
-    LiveStarted,
-    LiveUnplugged,
-    LiveView,
-    Pause,
-    Resume,
-    TakeReference,
-)
+from core.live.commands import Auto, Capture, Pause, Resume, TakeReference
+from core.live.events import LiveAdvice, LiveAsk, LiveEnded, LiveStarted, LiveUnplugged, LiveView
 from core.scan.preflight import Check
 from tests.workbench.hand_lane import HandLane
 from workbench import jobs
