@@ -14,7 +14,7 @@ import traceback
 from collections import deque
 from collections.abc import Callable, Mapping
 from multiprocessing.connection import Connection
-from typing import Any
+from typing import Any, cast
 
 from PySide6.QtCore import QObject, QTimer, Signal
 
@@ -40,8 +40,13 @@ class Task(QObject):
 
     def __init__(self, lane: Lane, number: int, label: str) -> None:
         super().__init__(lane)
-        self.lane, self.number, self.label = lane, number, label
+        self.number, self.label = number, label
         self.cancelling = False
+
+    @property
+    def lane(self) -> Lane:
+        """Whose task it is; not kept here: a lane that its last task kept alive would end with it, and end it again."""
+        return cast(Lane, self.parent())
 
     def cancel(self) -> None:
         """Ask the job to stop; it does within a second."""

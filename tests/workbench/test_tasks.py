@@ -2,9 +2,12 @@ from __future__ import annotations
 
 import os
 import time
+import weakref
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from PySide6.QtWidgets import QApplication
 
 from core.errors import InputError
 from workbench.bench import Bench
@@ -221,3 +224,18 @@ def test_what_is_done_ahead_is_done_piece_by_piece_while_no_job_waits(qtbot: Any
         lane.close()
     (_, first), (_, second) = answers.got
     assert first < second < 50
+
+
+def test_a_lane_that_nobody_holds_any_more_ends_before_its_tasks(
+    qapp: QApplication, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Ended by its last task it would delete that task, its child, a second time: the program would crash."""
+    monkeypatch.setattr(Lane, "_start", lambda lane: setattr(lane, "_connection", SimpleNamespace(send=lambda _: None)))
+    lane, answers = Lane("short"), Answers()
+    answers.run(lane, "double", 1)
+    lane.close()
+    gone = weakref.ref(lane)
+    del lane
+    assert gone() is None
+    qapp.processEvents()
+    assert answers.got == [("cancelled", None)]
