@@ -47,21 +47,20 @@ from core.files.inspection_plan_tables import (
 from core.files.master_file import master_of, master_table
 from core.inspect.characteristic import Limits
 from core.inspect.conditions import Temperature
-from core.inspect.inspection_plan import (
+from core.inspect.feature_spec import (
     Auto,
     Cut,
     Deviation,
     FeatureSpec,
     Filters,
     InBox,
-    InspectionPlan,
     InSphere,
-    PartFrame,
     PointsOf,
     Polygon,
     Region,
     Section,
 )
+from core.inspect.inspection_plan import InspectionPlan, PartFrame
 
 ONE_SIDED = ("flatness", "form", "profile")
 """Results that cannot be too small: of their tolerance only the upper limit counts."""

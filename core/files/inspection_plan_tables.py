@@ -8,7 +8,7 @@ from pydantic import Field, model_validator
 
 from core.files.complaints import Clash
 from core.files.rig_tables import Table
-from core.inspect.inspection_plan import Kind
+from core.inspect.feature_spec import Kind
 
 # The description of a field ends the sentence "… is <value>, not <description>".
 _Number = Annotated[float, Field(allow_inf_nan=False)]

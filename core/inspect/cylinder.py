@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.errors import InputError
-from core.inspect.faces import above_table, search_tolerance
+from core.inspect.plane_search import above_table, search_tolerance
 from core.inspect.shapes import Tube
 from core.model.arrays import Array
 from core.progress import Progress, silent

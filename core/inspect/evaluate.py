@@ -12,7 +12,7 @@ from core.errors import InputError
 from core.inspect.alignment import three_two_one
 from core.inspect.characteristic import Characteristic
 from core.inspect.elements import Element
-from core.inspect.faces import FoundPlane
+from core.inspect.feature_spec import FeatureSpec, Kind
 from core.inspect.features.cylinder import measure_cylinder
 from core.inspect.features.derived import measure_angle, measure_distance
 from core.inspect.features.deviation import measure_deviation
@@ -22,7 +22,8 @@ from core.inspect.features.section import measure_section
 from core.inspect.features.sphere import measure_sphere
 from core.inspect.features.steps import measure_steps
 from core.inspect.features.thickness import measure_thickness, with_limits
-from core.inspect.inspection_plan import FeatureSpec, InspectionPlan, Kind, PartFrame
+from core.inspect.inspection_plan import InspectionPlan, PartFrame
+from core.inspect.plane_search import FoundPlane
 from core.inspect.point_errors import PointErrors
 from core.inspect.temperature import at_reference, compared
 from core.inspect.uncertainty import CAMERA, FAN_CALIBRATION

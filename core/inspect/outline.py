@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from core.errors import InputError
 from core.inspect.face_region import inside_polygon
-from core.inspect.faces import FEWEST_POINTS, FoundPlane, find_planes, points_on, search_tolerance
+from core.inspect.plane_search import FEWEST_POINTS, FoundPlane, find_planes, points_on, search_tolerance
 from core.model.arrays import Array
 from core.scan.cloud import Cloud
 

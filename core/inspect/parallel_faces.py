@@ -13,7 +13,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from core.inspect.generalised import Generalised, Sources, generalised_fit
+from core.inspect.error_sources import Sources
+from core.inspect.generalised import Generalised, generalised_fit
 from core.inspect.plane_fit import ParallelPlanes
 from core.inspect.point_errors import PointErrors, patches
 from core.model.arrays import Array

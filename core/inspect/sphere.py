@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.errors import InputError
-from core.inspect.faces import above_table, search_tolerance
+from core.inspect.plane_search import above_table, search_tolerance
 from core.inspect.point_errors import PointErrors
 from core.inspect.results import Contribution
 from core.inspect.shapes import Ball

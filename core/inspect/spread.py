@@ -19,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from core.inspect.generalised import Sources
+from core.inspect.error_sources import Sources
 from core.inspect.results import Contribution
 from core.inspect.uncertainty import budget_of, combined, effects
 from core.model.arrays import Array

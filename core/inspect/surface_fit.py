@@ -19,7 +19,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.errors import InputError
-from core.inspect.generalised import GRAZING, Sources, generalised_fit
+from core.inspect.error_sources import GRAZING, Sources
+from core.inspect.generalised import generalised_fit
 from core.inspect.plane_fit import HUBER, LARGEST_WEIGHT, TUKEY
 from core.inspect.point_errors import PointErrors, patches
 from core.inspect.results import Contribution

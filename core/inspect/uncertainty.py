@@ -1,7 +1,7 @@
 """The uncertainty budget of a measured quantity q (a thickness, a radius), by the GUM.
 
 q follows the misfit of each stretch of a stripe with a gain G_j = ∂q/∂misfit_j. What makes the misfits wrong is in
-`core.inspect.generalised.Sources`, cause by cause, with all that is common kept common; so each cause contributes::
+`core.inspect.error_sources.Sources`, cause by cause, with all that is common kept common; so each cause contributes::
 
     point noise                u² = Σ_j G_j² own_j²            over the stretches of the sweeps
     fan speckle                u² = ‖Σ_j G_j speckle_j‖²        by the fan's own points and through the network,
@@ -26,7 +26,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from core.inspect.generalised import Sources
+from core.inspect.error_sources import Sources
 from core.inspect.results import Contribution
 from core.model.arrays import Array
 from core.scan.common_errors import CAMERA, FAN_CALIBRATION, SCALE

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from core.errors import InputError
 from core.files.ply import read_cloud
-from core.inspect.faces import find_planes
+from core.inspect.plane_search import find_planes
 from core.inspect.sphere import find_sphere
 from core.pipeline.workspace import FILES
 from core.progress import Progress, silent

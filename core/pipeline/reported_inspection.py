@@ -16,7 +16,7 @@ from core.files.json_text import read_json
 from core.files.study_file import NAME as STUDY
 from core.files.study_file import study_values
 from core.files.study_reader import read_study
-from core.inspect.inspection_plan import Deviation
+from core.inspect.feature_spec import Deviation
 from core.model import Camera
 from core.report.content import Deviations, ReportContent
 

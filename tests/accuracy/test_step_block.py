@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from core.inspect.evaluate import evaluate
-from core.inspect.inspection_plan import FeatureSpec, InspectionPlan
+from core.inspect.feature_spec import FeatureSpec
+from core.inspect.inspection_plan import InspectionPlan
 from core.inspect.point_errors import PointErrors
 from core.scan.fan_lines import FanLines
 from core.scan.normals import with_normals

@@ -8,20 +8,19 @@ from core.errors import InputError
 from core.files.inspection_plan_file import read_plan, write_plan
 from core.inspect.characteristic import Limits
 from core.inspect.conditions import Master, Temperature
-from core.inspect.inspection_plan import (
+from core.inspect.feature_spec import (
     Auto,
     Cut,
     Deviation,
     FeatureSpec,
     Filters,
     InBox,
-    InspectionPlan,
     InSphere,
-    PartFrame,
     PointsOf,
     Polygon,
     Section,
 )
+from core.inspect.inspection_plan import InspectionPlan, PartFrame
 
 SQUARE = Polygon(((800.0, 500.0), (1100.5, 500.0), (950.0, 800.0)))
 EVERYTHING = InspectionPlan(

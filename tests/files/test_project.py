@@ -32,7 +32,8 @@ from core.image.stripe import StripeSettings
 from core.image.targets import Charuco, CircleGrid
 from core.inspect.characteristic import Limits
 from core.inspect.conditions import Master, Temperature
-from core.inspect.inspection_plan import FeatureSpec, Filters, InspectionPlan, PartFrame, Polygon
+from core.inspect.feature_spec import FeatureSpec, Filters, Polygon
+from core.inspect.inspection_plan import InspectionPlan, PartFrame
 
 AT = datetime(2026, 1, 31, 12, 30, 15, 250_000, timezone(timedelta(hours=2)))
 POLYGON = np.array([[0, 0], [10.5, 0], [10, 1 / 3]])

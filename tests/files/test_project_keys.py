@@ -9,7 +9,8 @@ from core.files.project_data import Accepted, KeptStudy, Repeat, ReportChoices, 
 from core.files.project_keys import STEPS, changed, finished, rests_on
 from core.files.rig import GaugeSpec
 from core.image.targets import Checkerboard
-from core.inspect.inspection_plan import FeatureSpec, InspectionPlan
+from core.inspect.feature_spec import FeatureSpec
+from core.inspect.inspection_plan import InspectionPlan
 
 START = replace(
     new_project("block"),

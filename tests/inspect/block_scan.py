@@ -32,6 +32,13 @@ def pixels(points):
     return points[:, :2] / points[:, 2:] * FOCAL + CENTRE
 
 
+def cloud_at(points, sigma=0.02):
+    """A cloud of points (N, 3) without normals, as if all were of one sweep."""
+    count = len(points)
+    zero = np.zeros(count, dtype=int)
+    return Cloud(points, pixels(points), np.full(count, sigma), np.ones(count), zero, zero, np.zeros((count, 3)))
+
+
 def square(distance, half):
     """Pixel corners of a square of half side `half` mm about the block's centre, on the plane at `distance`."""
     corners = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * half

@@ -9,7 +9,8 @@ from core.errors import InputError
 from core.inspect.alignment import best_fit
 from core.inspect.deviation_map import classes_of, mark
 from core.inspect.evaluate import evaluate
-from core.inspect.inspection_plan import Deviation, FeatureSpec, InspectionPlan, PartFrame, Polygon
+from core.inspect.feature_spec import Deviation, FeatureSpec, Polygon
+from core.inspect.inspection_plan import InspectionPlan, PartFrame
 from core.scan.triangles import Surroundings, Triangles
 from core.simulate.objects import step_block
 from tests.inspect.shape_scan import BALL, BALL_RADIUS, PIN, PIN_AXIS, ShapeScan

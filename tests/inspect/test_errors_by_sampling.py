@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from core.inspect.evaluate import evaluate
-from core.inspect.inspection_plan import Cut, FeatureSpec, InspectionPlan, InSphere, Polygon, Section
+from core.inspect.feature_spec import Cut, FeatureSpec, InSphere, Polygon, Section
+from core.inspect.inspection_plan import InspectionPlan
 from core.inspect.point_errors import PointErrors
 from tests.inspect.block_scan import NORMAL, TABLE_MM, BlockScan
 

@@ -9,7 +9,8 @@ from core.errors import InputError
 from core.inspect.characteristic import Limits
 from core.inspect.conditions import Temperature
 from core.inspect.evaluate import evaluate
-from core.inspect.inspection_plan import Auto, Cut, FeatureSpec, Filters, InspectionPlan, PointsOf, Polygon, Section
+from core.inspect.feature_spec import Auto, Cut, FeatureSpec, Filters, PointsOf, Polygon, Section
+from core.inspect.inspection_plan import InspectionPlan
 from core.inspect.point_errors import PointErrors
 from tests.inspect.block_scan import BlockScan
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from core.errors import InputError
-from core.inspect.faces import faces_in_polygons, find_faces, find_planes
+from core.inspect.faces import faces_in_polygons, find_faces
 from core.scan.cloud import Cloud
-from tests.inspect.block_scan import FOCAL, HALF, NORMAL, TABLE_MM, BlockScan, axes, pixels, square
+from tests.inspect.block_scan import FOCAL, HALF, NORMAL, TABLE_MM, BlockScan, axes, cloud_at, square
 
 
 @pytest.fixture(scope="module")
@@ -21,12 +21,6 @@ def joined(*clouds):
             for name in ("points", "uv", "sigma", "intensity", "frame", "sweep", "normals")
         )
     )
-
-
-def cloud_at(points, sigma=0.02):
-    count = len(points)
-    zero = np.zeros(count, dtype=int)
-    return Cloud(points, pixels(points), np.full(count, sigma), np.ones(count), zero, zero, np.zeros((count, 3)))
 
 
 def sphere(centre, radius, count, rng):
@@ -139,17 +133,3 @@ def test_polygons_over_one_and_the_same_face_are_refused(scan):
     corners = square(TABLE_MM, scan.reach)
     with pytest.raises(InputError, match=r"one and the same face.*over a face of its own"):
         faces_in_polygons(cloud, corners, corners + 2.0)
-
-
-@pytest.mark.parametrize("seed", range(6))
-def test_stairs_are_levels_and_not_the_plane_that_slants_through_all_of_them(seed):
-    rng, (right, up) = np.random.default_rng(seed), axes()
-    treads = []
-    for level in range(5):
-        place = rng.uniform((10.0 * level, 0.0), (10.0 * level + 10, 40.0), (100, 2))
-        treads.append((TABLE_MM - 10.0 * level) * NORMAL + place @ np.array([right, up]))
-    points = np.concatenate(treads)
-    cloud = cloud_at(points + rng.normal(0, 0.25, (len(points), 1)) * NORMAL, sigma=0.25)
-    planes = find_planes(cloud, seed=seed)
-    assert sorted(round((TABLE_MM - plane.distance) / 10.0) for plane in planes) == [0, 1, 2, 3, 4]
-    assert all(abs(plane.normal @ NORMAL) > 0.999 for plane in planes)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from core.calibrate.reprojection import parameters_of
-from core.inspect.generalised import _gain_of_noise
+from core.inspect.error_sources import _gain_of_noise
 from core.inspect.point_errors import PointErrors
 from core.model import Camera
 from core.scan.cloud import Cloud

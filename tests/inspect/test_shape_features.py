@@ -6,7 +6,8 @@ import pytest
 from core.errors import InputError
 from core.inspect.cylinder import find_cylinder
 from core.inspect.evaluate import evaluate
-from core.inspect.inspection_plan import Cut, FeatureSpec, InBox, InspectionPlan, InSphere, PartFrame, Polygon, Section
+from core.inspect.feature_spec import Cut, FeatureSpec, InBox, InSphere, Polygon, Section
+from core.inspect.inspection_plan import InspectionPlan, PartFrame
 from core.scan.cloud import Cloud
 from tests.inspect.block_scan import CENTRE, FOCAL
 from tests.inspect.shape_scan import BALL, PIN, PIN_AXIS, ShapeScan

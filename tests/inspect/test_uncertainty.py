@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from core.inspect.conformity import decide
-from core.inspect.generalised import Sources, generalised_fit
+from core.inspect.error_sources import Sources
+from core.inspect.generalised import generalised_fit
 from core.inspect.point_errors import PointErrors
 from core.inspect.uncertainty import FAN_SPECKLE, FORM, POINT_NOISE, SWEEP_PLANES, budget, combined
 from core.scan.cloud import FAN, Cloud

@@ -12,7 +12,8 @@ from core.files.inspection_plan_file import write_plan
 from core.files.ply import read_mesh
 from core.files.project import ProjectFile, write_project
 from core.files.stl import write_stl
-from core.inspect.inspection_plan import Auto, Deviation, FeatureSpec, InspectionPlan, Section
+from core.inspect.feature_spec import Auto, Deviation, FeatureSpec, Section
+from core.inspect.inspection_plan import InspectionPlan
 from core.pipeline import project_inspection
 from core.pipeline.inspect_step import inspect_step
 from core.pipeline.master_step import measured_master

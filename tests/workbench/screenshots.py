@@ -21,7 +21,8 @@ from PySide6.QtWidgets import QApplication, QScrollArea, QWidget
 
 from core.files.stl import write_stl
 from core.inspect.characteristic import Limits
-from core.inspect.inspection_plan import Auto, Deviation, FeatureSpec, InspectionPlan, Section
+from core.inspect.feature_spec import Auto, Deviation, FeatureSpec, Section
+from core.inspect.inspection_plan import InspectionPlan
 from core.scan.surface import Mesh
 from core.simulate.objects import gauge_block
 from tests.study.grr_tables import AIAG

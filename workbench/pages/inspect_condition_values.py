@@ -10,7 +10,8 @@ from typing import Any
 from PySide6.QtCore import QCoreApplication
 
 from core.inspect.conditions import Master, Temperature
-from core.inspect.inspection_plan import InspectionPlan, Kind, PartFrame
+from core.inspect.feature_spec import Kind
+from core.inspect.inspection_plan import InspectionPlan, PartFrame
 
 FRAME: Mapping[str, tuple[Kind, ...]] = {
     "primary": ("plane",),

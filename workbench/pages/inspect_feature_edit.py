@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from PySide6.QtCore import QObject
 
 from core.files.project import stored_source
-from core.inspect.inspection_plan import FeatureSpec, Kind, Polygon
+from core.inspect.feature_spec import FeatureSpec, Kind, Polygon
 from core.inspect.stretches import usual_stretches
 from workbench.pages import inspect_feature_values as fields
 

@@ -7,7 +7,8 @@ from typing import Any
 from PySide6.QtCore import QEvent, QSize, Signal
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QPushButton, QToolButton, QVBoxLayout, QWidget
 
-from core.inspect.inspection_plan import DERIVED, Auto, FeatureSpec, InBox, InspectionPlan, InSphere, PointsOf, Polygon
+from core.inspect.feature_spec import DERIVED, Auto, FeatureSpec, InBox, InSphere, PointsOf, Polygon
+from core.inspect.inspection_plan import InspectionPlan
 from workbench.pages import inspect_feature_values as fields
 from workbench.pages import inspect_feature_words as words
 from workbench.pages.inspect_feature_settings import (

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from PySide6.QtCore import QCoreApplication
 
-from core.inspect.inspection_plan import FeatureSpec, Section
+from core.inspect.feature_spec import FeatureSpec, Section
 from workbench.pages import inspect_feature_values as fields
 from workbench.views.forms import SettingsForm
 

@@ -11,7 +11,7 @@ from PySide6.QtCore import QCoreApplication
 
 from core.files.inspection_plan_file import ONE_SIDED
 from core.inspect.characteristic import Limits
-from core.inspect.inspection_plan import (
+from core.inspect.feature_spec import (
     DERIVED,
     ELEMENTS,
     RESULTS,
@@ -19,13 +19,13 @@ from core.inspect.inspection_plan import (
     Cut,
     Deviation,
     FeatureSpec,
-    InspectionPlan,
     Kind,
     PointsOf,
     Polygon,
     Region,
     Section,
 )
+from core.inspect.inspection_plan import InspectionPlan
 
 KINDS: tuple[Kind, ...] = tuple(RESULTS)
 AUTO, DRAWN, PLACED = "auto", "drawn", "placed"

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QCoreApplication
 
-from core.inspect.inspection_plan import Kind
+from core.inspect.feature_spec import Kind
 from core.report.wording import decision_sentence, grouped, shown_unit, value_line, with_uncertainty
 from workbench.pages.inspect_words import Row
 
 if TYPE_CHECKING:
     from core.inspect.characteristic import Characteristic
-    from core.inspect.inspection_plan import FeatureSpec
+    from core.inspect.feature_spec import FeatureSpec
     from core.inspect.shown_features import ShownDeviations, ShownFeature
 
 SYMBOLS: dict[Kind, str] = {

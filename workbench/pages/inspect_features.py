@@ -12,7 +12,8 @@ from PySide6.QtCore import QObject, Signal
 from core.errors import InputError
 from core.files.project_keys import changed as changes
 from core.files.project_keys import finished, rests_on
-from core.inspect.inspection_plan import FeatureSpec, InspectionPlan, PointsOf
+from core.inspect.feature_spec import FeatureSpec, PointsOf
+from core.inspect.inspection_plan import InspectionPlan
 from workbench import jobs
 from workbench.pages.inspect_conditions import InspectConditions
 from workbench.pages.inspect_feature_edit import InspectFeatureEdit

@@ -19,7 +19,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from core.inspect.inspection_plan import Kind
+from core.inspect.feature_spec import Kind
 from workbench.pages import inspect_feature_values as fields
 from workbench.pages import inspect_feature_words as words
 from workbench.pages.inspect_feature_form import FeatureForm

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
-from core.inspect.inspection_plan import Polygon
+from core.inspect.feature_spec import Polygon
 from workbench.pages.inspect_faces import FACES
 from workbench.pages.inspect_feature_edit import LINE
 from workbench.pages.inspect_presenter import RELIEF, InspectPresenter, Stage

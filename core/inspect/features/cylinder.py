@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from core.inspect.cylinder import find_cylinder
 from core.inspect.elements import Element
+from core.inspect.feature_spec import Auto, FeatureSpec
 from core.inspect.features.measured import FeatureResult, Scene
 from core.inspect.features.regions import points_in
 from core.inspect.features.round import round_result
-from core.inspect.inspection_plan import Auto, FeatureSpec
 from core.inspect.surface_fit import fit_surface
 from core.inspect.uneven_light import with_uneven_light
 

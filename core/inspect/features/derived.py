@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from core.errors import InputError
 from core.inspect.elements import Element, angle, distance
+from core.inspect.feature_spec import FeatureSpec
 from core.inspect.features.measured import FeatureResult, Scene
-from core.inspect.inspection_plan import FeatureSpec
 
 
 def measure_distance(spec: FeatureSpec, scene: Scene) -> FeatureResult:

@@ -9,11 +9,11 @@ from core.errors import InputError
 from core.inspect.alignment import best_fit
 from core.inspect.characteristic import Characteristic
 from core.inspect.deviation_map import DeviationMap
-from core.inspect.faces import search_tolerance
+from core.inspect.error_sources import GRAZING, Sources
+from core.inspect.feature_spec import Deviation, FeatureSpec
 from core.inspect.features.measured import FeatureResult, Scene
 from core.inspect.features.regions import points_in
-from core.inspect.generalised import GRAZING, Sources
-from core.inspect.inspection_plan import Deviation, FeatureSpec
+from core.inspect.plane_search import search_tolerance
 from core.inspect.point_errors import patches
 from core.inspect.results import Contribution
 from core.inspect.spread import SAMPLING, u_of_quantiles

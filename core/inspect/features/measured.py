@@ -12,8 +12,8 @@ from core.inspect.characteristic import Characteristic
 from core.inspect.coverage import student_factor
 from core.inspect.deviation_map import DeviationMap
 from core.inspect.elements import Element
-from core.inspect.faces import FoundPlane, find_planes
-from core.inspect.inspection_plan import FeatureSpec
+from core.inspect.feature_spec import FeatureSpec
+from core.inspect.plane_search import FoundPlane, find_planes
 from core.inspect.point_errors import PointErrors
 from core.inspect.profile import Profile
 from core.inspect.results import Contribution, GaugeResult

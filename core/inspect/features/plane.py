@@ -7,9 +7,9 @@ from numpy.typing import NDArray
 
 from core.inspect.characteristic import Characteristic
 from core.inspect.elements import Element
+from core.inspect.feature_spec import FeatureSpec, InBox, InSphere
 from core.inspect.features.measured import FeatureResult, Scene
 from core.inspect.features.regions import face_in, points_in
-from core.inspect.inspection_plan import FeatureSpec, InBox, InSphere
 from core.inspect.plane_fit import fit_plane
 from core.inspect.shapes import Levels
 from core.inspect.surface_fit import SurfaceFit, fit_surface

@@ -7,9 +7,10 @@ from numpy.typing import NDArray
 
 from core.errors import InputError
 from core.inspect.face_region import inside_polygon
-from core.inspect.faces import FEWEST_POINTS, face_inside
+from core.inspect.faces import face_inside
+from core.inspect.feature_spec import Auto, Filters, InSphere, PointsOf, Polygon, Region
 from core.inspect.features.measured import Scene
-from core.inspect.inspection_plan import Auto, Filters, InSphere, PointsOf, Polygon, Region
+from core.inspect.plane_search import FEWEST_POINTS
 from core.model.arrays import Array
 
 Indices = NDArray[np.int64]

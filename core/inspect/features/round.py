@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from core.inspect.elements import Element
+from core.inspect.feature_spec import FeatureSpec
 from core.inspect.features.measured import FeatureResult, Scene
-from core.inspect.inspection_plan import FeatureSpec
 from core.inspect.shapes import Ball, Tube
 from core.inspect.surface_fit import SurfaceFit
 

@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from core.errors import InputError
 from core.inspect.characteristic import Characteristic
+from core.inspect.feature_spec import Cut, FeatureSpec, Pixel, Section
 from core.inspect.features.measured import FeatureResult, Scene
 from core.inspect.features.regions import points_in
-from core.inspect.inspection_plan import Cut, FeatureSpec, Pixel, Section
 from core.inspect.profile import Profile, averaged
 from core.inspect.shapes import Levels, Tube
 from core.inspect.surface_fit import fit_surface

@@ -6,10 +6,10 @@ import numpy as np
 
 from core.errors import InputError
 from core.inspect.elements import Element
+from core.inspect.feature_spec import Auto, FeatureSpec, PointsOf
 from core.inspect.features.measured import FeatureResult, Scene
 from core.inspect.features.regions import points_in
 from core.inspect.features.round import round_result
-from core.inspect.inspection_plan import Auto, FeatureSpec, PointsOf
 from core.inspect.sphere import find_sphere, through
 from core.inspect.surface_fit import FEWEST, fit_surface
 from core.inspect.uneven_light import with_uneven_light

@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from core.errors import InputError
-from core.inspect.faces import PARALLEL, search_tolerance
+from core.inspect.faces import PARALLEL
+from core.inspect.feature_spec import Auto, FeatureSpec
 from core.inspect.features.measured import FeatureResult, Scene
 from core.inspect.features.regions import Indices, face_in
-from core.inspect.inspection_plan import Auto, FeatureSpec
+from core.inspect.plane_search import search_tolerance
 from core.inspect.shapes import Levels
 from core.inspect.surface_fit import fit_surface
 

@@ -8,10 +8,10 @@ import numpy as np
 
 from core.errors import InputError
 from core.inspect.faces import FacePair, find_faces
+from core.inspect.feature_spec import Auto, FeatureSpec
 from core.inspect.features.measured import FeatureResult, Scene
 from core.inspect.features.regions import face_in
 from core.inspect.gauge import measure_gauge
-from core.inspect.inspection_plan import Auto, FeatureSpec
 from core.inspect.results import GaugeResult
 
 

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from core.inspect.conditions import Master, Temperature
-from core.inspect.inspection_plan import FeatureSpec, InspectionPlan, PartFrame
+from core.inspect.feature_spec import FeatureSpec
+from core.inspect.inspection_plan import InspectionPlan, PartFrame
 from tests.workbench.hand_lane import HandLane
 from tests.workbench.pages import inspect_cases as cases
 from workbench import jobs

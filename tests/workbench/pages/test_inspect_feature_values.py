@@ -5,7 +5,8 @@ import math
 import pytest
 
 from core.inspect.characteristic import Limits
-from core.inspect.inspection_plan import Auto, FeatureSpec, InspectionPlan, PointsOf, Polygon
+from core.inspect.feature_spec import Auto, FeatureSpec, PointsOf, Polygon
+from core.inspect.inspection_plan import InspectionPlan
 from workbench.pages import inspect_feature_values as fields
 
 SIZE = (640, 480)

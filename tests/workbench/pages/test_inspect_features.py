@@ -12,7 +12,8 @@ from PySide6.QtWidgets import QAbstractButton
 from core.errors import InputError
 from core.inspect.characteristic import Characteristic, Limits
 from core.inspect.deviation_map import bounds, mark
-from core.inspect.inspection_plan import Auto, FeatureSpec, InspectionPlan, PointsOf, Polygon
+from core.inspect.feature_spec import Auto, FeatureSpec, PointsOf, Polygon
+from core.inspect.inspection_plan import InspectionPlan
 from core.inspect.shown_features import ShownClass, ShownDeviations, ShownFeature, ShownInspection, ShownProfile
 from tests.workbench.hand_lane import HandLane
 from tests.workbench.pages import inspect_cases as cases

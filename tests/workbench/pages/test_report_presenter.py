@@ -14,7 +14,8 @@ from core.errors import InputError
 from core.files.export_list import EXPORTS
 from core.files.project import KeptStudy, Project, Repeat, new_project
 from core.files.project_keys import finished
-from core.inspect.inspection_plan import FeatureSpec, InspectionPlan
+from core.inspect.feature_spec import FeatureSpec
+from core.inspect.inspection_plan import InspectionPlan
 from tests.workbench.hand_lane import HandLane
 from workbench import jobs
 from workbench.bench import Bench

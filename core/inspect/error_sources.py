@@ -1,0 +1,207 @@
+"""What errs in the points of a face, cause by cause, and how strongly it acts on each stretch of a stripe.
+
+Points of a scan are not independent. The centreline's noise is one and the same over a stretch; all points of a sweep
+share the error of its light plane, and the sweeps share one network; camera and fan err in all points at once; a face
+that is not flat errs in patches. With J stretches instead of N points, observation j of a linear model reads::
+
+    misfit_j = x_j·β + s_j·z + a_jᵀ L ζ + d_j·ξ + σ_form f_j·η + ε_j
+
+z the fan's speckle, which moves its own points and, through the network, the sweeps' planes; L Lᵀ the covariance of
+these planes less what z does to them; z, ζ, ξ, η of unit variance, ε_j the stretch's own noise.
+
+With P the covariance of the planes' errors and C theirs with z: of two jointly normal things the one is C z plus what
+has the covariance P − C Cᵀ and is independent of z.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.inspect.point_errors import PointErrors
+from core.model.arrays import Array
+from core.scan.cloud import Cloud
+from core.scan.fan_speckle import FanSpeckle
+
+GRAZING = 0.35
+"""|cos| of incidence below which own noise across the surface falls no further where light planes are not known: the
+pixel is uncertain as well."""
+LEAST_GAIN, LARGEST_GAIN = 0.1, 3.0
+"""Of a misfit by its depth's own noise; it runs away where a stripe lies so that noise hardly changes depths."""
+FLOOR_MM = 2e-4
+"""No stretch is known better than this across the surface."""
+LEAST_REST = 0.3
+"""What the fan's cells leave of a stretch's noise is never taken for less than this share of a point's: the windows
+that points were averaged over are known by their usual length only."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Sources:
+    """How strongly each cause of error acts on the J stretches, for unit variance each; see the module."""
+
+    stretch: NDArray[np.int64]  # (N,) of each point
+    share: Array  # (N,) weight of each point in its stretch, summing to 1
+    own: Array  # (J,) standard deviation in mm
+    of_fan: NDArray[np.bool_]  # (J,)
+    speckle: Array  # (J, F)
+    sweeps: Array  # (J, 3S)
+    common: Array  # (J, K)
+    form: Array  # (J, patches)
+
+    @classmethod
+    def of(
+        cls,
+        cloud: Cloud,
+        direction: Array,
+        weights: Array,
+        part: NDArray[np.int64],
+        patch: NDArray[np.int64],
+        errors: PointErrors,
+    ) -> Sources:
+        """The stretches of a cloud's points and what acts on them.
+
+        Parameters
+        ----------
+        cloud
+            The N points used.
+        direction
+            (3,) or (N, 3) ∂misfit/∂X_p.
+        weights
+            (N,) robust weights, above 0.
+        part
+            (N,) which face each point is on: stretches end there.
+        patch
+            (N,) number of the patch of a face each lies in, from 0.
+        errors
+            Of the points.
+        """
+        place = errors.places(cloud)
+        stretch = errors.stretches(cloud, part, place)
+        depth = cloud.points[:, 2]
+        rays = cloud.points / depth[:, None]
+        gain = np.asarray((direction * rays).sum(axis=1), dtype=np.float64)
+        of_noise = _gain_of_noise(cloud, np.broadcast_to(direction, cloud.points.shape), gain, errors)
+        own = np.abs(of_noise) * errors.own_sigma(cloud)
+        weight = weights / own**2
+        share = weight / np.bincount(stretch, weight)[stretch]
+        count = int(stretch.max()) + 1
+        first = np.zeros(count, dtype=np.int64)
+        first[stretch] = np.arange(len(stretch))
+
+        def mean(values: Array) -> Array:
+            return np.asarray(np.bincount(stretch, share * values, minlength=count))
+
+        # A stretch of which the robust fit has silenced most is known less well.
+        alive = np.clip(np.bincount(stretch, share * weights) / max(float(np.median(weights)), 1e-12), 0.05, 1.0)
+        lever = np.column_stack([mean(-gain * depth**2 * rays[:, axis]) for axis in range(3)])
+        form = np.zeros((count, int(patch.max()) + 1))
+        np.add.at(form, (stretch, patch), share)
+        noise = mean(own)
+        speckle, sweeps = _of_sweeps(cloud.sweep[first], lever, errors)
+        if errors.speckle is not None:
+            known = np.flatnonzero(place >= 0)
+            _add_fan(speckle, errors.speckle, place[known], stretch[known], (share * of_noise)[known])
+            of_cells = (errors.speckle.shares[place[known]] ** 2).sum(axis=1)
+            left = own.copy()
+            left[known] *= np.sqrt(np.maximum(1 - of_cells / cloud.sigma[known] ** 2, 0.0))
+            noise = _rest(errors, place, stretch, mean(left), noise)
+        return cls(
+            stretch,
+            share,
+            np.hypot(noise, FLOOR_MM) / np.sqrt(alive),
+            cloud.sweep[first] < 0,
+            speckle,
+            sweeps,
+            _of_common(cloud, direction, mean, errors, count),
+            form,
+        )
+
+    def mean(self, values: Array) -> Array:
+        """Weighted means over the stretches (J,) or (J, …) of `values` (N,) or (N, …)."""
+        columns = values.reshape(len(values), -1)
+        means = np.column_stack([np.bincount(self.stretch, self.share * column) for column in columns.T])
+        return np.asarray(means.reshape(len(self.own), *values.shape[1:]))
+
+
+def _gain_of_noise(cloud: Cloud, direction: Array, gain: Array, errors: PointErrors) -> Array:
+    """(N,) how the misfit follows the depth when it is the stripe's own noise that changes it.
+
+    Noise moves the pixel by ε square to the stripe, along m in the plane of the rays, and the point stays on its light
+    plane: δX = r δz + z (m, 0) ε with δz = −z² (π·m) ε. Where the surface faces the camera the second part does not
+    matter; on a slanting one it adds as much as the first. The stripe runs along π × normal.
+    """
+    if errors.common is None:
+        return np.copysign(np.maximum(np.abs(gain), GRAZING), gain)
+    pis, depth = errors.common.planes(cloud.sweep), cloud.points[:, 2]
+    along = np.cross(pis, direction)
+    seen = along[:, :2] - cloud.points[:, :2] / depth[:, None] * along[:, 2:]
+    across = np.column_stack([seen[:, 1], -seen[:, 0]])
+    slope = depth * (pis[:, :2] * across).sum(axis=1)
+    moved = (direction[:, :2] * across).sum(axis=1)
+    follows = gain - moved / np.where(np.abs(slope) > 1e-12, slope, 1e-12)
+    return np.asarray(np.copysign(np.clip(np.abs(follows), LEAST_GAIN, LARGEST_GAIN), follows))
+
+
+def _of_sweeps(sweep: NDArray[np.int64], lever: Array, errors: PointErrors) -> tuple[Array, Array]:
+    """Effects (J, F) and (J, 3S) on each stretch of its sweep's plane: of the fan's cells, and of all else."""
+    covariance, speckle = errors.sweep_covariance, errors.speckle
+    cells = 0 if speckle is None else speckle.covariance.shape[1]
+    if covariance is None:
+        return np.zeros((len(sweep), cells)), np.zeros((len(sweep), 0))
+    shared = np.zeros((len(covariance), cells)) if speckle is None else speckle.covariance
+
+    def effect(of_planes: Array) -> Array:
+        blocks = of_planes.reshape(errors.sweeps, 3, of_planes.shape[1])
+        acting = np.einsum("ji,jik->jk", lever, blocks[np.maximum(sweep, 0)])
+        acting[sweep < 0] = 0.0
+        return np.asarray(acting)
+
+    return effect(shared), effect(_root(covariance - shared @ shared.T))
+
+
+def _root(covariance: Array) -> Array:
+    """R (n, n) with R Rᵀ = `covariance`, found in units of its standard deviations: they differ by many powers."""
+    size = np.sqrt(np.maximum(covariance.diagonal(), 1e-300))
+    values, vectors = np.linalg.eigh((covariance + covariance.T) / (2 * np.outer(size, size)))
+    return np.asarray(size[:, None] * vectors * np.sqrt(np.maximum(values, 0.0)))
+
+
+def _add_fan(
+    effect: Array, speckle: FanSpeckle, place: NDArray[np.int64], stretch: NDArray[np.int64], gain: Array
+) -> None:
+    """Add to `effect` (J, F) what cells do to stretches through the fan's points at `place`, with these gains (N,)."""
+    for k, share in enumerate(speckle.shares[place].T):
+        there = share != 0
+        np.add.at(effect, (stretch[there], speckle.first[place[there]] + k), gain[there] * share[there])
+
+
+def _rest(
+    errors: PointErrors, place: NDArray[np.int64], stretch: NDArray[np.int64], left: Array, noise: Array
+) -> Array:
+    """Own noise (J,) of the means over stretches where points have `noise` (J,), and cells leave `left` (J,) of it.
+
+    Averaged over a window longer than a cell, little is left of a point. Of what a shorter one leaves, the noise within
+    the cell, the mean over all of the cell is free.
+    """
+    assert errors.speckle is not None
+    known = place >= 0
+    here = np.bincount(stretch[known], minlength=len(noise))
+    whole = np.zeros(len(noise))
+    whole[stretch[known]] = errors.speckle.members[errors.speckle.cell[place[known]]]
+    part = errors.speckle_px * (1 / np.maximum(here, 1) - 1 / np.maximum(whole, 1))
+    rest = np.maximum(np.minimum(left, noise * np.sqrt(np.maximum(part, 0.0))), LEAST_REST * noise)
+    return np.asarray(np.where(here > 0, rest, noise))
+
+
+def _of_common(
+    cloud: Cloud, direction: Array, mean: Callable[[Array], Array], errors: PointErrors, count: int
+) -> Array:
+    """Effect (J, K) on each stretch of each calibration displaced by one standard deviation."""
+    if errors.common is None:
+        return np.zeros((count, 0))
+    changes = errors.common.changes(cloud.uv, cloud.sweep)
+    columns = [mean((change * direction).sum(axis=1)) for change in changes]
+    return np.column_stack(columns) if columns else np.zeros((count, 0))

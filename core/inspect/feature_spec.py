@@ -1,0 +1,229 @@
+"""One feature to be inspected: source → region → fit → filters → result.
+
+It says nothing of one scan. All of it is made of plain values that can be compared, copied with `dataclasses.replace`
+and undone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Literal, TypeAlias
+
+from core.inspect.characteristic import Limits
+
+Kind = Literal[
+    "plane", "sphere", "cylinder", "point", "thickness", "steps", "distance", "angle", "section", "deviation"
+]
+Pixel: TypeAlias = tuple[float, float]
+Place: TypeAlias = tuple[float, float, float]
+
+RESULTS: Mapping[Kind, tuple[str, ...]] = {
+    "plane": ("flatness",),
+    "sphere": ("diameter", "form"),
+    "cylinder": ("diameter", "form"),
+    "point": (),
+    "thickness": ("thickness",),
+    "steps": ("height",),
+    "distance": ("distance",),
+    "angle": ("angle",),
+    "section": (),
+    "deviation": ("profile", "mean"),
+}
+"""What each kind of feature gives: the names that limits are asked by. A section gives what its cuts are called."""
+
+DERIVED: Mapping[Kind, int] = {"distance": 2, "angle": 2}
+"""Kinds made from so many other features instead of points."""
+
+ELEMENTS: tuple[Kind, ...] = ("plane", "sphere", "cylinder", "point")
+"""Kinds that others can be derived from."""
+
+
+@dataclass(frozen=True, slots=True)
+class Auto:
+    """Found in the cloud: the surface of this kind that explains most, or the `number`-th most of planes."""
+
+    number: int = 1
+
+
+@dataclass(frozen=True, slots=True)
+class Polygon:
+    """All points seen inside a polygon of the picture; `corners_px` (u, v)."""
+
+    corners_px: tuple[Pixel, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class InSphere:
+    """All points within `radius_mm` of a place in part coordinates."""
+
+    centre_mm: Place
+    radius_mm: float
+
+
+@dataclass(frozen=True, slots=True)
+class InBox:
+    """All points in a box of part coordinates, along its axes."""
+
+    low_mm: Place
+    high_mm: Place
+
+
+@dataclass(frozen=True, slots=True)
+class PointsOf:
+    """The points another feature used."""
+
+    feature: str
+
+
+Region: TypeAlias = Auto | Polygon | InSphere | InBox | PointsOf
+
+
+@dataclass(frozen=True, slots=True)
+class Filters:
+    """Which points of a region are used, and what the form is the spread of.
+
+    Parameters
+    ----------
+    sigma_max_mm
+        Points with a larger standard uncertainty are left out; None: none.
+    margin_mm
+        Points nearer to the edge of a plane face are left out: stripes are biased there.
+    outliers
+        Points this many robust standard deviations from the fitted surface are left out.
+    cell_mm
+        Form is the spread of the means over cells of this side; 0: of single points, their noise included.
+    """
+
+    sigma_max_mm: float | None = None
+    margin_mm: float = 1.5
+    outliers: float = 4.685
+    cell_mm: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Cut:
+    """One measurement in a section: between positions in mm along it.
+
+    `kind` "height": of the line over `second` above that over `first`, square to it. "distance": from the middle of one
+    stretch to the middle of the other. "radius": of the circle over `first`.
+    """
+
+    name: str
+    kind: Literal["height", "distance", "radius"]
+    first: tuple[float, float]
+    second: tuple[float, float] = (0.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Section:
+    """A cross-section: the plane through the camera's ray of two pixels, or through a place of part coordinates.
+
+    Parameters
+    ----------
+    line_px
+        Two pixels; positions run from where the first is seen to where the second is. None: the plane by `point_mm`,
+        `normal` in part coordinates.
+    half_width_mm
+        Points so near to the plane are taken for points in it.
+    step_mm
+        Length along the section over which the shown profile is averaged.
+    cuts
+        What is measured in it.
+    """
+
+    line_px: tuple[Pixel, Pixel] | None = None
+    point_mm: Place = (0.0, 0.0, 0.0)
+    normal: Place = (0.0, 1.0, 0.0)
+    half_width_mm: float = 1.0
+    step_mm: float = 0.5
+    cuts: tuple[Cut, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Deviation:
+    """A comparison with a nominal surface.
+
+    Parameters
+    ----------
+    nominal
+        Name of the STL file, in mm.
+    align
+        "best fit" to the surface; "frame": the file's coordinates are part coordinates (3-2-1); "as measured": they
+        are those of the camera.
+    tolerance_mm
+        What the classes of colours and marks are shares of.
+    reach_mm
+        Points farther from the nominal surface do not belong to the part (a table, a clamp).
+    """
+
+    nominal: str
+    align: Literal["best fit", "frame", "as measured"] = "best fit"
+    tolerance_mm: float = 0.1
+    reach_mm: float = 2.0
+
+
+@dataclass(frozen=True, slots=True)
+class FeatureSpec:
+    """One feature.
+
+    Parameters
+    ----------
+    name
+        As the technician calls it; unique in a plan.
+    kind
+        What it is.
+    regions
+        Where its points are: one, or two (upper, lower) for a thickness, or one for each level of steps.
+    of
+        Names of the features it is derived from.
+    filters
+        Which points are used.
+    limits
+        What is asked of its results, by their names in `results`. Of steps the limits "height" go for each step, about
+        its own nominal height.
+    nominal_heights
+        Of the steps in mm, from the lowest up.
+    over
+        Steps: each over the "lowest" level, or over the "previous" one.
+    section, deviation
+        Of these kinds.
+    """
+
+    name: str
+    kind: Kind
+    regions: tuple[Region, ...] = (Auto(),)
+    of: tuple[str, ...] = ()
+    filters: Filters = Filters()
+    limits: tuple[tuple[str, Limits], ...] = ()
+    nominal_heights: tuple[float, ...] = ()
+    over: Literal["lowest", "previous"] = "lowest"
+    section: Section | None = None
+    deviation: Deviation | None = None
+
+    @property
+    def results(self) -> tuple[str, ...]:
+        """What it gives: the names that limits are asked by."""
+        return RESULTS[self.kind] if self.section is None else tuple(cut.name for cut in self.section.cuts)
+
+    @property
+    def needs(self) -> tuple[str, ...]:
+        """Names of all features it rests on."""
+        return (*self.of, *(region.feature for region in self.regions if isinstance(region, PointsOf)))
+
+    @property
+    def in_part_coordinates(self) -> bool:
+        """Whether it can only be measured once the part's frame is known."""
+        placed = self.section is not None and self.section.line_px is None
+        framed = self.deviation is not None and self.deviation.align == "frame"
+        return placed or framed or any(isinstance(region, InSphere | InBox) for region in self.regions)
+
+    def limits_of(self, result: str) -> Limits | None:
+        """What is asked of one of its results, as "diameter" or "height 2"; None: nothing."""
+        asked = dict(self.limits)
+        if self.kind != "steps":
+            return asked.get(result)
+        limits, step = asked.get("height"), int(result.rpartition(" ")[2])
+        if limits is None or step > len(self.nominal_heights):
+            return None
+        return replace(limits, nominal=self.nominal_heights[step - 1])
