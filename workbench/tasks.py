@@ -126,7 +126,8 @@ class Lane(QObject):
         on_done, on_failed, on_cancelled
             Called in the GUI thread with the result; with the InputError or `Failure`; with nothing.
         offers
-            Keywords the function takes and what it gets for them: "progress" (default), "watch", "channel".
+            Keywords the function takes and what it gets for them: "progress" (default), "watch", "channel", or the
+            "memory" of the process, in which one job may leave something for the next.
         replace_waiting
             Drop waiting ones of this job with the same label: only the newest matters.
         """

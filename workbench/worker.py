@@ -97,13 +97,14 @@ def serve(connection: Connection, cancel: Any, warm: tuple[Job, ...], ahead: Job
             with suppress(ImportError, AttributeError):  # told when the job is asked for
                 resolve(job)
         pieces = list(_pieces(ahead))
+        memory: dict[str, Any] = {}
         while True:
             if pieces and not connection.poll(0):
                 pieces.pop(0)()
                 continue
             kind, value = connection.recv()
             if kind == "run":
-                _run(connection, cancel, *value)
+                _run(connection, cancel, memory, *value)
     except (EOFError, BrokenPipeError, ConnectionResetError):
         return  # the window is gone
 
@@ -118,10 +119,16 @@ def _pieces(ahead: Job | None) -> tuple[Callable[[], None], ...]:
 
 
 def _run(
-    connection: Connection, cancel: Any, number: int, job: Job, args: tuple[Any, ...], options: dict[str, str]
+    connection: Connection,
+    cancel: Any,
+    memory: dict[str, Any],
+    number: int,
+    job: Job,
+    args: tuple[Any, ...],
+    options: dict[str, str],
 ) -> None:
     channel = Channel(connection, lambda: cancel.value == number, number)
-    offered = {"progress": channel.progress, "watch": channel.emit, "channel": channel}
+    offered = {"progress": channel.progress, "watch": channel.emit, "channel": channel, "memory": memory}
     try:
         keywords = {name: offered[what] for name, what in options.items()}
         answer = ("done", resolve(job)(*args, **keywords))

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, fields, replace
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from core.errors import InputError
 from core.inspect.alignment import three_two_one
@@ -135,7 +137,8 @@ def evaluate(
     ordered = plan.ordered()
     scene = Scene(cloud, mesh, errors or PointErrors(), plan.k, nominals or {}, progress=progress)
     known = {} if previous is None else {result.key: result for result in previous.results if result.key}
-    scan_key = _digest(cloud, mesh, errors, nominals or {})
+    scan_key = _digest(cloud, mesh, errors)
+    nominal_keys = {name: _sum_of([surface.corners]) for name, surface in (nominals or {}).items()}
     if previous is not None and previous.scan_key == scan_key:
         scene.found_planes.update(previous.planes)
     frame_problem = ""
@@ -144,7 +147,8 @@ def evaluate(
         framed = spec.in_part_coordinates and plan.frame is not None
         if framed and plan.frame is not None and scene.pose_camera_part is None and not frame_problem:
             scene.pose_camera_part, frame_problem = _frame(plan.frame, scene)
-        key = _key(plan, spec, scene, scan_key, framed=framed)
+        nominal = "" if spec.deviation is None else nominal_keys.get(spec.deviation.nominal, "")
+        key = _key(plan, spec, scene, scan_key + nominal, framed=framed)
         if key in known:
             result = _asked_anew(known[key], spec)
         else:
@@ -200,19 +204,21 @@ def _frame(frame: PartFrame, scene: Scene) -> tuple[Pose | None, str]:
         return None, f"There are no part coordinates: {error}"
 
 
-def _key(plan: InspectionPlan, spec: FeatureSpec, scene: Scene, scan_key: str, *, framed: bool) -> str:
-    """Names all that a feature's measurement follows from, its own name among it; what is asked of it is not."""
+def _key(plan: InspectionPlan, spec: FeatureSpec, scene: Scene, of: str, *, framed: bool) -> str:
+    """Names all that a feature's measurement follows from, its own name among it; what is asked of it is not.
+
+    `of` names the scan, and the nominal surface where it is compared with one.
+    """
     rests_on = [scene.found[name].key for name in spec.needs]
     frame = (plan.frame, [scene.found[name].key for name in plan.frame.names]) if framed and plan.frame else None
     master = plan.master if plan.master is not None and spec.name in plan.master.features else None
     measured = replace(spec, limits=(), nominal_heights=())
-    said = repr((scan_key, measured, plan.k, plan.temperature, master, rests_on, frame))
+    said = repr((of, measured, plan.k, plan.temperature, master, rests_on, frame))
     return hashlib.sha256(said.encode()).hexdigest()[:32]
 
 
-def _digest(cloud: Cloud, mesh: Mesh | None, errors: PointErrors | None, nominals: Mapping[str, Triangles]) -> str:
+def _digest(cloud: Cloud, mesh: Mesh | None, errors: PointErrors | None) -> str:
     """Names a scan by its content."""
-    digest = hashlib.blake2b(digest_size=16)
     arrays = [cloud.points, cloud.sigma, cloud.uv, cloud.sweep, cloud.normals]
     if mesh is not None:
         arrays += [mesh.vertices, mesh.triangles]
@@ -222,9 +228,12 @@ def _digest(cloud: Cloud, mesh: Mesh | None, errors: PointErrors | None, nominal
         arrays += [] if errors.speckle is None else [errors.speckle.covariance, errors.speckle.shares]
         arrays += [] if errors.sweep_covariance is None else [errors.sweep_covariance]
         arrays += [] if errors.common is None else [errors.common.sweeps, errors.common.cameras, errors.common.fans]
-    for name in sorted(nominals):
-        digest.update(name.encode())
-        arrays.append(nominals[name].corners)
+    return _sum_of(arrays)
+
+
+def _sum_of(arrays: Iterable[NDArray[Any]]) -> str:
+    """Names arrays by their content."""
+    digest = hashlib.blake2b(digest_size=16)
     for array in arrays:
         digest.update(np.ascontiguousarray(array).view(np.uint8).data if array.size else b"")
     return digest.hexdigest()

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import MutableMapping
 from pathlib import Path
+from typing import TypeAlias
 
 import numpy as np
 
@@ -25,12 +27,23 @@ from core.scan.cloud import Cloud
 MOST_DRAWN = 20_000
 """So many of the points that a feature used are drawn."""
 
+Memory: TypeAlias = MutableMapping[str, Inspection]
+LAST = "last inspection"
+"""Its name in the memory: only of the last one, which knows by its keys what is still true."""
 
-def measure_features(folder: Path, project: Project, progress: Progress = silent) -> ShownInspection:
+
+def measure_features(
+    folder: Path, project: Project, progress: Progress = silent, memory: Memory | None = None
+) -> ShownInspection:
     """Measure the project's plan and write inspection.json among its results.
 
     The same numbers as `trisect inspect RESULTS --plan plan.toml` with the same plan; names of nominal surfaces are of
     the project's folder. A feature that cannot be measured has its problem; the others are measured.
+
+    Parameters
+    ----------
+    memory
+        Holds the last inspection from one call to the next: features it has of the same inputs are not measured again.
 
     Raises
     ------
@@ -38,7 +51,7 @@ def measure_features(folder: Path, project: Project, progress: Progress = silent
         If there is no scan among the results, the plan is wrong, or a nominal surface cannot be read.
     """
     try:
-        inspection, scan = _inspected(folder, project, progress)
+        inspection, scan = _inspected(folder, project, progress, memory)
     except InputError as error:
         raise in_a_project(error) from error
     path, shown = results_folder(folder) / NAME, _shown(inspection, scan)
@@ -47,16 +60,23 @@ def measure_features(folder: Path, project: Project, progress: Progress = silent
     return shown
 
 
-def look_at_features(folder: Path, project: Project, progress: Progress = silent) -> ShownInspection:
+def look_at_features(
+    folder: Path, project: Project, progress: Progress = silent, memory: Memory | None = None
+) -> ShownInspection:
     """The same without writing anything: as it was kept, or else measured again, to be drawn."""
     progress("features", 0, 1)
     kept = read_shown(results_folder(folder) / NAME, plan_tables(project.inspection))
-    return kept or _shown(*_inspected(folder, project, progress))
+    return kept or _shown(*_inspected(folder, project, progress, memory))
 
 
-def _inspected(folder: Path, project: Project, progress: Progress) -> tuple[Inspection, InspectedScan]:
-    scan = open_scan(results_folder(folder))
-    return inspect(scan, project.inspection, folder, progress), scan
+def _inspected(
+    folder: Path, project: Project, progress: Progress, memory: Memory | None
+) -> tuple[Inspection, InspectedScan]:
+    scan, last = open_scan(results_folder(folder)), None if memory is None else memory.get(LAST)
+    inspection = inspect(scan, project.inspection, folder, progress, last)
+    if memory is not None:
+        memory[LAST] = inspection
+    return inspection, scan
 
 
 def _shown(inspection: Inspection, scan: InspectedScan) -> ShownInspection:

@@ -9,9 +9,19 @@ from core.errors import InputError
 from core.inspect.characteristic import Limits
 from core.inspect.conditions import Temperature
 from core.inspect.evaluate import evaluate
-from core.inspect.feature_spec import Auto, Cut, FeatureSpec, Filters, PointsOf, Polygon, Section
+from core.inspect.feature_spec import (
+    Auto,
+    Cut,
+    Deviation,
+    FeatureSpec,
+    Filters,
+    PointsOf,
+    Polygon,
+    Section,
+)
 from core.inspect.inspection_plan import InspectionPlan
 from core.inspect.point_errors import PointErrors
+from core.scan.triangles import Triangles
 from tests.inspect.block_scan import BlockScan
 
 BLOCK = BlockScan(sweeps=24)
@@ -70,6 +80,17 @@ def test_only_what_an_edit_changed_is_measured_again(cloud):
     assert [row.value for row in after.characteristics] == [row.value for row in fresh.characteristics]
     moved = evaluate(plan, cloud.select(np.arange(len(cloud) - 1)), errors=ERRORS, previous=before)
     assert not any(a.key == b.key for a, b in zip(before.results, moved.results, strict=True))
+
+
+def test_a_nominal_surface_concerns_only_what_is_compared_with_it(cloud):
+    corners = np.array([[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]])
+    compared = [FeatureSpec(name, "deviation", deviation=Deviation(f"{name}.stl", "as measured")) for name in "ab"]
+    plan = InspectionPlan((PLANES[0], *compared))
+    nominals = {"a.stl": Triangles(corners), "b.stl": Triangles(corners)}
+    before = evaluate(plan, cloud, errors=ERRORS, nominals=nominals)
+    changed = {**nominals, "b.stl": Triangles(corners + 1.0)}
+    after = evaluate(plan, cloud, errors=ERRORS, previous=before, nominals=changed)
+    assert [a.key == b.key for a, b in zip(before.results, after.results, strict=True)] == [True, True, False]
 
 
 def test_other_limits_are_decided_without_measuring_again(cloud):

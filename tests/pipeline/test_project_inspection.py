@@ -12,7 +12,8 @@ from core.files.inspection_plan_file import write_plan
 from core.files.ply import read_mesh
 from core.files.project import ProjectFile, write_project
 from core.files.stl import write_stl
-from core.inspect.feature_spec import Auto, Deviation, FeatureSpec, Section
+from core.inspect import evaluate
+from core.inspect.feature_spec import Auto, Deviation, FeatureSpec, Filters, Section
 from core.inspect.inspection_plan import InspectionPlan
 from core.pipeline import project_inspection
 from core.pipeline.inspect_step import inspect_step
@@ -108,6 +109,31 @@ def test_what_is_drawn_is_of_the_scan_and_kept_so_that_it_need_not_be_measured_a
     assert int(itself.deviations.counts.sum()) > 0
     monkeypatch.setattr(project_inspection, "inspect", lambda *_: pytest.fail("measured again"))
     assert drawn(look_at_features(folder, project)) == drawn(shown)
+
+
+def test_after_an_edit_only_what_it_changed_is_measured_and_the_file_is_as_if_all_were(done, folder, monkeypatch):
+    measured, memory = [], {}
+
+    def counted(kind, measure):
+        def count(spec, scene):
+            measured.append(spec.name)
+            return measure(spec, scene)
+
+        return count
+
+    kinds = {kind: counted(kind, measure) for kind, measure in evaluate.MEASURES.items()}
+    monkeypatch.setattr(evaluate, "MEASURES", kinds)
+    measure_features(folder, replace(done.project, inspection=PLAN), memory=memory)
+    assert measured == ["table", "top", "ball", "height"]
+    table, top, *others = PLAN.features
+    edited = replace(PLAN, features=(table, replace(top, filters=Filters(outliers=3.0)), *others))
+    measured.clear()
+    again = measure_features(folder, replace(done.project, inspection=edited), memory=memory)
+    assert measured == ["top", "height"]
+    written = (results_folder(folder) / "inspection.json").read_text()
+    whole = measure_features(folder, replace(done.project, inspection=edited))
+    assert drawn(again) == drawn(whole)
+    assert (results_folder(folder) / "inspection.json").read_text() == written
 
 
 def test_the_report_has_the_thickness_beside_the_features_and_none_that_were_taken_out(done, folder):

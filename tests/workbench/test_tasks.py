@@ -81,6 +81,18 @@ def test_only_the_newest_waiting_job_of_a_label_is_run_if_asked(qtbot: Any, lane
     assert answers.got == [("cancelled", None), ("done", 2), ("done", 6)]
 
 
+def test_a_job_finds_what_the_one_before_left_in_the_memory_until_the_process_is_another(
+    qtbot: Any, lane: Lane
+) -> None:
+    answers, remembering = Answers(), {"memory": "memory"}
+    for value in (1, 2):
+        answers.run(lane, "remember", value, offers=remembering)
+    answers.run(lane, "die")
+    answers.run(lane, "remember", 3, offers=remembering)
+    finish(qtbot, lane)
+    assert [value for kind, value in answers.got if kind == "done"][-2:] == [1, None]
+
+
 def test_another_job_of_the_same_label_keeps_waiting(qtbot: Any, lane: Lane) -> None:
     answers = Answers()
     answers.run(lane, "double", 1)

@@ -26,6 +26,10 @@ if TYPE_CHECKING:
     from workbench.pages.inspect_presenter import InspectPresenter
 
 
+REMEMBERING = {"progress": "progress", "memory": "memory"}
+"""What is offered to the jobs here: features that an edit leaves as they are need not be measured again."""
+
+
 class InspectFeatures(QObject):
     """The plan of the project, what it gave on this scan, and which feature is chosen."""
 
@@ -213,7 +217,7 @@ class InspectFeatures(QObject):
                 self.problem = sentence(problem)
 
         self._measuring = self._owner.bench.measure(
-            job, folder, self._owner.project, label=label, on_done=done, on_failed=failed
+            job, folder, self._owner.project, label=label, on_done=done, on_failed=failed, offers=REMEMBERING
         )
         self._measuring.ended.connect(self._ended)
         self.changed.emit()
