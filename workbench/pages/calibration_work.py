@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections import OrderedDict
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Generic, Literal, TypeVar
 
 from PySide6.QtCore import QObject, Signal
 
@@ -21,10 +21,12 @@ KEPT = 12
 """So many solutions are kept for undo and redo."""
 
 Key = tuple[str, ...]
+Found = TypeVar("Found")
+Solution = TypeVar("Solution")
 
 
-class CalibrationWork(QObject):
-    """Finds what one step's pictures show, and solves.
+class CalibrationWork(QObject, Generic[Found, Solution]):
+    """Finds what one step's pictures show (`Found`), and solves (`Solution`).
 
     `found` and `calibration` are of the project as it is, or None; while a new solution is on its way (`solving`) the
     last one stands. `problem` says why there is none. What finding rests on is `FOUND_BY`; solving rests on all of the
@@ -48,13 +50,13 @@ class CalibrationWork(QObject):
         self._forget()
 
     def _forget(self) -> None:
-        self.found: Any = None
-        self.calibration: Any = None
+        self.found: Found | None = None
+        self.calibration: Solution | None = None
         self.problem = ""
         self.solving = False
         self.search_task: Task | None = None
-        self._found: dict[Key, Any] = {}
-        self._solved: OrderedDict[Key, tuple[Any, str]] = OrderedDict()
+        self._found: dict[Key, Found] = {}
+        self._solved: OrderedDict[Key, tuple[Solution | None, str]] = OrderedDict()
         self._found_key: Key = ()
         self._solve_key: Key = ()
         self._pictures.forget()
@@ -154,7 +156,7 @@ class CalibrationWork(QObject):
         others = [value for name, value in keys.items() if name not in (*self.FOUND_BY, self.ACCEPTED)]
         return (*self.found_key(project), *others)
 
-    def _search_done(self, folder: Path, key: Key, found: Any) -> None:
+    def _search_done(self, folder: Path, key: Key, found: Found) -> None:
         if folder != self._model.folder:
             return  # the project has been left; another one may be searched by now
         self.search_task = None
@@ -174,7 +176,9 @@ class CalibrationWork(QObject):
             self.problem = problem
         self.changed.emit()
 
-    def _take_up(self, folder: Path, project: Project, found: Any, calibration: Any = None) -> None:
+    def _take_up(
+        self, folder: Path, project: Project, found: Found | None, calibration: Solution | None = None
+    ) -> None:
         """What the pictures of `project` show is known, and perhaps the `calibration` solved from it.
 
         It is of no interest where they were searched since, or the project was left.
@@ -204,7 +208,7 @@ class CalibrationWork(QObject):
             replace_waiting=True,
         )
 
-    def _solved_for(self, key: Key, calibration: Any, problem: str) -> None:
+    def _solved_for(self, key: Key, calibration: Solution | None, problem: str) -> None:
         self._solved[key] = calibration, problem
         while len(self._solved) > KEPT:
             self._solved.popitem(last=False)

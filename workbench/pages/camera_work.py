@@ -14,7 +14,7 @@ from workbench import jobs
 from workbench.pages.calibration_work import CalibrationWork, Key
 
 
-class CameraWork(CalibrationWork):
+class CameraWork(CalibrationWork[SeenViews, CameraCalibration]):
     """Finds the target in the pictures, solves and judges.
 
     `seen`, `calibration`, `judgement` are of the project as it is, or None.
@@ -25,14 +25,12 @@ class CameraWork(CalibrationWork):
     ACCEPTED = "accepted camera calibration"
     FIND, SOLVE = jobs.FIND_VIEWS, jobs.SOLVE_VIEWS
 
-    calibration: CameraCalibration | None
     judgement: ViewsJudgement | None = None
 
     @property
     def seen(self) -> SeenViews | None:
         """What the pictures show; None as long as nobody has looked."""
-        found: SeenViews | None = self.found
-        return found
+        return self.found
 
     def _forget(self) -> None:
         super()._forget()

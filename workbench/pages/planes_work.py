@@ -14,7 +14,7 @@ from workbench.pages.calibration_work import CalibrationWork
 Poses = tuple[PoseFeatures, ...]
 
 
-class PlanesWork(CalibrationWork):
+class PlanesWork(CalibrationWork[Poses, FanCalibration]):
     """Finds target and stripes, solves the light planes.
 
     `poses` and `calibration` are of the project as it is, or None.
@@ -25,13 +25,10 @@ class PlanesWork(CalibrationWork):
     ACCEPTED = "accepted laser planes"
     FIND, SOLVE = jobs.FIND_POSES, jobs.SOLVE_POSES
 
-    calibration: FanCalibration | None
-
     @property
     def poses(self) -> Poses | None:
         """What the pictures show; None as long as nobody has looked."""
-        found: Poses | None = self.found
-        return found
+        return self.found
 
     @staticmethod
     def name_of(path: Path) -> str:

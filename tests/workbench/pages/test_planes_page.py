@@ -70,13 +70,13 @@ def click(qtbot: Any, widget: QWidget) -> None:
 
 
 def pose_row(page: PlanesPage, name: str) -> Any:
-    return next(row for row in page.poses.rows() if row.name == name)
+    return next(row for row in page.views.rows() if row.name == name)
 
 
 def check(qtbot: Any, page: PlanesPage, name: str) -> None:
     """Click the check box of a pose."""
-    table = page.poses.table
-    place = table.visualRect(page.poses.model.index(page.poses.model.row_of(name), 0))
+    table = page.views.table
+    place = table.visualRect(page.views.model.index(page.views.model.row_of(name), 0))
     qtbot.mouseClick(table.viewport(), LEFT, pos=QPoint(place.left() + 10, place.center().y()))
 
 
@@ -165,10 +165,10 @@ def test_unchecking_a_pose_leaves_it_out_of_result_and_count(solved: PlanesPage,
 
 
 def test_several_chosen_poses_are_left_out_by_one_key_and_one_undo(solved: PlanesPage, qtbot: Any) -> None:
-    table, edits = solved.poses.table, solved.presenter.model.undo_stack.count()
+    table, edits = solved.views.table, solved.presenter.model.undo_stack.count()
     table.selectRow(1)
     table.selectionModel().select(
-        solved.poses.model.index(2, 0),
+        solved.views.model.index(2, 0),
         table.selectionModel().SelectionFlag.Select | table.selectionModel().SelectionFlag.Rows,
     )
     qtbot.keyClick(table, Qt.Key.Key_Space)
@@ -179,7 +179,7 @@ def test_several_chosen_poses_are_left_out_by_one_key_and_one_undo(solved: Plane
 
 
 def test_a_pose_shows_its_plate_stripes_and_line_numbers(solved: PlanesPage, qtbot: Any) -> None:
-    solved.poses.table.setCurrentIndex(solved.poses.model.index(3, 0))
+    solved.views.table.setCurrentIndex(solved.views.model.index(3, 0))
     settled(qtbot, solved)
     assert set(solved.pose.image.layer_names()) >= {"corners", "stripe 0", "stripe 1", "stripe 2"}
     assert solved.pose.line.text().startswith("pose03: stripes RMS 0.0")
@@ -195,7 +195,7 @@ def test_a_pose_without_a_plate_says_why(solved: PlanesPage, qtbot: Any) -> None
 
 def test_a_click_on_a_bar_shows_its_pose(solved: PlanesPage) -> None:
     solved.bars.bar_clicked.emit("pose04")
-    assert solved.poses.current() == "pose04"
+    assert solved.views.current() == "pose04"
     assert solved.pose.line.text().startswith("pose04")
 
 
@@ -312,9 +312,9 @@ def test_poses_are_taken_live_with_everything_drawn_and_each_picture_answered_on
     assert not {"corners", "stripe 1", "stripe 2"} & set(page.pose.image.layer_names())
     assert lane.sent.count("shown") == 2
     task.told.emit(LiveTaken("pose00", np.zeros((12, 16), np.uint8)))
-    assert [row.name for row in page.poses.rows()] == ["pose00"]
+    assert [row.name for row in page.views.rows()] == ["pose00"]
     check(qtbot, page, "pose00")
-    assert page.poses.rows() == ()
+    assert page.views.rows() == ()
     assert not page.target.isEnabled()
 
 
