@@ -51,3 +51,8 @@ def small_set(folder: Path) -> Path:
 def copy_of(folder: Path, to: Path) -> Path:
     """A copy whose files can be replaced (hard links would be written through: our writers rename, cv2 does not)."""
     return Path(shutil.copytree(folder, to))
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    """The bytes of every file below a folder, by its path within it."""
+    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in folder.rglob("*") if path.is_file()}

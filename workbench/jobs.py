@@ -1,7 +1,7 @@
 """What the window asks `core` to do, by name.
 
 Named instead of imported: a job runs in another process, and a window that imported the numerical libraries would
-open seconds later. `tests/workbench/test_jobs.py` holds every name to a function that exists.
+open seconds later. `tests/workbench/test_rooms.py` holds every name to a function that exists.
 """
 
 from __future__ import annotations
@@ -11,31 +11,32 @@ from typing import Any, NewType
 
 Job = NewType("Job", str)
 
-_STEPS = "core.pipeline.project_steps"
+_CALIBRATION = "core.pipeline.project_calibration"
+_MEASURING = "core.pipeline.project_measuring"
 
-FIND_VIEWS = Job(f"{_STEPS}:find_views")
-FOUND_VIEWS = Job(f"{_STEPS}:found_views")
-SOLVE_VIEWS = Job(f"{_STEPS}:solve_views")
-ACCEPT_CAMERA = Job(f"{_STEPS}:accept_camera")
-FIND_POSES = Job(f"{_STEPS}:find_poses")
-FOUND_POSES = Job(f"{_STEPS}:found_poses")
-SOLVE_POSES = Job(f"{_STEPS}:solve_poses")
-ACCEPT_FAN = Job(f"{_STEPS}:accept_fan")
+FIND_VIEWS = Job(f"{_CALIBRATION}:find_views")
+FOUND_VIEWS = Job(f"{_CALIBRATION}:found_views")
+SOLVE_VIEWS = Job(f"{_CALIBRATION}:solve_views")
+ACCEPT_CAMERA = Job(f"{_CALIBRATION}:accept_camera")
+FIND_POSES = Job(f"{_CALIBRATION}:find_poses")
+FOUND_POSES = Job(f"{_CALIBRATION}:found_poses")
+SOLVE_POSES = Job(f"{_CALIBRATION}:solve_poses")
+ACCEPT_FAN = Job(f"{_CALIBRATION}:accept_fan")
 SHOW_POSE = Job("core.pipeline.project_looks:show_pose")
 RECALL_POSES = Job("core.pipeline.project_looks:recall_poses")
-MEASURE_SCAN = Job(f"{_STEPS}:measure_scan")
+MEASURE_SCAN = Job(f"{_MEASURING}:measure_scan")
 WATCH_SCAN = Job("core.pipeline.watched_scan:measure_watched")
 SHOW_SCAN = Job("core.pipeline.project_looks:show_scan")
 SHOW_FRAME = Job("core.pipeline.project_looks:show_frame")
 ACCEPTED_CALIBRATION = Job("core.pipeline.project_looks:accepted_calibration")
 LIST_FRAMES = Job("core.files.set_listing:scan_frames")
-MEASURE_GAUGE = Job(f"{_STEPS}:measure_gauge")
+MEASURE_GAUGE = Job(f"{_MEASURING}:measure_gauge")
 MEASURE_FEATURES = Job("core.pipeline.project_inspection:measure_features")
 LOOK_AT_FEATURES = Job("core.pipeline.project_inspection:look_at_features")
 MEASURED_MASTER = Job("core.pipeline.master_step:measured_master")
 READ_PLAN = Job("core.files.inspection_plan_file:read_plan")
 WRITE_PLAN = Job("core.files.inspection_plan_file:write_plan")
-MAKE_REPORT = Job(f"{_STEPS}:make_report")
+MAKE_REPORT = Job("core.pipeline.project_report:make_report")
 PREVIEW_REPORT = Job("core.pipeline.handing_over:preview_report")
 CHOOSE_TEMPLATE = Job("core.pipeline.handing_over:choose_template")
 EXPORT = Job("core.pipeline.handing_over:export")
@@ -67,7 +68,7 @@ READ_STUDY_TABLE = Job("core.pipeline.study_step:read_study_table")
 EXPORT_STUDY = Job("core.pipeline.study_step:export_study")
 TYPE1_STUDY = Job("core.study.type1:type1_study")
 COMPILE_AHEAD = Job("core.pipeline.warm_up:stages")
-LOAD_RESULTS = Job(f"{_STEPS}:load_results")
+LOAD_RESULTS = Job("core.pipeline.project_results:load_results")
 
 
 def resolve(job: Job) -> Any:

@@ -29,6 +29,7 @@ from core.files.rig import read_rig
 PROJECT = "project.json"
 AUTOSAVE = ".autosave.json"
 BACKUPS = "backups"
+RESULTS = "results"
 OPENER = ".trisect"
 """How the file ends that a double click opens the project by: systems know what opens a file by the end of its name."""
 KEPT = 5
@@ -153,6 +154,11 @@ def stored_source(project_folder: Path, pictures: Path) -> str:
 def source_folder(project_folder: Path, stored: str) -> Path | None:
     """The folder of pictures that a project names so; None where it names none."""
     return project_folder / stored if stored else None
+
+
+def results_folder(project_folder: Path) -> Path:
+    """Where the results of the project lie."""
+    return project_folder / RESULTS
 
 
 def sources_of_set(folder: Path) -> Sources:

@@ -13,11 +13,11 @@ from core.files.exchange.opencv_calibration import read_opencv
 from core.files.exchange.ros_camera_info import read_camera_info
 from core.files.pictures import read_bytes
 from core.files.project_data import Project, ReportChoices
-from core.files.project_folder import stored_source
+from core.files.project_folder import results_folder, stored_source
 from core.files.project_rescue import can_be_saved
 from core.files.report_template import read_report_template
 from core.pipeline.export_kinds import Results, export_kind, write_export
-from core.pipeline.project_steps import project_content, report_bytes, results_folder
+from core.pipeline.project_report import project_content, report_bytes
 from core.pipeline.report_step import results_content
 from core.pipeline.workspace import FILES
 from core.progress import Progress, silent

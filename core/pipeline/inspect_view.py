@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from core.errors import InputError
 from core.files.ply import read_cloud
 from core.files.project_data import Project
+from core.files.project_folder import results_folder
 from core.files.project_results import ProjectResults
 from core.inspect.face_region import on_face
 from core.inspect.inspection import DEPTH, HEIGHT, LOWER, NO_FACE, UPPER, InspectionView, ShownMesh
@@ -20,7 +21,7 @@ from core.inspect.relief import relief
 from core.inspect.results import Face, GaugeResult
 from core.model.arrays import Array
 from core.pipeline.project_results import load_results
-from core.pipeline.project_steps import project_set, results_folder
+from core.pipeline.project_workspace import project_set
 from core.pipeline.workspace import FILES
 from core.progress import Progress, silent
 from core.scan.cloud import Cloud

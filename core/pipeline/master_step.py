@@ -5,11 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 from core.errors import InputError
-from core.files.project_folder import is_project, read_project
+from core.files.project_folder import is_project, read_project, results_folder
 from core.files.study_results import characteristics_in
 from core.inspect.conditions import Master
 from core.inspect.temperature import LENGTHS
-from core.pipeline.project_steps import results_folder
 from core.pipeline.workspace import read_calibration
 from core.progress import Progress, silent
 

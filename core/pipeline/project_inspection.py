@@ -12,6 +12,7 @@ from core.errors import InputError
 from core.files.inspection_file import NAME, write_inspection
 from core.files.inspection_plan_file import plan_tables
 from core.files.project_data import Project
+from core.files.project_folder import results_folder
 from core.files.shown_file import read_shown, write_shown
 from core.inspect.deviation_map import QUARTERS, DeviationMap, bounds, mark
 from core.inspect.evaluate import Inspection
@@ -20,7 +21,6 @@ from core.inspect.profile import Profile
 from core.inspect.shown_features import ShownClass, ShownDeviations, ShownFeature, ShownInspection, ShownProfile
 from core.pipeline.gauge_complaints import in_a_project
 from core.pipeline.inspect_step import InspectedScan, inspect, open_scan
-from core.pipeline.project_steps import results_folder
 from core.progress import Progress, silent
 from core.scan.cloud import Cloud
 

@@ -16,6 +16,7 @@ from core.errors import InputError
 from core.files.calibration_store import read_stored_fan, read_stored_poses
 from core.files.pictures import read_bytes
 from core.files.project_data import Project
+from core.files.project_folder import results_folder
 from core.files.project_results import ProjectResults
 from core.files.run_file import read_run
 from core.files.scan_file import read_scan
@@ -23,8 +24,9 @@ from core.model import Camera, Fan
 from core.model.arrays import Array
 from core.pipeline.frame_stages import frame_stages
 from core.pipeline.pose_stages import pose_stages
+from core.pipeline.project_calibration import accepted_camera, solve_poses
 from core.pipeline.project_results import load_results
-from core.pipeline.project_steps import accepted_camera, project_set, results_folder, solve_poses
+from core.pipeline.project_workspace import project_set
 from core.pipeline.scan_step import left_out_sentences
 from core.pipeline.workspace import FILES
 from core.progress import Progress, silent

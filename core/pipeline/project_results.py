@@ -12,6 +12,7 @@ from core.files.camera_file import read_camera
 from core.files.fan_file import read_fan
 from core.files.gauge_file import read_gauge
 from core.files.ply import CloudFile, read_cloud, read_mesh
+from core.files.project_folder import results_folder
 from core.files.project_results import ProjectResults
 from core.files.run_file import RunRecord, read_run
 from core.files.scan_file import ScanFile, read_scan
@@ -30,7 +31,7 @@ def load_results(folder: Path, progress: Progress = silent) -> ProjectResults:
     What is missing is None. What is damaged or was measured with another calibration is None, too, and a sentence says
     so; nothing is raised for it.
     """
-    reader = _Reader(folder / "results", progress)
+    reader = _Reader(results_folder(folder), progress)
     camera = reader.read("camera", read_camera)
     calibration = reader.read("planes", lambda path: _calibration(path, camera))
     cloud = reader.read("cloud", lambda path: _cloud(path, calibration))

@@ -11,16 +11,16 @@ from core.files.atomic import cannot_write, make_folder
 from core.files.leftovers import remove_leftovers
 from core.files.project import Accepted, Done, Project, ProjectFile, project_from_set, write_project
 from core.files.project_keys import finished
-from core.pipeline.project_steps import (
+from core.pipeline.project_calibration import (
     accept_camera,
     accept_fan,
     find_poses,
     find_views,
-    make_report,
-    measure_scan,
     solve_poses,
     solve_views,
 )
+from core.pipeline.project_measuring import measure_scan
+from core.pipeline.project_report import make_report
 from core.progress import Progress, silent
 from core.simulate.sample import sample_folder, sample_set
 

@@ -12,14 +12,13 @@ from core.files.atomic import write_bytes, write_text
 from core.files.json_text import to_json
 from core.files.pictures import read_bytes
 from core.files.project_data import KeptStudy
-from core.files.project_folder import is_project, read_project
+from core.files.project_folder import is_project, read_project, results_folder
 from core.files.study_file import Study, study_path, study_values, write_study
 from core.files.study_input import THICKNESS, crossed_of, readings_of
 from core.files.study_reader import read_study
 from core.files.study_results import measured_in
 from core.files.study_table import read_table, table_of
 from core.pipeline.acceptance_step import Artefact, read_positions
-from core.pipeline.project_steps import results_folder
 from core.progress import Progress, silent
 from core.study.acceptance import AcceptanceCheck, Quantity, acceptance_check
 from core.study.grr import GrrStudy, grr_study

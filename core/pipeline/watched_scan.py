@@ -10,7 +10,8 @@ from core.files.project_data import Project
 from core.files.project_results import ScanSummary
 from core.image.centreline import Centreline
 from core.live.events import ScanDetail
-from core.pipeline.project_steps import accepted_camera, measure_scan
+from core.pipeline.project_calibration import accepted_camera
+from core.pipeline.project_measuring import measure_scan
 from core.progress import Progress, silent
 from core.scan.coverage_map import CoverageMap
 from core.scan.frame_preview import FramePreview, cloud_of

@@ -11,16 +11,16 @@ from core.calibrate.results import CameraCalibration, FanCalibration
 from core.calibrate.seen_views import SeenViews
 from core.files.project import Accepted, Project, project_from_set
 from core.files.project_results import ScanSummary
-from core.pipeline.project_steps import (
+from core.pipeline.project_calibration import (
     accept_camera,
     accept_fan,
     find_poses,
     find_views,
-    make_report,
-    measure_scan,
     solve_poses,
     solve_views,
 )
+from core.pipeline.project_measuring import measure_scan
+from core.pipeline.project_report import make_report
 from core.scan.frame_preview import FramePreview
 from tests.shared import made_once
 

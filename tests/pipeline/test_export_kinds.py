@@ -19,10 +19,11 @@ from core.errors import InputError
 from core.files.camera_file import read_camera, write_camera
 from core.files.export_list import EXPORTS
 from core.files.project_data import ReportChoices
+from core.files.project_folder import results_folder
 from core.model import Camera
 from core.pipeline.export_kinds import WRITERS
 from core.pipeline.handing_over import choose_template, export, export_results, import_camera
-from core.pipeline.project_steps import make_report, project_content, results_folder
+from core.pipeline.project_report import make_report, project_content
 from tests.simulated import copy_of
 
 

@@ -13,7 +13,7 @@ from core.files.rig import Rig
 from core.files.views_file import read_views, write_views
 from core.image.target_view import TargetView
 from core.image.targets import Checkerboard
-from core.pipeline.project_steps import find_views, found_poses, found_views, solve_poses, solve_views
+from core.pipeline.project_calibration import find_views, found_poses, found_views, solve_poses, solve_views
 from tests.simulated import copy_of
 
 

@@ -12,8 +12,9 @@ from core.errors import Cancelled, InputError
 from core.files.atomic import write_bytes
 from core.files.ply import read_cloud, read_mesh
 from core.files.project import ReportChoices
+from core.files.project_folder import results_folder
 from core.pipeline.handing_over import export, preview_report
-from core.pipeline.project_steps import make_report, report_bytes, results_folder
+from core.pipeline.project_report import make_report, report_bytes
 from core.report.content import SECTIONS
 from tests.simulated import copy_of
 

@@ -9,10 +9,11 @@ import pytest
 
 from core.errors import Cancelled, InputError
 from core.files.ply import read_cloud, read_mesh
+from core.files.project_folder import results_folder
 from core.files.rig import GaugeSpec
 from core.inspect.inspection import DEPTH, HEIGHT, LOWER, NO_FACE, UPPER
 from core.pipeline.inspect_view import inspection_view, outline_selected
-from core.pipeline.project_steps import measure_gauge, results_folder
+from core.pipeline.project_measuring import measure_gauge
 from tests.simulated import copy_of
 
 

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from core.files.pictures import read_picture, write_picture
+from core.files.project_folder import results_folder
 from core.files.run_file import read_run
 from core.files.scan_file import read_scan
-from core.pipeline.project_steps import measure_scan, results_folder
+from core.pipeline.project_measuring import measure_scan
 from tests.simulated import copy_of
 
 RESULTS = ("cloud.ply", "mesh.ply", "scan.npz", "gauge.json", "gauge.npz")

@@ -10,11 +10,11 @@ import pytest
 from core.calibrate.pose_stages import NOT_SEEN
 from core.errors import Cancelled, InputError
 from core.files.project import Accepted
+from core.files.project_folder import results_folder
 from core.files.recording_set import open_set
 from core.files.scan_file import read_scan
 from core.pipeline.frame_stages import frame_stages
 from core.pipeline.project_looks import recall_poses, show_frame, show_pose
-from core.pipeline.project_steps import results_folder
 from tests.simulated import copy_of
 
 
@@ -141,6 +141,6 @@ def test_looks_can_be_pickled(done):
 
 
 def open_set_of(done):
-    from core.pipeline.project_steps import project_set
+    from core.pipeline.project_workspace import project_set
 
     return project_set(done.folder, done.project)

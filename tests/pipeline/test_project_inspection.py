@@ -11,6 +11,7 @@ from core.errors import InputError
 from core.files.inspection_plan_file import write_plan
 from core.files.ply import read_mesh
 from core.files.project import ProjectFile, write_project
+from core.files.project_folder import results_folder
 from core.files.stl import write_stl
 from core.inspect import evaluate
 from core.inspect.feature_spec import Auto, Deviation, FeatureSpec, Filters, Section
@@ -19,7 +20,7 @@ from core.pipeline import project_inspection
 from core.pipeline.inspect_step import inspect_step
 from core.pipeline.master_step import measured_master
 from core.pipeline.project_inspection import look_at_features, measure_features
-from core.pipeline.project_steps import project_content, results_folder
+from core.pipeline.project_report import project_content
 
 PLAN = InspectionPlan(
     (

@@ -12,7 +12,7 @@ from core.cli import studying
 from core.errors import InputError
 from core.files.project import ProjectFile, Repeat, write_project
 from core.files.study_file import study_path, study_values, write_study
-from core.pipeline.project_steps import project_content
+from core.pipeline.project_report import project_content
 from core.pipeline.study_step import (
     HEADS,
     export_study,

@@ -8,9 +8,9 @@ import pytest
 
 from core.errors import Cancelled, InputError
 from core.files.project import Accepted
+from core.files.project_folder import results_folder
 from core.live.events import ScanDetail
 from core.pipeline.project_looks import accepted_calibration, show_scan
-from core.pipeline.project_steps import results_folder
 from core.pipeline.thumbnails import display_picture
 from core.pipeline.watched_scan import Watched, measure_watched
 from tests.simulated import copy_of

@@ -1,4 +1,4 @@
-"""The steps of a project: the same numbers as the command line, and old or new results, never both."""
+"""A scan measured in a project: the numbers of the command line, and old or new results, never both."""
 
 import json
 import pickle
@@ -8,31 +8,17 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from pypdf import PdfReader
 
 from core.calibrate.results import LEFT_OUT
 from core.errors import Cancelled, InputError
-from core.files.project import Accepted, ProjectInfo, ReportChoices
+from core.files.project_folder import results_folder
 from core.files.rig import GaugeSpec
-from core.pipeline import project_steps
-from core.pipeline.project_steps import (
-    accept_fan,
-    find_poses,
-    load_results,
-    make_report,
-    measure_gauge,
-    measure_scan,
-    results_folder,
-    solve_poses,
-    solve_views,
-)
-from tests.simulated import SMALL, copy_of
+from core.pipeline.project_measuring import measure_gauge, measure_scan
+from core.pipeline.project_report import make_report
+from core.pipeline.project_results import load_results
+from tests.simulated import SMALL, contents, copy_of
 
 MEASURED = ("camera.json", "planes.json", "planes.npz", "cloud.ply", "mesh.ply", "scan.npz", "gauge.json", "gauge.npz")
-
-
-def contents(folder):
-    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
 
 
 def test_a_project_measures_the_same_bytes_as_the_command_line(done, measured):
@@ -64,10 +50,6 @@ def test_every_frame_is_shown_in_the_order_of_the_recording(done):
 def test_what_goes_between_processes_can_be_pickled(done):
     for value in (done.project, done.seen, done.camera, done.poses, done.fan, done.summary, load_results(done.folder)):
         assert pickle.loads(pickle.dumps(value)) is not None
-    for name in project_steps.__all__:
-        function = getattr(project_steps, name)
-        if callable(function):
-            assert pickle.loads(pickle.dumps(function)) is function
 
 
 def test_every_stage_asks_often_enough_whether_to_stop(done):
@@ -82,23 +64,6 @@ def test_every_stage_asks_often_enough_whether_to_stop(done):
     assert told["mesh"] >= 4
     assert told["calibration uncertainty"] > 100
     assert told["report"] >= 6
-
-
-def test_without_an_accepted_camera_the_fan_cannot_be_looked_at(done):
-    project = replace(done.project, accepted=Accepted())
-    with pytest.raises(InputError, match="no calibration of the camera is accepted"):
-        find_poses(done.folder, project)
-    with pytest.raises(InputError, match="accepted"):
-        measure_scan(done.folder, project)
-
-
-def test_a_fan_of_other_settings_than_those_in_force_is_not_accepted(done, tmp_path):
-    folder = copy_of(done.folder, tmp_path / "project")
-    project = done.with_options(excluded=frozenset({"planes/pose02"}))
-    before = contents(folder)
-    with pytest.raises(InputError, match="solve the laser planes again"):
-        accept_fan(folder, project, done.fan, done.poses)
-    assert contents(folder) == before
 
 
 def test_a_cancelled_measurement_leaves_the_old_results_whole(done, tmp_path):
@@ -179,98 +144,6 @@ def test_the_thickness_alone_is_measured_again_with_another_nominal_value(done, 
     gauge = measure_gauge(folder, project)
     assert gauge.thickness_mm == done.summary.gauge.thickness_mm
     assert gauge.verdict == "not conforming"
-
-
-def test_the_report_prints_what_the_project_says(done, tmp_path):
-    folder = copy_of(done.folder, tmp_path / "project")
-    info = ProjectInfo(
-        "job", part="Endmass 7", serial="S-17", operator="Ada", customer="Babbage Ltd", laboratory="Room 12",
-        air_celsius=20.5, notes="Seen through glass.",
-    )  # fmt: skip
-    project = replace(done.project, info=info, report=ReportChoices(frozenset({"inputs", "no such section"})))
-    text = "\n".join(page.extract_text() for page in PdfReader(str(make_report(folder, project))).pages)
-    for words in ("Endmass 7", "S-17", "Ada", "Babbage Ltd", "Room 12", "20.5", "Seen through glass."):
-        assert words in text
-
-
-def test_a_report_that_is_cancelled_leaves_the_old_one(done, tmp_path):
-    folder = copy_of(done.folder, tmp_path / "project")
-    before = contents(folder)
-
-    def stop(step, done, total):
-        if done == total - 1:
-            raise Cancelled
-
-    with pytest.raises(Cancelled):
-        make_report(folder, done.project, stop)
-    assert contents(folder) == before
-
-
-def test_results_are_loaded_as_they_were_measured(done):
-    results = load_results(done.folder)
-    assert len(results.cloud) == done.summary.points
-    assert len(results.mesh.triangles) == done.summary.triangles
-    assert results.gauge.thickness_mm == done.summary.gauge.thickness_mm
-    assert results.frames == done.summary.frames
-    assert results.calibration_id == done.summary.calibration_id
-    assert results.notes == done.summary.notes
-    assert results.problems == ()
-
-
-def test_results_that_do_not_belong_together_are_not_loaded(done, tmp_path):
-    folder = copy_of(done.folder, tmp_path / "project")
-    camera = results_folder(folder) / "camera.json"
-    camera.write_text(camera.read_text().replace('"k1": ', '"k1": 1'))
-    results = load_results(folder)
-    assert results.camera is not None
-    assert (results.fan, results.cloud, results.gauge, results.frames) == (None, None, None, ())
-    assert "calibrated again" in results.problems[0]
-
-
-def test_a_project_without_results_loads_nothing_and_complains_of_nothing(tmp_path):
-    results = load_results(tmp_path)
-    assert (results.cloud, results.gauge, results.problems, dict(results.files)) == (None, None, (), {})
-
-
-def test_a_view_left_out_has_no_part_in_the_camera_but_its_residuals_are_known(done):
-    name = done.seen.views[2].name
-    without = solve_views(done.folder, done.with_options(excluded=frozenset({name})), done.seen)
-    view = without.views[2]
-    assert (view.view.name, view.used, view.reason) == (name, False, LEFT_OUT)
-    assert np.isfinite(view.residuals).all()
-    assert 0 < view.rms_px < 1
-    assert [v.view.name for v in without.views] == [v.view.name for v in done.camera.views]
-    assert not np.array_equal(without.camera.matrix, done.camera.camera.matrix)
-    alone = replace(done.seen, views=tuple(one for one in done.seen.views if one.name != name))
-    assert np.array_equal(without.camera.matrix, solve_views(done.folder, done.project, alone).camera.matrix)
-    assert any("left out by hand" in note for note in without.notes)
-
-
-def test_too_few_views_left_says_so(done):
-    names = frozenset(one.name for one in done.seen.views[2:])
-    with pytest.raises(InputError, match=r"only 2 of 8 views are not left out by hand"):
-        solve_views(done.folder, done.with_options(excluded=names), done.seen)
-
-
-def test_a_pose_left_out_has_no_part_in_the_fan_and_says_so(done):
-    without = solve_poses(done.folder, done.with_options(excluded=frozenset({"planes/pose02"})), done.poses)
-    pose = without.poses[2]
-    assert (pose.name, pose.used, pose.reason) == ("pose02", False, LEFT_OUT)
-    assert pose.pose.translation[2] > 100
-    rest = tuple(pose for pose in done.poses if pose.name != "pose02")
-    assert np.array_equal(without.fan.pis, solve_poses(done.folder, done.project, rest).fan.pis)
-
-
-def test_a_fan_need_not_be_a_pencil(done, tmp_path):
-    project = done.with_options(constrain_fan=False)
-    free = solve_poses(done.folder, project, done.poses)
-    assert np.array_equal(free.fan.pis, free.free.pis)
-    assert free.verdict.endswith("as asked")
-    assert free.constraint_suits == done.fan.constraint_suits
-    folder = copy_of(done.folder, tmp_path / "project")
-    project = replace(project, accepted=replace(project.accepted, fan=accept_fan(folder, project, free, done.poses)))
-    summary = measure_scan(folder, project)
-    assert summary.gauge.thickness_mm == pytest.approx(50.0, abs=3 * summary.gauge.U_mm)
 
 
 def test_killed_in_the_middle_of_replacing_leaves_no_mixture(done, tmp_path, monkeypatch):

@@ -1,0 +1,132 @@
+"""The calibrations of a project: look at the pictures, solve, and keep what is accepted."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+from core.calibrate.pose_features import PoseFeatures
+from core.calibrate.results import CameraCalibration, FanCalibration
+from core.calibrate.seen_views import SeenViews
+from core.errors import InputError
+from core.files.calibration_store import keep_camera, keep_fan, read_stored_camera
+from core.files.fan_file import fan_id
+from core.files.pictures import read_bytes
+from core.files.project_data import Project
+from core.files.recording_set import RecordingSet
+from core.model import Camera
+from core.pipeline.camera_step import see_views, solve_camera
+from core.pipeline.found_features import keep_poses, keep_views, kept_poses, kept_views
+from core.pipeline.planes_step import measure_poses, planes_settings, solve_planes
+from core.pipeline.project_workspace import project_set
+from core.progress import Progress, silent
+
+
+def accepted_camera(folder: Path, project: Project) -> Camera:
+    """The accepted camera; InputError if there is none, or it is damaged."""
+    return _accepted(folder, project).camera
+
+
+def _accepted(folder: Path, project: Project) -> CameraCalibration:
+    if not project.accepted.camera:
+        raise InputError("no calibration of the camera is accepted yet", todo="calibrate it, and accept the result")
+    return read_stored_camera(folder, project.accepted.camera)
+
+
+def find_views(folder: Path, project: Project, progress: Progress = silent) -> SeenViews:
+    """Look for the camera target in every picture; InputError if there are none, or they differ.
+
+    What is found is kept in the project.
+    """
+    found = project_set(folder, project)
+    seen = see_views(found, progress)
+    keep_views(folder, project, found, seen)
+    return seen
+
+
+def found_views(folder: Path, project: Project, progress: Progress = silent) -> SeenViews | None:
+    """What `find_views` found in these very pictures the last time, if nothing else has been looked at since."""
+    return kept_views(folder, project, project_set(folder, project), progress)
+
+
+def solve_views(folder: Path, project: Project, seen: SeenViews, progress: Progress = silent) -> CameraCalibration:
+    """The camera from what the pictures show, without the views left out; InputError if they do not determine it."""
+    return solve_camera(seen, project.options, progress, project.rig.camera_board)
+
+
+def accept_camera(folder: Path, project: Project, calibration: CameraCalibration, progress: Progress = silent) -> str:
+    """Keep a camera's calibration in the project and return its id: the caller makes it the accepted one.
+
+    Raises
+    ------
+    InputError
+        If nothing can be written.
+    """
+    progress("keeping the calibration", 0, 1)
+    found = project_set(folder, project)
+    names = {view.view.name for view in calibration.views}
+    inputs = _hashes(found, (path for path in found.camera if found.name_of(path) in names))
+    return keep_camera(folder, calibration, project.options, inputs)
+
+
+def find_poses(folder: Path, project: Project, progress: Progress = silent) -> tuple[PoseFeatures, ...]:
+    """Target and stripes in the pictures of every pose; InputError without an accepted camera or without pictures.
+
+    What is found is kept in the project.
+    """
+    found = project_set(folder, project)
+    poses = measure_poses(found, accepted_camera(folder, project), progress)
+    keep_poses(folder, project, found, poses)
+    return poses
+
+
+def found_poses(folder: Path, project: Project, progress: Progress = silent) -> tuple[PoseFeatures, ...]:
+    """What `find_poses` found in these very pictures the last time, seen by the accepted camera; else nothing."""
+    return kept_poses(folder, project, project_set(folder, project), progress)
+
+
+def solve_poses(
+    folder: Path, project: Project, poses: Sequence[PoseFeatures], progress: Progress = silent
+) -> FanCalibration:
+    """The fan, seen through the accepted camera, without the poses left out.
+
+    Raises
+    ------
+    InputError
+        If no camera is accepted, or the poses do not determine the fan.
+    """
+    camera = _accepted(folder, project)
+    return solve_planes(poses, camera.camera, project.rig, project.options, progress, camera.covariance)
+
+
+def accept_fan(
+    folder: Path,
+    project: Project,
+    calibration: FanCalibration,
+    poses: Sequence[PoseFeatures],
+    progress: Progress = silent,
+) -> str:
+    """Keep a fan's calibration in the project and return its id: the caller makes it the accepted one.
+
+    Raises
+    ------
+    InputError
+        If the accepted camera is not the one it was solved with, or nothing can be written.
+    """
+    if fan_id(solve_poses(folder, project, poses, progress).fan) != fan_id(calibration.fan):
+        raise InputError(
+            "this is not what the poses give with the accepted camera and the settings as they are",
+            where="laser planes",
+            todo="solve the laser planes again, then accept them",
+        )
+    found = project_set(folder, project)
+    names = {pose.name for pose in poses}
+    pictures = (path for pair in found.planes if pair.name in names for path in (pair.on, pair.off) if path is not None)
+    settings = planes_settings(project.rig, project.options)
+    return keep_fan(folder, calibration, accepted_camera(folder, project), poses, settings, _hashes(found, pictures))
+
+
+def _hashes(found: RecordingSet, paths: Iterable[Path]) -> dict[str, str]:
+    """SHA-256 of pictures by their names within the set."""
+    return {found.name_of(path): hashlib.sha256(read_bytes(path)).hexdigest() for path in paths}

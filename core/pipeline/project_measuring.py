@@ -1,0 +1,123 @@
+"""Surface and thickness of a project's scan: old or new results, never both."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+from core.errors import InputError
+from core.files.calibration_store import StoredCalibration, put_in_place, read_stored
+from core.files.json_text import to_json
+from core.files.project_data import Project
+from core.files.project_folder import results_folder
+from core.files.project_results import ScanSummary
+from core.files.recording_set import RecordingSet, require_scan
+from core.files.run_file import write_run
+from core.inspect.results import GaugeResult
+from core.pipeline.gauge_complaints import in_a_project
+from core.pipeline.gauge_step import gauge_if_possible, gauge_step
+from core.pipeline.project_workspace import part_name, project_set, project_workspace
+from core.pipeline.scan_step import scan_step
+from core.pipeline.staging import staged
+from core.pipeline.workspace import FILES, Workspace
+from core.progress import Progress, silent
+from core.scan.frame_preview import FramePreview
+
+_OF_A_SCAN = tuple(name for key, name in FILES.items() if key != "report")
+"""What a new scan replaces. The report stays: it is whole in itself, and says what it is of."""
+
+
+def measure_scan(
+    folder: Path,
+    project: Project,
+    progress: Progress = silent,
+    watch: Callable[[FramePreview], None] | None = None,
+) -> ScanSummary:
+    """Measure surface and thickness with the accepted calibrations; a part without two parallel faces is no error.
+
+    New results take the place of the old ones when all is done; until then, and if it is cancelled, the old ones stay.
+    Where the scan among them is of the same pictures and another σ cut, method or calibration is to be used, the
+    pictures are not looked at again, and there is nothing to watch.
+
+    Parameters
+    ----------
+    folder, project
+        The project.
+    progress
+        Told what is being done; may cancel.
+    watch
+        Shown each frame with what it gives by itself, in the order of the recording, on this thread.
+
+    Raises
+    ------
+    InputError
+        If no calibration is accepted, there are no usable frames, or no sweep can be located.
+    """
+    found = project_set(folder, project)
+    require_scan(found)
+    results = results_folder(folder)
+    with staged(results, _OF_A_SCAN) as beside:
+        put_in_place(folder, project.accepted, beside)
+        work = Workspace.open(found, beside, part_name(project))
+        _record_calibrations(work, folder, project)
+        measured = scan_step(work, project.options, progress, watch, earlier=_earlier(found, results, project))
+        gauge, no_gauge = gauge_if_possible(work, progress)
+        notes, calibration_id = work.record().all_notes, work.calibration().id
+    return ScanSummary(
+        frames=measured.scan.frames,
+        points=len(measured.scan.cloud),
+        triangles=len(measured.mesh.triangles),
+        gauge=gauge,
+        no_gauge=no_gauge,
+        notes=notes,
+        calibration_id=calibration_id,
+        files=Workspace(found, results).written(),
+    )
+
+
+def measure_gauge(folder: Path, project: Project, progress: Progress = silent) -> GaugeResult:
+    """Measure the thickness of the scan among the results, with the project's regions and nominal value.
+
+    Raises
+    ------
+    InputError
+        If there is no scan, or it has no two parallel faces there.
+    """
+    try:
+        return gauge_step(project_workspace(folder, project), progress)
+    except InputError as error:
+        raise in_a_project(error) from error
+
+
+def _earlier(found: RecordingSet, results: Path, project: Project) -> Path | None:
+    """The scan whose features will do; None where nothing has changed since: then the pictures are to be looked at."""
+    before = Workspace(found, results)
+    try:
+        settings, calibration = before.record().settings.get("scan"), before.calibration().id
+    except InputError:
+        return None
+    now = json.loads(to_json(dict(project.options.scan_settings)))
+    same = settings == now and calibration == f"{project.accepted.camera}-{project.accepted.fan}"
+    return None if same else before.path("scan")
+
+
+def _record_calibrations(work: Workspace, folder: Path, project: Project) -> None:
+    """Write into run.json how the calibrations came about, as if they had been made with the scan."""
+    calibration, record = work.calibration(), work.record()
+    steps = (
+        ("camera", read_stored(folder, "camera", project.accepted.camera), calibration.camera.notes),
+        ("planes", read_stored(folder, "fan", project.accepted.fan), calibration.fan.notes),
+    )
+    for step, about, notes in steps:
+        made_at = {} if about is None else {step: about.kept_at}
+        about = about or StoredCalibration("camera", "", record.measured_at, 0, 0)
+        record = replace(
+            record,
+            settings={**record.settings, step: about.settings},
+            notes={**record.notes, step: (*about.notes, *notes)},
+            inputs={**record.inputs, **about.inputs},
+            made_at={**record.made_at, **made_at},
+        )
+    write_run(work.path("run"), record)

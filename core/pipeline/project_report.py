@@ -1,0 +1,74 @@
+"""The report of a project: its results, with what people say of the job and of the report."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+from core.files.project_data import Project
+from core.files.project_folder import results_folder
+from core.files.report_template import read_report_template
+from core.files.study_file import study_path
+from core.pipeline.project_workspace import part_name, project_set, project_workspace
+from core.pipeline.report_step import report_content, report_step
+from core.pipeline.reported_inspection import with_studies
+from core.pipeline.workspace import Workspace
+from core.progress import Progress, silent
+from core.report.content import RepeatLine, ReportContent
+from core.report.pdf import build_report
+from core.report.section_names import SECTIONS
+from core.report.template import ReportTemplate
+
+
+def make_report(folder: Path, project: Project, progress: Progress = silent) -> Path:
+    """Put the results into report.pdf, with what the project says of the job; returns its path.
+
+    Raises
+    ------
+    InputError
+        If there is no scan among the results.
+    """
+    work = project_workspace(folder, project)
+    return report_step(work, progress, lambda content: _with_words(content, folder, project))
+
+
+def report_bytes(folder: Path, project: Project, progress: Progress = silent) -> bytes:
+    """The report as `make_report` would write it, as the bytes of a PDF; nothing is written."""
+    return build_report(project_content(folder, project, progress), progress)
+
+
+def project_content(folder: Path, project: Project, progress: Progress = silent) -> ReportContent:
+    """All that is reported and handed over of a project; InputError if there is no scan among the results."""
+    work = Workspace(project_set(folder, project), results_folder(folder), part_name(project))  # only read from
+    return report_content(work, progress, lambda content: _with_words(content, folder, project))
+
+
+def _with_words(content: ReportContent, folder: Path, project: Project) -> ReportContent:
+    """The report's content with what people say of the job and of the report.
+
+    Raises
+    ------
+    InputError
+        If the project's template of reports, or one of its studies, cannot be read.
+    """
+    info, choices = project.info, project.report
+    template = read_report_template(folder / choices.template) if choices.template else ReportTemplate()
+    content = with_studies(content, [study_path(folder, one.id) for one in project.studies if one.included])
+    return replace(
+        content,
+        serial=info.serial,
+        laboratory=info.laboratory,
+        operator=info.operator,
+        customer=info.customer,
+        air_celsius=info.air_celsius,
+        part_celsius=info.part_celsius,
+        remarks=info.notes,
+        repeats=tuple(
+            RepeatLine(one.scan, one.thickness_mm, one.U_mm, one.k, one.calibration_id, one.measured_at)
+            for one in project.repeats
+        ),
+        hidden=choices.hidden & SECTIONS.keys(),
+        paper=choices.paper,
+        language=choices.language,
+        template=template,
+    )

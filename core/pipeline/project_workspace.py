@@ -1,0 +1,37 @@
+"""What the steps of a project work on: its pictures as one recording set, and its results.
+
+All steps of a project (`project_calibration`, `project_measuring`, `project_report`) can be called in another process:
+their arguments and results can be pickled. What takes long takes a `progress` last.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from core.files.project_data import Project
+from core.files.project_folder import results_folder, source_folder
+from core.files.recording_set import RecordingSet, gather_set
+from core.pipeline.workspace import Workspace
+
+
+def project_set(folder: Path, project: Project) -> RecordingSet:
+    """The pictures of a project as one recording set, with the names they would have in one.
+
+    Raises
+    ------
+    InputError
+        If pictures of one part are not all of one size, or one folder is to be two parts.
+    """
+    sources = project.sources
+    camera, planes, scan = (source_folder(folder, name) for name in (sources.camera, sources.planes, sources.scan))
+    return gather_set(project.rig, camera, planes, scan, project.info.name)
+
+
+def part_name(project: Project) -> str:
+    """The part's name: what the project is of, if nobody says more."""
+    return project.info.part or project.options.part or project.info.name
+
+
+def project_workspace(folder: Path, project: Project) -> Workspace:
+    """The project's pictures and results, to be worked on; InputError as `project_set` and `Workspace.open` say."""
+    return Workspace.open(project_set(folder, project), results_folder(folder), part_name(project))

@@ -1,0 +1,71 @@
+"""The calibrations of a project: what is left out has no part in them, and what is accepted is what was solved."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from core.calibrate.results import LEFT_OUT
+from core.errors import InputError
+from core.files.project import Accepted
+from core.pipeline.project_calibration import accept_fan, find_poses, solve_poses, solve_views
+from core.pipeline.project_measuring import measure_scan
+from tests.simulated import contents, copy_of
+
+
+def test_without_an_accepted_camera_the_fan_cannot_be_looked_at(done):
+    project = replace(done.project, accepted=Accepted())
+    with pytest.raises(InputError, match="no calibration of the camera is accepted"):
+        find_poses(done.folder, project)
+    with pytest.raises(InputError, match="accepted"):
+        measure_scan(done.folder, project)
+
+
+def test_a_fan_of_other_settings_than_those_in_force_is_not_accepted(done, tmp_path):
+    folder = copy_of(done.folder, tmp_path / "project")
+    project = done.with_options(excluded=frozenset({"planes/pose02"}))
+    before = contents(folder)
+    with pytest.raises(InputError, match="solve the laser planes again"):
+        accept_fan(folder, project, done.fan, done.poses)
+    assert contents(folder) == before
+
+
+def test_a_view_left_out_has_no_part_in_the_camera_but_its_residuals_are_known(done):
+    name = done.seen.views[2].name
+    without = solve_views(done.folder, done.with_options(excluded=frozenset({name})), done.seen)
+    view = without.views[2]
+    assert (view.view.name, view.used, view.reason) == (name, False, LEFT_OUT)
+    assert np.isfinite(view.residuals).all()
+    assert 0 < view.rms_px < 1
+    assert [v.view.name for v in without.views] == [v.view.name for v in done.camera.views]
+    assert not np.array_equal(without.camera.matrix, done.camera.camera.matrix)
+    alone = replace(done.seen, views=tuple(one for one in done.seen.views if one.name != name))
+    assert np.array_equal(without.camera.matrix, solve_views(done.folder, done.project, alone).camera.matrix)
+    assert any("left out by hand" in note for note in without.notes)
+
+
+def test_too_few_views_left_says_so(done):
+    names = frozenset(one.name for one in done.seen.views[2:])
+    with pytest.raises(InputError, match=r"only 2 of 8 views are not left out by hand"):
+        solve_views(done.folder, done.with_options(excluded=names), done.seen)
+
+
+def test_a_pose_left_out_has_no_part_in_the_fan_and_says_so(done):
+    without = solve_poses(done.folder, done.with_options(excluded=frozenset({"planes/pose02"})), done.poses)
+    pose = without.poses[2]
+    assert (pose.name, pose.used, pose.reason) == ("pose02", False, LEFT_OUT)
+    assert pose.pose.translation[2] > 100
+    rest = tuple(pose for pose in done.poses if pose.name != "pose02")
+    assert np.array_equal(without.fan.pis, solve_poses(done.folder, done.project, rest).fan.pis)
+
+
+def test_a_fan_need_not_be_a_pencil(done, tmp_path):
+    project = done.with_options(constrain_fan=False)
+    free = solve_poses(done.folder, project, done.poses)
+    assert np.array_equal(free.fan.pis, free.free.pis)
+    assert free.verdict.endswith("as asked")
+    assert free.constraint_suits == done.fan.constraint_suits
+    folder = copy_of(done.folder, tmp_path / "project")
+    project = replace(project, accepted=replace(project.accepted, fan=accept_fan(folder, project, free, done.poses)))
+    summary = measure_scan(folder, project)
+    assert summary.gauge.thickness_mm == pytest.approx(50.0, abs=3 * summary.gauge.U_mm)
