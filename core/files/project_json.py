@@ -14,7 +14,7 @@ from core import __version__
 from core.calibrate.camera import CameraOptions
 from core.errors import InputError
 from core.files.complaints import complaint
-from core.files.inspection_plan_file import plan_of, plan_tables
+from core.files.inspection_plan_translation import plan_of, plan_tables
 from core.files.json_text import read_json, to_json
 from core.files.options import Options
 from core.files.project_data import (

@@ -12,7 +12,7 @@ from dataclasses import asdict
 from datetime import datetime
 from typing import Any
 
-from core.files.inspection_plan_file import plan_tables
+from core.files.inspection_plan_translation import plan_tables
 from core.files.project_data import Done, Project, ReportChoices
 from core.files.rig import rig_tables
 

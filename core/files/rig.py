@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 import tomllib
 from collections.abc import Mapping
@@ -18,6 +17,7 @@ from core.calibrate.board_shape import BoardTolerance
 from core.errors import InputError
 from core.files.complaints import complaint
 from core.files.rig_tables import GaugeTable, PlannedRigTables, RigTables, TargetTable
+from core.files.toml_text import toml_text
 from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid, Target
 from core.model.arrays import Array, frozen_array, set_field
 
@@ -148,13 +148,7 @@ def rig_tables(rig: Rig) -> dict[str, Any]:
 
 def rig_to_toml(rig: Rig) -> str:
     """The text of a rig.toml that :func:`read_rig` reads as the same rig."""
-    tables = rig_tables(rig)
-    keys = [f"{key} = {json.dumps(value)}" for key, value in tables.items() if not isinstance(value, Mapping)]
-    lines = [*keys]
-    for name, table in tables.items():
-        if isinstance(table, Mapping):
-            lines += ["", f"[{name}]", *(f"{key} = {json.dumps(value)}" for key, value in table.items())]
-    return "\n".join(lines).lstrip() + "\n"
+    return toml_text(rig_tables(rig))
 
 
 def _target(path: Path, name: str, table: TargetTable) -> Target:

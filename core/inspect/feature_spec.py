@@ -32,6 +32,9 @@ RESULTS: Mapping[Kind, tuple[str, ...]] = {
 }
 """What each kind of feature gives: the names that limits are asked by. A section gives what its cuts are called."""
 
+ONE_SIDED = ("flatness", "form", "profile")
+"""Results that cannot be too small: of their tolerance only the upper limit counts."""
+
 DERIVED: Mapping[Kind, int] = {"distance": 2, "angle": 2}
 """Kinds made from so many other features instead of points."""
 

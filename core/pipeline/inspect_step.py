@@ -8,7 +8,7 @@ from pathlib import Path
 from core.errors import InputError
 from core.files.atomic import make_folder
 from core.files.inspection_file import NAME, write_inspection
-from core.files.inspection_plan_file import plan_tables
+from core.files.inspection_plan_translation import plan_tables
 from core.files.nominal_surface import read_nominals
 from core.files.ply import read_cloud, read_mesh
 from core.files.recording_set import RIG

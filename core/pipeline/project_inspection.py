@@ -10,7 +10,7 @@ import numpy as np
 
 from core.errors import InputError
 from core.files.inspection_file import NAME, write_inspection
-from core.files.inspection_plan_file import plan_tables
+from core.files.inspection_plan_translation import plan_tables
 from core.files.project_data import Project
 from core.files.project_folder import results_folder
 from core.files.shown_file import read_shown, write_shown

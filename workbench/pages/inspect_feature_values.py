@@ -9,11 +9,11 @@ from typing import Any
 
 from PySide6.QtCore import QCoreApplication
 
-from core.files.inspection_plan_file import ONE_SIDED
 from core.inspect.characteristic import Limits
 from core.inspect.feature_spec import (
     DERIVED,
     ELEMENTS,
+    ONE_SIDED,
     RESULTS,
     Auto,
     Cut,

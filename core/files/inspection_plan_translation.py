@@ -1,0 +1,219 @@
+"""A plan as the tables of plan.toml, and back: what each key means inside."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from core.files.inspection_plan_tables import (
+    FeatureTable,
+    FrameTable,
+    LimitsTable,
+    PlanTables,
+    RegionTable,
+    SectionTable,
+    TemperatureTable,
+)
+from core.files.master_file import master_of, master_table
+from core.inspect.characteristic import Limits
+from core.inspect.conditions import Temperature
+from core.inspect.feature_spec import (
+    ONE_SIDED,
+    Auto,
+    Cut,
+    Deviation,
+    FeatureSpec,
+    Filters,
+    InBox,
+    InSphere,
+    PointsOf,
+    Polygon,
+    Region,
+    Section,
+)
+from core.inspect.inspection_plan import InspectionPlan, PartFrame
+
+
+def plan_tables(plan: InspectionPlan) -> dict[str, Any]:
+    """The tables of a plan as plan.toml has them, without what is usual; `PlanTables` checks them."""
+    tables: dict[str, Any] = {"k": float(plan.k)}
+    if plan.frame is not None:
+        frame = plan.frame
+        tables["frame"] = _present({key: getattr(frame, key) or None for key in FrameTable.model_fields})
+    if plan.temperature is not None:
+        tables["temperature"] = {key: getattr(plan.temperature, name) for key, name in _TEMPERATURE.items()}
+    if plan.master is not None:
+        tables["master"] = master_table(plan.master)
+    if plan.features:
+        tables["feature"] = [_feature_table(feature) for feature in plan.features]
+    return tables
+
+
+def plan_of(tables: PlanTables, path: Path) -> InspectionPlan:
+    """The plan that checked `tables` describe; files they name lie beside `path`."""
+    frame = None if tables.frame is None else PartFrame(**tables.frame.model_dump())
+    temperature = None if tables.temperature is None else _temperature(tables.temperature)
+    master = None if tables.master is None else master_of(tables.master, path)
+    return InspectionPlan(tuple(_feature(table) for table in tables.feature), frame, temperature, master, tables.k)
+
+
+_TEMPERATURE = {
+    "part_celsius": "part_celsius",
+    "u_part_celsius": "u_part_celsius",
+    "alpha_per_K": "alpha",
+    "u_alpha_per_K": "u_alpha",
+    "target_celsius": "scale_celsius",
+    "u_target_celsius": "u_scale_celsius",
+    "target_alpha_per_K": "scale_alpha",
+    "u_target_alpha_per_K": "u_scale_alpha",
+}
+"""Keys of [temperature] and what the numbers are called inside."""
+
+
+def _temperature(table: TemperatureTable) -> Temperature:
+    return Temperature(**{name: getattr(table, key) for key, name in _TEMPERATURE.items()})
+
+
+def _feature(table: FeatureTable) -> FeatureSpec:
+    regions = table.regions if table.regions is not None else [table.region]
+    return FeatureSpec(
+        name=table.name,
+        kind=table.kind,
+        regions=tuple(_region(region) for region in regions),
+        of=tuple(table.of),
+        filters=Filters() if table.filters is None else Filters(**table.filters.model_dump()),
+        limits=tuple((result, _limits(result, limits)) for result, limits in table.limits.items()),
+        nominal_heights=tuple(table.nominal_heights_mm),
+        over=table.over,
+        section=None if table.section is None else _section(table.section),
+        deviation=None if table.deviation is None else Deviation(**table.deviation.model_dump()),
+    )
+
+
+def _region(table: RegionTable | str | None) -> Region:
+    if table is None or isinstance(table, str):
+        return Auto()
+    if table.number is not None:
+        return Auto(table.number)
+    if table.polygon_px is not None:
+        return Polygon(tuple((u, v) for u, v in table.polygon_px))
+    if table.sphere_mm is not None:
+        x, y, z, radius = table.sphere_mm
+        return InSphere((x, y, z), radius)
+    if table.box_mm is not None:
+        low, high = ((x, y, z) for x, y, z in table.box_mm)
+        return InBox(low, high)
+    return PointsOf(table.points_of or "")
+
+
+def _limits(result: str, table: LimitsTable) -> Limits:
+    """In mm or rad."""
+    if table.in_degrees:
+        unit, nominal, tolerance = math.radians(1), table.nominal_deg, table.tolerance_deg
+        lower, upper = table.lower_deg, table.upper_deg
+    else:
+        unit, nominal, tolerance = 1.0, table.nominal_mm, table.tolerance_mm
+        lower, upper = table.lower_mm, table.upper_mm
+    if tolerance is not None:
+        lower, upper = None if result in ONE_SIDED else -tolerance, tolerance
+    return Limits(
+        (nominal or 0.0) * unit,
+        -math.inf if lower is None else lower * unit,
+        math.inf if upper is None else upper * unit,
+    )
+
+
+def _section(table: SectionTable) -> Section:
+    usual = Section()
+    line = None if table.line_px is None else tuple((u, v) for u, v in table.line_px)
+    return Section(
+        line_px=None if line is None else (line[0], line[1]),
+        point_mm=usual.point_mm if table.point_mm is None else _three(table.point_mm),
+        normal=usual.normal if table.normal is None else _three(table.normal),
+        half_width_mm=table.half_width_mm,
+        step_mm=table.step_mm,
+        cuts=tuple(Cut(cut.name, cut.kind, _two(cut.first_mm), _two(cut.second_mm)) for cut in table.cuts),
+    )
+
+
+def _two(values: list[float]) -> tuple[float, float]:
+    return values[0], values[1]
+
+
+def _three(values: list[float]) -> tuple[float, float, float]:
+    return values[0], values[1], values[2]
+
+
+def _feature_table(spec: FeatureSpec) -> dict[str, Any]:
+    usual = FeatureSpec(spec.name, spec.kind)
+    regions = [_region_table(region) for region in spec.regions]
+    table: dict[str, Any] = {"name": spec.name, "kind": spec.kind}
+    if spec.regions != usual.regions:
+        table |= {"region": regions[0]} if len(regions) == 1 else {"regions": regions}
+    if spec.of:
+        table["of"] = list(spec.of)
+    filters = {
+        key: getattr(spec.filters, key)
+        for key in ("sigma_max_mm", "margin_mm", "outliers", "cell_mm")
+        if getattr(spec.filters, key) != getattr(usual.filters, key)
+    }
+    if filters:
+        table["filters"] = filters
+    if spec.nominal_heights:
+        table["nominal_heights_mm"] = list(spec.nominal_heights)
+    if spec.over != usual.over:
+        table["over"] = spec.over
+    if spec.section is not None:
+        table["section"] = _section_table(spec.section)
+    if spec.deviation is not None:
+        one = spec.deviation
+        table["deviation"] = {key: getattr(one, key) for key in ("nominal", "align", "tolerance_mm", "reach_mm")}
+    if spec.limits:
+        table["limits"] = {result: _limits_table(limits, angle=spec.kind == "angle") for result, limits in spec.limits}
+    return table
+
+
+def _region_table(region: Region) -> Any:
+    if isinstance(region, Auto):
+        return "auto" if region.number == 1 else {"number": region.number}
+    if isinstance(region, Polygon):
+        return {"polygon_px": [list(corner) for corner in region.corners_px]}
+    if isinstance(region, InSphere):
+        return {"sphere_mm": [*region.centre_mm, region.radius_mm]}
+    if isinstance(region, InBox):
+        return {"box_mm": [list(region.low_mm), list(region.high_mm)]}
+    return {"points_of": region.feature}
+
+
+def _limits_table(limits: Limits, *, angle: bool) -> dict[str, float]:
+    unit, name = (math.degrees(1), "deg") if angle else (1.0, "mm")
+    table = {f"nominal_{name}": limits.nominal * unit}
+    if math.isfinite(limits.lower):
+        table[f"lower_{name}"] = limits.lower * unit
+    if math.isfinite(limits.upper):
+        table[f"upper_{name}"] = limits.upper * unit
+    return table
+
+
+def _section_table(section: Section) -> dict[str, Any]:
+    usual = Section()
+    table: dict[str, Any] = (
+        {"point_mm": list(section.point_mm), "normal": list(section.normal)}
+        if section.line_px is None
+        else {"line_px": [list(pixel) for pixel in section.line_px]}
+    )
+    for key in ("half_width_mm", "step_mm"):
+        if getattr(section, key) != getattr(usual, key):
+            table[key] = getattr(section, key)
+    table["cuts"] = [
+        {"name": cut.name, "kind": cut.kind, "first_mm": list(cut.first)}
+        | ({} if cut.kind == "radius" else {"second_mm": list(cut.second)})
+        for cut in section.cuts
+    ]
+    return table
+
+
+def _present(table: Mapping[str, Any]) -> dict[str, Any]:
+    return {key: value for key, value in table.items() if value is not None}
