@@ -41,6 +41,10 @@ class Observed:
     uv: Array
     weights: Array
 
+    def select(self, keep: NDArray[np.bool_]) -> Observed:
+        """Those corners alone for which `keep` (N,) is true."""
+        return Observed(self.points[keep], self.uv[keep], self.weights[keep])
+
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Bundle:
@@ -48,6 +52,10 @@ class Bundle:
 
     camera: Camera
     poses: tuple[Pose, ...]
+
+    def of_views(self, numbers: Sequence[int]) -> Bundle:
+        """The camera with the poses of these views alone."""
+        return Bundle(self.camera, tuple(self.poses[i] for i in numbers))
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -136,6 +144,14 @@ def residuals(camera: Camera, pose: Pose, view: Observed) -> Array:
     if np.any(position[:, 2] < _NEAREST_MM):
         return np.full(view.uv.shape, np.inf)
     return np.asarray(view.uv - camera.project(position), dtype=np.float64)
+
+
+def residual_lengths(bundle: Bundle, observed: Sequence[Observed]) -> list[Array]:
+    """Lengths (N,) of the weighted residual vectors of every view, in pixels."""
+    return [
+        np.linalg.norm(residuals(bundle.camera, pose, view), axis=1) * np.sqrt(view.weights)
+        for pose, view in zip(bundle.poses, observed, strict=True)
+    ]
 
 
 def normal_equations(

@@ -13,83 +13,34 @@ Zhang, Z., IEEE Trans. PAMI 22 (2000) 1330–1334, doi:10.1109/34.888718.
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass, replace
-from itertools import product
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from core.calibrate.board_fit import BoardFit
-from core.calibrate.board_shape import SHAPE_PARAMETERS, Board, BoardShape, BoardTolerance
-from core.calibrate.bundle import (
-    NO_PARAMETERS,
-    Bundle,
-    Observed,
-    refine,
-    refine_robustly,
-    residuals,
-)
-from core.calibrate.camera_covariance import Widening, principal_deviations
+from core.calibrate.board_shape import BoardShape, BoardTolerance
+from core.calibrate.bundle import Bundle, Observed, refine_robustly
+from core.calibrate.camera_adjustment import MIN_VIEWS, freedom_of, solve_judged, what_counts, with_shape
+from core.calibrate.camera_covariance import Widening
 from core.calibrate.camera_notes import notes_on
+from core.calibrate.camera_options import CameraOptions
 from core.calibrate.camera_quality import cross_validation_mm, rms_and_mean, view_qualities, view_without_part
+from core.calibrate.camera_start import start_of
 from core.calibrate.coverage import coverage, tilt_range
-from core.calibrate.results import CAMERA_PARAMETERS, LEFT_OUT, CameraCalibration, ViewQuality
-from core.calibrate.screening import Outliers, Verdict, judge, screen
-from core.calibrate.zhang import centred_matrix, intrinsic_matrix, pose_from_homography, radial_start
+from core.calibrate.results import LEFT_OUT, CameraCalibration, ViewQuality
+from core.calibrate.screening import screen
 from core.errors import InputError
 from core.image.target_view import TargetView
-from core.model import Camera
 from core.model.arrays import Array
 from core.progress import Progress, silent
 
-__all__ = ["CameraOptions", "calibrate_camera", "principal_deviations"]
-
-MIN_VIEWS = 3
 _MIN_TILT = np.deg2rad(3.0)
 _LOOSE_FOCAL = 0.05
 _LOOSE_CENTRE = 0.1
-_MAX_JUDGEMENTS = 8
-_SHAPE_STEPS = 4
-_SHAPE_SETTLED = 1e-4
 _STEP = "Calibrating the camera"
 _STAGES = 5
 _MORE_VIEWS = "take 10 to 15 pictures of the whole target, tilted by up to 30° in different directions"
-
-
-@dataclass(frozen=True)
-class CameraOptions:
-    """What a camera calibration leaves free, and which outliers it leaves out.
-
-    Parameters
-    ----------
-    skew
-        Whether γ is free; else it is 0.
-    fixed
-        Those of k1, k2, p1, p2 that are fixed to 0.
-    k3
-        Whether k3 is free; else it is 0.
-    outliers
-        "keep": every corner of every view counts. "gross": views out of line with the others are left out, and
-        corners that stand out against the plain standard deviation of their view, which they raise themselves. "all":
-        also corners that stand out against the median of their view only.
-    """
-
-    skew: bool = True
-    fixed: frozenset[str] = frozenset()
-    k3: bool = False
-    outliers: Outliers = "gross"
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "fixed", frozenset(self.fixed))
-        unknown = self.fixed - {"k1", "k2", "p1", "p2"}
-        if unknown:
-            raise ValueError(f"only k1, k2, p1 and p2 can be fixed, not {', '.join(sorted(unknown))}")
-
-    @property
-    def free(self) -> NDArray[np.intp]:
-        """Indices of the free parameters in CAMERA_PARAMETERS."""
-        zero = self.fixed | (set() if self.skew else {"gamma"}) | (set() if self.k3 else {"k3"})
-        return np.array([i for i, name in enumerate(CAMERA_PARAMETERS) if name not in zero], dtype=np.intp)
 
 
 def calibrate_camera(
@@ -146,20 +97,19 @@ def _calibrated(
     observed = _observed([views[index] for index in usable])
     homographies = [matrix for matrix, _ in screened if matrix is not None]
 
-    bundle = _start(homographies, observed, image_size, options)
+    bundle = start_of(homographies, observed, image_size, options)
     progress(_STEP, 1, _STAGES)
     if options.outliers != "keep":
         bundle = refine_robustly(bundle, observed, options.free)
     progress(_STEP, 2, _STAGES)
-    bundle, verdicts = _solve(bundle, observed, options)
-    fit, bundle, verdicts = _with_shape(bundle, verdicts, observed, options, tolerance)
+    bundle, verdicts = solve_judged(bundle, observed, options)
+    fit, bundle, verdicts = with_shape(bundle, verdicts, observed, options, tolerance)
     reasons |= {index: v.reason for index, v in zip(usable, verdicts, strict=True) if not v.used}
     _require_views(views, [index for index in usable if index not in reasons], reasons)
 
     progress(_STEP, 3, _STAGES)
-    used = [i for i, verdict in enumerate(verdicts) if verdict.used]
-    solved = _of_views(bundle, used)
-    counted = [_select(observed[i], verdicts[i].counted) for i in used]
+    used, counted = what_counts(observed, verdicts)
+    solved = bundle.of_views(used)
     covariance, shape, widening = _covariance(solved, counted, options.free, fit)
     progress(_STEP, 4, _STAGES)
     fits = {index: (pose, verdict) for index, pose, verdict in zip(usable, bundle.poses, verdicts, strict=True)}
@@ -178,119 +128,6 @@ def _observed(views: Sequence[TargetView]) -> list[Observed]:
     return [Observed(view.points, view.uv, (typical / view.sigma) ** 2) for view in views]
 
 
-def _select(view: Observed, keep: NDArray[np.bool_]) -> Observed:
-    return Observed(view.points[keep], view.uv[keep], view.weights[keep])
-
-
-def _start(
-    homographies: Sequence[Array], observed: Sequence[Observed], image_size: tuple[int, int], options: CameraOptions
-) -> Bundle:
-    """The closed-form start with the smallest median residual among Zhang's and the one with a centred camera."""
-    matrices = [
-        centred_matrix(homographies, image_size),
-        intrinsic_matrix(homographies, image_size, options.skew),
-    ]
-    free = ("k1" not in options.fixed, "k2" not in options.fixed)
-    starts = []
-    for matrix, radial in product(matrices, (free, (False, False))):
-        if matrix is None:
-            continue
-        poses = tuple(pose_from_homography(matrix, h) for h in homographies)
-        undistorted = Camera(image_size, matrix)
-        positions = np.concatenate([p.apply(view.points) for p, view in zip(poses, observed, strict=True)])
-        uv = np.concatenate([view.uv for view in observed])
-        k1, k2 = radial_start(matrix, positions[:, :2] / positions[:, 2:], uv, radial)
-        camera = replace(undistorted, distortion=np.array([k1, k2, 0, 0]))
-        starts.append(Bundle(camera, poses))
-    return min(starts, key=lambda start: float(np.median(np.concatenate(_lengths(start, observed)))))
-
-
-def _lengths(bundle: Bundle, observed: Sequence[Observed]) -> list[Array]:
-    """Lengths (N,) of the weighted residual vectors of every view, in pixels."""
-    return [
-        np.linalg.norm(residuals(bundle.camera, pose, view), axis=1) * np.sqrt(view.weights)
-        for pose, view in zip(bundle.poses, observed, strict=True)
-    ]
-
-
-def _solve(start: Bundle, observed: Sequence[Observed], options: CameraOptions) -> tuple[Bundle, list[Verdict]]:
-    """Least squares on the views and corners that count, judged again until the judgement stands."""
-    bundle = start
-    verdicts = judge(_lengths(bundle, observed), [True] * len(observed), options.outliers)
-    for _ in range(_MAX_JUDGEMENTS):
-        used = [verdict.used for verdict in verdicts]
-        if sum(used) < MIN_VIEWS:
-            break
-        bundle = _fit(bundle, observed, verdicts, options.free)
-        before, verdicts = verdicts, judge(_lengths(bundle, observed), used, options.outliers)
-        if all(
-            a.used == b.used and np.array_equal(a.counted, b.counted) for a, b in zip(before, verdicts, strict=True)
-        ):
-            break
-    return bundle, verdicts
-
-
-def _fit(start: Bundle, observed: Sequence[Observed], verdicts: Sequence[Verdict], free: NDArray[np.intp]) -> Bundle:
-    """The camera from the views that are used, and every view's pose before that camera."""
-    used = [i for i, verdict in enumerate(verdicts) if verdict.used]
-    solved = refine(
-        Bundle(start.camera, tuple(start.poses[i] for i in used)),
-        [_select(observed[i], verdicts[i].counted) for i in used],
-        free,
-    )
-    poses = dict(zip(used, solved.poses, strict=True))
-    for i, view in enumerate(observed):
-        if i not in poses:
-            alone = Bundle(solved.camera, (start.poses[i],))
-            poses[i] = refine_robustly(alone, [view], NO_PARAMETERS).poses[0]
-    return Bundle(solved.camera, tuple(poses[i] for i in range(len(observed))))
-
-
-def _with_shape(
-    flat: Bundle,
-    verdicts: list[Verdict],
-    observed: Sequence[Observed],
-    options: CameraOptions,
-    tolerance: BoardTolerance,
-) -> tuple[BoardFit, Bundle, list[Verdict]]:
-    """The board's shape beside the camera, from the solution with a `flat` board; the views are judged once more."""
-    fit = BoardFit(Board.of([view.points for view in observed]), tolerance, np.zeros(len(SHAPE_PARAMETERS)))
-    used = [i for i, verdict in enumerate(verdicts) if verdict.used]
-    if not len(fit.free) or len(used) < MIN_VIEWS:
-        return fit, flat, verdicts
-    counted = [_select(observed[i], verdicts[i].counted) for i in used]
-    freedom = _freedom(counted, options.free)
-    bundle = flat
-    try:
-        for _ in range(_SHAPE_STEPS):
-            before = fit.values
-            fit = fit.step(_of_views(bundle, used), counted, options.free, freedom)
-            bundle = _fit(bundle, fit.shaped(observed), verdicts, options.free)
-            if (np.abs(fit.values - before)[fit.free] < _SHAPE_SETTLED * tolerance.sd[fit.free]).all():
-                break
-        unsure = (
-            tolerance.flatness_mm is None
-            and not fit.shape(
-                fit.covariance(_of_views(bundle, used), counted, options.free, freedom)[0], len(options.free)
-            ).surely_bowed
-        )
-    except np.linalg.LinAlgError:
-        unsure = True
-    if unsure:
-        return _with_shape(flat, verdicts, observed, options, replace(tolerance, flatness_mm=0.0))
-    bundle, verdicts = _solve(bundle, fit.shaped(observed), options)
-    return fit, bundle, verdicts
-
-
-def _of_views(bundle: Bundle, used: Sequence[int]) -> Bundle:
-    return Bundle(bundle.camera, tuple(bundle.poses[i] for i in used))
-
-
-def _freedom(counted: Sequence[Observed], free: NDArray[np.intp]) -> int:
-    """Observations less unknowns of camera and poses."""
-    return 2 * sum(len(view.points) for view in counted) - len(free) - 6 * len(counted)
-
-
 def _covariance(
     bundle: Bundle, counted: Sequence[Observed], free: NDArray[np.intp], fit: BoardFit
 ) -> tuple[Array, BoardShape, Widening]:
@@ -307,7 +144,7 @@ def _covariance(
         )
     covariance = np.zeros((10, 10))
     try:
-        both, widening = fit.covariance(bundle, counted, free, _freedom(counted, free))
+        both, widening = fit.covariance(bundle, counted, free, freedom_of(counted, free))
         covariance[np.ix_(free, free)] = both[: len(free), : len(free)]
     except np.linalg.LinAlgError:
         raise InputError("the views do not determine the camera: too much alike", todo=_MORE_VIEWS) from None

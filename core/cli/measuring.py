@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, cast
 
-from core.calibrate.camera import CameraOptions
+from core.calibrate.camera_options import CameraOptions
 from core.cli import output
 from core.errors import InputError
 from core.files.exclusion import excluded_names

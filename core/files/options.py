@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from core.calibrate.camera import CameraOptions
+from core.calibrate.camera_options import CameraOptions
 from core.errors import InputError
 from core.image.stripe import StripeSettings
 from core.scan.method import METHODS, Method

@@ -11,7 +11,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from core import __version__
-from core.calibrate.camera import CameraOptions
+from core.calibrate.camera_options import CameraOptions
 from core.errors import InputError
 from core.files.complaints import complaint
 from core.files.inspection_plan_translation import plan_of, plan_tables

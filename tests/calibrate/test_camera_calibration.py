@@ -6,7 +6,9 @@ from functools import cache
 import numpy as np
 import pytest
 
-from core.calibrate.camera import CameraOptions, calibrate_camera, principal_deviations
+from core.calibrate.camera import calibrate_camera
+from core.calibrate.camera_covariance import principal_deviations
+from core.calibrate.camera_options import CameraOptions
 from core.calibrate.reprojection import linearise, moved, parameters_of
 from core.calibrate.results import CAMERA_PARAMETERS, LEFT_OUT, CameraCalibration
 from core.errors import Cancelled, InputError

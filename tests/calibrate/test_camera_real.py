@@ -6,7 +6,8 @@ import cv2
 import numpy as np
 import pytest
 
-from core.calibrate.camera import CameraOptions, calibrate_camera
+from core.calibrate.camera import calibrate_camera
+from core.calibrate.camera_options import CameraOptions
 from core.image.target_view import TargetView
 
 REAL = Path(__file__).resolve().parents[2].parent / "shared" / "real"

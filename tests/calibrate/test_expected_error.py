@@ -7,7 +7,8 @@ import pytest
 from scipy.spatial import Delaunay
 
 from core.calibrate.bundle import Bundle, Observed, refine, residuals
-from core.calibrate.camera import CameraOptions, calibrate_camera
+from core.calibrate.camera import calibrate_camera
+from core.calibrate.camera_options import CameraOptions
 from core.calibrate.expected_error import expected_error, residual_field
 from core.calibrate.reprojection import camera_of, parameters_of
 from core.model import Pose

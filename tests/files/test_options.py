@@ -1,6 +1,6 @@
 import pytest
 
-from core.calibrate.camera import CameraOptions
+from core.calibrate.camera_options import CameraOptions
 from core.errors import InputError
 from core.files.options import METHODS, Options
 from core.pipeline.options import Options as OptionsOfThePipeline

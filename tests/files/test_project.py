@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from core.calibrate.board_shape import BoardTolerance
-from core.calibrate.camera import CameraOptions
+from core.calibrate.camera_options import CameraOptions
 from core.errors import InputError
 from core.files import project_json
 from core.files.options import Options
