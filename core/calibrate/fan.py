@@ -17,8 +17,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from core.calibrate.board_shape import Board
-from core.calibrate.fan_bundle import Bundle, BundlePose, Plate, solve
+from core.calibrate.fan_bundle import Bundle, solve
 from core.calibrate.fan_cross_validation import prediction_errors
+from core.calibrate.fan_observations import BundlePose, Plate
 from core.calibrate.fan_summary import summarise
 from core.calibrate.fan_verdict import Constrained, judge
 from core.calibrate.line_assignment import NOT_SEEN, assign_lines

@@ -17,7 +17,8 @@ import numpy as np
 
 from core.calibrate import reprojection
 from core.calibrate.board_shape import BoardShape
-from core.calibrate.fan_bundle import Bundle, BundlePose, Plate, solve
+from core.calibrate.fan_bundle import Bundle, solve
+from core.calibrate.fan_observations import BundlePose, Plate
 from core.calibrate.stripe_distances import BOWS, Stripes
 from core.model import Camera, Pose
 from core.model.arrays import Array

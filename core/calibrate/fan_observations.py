@@ -1,0 +1,222 @@
+"""What the poses of a fan's calibration show, as residuals of all unknowns and their derivatives.
+
+The unknowns are the planes, the target's poses, the plate's bow if it may have one, and the camera's ten parameters. A
+pose of a small target is known less well than the stripes on it, and its error is common to all of them; but stripes of
+the same light planes on other poses know something of it. So the poses are held by the residuals of the target's
+points, and the stripes by their distances from the light planes.
+
+A plate whose flatness is only known to a tolerance is a second-degree surface (`core.calibrate.board_shape`), the same
+in all poses, its three bows unknowns with that tolerance as prior. The bend of the stripes tells them, and how stripes
+and target points of differently held plates agree.
+
+The poses are views of a flat target too. With the camera's covariance its parameters are unknowns as well, held by
+what its own views know of them: a calibration with its covariance is the normal equations of all its views with their
+poses eliminated, so this is, to first order, the adjustment of all pictures in one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.calibrate import reprojection
+from core.calibrate.board_shape import SHAPE_PARAMETERS, Board, BoardShape
+from core.calibrate.pencil import PlaneSet
+from core.calibrate.stripe_distances import BOWS, Distances, Stripes
+from core.calibrate.stripe_lines import StripeLine
+from core.image.target_view import TargetView
+from core.model import Camera, Pose
+from core.model.arrays import Array
+
+PARAMETERS = 10
+"""Of the camera."""
+_UP = np.array([0.0, 0.0, 1.0])
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class BundlePose:
+    """One pose of the target: its points seen in `view`, where `pose` is believed, and the fan lines' stripes."""
+
+    view: TargetView
+    pose: Pose
+    stripes: dict[int, StripeLine]
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Plate:
+    """A plate that may be bowed: its extent, and the standard deviation of how far its edges are off its plane."""
+
+    board: Board
+    flatness_mm: float
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class State:
+    """The unknowns: `bow` (3 or 0,) in mm of the plate; `camera` (10,) is the change of the camera's parameters."""
+
+    planes: PlaneSet
+    poses: tuple[Pose, ...]
+    bow: Array
+    camera: Array
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Trust:
+    """How much each observation is trusted.
+
+    `corner_scale` is a factor on the stated uncertainty of the target's points, `noise` (S,) in mm the stripes' own,
+    `extra` (K,) in mm what their offsets, slopes and bends have beyond it, `weight` (S,) of each stripe.
+    """
+
+    corner_scale: float
+    noise: Array
+    extra: Array
+    weight: Array
+
+    @property
+    def sd(self) -> Array:
+        """Standard deviations (S, K) in mm of the stripes' offsets, slopes and bends."""
+        return np.asarray(np.hypot(self.noise[:, None], self.extra), dtype=np.float64)
+
+
+class Observations:
+    """Target points and stripes of all poses, stacked once.
+
+    Columns of all Jacobians are the planes' unknowns, six for each pose, the plate's bows if it may have any, and the
+    camera's ten parameters. What is known of camera and bows stands in the first rows.
+    """
+
+    def __init__(
+        self, poses: Sequence[BundlePose], camera: Camera, camera_covariance: Array | None, plate: Plate | None
+    ) -> None:
+        self.given = camera
+        self.known = poses
+        self.plate = plate
+        self.bows = 0 if plate is None else BOWS
+        self.stripes = Stripes(
+            [pose.stripes for pose in poses], [pose.pose for pose in poses], None if plate is None else plate.board
+        )
+        self.heights = [np.zeros((len(pose.view.points), self.bows)) for pose in poses]
+        if plate is not None:
+            self.heights = [plate.board.changes(pose.view.points)[:, 2, :BOWS] for pose in poses]
+        ends = np.cumsum([0, *(2 * len(pose.view.points) for pose in poses)])
+        self.rows = [slice(int(first), int(last)) for first, last in pairwise(ends)]
+        self.corners = int(ends[-1])
+        self.free, self.whiten = _whitening(camera_covariance)
+
+    def camera(self, state: State) -> Camera:
+        """The camera of a state."""
+        if not state.camera.any():
+            return self.given
+        return reprojection.camera_of(reprojection.parameters_of(self.given) + state.camera, self.given.image_size)
+
+    def distances(self, state: State) -> Distances:
+        """Of the stripes from the light planes."""
+        return self.stripes.distances(state.planes, state.poses, state.camera, state.bow)
+
+    def linearise(self, state: State, trust: Trust) -> tuple[Array, Array]:
+        """Residuals and Jacobian by the unknowns, what is known of the camera included."""
+        residuals, jacobian = self.observed(state, trust)
+        known = jacobian.shape[1] - PARAMETERS
+        if not len(self.free):
+            return residuals, jacobian[:, :known]
+        columns = np.concatenate([np.arange(known), known + self.free])
+        prior = np.hstack([np.zeros((len(self.free), known)), self.whiten])
+        return (
+            np.concatenate([self.whiten @ state.camera[self.free], residuals]),
+            np.vstack([prior, jacobian[:, columns]]),
+        )
+
+    def observed(self, state: State, trust: Trust) -> tuple[Array, Array]:
+        """Residuals of the bows, target points and stripes in standard deviations, and their Jacobian, all columns."""
+        unknowns = state.planes.jacobian.shape[1]
+        width = unknowns + 6 * len(state.poses) + self.bows + PARAMETERS
+        bows = slice(width - PARAMETERS - self.bows, width - PARAMETERS)
+        residuals, blocks = self._known_of_bows(state, width, bows)
+        points = self._target_points(state) / trust.corner_scale
+        block = np.zeros((self.corners, width))
+        block[:, -PARAMETERS - self.bows :] = points[:, 7:]
+        for index, rows in enumerate(self.rows):
+            block[rows, unknowns + 6 * index : unknowns + 6 * index + 6] = points[rows, 1:7]
+        residuals.append(points[:, 0])
+        blocks.append(block)
+        distances = self.distances(state)
+        weight = np.sqrt(trust.weight)[:, None] / trust.sd
+        block = np.zeros((*distances.mm.shape, width))
+        block[..., :unknowns] = distances.by_planes
+        block[..., bows] = distances.by_bow
+        block[..., -PARAMETERS:] = distances.by_camera
+        columns = unknowns + 6 * self.stripes.pose_of[:, None] + np.arange(6)
+        np.put_along_axis(block, np.repeat(columns[:, None], self.stripes.parts, axis=1), distances.by_pose, axis=2)
+        residuals.append((distances.mm * weight).ravel())
+        blocks.append((block * weight[..., None]).reshape(-1, width))
+        return np.concatenate(residuals), np.vstack(blocks)
+
+    def _target_points(self, state: State) -> Array:
+        """Residuals of all target points in stated standard deviations and their derivatives by pose, bows and camera.
+
+        (2N, 1 + 6 + B + 10). All poses are seen at once: most of the time of a fit goes here.
+        """
+        heights = np.concatenate(self.heights)
+        turned = np.concatenate(
+            [
+                (known.view.points + np.outer(own @ state.bow, _UP)) @ pose.rotation.T
+                for known, own, pose in zip(self.known, self.heights, state.poses, strict=True)
+            ]
+        )
+        count = [len(own) for own in self.heights]
+        places = turned + np.repeat([pose.translation for pose in state.poses], count, axis=0)
+        uv, by_camera, by_pose = reprojection.linearise(self.camera(state), Pose.identity(), places)
+        by_place = by_pose[:, :, 3:]
+        up = np.repeat([pose.rotation[:, 2] for pose in state.poses], count, axis=0)
+        by_bow = np.einsum("nij,nj->ni", by_place, up)[:, :, None] * heights[:, None]
+        off = (uv - np.concatenate([known.view.uv for known in self.known]))[..., None]
+        every = np.concatenate([off, np.cross(turned[:, None], by_place), by_place, by_bow, by_camera], axis=2)
+        whitened = [
+            known.view.whitened(every[rows.start // 2 : rows.stop // 2])
+            for known, rows in zip(self.known, self.rows, strict=True)
+        ]
+        return np.concatenate(whitened)
+
+    def _known_of_bows(self, state: State, width: int, columns: slice) -> tuple[list[Array], list[Array]]:
+        """Residuals and rows of the Jacobian that hold the plate to its flatness."""
+        if self.plate is None:
+            return [], []
+        rows = np.zeros((self.bows, width))
+        rows[:, columns] = np.eye(self.bows) / self.plate.flatness_mm
+        return [state.bow / self.plate.flatness_mm], [rows]
+
+    def move(self, state: State, step: Array) -> State:
+        """The state after a step of the unknowns that are free."""
+        first = state.planes.jacobian.shape[1]
+        last = first + 6 * len(state.poses)
+        bow = state.bow + step[last : last + self.bows]
+        steps: list[NDArray[np.float64]] = list(step[first:last].reshape(-1, 6))
+        poses = tuple(reprojection.moved(pose, own) for pose, own in zip(state.poses, steps, strict=True))
+        camera = state.camera.copy()
+        camera[self.free] += step[last + self.bows :]
+        return State(state.planes.moved(step[:first]), poses, bow, camera)
+
+    def shape(self, bow: Array, covariance: Array) -> BoardShape:
+        """The plate with this bow (3 or 0,) and its covariance; flat where it was said to be."""
+        if self.plate is None:
+            return BoardShape()
+        values, own = np.zeros(len(SHAPE_PARAMETERS)), np.zeros((len(SHAPE_PARAMETERS), len(SHAPE_PARAMETERS)))
+        values[:BOWS], own[:BOWS, :BOWS] = bow, covariance
+        return BoardShape(self.plate.board, values, own)
+
+
+def _whitening(covariance: Array | None) -> tuple[NDArray[np.intp], Array]:
+    """Indices (F,) of the parameters with a variance, and the matrix (F, F) that whitens them; none without any."""
+    variance = np.zeros(PARAMETERS) if covariance is None else np.diag(covariance)
+    free = np.flatnonzero(variance > 0)
+    if covariance is None or not len(free):
+        return free, np.zeros((0, 0))
+    sd = np.sqrt(variance[free])
+    values, vectors = np.linalg.eigh(covariance[np.ix_(free, free)] / np.outer(sd, sd))
+    whiten: Array = (vectors / np.sqrt(np.maximum(values, 1e-12 * values[-1]))).T / sd
+    return free, whiten
