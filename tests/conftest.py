@@ -4,14 +4,15 @@ from pathlib import Path
 
 import pytest
 
-from tests.shared import made_once
+from tests.shared import SAID_ALOUD, made_once
 
 
 @pytest.hookimpl(trylast=True)
 def pytest_configure(config: pytest.Config) -> None:
     """A crash tells of the thread that crashed, not of all: logs that are cut short lose the one that matters."""
+    config.stash[SAID_ALOUD] = os.dup(2)
     if faulthandler.is_enabled():
-        faulthandler.enable(os.dup(2), all_threads=False)
+        faulthandler.enable(config.stash[SAID_ALOUD], all_threads=False)
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

@@ -11,6 +11,9 @@ import pytest
 
 GIVE_UP_S = 240.0
 
+SAID_ALOUD = pytest.StashKey[int]()
+"""Where a test process that ends at once says why: standard error while a test runs is pytest's, and would be lost."""
+
 
 def made_once(tmp_path_factory: pytest.TempPathFactory, name: str, make: Callable[[Path], object]) -> Path:
     """The folder `name`, filled by `make` in whichever test process comes first; the others wait for it."""

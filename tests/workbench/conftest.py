@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import faulthandler
 import gc
+import logging
 import os
 import shutil
-import sys
 import threading
 import time
 from collections.abc import Iterator
@@ -22,7 +22,7 @@ import shiboken6
 from PySide6.QtCore import QCoreApplication, QEvent, QTimer
 from PySide6.QtWidgets import QApplication, QWidget
 
-from tests.shared import made_once
+from tests.shared import SAID_ALOUD, made_once
 from tests.workbench import screen
 from tests.workbench.technician import Technician
 from workbench import jobs
@@ -67,9 +67,9 @@ class SharedBench(Bench):
 
 
 @pytest.fixture(autouse=True)
-def nothing_hangs() -> Iterator[None]:
+def nothing_hangs(pytestconfig: pytest.Config) -> Iterator[None]:
     """Ends the test process where a test never comes back: a question nobody answers, a lock."""
-    faulthandler.dump_traceback_later(HANGS_AFTER_S, exit=True, file=sys.__stderr__)
+    faulthandler.dump_traceback_later(HANGS_AFTER_S, exit=True, file=pytestconfig.stash[SAID_ALOUD])
     yield
     faulthandler.cancel_dump_traceback_later()
 
@@ -126,6 +126,19 @@ def window(bench: Bench, qapp: QApplication, monkeypatch: pytest.MonkeyPatch) ->
     qapp.setStyleSheet(sheet)
     qapp.setStyle(style)
     qapp.setPalette(palette)
+
+
+@pytest.fixture
+def usual_log() -> Iterator[None]:
+    """The program's log is afterwards as it was: a test may have it written to a file."""
+    log = logging.getLogger("trisect")
+    before, propagate, level = list(log.handlers), log.propagate, log.level
+    yield
+    for handler in [one for one in log.handlers if one not in before]:
+        log.removeHandler(handler)
+        handler.close()
+    log.propagate = propagate
+    log.setLevel(level)
 
 
 @pytest.fixture

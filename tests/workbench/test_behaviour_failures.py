@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 import os
 import signal
 import threading
@@ -22,18 +21,11 @@ pytestmark = pytest.mark.qt_no_exception_capture
 
 
 @pytest.fixture
-def log_file(tmp_path: Path) -> Iterator[Path]:
+def log_file(tmp_path: Path, usual_log: None) -> Path:
     """Where the program logs to."""
-    root = logging.getLogger("trisect")
-    before, propagate, level = list(root.handlers), root.propagate, root.level
     path = log_to_file(tmp_path / "log")
     assert path is not None
-    yield path
-    for handler in [one for one in root.handlers if one not in before]:
-        root.removeHandler(handler)
-        handler.close()
-    root.propagate = propagate
-    root.setLevel(level)
+    return path
 
 
 @pytest.fixture

@@ -42,7 +42,7 @@ def test_releasing_gives_the_hooks_back(notices: Notices) -> None:
     assert (sys.excepthook, threading.excepthook, sys.unraisablehook) == before
 
 
-def test_notices_are_written_to_a_log_file(notices: Notices, tmp_path: Path) -> None:
+def test_notices_are_written_to_a_log_file(notices: Notices, tmp_path: Path, usual_log: None) -> None:
     path = log_to_file(tmp_path)
     assert path is not None
     notices.error("the disk is full", "details")
@@ -51,9 +51,6 @@ def test_notices_are_written_to_a_log_file(notices: Notices, tmp_path: Path) -> 
     text = path.read_text(encoding="utf-8")
     assert "the disk is full" in text
     assert "details" in text
-    for handler in list(logging.getLogger("trisect").handlers):
-        logging.getLogger("trisect").removeHandler(handler)
-        handler.close()
 
 
 def test_where_no_log_can_be_written_the_program_goes_on(tmp_path: Path) -> None:
