@@ -21,7 +21,6 @@ from core.live.events import LiveBack, LiveUnplugged, LiveView
 from tests.pipeline.live_bench import Window, record
 
 FAKE = "arv-fake-gv-camera-0.8"
-pytestmark = pytest.mark.xdist_group("the loopback has one GigE Vision port")
 
 
 def start_camera(*options):

@@ -103,6 +103,8 @@ def bench(qapp: QApplication, lanes: dict[str, Lane], tmp_path: Path) -> Iterato
     made = SharedBench(ProjectModel(), Notices(), settings, lanes["measuring"], lanes["quick"], lanes["live"])
     yield made
     made.close()
+    made.model.blockSignals(True)  # whoever listened may be gone
+    made.model.close()  # else what was changed is still to be autosaved, in the midst of the next test
 
 
 @pytest.fixture

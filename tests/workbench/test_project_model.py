@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -14,10 +15,11 @@ from workbench.step_state import State, step_states
 
 
 @pytest.fixture
-def model(qapp: Any, tmp_path: Path) -> ProjectModel:
+def model(qapp: Any, tmp_path: Path) -> Iterator[ProjectModel]:
     model = ProjectModel()
     model.create(tmp_path / "block", new_project("Block"))
-    return model
+    yield model
+    model.close()
 
 
 def renamed(project: Project, name: str) -> Project:
