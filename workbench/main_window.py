@@ -201,6 +201,7 @@ class MainWindow(QMainWindow):
         self.model.failed.connect(lambda text: self.bench.notices.error(text))
         for presenter in self.presenters.values():
             presenter.changed.connect(self._refresh)
+            presenter.go_to.connect(self.go_to)
         self.bench.notices.added.connect(self._on_notice)
         lane = self.bench.measuring
         lane.task_started.connect(self._task_started)

@@ -44,18 +44,19 @@ QLineEdit, QPlainTextEdit { padding: 3px 5px; border: 1px solid palette(mid);
     border-radius: 4px; background: palette(base); selection-background-color: palette(highlight); }
 QLineEdit:focus, QPlainTextEdit:focus { border-color: palette(highlight); }
 QCheckBox { spacing: 6px; }
-QCheckBox::indicator, QTableView::indicator { width: 14px; height: 14px; border: 1px solid palette(placeholder-text);
-    border-radius: 3px; background: palette(base); }
+QCheckBox::indicator, QTableView::indicator, QTreeView::indicator { width: 14px; height: 14px;
+    border: 1px solid palette(placeholder-text); border-radius: 3px; background: palette(base); }
 QCheckBox::indicator:hover, QCheckBox::indicator:focus { border-color: palette(highlight); }
-QCheckBox::indicator:checked, QTableView::indicator:checked { background: CHECKED; border-color: CHECKED;
-    image: url("CHECK_ICON"); }
-QTableView::indicator:selected { border-color: palette(highlighted-text); }
+QCheckBox::indicator:checked, QTableView::indicator:checked, QTreeView::indicator:checked {
+    background: CHECKED; border-color: CHECKED; image: url("CHECK_ICON"); }
+QTableView::indicator:selected, QTreeView::indicator:selected { border-color: palette(highlighted-text); }
 QCheckBox::indicator:disabled { background: palette(window); border-color: palette(mid); }
 QCheckBox::indicator:checked:disabled { background: palette(placeholder-text); }
 QAbstractSpinBox, QComboBox { min-height: 20px; }
 QHeaderView::section { background: palette(window); color: palette(placeholder-text); border: none;
     border-bottom: 1px solid palette(mid); padding: 4px 7px; }
-QTableView { border: 1px solid palette(mid); }
+QTableView, QTreeView { border: 1px solid palette(mid); }
+QTreeView#roomy::item { padding: 4px 0; }
 DataTable QTableView::item { padding: 0 7px; }
 QProgressBar { border: 1px solid palette(mid); border-radius: 3px; text-align: center; height: 14px; }
 QProgressBar::chunk { background: palette(highlight); border-radius: 2px; }

@@ -25,7 +25,7 @@ from core.inspect.shown_features import ShownClass, ShownDeviations, ShownFeatur
 
 NAME = "shown.npz"
 """Among the results of a scan."""
-_PROFILE = ("position", "height", "mean_position", "mean_height")
+_PROFILE = ("position", "height", "mean_position", "mean_height", "mean_piece")
 
 
 def write_shown(inspection: Path, shown: ShownInspection) -> None:

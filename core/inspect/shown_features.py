@@ -21,12 +21,21 @@ class ShownProfile:
         (M,) of its points, or of as many as can be drawn.
     mean_position, mean_height
         (K,) of the profile averaged over steps.
+    mean_piece
+        (K,) counts from 0, one more after each long stretch without points.
     """
 
     position: Array
     height: Array
     mean_position: Array
     mean_height: Array
+    mean_piece: NDArray[np.int64]
+
+    @property
+    def mean_line(self) -> tuple[Array, Array]:
+        """Positions and heights of the mean, with NaN between its pieces: nobody knows how the surface runs there."""
+        ends = np.flatnonzero(np.diff(self.mean_piece)) + 1
+        return np.insert(self.mean_position, ends, np.nan), np.insert(self.mean_height, ends, np.nan)
 
 
 @dataclass(frozen=True, eq=False, slots=True)

@@ -27,6 +27,9 @@ from core.scan.cloud import Cloud
 MOST_DRAWN = 20_000
 """So many of the points that a feature used are drawn."""
 
+UNSEEN_STEPS = 3
+"""Over more steps of a section without points no line is drawn."""
+
 Memory: TypeAlias = MutableMapping[str, Inspection]
 LAST = "last inspection"
 """Its name in the memory: only of the last one, which knows by its keys what is still true."""
@@ -85,6 +88,7 @@ def _shown(inspection: Inspection, scan: InspectedScan) -> ShownInspection:
 
 
 def _feature(result: FeatureResult, cloud: Cloud) -> ShownFeature:
+    section = result.spec.section
     sample = result.indices[:: max(1, -(-len(result.indices) // MOST_DRAWN))]
     return ShownFeature(
         name=result.spec.name,
@@ -94,14 +98,16 @@ def _feature(result: FeatureResult, cloud: Cloud) -> ShownFeature:
         places=cloud.points[sample].astype(np.float32),
         uv=cloud.uv[sample].astype(np.float32),
         problem=result.problem,
-        profile=None if result.profile is None else _profile(result.profile),
+        profile=None if result.profile is None or section is None else _profile(result.profile, section.step_mm),
         deviations=None if result.deviations is None else _deviations(result.deviations),
     )
 
 
-def _profile(profile: Profile) -> ShownProfile:
+def _profile(profile: Profile, step_mm: float) -> ShownProfile:
     order = np.argsort(profile.position, kind="stable")[:: max(1, -(-len(profile.position) // MOST_DRAWN))]
-    return ShownProfile(profile.position[order], profile.height[order], profile.mean_position, profile.mean_height)
+    mean = profile.mean_position
+    far = np.diff(mean, prepend=mean[:1]) > UNSEEN_STEPS * step_mm
+    return ShownProfile(profile.position[order], profile.height[order], mean, profile.mean_height, np.cumsum(far))
 
 
 def _deviations(found: DeviationMap) -> ShownDeviations:

@@ -104,6 +104,11 @@ def test_what_is_drawn_is_of_the_scan_and_kept_so_that_it_need_not_be_measured_a
     cut, itself, _ = shown.features
     assert not cut.problem and not itself.problem
     assert np.all(np.diff(cut.profile.position) >= 0) and len(cut.profile.position) == len(cut.profile.height)
+    assert np.all(np.diff(cut.profile.mean_position) > 0)
+    line, unseen = cut.profile.mean_line, 3 * across.step_mm
+    joined = np.diff(line[0])
+    assert np.nanmax(joined) <= unseen and len(line[1]) == len(line[0]), "no line where nothing was seen"
+    assert np.isnan(line[0]).sum() == (np.diff(cut.profile.mean_position) > unseen).sum()
     shares = [one.share for one in itself.deviations.classes]
     assert sum(shares) == pytest.approx(1) and shares[4] > 0.9
     assert [one.mark for one in itself.deviations.classes][:2] == ["−!", "−−−"]

@@ -76,7 +76,7 @@ class CameraPage(CalibrationPage):
         return self.presenter.stage is Stage.LIVE
 
     def _headings(self) -> tuple[str, str]:
-        return self.tr("View"), self.tr("RMS (px)")
+        return self.tr("View"), self.tr("RMS [px]")
 
     def _view_bars(self) -> list[Bar]:
         if self.tabs.currentWidget() not in (self.picture, self.coverage, self.residuals):

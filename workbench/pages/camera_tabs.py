@@ -5,8 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QComboBox, QHBoxLayout, QPushButton, QSplitter, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QComboBox, QHBoxLayout, QPushButton, QVBoxLayout, QWidget
 
 from workbench.pages import camera_words as words
 from workbench.pages.camera_presenter import CameraPresenter
@@ -98,7 +97,7 @@ class ExpectedTab(QWidget):
         self._presenter = presenter
         self._drawn: Any = None
         self.map, self.words, self.at_depth = HeatMap(), muted(), QComboBox()
-        for title in (self.tr("nearest"), self.tr("middle"), self.tr("farthest")):
+        for title in (self.tr("nearest depth"), self.tr("middle depth"), self.tr("farthest depth")):
             self.at_depth.addItem(title)
         self.at_depth.setCurrentIndex(1)
         self.at_depth.setToolTip(self.tr("Depth in the work volume: from the nearest to the farthest corner seen"))
@@ -142,7 +141,7 @@ class HistoryTab(QWidget):
         self._presenter = presenter
         self.table, self.changes = DataTable(), DataTable()
         self.table.set_headers(
-            [(self.tr("Kept"), ""), (self.tr("RMS"), "px"), (self.tr("Views"), ""), (self.tr("Id"), ""), ("", "")]
+            [(self.tr("Accepted"), ""), (self.tr("RMS"), "px"), (self.tr("Views"), ""), (self.tr("Id"), ""), ("", "")]
         )
         self.changes.set_headers(
             [
@@ -156,17 +155,11 @@ class HistoryTab(QWidget):
         row = QHBoxLayout()
         row.addWidget(self.words, 1)
         row.addWidget(self.restore)
-        lower = QWidget()
-        below = QVBoxLayout(lower)
-        below.setContentsMargins(0, 4, 0, 0)
-        below.addLayout(row)
-        below.addWidget(self.changes, 1)
-        split = QSplitter(Qt.Orientation.Vertical)
-        split.addWidget(self.table)
-        split.addWidget(lower)
         column = QVBoxLayout(self)
         column.setContentsMargins(6, 6, 6, 6)
-        column.addWidget(split)
+        column.addWidget(self.table, 1)
+        column.addLayout(row)
+        column.addWidget(self.changes, 1)
         self._rows: Any = None
         self.refresh()
 
@@ -178,6 +171,7 @@ class HistoryTab(QWidget):
             self._rows = rows
             self.table.set_rows(rows)
         self.changes.set_rows(words.change_rows(history.changes))
+        self.changes.setVisible(history.changes is not None)
         self.restore.setIcon(icon("mdi6.backup-restore"))
         if not rows:
             why = self.tr("No calibration has been accepted yet; accepted ones are listed here.")

@@ -73,7 +73,7 @@ def change_rows(changes: CameraChanges | None) -> list[tuple[str, ...]]:
     if changes is None:
         return []
     rows: list[tuple[str, ...]] = [
-        (_tr("RMS (px)"), f"{changes.rms_px[0]:.3f}", f"{changes.rms_px[1]:.3f}", "", ""),
+        (_tr("RMS [px]"), f"{changes.rms_px[0]:.3f}", f"{changes.rms_px[1]:.3f}", "", ""),
         (_tr("Views"), str(changes.views[0]), str(changes.views[1]), "", ""),
     ]
     for one in changes.parameters:
@@ -95,14 +95,14 @@ def change_rows(changes: CameraChanges | None) -> list[tuple[str, ...]]:
 
 
 def history_rows(entries: tuple[Any, ...], accepted: str) -> list[tuple[str, ...]]:
-    """The kept calibrations: when, RMS, views, id, whether accepted."""
+    """The kept calibrations: when, RMS, views, id, whether in use."""
     return [
         (
             entry.kept_at.astimezone().strftime("%Y-%m-%d %H:%M"),
             f"{entry.rms_px:.3f}",
             f"{entry.used}/{entry.total}",
             entry.id,
-            _tr("accepted") if entry.id == accepted else "",
+            _tr("in use") if entry.id == accepted else "",
         )
         for entry in entries
     ]

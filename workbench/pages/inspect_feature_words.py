@@ -110,16 +110,17 @@ def result_rows(feature: ShownFeature) -> list[Row]:
 
 def class_rows(found: ShownDeviations) -> list[Row]:
     """The share of each class of deviations, outwards first."""
-    rows: list[Row] = []
+    share = _tr("Share of all places compared")
+    rows: list[Row] = [(_tr("Deviation [mm]"), _tr("share"), share, "")]
     for one in reversed(found.classes):
         if math.isinf(one.high_mm):
-            span = _tr("over {0} mm").format(f"{one.low_mm:+g}")
+            span = _tr("over {0}").format(f"{one.low_mm:+g}")
         elif math.isinf(one.low_mm):
-            span = _tr("under {0} mm").format(f"{one.high_mm:+g}".replace("-", "−"))
+            span = _tr("under {0}").format(f"{one.high_mm:+g}".replace("-", "−"))
         else:
-            span = _tr("{0} to {1} mm").format(*(f"{end:+g}".replace("-", "−") for end in (one.low_mm, one.high_mm)))
+            span = _tr("{0} to {1}").format(*(f"{end:+g}".replace("-", "−") for end in (one.low_mm, one.high_mm)))
         name = f"{one.mark}  {span}" if one.mark else span
-        rows.append((name, f"{one.share:.1%}", _tr("Share of all places compared"), ""))
+        rows.append((name, f"{100 * one.share:.1f} %", share, ""))
     return rows
 
 

@@ -139,7 +139,7 @@ class FeaturesPanel(QWidget):
         result = self._features.result(name)
         rows = () if result is None else result.rows
         text = words.value(rows[0]) if len(rows) == 1 else ""
-        item = QTreeWidgetItem([name, text])
+        item = QTreeWidgetItem([f"{name}, {words.short_name(rows[0], name)}" if text else name, text])
         item.setData(0, Qt.ItemDataRole.UserRole, name)
         item.setIcon(0, icon(words.SYMBOLS[kind]))
         item.setTextAlignment(1, Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)

@@ -89,8 +89,9 @@ class PictureTab(QWidget):
             message = self.tr("There is no scan yet. Scan the part, then mark its faces here.")
         else:
             message = p.problem or self.tr("Reading the scan …")
+        button = self.tr("Go to Scan") if p.stage is Stage.NO_SCAN else ""
         self._shown = self._laid = self._feature = ()
-        self.image.clear(message)
+        self.image.clear(message, button, lambda: p.go_to.emit("scan"))
         self.line.setText("")
 
     def _list_pictures(self, view: InspectionView) -> None:

@@ -68,9 +68,7 @@ class PlotTab(QWidget):
         self.chart.set_axes(self.tr("along the cut"), "mm", self.tr("height"), "mm")
         title = self.tr("points near the cut")
         self.chart.set_curve("points", profile.position, profile.height, colour=FEATURE, title=title, points=True)
-        self.chart.set_curve(
-            "mean", profile.mean_position, profile.mean_height, title=self.tr("their median over each step")
-        )
+        self.chart.set_curve("mean", *profile.mean_line, title=self.tr("their median over each step"))
         self.words.setText(
             self.tr("{0}: positions count from where the cut begins; measurements lie between positions.").format(
                 result.name
@@ -80,7 +78,7 @@ class PlotTab(QWidget):
 
     def _show_deviations(self, result: ShownFeature, found: ShownDeviations) -> None:
         self.chart.clear()
-        self.chart.set_axes(self.tr("measured − nominal"), "mm", self.tr("places"), "")
+        self.chart.set_axes(self.tr("measured − nominal"), "mm", self.tr("places"), "", from_zero=True)
         self.chart.set_curve("histogram", np.repeat(found.edges, 2)[1:-1], np.repeat(found.counts, 2))
         self.words.setText(
             self.tr("{0}: the outermost bars hold all beyond. Marks are quarters of ±{1} mm, ! is beyond it.").format(

@@ -79,6 +79,7 @@ class StudiesTab(QWidget):
         self.list.setColumnCount(2)
         self.list.setHeaderLabels([self.tr("In the report"), self.tr("Made of")])
         self.list.setAccessibleName(self.tr("Studies"))
+        self.list.setObjectName("roomy")
         self.list.setRootIsDecorated(False)
         self.list.setFixedHeight(LIST_HEIGHT)
         self.list.header().setSectionResizeMode(0, QHeaderView.ResizeMode.ResizeToContents)

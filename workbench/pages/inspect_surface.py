@@ -58,8 +58,9 @@ class SurfaceTab(QWidget):
             label.setObjectName("muted")
         self.hint.setAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
         foot = QHBoxLayout()
-        foot.addWidget(self.line)
-        foot.addWidget(self.hint, 1)
+        self.line.setWordWrap(True)  # else the legend of a deviation would widen the page and narrow what is beside it
+        foot.addWidget(self.line, 1)
+        foot.addWidget(self.hint)
         column = QVBoxLayout(self)
         column.setContentsMargins(6, 6, 6, 4)
         column.setSpacing(4)
@@ -222,7 +223,7 @@ class SurfaceTab(QWidget):
         result = features.result(features.chosen)
         if result is None or not result.used:
             return ""
-        dot = "<span style='color:{0}'>●</span> {1}"
+        dot = "<span style='color:{0}'>●</span>&nbsp;{1}"
         name = escape(result.name)
         if result.deviations is None:
             return self.tr("; {0}").format(dot.format(FEATURE, self.tr("used for {0}").format(name)))

@@ -44,10 +44,12 @@ class PlanesHistory(QObject):
         """Why these planes cannot be accepted again, or ""."""
         accepted = self._model.project.accepted
         entry = next((entry for entry in self.entries if entry.id == id_), None)
+        if not self.entries:
+            return self.tr("No laser planes have been accepted yet; accepted ones are listed here.")
         if entry is None:
             return self.tr("Choose a calibration in the list first.")
         if id_ == accepted.fan:
-            return self.tr("These laser planes are accepted already.")
+            return self.tr("These laser planes are in use.")
         if entry.camera_id != accepted.camera:
             return self.tr("They rest on another camera calibration; restore that one first.")
         return ""

@@ -62,7 +62,7 @@ class PlanesPage(CalibrationPage):
         return self.presenter.stage is Stage.LIVE
 
     def _headings(self) -> tuple[str, str]:
-        return self.tr("Pose"), self.tr("RMS (mm)")
+        return self.tr("Pose"), self.tr("RMS [mm]")
 
     def _view_bars(self) -> list[Bar]:
         if self.tabs.currentWidget() is self.history:

@@ -70,7 +70,11 @@ class PoseTab(QWidget):
         self._name = ""
         self.line.setText("")
         if self._presenter.stage is Stage.NO_CAMERA:
-            self.image.clear(self.tr("The planes are seen through the camera: calibrate and accept it first."))
+            self.image.clear(
+                self.tr("The planes are seen through the camera: calibrate and accept it first."),
+                self.tr("Go to Camera"),
+                lambda: self._presenter.go_to.emit("camera"),
+            )
             return
         self.image.clear(
             self.tr(

@@ -10,6 +10,7 @@ from core.calibrate.results import FanCalibration, PlanePose
 from core.model import Camera
 from workbench.pages import planes_words as words
 from workbench.pages.planes_presenter import PlanesPresenter
+from workbench.pages.step_page import muted
 from workbench.theme import icon
 from workbench.views import scene_shapes
 from workbench.views.colours import EXCLUDED, fan_colour
@@ -116,8 +117,9 @@ class HistoryTab(QWidget):
         )
         self.table.current_row_changed.connect(self._chosen)
         self.restore.clicked.connect(lambda: presenter.history.restore(self._id()))
+        self.words = muted()
         row = QHBoxLayout()
-        row.addStretch(1)
+        row.addWidget(self.words, 1)
         row.addWidget(self.restore)
         column = QVBoxLayout(self)
         column.setContentsMargins(6, 6, 6, 6)
@@ -136,6 +138,7 @@ class HistoryTab(QWidget):
 
     def _refresh_button(self) -> None:
         why = self._presenter.history.why_not_restore(self._id())
+        self.words.setText(why)
         self.restore.setEnabled(not why)
         self.restore.setIcon(icon("mdi6.restore"))
         self.restore.setToolTip(why or self.tr("Measure with these laser planes again; undoable"))

@@ -106,7 +106,7 @@ def pose_sentence(name: str, pose: PlanePose | None, reason: str = "") -> str:
 
 
 def history_rows(entries: tuple[Any, ...], accepted: str) -> list[tuple[str, ...]]:
-    """The kept planes: when, RMS of each line, poses, id, camera, whether accepted."""
+    """The kept planes: when, RMS of each line, poses, id, camera, whether in use."""
     return [
         (
             entry.kept_at.astimezone().strftime("%Y-%m-%d %H:%M"),
@@ -114,7 +114,7 @@ def history_rows(entries: tuple[Any, ...], accepted: str) -> list[tuple[str, ...
             f"{entry.used}/{entry.total}",
             entry.id,
             entry.camera_id,
-            _tr("accepted") if entry.id == accepted else "",
+            _tr("in use") if entry.id == accepted else "",
         )
         for entry in entries
     ]

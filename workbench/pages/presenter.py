@@ -20,6 +20,9 @@ class StepPresenter(QObject):
     step = ""
     changed = Signal()
 
+    go_to = Signal(str)
+    """The user wants the page of this step, for what is missing here comes from there."""
+
     def __init__(self, bench: Bench) -> None:
         super().__init__()
         self.bench, self.model = bench, bench.model

@@ -100,7 +100,10 @@ class ReportPage(StepPage):
             self._shown = p.pages
             self.preview.set_pages(p.pages)
         drawing = self.tr("Drawing the pages …") if p.drawing else ""
-        self.preview.set_message(drawing or p.problem or p.blocker())
+        if p.stage is Stage.NONE:
+            self.preview.set_message(p.blocker(), self.tr("Go to Scan"), lambda: p.go_to.emit("scan"))
+        else:
+            self.preview.set_message(drawing or p.problem or p.blocker())
         self.preview.set_note(drawing if p.pages else "")
 
     def _choices(self) -> QWidget:
@@ -141,7 +144,7 @@ class ReportPage(StepPage):
         self.paper.textActivated.connect(self.presenter.choose_paper)
         self.language.activated.connect(lambda _: self.presenter.choose_language(self.language.currentData()))
         self.template_name.setWordWrap(True)
-        self.template.setText(self.tr("Choose template"))
+        self.template.setText(self.tr("Choose template …"))
         self.template.setToolTip(self.tr("Logo, address, colours and text of your laboratory, from a template.toml"))
         self.no_template.setText(self.tr("None"))
         self.template.clicked.connect(self._choose_template)

@@ -65,7 +65,7 @@ class ScanPage(StepPage):
         self.result = ResultPanel(presenter)
         self.result_fold = self.add_panel(self.tr("Result"), self.result)
         self.frames = ViewList(thumbnails_later=True)
-        self.frames.set_headers(self.tr("Frame"), self.tr("Median σ (mm)"))
+        self.frames.set_headers(self.tr("Frame"), self.tr("Median σ [mm]"))
         self.frames.setMinimumHeight(240)
         self.frames_fold = self.add_panel(self.tr("Frames"), self.frames)
         self.settings = SettingsPanel(presenter)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -85,9 +85,9 @@ class PageScroll(QWidget):
         self._scroll.verticalScrollBar().setValue(place)
         self._sharpen.start(0)
 
-    def set_message(self, text: str) -> None:
-        """What is said where there are no pages."""
-        self._empty.say(text)
+    def set_message(self, text: str, button: str = "", on_button: Callable[[], None] | None = None) -> None:
+        """What is said where there are no pages, and a button if something can be done about it."""
+        self._empty.say(text, button, on_button)
 
     def set_note(self, text: str) -> None:
         """Say over the pages why they are not what they should be, and dim them; "" when they are."""

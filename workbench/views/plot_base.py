@@ -16,6 +16,13 @@ from workbench.views.grabbed import copy_picture, save_picture
 _TICK_PIXELS = 11
 
 
+class Axis(pg.AxisItem):  # type: ignore[misc]
+    """An axis whose numbers have a true minus."""
+
+    def tickStrings(self, values: Any, scale: float, spacing: float) -> list[str]:
+        return [text.replace("-", "−") for text in super().tickStrings(values, scale, spacing)]
+
+
 class Canvas(pg.PlotWidget):  # type: ignore[misc]
     """A plot that leaves the wheel to the panel it stands in."""
 
@@ -28,7 +35,7 @@ class Plot(QWidget):
 
     def __init__(self, parent: QWidget | None = None, *, least_height: int = 150) -> None:
         super().__init__(parent)
-        self._canvas = Canvas(background=None)
+        self._canvas = Canvas(background=None, axisItems={side: Axis(side) for side in ("left", "bottom")})
         self._canvas.setAntialiasing(True)
         self._canvas.setMenuEnabled(False)
         self._canvas.setMouseEnabled(x=False, y=False)

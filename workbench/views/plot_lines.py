@@ -33,13 +33,14 @@ class LineChart(Plot):
         self._curves: dict[str, _Curve] = {}
         self._lines: dict[str, tuple[float, str]] = {}
         self._names = ("", "", "", "")
+        self._from_zero = False
         super().__init__(parent)
         self._legend = self._item.addLegend(offset=(-8, 6), labelTextSize="11px", verSpacing=-4)
         self._legend.hide()
 
-    def set_axes(self, x_label: str, x_unit: str, y_label: str, y_unit: str) -> None:
-        """Name both axes and their units."""
-        self._names = (x_label, x_unit, y_label, y_unit)
+    def set_axes(self, x_label: str, x_unit: str, y_label: str, y_unit: str, *, from_zero: bool = False) -> None:
+        """Name both axes and their units; the upward one begins at zero where there is nothing below."""
+        self._names, self._from_zero = (x_label, x_unit, y_label, y_unit), from_zero
         self._redraw()
 
     def set_curve(
@@ -107,4 +108,5 @@ class LineChart(Plot):
         if len(x) and len(y):
             margin = 0.08 * float(y.max() - y.min()) or 0.05 * abs(float(y.max())) or 1.0
             across = (float(x.min()), float(x.max()))
-            self._box.setRange(xRange=across, yRange=(float(y.min()) - margin, float(y.max()) + margin), padding=0.01)
+            lowest = 0.0 if self._from_zero else float(y.min()) - margin
+            self._box.setRange(xRange=across, yRange=(lowest, float(y.max()) + margin), padding=0.01)

@@ -266,9 +266,6 @@ def paint_sentence(painter: QPainter, area: QRectF, text: str, look: Look) -> No
     """A sentence in the middle of an empty view."""
     colour = QColor(look.text)
     colour.setAlpha(170)
-    font = QFont(painter.font())
-    font.setPixelSize(14)
-    painter.setFont(font)
     painter.setPen(colour)
     flags = int(Qt.AlignmentFlag.AlignCenter) | int(Qt.TextFlag.TextWordWrap)
     painter.drawText(area.adjusted(24, 24, -24, -24), flags, text)

@@ -7,7 +7,7 @@ from typing import cast
 import numpy as np
 import pytest
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QAbstractButton
+from PySide6.QtWidgets import QAbstractButton, QLabel
 
 from core.errors import InputError
 from core.inspect.characteristic import Characteristic, Limits
@@ -343,7 +343,7 @@ def test_the_cut_is_dragged_in_the_picture(page, features):
 
 
 def test_the_plot_shows_the_profile_of_the_chosen_section(page, features, measuring, qtbot):
-    profile = ShownProfile(np.arange(5.0), np.ones(5), np.arange(2.0), np.ones(2))
+    profile = ShownProfile(np.arange(5.0), np.ones(5), np.arange(2.0), np.ones(2), np.zeros(2, np.int64))
     measuring.answers[jobs.MEASURE_FEATURES] = lambda folder, project: with_drawn(project, profile=profile)
     assert not page.tabs.isTabVisible(page.tabs.indexOf(page.plot))
     features.edit.add("section")
@@ -359,7 +359,9 @@ def test_the_plot_shows_the_profile_of_the_chosen_section(page, features, measur
 
 def test_a_new_measurement_in_a_section_begins_on_the_levels_of_its_profile(features, measuring, qtbot):
     position = np.arange(0.5, 100.0)
-    profile = ShownProfile(position, position, position, np.where(position < 40, 0.0, 10.0))
+    profile = ShownProfile(
+        position, position, position, np.where(position < 40, 0.0, 10.0), np.zeros(len(position), np.int64)
+    )
     measuring.answers[jobs.MEASURE_FEATURES] = lambda folder, project: with_drawn(project, profile=profile)
     features.edit.add("section")
     measured(features, qtbot)
@@ -380,11 +382,15 @@ def test_deviations_are_drawn_by_class_and_their_shares_are_told(page, features,
     drawn = {name for kind, name in page.surface.scene._scene.items if kind is Marks}
     assert drawn == {f"deviation {number}" for number in range(-3, 5)}
     page.tabs.setCurrentWidget(page.plot)
-    assert page.plot.rows.text_of("++  +0.05 to +0.075 mm") == "12.5%"
-    assert page.plot.rows.text_of("+!  over +0.1 mm") == "12.5%"
-    assert page.plot.rows.text_of("−!  under −0.1 mm") == "0.0%"
+    assert page.plot.rows.text_of("Deviation [mm]") == "share"
+    assert page.plot.rows.text_of("++  +0.05 to +0.075") == "12.5 %"
+    assert page.plot.rows.text_of("+!  over +0.1") == "12.5 %"
+    assert page.plot.rows.text_of("−!  under −0.1") == "0.0 %"
+    words = [part for part in page.plot.rows.findChildren(QLabel) if part.isVisible() and part.wordWrap()]
+    assert {part.height() for part in words} == {words[0].fontMetrics().height()}, "no row wraps in a small window"
     page.tabs.setCurrentWidget(page.surface)
-    assert all(f"</span> {sign}" in page.surface.line.text() for sign in ("−!", "−−−", "0", "++", "+!"))
+    assert page.surface.minimumSizeHint().width() < 690, "the legend leaves the side panel its width"
+    assert all(f"</span>&nbsp;{sign}" in page.surface.line.text() for sign in ("−!", "−−−", "0", "++", "+!"))
     features.choose("")
     assert not {name for kind, name in page.surface.scene._scene.items if kind is Marks}
 

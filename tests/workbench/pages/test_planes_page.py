@@ -96,10 +96,14 @@ def test_an_empty_page_says_what_to_do_next_and_offers_it(
     qtbot.waitUntil(lambda: page.presenter.stage is Stage.SOLVED)
 
 
-def test_without_a_camera_the_page_says_so_and_offers_nothing_else(page: PlanesPage) -> None:
+def test_without_a_camera_the_page_says_so_and_leads_there(page: PlanesPage, qtbot: Any) -> None:
     page.presenter.model.edit("reject", project_with(camera=""))
     assert page.card.title.text() == "The camera comes first"
     assert "seen through the camera" in page.pose.image.empty_state.message
+    wanted: list[str] = []
+    page.presenter.go_to.connect(wanted.append)
+    click(qtbot, page.pose.image.empty_state.button)
+    assert wanted == ["camera"]
     assert page.card.buttons["run"].toolTip() == "Accept a camera calibration first."
 
 
@@ -241,10 +245,11 @@ def test_planes_are_restored_from_the_history(solved: PlanesPage, qtbot: Any) ->
     solved.tabs.setCurrentWidget(solved.history)
     assert solved.history.table.table.rowCount() == 2
     assert solved.history.restore.toolTip() == "Choose a calibration in the list first."
+    assert solved.history.words.text() == "Choose a calibration in the list first."
     solved.history.table.set_current_row(1)
     click(qtbot, solved.history.restore)
     assert solved.presenter.project.accepted.fan == first
-    assert solved.history.restore.toolTip() == "These laser planes are accepted already."
+    assert solved.history.restore.toolTip() == solved.history.words.text() == "These laser planes are in use."
     assert not solved.bars.isVisible()
 
 

@@ -363,7 +363,7 @@ def test_another_camera_puts_the_planes_out_of_date_and_says_so(accepted: Planes
 def test_planes_of_the_history_are_restored_and_undone(accepted: PlanesPresenter, qtbot: Any) -> None:
     first = accepted.candidate
     assert accepted.history.why_not_restore("") == "Choose a calibration in the list first."
-    assert accepted.history.why_not_restore(first) == "These laser planes are accepted already."
+    assert accepted.history.why_not_restore(first) == "These laser planes are in use."
     accepted.set_used(["pose02"], False)
     settled(qtbot, accepted)
     accepted.accept()

@@ -19,6 +19,7 @@ from workbench.pages.report_page import ReportPage
 from workbench.pages.report_presenter import ReportPresenter
 from workbench.pages.report_words import AT_HAND
 from workbench.views import ask
+from workbench.views.empty_state import EmptyState
 
 
 @pytest.fixture
@@ -46,8 +47,12 @@ def click(qtbot: Any, widget: QWidget) -> None:
     qtbot.mouseClick(widget, Qt.MouseButton.LeftButton, pos=where)
 
 
-def test_an_empty_project_says_what_comes_first_everywhere(page: ReportPage) -> None:
+def test_an_empty_project_says_what_comes_first_everywhere_and_leads_there(page: ReportPage, qtbot: Any) -> None:
     assert page.preview.message == "Scan the part first; then there is something to report."
+    wanted: list[str] = []
+    page.presenter.go_to.connect(wanted.append)
+    click(qtbot, page.preview.findChild(EmptyState).button)
+    assert wanted == ["scan"]
     assert page.card.title.text() == "Nothing to report yet"
     assert not page.make.isEnabled()
     assert page.make.toolTip() == "Scan the part first; then there is something to report."

@@ -80,6 +80,16 @@ def test_axes_have_units_and_no_prefixes(qtbot, kind):
         assert plot._item.getAxis(side).autoSIPrefixScale == 1.0
 
 
+def test_counts_begin_at_zero_and_numbers_have_a_true_minus(qtbot):
+    chart = LineChart()
+    qtbot.addWidget(chart)
+    chart.set_axes("deviation", "mm", "places", "", from_zero=True)
+    chart.set_curve("histogram", [-1.0, 0.0, 1.0], [0.0, 40.0, 2.0])
+    low, high = chart._box.viewRange()[1]
+    assert low == pytest.approx(0.0, abs=0.02 * 40) and high > 40
+    assert chart._item.getAxis("bottom").tickStrings([-0.5, 0.5], 1.0, 0.5) == ["−0.5", "0.5"]
+
+
 def test_the_wheel_is_left_to_the_panel_around_a_plot(qtbot):
     inside = QWidget()
     column = QVBoxLayout(inside)
