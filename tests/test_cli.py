@@ -214,7 +214,7 @@ def test_simulate_writes_a_set_that_can_be_opened(tmp_path):
 
 def test_the_reader_of_our_output_may_leave_early(simulated, measured, tmp_path):
     shutil.copytree(measured, tmp_path / "out")
-    command = [sys.executable, "-m", "core.cli", "report", str(simulated), "--out", str(tmp_path / "out"), "--json"]
+    command = [sys.executable, "-m", "core.cli", "gauge", str(simulated), "--out", str(tmp_path / "out"), "--json"]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     process.stdout.close()
     complaints = process.stderr.read()

@@ -37,7 +37,7 @@ def test_inside_is_negative_and_outside_positive():
     assert near.distance == pytest.approx([1.0, -0.5, 2.0])
 
 
-def seen_from_above(rng, count=4000):
+def seen_from_above(rng, count=2000):
     """Points on the sides of the stepped block that look upwards, to +x or to +y, with noise."""
     normals = STEPS.normals
     seen = normals @ np.array([0.4, 0.3, 1.0]) > 0.1
@@ -54,7 +54,7 @@ def test_a_part_is_found_however_it_lies(turn):
     lie = Rotation.from_rotvec([0.0, 0.0, turn]) * Rotation.from_rotvec([0.15, -0.1, 0.0])
     rotation, shift = Rotation.from_euler("x", np.pi).as_matrix() @ lie.as_matrix(), np.array([10.0, -20.0, 540.0])
     points = seen_from_above(rng) @ rotation.T + shift
-    points[:200] += rng.uniform(-8, 8, (200, 3))
+    points[:100] += rng.uniform(-8, 8, (100, 3))
     aligned = best_fit(points, np.array([0.0, 0.0, -1.0]), Surroundings(STEPS))
     pose = aligned.pose_camera_nominal
     corners = STEPS.corners.reshape(-1, 3)
@@ -64,7 +64,7 @@ def test_a_part_is_found_however_it_lies(turn):
 def test_one_face_alone_is_laid_on_a_face_it_fits_on():
     rng = np.random.default_rng(4)
     points = np.column_stack(
-        [rng.uniform(-29, 29, (1500, 1)), rng.uniform(-17, 17, (1500, 1)), rng.normal(0, 0.01, 1500)]
+        [rng.uniform(-29, 29, (600, 1)), rng.uniform(-17, 17, (600, 1)), rng.normal(0, 0.01, 600)]
     )
     aligned = best_fit(
         points * [1, -1, -1] + [0, 0, 500], np.array([0.0, 0.0, -1.0]), Surroundings(STEPS)
@@ -75,7 +75,7 @@ def test_one_face_alone_is_laid_on_a_face_it_fits_on():
 
 
 def test_another_part_is_refused():
-    points = np.random.default_rng(2).uniform(-30, 30, (2000, 3)) + [0, 0, 500]
+    points = np.random.default_rng(2).uniform(-30, 30, (600, 3)) + [0, 0, 500]
     with pytest.raises(InputError, match="cannot be laid"):
         best_fit(points, np.array([0.0, 0.0, -1.0]), Surroundings(STEPS))
 

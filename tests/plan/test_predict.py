@@ -49,14 +49,14 @@ def test_the_map_shows_sigma_where_block_and_table_are_seen(base):
 
 
 def test_the_same_plan_gives_the_same_figures(base):
-    again = Planner(sigma_cut_mm=CUT_MM).predict(SMALL, HEIGHT, scans=2)
+    again = Planner(sigma_cut_mm=CUT_MM).predict(SMALL, HEIGHT, scans=1)
 
-    assert again.each_u_mm == base.each_u_mm
+    assert again.each_u_mm == base.each_u_mm[:1]
     assert np.array_equal(again.sigma.own, base.sigma.own, equal_nan=True)
 
 
 def test_more_poses_leave_less_of_the_fans_share(planner, base):
-    many = planner.predict(replace(SMALL, poses=4 * SMALL.poses), HEIGHT, scans=2)
+    many = planner.predict(replace(SMALL, poses=3 * SMALL.poses), HEIGHT, scans=1)
 
     def fan(prediction):
         return next(row.u_mm for row in prediction.budget if "fan calibration" in row.source)
@@ -69,11 +69,12 @@ def test_without_speckle_a_thickness_is_surer(planner, base):
     assert planner.predict(replace(SMALL, speckle=0.0), HEIGHT, scans=1).u_mm < 0.85 * base.u_mm
 
 
-def test_changes_come_with_the_most_helpful_first_and_say_why_one_cannot_be_made(planner, base):
+def test_changes_come_with_the_most_helpful_first_and_say_why_one_cannot_be_made(planner):
+    base = planner.predict(SMALL, HEIGHT)
     impossible = Change("no views", lambda design: "1", lambda design: replace(design, views=1))
     named = {change.name: change for change in CHANGES}
     chosen = (named["poses of the plane target doubled"], named["baseline of the fan 20 % shorter"], impossible)
-    effects = compare(planner, SMALL, base, scans=2, changes=chosen)
+    effects = compare(planner, SMALL, base, scans=1, changes=chosen)
 
     assert [effect.share for effect in effects] == sorted(effect.share for effect in effects)
     assert {effect.change for effect in effects} == {change.name for change in chosen}
