@@ -63,9 +63,7 @@ def test_a_part_is_found_however_it_lies(turn):
 
 def test_one_face_alone_is_laid_on_a_face_it_fits_on():
     rng = np.random.default_rng(4)
-    points = np.column_stack(
-        [rng.uniform(-29, 29, (600, 1)), rng.uniform(-17, 17, (600, 1)), rng.normal(0, 0.01, 600)]
-    )
+    points = np.column_stack([rng.uniform(-29, 29, (600, 1)), rng.uniform(-17, 17, (600, 1)), rng.normal(0, 0.01, 600)])
     aligned = best_fit(
         points * [1, -1, -1] + [0, 0, 500], np.array([0.0, 0.0, -1.0]), Surroundings(STEPS)
     )  # the bottom is 60 × 35
