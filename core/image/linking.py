@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from core.image.filling import filled, points_apart
 from core.image.passed import Passed, nothing_passed, put_down, room_for, was_passed
-from core.image.ridge import kernel_radius, kernel_table, ridge_at, ridge_response
+from core.image.ridge import LANES, Detector, kernel_radius, kernel_table, ridge_at, ridge_response
 from core.image.seeds import Picture, seeds
 from core.model.arrays import Array
 
@@ -63,6 +63,8 @@ def link(
     unit = ridge_response(1.0, stripe_px, filter_px)
     stride = min(points_apart(filter_px), _LONGEST_STEP)
     flat: Any = np.ascontiguousarray(picture).reshape(-1)  # float32 or int16
+    if picture.shape[1] < LANES:
+        flat = np.append(flat, np.zeros(LANES, flat.dtype))
     points, ends = _trace_all(
         flat,
         state,
@@ -92,7 +94,7 @@ def _trace_all(
     ahead = np.empty((4 * (height + width), 5))
     behind = np.empty_like(ahead)
     points, passed = np.empty((16384, 5)), nothing_passed((height, width), reach, 16384)
-    ends = np.empty(64, dtype=np.int64)
+    ends, detector = np.empty(64, dtype=np.int64), Detector(radius, kernels, np.empty(3 * LANES, dtype=np.float32))
     count, runs = 0, 0
     for k in range(len(starts)):
         u, v = starts[k, 0], starts[k, 1]
@@ -105,7 +107,7 @@ def _trace_all(
             if state[int(v + 0.5), int(u + 0.5)] & IGNORED or was_passed(passed, points, u, v, reach):
                 found = False
                 break
-            across, nu, nv, offset = ridge_at(picture, width, u, v, radius, kernels)
+            across, nu, nv, offset = ridge_at(picture, width, u, v, detector)
             response = -across
             if response < 0.3 * high:
                 found = False
@@ -119,10 +121,10 @@ def _trace_all(
         if not found:
             continue
         so_far = (points, passed, reach)
-        backwards = _follow(picture, state, so_far, (u, v, -nu, -nv), limits, radius, kernels, behind)
+        backwards = _follow(picture, state, so_far, (u, v, -nu, -nv), limits, detector, behind)
         last = max(backwards - 1, 0)
         closed = backwards > 20 and math.hypot(behind[last, 0] - u, behind[last, 1] - v) < 1.5 * stride
-        forwards = 0 if closed else _follow(picture, state, so_far, (u, v, nu, nv), limits, radius, kernels, ahead)
+        forwards = 0 if closed else _follow(picture, state, so_far, (u, v, nu, nv), limits, detector, ahead)
         needed = backwards + 1 + forwards
         if len(points) < count + needed:
             more = np.empty((2 * (count + needed), 5))
@@ -158,8 +160,7 @@ def _follow(
     so_far: tuple[Array, Passed, int],
     start: tuple[float, float, float, float],
     limits: tuple[float, float, float, float, float, float],
-    radius: int,
-    kernels: NDArray[np.float32],
+    detector: Detector,
     out: Array,
 ) -> int:
     """Points ahead of `start` (u, v, n_u, n_v) along its tangent, written to `out`; their number.
@@ -175,18 +176,18 @@ def _follow(
     while count < len(out):
         u += stride * tu
         v += stride * tv
-        if not _inside(u, v, width, height, radius):
+        if not _inside(u, v, width, height, detector.radius):
             break
         here = state[int(v + 0.5), int(u + 0.5)]
         if here & IGNORED or was_passed(passed, points, u, v, reach):
             break
-        across, nu, nv, offset = ridge_at(picture, width, u, v, radius, kernels)
+        across, nu, nv, offset = ridge_at(picture, width, u, v, detector)
         far = max(0.5, 0.25 * stride) + 0.05 * (missed + blind)  # straight ahead drifts off while nothing is seen
         if across < -low and _NEAR_ENOUGH * filter_px < abs(offset) <= far:
             u2, v2 = u + offset * nu, v + offset * nv
-            if not _inside(u2, v2, width, height, radius):
+            if not _inside(u2, v2, width, height, detector.radius):
                 break
-            across, nu, nv, offset = ridge_at(picture, width, u2, v2, radius, kernels)
+            across, nu, nv, offset = ridge_at(picture, width, u2, v2, detector)
         else:
             u2, v2 = u, v
         if nu * tv - nv * tu < 0:  # the tangent (−n_v, n_u) keeps its direction

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -22,7 +23,16 @@ KERNEL_REACH = 4.0
 """Half width of the kernels in filter σ; cut earlier, the pixels that enter and leave shift the point by 0.001 px."""
 PHASES = 32
 """Sets of kernels to a pixel."""
-_LANES = 8  # kernels are as long as a multiple of what the processor multiplies at once
+LANES = 32
+"""Kernels are as long as a multiple of it, for loops of so many rounds are turned into a few instructions."""
+
+
+class Detector(NamedTuple):
+    """`kernel_radius` and `kernel_table` of a filter, and (3 · LANES,) numbers to work in."""
+
+    radius: int
+    kernels: NDArray[np.float32]
+    columns: NDArray[np.float32]
 
 
 def kernel_radius(filter_px: float) -> int:
@@ -46,7 +56,7 @@ def kernel_table(filter_px: float) -> NDArray[np.float32]:
     x = np.arange(-radius, radius + 1) - shift
     weight = np.exp(-0.5 * (x / filter_px) ** 2)
     weight /= weight.sum(axis=1, keepdims=True)
-    table = np.zeros((PHASES + 1, 3, -(-x.shape[1] // _LANES) * _LANES), dtype=np.float32)
+    table = np.zeros((PHASES + 1, 3, -(-x.shape[1] // LANES) * LANES), dtype=np.float32)
     slope, bend = x / filter_px**2 * weight, (x**2 / filter_px**2 - 1) / filter_px**2 * weight
     for k, kernel in enumerate((weight, slope, bend)):
         if k:  # blind to a constant background in spite of the cut tails
@@ -62,17 +72,15 @@ def ridge_at(
     width: int,
     u: float,
     v: float,
-    radius: int,
-    kernels: NDArray[np.float32],
+    detector: Detector,
 ) -> tuple[float, float, float, float]:
-    """Line point seen from (u, v), which must be `radius` + 1 px inside the picture.
+    """Line point seen from (u, v), which must be the detector's radius + 1 px inside the picture.
 
     Parameters
     ----------
     picture, width
-        The picture's rows one after another, (H·W,), and the length of a row.
-    radius, kernels
-        `kernel_radius` and `kernel_table` of the filter.
+        The picture's rows one after another, (≥ H·W,), and the length of a row. Where a row is shorter than LANES, so
+        many numbers must follow.
 
     Returns
     -------
@@ -81,24 +89,22 @@ def ridge_at(
     """
     column, row = math.floor(u + 0.5), math.floor(v + 0.5)
     phase_u, phase_v = int((u - column + 0.5) * PHASES + 0.5), int((v - row + 0.5) * PHASES + 0.5)
-    of_u, of_v = kernels[phase_u], kernels[phase_v]
-    smoothing, sloping, bending = of_u[0], of_u[1], of_u[2]
-    length = len(smoothing)
-    ru, rv, ruu, ruv, rvv = 0.0, 0.0, 0.0, 0.0, 0.0
-    first = (row - radius) * width + column - radius
-    for j in range(2 * radius + 1):
-        line = picture[first + j * width : first + j * width + length]
-        smooth, slope, bend = np.float32(0), np.float32(0), np.float32(0)
-        for i in range(length):
-            grey = np.float32(line[i])
-            smooth += grey * smoothing[i]
-            slope += grey * sloping[i]
-            bend += grey * bending[i]
-        ru += slope * of_v[0, j]
-        ruu += bend * of_v[0, j]
-        rv += smooth * of_v[1, j]
-        ruv += slope * of_v[1, j]
-        rvv += smooth * of_v[2, j]
+    radius, kernels, columns = detector
+    smoothing, sloping, bending = kernels[phase_u, 0], kernels[phase_u, 1], kernels[phase_u, 2]
+    ru, rv, ruu, ruv, rvv = np.float32(0), np.float32(0), np.float32(0), np.float32(0), np.float32(0)
+    first, block = (row - radius) * width + column - radius, 0
+    while True:  # once, but for the widest filters: compilers do not see that of a for
+        _filter_columns(picture, first + block, width, 2 * radius + 1, kernels[phase_v], columns)
+        for i in range(LANES):
+            smooth, slope, bend = columns[i], columns[LANES + i], columns[2 * LANES + i]
+            ru += sloping[block + i] * smooth
+            ruu += bending[block + i] * smooth
+            rv += smoothing[block + i] * slope
+            ruv += sloping[block + i] * slope
+            rvv += smoothing[block + i] * bend
+        block += LANES
+        if block >= len(smoothing):
+            break
     half_difference = 0.5 * (ruu - rvv)
     across = 0.5 * (ruu + rvv) - math.sqrt(half_difference * half_difference + ruv * ruv)
     nu, nv = ruv, across - ruu  # eigenvector of the most negative eigenvalue, from the better conditioned row
@@ -110,4 +116,43 @@ def ridge_at(
     nu /= norm
     nv /= norm
     beside = (column + phase_u / PHASES - 0.5 - u) * nu + (row + phase_v / PHASES - 0.5 - v) * nv
-    return across, nu, nv, beside - (ru * nu + rv * nv) / across
+    return float(across), float(nu), float(nv), float(beside - (ru * nu + rv * nv) / across)
+
+
+@njit(cache=True, nogil=True, fastmath=True, inline="always")
+def _filter_columns(
+    picture: NDArray[np.float32] | NDArray[np.int16],
+    first: int,
+    width: int,
+    rows: int,
+    kernel: NDArray[np.float32],
+    columns: NDArray[np.float32],
+) -> None:
+    """A `kernel` (3, ≥ `rows`) along LANES columns from the pixel `first` on: smoothed, slope, bend, into `columns`.
+
+    Four rows at once, and columns counted without a sign, which could not count from the array's end: so the compiler
+    makes of each row two instructions.
+    """
+    columns[:] = np.float32(0)
+    smoothing, sloping, bending = kernel[0], kernel[1], kernel[2]
+    step = np.uintp(width)
+    for j in range(0, rows - 3, 4):
+        s0, s1, s2, s3 = smoothing[j], smoothing[j + 1], smoothing[j + 2], smoothing[j + 3]
+        d0, d1, d2, d3 = sloping[j], sloping[j + 1], sloping[j + 2], sloping[j + 3]
+        b0, b1, b2, b3 = bending[j], bending[j + 1], bending[j + 2], bending[j + 3]
+        p0 = np.uintp(first + j * width)
+        p1, p2, p3 = p0 + step, p0 + step + step, p0 + step + step + step
+        for i in range(LANES):
+            k = np.uintp(i)
+            g0, g1 = np.float32(picture[p0 + k]), np.float32(picture[p1 + k])
+            g2, g3 = np.float32(picture[p2 + k]), np.float32(picture[p3 + k])
+            columns[i] += s0 * g0 + s1 * g1 + s2 * g2 + s3 * g3
+            columns[LANES + i] += d0 * g0 + d1 * g1 + d2 * g2 + d3 * g3
+            columns[2 * LANES + i] += b0 * g0 + b1 * g1 + b2 * g2 + b3 * g3
+    for j in range(rows - rows % 4, rows):
+        s0, d0, b0, p0 = smoothing[j], sloping[j], bending[j], np.uintp(first + j * width)
+        for i in range(LANES):
+            grey = np.float32(picture[p0 + np.uintp(i)])
+            columns[i] += s0 * grey
+            columns[LANES + i] += d0 * grey
+            columns[2 * LANES + i] += b0 * grey
