@@ -14,7 +14,6 @@ from core.plan.design import Design
 from core.plan.light_lines import FlatFace, LitLine, faces_of, lit_lines
 from core.plan.seen_stripes import SeenStripes
 from core.progress import Progress, silent, steps
-from core.scan.crossings import CrossingWindow
 from core.scan.features import NO_STRIPE, FrameFeatures, ScanFeatures, gather
 from core.simulate.image import generator
 from core.simulate.laser import Sheet, fan_sheets
@@ -55,8 +54,7 @@ def plan_scan(design: Design, height_mm: float, seed: int, progress: Progress = 
             for index, pieces in enumerate(frames)
         ],
         (_settings(fan_lines), _settings(every)),
-        CrossingWindow(),
-        progress,
+        progress=progress,
     )
 
 

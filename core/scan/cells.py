@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
@@ -45,18 +47,19 @@ def sorted_by_cell(cell_of: Index, cells: int) -> tuple[Index, Index]:
     return order, starts
 
 
+class Measured(NamedTuple):
+    """Of all N points, as in a cloud."""
+
+    points: Array
+    uv: Array
+    intensity: Array
+    sigma: Array
+    sweep: Index
+
+
 @njit(cache=True, nogil=True)
 def fuse_cells(
-    order: Index,
-    starts: Index,
-    cells: Index,
-    points: Array,
-    uv: Array,
-    intensity: Array,
-    sigma: Array,
-    sweep: Index,
-    gap: float,
-    slope: float,
+    order: Index, starts: Index, cells: Index, measured: Measured, gap: float, slope: float
 ) -> tuple[Array, Array, Index, Index]:
     """Fuse the points of each of the occupied `cells` (M,).
 
@@ -64,8 +67,8 @@ def fuse_cells(
     ----------
     order, starts
         From `sorted_by_cell`.
-    points, uv, intensity, sigma, sweep
-        Of all N points, as in a cloud.
+    measured
+        The N points.
     gap, slope
         Depths of one layer leave no gap larger than `gap` standard uncertainties plus `slope` times the depth.
 
@@ -74,6 +77,7 @@ def fuse_cells(
     Weighted means of x, y, z, u, v and intensity (M, 6), sums of weights (M,), number of points (M,), and for each
     of the N points the cell it is part of, as an index into `cells`, or −1.
     """
+    points, uv, intensity, sigma, sweep = measured
     means, total = np.zeros((len(cells), 6)), np.zeros(len(cells))
     count, member = np.zeros(len(cells), dtype=np.int64), np.full(len(sigma), -1, dtype=np.int64)
     first_sweep = sweep.min()

@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba import njit
@@ -154,42 +154,54 @@ class _Fits:
             np.empty((count, 2), np.int64),
             np.zeros((count, 2, CELLS)),
         )
-        bin_starts = np.cumsum([0, *map(len, lines.bins)])
-        bins, broken = (
-            np.concatenate([np.zeros((0, 5)), *lines.bins]),
-            np.concatenate([np.zeros(0, bool), *lines.broken]),
-        )
-        correlation = np.array([line.correlation_px for line in lines.lines], dtype=np.float64)
+        pieces = _Pieces.of(lines)
         for start in range(0, count, _AT_ONCE):
             reached(int(met.picture[start, 0]) - 1)
             part = slice(start, start + _AT_ONCE)
-            _fit(
-                met.piece[part], met.point[part], lines.points, lines.arc, lines.starts, bins, broken, bin_starts,
-                correlation, lines.cell_px, min_angle,
-                fits.rows[part], fits.along[part], fits.cell[part], fits.share[part],
-            )  # fmt: skip
+            into = _Into(fits.rows[part], fits.along[part], fits.cell[part], fits.share[part])
+            _fit(met.piece[part], met.point[part], pieces, lines.cell_px, min_angle, into)
         return fits
 
 
+class _Into(NamedTuple):
+    """Where fits are put, as in `_Fits`."""
+
+    rows: Array
+    along: Array
+    cell: Index
+    share: Array
+
+
+class _Pieces(NamedTuple):
+    """The pieces of a `Stack` one behind the other: piece i has the points starts[i] … starts[i + 1], and bins so."""
+
+    points: Array
+    arc: Array
+    starts: Index
+    bins: Array
+    broken: NDArray[np.bool_]
+    bin_starts: Index
+    correlation: Array
+
+    @classmethod
+    def of(cls, lines: Stack) -> _Pieces:
+        """All pieces of `lines`."""
+        return cls(
+            lines.points,
+            lines.arc,
+            lines.starts,
+            np.concatenate([np.zeros((0, 5)), *lines.bins]),
+            np.concatenate([np.zeros(0, bool), *lines.broken]),
+            np.cumsum([0, *map(len, lines.bins)]),
+            np.array([line.correlation_px for line in lines.lines], dtype=np.float64),
+        )
+
+
 @njit(cache=True, nogil=True)
-def _fit(
-    piece: Index,
-    point: Index,
-    points: Array,
-    arc: Array,
-    starts: Index,
-    bins: Array,
-    broken: NDArray[np.bool_],
-    bin_starts: Index,
-    correlation: Array,
-    cell_px: float,
-    min_angle: float,
-    rows: Array,
-    along: Array,
-    cell: Index,
-    share: Array,
-) -> None:
-    """Fit the centrelines at some meetings, into `rows`, `along`, `cell` and `share`."""
+def _fit(piece: Index, point: Index, pieces: _Pieces, cell_px: float, min_angle: float, into: _Into) -> None:
+    """Fit the centrelines at some meetings, see `Meetings`, and put what comes out `into` arrays."""
+    points, arc, starts, bins, broken, bin_starts, correlation = pieces
+    rows, along, cell, share = into
     for n in range(len(piece)):
         for end in range(2):
             k = point[n, end]

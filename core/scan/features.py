@@ -18,10 +18,9 @@ from core.image.shading import shading_sigma
 from core.image.smoothing import smooth
 from core.image.stripe import StripeSettings
 from core.image.stripe_settings import choose_settings
-from core.model import Camera
 from core.progress import Progress, Told, silent, steps
 from core.scan.crossing_search import all_crossings
-from core.scan.crossings import CrossingTable, CrossingWindow
+from core.scan.crossings import CrossingTable
 from core.scan.feature_notes import notes_on
 from core.scan.frame_reader import LOST, MOVED, NO_STRIPE, Frame, FrameFeatures, FrameReader
 from core.scan.reference import Picture
@@ -112,7 +111,7 @@ def extract_features(
     progress("frames", len(found), total)
     _require_sweeps(found)
     stripes = seen.stripe, sweep_stripe
-    return gather(seen.image_size, seen.fan, found, stripes, options.window, progress, camera=options.camera)
+    return gather(seen.image_size, seen.fan, found, stripes, options, progress)
 
 
 def gather(
@@ -120,16 +119,17 @@ def gather(
     fan: tuple[Centreline, ...],
     frames: Sequence[FrameFeatures],
     stripes: tuple[StripeSettings, StripeSettings | None],
-    window: CrossingWindow,
+    options: FeatureOptions | None = None,
     progress: Progress = silent,
     smoothed: bool = True,
-    camera: Camera | None = None,
 ) -> ScanFeatures:
     """Centrelines as they were extracted to a scan's features: crossed, and then averaged along themselves.
 
-    `stripes` are the fan's and the sweeps'; without `smoothed` the centrelines stay as they are; `camera` as in
-    FeatureOptions.
+    `stripes` are the fan's and the sweeps'; of the `options` window and camera count here; without `smoothed` the
+    centrelines stay as they are.
     """
+    options = options or FeatureOptions()
+    window, camera = options.window, options.camera
     lines = [frame.centrelines for frame in frames]
     if camera is None:
         crossings = all_crossings(fan, lines, window, progress)

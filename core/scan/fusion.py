@@ -14,7 +14,7 @@ import numpy as np
 
 from core.errors import InputError
 from core.progress import Progress, silent
-from core.scan.cells import cells_of, fuse_cells, sorted_by_cell
+from core.scan.cells import Measured, cells_of, fuse_cells, sorted_by_cell
 from core.scan.cloud import Cloud
 from core.scan.normals import ENOUGH, STEEPEST, pixel_angle, with_normals
 from core.scan.surface import Surface, grid_shape
@@ -72,9 +72,8 @@ def fuse(
     progress("fusion", 1, 2)
     order, starts = sorted_by_cell(cell_of, shape[0] * shape[1])
     cells = np.flatnonzero(np.diff(starts))
-    means, total, count, member = fuse_cells(
-        order, starts, cells, cloud.points, cloud.uv, cloud.intensity, cloud.sigma, cloud.sweep, GAP, slope
-    )
+    measured = Measured(cloud.points, cloud.uv, cloud.intensity, cloud.sigma, cloud.sweep)
+    means, total, count, member = fuse_cells(order, starts, cells, measured, GAP, slope)
     del cell_of, order
     progress("fusion", 2, 2)
     return Surface(

@@ -11,6 +11,8 @@ triangle is left out when one of its edges
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
@@ -85,7 +87,8 @@ def _continuous(
     facing = np.where(known[:, None], surface.normals, [0.0, 0.0, -1.0])  # unknown: as if it faced the camera
     steep = pixel_angle(surface.points, surface.uv) * np.tan(steepest)
     turned = triangles.copy()
-    kept = _kept(surface.points, surface.uv, surface.sigma, facing, turned, limit, steep, float(np.sin(largest_kink)))
+    vertices = _Vertices(surface.points, surface.uv, surface.sigma, facing)
+    kept = _kept(vertices, turned, _Limits(limit, steep, float(np.sin(largest_kink))))
     return np.asarray(turned[kept], dtype=np.int64)
 
 
@@ -102,18 +105,27 @@ def _longest(uv: Array, triangles: NDArray[np.int64]) -> Array:
     return longest
 
 
+class _Vertices(NamedTuple):
+    """Of V vertices: places (V, 3) and (V, 2) in the picture, σ (V,) and the unit normal (V, 3) each may have."""
+
+    points: Array
+    uv: Array
+    sigma: Array
+    facing: Array
+
+
+class _Limits(NamedTuple):
+    """An edge's length in pixels, its depth by length in pixels and depth, and the sine of its angle to the surface."""
+
+    length_px: float
+    steep: float
+    kink: float
+
+
 @njit(cache=True, nogil=True)
-def _kept(
-    points: Array,
-    uv: Array,
-    sigma: Array,
-    facing: Array,
-    triangles: NDArray[np.int64],
-    limit: float,
-    steep: float,
-    kink: float,
-) -> NDArray[np.bool_]:
+def _kept(vertices: _Vertices, triangles: NDArray[np.int64], limits: _Limits) -> NDArray[np.bool_]:
     """Which triangles stay; each is turned in place towards the camera, and those seen edge-on are left out."""
+    points = vertices.points
     kept = np.zeros(len(triangles), dtype=np.bool_)
     for t in range(len(triangles)):
         a, b, c = triangles[t]
@@ -127,24 +139,24 @@ def _kept(
             triangles[t, 1], triangles[t, 2] = c, b
         kept[t] = away != 0
         for one, other in ((a, b), (b, c), (c, a)):
-            kept[t] &= _joins(points, uv, sigma, facing, one, other, limit, steep, kink)
+            kept[t] &= _joins(vertices, one, other, limits)
     return kept
 
 
 @njit(cache=True, nogil=True)
-def _joins(
-    points: Array, uv: Array, sigma: Array, facing: Array, a: int, b: int, limit: float, steep: float, kink: float
-) -> bool:
+def _joins(vertices: _Vertices, a: int, b: int, limits: _Limits) -> bool:
     """Whether the edge from a to b lies on one continuous surface; see the module's docstring."""
+    points, uv, sigma, facing = vertices
     length_px = np.hypot(uv[b, 0] - uv[a, 0], uv[b, 1] - uv[a, 1])
     x, y, z = points[b, 0] - points[a, 0], points[b, 1] - points[a, 1], points[b, 2] - points[a, 2]
     noise = JUMP_SIGMAS * np.hypot(sigma[a], sigma[b])
-    if length_px > limit or (abs(z) > noise and abs(z) > steep * length_px * 0.5 * (points[a, 2] + points[b, 2])):
+    steep = limits.steep * length_px * 0.5 * (points[a, 2] + points[b, 2])
+    if length_px > limits.length_px or (abs(z) > noise and abs(z) > steep):
         return False
     off_a = abs(x * facing[a, 0] + y * facing[a, 1] + z * facing[a, 2])
     off_b = abs(x * facing[b, 0] + y * facing[b, 1] + z * facing[b, 2])
     off = min(off_a, off_b)
-    return bool(off <= noise or off <= kink * np.sqrt(x * x + y * y + z * z))
+    return bool(off <= noise or off <= limits.kink * np.sqrt(x * x + y * y + z * z))
 
 
 def _canonical(triangles: NDArray[np.int64]) -> NDArray[np.int64]:

@@ -8,7 +8,7 @@ the steepest slope a surface can show, the rest by Tukey's biweight.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TypeVar
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 from numba import njit
@@ -109,7 +109,7 @@ def _estimate(xyz: Array, uv: Array, sigma: Array, radius: float) -> Array:
     starts = np.searchsorted(bucket[order], np.arange(rows * columns + 1))
     normals = np.empty((len(xyz), 3))
     floor = 0.2 * float(np.median(sigma)) + 1e-9
-    sorted_normals = _fit_all(
+    points = _Sorted(
         np.ascontiguousarray(xyz[order]),
         np.ascontiguousarray(uv[order]),
         np.maximum(sigma[order], floor),
@@ -120,28 +120,37 @@ def _estimate(xyz: Array, uv: Array, sigma: Array, radius: float) -> Array:
         radius,
         pixel_angle(xyz, uv),
     )
-    normals[order] = sorted_normals
+    normals[order] = _fit_all(points)
     return normals
 
 
+class _Sorted(NamedTuple):
+    """N points sorted into square buckets of side `radius` px, `columns` × `rows` of them.
+
+    `bucket` (N,) of each point; `starts` where in the points each bucket begins, and ends at the next one's begin;
+    `angle` is that of one pixel.
+    """
+
+    xyz: Array
+    uv: Array
+    sigma: Array
+    bucket: NDArray[np.int64]
+    starts: NDArray[np.int64]
+    columns: int
+    rows: int
+    radius: float
+    angle: float
+
+
 @njit(cache=True, nogil=True)
-def _fit_all(
-    xyz: Array,
-    uv: Array,
-    sigma: Array,
-    bucket: NDArray[np.int64],
-    starts: NDArray[np.int64],
-    columns: int,
-    rows: int,
-    radius: float,
-    angle: float,
-) -> Array:
+def _fit_all(points: _Sorted) -> Array:
     """A robust plane in inverse depth around each point; see the module's docstring."""
+    xyz, sigma, radius, angle = points.xyz, points.sigma, points.radius, points.angle
     normals = np.zeros((len(xyz), 3))
     near = np.empty(4 * NEIGHBOURS, dtype=np.int64)
     weights = np.empty(4 * NEIGHBOURS)
     for i in range(len(xyz)):
-        count = _gather(i, xyz, uv, sigma, bucket, starts, columns, rows, radius, angle, near)
+        count = _gather(i, points, near)
         if count < 6:
             continue
         for k in range(count):
@@ -150,10 +159,10 @@ def _fit_all(
         a = b = c = 0.0
         narrow = 0.0
         for _ in range(3):
-            a, b, c, narrow = _inverse_depth_plane(i, xyz, uv, sigma, near, weights, count)
+            a, b, c, narrow = _inverse_depth_plane(i, points, near, weights, count)
             if narrow < (0.2 * radius) ** 2:
                 break
-            scale = _reweight(i, xyz, uv, sigma, near, weights, count, a, b, c)
+            scale = _reweight(i, points, near, weights, count, (a, b, c))
         if narrow < (0.2 * radius) ** 2:
             continue
         # 1/z = a + b du + c dv  →  π over the ray coordinates, of which one pixel is `angle`.
@@ -169,21 +178,11 @@ def _fit_all(
 
 
 @njit(cache=True, nogil=True)
-def _gather(
-    i: int,
-    xyz: Array,
-    uv: Array,
-    sigma: Array,
-    bucket: NDArray[np.int64],
-    starts: NDArray[np.int64],
-    columns: int,
-    rows: int,
-    radius: float,
-    angle: float,
-    near: NDArray[np.int64],
-) -> int:
+def _gather(i: int, points: _Sorted, near: NDArray[np.int64]) -> int:
     """Neighbours of point i on its own surface into `near`, evenly thinned to about NEIGHBOURS; how many."""
-    row, column = bucket[i] // columns, bucket[i] % columns
+    xyz, uv, sigma, starts = points.xyz, points.uv, points.sigma, points.starts
+    columns, rows = points.columns, points.rows
+    row, column = points.bucket[i] // columns, points.bucket[i] % columns
     left, right = max(column - 1, 0), min(column + 1, columns - 1)
     candidates = 0
     for r in range(max(row - 1, 0), min(row + 1, rows - 1) + 1):
@@ -194,10 +193,10 @@ def _gather(
         for j in range(starts[r * columns + left], starts[r * columns + right + 1], stride):
             du, dv = uv[j, 0] - uv[i, 0], uv[j, 1] - uv[i, 1]
             apart = np.sqrt(du * du + dv * dv)
-            if apart > radius:
+            if apart > points.radius:
                 continue
             noise = np.sqrt(sigma[i] ** 2 + sigma[j] ** 2)
-            if abs(xyz[j, 2] - xyz[i, 2]) > 4 * noise + STEEPEST * apart * angle * xyz[i, 2]:
+            if abs(xyz[j, 2] - xyz[i, 2]) > 4 * noise + STEEPEST * apart * points.angle * xyz[i, 2]:
                 continue
             if count < len(near):
                 near[count] = j
@@ -207,9 +206,10 @@ def _gather(
 
 @njit(cache=True, nogil=True)
 def _inverse_depth_plane(
-    i: int, xyz: Array, uv: Array, sigma: Array, near: NDArray[np.int64], weights: Array, count: int
+    i: int, points: _Sorted, near: NDArray[np.int64], weights: Array, count: int
 ) -> tuple[float, float, float, float]:
     """Weighted fit 1/z = a + b du + c dv about point i, and the variance (px²) of the neighbours across."""
+    xyz, uv, sigma = points.xyz, points.uv, points.sigma
     sw = su = sv = sq = 0.0
     for k in range(count):
         j = near[k]
@@ -243,18 +243,11 @@ def _inverse_depth_plane(
 
 @njit(cache=True, nogil=True)
 def _reweight(
-    i: int,
-    xyz: Array,
-    uv: Array,
-    sigma: Array,
-    near: NDArray[np.int64],
-    weights: Array,
-    count: int,
-    a: float,
-    b: float,
-    c: float,
+    i: int, points: _Sorted, near: NDArray[np.int64], weights: Array, count: int, plane: tuple[float, float, float]
 ) -> float:
     """Tukey's weights from the residuals in units of σ; returns the residuals' scale, at least 1."""
+    xyz, uv, sigma = points.xyz, points.uv, points.sigma
+    a, b, c = plane
     total = squares = 0.0
     for k in range(count):
         j = near[k]

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
+from core.files.rig import GaugeSpec, rig_to_toml
+from core.files.rig import Rig as StatedRig
 from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid, Target
 from core.model import Pose
 from core.simulate.boards import printed
@@ -12,53 +15,35 @@ from core.simulate.poses import camera_poses, plane_poses
 from core.simulate.rays import Map
 from core.simulate.rig import Rig
 from core.simulate.scenario import Scenario
-from core.simulate.targets import camera_picture, fan_centres, plane_pictures
+from core.simulate.targets import Studio, camera_picture, fan_centres, plane_pictures
 
 CAMERA_GREY = 230.0
 PLANE_GREY = 75.0
 """8-bit grey level of a white surface in the room's light, while the camera and while the fan is calibrated."""
 
-PLATES: dict[str, tuple[Target, str]] = {
-    "checkerboard": (
-        Checkerboard(17, 12, 10.0),
-        'kind = "checkerboard"\ninner_corners = [17, 12]\nsquare_mm = 10.0',
-    ),
-    "charuco": (
-        Charuco(12, 9, 15.0, 11.25, "DICT_4X4_100"),
-        'kind = "charuco"\nsquares = [12, 9]\nsquare_mm = 15.0\nmarker_mm = 11.25\ndictionary = "DICT_4X4_100"',
-    ),
-    "circle_grid": (CircleGrid(13, 10, 14.0), 'kind = "circle_grid"\ncircles = [13, 10]\npitch_mm = 14.0'),
-    "black_square": (BlackSquare(60.0), 'kind = "black_square"\nside_mm = 60.0'),
+PLATES: dict[str, Target] = {
+    "checkerboard": Checkerboard(17, 12, 10.0),
+    "charuco": Charuco(12, 9, 15.0, 11.25, "DICT_4X4_100"),
+    "circle_grid": CircleGrid(13, 10, 14.0),
+    "black_square": BlackSquare(60.0),
 }
-"""Each plate, and what rig.toml says of it."""
 
 
 def rig_toml(scenario: Scenario) -> str:
     """The text of rig.toml for a scenario."""
-    lines = [
-        "[camera_target]",
-        PLATES[scenario.camera_target][1],
-        "",
-        "[plane_target]",
-        PLATES[scenario.plane_target][1],
-        "",
-        "[laser_fan]",
-        "lines = 3",
-        "angle_deg = 5.0",
-    ]
-    if scenario.object in ("block", "narrow-block"):
-        lines += ["", "[gauge]", f"nominal_mm = {float(scenario.height_mm)}", "tolerance_mm = 0.2"]
-    return "\n".join(lines) + "\n"
+    gauge = GaugeSpec(float(scenario.height_mm), 0.2) if scenario.object in ("block", "narrow-block") else None
+    targets = PLATES[scenario.camera_target], PLATES[scenario.plane_target]
+    return rig_to_toml(StatedRig(*targets, lines=3, angle=math.radians(5.0), gauge=gauge))
 
 
 class CalibrationPictures:
     """The camera views and plane poses of one scenario, rendered one at a time."""
 
     def __init__(self, scenario: Scenario, rig: Rig, rays: Map) -> None:
-        self._rig, self._rays, self._seed = rig, rays, scenario.seed
-        self._sensor = Sensor(rig.optics, scenario.bits, scenario.noise)
-        self._camera_plate = printed(PLATES[scenario.camera_target][0])
-        self._plane_plate = printed(PLATES[scenario.plane_target][0])
+        self._seed = scenario.seed
+        self._studio = Studio(rig, rays, Sensor(rig.optics, scenario.bits, scenario.noise))
+        self._camera_plate = printed(PLATES[scenario.camera_target])
+        self._plane_plate = printed(PLATES[scenario.plane_target])
         views = camera_poses(
             rig.camera, self._camera_plate.outline, scenario.camera_views, generator(self._seed, "camera poses")
         )
@@ -75,12 +60,10 @@ class CalibrationPictures:
             return
         index = list(self.plane_poses).index(name)
         pose = self.plane_poses[name]
-        on, off = plane_pictures(
-            self._rig, self._rays, self._plane_plate, pose, self._sensor, PLANE_GREY, self._seed, index
-        )
+        on, off = plane_pictures(self._studio, self._plane_plate, pose, PLANE_GREY, self._seed, index)
         yield f"planes/{name}.png", on
         yield f"planes/{name}_off.png", off
 
     def _view(self, name: str, pose: Pose) -> Picture:
         rng = generator(self._seed, "camera", list(self.camera_poses).index(name))
-        return camera_picture(self._rig, self._rays, self._camera_plate, pose, self._sensor, CAMERA_GREY, rng)
+        return camera_picture(self._studio, self._camera_plate, pose, CAMERA_GREY, rng)

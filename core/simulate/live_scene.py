@@ -91,8 +91,8 @@ class LiveScene:
         thickness = figures.get("thickness_mm")
         self.truth = LiveTruth(self.rig.camera, self.rig.fan, thickness if isinstance(thickness, float) else None)
         self._plates = {
-            "camera": printed(camera_target or PLATES[scenario.camera_target][0]),
-            "planes": printed(plane_target or PLATES[scenario.plane_target][0]),
+            "camera": printed(camera_target or PLATES[scenario.camera_target]),
+            "planes": printed(plane_target or PLATES[scenario.plane_target]),
         }
         self._motions = {"camera": self._camera_motion(), "planes": self._plane_motion()}
         reach = sweep_range(self._scene, aim_of(self._scene))

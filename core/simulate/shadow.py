@@ -6,7 +6,7 @@ their polar angle about the emitter, and each shadow ray is tried against the tr
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -20,8 +20,7 @@ SECTORS = 4096
 CLEARANCE_MM = 0.02  # a surface does not shade itself by the rounding of its own points
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class ShadowCaster:
+class ShadowCaster(NamedTuple):
     """What can shade points near one sheet: triangles by sector (compressed rows), and spheres.
 
     `frame` holds two unit vectors (2, 3) in the sheet; polar angles are counted from the first, all round.
@@ -49,16 +48,7 @@ class ShadowCaster:
 
     def sees(self, points: Array) -> NDArray[np.bool_]:
         """True for each of `points` (N, 3) in mm that the emitter sees."""
-        visible: NDArray[np.bool_] = _sees(
-            points,
-            self.emitter,
-            self.frame,
-            self.triangles,
-            self.sector_start,
-            self.sector_triangles,
-            self.centres,
-            self.radii,
-        )
+        visible: NDArray[np.bool_] = _sees(points, self)
         return visible
 
 
@@ -85,7 +75,8 @@ def _sector_angle(plane_coordinates: Array) -> Array:
 
 
 @njit(cache=True, nogil=True)
-def _sees(points, emitter, frame, triangles, start, members, centres, radii):  # type: ignore[no-untyped-def]
+def _sees(points, caster):  # type: ignore[no-untyped-def]
+    emitter, frame, triangles, start, members, centres, radii = caster
     visible = np.ones(len(points), np.bool_)
     for i in range(len(points)):
         ray = points[i] - emitter

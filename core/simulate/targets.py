@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -28,17 +29,25 @@ def room_shade(pose: Pose, grey: float) -> np.float32:
     return np.float32(grey * (0.35 + 0.65 * abs(pose.rotation[2, 2])))
 
 
-def camera_picture(
-    rig: Rig, rays: Map, pattern: Pattern, pose: Pose, sensor: Sensor, grey: float, rng: np.random.Generator
-) -> Picture:
-    """One view of a target with the lasers off."""
-    return sensor.expose(blurred(room_light(pattern, pose, rays, grey)[1], rig.blur_px), rng)
+class Studio(NamedTuple):
+    """What takes the pictures: the rig, the rays of its camera's pixels (h, w, 2), and the sensor."""
+
+    rig: Rig
+    rays: Map
+    sensor: Sensor
+
+
+def camera_picture(studio: Studio, pattern: Pattern, pose: Pose, grey: float, rng: np.random.Generator) -> Picture:
+    """One view of a target with the lasers off; `grey` is the level of a white plate that faces the camera."""
+    light = blurred(room_light(pattern, pose, studio.rays, grey)[1], studio.rig.blur_px)
+    return studio.sensor.expose(light, rng)
 
 
 def plane_pictures(
-    rig: Rig, rays: Map, pattern: Pattern, pose: Pose, sensor: Sensor, grey: float, seed: int, index: int
+    studio: Studio, pattern: Pattern, pose: Pose, grey: float, seed: int, index: int
 ) -> tuple[Picture, Picture]:
-    """The two pictures of one pose of the plane target: with the fan on, and off."""
+    """The two pictures of pose `index` of the plane target: with the fan on, and off."""
+    rig, rays, sensor = studio
     points, light = room_light(pattern, pose, rays, grey)
     light = blurred(light, rig.blur_px)
     albedo = draw_pattern(replace(pattern, background=0.0), pose, rays)[1]

@@ -22,12 +22,12 @@ from core.image.centreline import Centreline
 from core.image.pieces import END_TRIM_PX
 from core.image.stripe import StripeSettings
 from core.model import Pose
-from core.progress import silent
 from core.scan.crossings import CrossingTable, CrossingWindow
 from core.scan.fan_lines import FanLines
 from core.scan.features import FrameFeatures, ScanFeatures, gather
 from core.scan.line_errors import LineErrors
 from core.scan.locate import numbered
+from core.scan.reference_features import FeatureOptions
 from core.simulate.image import generator
 from core.simulate.laser import Sheet, fan_sheets
 from core.simulate.recording import scenario_rig
@@ -155,9 +155,8 @@ class ExactScan:
         ]
         stripe = StripeSettings(width_px=3.5, contrast=100.0)
         camera = self.rig.camera
-        return gather(
-            camera.image_size, fan, frames, (stripe, stripe), window or CrossingWindow(), silent, smoothed, camera
-        )
+        options = FeatureOptions(window=window or CrossingWindow(), camera=camera)
+        return gather(camera.image_size, fan, frames, (stripe, stripe), options, smoothed=smoothed)
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from core.scan.adjustment import Adjustment
-from core.scan.crossings import CrossingWindow
 from core.scan.features import gather
 from core.scan.geometry import CrossingRays
 from core.scan.line_errors import LineErrors
@@ -209,7 +208,7 @@ def test_saturated_points_have_no_say(block):
     frames = [replace(frame, centrelines=tuple(map(spoilt, frame.centrelines))) for frame in raw.frames]
     fan = tuple(map(spoilt, raw.fan))
     stripes = (features.fan_stripe, features.sweep_stripe)
-    wrong = gather(features.image_size, fan, frames, stripes, CrossingWindow())
+    wrong = gather(features.image_size, fan, frames, stripes)
     good, bad = (reconstruct(one, scan.rig.camera, scan.rig.fan) for one in (features, wrong))
     assert height_of(scan, bad) == pytest.approx(height_of(scan, good), abs=0.05)
     assert bad.scale < 1.2

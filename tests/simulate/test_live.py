@@ -22,7 +22,7 @@ from core.simulate.sample import sample_scenario
 from core.simulate.scenario import Scenario
 from core.simulate.stage import aim_of, build_scene
 from core.simulate.sweep import sweep_range
-from core.simulate.targets import camera_picture, fan_light, room_light
+from core.simulate.targets import Studio, camera_picture, fan_light, room_light
 
 DARK, FAN, BOTH = Lasers(fan=False, hand=False), Lasers(fan=True, hand=False), Lasers(fan=True, hand=True)
 SMALL = Scenario(scale=0.1)
@@ -136,10 +136,11 @@ def test_the_hand_moves_on_steadily_and_its_light_is_always_a_sheet_the_camera_c
 def test_pictures_are_the_twins_own_whatever_part_of_them_is_drawn(scene):
     quiet = LiveScene(Scenario(scale=0.25, noise=0.0, speckle=0.0))
     rays = ray_map(quiet.rig.camera)
+    studio = Studio(quiet.rig, rays, quiet._sensor)
     for time_s in (0.5, 2.0, 4.4):
         pose, _ = quiet._motions["camera"].at(time_s)
         plate = quiet._plates["camera"]
-        whole = camera_picture(quiet.rig, rays, plate, pose, quiet._sensor, CAMERA_GREY, generator(1, "none"))
+        whole = camera_picture(studio, plate, pose, CAMERA_GREY, generator(1, "none"))
         drawn = quiet.picture(Moment("camera", DARK, time_s, 0.0, 3))
         assert np.array_equal(drawn, whole)
     pose, _ = quiet._motions["planes"].at(0.5)

@@ -15,7 +15,7 @@ from core.simulate.rays import ray_map
 from core.simulate.recording import scenario_rig
 from core.simulate.rig import Optics, paper_rig
 from core.simulate.scenario import Scenario
-from core.simulate.targets import camera_picture, fan_centres
+from core.simulate.targets import Studio, camera_picture, fan_centres
 
 RIG = paper_rig(0.5)
 CAMERA = RIG.camera
@@ -27,7 +27,7 @@ def views_of(target, count: int):
     """Noise-free 16-bit pictures of a plate, with their poses."""
     pattern = printed(target)
     for pose in camera_poses(CAMERA, pattern.outline, count, generator(5, "test")):
-        yield camera_picture(RIG, RAYS, pattern, pose, QUIET, 200.0, generator(5, "none")), pose
+        yield camera_picture(Studio(RIG, RAYS, QUIET), pattern, pose, 200.0, generator(5, "none")), pose
 
 
 @pytest.mark.parametrize("roll", [0.0, 0.003, 0.1, 0.7])
@@ -92,7 +92,7 @@ def test_opencv_reads_the_charuco_boards_markers_in_their_places():
 
 
 def test_camera_views_cover_the_picture_and_tilt_to_35_degrees_and_stay_inside():
-    outline = printed(PLATES["checkerboard"][0]).outline
+    outline = printed(PLATES["checkerboard"]).outline
     poses = camera_poses(CAMERA, outline, 14, generator(1, "poses"))
     corners = np.array([CAMERA.project_pose(pose, outline) for pose in poses])
     assert corners.min() > 0
