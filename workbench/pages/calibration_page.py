@@ -22,7 +22,7 @@ from workbench.views.plots import Bar, BarsWithThreshold
 from workbench.views.source_chooser import SourceChooser
 from workbench.views.tables import ListRow, ViewList
 
-BARS_HEIGHT, LIST_HEIGHT = 150, 240
+BARS_HEIGHT = 150
 
 
 class CalibrationPage(StepPage):
@@ -40,7 +40,6 @@ class CalibrationPage(StepPage):
         self.centre.addWidget(self.tabs, 1)
         self.centre.addWidget(self.bars)
         self.views = ViewList()
-        self.views.setMinimumHeight(LIST_HEIGHT)
         self.source: SourceChooser
         self.live_panel: LivePanel
         self.pictures_fold: QCollapsible

@@ -46,7 +46,7 @@ class CameraPage(CalibrationPage):
         self.target = TargetPanel(presenter.target, TARGETS)
         self.target_fold = self.add_panel(self.tr("Target"), self.target)
         self._setup_folds = (self.target_fold,)
-        self.views_fold = self.add_panel(self.tr("Views"), self.views)
+        self.views_fold = self.add_list(self.tr("Views"), self.views)
         self.quality, self.parameters, self.notes = ValueRows(), ValueRows(), muted()
         self.result_fold = self.add_panel(self.tr("Result"), self._result())
         self.model = CameraModelForm(presenter)

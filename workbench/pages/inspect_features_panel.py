@@ -33,7 +33,8 @@ from workbench.views.value_rows import VERDICT_ICONS
 if TYPE_CHECKING:
     from core.inspect.characteristic import Characteristic
 
-LIST_HEIGHT = 150
+MOST_ROWS = 12
+"""The list shows so many rows before it is scrolled."""
 
 
 class FeaturesPanel(QWidget):
@@ -98,7 +99,6 @@ class FeaturesPanel(QWidget):
         self.list.setColumnCount(2)
         self.list.setHeaderLabels([self.tr("Feature"), self.tr("Value ± U")])
         self.list.setAccessibleName(self.tr("Features"))
-        self.list.setFixedHeight(LIST_HEIGHT)
         self.list.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
         self.list.setIndentation(14)
         self.list.setUniformRowHeights(True)
@@ -127,6 +127,7 @@ class FeaturesPanel(QWidget):
             self.list.addTopLevelItems([self._item(spec.name, spec.kind) for spec in features.plan.features])
             self.list.expandAll()
             self.list.blockSignals(False)
+            self._fit_list()
         names = features.plan.names
         wanted = self.list.topLevelItem(names.index(features.chosen)) if features.chosen in names else None
         current = self.list.currentItem()
@@ -134,6 +135,14 @@ class FeaturesPanel(QWidget):
             self.list.blockSignals(True)
             self.list.setCurrentItem(wanted)
             self.list.blockSignals(False)
+
+    def _fit_list(self) -> None:
+        """As high as its rows, up to a point: nothing is scrolled that there is room for."""
+        items = [self.list.topLevelItem(place) for place in range(self.list.topLevelItemCount())]
+        rows = sum(1 + item.childCount() for item in items if item is not None)
+        row = self.list.sizeHintForRow(0) if rows else 0
+        header, frame = self.list.header().sizeHint().height(), 2 * self.list.frameWidth()
+        self.list.setFixedHeight(header + frame + min(rows, MOST_ROWS) * row)
 
     def _item(self, name: str, kind: Kind) -> QTreeWidgetItem:
         result = self._features.result(name)

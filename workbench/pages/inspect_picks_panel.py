@@ -13,7 +13,7 @@ from workbench.theme import icon
 
 
 class PicksPanel(QWidget):
-    """Tools to pick points and distances, and the list of them."""
+    """Tools to pick points and distances, and the list of them as soon as there are some."""
 
     pick = Signal(str)
     """Points ("point") or distances ("distance") are to be picked; "": no more."""
@@ -83,6 +83,8 @@ class PicksPanel(QWidget):
             self._dress()
 
     def _show_buttons(self) -> None:
+        for widget in (self.list, self.remove, self.clear):
+            widget.setVisible(bool(self._names))
         chosen = 0 <= self.list.currentRow() < len(self._names)
         for button, possible, tip in (
             (self.remove, chosen, self.tr("Take the chosen one off the list")),

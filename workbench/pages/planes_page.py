@@ -40,7 +40,7 @@ class PlanesPage(CalibrationPage):
         self.target_fold = self.add_panel(self.tr("Plate"), self.target)
         self.laser_fold = self.add_panel(self.tr("Laser"), self.laser)
         self._setup_folds = (self.target_fold, self.laser_fold)
-        self.poses_fold = self.add_panel(self.tr("Poses"), self.views)
+        self.poses_fold = self.add_list(self.tr("Poses"), self.views)
         self.result = PlanesResult(presenter)
         self.result_fold = self.add_panel(self.tr("Result"), self.result)
         self._connect(presenter.choose_pose)

@@ -66,8 +66,7 @@ class ScanPage(StepPage):
         self.result_fold = self.add_panel(self.tr("Result"), self.result)
         self.frames = ViewList(thumbnails_later=True)
         self.frames.set_headers(self.tr("Frame"), self.tr("Median σ [mm]"))
-        self.frames.setMinimumHeight(240)
-        self.frames_fold = self.add_panel(self.tr("Frames"), self.frames)
+        self.frames_fold = self.add_list(self.tr("Frames"), self.frames)
         self.settings = SettingsPanel(presenter)
         self.settings_fold = self.add_panel(self.tr("Settings"), self.settings, collapsed=True)
         self._rows: Any = None

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from PySide6.QtCore import QEvent, QSize, Qt
+from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QFrame, QLabel, QScrollArea, QSizePolicy, QSplitter, QVBoxLayout, QWidget
 from superqt import QCollapsible
 
@@ -12,6 +13,8 @@ from workbench.pages.presenter import StepPresenter
 from workbench.theme import icon
 
 SIDE_WIDTH, NARROWEST_SIDE = 380, 300
+LIST_HEIGHT, LIST_SHARE = 240, 0.36
+"""A list of pictures at the side is at least so many pixels high, and takes this share of a higher page."""
 
 
 class StepPage(QWidget):
@@ -21,6 +24,7 @@ class StepPage(QWidget):
         super().__init__(parent)
         self.presenter: Any = presenter
         self._stale = True
+        self._lists: list[QWidget] = []
         self.centre = QVBoxLayout()
         self.centre.setContentsMargins(8, 8, 8, 8)
         self.side = QVBoxLayout()
@@ -60,6 +64,20 @@ class StepPage(QWidget):
     def add_to_side(self, widget: QWidget) -> None:
         """A widget at the side that is always there, below what was added before."""
         self.side.insertWidget(self.side.count() - 1, widget)
+
+    def add_list(self, title: str, widget: QWidget) -> QCollapsible:
+        """A panel with a list that grows with the page."""
+        self._lists.append(widget)
+        self._fit_lists()
+        return self.add_panel(title, widget)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self._fit_lists()
+
+    def _fit_lists(self) -> None:
+        for widget in self._lists:
+            widget.setMinimumHeight(max(LIST_HEIGHT, round(LIST_SHARE * self.height())))
 
     def showEvent(self, event: Any) -> None:
         super().showEvent(event)

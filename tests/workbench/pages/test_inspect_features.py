@@ -306,6 +306,8 @@ def test_the_list_shows_value_uncertainty_verdict_and_problem(page, features, qt
     assert "Conformity is proven" in ball.child(0).toolTip(1) and not ball.icon(1).isNull()
     assert top.text(1) == "50.012 ± 0.024 mm" and top.icon(1).isNull()
     assert lost.text(1) == "cannot be measured" and "no points there" in lost.toolTip(1)
+    assert (top.text(0), lost.text(0)) == ("top, flatness", "lost"), "what the number is of"
+    assert page.features.list.verticalScrollBar().maximum() == 0, "all rows are seen"
 
 
 def test_choosing_a_feature_shows_its_points_in_3d_and_in_the_picture(page, features, qtbot):

@@ -257,10 +257,12 @@ def test_points_used_stand_out_on_a_mesh(shown, qtbot):
 
 
 def test_picked_points_stand_in_the_list_and_in_the_view(shown, qtbot):
+    assert shown.picks.list.isHidden() and shown.picks.clear.isHidden(), "nothing is picked yet"
     press(qtbot, shown.picks.tools["point"])
     assert shown.surface.hint.text().startswith("Click points of the surface")
     shown.surface.scene.point_picked.emit(7, shown.presenter.view.points[7])
     text = shown.picks.list.item(0).text()
+    assert not shown.picks.list.isHidden()
     assert text.startswith("P1   x ") and " mm\n± 0.0" in text and "(sd)" in text and "px" in text
     assert "P1" in {name for _, name in shown.surface.scene._scene.items}
     shown.surface.scene.stop_drawing()

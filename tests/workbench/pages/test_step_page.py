@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from PySide6.QtWidgets import QCheckBox
+from PySide6.QtWidgets import QCheckBox, QListWidget
 
 from workbench.bench import Bench
 from workbench.pages.presenter import StepPresenter
@@ -25,3 +25,16 @@ def test_the_side_is_never_narrower_than_what_is_in_it_however_narrow_the_window
     page.splitter.setSizes([500, 10])
     right = box.mapTo(side.viewport(), box.rect().topRight()).x()
     assert right < side.viewport().width(), "nothing is cut off"
+
+
+def test_a_list_at_the_side_is_higher_on_a_higher_page_and_never_too_low(hand_bench: Bench, qtbot: Any) -> None:
+    page, listed = StepPage(StepPresenter(hand_bench)), QListWidget()
+    qtbot.addWidget(page)
+    page.add_list("Views", listed)
+    page.show()
+    heights = []
+    for height in (500, 1000, 500):
+        page.resize(900, height)
+        qtbot.waitUntil(lambda height=height: page.height() == height)
+        heights.append(listed.minimumHeight())
+    assert heights[0] == heights[2] == 240 and 330 < heights[1] < 400
