@@ -22,6 +22,9 @@ BAR = 9 * mm
 SMALL = 1e-3
 """Below it a power of ten says more than zeros."""
 
+MANY = 1000
+"""Of more degrees of freedom nobody need know how many: the factor k is that of infinitely many."""
+
 
 def budget_table(look: Look, one: Characteristic) -> Table:
     """Where the uncertainty comes from, how it combines, and what that gives.
@@ -106,4 +109,6 @@ def _rounded(look: Look, u: float) -> str:
 
 
 def _dof(look: Look, dof: float) -> str:
+    if dof > MANY and math.isfinite(dof):
+        return f"> {MANY}"
     return "∞" if math.isinf(dof) else look.words.fixed(dof, 0 if dof >= 10 else 1)

@@ -134,7 +134,7 @@ def residual_figure(look: Look, gauge: GaugeResult, cloud: Cloud, width_mm: floa
             _residual_panel(look, figure.add_axes(box), title, face, cloud, colors)
         bar_box = (115.5 / width_mm, 12 / height_mm, 3 / width_mm, 1 - 22 / height_mm)
         add_color_bar(figure, bar_box, colors, "mm", "both")
-        box = (137 / width_mm, 12 / height_mm, (width_mm - 139) / width_mm, 1 - 18 / height_mm)
+        box = (141 / width_mm, 12 / height_mm, (width_mm - 143) / width_mm, 1 - 18 / height_mm)
         _spread_panel(look, figure.add_axes(box), gauge, 1.8 * limit)
     return figure
 

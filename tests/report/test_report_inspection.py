@@ -79,6 +79,13 @@ def test_a_budget_has_value_distribution_sensitivity_contribution_and_freedom_of
     assert "Camera calibration normal 0.0200 ∞ 100" in text, "of the angle, in degrees"
 
 
+def test_very_many_degrees_of_freedom_are_not_counted_out(quick):
+    first, *others = quick.inspected
+    many = replace(first, budget=tuple(replace(row, dof=4e5) for row in first.budget))
+    text = words(build_report(replace(quick, inspected=(many, *others))))
+    assert "Effective degrees of freedom ν_eff > 1000" in text
+
+
 def test_calibrations_have_id_age_and_hash(data):
     text = words(data)
     assert "Camera calibration c3f1a09b22d4, age 12 days" in text

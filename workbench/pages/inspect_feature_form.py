@@ -137,7 +137,8 @@ class FeatureForm(QWidget):
         grid.setContentsMargins(0, 0, 0, 0)
         grid.setColumnStretch(0, 1)
         for place in range(len(spec.regions)):
-            title = self.tr("Draw “{0}”").format(self._region_title(spec, place))
+            several = self.tr("Draw “{0}”").format(self._region_title(spec, place))
+            title = several if len(spec.regions) > 1 else self.tr("Draw the region")
             grid.addWidget(QLabel(title), place, 0)
             for column, kind in enumerate(("polygon", "lasso"), start=1):
                 button = QToolButton()

@@ -31,6 +31,9 @@ MOST_MARKED = 100_000
 
 DRAW_WITHIN_MS = 60
 
+TOGETHER = "\u2060"
+"""Between characters that no line may be broken between (the word joiner)."""
+
 
 class SurfaceTab(QWidget):
     """The 3D view with its choices above it and a line of words below."""
@@ -228,7 +231,10 @@ class SurfaceTab(QWidget):
         if result.deviations is None:
             return self.tr("; {0}").format(dot.format(FEATURE, self.tr("used for {0}").format(name)))
         middle = len(DEVIATIONS) // 2
-        signs = [dot.format(DEVIATIONS[one.number + middle], one.mark or "0") for one in result.deviations.classes]
+        signs = [
+            dot.format(DEVIATIONS[one.number + middle], TOGETHER.join(one.mark or "0"))
+            for one in result.deviations.classes
+        ]
         return self.tr("; {0} in quarters of ±{1} mm: {2}").format(
             name, f"{result.deviations.tolerance_mm:g}", " ".join(signs)
         )

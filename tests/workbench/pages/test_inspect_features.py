@@ -21,6 +21,7 @@ from workbench import jobs
 from workbench.pages import inspect_feature_values as fields
 from workbench.pages.inspect_feature_edit import LINE
 from workbench.pages.inspect_page import InspectPage
+from workbench.pages.inspect_surface import TOGETHER
 from workbench.views import ask
 from workbench.views.scene_view_contents import Marks
 
@@ -392,7 +393,9 @@ def test_deviations_are_drawn_by_class_and_their_shares_are_told(page, features,
     assert {part.height() for part in words} == {words[0].fontMetrics().height()}, "no row wraps in a small window"
     page.tabs.setCurrentWidget(page.surface)
     assert page.surface.minimumSizeHint().width() < 690, "the legend leaves the side panel its width"
-    assert all(f"</span>&nbsp;{sign}" in page.surface.line.text() for sign in ("−!", "−−−", "0", "++", "+!"))
+    assert all(
+        f"</span>&nbsp;{TOGETHER.join(sign)}" in page.surface.line.text() for sign in ("−!", "−−−", "0", "++", "+!")
+    )
     features.choose("")
     assert not {name for kind, name in page.surface.scene._scene.items if kind is Marks}
 
