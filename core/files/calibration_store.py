@@ -22,7 +22,7 @@ from core.calibrate.plane_pose import PoseFeatures
 from core.calibrate.results import CameraCalibration, FanCalibration
 from core.errors import InputError
 from core.files.atomic import make_folder, write_bytes, write_text
-from core.files.camera_file import Finite, Maybe, ResultFile, camera_id, number, read_camera, write_camera
+from core.files.camera_file import camera_id, read_camera, write_camera
 from core.files.complaints import complaint
 from core.files.fan_file import fan_id, read_fan, write_fan
 from core.files.json_text import read_json, to_json
@@ -31,6 +31,7 @@ from core.files.pictures import read_bytes
 from core.files.poses_file import read_poses, write_poses
 from core.files.project_data import Accepted
 from core.files.project_tables import Time
+from core.files.result_file import Finite, Maybe, ResultFile, number
 from core.model import Camera
 
 FOLDER = "calibrations"

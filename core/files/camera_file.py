@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import Field, ValidationError, model_validator
 
 from core import __version__
 from core.calibrate.board_shape import SHAPE_PARAMETERS, Board, BoardShape
@@ -16,20 +16,10 @@ from core.calibrate.results import CAMERA_PARAMETERS, CameraCalibration, ViewQua
 from core.files.atomic import write_text
 from core.files.complaints import Clash, complaint
 from core.files.json_text import read_json, rounded, to_json
+from core.files.result_file import Finite, Maybe, ResultFile, Row2, Row3, number
 from core.image.target_view import TargetView
 from core.model import Camera, Pose
 from core.model.camera import DISTORTION_NAMES
-
-Finite = Annotated[float, Field(allow_inf_nan=False)]
-Maybe = Finite | None
-Row3 = Annotated[list[Finite], Field(min_length=3, max_length=3)]
-Row2 = Annotated[list[Finite], Field(min_length=2, max_length=2)]
-
-
-class ResultFile(BaseModel):
-    """A file of results: keys may be added by others, and are then ignored."""
-
-    model_config = ConfigDict(extra="ignore", strict=True, frozen=True)
 
 
 class _Distortion(ResultFile):
@@ -162,11 +152,6 @@ def read_camera(path: Path) -> CameraCalibration:
         notes=tuple(file.notes),
         board=board_shape(file.board),
     )
-
-
-def number(value: float | None) -> float:
-    """A number of a file, NaN where the file has none."""
-    return math.nan if value is None else value
 
 
 def board_table(shape: BoardShape) -> dict[str, Any]:

@@ -1,18 +1,13 @@
-"""Tables for spreadsheets and other programs: one head line that names columns with their units, points in numbers."""
+"""A cloud as a table for spreadsheets and other programs: one head line that names columns with their units."""
 
 from __future__ import annotations
 
-import csv
 import io
-import math
-from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import numpy as np
 
-from core.files.atomic import write_bytes, write_text
-from core.files.project_data import Repeat
-from core.inspect.results import GaugeResult
+from core.files.atomic import write_bytes
 from core.progress import Progress, silent
 from core.scan.cloud import Cloud
 
@@ -55,50 +50,3 @@ def write_points_csv(path: Path, cloud: Cloud, progress: Progress = silent) -> N
         text.write((row * len(part) % tuple(columns.ravel().tolist())).encode())
     progress("points as a table", len(cloud), len(cloud))
     write_bytes(path, text.getbuffer())
-
-
-def write_gauge_csv(path: Path, gauge: GaugeResult, calibration_id: str = "") -> None:
-    """Write a thickness as lines of quantity, value, unit: the result, its verdict and its uncertainty budget.
-
-    Raises
-    ------
-    InputError
-        If it cannot be written.
-    """
-    upper, lower = gauge.points_used
-    rows = [
-        ("thickness", gauge.thickness_mm, "mm"),
-        ("standard uncertainty u", gauge.u_mm, "mm"),
-        ("expanded uncertainty U = k u", gauge.U_mm, "mm"),
-        ("coverage factor k", gauge.k, ""),
-        ("nominal", gauge.nominal_mm, "mm"),
-        ("tolerance", gauge.tolerance_mm, "mm"),
-        ("deviation", gauge.deviation_mm, "mm"),
-        ("verdict", gauge.verdict, ""),
-        ("flatness of the upper face", gauge.upper.flatness_mm, "mm"),
-        ("flatness of the lower face", gauge.lower.flatness_mm, "mm"),
-        ("angle between the faces", math.degrees(gauge.parallelism), "deg"),
-        ("points on the upper face", upper, ""),
-        ("points on the lower face", lower, ""),
-        *((f"u from {row.source}", row.u_mm, "mm") for row in gauge.budget),
-        ("calibration", calibration_id, ""),
-    ]
-    _write(path, ("quantity", "value", "unit"), rows)
-
-
-def write_repeats_csv(path: Path, repeats: Sequence[Repeat]) -> None:
-    """Write one line for each thickness of a series; InputError if it cannot be written."""
-    rows = [
-        (one.scan, one.measured_at.isoformat(), one.thickness_mm, one.U_mm, one.k, one.calibration_id)
-        for one in repeats
-    ]
-    _write(path, ("scan", "measured_at", "thickness_mm", "U_mm", "k", "calibration"), rows)
-
-
-def _write(path: Path, head: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
-    """Numbers as Python writes them: short, and exact when read back. What is not known stays empty."""
-    text = io.StringIO()
-    table = csv.writer(text, lineterminator="\n")
-    table.writerow(head)
-    table.writerows(rows)
-    write_text(path, text.getvalue())

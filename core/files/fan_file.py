@@ -14,19 +14,10 @@ from core import __version__
 from core.calibrate.results import CAMERA_PARAMETERS, FanCalibration, PlanePose
 from core.errors import InputError
 from core.files.atomic import write_text
-from core.files.camera_file import (
-    BoardTable,
-    Finite,
-    Maybe,
-    ResultFile,
-    Row3,
-    board_shape,
-    board_table,
-    camera_id,
-    number,
-)
+from core.files.camera_file import BoardTable, board_shape, board_table, camera_id
 from core.files.complaints import Clash, complaint
 from core.files.json_text import read_json, to_json
+from core.files.result_file import Finite, Maybe, ResultFile, Row3, number
 from core.model import Camera, Fan, LightPlane, Pose
 
 _PARAMETERS = len(CAMERA_PARAMETERS)

@@ -14,9 +14,10 @@ from core import __version__
 from core.errors import InputError
 from core.files.arrays_file import read_arrays, write_arrays
 from core.files.atomic import write_text
-from core.files.camera_file import Finite, ResultFile, Row3
+from core.files.budget_rows import BudgetRow, row_tables
 from core.files.complaints import complaint
 from core.files.json_text import read_json, to_json
+from core.files.result_file import Finite, ResultFile, Row3
 from core.inspect.characteristic import Characteristic, Limits
 from core.inspect.results import Contribution, Face, GaugeResult
 from core.model import LightPlane
@@ -40,18 +41,11 @@ class _Faces(ResultFile):
     lower: _Face
 
 
-class _Contribution(ResultFile):
-    source: str
+class _Contribution(BudgetRow):
     u_mm: Finite
-    point_mm: Finite | None = None
-    distribution: str = "normal"
-    dof: Finite | None = Field(default=None, ge=1, description="a number of at least 1, or null for infinitely many")
-    value: Finite | None = None
-    unit: str = "mm"
 
     def row(self) -> Contribution:
-        dof = math.inf if self.dof is None else self.dof
-        return Contribution(self.source, self.u_mm, self.point_mm, self.distribution, dof, self.value, self.unit)
+        return self.contributing(self.u_mm)
 
 
 class _GaugeFile(ResultFile):
@@ -155,17 +149,7 @@ def _read(path: Path) -> _GaugeFile:
 
 
 def _row(row: Contribution, u_mm: float) -> dict[str, Any]:
-    return {
-        "source": row.source,
-        "u_mm": row.u_mm,
-        "point_mm": row.point_mm,
-        "distribution": row.distribution,
-        "dof": row.dof,
-        "value": row.value,
-        "unit": row.unit,
-        "sensitivity": row.sensitivity,
-        "share": row.u_mm**2 / u_mm**2 if u_mm else 0.0,
-    }
+    return row_tables(row, "u_mm") | {"share": row.u_mm**2 / u_mm**2 if u_mm else 0.0}
 
 
 def _plane(face: Face) -> dict[str, Any]:

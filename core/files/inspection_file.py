@@ -16,9 +16,10 @@ from core import __version__
 from core.errors import InputError
 from core.files.arrays_file import read_arrays, write_arrays
 from core.files.atomic import write_text
-from core.files.camera_file import Finite, ResultFile
+from core.files.budget_rows import BudgetRow, row_tables
 from core.files.complaints import complaint
 from core.files.json_text import read_json, to_json
+from core.files.result_file import Finite, ResultFile
 from core.inspect.characteristic import Characteristic, Limits
 from core.inspect.evaluate import Inspection
 from core.inspect.features.measured import FeatureResult
@@ -63,18 +64,11 @@ class _Limits(ResultFile):
     upper: Finite | None = None
 
 
-class _Contribution(ResultFile):
-    source: str
+class _Contribution(BudgetRow):
     u: Finite = Field(ge=0, description="a number not below 0")
-    point_mm: Finite | None = None
-    distribution: str = "normal"
-    dof: Finite | None = Field(default=None, ge=1, description="a number of at least 1, or null for infinitely many")
-    value: Finite | None = None
-    unit: str = "mm"
 
     def row(self) -> Contribution:
-        dof = math.inf if self.dof is None else self.dof
-        return Contribution(self.source, self.u, self.point_mm, self.distribution, dof, self.value, self.unit)
+        return self.contributing(self.u)
 
 
 class _Characteristic(ResultFile):
@@ -190,19 +184,7 @@ def _row(row: Characteristic, feature: str) -> dict[str, Any]:
         "complete": row.complete,
         "rule": row.rule,
         "notes": row.notes,
-        "budget": [
-            {
-                "source": one.source,
-                "u": one.u_mm,
-                "point_mm": one.point_mm,
-                "distribution": one.distribution,
-                "dof": one.dof,
-                "value": one.value,
-                "unit": one.unit,
-                "sensitivity": one.sensitivity,
-            }
-            for one in row.budget
-        ],
+        "budget": [row_tables(one, "u") for one in row.budget],
     }
 
 

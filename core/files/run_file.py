@@ -17,10 +17,10 @@ from pydantic import Field, ValidationError
 from core import __version__
 from core.errors import InputError
 from core.files.atomic import write_text
-from core.files.camera_file import Finite, Maybe, ResultFile
 from core.files.complaints import complaint
 from core.files.json_text import read_json, to_json
 from core.files.project_tables import Time
+from core.files.result_file import Finite, Maybe, ResultFile
 from core.scan.results import FrameRecord
 
 LIBRARIES = ("numpy", "scipy", "opencv-python-headless", "numba", "matplotlib", "reportlab")

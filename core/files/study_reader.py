@@ -10,9 +10,9 @@ import numpy as np
 from pydantic import Field, RootModel, ValidationError
 
 from core.errors import InputError
-from core.files.camera_file import Finite, ResultFile
 from core.files.complaints import complaint
 from core.files.json_text import read_json
+from core.files.result_file import Finite, ResultFile
 from core.files.study_file import Study
 from core.inspect.results import Contribution
 from core.study.acceptance import AcceptanceCheck, Quantity, Reading, acceptance_check

@@ -156,17 +156,6 @@ def fit_parallel_planes(
     )
 
 
-def refit_thickness(planes: ParallelPlanes, upper: Array, lower: Array) -> float:
-    """Thickness in mm of the same fit with the same weights after its points have moved to `upper` and `lower`.
-
-    With the weights held the thickness is a smooth function of the points, as differences need it.
-    """
-    points = np.vstack([upper, lower])
-    face = np.repeat([0, 1], [len(upper), len(lower)])
-    solution = _solve(points, np.concatenate(planes.weights), face, 2, planes.normal, not planes.tilt_determined)
-    return float(solution.distances[1] - solution.distances[0])
-
-
 def _robust(
     points: Array, sigma: Array | None, face: NDArray[np.int64], faces: int, reference: Array | None
 ) -> tuple[_Solution, Array, float]:

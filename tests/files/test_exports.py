@@ -1,13 +1,11 @@
 import csv
-from datetime import UTC, datetime
 
 import numpy as np
 import pytest
 import trimesh
 
 from core.errors import Cancelled, InputError
-from core.files.csv_file import POINT_COLUMNS, write_gauge_csv, write_points_csv, write_repeats_csv
-from core.files.project import Repeat
+from core.files.csv_file import POINT_COLUMNS, write_points_csv
 from core.files.stl import write_stl
 from core.scan.surface import Mesh
 
@@ -82,41 +80,6 @@ def test_a_cancelled_table_leaves_nothing(tmp_path, cloud):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_thickness_as_a_table(tmp_path, gauge):
-    write_gauge_csv(tmp_path / "gauge.csv", gauge, "abc-def")
-    rows = list(csv.DictReader((tmp_path / "gauge.csv").open(newline="", encoding="utf-8")))
-    values = {row["quantity"]: (row["value"], row["unit"]) for row in rows}
-    assert len(values) == len(rows)
-    assert float(values["thickness"][0]) == gauge.thickness_mm
-    assert values["thickness"][1] == "mm"
-    assert float(values["expanded uncertainty U = k u"][0]) == gauge.U_mm
-    assert float(values["deviation"][0]) == gauge.deviation_mm
-    assert float(values["angle between the faces"][0]) == pytest.approx(np.degrees(gauge.parallelism))
-    assert values["angle between the faces"][1] == "deg"
-    assert values["verdict"] == ("conforming", "")
-    assert values["points on the lower face"] == ("25", "")
-    assert values["u from camera"] == ("0.01", "mm")
-    assert values["calibration"][0] == "abc-def"
-
-
-def test_what_was_not_asked_for_is_empty_in_the_table(tmp_path, gauge):
-    from dataclasses import replace
-
-    write_gauge_csv(tmp_path / "gauge.csv", replace(gauge, nominal_mm=None, tolerance_mm=None, verdict=""))
-    values = {row["quantity"]: row["value"] for row in csv.DictReader((tmp_path / "gauge.csv").open(newline=""))}
-    assert values["nominal"] == values["deviation"] == values["verdict"] == ""
-
-
-def test_a_series_as_a_table(tmp_path):
-    at = datetime(2026, 1, 31, 12, tzinfo=UTC)
-    write_repeats_csv(tmp_path / "repeats.csv", [Repeat('scan, "1"', 49.987, 0.024, 2.0, "abc", at)] * 2)
-    rows = list(csv.DictReader((tmp_path / "repeats.csv").open(newline="", encoding="utf-8")))
-    assert len(rows) == 2
-    assert rows[0]["scan"] == 'scan, "1"'
-    assert (float(rows[0]["thickness_mm"]), float(rows[0]["U_mm"]), float(rows[0]["k"])) == (49.987, 0.024, 2.0)
-    assert datetime.fromisoformat(rows[0]["measured_at"]) == at
-
-
-def test_a_table_that_cannot_be_written_says_so(tmp_path, gauge):
+def test_a_table_that_cannot_be_written_says_so(tmp_path, cloud):
     with pytest.raises(InputError, match="cannot be written"):
-        write_gauge_csv(tmp_path / "nowhere" / "gauge.csv", gauge)
+        write_points_csv(tmp_path / "nowhere" / "cloud.csv", cloud)

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from core.inspect.plane_fit import fit_parallel_planes, fit_plane, refit_thickness
+from core.inspect.plane_fit import _solve, fit_parallel_planes, fit_plane
 
 REAL = Path(__file__).resolve().parents[2].parent / "shared" / "real" / "gaugeblock"
 NORMAL = np.array([0.1, -0.3, 1.0]) / np.linalg.norm([0.1, -0.3, 1.0])
@@ -62,6 +62,13 @@ def test_precise_points_count_more():
         errors["weighted"].append(fit_parallel_planes(upper, lower, sigma, sigma).thickness - 50)
         errors["alike"].append(fit_parallel_planes(upper, lower).thickness - 50)
     assert np.std(errors["weighted"]) < 0.75 * np.std(errors["alike"])
+
+
+def refit_thickness(planes, upper, lower):
+    """Thickness of the same fit with the same weights, so a smooth function of the points, after they have moved."""
+    points, face = np.vstack([upper, lower]), np.repeat([0, 1], [len(upper), len(lower)])
+    solution = _solve(points, np.concatenate(planes.weights), face, 2, planes.normal, not planes.tilt_determined)
+    return float(solution.distances[1] - solution.distances[0])
 
 
 def test_stated_scale_is_one_where_sigma_is_true():
