@@ -14,7 +14,7 @@ from core.model.arrays import Array
 
 
 def parameters_of(camera: Camera) -> Array:
-    """The ten parameters of `camera` in the order of CAMERA_PARAMETERS."""
+    """The parameters (10,) of `camera` in the order of CAMERA_PARAMETERS."""
     (alpha, gamma, u0), (_, beta, v0), _ = camera.matrix
     return np.array([alpha, beta, gamma, u0, v0, *camera.distortion])
 

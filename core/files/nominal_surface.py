@@ -39,6 +39,12 @@ def read_nominal(path: Path) -> Triangles:
 
 
 def read_nominals(plan: InspectionPlan, folder: Path) -> dict[str, Triangles]:
-    """Every nominal surface a plan names, by that name; names are of files in `folder` or whole paths."""
+    """Every nominal surface a plan names, by that name; names are of files in `folder` or whole paths.
+
+    Raises
+    ------
+    InputError
+        If one of them cannot be read as a surface in mm; names the file.
+    """
     names = {feature.deviation.nominal for feature in plan.features if feature.deviation is not None}
     return {name: read_nominal(folder / name) for name in sorted(names)}

@@ -57,7 +57,7 @@ def find_sphere(
     seed: int = 0,
     progress: Progress = silent,
 ) -> NDArray[np.int64]:
-    """Indices of the points on the sphere that explains most of a cloud.
+    """Indices (n,) of the points on the sphere that explains most of a cloud.
 
     Two points and their normals make a hypothesis: the centre is where the two normals meet.
 

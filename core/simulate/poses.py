@@ -38,7 +38,8 @@ def camera_poses(
 def plane_poses(centres: Sequence[Array], outline: Array, rng: np.random.Generator) -> list[Pose]:
     """Poses of a plate on which the fan shines, the plate's middle near each of `centres` (3,) in mm.
 
-    Moved aside by up to a third of the plate, so that lines fall on all parts of it, and tilted to 32°.
+    Moved aside by up to a third of the plate, so that lines fall on all parts of it, and tilted to 32°; `outline`
+    (K, 3) are the plate's corners in its own frame.
     """
     size = np.ptp(outline, axis=0)[:2]
     middle = outline.mean(axis=0)

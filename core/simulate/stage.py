@@ -75,7 +75,7 @@ def _thing(scenario: Scenario) -> Mesh | Sphere | None:
 
 
 def aim_of(scene: Scene) -> Array:
-    """Where the hand points: over the middle of what stands on the table, near its top."""
+    """Where the hand points (3,) in mm: over the middle of what stands on the table, near its top."""
     if scene.meshes:
         corners = np.concatenate([mesh.triangles.reshape(-1, 3) for mesh in scene.meshes])
         return np.asarray((corners.min(axis=0) + corners.max(axis=0)) / 2)

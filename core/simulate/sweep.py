@@ -98,7 +98,7 @@ def hand_sweeps(rig: Rig, reach: SweepRange, frames: int, rng: np.random.Generat
 
 
 def sweep_range(scene: Scene, centre: Array) -> SweepRange:
-    """Aim over everything that stands on the table and a rim of it on both sides."""
+    """Aim past `centre` (3,) in mm over everything that stands on the table and a rim of it on both sides."""
     extents = [mesh.triangles.reshape(-1, 3)[:, 0] for mesh in scene.meshes]
     extents += [sphere.centre[0] + np.array([-sphere.radius, sphere.radius]) for sphere in scene.spheres]
     widest = max((float(np.abs(x - centre[0]).max()) for x in extents), default=40.0)
