@@ -30,6 +30,14 @@ def simulated(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="session")
+def tiny_set(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A still smaller set, for what has to go through all steps whatever they find; copy it before changing it."""
+    from tests.simulated import TINY, simulate_set
+
+    return made_once(tmp_path_factory, "tiny", lambda folder: simulate_set(TINY, folder / "block")) / "block"
+
+
+@pytest.fixture(scope="session")
 def measured(simulated: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """All results of the small set, made once for all test processes; copy them before changing them."""
     return made_once(tmp_path_factory, "measured", lambda folder: _measure(simulated, folder / "out")) / "out"

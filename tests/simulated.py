@@ -12,6 +12,9 @@ from core.simulate.scenario import Scenario
 
 SMALL = Scenario(scale=0.25, frames=20, camera_views=8, plane_poses=6, seed=3)
 
+TINY = Scenario(scale=0.2, frames=8, camera_views=6, plane_poses=4, seed=3)
+"""Measured in a second or two, and too coarse for its thickness to be good."""
+
 CUT = ("--sigma-cut", "0.3")
 """A quarter of the pixels and a third of the frames give points three times as uncertain as the default cut allows."""
 

@@ -92,8 +92,8 @@ def test_deviations_carry_the_uncertainty_that_repeated_calibrations_show():
 
     ratios = []
     for seed in range(24):
-        camera = calibrate_camera(synthetic_views(500 + seed), CAMERA.image_size)
-        fan = fit_fan(features(poses(8, 500 + seed), Noise(), 500 + seed), camera.camera, THREE)
+        camera = calibrate_camera(synthetic_views(500 + seed, 10), CAMERA.image_size)
+        fan = fit_fan(features(poses(6, 500 + seed), Noise(), 500 + seed), camera.camera, THREE)
         found = quantities(camera.camera, fan.fan)
         changes = [quantities(one.camera, one.fan) - found for one in calibration_deviations(camera, fan)]
         ratios.append((found - [515.0, 50.0]) / np.linalg.norm(changes, axis=0))

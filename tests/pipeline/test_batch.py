@@ -17,8 +17,6 @@ from core.files.pictures import read_picture, write_picture
 from core.pipeline import Options, batch, run
 from core.pipeline.batch import STEP, STOP, run_batch
 from core.pipeline.executors import executor_of
-from core.simulate.recording import simulate_set
-from core.simulate.scenario import Scenario
 from tests.simulated import trisect
 
 
@@ -147,10 +145,10 @@ SAME = ("camera.json", "planes.json", "cloud.ply", "mesh.ply", "gauge.json")
 
 
 @pytest.fixture(scope="module")
-def tiny(tmp_path_factory):
+def tiny(tiny_set, tmp_path_factory):
     """A set that is quickly measured, what a run makes of it, and the same set with its frames recorded as PGM."""
     folder = tmp_path_factory.mktemp("tiny")
-    simulate_set(Scenario(scale=0.2, frames=8, camera_views=6, plane_poses=4, seed=3), folder / "png")
+    shutil.copytree(tiny_set, folder / "png")
     run(folder / "png", folder / "out", QUICK)
     shutil.copytree(folder / "png", folder / "pgm")
     frames = sorted((folder / "pgm" / "scan").glob("frame*.png"))
@@ -196,8 +194,8 @@ def test_a_dask_cluster_of_separate_processes_measures_the_very_same_as_a_run(ti
 
 
 @pytest.mark.slow
-def test_ctrl_c_ends_all_processes_with_its_own_code(simulated, tmp_path):
-    copies = [Path(shutil.copytree(simulated, tmp_path / f"set{n}")) for n in range(3)]
+def test_ctrl_c_ends_all_processes_with_its_own_code(tiny_set, tmp_path):
+    copies = [Path(shutil.copytree(tiny_set, tmp_path / f"set{n}")) for n in range(3)]
     command = [sys.executable, "-m", "core.cli", "batch", *map(str, copies), "--out", str(tmp_path / "out")]
     process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True, start_new_session=True)
     while not any((tmp_path / "out").glob("set*")):

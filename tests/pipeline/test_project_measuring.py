@@ -66,26 +66,30 @@ def test_every_stage_asks_often_enough_whether_to_stop(done):
     assert told["report"] >= 6
 
 
+def noted(stages):
+    """A progress that puts the name of every stage into `stages`."""
+    return lambda step, done, total: stages.add(step)
+
+
 def test_a_cancelled_measurement_leaves_the_old_results_whole(done, tmp_path):
+    """In every stage; those that need no picture come sooner where another cut is asked for."""
     folder = copy_of(done.folder, tmp_path / "project")
     before = contents(folder)
-    project = done.with_options(excluded=frozenset({"scan/frame0000.png"}))
-    stages = []
+    tried = set()
+    for number, changes in enumerate(({"sigma_cut_mm": 0.2}, {"excluded": frozenset({"scan/frame0000.png"})})):
+        project, stages = done.with_options(**changes), set()
+        measure_scan(copy_of(done.folder, tmp_path / str(number)), project, noted(stages))
+        for stage in stages - tried:
 
-    def note(step, done, total):
-        if step not in stages:
-            stages.append(step)
+            def stop(step, done, total, stage=stage):
+                if step == stage:
+                    raise Cancelled
 
-    measure_scan(copy_of(done.folder, tmp_path / "other"), project, note)
-    for stage in stages:
-
-        def stop(step, done, total, stage=stage):
-            if step == stage:
-                raise Cancelled
-
-        with pytest.raises(Cancelled):
-            measure_scan(folder, project, stop)
-        assert contents(folder) == before, stage
+            with pytest.raises(Cancelled):
+                measure_scan(folder, project, stop)
+            assert contents(folder) == before, stage
+        tried |= stages
+    assert {"frames", "network", "mesh"} < tried
 
 
 def test_a_new_measurement_replaces_all_old_results_but_the_report(done, tmp_path):
@@ -149,7 +153,7 @@ def test_the_thickness_alone_is_measured_again_with_another_nominal_value(done, 
 def test_killed_in_the_middle_of_replacing_leaves_no_mixture(done, tmp_path, monkeypatch):
     folder = copy_of(done.folder, tmp_path / "project")
     old = contents(results_folder(folder))
-    project = done.with_options(excluded=frozenset({"scan/frame0000.png"}))
+    project = done.with_options(sigma_cut_mm=0.2)
     measure_scan(copy_of(done.folder, tmp_path / "other"), project)
     new = contents(results_folder(tmp_path / "other"))
     monkeypatch.setattr(shutil, "rmtree", lambda *_, **__: None)

@@ -12,9 +12,9 @@ from core.pipeline.sample_project import clear_unfinished, sample_project
 
 
 @pytest.fixture
-def small(simulated, tmp_path, monkeypatch) -> Path:
-    """The small set stands for the sample; gives the folder projects are put into."""
-    monkeypatch.setattr(module, "sample_set", lambda progress: simulated)
+def small(tiny_set, tmp_path, monkeypatch) -> Path:
+    """A tiny set stands for the sample; gives the folder projects are put into."""
+    monkeypatch.setattr(module, "sample_set", lambda progress: tiny_set)
     monkeypatch.setattr(module, "sample_folder", lambda: tmp_path / "cache" / "sample")
     return tmp_path / "projects"
 

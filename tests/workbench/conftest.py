@@ -76,10 +76,16 @@ def nothing_hangs(pytestconfig: pytest.Config) -> Iterator[None]:
 
 @pytest.fixture(scope="module", autouse=True)
 def garbage_stays_here() -> Iterator[None]:
-    """As in the program, no thread but this one collects windows of tests that are over."""
+    """As in the program, no thread but this one collects windows of tests that are over.
+
+    What outlives its test does so until the module's end: a page without a window may leave its clock running, which
+    would be counted against the first test with a window of whichever module came next.
+    """
     gc.disable()
     yield
     gc.collect()
+    for timer in _running_timers():
+        timer.stop()
     gc.enable()
 
 
@@ -199,18 +205,17 @@ def nothing_left_behind(request: pytest.FixtureRequest) -> Iterator[None]:
     threads = [thread for thread in threads if thread.is_alive()]
     assert not threads, f"threads left behind: {threads}"
     if "window" in request.fixturenames:
-        running = _running_timers()
+        running = [f"every {timer.interval()} ms of {timer.parent()}" for timer in _running_timers()]
         assert not running, f"timers left running: {running}"
     children = _foreign_children(request)
     assert not children, f"processes left behind: {children}"
 
 
-def _running_timers() -> list[str]:
+def _running_timers() -> list[QTimer]:
     """Timers that would fire again although their window is closed, whoever holds them."""
     there = gc.get_objects()
     kinds = {kind for kind in set(map(type, there)) if issubclass(kind, QTimer)}  # asking each object takes a second
-    timers = [each for each in there if type(each) in kinds and shiboken6.isValid(each)]
-    return [f"every {timer.interval()} ms of {timer.parent()}" for timer in timers if timer.isActive()]
+    return [each for each in there if type(each) in kinds and shiboken6.isValid(each) and each.isActive()]
 
 
 def _foreign_children(request: pytest.FixtureRequest) -> list[str]:
