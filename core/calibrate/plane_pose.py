@@ -9,7 +9,6 @@ side: those points are left out.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import cv2
@@ -26,7 +25,7 @@ from core.image.targets import Target, TargetNotFound, camera_shift, detect, pic
 from core.model import Camera
 from core.model.arrays import Array
 
-__all__ = ["PlanePoseOptions", "PoseFeatures", "measure_plane_pose"]
+__all__ = ["PoseFeatures", "measure_plane_pose"]
 
 Picture = NDArray[Any]
 """(H, W) grey levels, uint8 or uint16."""
@@ -41,13 +40,6 @@ SHORTEST = 12
 """Runs with fewer points left are dropped."""
 
 
-@dataclass(frozen=True, slots=True)
-class PlanePoseOptions:
-    """How a pair of pictures is read; `moved_px` is the movement of the target from which a pair is left out."""
-
-    moved_px: float = MOVED_PX
-
-
 def measure_plane_pose(
     name: str,
     on: Picture,
@@ -55,7 +47,6 @@ def measure_plane_pose(
     target: Target,
     camera: Camera | None = None,
     settings: StripeSettings | None = None,
-    options: PlanePoseOptions | None = None,
 ) -> PoseFeatures:
     """Find the target and the stripes of one pose. A pose that cannot be used says so in its `reason`.
 
@@ -77,7 +68,6 @@ def measure_plane_pose(
     ValueError
         If the two pictures differ in size or depth.
     """
-    options = options or PlanePoseOptions()
     if off is not None and (on.shape != off.shape or on.dtype != off.dtype):
         raise ValueError(f"the pictures of {name} differ: {on.shape} {on.dtype} and {off.shape} {off.dtype}")
     plate = on if off is None else off
@@ -86,7 +76,7 @@ def measure_plane_pose(
     except TargetNotFound as error:
         return PoseFeatures(name, None, (), error.what)
     moved = None if off is None else _movement(on, off, view, target, camera)
-    if moved is not None and moved >= options.moved_px:
+    if moved is not None and moved >= MOVED_PX:
         reason = f"the target moved by {moved:.2f} px between the pictures with the fan off and on"
         return PoseFeatures(name, view, (), reason)
     centrelines = _stripes(on, off, view, settings)

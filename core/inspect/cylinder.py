@@ -49,7 +49,7 @@ def find_cylinder(
     InputError
         If there is no cylinder.
     """
-    tolerance = search_tolerance(cloud, None)
+    tolerance = search_tolerance(cloud)
     mine = above_table(cloud, tolerance, seed, progress) if on_table else np.arange(len(cloud))
     mine = mine[cloud.normals[mine].any(axis=1)]
     points, normals = cloud.points[mine], cloud.normals[mine]

@@ -17,6 +17,8 @@ from core.inspect.plane_search import FEWEST_POINTS, find_planes, largest_plane,
 from core.progress import Progress, silent
 from core.scan.cloud import Cloud
 
+SMALLEST_MM2 = 60.0
+"""A face found by itself is at least this large inside its margin."""
 SAME_FACE = 0.5
 """Two polygons hold one face if they share more than this part of the points of the smaller one."""
 PARALLEL = np.radians(2.0)
@@ -34,9 +36,7 @@ class FacePair:
 def find_faces(
     cloud: Cloud,
     *,
-    tolerance_mm: float | None = None,
     margin_mm: float = 1.5,
-    min_area_mm2: float = 60.0,
     seed: int = 0,
     progress: Progress = silent,
 ) -> FacePair:
@@ -46,12 +46,8 @@ def find_faces(
     ----------
     cloud
         Normals are estimated when it has none.
-    tolerance_mm
-        Points within this distance of a plane belong to it; None: five times the median σ, at least 0.25 mm.
     margin_mm
         Points nearer than this to the edge of their face are left out: stripes are biased there.
-    min_area_mm2
-        A face is at least this large inside its margin.
     seed
         Of the random search; the same seed gives the same faces.
     progress
@@ -62,9 +58,9 @@ def find_faces(
     InputError
         If there are no two parallel faces.
     """
-    planes = find_planes(cloud, tolerance_mm=tolerance_mm, margin_mm=margin_mm, seed=seed, progress=progress)
-    large = [plane for plane in planes if plane.region.area_mm2 >= min_area_mm2]
-    tolerance = search_tolerance(cloud, tolerance_mm)
+    planes = find_planes(cloud, margin_mm=margin_mm, seed=seed, progress=progress)
+    large = [plane for plane in planes if plane.region.area_mm2 >= SMALLEST_MM2]
+    tolerance = search_tolerance(cloud)
     pairs = [
         (a, b)
         for a, b in combinations(large, 2)
@@ -86,7 +82,6 @@ def faces_in_polygons(
     upper_polygon_px: ArrayLike,
     lower_polygon_px: ArrayLike,
     *,
-    tolerance_mm: float | None = None,
     margin_mm: float = 1.5,
     seed: int = 0,
 ) -> FacePair:
@@ -105,7 +100,7 @@ def faces_in_polygons(
         if corners.ndim != 2 or corners.shape[1:] != (2,) or len(corners) < 3 or not np.isfinite(corners).all():
             raise InputError("a polygon needs at least three corners [u, v]", where=f"[gauge] {name}")
         inside = inside_polygon(cloud.uv, corners)
-        indices = face_inside(cloud, inside, tolerance_mm=tolerance_mm, margin_mm=margin_mm, seed=seed)
+        indices = face_inside(cloud, inside, margin_mm=margin_mm, seed=seed)
         if len(indices) < FEWEST_POINTS:
             raise InputError(
                 f"the polygon holds {inside.sum()} measured points but no plane face",
@@ -126,13 +121,12 @@ def face_inside(
     cloud: Cloud,
     inside: NDArray[np.bool_],
     *,
-    tolerance_mm: float | None = None,
     margin_mm: float = 1.5,
     seed: int = 0,
 ) -> NDArray[np.int64]:
     """Indices of the points of the largest plane among the points `inside`, less the margin of the whole face."""
     part = cloud.select(inside)
-    tolerance = search_tolerance(part, tolerance_mm)
+    tolerance = search_tolerance(part)
     plane = largest_plane(part, tolerance, 0.0, seed)
     if plane is None:
         return np.empty(0, dtype=np.int64)

@@ -23,7 +23,6 @@ from core.inspect.point_errors import PointErrors
 from core.inspect.results import Contribution, Face, GaugeResult
 from core.inspect.uncertainty import CAMERA, FAN_CALIBRATION, budget, combined
 from core.model import LightPlane
-from core.model.arrays import Array
 from core.progress import Progress, silent
 from core.scan.cloud import Cloud
 
@@ -69,9 +68,6 @@ def fit_gauge(
     *,
     errors: PointErrors | None = None,
     regions: Polygons | FacePair | None = None,
-    margin_mm: float = 1.5,
-    tolerance_mm: float | None = None,
-    reference_normal: Array | None = None,
     seed: int = 0,
     progress: Progress = silent,
 ) -> GaugeFit:
@@ -86,10 +82,8 @@ def fit_gauge(
     regions
         (upper, lower) polygons, each (n, 2) in pixels, or the points of the faces themselves; None: the two largest
         parallel faces are found.
-    margin_mm, tolerance_mm, seed
-        As for `core.inspect.faces.find_faces`; `tolerance_mm` is the search's, not the part's.
-    reference_normal
-        (3,) for a single light profile only: the table's normal.
+    seed
+        Of the random search for faces.
     progress
         Told how far it is.
 
@@ -99,16 +93,14 @@ def fit_gauge(
         If there are no two parallel faces, or the one given as the upper is not nearer to the camera.
     """
     if regions is None:
-        pair = find_faces(cloud, margin_mm=margin_mm, tolerance_mm=tolerance_mm, seed=seed, progress=progress)
+        pair = find_faces(cloud, seed=seed, progress=progress)
     elif isinstance(regions, FacePair):
         pair = regions
     else:
-        pair = faces_in_polygons(cloud, *regions, margin_mm=margin_mm, tolerance_mm=tolerance_mm, seed=seed)
+        pair = faces_in_polygons(cloud, *regions, seed=seed)
     errors = errors or PointErrors()
     upper, lower = cloud.select(pair.upper), cloud.select(pair.lower)
-    robust = fit_parallel_planes(
-        upper.points, lower.points, upper.sigma, lower.sigma, reference_normal=reference_normal
-    )
+    robust = fit_parallel_planes(upper.points, lower.points, upper.sigma, lower.sigma)
     if robust.thickness <= 0:
         raise InputError(
             "the upper face lies behind the lower one as the camera sees them",

@@ -69,7 +69,7 @@ def face_outline(cloud: Cloud, chosen: NDArray[np.int64], face: str) -> Array:
 
 def _meant(cloud: Cloud, part: Cloud, planes: list[FoundPlane], *, nearest: bool) -> FoundPlane:
     """The plane that was chosen as a whole; of several the nearest to the camera, or the farthest."""
-    tolerance = search_tolerance(cloud, None)
+    tolerance = search_tolerance(cloud)
     largest = max(plane.region.area_mm2 for plane in planes)
     large = [plane for plane in planes if plane.region.area_mm2 >= SMALL_FACE * largest]
     shares = [

@@ -46,7 +46,6 @@ class FoundPlane:
 def find_planes(
     cloud: Cloud,
     *,
-    tolerance_mm: float | None = None,
     margin_mm: float = 1.5,
     most: int = MOST_PLANES,
     seed: int = 0,
@@ -58,8 +57,6 @@ def find_planes(
     ----------
     cloud
         Normals are estimated when it has none.
-    tolerance_mm
-        Points within this distance of a plane belong to it; None: five times the median σ, at least 0.25 mm.
     margin_mm
         Points nearer than this to the edge of their face are left out: stripes are biased there.
     most
@@ -69,7 +66,7 @@ def find_planes(
     progress
         Told how far it is.
     """
-    tolerance = search_tolerance(cloud, tolerance_mm)
+    tolerance = search_tolerance(cloud)
     if len(cloud) >= 3 and not cloud.normals.any():
         cloud = with_normals(cloud, progress=progress)
     left = np.arange(len(cloud))
@@ -101,10 +98,8 @@ def points_on(cloud: Cloud, plane: FoundPlane, tolerance_mm: float) -> NDArray[n
     return np.flatnonzero(_on_plane(cloud, plane.normal, plane.distance, tolerance_mm))
 
 
-def search_tolerance(cloud: Cloud, tolerance_mm: float | None) -> float:
-    """Distance in mm within which a point belongs to a plane in a search: as given, or by the points' σ."""
-    if tolerance_mm is not None:
-        return tolerance_mm
+def search_tolerance(cloud: Cloud) -> float:
+    """Distance in mm within which a point belongs to a plane in a search: five times the median σ, at least 0.25."""
     return max(0.25, 5 * float(np.median(cloud.sigma))) if len(cloud) else 0.25
 
 

@@ -80,7 +80,7 @@ def find_sphere(
         If there is no sphere.
     """
     cloud = cloud if cloud.normals.any() else with_normals(cloud, progress=progress)
-    tolerance = search_tolerance(cloud, None)
+    tolerance = search_tolerance(cloud)
     above = above_table(cloud, tolerance, seed, progress) if on_table else np.arange(len(cloud))
     points, normals = cloud.points[above], cloud.normals[above]
     rng = np.random.default_rng(seed)

@@ -46,10 +46,9 @@ class ScanStage:
         ambient_grey: float = 45.0,
         texture: float = 0.0,
         aim: Array,
-        rays: Map | None = None,
     ) -> None:
         self.rig, self.scene, self.sensor, self.seed = rig, scene, sensor, seed
-        self.maps = _textured(surface_maps(scene, rig.camera, rays), texture, rig.scale, seed)
+        self.maps = _textured(surface_maps(scene, rig.camera), texture, rig.scale, seed)
         contrast = rig.optics.speckle_contrast
         self._speckle = Speckle(contrast, rig.grain_px, generator(seed, "speckle")) if contrast > 0 else None
         self._room_light = self._room(ambient_grey)

@@ -88,7 +88,7 @@ def _above_table(points: Array, nominal: Triangles, scene: Scene) -> NDArray[np.
     if np.linalg.norm(np.ptp(table, axis=0)) <= TABLE * nominal.size_mm:
         return np.ones(len(points), dtype=np.bool_)
     height = planes[0].distance - points @ planes[0].normal
-    return np.asarray(height > 3 * search_tolerance(scene.cloud, None))
+    return np.asarray(height > 3 * search_tolerance(scene.cloud))
 
 
 def _facing(normals: Array, near: Nearest, pose: Pose) -> NDArray[np.bool_]:

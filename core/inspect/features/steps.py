@@ -5,16 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from core.errors import InputError
-from core.inspect.faces import PARALLEL
+from core.inspect.faces import PARALLEL, SMALLEST_MM2
 from core.inspect.feature_spec import Auto, FeatureSpec
 from core.inspect.features.measured import FeatureResult, Scene
 from core.inspect.features.regions import Indices, face_in
 from core.inspect.plane_search import search_tolerance
 from core.inspect.shapes import Levels
 from core.inspect.surface_fit import fit_surface
-
-SMALLEST_MM2 = 60.0
-"""A level found by itself is at least this large inside its margin."""
 
 
 def measure_steps(spec: FeatureSpec, scene: Scene) -> FeatureResult:
@@ -82,7 +79,7 @@ def _found(spec: FeatureSpec, scene: Scene) -> list[Indices]:
     heights: list[float] = []
     for plane in planes:
         height = plane.distance
-        apart = all(abs(height - other) > 2 * search_tolerance(scene.cloud, None) for other in heights)
+        apart = all(abs(height - other) > 2 * search_tolerance(scene.cloud) for other in heights)
         if abs(plane.normal @ planes[0].normal) > np.cos(PARALLEL) and apart:
             found = plane.region.indices
             faces.append(np.sort(found[scene.cloud.sigma[found] <= allowed]))
