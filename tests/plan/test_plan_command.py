@@ -72,13 +72,15 @@ def test_the_same_plan_writes_the_same_bytes(rig, told, result):
         assert (rig.parent / "again" / name).read_bytes() == (out / name).read_bytes()
 
 
-def test_people_are_told_in_lines(rig):
+def test_people_are_told_in_lines(tmp_path):
+    rig = tmp_path / "rig.toml"
+    rig.write_text(TOML.replace("[40, 50]", "[40]"), encoding="utf-8")
     said = trisect("plan", rig, "--scans", 1, "--no-changes", "--sigma-cut", CUT_MM, "--bounds")
 
     assert said.code == 0
     assert "block 40 mm" in said.out and "U = 0." in said.out
     assert "common to the scan" in said.out
-    assert "no program below" in said.out and "thickness of 50 mm: u 0.0" in said.out
+    assert "no program below" in said.out and "thickness of 40 mm: u 0.0" in said.out
 
 
 @pytest.mark.parametrize(
