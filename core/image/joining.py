@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from itertools import combinations
 
 import numpy as np
 
@@ -78,11 +77,12 @@ def _gaps(pieces: list[Piece], filter_px: float) -> list[_Gap]:
     """All pairs of ends through which one smooth curve goes."""
     ends = [end for k, piece in enumerate(pieces) for end in _ends(k, piece, filter_px)]
     found = []
-    for one, other in combinations(ends, 2):
-        if one.piece != other.piece and math.dist(one.point, other.point) < _LONGEST_GAP * filter_px:
-            gap = _gap(one, other, filter_px)
-            if gap is not None:
-                found.append(gap)
+    places, limit = np.array([end.point for end in ends]).reshape(-1, 2), _LONGEST_GAP * filter_px
+    apart = np.hypot(*(places[:, None] - places).T)
+    for i, j in np.argwhere(np.triu(apart < limit, 1)):
+        gap = _gap(ends[i], ends[j], filter_px) if ends[i].piece != ends[j].piece else None
+        if gap is not None:
+            found.append(gap)
     return found
 
 

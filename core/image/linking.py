@@ -21,13 +21,11 @@ from numba import njit
 from numpy.typing import NDArray
 
 from core.image.filling import filled, points_apart
+from core.image.marks import IGNORED, SATURATED
 from core.image.passed import Passed, nothing_passed, put_down, room_for, was_passed
 from core.image.ridge import LANES, Detector, kernel_radius, kernel_table, ridge_at, ridge_response
 from core.image.seeds import Picture, seeds
 from core.model.arrays import Array
-
-SATURATED, IGNORED = 1, 2
-"""Bits of the picture's state map."""
 
 _MARK_EVERY = 2  # points: discs much larger than that leave no gap between them
 _LONGEST_STEP = 2  # px: longer ones lose short, saturated pieces of photographed stripes at their ends

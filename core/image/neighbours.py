@@ -23,13 +23,12 @@ def beside_another(runs: list[Array], ways: list[Array], touching: float, reach:
     """
     apart_px = [np.full(len(run), np.inf) for run in runs]
     chunks = [_boxes(run) for run in runs]
-    boxes = np.array([[*box[:, :2].min(axis=0), *box[:, 2:].max(axis=0)] for box in chunks]).reshape(-1, 4)
-    for i, run in enumerate(runs):
-        near = (boxes[i, :2] - reach <= boxes[:, 2:]).all(axis=1) & (boxes[:, :2] <= boxes[i, 2:] + reach).all(axis=1)
-        for j in np.flatnonzero(near):
-            if i != j:
-                _add_nearest(run, chunks[i], runs[j], chunks[j], touching, reach, apart_px[i])
-                _add_nearest(run, chunks[i], ways[j], _boxes(ways[j]), reach, reach, apart_px[i])
+    boxes = np.array([_box(run) for run in runs]).reshape(-1, 4)
+    first, last = boxes[:, None, :2] - reach, boxes[:, None, 2:] + reach
+    for i, j in np.argwhere(((first <= boxes[:, 2:]) & (boxes[:, :2] <= last)).all(axis=2)):
+        if i != j:
+            _add_nearest(runs[i], chunks[i], runs[j], chunks[j], touching, reach, apart_px[i])
+            _add_nearest(runs[i], chunks[i], ways[j], _boxes(ways[j]), reach, reach, apart_px[i])
     return apart_px
 
 
@@ -38,10 +37,15 @@ def _boxes(run: Array) -> Array:
     """Bounding boxes (K, 4) from u, v to u, v of _CHUNK points each."""
     boxes = np.empty(((len(run) + _CHUNK - 1) // _CHUNK, 4))
     for k in range(len(boxes)):
-        part = run[k * _CHUNK : (k + 1) * _CHUNK]
-        boxes[k, 0], boxes[k, 1] = part[:, 0].min(), part[:, 1].min()
-        boxes[k, 2], boxes[k, 3] = part[:, 0].max(), part[:, 1].max()
+        boxes[k] = _box(run[k * _CHUNK : (k + 1) * _CHUNK])
     return boxes
+
+
+@njit(cache=True, nogil=True)
+def _box(points: Array) -> Array:
+    """Bounding box (4,) from u, v to u, v of points (N, ≥ 2), N ≥ 1."""
+    u, v = points[:, 0], points[:, 1]
+    return np.array([u.min(), v.min(), u.max(), v.max()])
 
 
 @njit(cache=True, nogil=True)

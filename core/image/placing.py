@@ -69,13 +69,16 @@ def place(
     flanks that a likelihood with speckle listens to pull more.
     """
     g = settings.filter_px
-    curves: list[Array] = [guide(piece.run, arc_length(piece.run), piece.weight, g) for piece in pieces]
+    weights = [piece.weight for piece in pieces]
+    curves: list[Array] = [
+        guide(piece.run, arc_length(piece.run), weight, g) for piece, weight in zip(pieces, weights, strict=True)
+    ]
     sections = [smooth_sections(piece.profiles, g) for piece in pieces]
     lines = [_stegers(piece, curve, settings, noise) for piece, curve in zip(pieces, curves, strict=True)]
     speckle = _speckle(picture, state, curves, sections, settings)
     refined = [
-        refine(picture, state, curve, piece.weight, ok, section, noise, speckle, g)
-        for piece, curve, ok, section in zip(pieces, curves, clear, sections, strict=True)
+        refine(picture, state, curve, weight, ok, section, noise, speckle, g)
+        for weight, curve, ok, section in zip(weights, curves, clear, sections, strict=True)
     ]
     differences = [
         _difference(line.run, better.run, better.sigma, piece.usable)

@@ -17,7 +17,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from core.image.linking import SATURATED
+from core.image.marks import SATURATED, marks_within
 from core.image.noise import NoiseModel
 from core.image.profile import Profiles
 from core.image.ridge import ridge_response
@@ -102,30 +102,40 @@ def _excess(points: Array, sigma: Array, lag: int, correlation: float) -> tuple[
 def saturated_points(state: NDArray[np.uint8], points: Array, filter_px: float) -> NDArray[np.bool_]:
     """Which points (N, ≥ 2) have saturated pixels under more than 1 % of the filter's weight."""
     reach = math.ceil(2.5 * filter_px)
-    share = np.zeros(len(points), dtype=np.bool_)
-    inverse = 0.5 / (filter_px * filter_px)
+    saturated = np.zeros(len(points), dtype=np.bool_)
     limit = _SATURATED_SHARE * 2 * math.pi * filter_px * filter_px
     for start in range(0, len(points), _BLOCK):
         end = min(start + _BLOCK, len(points))
-        if _weight_of_saturated(state, points[start:end], reach, 0.0) == 0.0:  # nearly always
+        left, right, top, bottom = _around(state.shape, points[start:end], reach)
+        if marks_within(state, left, right, top, bottom) & SATURATED == 0:  # nearly always
             continue
         for k in range(start, end):
-            share[k] = _weight_of_saturated(state, points[k : k + 1], reach, inverse) > limit
-    return share
+            saturated[k] = _weight_of_saturated(state, points[k : k + 1], reach, filter_px) > limit
+    return saturated
 
 
 @njit(cache=True, nogil=True, fastmath=True)
-def _weight_of_saturated(state: NDArray[np.uint8], points: Array, reach: int, inverse: float) -> float:
-    """Σ exp(−inverse·d²) over the saturated pixels within `reach` of some points' box, d from the first of them."""
-    height, width = state.shape
-    u, v = points[0, 0], points[0, 1]
-    left, right, top, bottom = u, u, v, v
+def _around(shape: tuple[int, int], points: Array, reach: int) -> tuple[int, int, int, int]:
+    """The pixels within `reach` of the box of some points: columns from, to behind; rows from, to behind."""
+    left, right, top, bottom = points[0, 0], points[0, 0], points[0, 1], points[0, 1]
     for k in range(1, len(points)):
         left, right = min(left, points[k, 0]), max(right, points[k, 0])
         top, bottom = min(top, points[k, 1]), max(bottom, points[k, 1])
-    total = 0.0
-    for j in range(max(int(top + 0.5) - reach, 0), min(int(bottom + 0.5) + reach + 1, height)):
-        for i in range(max(int(left + 0.5) - reach, 0), min(int(right + 0.5) + reach + 1, width)):
+    return (
+        max(int(left + 0.5) - reach, 0),
+        min(int(right + 0.5) + reach + 1, shape[1]),
+        max(int(top + 0.5) - reach, 0),
+        min(int(bottom + 0.5) + reach + 1, shape[0]),
+    )
+
+
+@njit(cache=True, nogil=True, fastmath=True)
+def _weight_of_saturated(state: NDArray[np.uint8], point: Array, reach: int, filter_px: float) -> float:
+    """Σ exp(−d²/2g²) over the saturated pixels within `reach` of a point (1, ≥ 2), d being their distance from it."""
+    u, v, inverse, total = point[0, 0], point[0, 1], 0.5 / (filter_px * filter_px), 0.0
+    left, right, top, bottom = _around(state.shape, point, reach)
+    for j in range(top, bottom):
+        for i in range(left, right):
             if state[j, i] & SATURATED:
                 total += math.exp(-((i - u) ** 2 + (j - v) ** 2) * inverse)
     return total

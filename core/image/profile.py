@@ -66,8 +66,8 @@ class Fits(NamedTuple):
 
 def smooth_sections(profiles: Profiles, filter_px: float) -> Sections:
     """Medians of the cross-sections along the stripe, over many grains of speckle, blurred by the pixel."""
-    at, stride = _places(len(profiles.height), filter_px)
-    length = _odd(_LONG_STRETCH * filter_px / stride)
+    stride = _stride(filter_px)
+    at, length = _places(len(profiles.height), stride), _odd(_LONG_STRETCH * filter_px / stride)
     height, background, width = _smoothed(profiles.height, profiles.background, profiles.width, at, length)
     return Sections(height, width, background, profiles.slope)
 
@@ -82,7 +82,7 @@ def measure_profiles(
 
 def fit_profiles(picture: Picture, state: NDArray[np.uint8], run: Array, stripe_px: float, filter_px: float) -> Fits:
     """Cross-sections at points of a `run` (N, ≥ 4) every two filter σ or so, each from the nearest pixels alone."""
-    at, _ = _places(len(run), filter_px)
+    at = _places(len(run), _stride(filter_px))
     fits = fit_sections(picture, state, run[at, :4], stripe_px, _STRIDE / 2 * filter_px)
     good = fits[:, 0] > 0
     return Fits(at, fits) if good.all() else Fits(at[good], fits[good])
@@ -98,7 +98,7 @@ def profiles_along(arc: Array, part: slice, fits: Fits, stripe_px: float, filter
     if first == last:
         flat = np.ones(len(arc))
         return Profiles(0 * flat, 0 * flat, 0 * flat, np.inf * flat, stripe_px * flat)
-    _, stride = _places(len(arc), filter_px)
+    stride = _stride(filter_px)
     short, long = (_odd(stretch * filter_px / stride) for stretch in (_SHORT_STRETCH, _LONG_STRETCH))
     return Profiles(*_along(arc, fits.at[first:last] - part.start, fits.figures[first:last], short, long))
 
@@ -146,10 +146,17 @@ def _interpolated(x: Array, at: Array, values: Array) -> Array:
     return found
 
 
-def _places(count: int, filter_px: float) -> tuple[NDArray[np.int64], int]:
-    """The points of a run of `count` whose cross-sections are measured, and how many it is from one to the next."""
-    stride = max(1, round(_STRIDE * filter_px))
-    return np.append(np.arange(0, count - 1, stride), count - 1), stride
+def _stride(filter_px: float) -> int:
+    """How many points it is from one whose cross-section is measured to the next."""
+    return max(1, round(_STRIDE * filter_px))
+
+
+@njit(cache=True, nogil=True)
+def _places(count: int, stride: int) -> NDArray[np.int64]:
+    """Every `stride`-th of `count` points, and the last."""
+    at = np.arange(0, count - 1 + stride, stride)
+    at[-1] = count - 1
+    return at
 
 
 def _odd(length: float) -> int:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from core.image.cut_model import TAIL, cut_model
 from core.image.influence import DEGREE, REACH
-from core.image.linking import IGNORED, SATURATED
+from core.image.marks import IGNORED, SATURATED
 from core.image.seeds import Picture
 from core.model.arrays import Array
 

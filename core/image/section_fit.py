@@ -9,7 +9,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from core.image.bell import bell
-from core.image.linking import IGNORED, SATURATED
+from core.image.marks import IGNORED, SATURATED
 from core.image.seeds import Picture
 from core.model.arrays import Array
 

@@ -8,7 +8,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from core.image.pieces import arc_length, correlation_length
+from core.image.pieces import correlation_length
 from core.model.arrays import Array
 
 _BREAK_GAP = 2.0  # filter σ on either side of a kink that its rounding reaches
@@ -19,19 +19,23 @@ _SMALLEST_KINK = 0.06  # rad
 _SUSPECT = 0.5  # of the misfit without a break that the smallest significant one would leave
 
 
-def split_at_breaks(run: Array, usable: NDArray[np.bool_], filter_px: float, sigma_px: Array) -> list[slice]:
+def split_at_breaks(
+    run: Array, whole: Array, usable: NDArray[np.bool_], filter_px: float, sigma_px: Array
+) -> list[slice]:
     """Parts of a run (N, ≥ 4) between jumps sideways and kinks, leaving out what the filter rounds there.
 
     At every point a curve y = a + b·x + c·x² with a jump and a kink at that point is fitted to both sides, up to 8
     filter σ away and leaving out the nearest 2. The run is broken where jump or kink is large and significant, given
-    the points' standard uncertainties `sigma_px` (N,). Only `usable` points (N,) are judged.
+    the points' standard uncertainties `sigma_px` (N,). Only `usable` points (N,) are judged; `whole` (N,) is the length
+    along the run up to each point.
     """
-    whole = arc_length(run)
-    arc = whole[usable]
+    judged, arc = run, whole
+    if not usable.all():
+        judged, arc, sigma_px = run[usable], whole[usable], sigma_px[usable]
     gap, arm = _BREAK_GAP * filter_px, _BREAK_ARM * filter_px
-    score, misfit = _break_scores(run[usable, :4], arc, sigma_px[usable], gap, arm, correlation_length(filter_px))
-    parts, start = [], 0
-    for first, last in _stretches(score > 1):
+    score, misfit = _break_scores(judged, arc, sigma_px, gap, arm, correlation_length(filter_px))
+    parts, start, broken = [], 0, score > 1
+    for first, last in _stretches(broken) if broken.any() else ():
         # a fit beside the break is spoilt by it too: the break is where the broken curve fits best
         at = float(arc[first + int(np.argmin(misfit[first:last]))])
         parts.append(slice(start, int(np.searchsorted(whole, at - gap))))

@@ -7,7 +7,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from core.image.linking import IGNORED, SATURATED, Hysteresis, link
+from core.image.linking import Hysteresis, link
+from core.image.marks import IGNORED, SATURATED
 from core.image.noise import estimate_noise
 from core.image.pieces import cut_ends
 from core.image.precision import response_noise

@@ -43,7 +43,8 @@ from core.image.centreline import Centreline
 from core.image.influence import REACH
 from core.image.joining import joined_at_crossings
 from core.image.likelihood import Refined
-from core.image.linking import IGNORED, Hysteresis, link
+from core.image.linking import Hysteresis, link
+from core.image.marks import IGNORED
 from core.image.neighbours import NEIGHBOUR, beside_another
 from core.image.noise import NoiseModel
 from core.image.pieces import arc_length, correlation_length, cut_ends, fully_lit
@@ -162,7 +163,7 @@ def _smooth_pieces(
     sigma = noise_sigma(whole.profiles, noise, g)
     (extra,) = roughness([whole.judged(run, sigma)], correlation_length_px(settings))
     pieces = []
-    for part in split_at_breaks(run, whole.usable, g, np.hypot(sigma, extra)):
+    for part in split_at_breaks(run, arc, whole.usable, g, np.hypot(sigma, extra)):
         profiles = whole.profiles
         if part.stop - part.start < len(run):  # the running median must not reach across the break
             profiles = profiles_along(arc, part, fits, settings.stripe_px, g)
