@@ -50,3 +50,13 @@ def test_blur_of_16_bit_pictures_is_the_same():
 
 def test_an_empty_picture_has_no_edges():
     assert np.isnan(edge_blur_px(np.full((200, 200), 80, np.uint8), np.array([[100.0, 100.0]])))
+
+
+def test_laser_lines_over_half_of_the_marks_do_not_pass_for_blur():
+    v, u = np.mgrid[:300, :300].astype(np.float64)
+    square = (abs(u - 150) < 60) & (abs(v - 150) < 60)
+    plate = cv2.GaussianBlur(np.where(square, 10.0, 90.0), (0, 0), 1.2)
+    marks = np.array([[90.0, 90.0], [210.0, 90.0], [210.0, 210.0], [90.0, 210.0]])
+    assert edge_blur_px(plate, marks) == pytest.approx(1.2, rel=0.1)
+    line = np.exp(-0.5 * ((v - 75 - 0.06 * (u - 150)) / 2.0) ** 2)
+    assert edge_blur_px(plate + 1.5 * plate * line, marks) == pytest.approx(1.2, rel=0.15)
