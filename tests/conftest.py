@@ -1,5 +1,7 @@
 import faulthandler
+import gc
 import os
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -13,6 +15,18 @@ def pytest_configure(config: pytest.Config) -> None:
     config.stash[SAID_ALOUD] = os.dup(2)
     if faulthandler.is_enabled():
         faulthandler.enable(config.stash[SAID_ALOUD], all_threads=False)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collection() -> Iterator[None]:
+    """Whatever is imported stays: Python's garbage collector need not go through it again and again."""
+    gc.disable()
+    try:
+        return (yield)
+    finally:
+        gc.collect()
+        gc.freeze()
+        gc.enable()
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
