@@ -134,4 +134,5 @@ class PictureTab(QWidget):
             self.image.set_points(
                 "corners", detail.uv, colour=CORNER.colour, symbol=CORNER.symbol, size=9, title=self.tr("corners")
             )
-        self.hints.set_hints([sentence for sentence in (detail.sentence, *detail.missing[:2]) if sentence])
+        enough = () if detail.missing else (self.tr("Nothing is missing: press Stop, and it is calibrated."),)
+        self.hints.set_hints([sentence for sentence in (detail.sentence, *detail.missing[:2], *enough) if sentence])

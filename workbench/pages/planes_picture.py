@@ -135,4 +135,5 @@ class PoseTab(QWidget):
         else:
             self._draw_target(detail.uv)
         self._draw_stripes(list(zip(detail.stripes, detail.line, strict=True)))
-        self.hints.set_hints([sentence for sentence in (detail.sentence, *detail.missing[:2]) if sentence])
+        enough = () if detail.missing else (self.tr("Nothing is missing: press Stop, and it is calibrated."),)
+        self.hints.set_hints([sentence for sentence in (detail.sentence, *detail.missing[:2], *enough) if sentence])

@@ -186,6 +186,15 @@ def test_stopping_calibrates_from_what_was_taken(page, lane, qtbot, views_folder
     qtbot.waitUntil(lambda: "corners" in page.picture.image.layer_names())
 
 
+def test_it_is_said_when_nothing_is_missing_any_more(page, lane, qtbot):
+    start_live(page, lane, qtbot)
+    wanted = "Nothing is missing: press Stop, and it is calibrated."
+    lane.current.view.emit(live_view())
+    assert wanted not in page.picture.hints._wanted
+    lane.current.view.emit(live_view(missing=()))
+    assert page.picture.hints._wanted == ("Hold still.", wanted)
+
+
 def test_the_user_may_look_at_another_tab_while_views_are_taken(page, lane, qtbot):
     start_live(page, lane, qtbot)
     page.tabs.setCurrentWidget(page.history)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, cast
 
@@ -316,6 +317,9 @@ def test_poses_are_taken_live_with_everything_drawn_and_each_picture_answered_on
     task.view.emit(live_view(None, 1))
     assert not {"corners", "stripe 1", "stripe 2"} & set(page.pose.image.layer_names())
     assert lane.sent.count("shown") == 2
+    whole = replace(live_view(), detail=replace(detail(), missing=()))
+    task.view.emit(whole)
+    assert page.pose.hints._wanted == ("Hold still.", "Nothing is missing: press Stop, and it is calibrated.")
     task.told.emit(LiveTaken("pose00", np.zeros((12, 16), np.uint8)))
     assert [row.name for row in page.views.rows()] == ["pose00"]
     check(qtbot, page, "pose00")
