@@ -13,9 +13,9 @@ test quick: export OPENBLAS_NUM_THREADS = 1
 test quick: export OMP_NUM_THREADS = 1
 
 # On a virtual screen, with the real 3D view: what a technician does there. Most of it is tested there only, if there
-# is one; the whole job, the pages, the start and the 3D view are also tested without a screen, where 3D is a picture.
+# is one; the whole job, the pages and the 3D view are also tested without a screen, where 3D is a picture.
 BOTH_WAYS := tests/workbench/test_whole_job.py tests/workbench/test_behaviour_pages.py \
-	tests/workbench/test_behaviour_start.py $(wildcard tests/workbench/views/test_scene_view*.py)
+	$(wildcard tests/workbench/views/test_scene_view*.py)
 SCREEN_ONLY := $(filter-out $(BOTH_WAYS),$(wildcard tests/workbench/test_behaviour_*.py tests/workbench/test_whole_job*.py))
 
 SCREEN := $(shell command -v xvfb-run >/dev/null && echo 'xvfb-run -a -s "-screen 0 1920x1080x24"')
