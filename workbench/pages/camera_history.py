@@ -3,50 +3,31 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
-
-from PySide6.QtCore import QObject, Signal
 
 from core.calibrate.camera_changes import CameraChanges
 from core.calibrate.results import CameraCalibration
 from core.files.project_keys import finished
 from workbench import jobs
-from workbench.bench import Bench
+from workbench.pages.stored_calibrations import StoredCalibrations
 
 
-class CameraHistory(QObject):
-    """`entries` are StoredCalibration, the newest first; `changes` from the chosen one to the one shown."""
+class CameraHistory(StoredCalibrations):
+    """The camera's; `changes` are those from the chosen one to the one shown."""
 
-    changed = Signal()
-
-    def __init__(self, bench: Bench, parent: QObject | None = None) -> None:
-        super().__init__(parent)
-        self._bench, self._model = bench, bench.model
-        self.forget()
+    KIND = "camera"
 
     def forget(self) -> None:
-        """Nothing is known yet."""
-        self.entries: tuple[Any, ...] = ()
+        super().forget()
         self.chosen = ""
         self.changes: CameraChanges | None = None
         self._shown: CameraCalibration | None = None
 
-    def refresh(self) -> None:
-        """Read the list again."""
-        folder = self._model.folder
-        if folder is None:
-            return
+    def _label(self) -> str:
+        return self.tr("Reading the history")
 
-        def read(entries: tuple[Any, ...]) -> None:
-            if folder == self._model.folder:
-                self.entries = tuple(entry for entry in entries if entry.kind == "camera")
-                if self.chosen not in {entry.id for entry in self.entries}:
-                    self.chosen, self.changes = "", None
-                self.changed.emit()
-
-        self._bench.glance(
-            jobs.HISTORY, folder, label=self.tr("Reading the history"), on_done=read, offers={}, replace_waiting=True
-        )
+    def _listed(self) -> None:
+        if self.chosen not in {entry.id for entry in self.entries}:
+            self.chosen, self.changes = "", None
 
     def choose(self, id_: str) -> None:
         """Compare this one with the calibration shown."""

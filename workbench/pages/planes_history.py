@@ -3,42 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
-
-from PySide6.QtCore import QObject, Signal
 
 from core.files.project_keys import finished
-from workbench import jobs
-from workbench.bench import Bench
+from workbench.pages.stored_calibrations import StoredCalibrations
 
 
-class PlanesHistory(QObject):
-    """`entries` are StoredCalibration, the newest first."""
+class PlanesHistory(StoredCalibrations):
+    """The laser planes'."""
 
-    changed = Signal()
+    KIND = "fan"
 
-    def __init__(self, bench: Bench, parent: QObject | None = None) -> None:
-        super().__init__(parent)
-        self._bench, self._model = bench, bench.model
-        self.entries: tuple[Any, ...] = ()
-
-    def forget(self) -> None:
-        """Nothing is known yet."""
-        self.entries = ()
-
-    def refresh(self) -> None:
-        """Read the list again."""
-        folder = self._model.folder
-        if folder is None:
-            return
-
-        def read(entries: tuple[Any, ...]) -> None:
-            if folder == self._model.folder:
-                self.entries = tuple(entry for entry in entries if entry.kind == "fan")
-                self.changed.emit()
-
-        self._bench.glance(jobs.HISTORY, folder, label=self.tr("Reading the laser planes' history"), on_done=read,
-                           offers={}, replace_waiting=True)  # fmt: skip
+    def _label(self) -> str:
+        return self.tr("Reading the laser planes' history")
 
     def why_not_restore(self, id_: str) -> str:
         """Why these planes cannot be accepted again, or ""."""
