@@ -52,7 +52,7 @@ class ScanCard(StageCard):
                     self.tr("Stop measuring; the recording and the result before are kept"),
                 ),
             },
-            "cancel" if measuring else "run" if stage in (Stage.RECORDED, Stage.FAILED, Stage.OUTDATED) else "",
+            "run" if stage in (Stage.RECORDED, Stage.FAILED, Stage.OUTDATED) else "",
         )
 
     def _words(self, stage: Stage) -> tuple[str, str]:
@@ -201,7 +201,7 @@ class RunningPanel(QWidget):
         )  # fmt: skip
         self.speed = Meter(self.tr("Speed"), [(0.6 * FAST, "good"), (FAST, "warn"), (2 * FAST, "bad")])
         self.speed.setToolTip(self.tr("How far the stripe moves from one frame to the next"))
-        self.covered, self.hints = QLabel(), HintBar()
+        self.covered, self.hints = QLabel(), HintBar(self.tr("What could be better is said here."))
         self.covered.setToolTip(self.tr("Share of the picture between all laser light in which there are points"))
         widest = words.covered_sentence(1.0)
         self.covered.setMinimumWidth(self.covered.fontMetrics().horizontalAdvance(widest))

@@ -274,7 +274,9 @@ def test_a_recording_that_is_measured_shows_frames_marks_gauges_and_a_growing_cl
     quick.answers[jobs.DISPLAY_PICTURE] = lambda path, channel, width: (np.full((24, 32), 70, np.uint8), 2)
     qtbot.mouseClick(recorded.stage.buttons["run"], LEFT)
     assert recorded.bar.isHidden() and not recorded.running.isHidden()
-    assert recorded.stage.buttons["cancel"].isEnabled() and recorded.stage.buttons["cancel"].property("primary")
+    cancel = recorded.stage.buttons["cancel"]
+    assert cancel.isEnabled() and not cancel.property("primary"), "to wait is what there is to do"
+    assert recorded.running.hints._label.text() == "What could be better is said here."
     measuring.current.told.emit(cases.detail(0, renewed=True, hints=("Tilt the laser more.",)))
     qtbot.waitUntil(lambda: recorded.picture.image._picture.picture[0, 0] == 70)
     assert recorded.running.condition.said == "120 · good" and recorded.running.speed.said == "1 px/frame · good"
