@@ -7,7 +7,7 @@ from numba import njit
 _FAR = 16.0  # beyond, the light of a stripe is gone
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
 def bell(y: float) -> float:
     """exp(−y) for y ≥ 0, within 1e-7: Taylor's series of the sixteenth part, squared four times."""
     t = min(y, _FAR) * (1 / 16)

@@ -35,7 +35,7 @@ class CutModel(NamedTuple):
     per_light: float
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
 def cut_model(run: Array, model: Array, near: int, upright: bool, noise: tuple[float, float]) -> CutModel:
     """The model of the cut at point `near` of a `run` (N, 5), whose sections are the rows of `model` (N, 4)."""
     height, width, background = model[near, 0], model[near, 1], model[near, 2]

@@ -17,7 +17,7 @@ _LARGEST_STEP = 2.5  # px between points; across larger gaps nothing is known
 _UPRIGHT, _FLAT = 0.74, 0.67  # |n_u| at which columns give way to rows, and rows to columns
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def cuts_of(run: Array, arc: Array) -> Array:
     """Where rows or columns of the picture cut a `run` (N, ≥ 4).
 
@@ -45,7 +45,7 @@ def cuts_of(run: Array, arc: Array) -> Array:
     return cuts[:count]
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
 def cut_residuals(
     picture: Picture, state: NDArray[np.uint8], run: Array, cuts: Array, model: Array, half: int
 ) -> Array:

@@ -13,13 +13,13 @@ _PER_FILTER = 1.1  # points to a filter σ
 _HOLE = 0.6  # px more than usual from one point to the next: what lies between is not known
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def points_apart(filter_px: float) -> int:
     """How many px points of a line may be apart and tell all that a filter of σ `filter_px` leaves of it."""
     return max(1, int(filter_px / _PER_FILTER))
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def filled(run: Array, stride: int) -> Array:
     """A run (N, 5) u, v, n_u, n_v, response traced `stride` px apart, with points a pixel apart between its points.
 
@@ -52,7 +52,7 @@ def filled(run: Array, stride: int) -> Array:
     return out[:number]
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def cubic_weights(stride: int) -> Array:
     """Lagrange's weights (stride, 4) of four points for the place k/stride of the way from the second to the third."""
     weights = np.empty((stride, 4))
@@ -63,7 +63,7 @@ def cubic_weights(stride: int) -> Array:
     return weights
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def _on_chord(here: Array, behind: Array, x: float, chord: float, point: Array) -> None:
     """The `point` (5,) at the share `x` of the way, by Hermite's cubic with tangents as long as the chord."""
     y = 1 - x
@@ -74,7 +74,10 @@ def _on_chord(here: Array, behind: Array, x: float, chord: float, point: Array) 
     point[1] += lean * (here[1] - behind[1]) + from_here * here[2] - from_behind * behind[2]
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def _chord(run: Array, k: int) -> float:
     """From point k to the next; infinite where there is none."""
-    return math.hypot(run[k + 1, 0] - run[k, 0], run[k + 1, 1] - run[k, 1]) if k + 1 < len(run) else math.inf
+    if k + 1 >= len(run):
+        return math.inf
+    du, dv = run[k + 1, 0] - run[k, 0], run[k + 1, 1] - run[k, 1]
+    return math.sqrt(du * du + dv * dv)

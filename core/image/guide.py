@@ -15,7 +15,7 @@ _SAMPLE = 4  # points: a bend changes as slowly as the window is long
 _LARGEST_ANGLE = 0.2  # rad from the middle of a parabola to its end: beyond, an arc is none
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract", "arcp"})
 def parabolas(run: Array, arc: Array, weight: Array, arm: float) -> Array:
     """Parabolas u(s), v(s) over ± `arm` px of arc around every point of a run, (N, 5): u, v, n_u, n_v, curvature.
 
@@ -68,7 +68,7 @@ def parabolas(run: Array, arc: Array, weight: Array, arm: float) -> Array:
     return result
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract", "arcp"})
 def _solve(m: Array, x: float, fit: Array) -> bool:
     """Value, slope and bend of u and of v at `x` from a window's sums (11,), into `fit` (6,); False if too few."""
     s0 = m[0]
@@ -92,7 +92,7 @@ def _solve(m: Array, x: float, fit: Array) -> bool:
     return True
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def guide(run: Array, arc: Array, weight: Array, filter_px: float) -> Array:
     """The curve through a run (N, ≥ 2) as `parabolas` of ± 8 filter σ give it, of fewer where the run is bent."""
     curve = parabolas(run, arc, weight, _ARM * filter_px)

@@ -59,7 +59,7 @@ def influences(
     return _stacked(heights, _figures(background, width_px, noise, speckle))
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
 def weight_at(x: float, weight: Array) -> float:
     """ψ per pixel at `x` stripe σ from the middle, 0 beyond REACH: x·Σ weight_k·τ^k with τ = 2 (x/REACH)² − 1."""
     tau = 2 * (x / REACH) ** 2 - 1

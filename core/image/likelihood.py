@@ -100,7 +100,7 @@ def refine(
     return Refined(curve, sigma, 2 * math.sqrt(math.pi) * filter_px * grown)
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def _likeliest(
     picture: Picture,
     state: NDArray[np.uint8],
@@ -156,12 +156,16 @@ def _weights(sections: Sections, noise: NoiseModel, speckle: Speckle) -> tuple[N
     return kind, *influences(tuple(heights.tolist()), background, width, noise, speckle)
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def _height_classes(height: Array) -> tuple[NDArray[np.int64], Array]:
     """For each point which of some heights (K,) is nearest to its own."""
     level = np.empty(len(height), dtype=np.int64)
+    here, from_height, to_height = 0, np.inf, -np.inf
     for k in range(len(height)):
-        level[k] = round(math.log(max(height[k], 1e-3)) / _HEIGHT_CLASS)
+        if not from_height <= height[k] < to_height:  # seldom: heights change slowly
+            here = round(math.log(max(height[k], 1e-3)) / _HEIGHT_CLASS)
+            from_height, to_height = math.exp((here - 0.5) * _HEIGHT_CLASS), math.exp((here + 0.5) * _HEIGHT_CLASS)
+        level[k] = here
     lowest = level.min()
     number = np.zeros(level.max() - lowest + 1, dtype=np.int64)
     for k in range(len(level)):

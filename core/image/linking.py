@@ -76,7 +76,7 @@ def link(
     return [filled(run, stride) for run in runs] if stride > 1 else runs
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
 def _trace_all(
     picture: Picture,
     state: NDArray[np.uint8],
@@ -145,13 +145,13 @@ def _trace_all(
     return points[:count], ends[:runs]
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
 def _inside(u: float, v: float, width: int, height: int, radius: int) -> bool:
     margin = radius + 0.5
     return margin < u < width - 1 - margin and margin < v < height - 1 - margin
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
 def _follow(
     picture: Picture,
     state: NDArray[np.uint8],
@@ -198,7 +198,7 @@ def _follow(
             row[0], row[1], row[2], row[3], row[4] = u, v, nu, nv, -across
             count += 1
             missed, blind = 0.0, 0.0
-            if count > 20 and math.hypot(u - start[0], v - start[1]) < stride:
+            if count > 20 and (u - start[0]) ** 2 + (v - start[1]) ** 2 < stride * stride:
                 break  # a closed curve
             continue
         if missed + blind == 0 and count > 2:

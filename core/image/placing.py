@@ -13,7 +13,7 @@ from core.image.guide import guide
 from core.image.likelihood import Refined, refine, residuals
 from core.image.noise import NoiseModel
 from core.image.pieces import arc_length, correlation_length
-from core.image.precision import FLOOR_PX, noise_sigma, roughness
+from core.image.precision import FLOOR_PX, in_squares, noise_sigma, roughness
 from core.image.profile import Profiles, Sections, smooth_sections
 from core.image.seeds import Picture
 from core.image.speckle import Speckle, measure_speckle
@@ -105,7 +105,7 @@ def _speckle(
     return measure_speckle(cuts, settings.stripe_px)
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def _difference(run: Array, better: Array, sigma: Array, usable: NDArray[np.bool_]) -> tuple[int, float, float]:
     """Number of the usable points of two lines, and mean and variance of how far across they are apart, in px."""
     number, total, square = 0, 0.0, 0.0
@@ -127,12 +127,12 @@ def _apart_px(differences: list[tuple[int, float, float]], correlation: float) -
 def _joined(piece: Piece, line: Refined, better: Refined) -> Refined:
     """The better line, and the other one, as rough as it is, where that has no points."""
     there = np.isfinite(better.sigma)
-    sigma = np.hypot(better.sigma, FLOOR_PX)
+    sigma = in_squares(better.sigma, FLOOR_PX)
     if there.all():
         return Refined(better.run, sigma, better.correlation_px)
     (extra,) = roughness([piece.judged(line.run, line.sigma)], line.correlation_px)
     run = np.where(there[:, None], better.run, line.run)
-    return Refined(run, np.where(there, sigma, np.hypot(line.sigma, extra)), better.correlation_px)
+    return Refined(run, np.where(there, sigma, in_squares(line.sigma, extra)), better.correlation_px)
 
 
 def _stegers(piece: Piece, curve: Array, settings: StripeSettings, noise: NoiseModel) -> Refined:
@@ -142,7 +142,7 @@ def _stegers(piece: Piece, curve: Array, settings: StripeSettings, noise: NoiseM
     return Refined(_freed(piece.run, curve, light, g), noise_sigma(profiles, noise, g), correlation_length(g))
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def _freed(points: Array, curve: Array, light: tuple[Array, Array, Array, Array], filter_px: float) -> Array:
     """`points` (N, ≥ 2) less the pulls of the `curve` (N, 5) and of the background's slope where it is significant."""
     height, width, slope, slope_sigma = light

@@ -35,6 +35,11 @@ def response_noise(pixel_noise: float, stripe_px: float, filter_px: float) -> fl
     return second / ridge_response(1.0, stripe_px, filter_px)
 
 
+def in_squares(sigma: Array, extra: float) -> Array:
+    """√(σ² + extra²) of each σ, (N,): a tenth of what `np.hypot` takes for numbers that cannot overflow."""
+    return np.asarray(np.sqrt(sigma * sigma + extra * extra))
+
+
 def noise_sigma(profiles: Profiles, noise: NoiseModel, filter_px: float) -> Array:
     """Standard uncertainty (N,) in px of line points along their normals, from read and shot noise."""
     read, shot = noise.read_grey**2, noise.grey_per_electron
@@ -42,7 +47,7 @@ def noise_sigma(profiles: Profiles, noise: NoiseModel, filter_px: float) -> Arra
     return sigma
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
 def _noise_sigma(height: Array, width: Array, background: Array, read: float, shot: float, filter_px: float) -> Array:
     sigma, square = np.empty(len(height)), filter_px * filter_px
     for k in range(len(height)):
@@ -69,17 +74,17 @@ def roughness(lines: list[tuple[Array, Array]], correlation: float) -> list[floa
     return [math.sqrt(max(0.0, (total + lean * overall) / (n + lean))) for total, n in sums]
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract", "reassoc", "arcp", "nsz"})
 def _excess(points: Array, sigma: Array, lag: int, correlation: float) -> tuple[float, float]:
     """Sum of the excess variance over independent third differences, and their number, both weighted."""
     count = max(0, len(points) - 3 * lag)
     observed, law = np.empty(count), np.empty(count)
     # a third difference of points with correlation ρ one lag apart has variance 20 − 30 ρ
     gain = 20 - 30 * math.exp(-((lag / correlation) ** 2) * math.pi)
-    number = 0
+    number, longest = 0, (3.3 * lag) ** 2
     for k in range(count):
         u0, v0, u3, v3 = points[k, 0], points[k, 1], points[k + 3 * lag, 0], points[k + 3 * lag, 1]
-        if math.hypot(u3 - u0, v3 - v0) >= 3.3 * lag:  # a hole within
+        if (u3 - u0) * (u3 - u0) + (v3 - v0) * (v3 - v0) >= longest:  # a hole within
             continue
         du = u0 - u3 + 3 * (points[k + 2 * lag, 0] - points[k + lag, 0])
         dv = v0 - v3 + 3 * (points[k + 2 * lag, 1] - points[k + lag, 1])
@@ -98,7 +103,7 @@ def _excess(points: Array, sigma: Array, lag: int, correlation: float) -> tuple[
     return total / lag, counted / lag
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
 def saturated_points(state: NDArray[np.uint8], points: Array, filter_px: float) -> NDArray[np.bool_]:
     """Which points (N, ≥ 2) have saturated pixels under more than 1 % of the filter's weight."""
     reach = math.ceil(2.5 * filter_px)
@@ -114,7 +119,7 @@ def saturated_points(state: NDArray[np.uint8], points: Array, filter_px: float) 
     return saturated
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
 def _around(shape: tuple[int, int], points: Array, reach: int) -> tuple[int, int, int, int]:
     """The pixels within `reach` of the box of some points: columns from, to behind; rows from, to behind."""
     left, right, top, bottom = points[0, 0], points[0, 0], points[0, 1], points[0, 1]
@@ -129,7 +134,7 @@ def _around(shape: tuple[int, int], points: Array, reach: int) -> tuple[int, int
     )
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
 def _weight_of_saturated(state: NDArray[np.uint8], point: Array, reach: int, filter_px: float) -> float:
     """Σ exp(−d²/2g²) over the saturated pixels within `reach` of a point (1, ≥ 2), d being their distance from it."""
     u, v, inverse, total = point[0, 0], point[0, 1], 0.5 / (filter_px * filter_px), 0.0

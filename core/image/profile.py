@@ -103,7 +103,7 @@ def profiles_along(arc: Array, part: slice, fits: Fits, stripe_px: float, filter
     return Profiles(*_along(arc, fits.at[first:last] - part.start, fits.figures[first:last], short, long))
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def _along(arc: Array, at: NDArray[np.int64], figures: Array, short: int, long: int) -> Array:
     """Height, background, slope, its σ and width (5, N) from those fitted at some of the points."""
     smooth = np.empty((5, len(at)))
@@ -116,7 +116,7 @@ def _along(arc: Array, at: NDArray[np.int64], figures: Array, short: int, long: 
     return _interpolated(arc, arc[at], smooth)
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def _smoothed(height: Array, background: Array, width: Array, at: NDArray[np.int64], length: int) -> Array:
     """Height, background and width (3, N), both as pixels blur them, from running medians at some of the points."""
     smooth = np.empty((3, len(at)))
@@ -129,7 +129,7 @@ def _smoothed(height: Array, background: Array, width: Array, at: NDArray[np.int
     return found
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def _interpolated(x: Array, at: Array, values: Array) -> Array:
     """Figures (C, N) at rising `x`, on straight lines between `values` (C, K) at rising places; level beyond them."""
     found = np.empty((len(values), len(x)))
@@ -151,7 +151,7 @@ def _stride(filter_px: float) -> int:
     return max(1, round(_STRIDE * filter_px))
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def _places(count: int, stride: int) -> NDArray[np.int64]:
     """Every `stride`-th of `count` points, and the last."""
     at = np.arange(0, count - 1 + stride, stride)

@@ -66,7 +66,7 @@ def kernel_table(filter_px: float) -> NDArray[np.float32]:
     return table
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
 def ridge_at(
     picture: NDArray[np.float32] | NDArray[np.int16],
     width: int,
@@ -119,7 +119,7 @@ def ridge_at(
     return float(across), float(nu), float(nv), float(beside - (ru * nu + rv * nv) / across)
 
 
-@njit(cache=True, nogil=True, fastmath=True, inline="always")
+@njit(cache=True, nogil=True, error_model="numpy", fastmath=True, inline="always")
 def _filter_columns(
     picture: NDArray[np.float32] | NDArray[np.int16],
     first: int,

@@ -8,20 +8,20 @@ from numba import njit
 from core.model.arrays import Array
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def median(values: Array) -> float:
     """Median of `values` (N,), N ≥ 1."""
     return float(np.median(values))
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def quantile_of_sizes(values: Array, share: float) -> float:
     """The size |value| that `share` of the `values` (N,) do not exceed."""
     k = min(int(share * len(values)), len(values) - 1)
     return float(np.partition(np.abs(values), k)[k])
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def running_median(values: Array, length: int) -> Array:
     """Median of the `length` (odd) values around each of `values` (N,); the first and last go on beyond the ends."""
     count, half = len(values), length // 2
@@ -44,7 +44,7 @@ def running_median(values: Array, length: int) -> Array:
     return medians
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def running_mean(values: Array, length: int) -> tuple[Array, Array]:
     """Mean over `length` (odd) neighbours, fewer at the ends, and its standard error, (N,) each; outliers clipped.
 

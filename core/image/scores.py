@@ -47,7 +47,7 @@ class _Block(NamedTuple):
     figures: Float32
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
 def score_cuts(
     picture: Picture,
     state: NDArray[np.uint8],
@@ -96,7 +96,7 @@ def score_cuts(
     return sums
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
 def _usable(
     shape: tuple[int, int], run: Array, cuts: Array, clear: NDArray[np.bool_], model: Array
 ) -> NDArray[np.int64]:
@@ -113,7 +113,7 @@ def _usable(
     return found[:count]
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
 def _prepare(
     shape: tuple[int, int], run: Array, cuts: Array, model: Array, noise: tuple[float, float], block: _Block
 ) -> int:
@@ -140,7 +140,7 @@ def _prepare(
     return pixels
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
 def _read(picture: Picture, state: NDArray[np.uint8], cuts: Array, pixels: int, block: _Block) -> bool:
     """Copy the pixels of a block; whether one of them is saturated or to be ignored."""
     bits, upright, grey = 0, cuts[block.cut[0], 4] > 0, block.grey
@@ -174,7 +174,7 @@ def _read(picture: Picture, state: NDArray[np.uint8], cuts: Array, pixels: int, 
     return True
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
 def _work_out(grey: Float32, seen: Float32, figures: Float32, weight: Float32, results: Float32) -> None:
     """Into `results` (7, lanes) the sums over the pixels of each cut that `_score` asks for.
 
@@ -219,7 +219,7 @@ def _work_out(grey: Float32, seen: Float32, figures: Float32, weight: Float32, r
             et[k] += light * x
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
 def _score(results: Float32, k: int, height: float, width: float) -> tuple[float, float]:
     """Σ ψ·(I − model) and Σ ψ·d; where pixels are left out, the height is estimated together with the place."""
     n, nt, e, eh = results[0, k], results[1, k], results[3, k], results[5, k]

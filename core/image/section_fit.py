@@ -23,7 +23,7 @@ _LANES = 8  # there are as many bins as a multiple of what the processor multipl
 _FEW_ROWS = 6.0  # of more, every second one tells enough: grains are as wide, and a hundred pixels are left
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
 def fit_sections(picture: Picture, state: NDArray[np.uint8], places: Array, stripe_px: float, along_px: float) -> Array:
     """Fitted height, background, slope, width (K, 4) at `places` (K, ≥ 4) u, v, n_u, n_v; height 0 where a fit failed.
 
@@ -55,7 +55,7 @@ def fit_sections(picture: Picture, state: NDArray[np.uint8], places: Array, stri
     return fits
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
 def _gather(
     picture: Picture, state: NDArray[np.uint8], place: Array, reach: float, along_px: float, section: Array
 ) -> None:
@@ -88,7 +88,7 @@ def _gather(
             section[2, k] /= section[0, k]
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
 def _range(section: Array, stripe_px: float) -> tuple[float, float]:
     """Lowest and highest grey value; twice 0 where too little is seen: both flanks, the top may be saturated."""
     low, high, left, right = np.inf, -np.inf, 0, 0
@@ -102,7 +102,7 @@ def _range(section: Array, stripe_px: float) -> tuple[float, float]:
     return low, high
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
 def _fit(section: Array, stripe_px: float, x: Array, work: Array) -> bool:
     """Gauss–Newton from `x` (5,): background, slope, height, centre, width; whether it settles."""
     normal, step = work[:_UNKNOWNS], work[_UNKNOWNS]
@@ -139,13 +139,13 @@ def _fit(section: Array, stripe_px: float, x: Array, work: Array) -> bool:
     return False
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
 def _is_likely(x: Array, stripe_px: float) -> bool:
     """Whether a fit `x` (5,) can be the section of a stripe of about this σ."""
     return bool(x[2] > 0 and 0.3 * stripe_px < x[4] < 3 * stripe_px and abs(x[3]) < stripe_px)
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
 def _solve(normal: Array, x: Array) -> bool:
     """Solve by Cholesky from the lower triangle, lightly damped; `x` comes as the right side. False if singular."""
     for a in range(_UNKNOWNS):

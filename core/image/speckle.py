@@ -72,7 +72,7 @@ def measure_speckle(stripes: list[Array], width_px: float) -> Speckle:
     return Speckle(min(contrast, _LARGEST_CONTRAST), grain)
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
 def _products(r: Array, m: Array) -> Array:
     """Sums of products of neighbours in each cut, of residuals and of the model, (_LAGS, 2)."""
     sums, width = np.zeros((_LAGS, 2)), m.shape[1]
@@ -84,7 +84,7 @@ def _products(r: Array, m: Array) -> Array:
     return sums
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
 def _levelled(r: Array, m: Array) -> Array:
     """Residuals freed of brightness that changes along the stripe, of the section's shape, and of what stands out."""
     cuts, width = m.shape
@@ -112,7 +112,7 @@ def _levelled(r: Array, m: Array) -> Array:
     return levelled
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def _median_share(r: Array, m: Array) -> float:
     """Median of |r/m| where m > 0; 1 if that is nowhere."""
     shares, count = np.empty(m.size), 0

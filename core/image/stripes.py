@@ -49,7 +49,7 @@ from core.image.neighbours import NEIGHBOUR, beside_another
 from core.image.noise import NoiseModel
 from core.image.pieces import arc_length, correlation_length, cut_ends, fully_lit
 from core.image.placing import Piece, place
-from core.image.precision import noise_sigma, response_noise, roughness, saturated_points
+from core.image.precision import in_squares, noise_sigma, response_noise, roughness, saturated_points
 from core.image.profile import fit_profiles, profiles_along
 from core.image.seeds import Picture
 from core.image.splitting import split_at_breaks
@@ -163,7 +163,7 @@ def _smooth_pieces(
     sigma = noise_sigma(whole.profiles, noise, g)
     (extra,) = roughness([whole.judged(run, sigma)], correlation_length_px(settings))
     pieces = []
-    for part in split_at_breaks(run, arc, whole.usable, g, np.hypot(sigma, extra)):
+    for part in split_at_breaks(run, arc, whole.usable, g, in_squares(sigma, extra)):
         profiles = whole.profiles
         if part.stop - part.start < len(run):  # the running median must not reach across the break
             profiles = profiles_along(arc, part, fits, settings.stripe_px, g)
@@ -181,7 +181,7 @@ def _centreline(piece: Piece, line: Refined, extra: float, keep: NDArray[np.bool
         line.run[part, 2:4],
         piece.profiles.width[part],
         piece.profiles.height[part],
-        np.hypot(line.sigma[part], extra),
+        in_squares(line.sigma[part], extra),
         piece.saturated[part],
         line.correlation_px,
     )

@@ -12,7 +12,7 @@ _BELL_STEPS = 64  # per σ
 _BELL = np.exp(-0.5 * (np.arange(3 * _BELL_STEPS + 2) / _BELL_STEPS) ** 2)
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def averages(arc: Array, at: Array, sums: Array, window: float) -> Array:
     """At each point, (N, 3): the offset t in px, its variance, and the weight of all cuts it rests on.
 
@@ -38,7 +38,7 @@ def averages(arc: Array, at: Array, sums: Array, window: float) -> Array:
     return found
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def _evenly_known(arc: Array, found: Array, first: int, stride: int) -> bool:
     """Whether there is no hole among four points `stride` apart, and their variances are much the same."""
     least, most = np.inf, 0.0
@@ -48,7 +48,7 @@ def _evenly_known(arc: Array, found: Array, first: int, stride: int) -> bool:
     return bool(arc[first + 3 * stride] - arc[first] < 3 * stride + 1 and most < 2 * least)
 
 
-@njit(cache=True, nogil=True, fastmath={"contract", "reassoc", "arcp", "nsz"})
+@njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract", "reassoc", "arcp", "nsz"})
 def _average(place: float, at: Array, sums: Array, window: float, found: Array) -> None:
     """The three figures `found` at one `place`."""
     reach, scale = 3 * window, 1 / window
