@@ -5,7 +5,9 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from core.model.arrays import Array
 
@@ -13,6 +15,27 @@ TAIL = 2.5
 """Stripe σ from the middle where the tails begin."""
 _OTHER_LIGHT = 0.15  # in the tails, more than this share of the height is no light of this stripe
 _SIGNIFICANT = 6.0  # nor is what noise does not explain
+
+
+class Light(NamedTuple):
+    """The light of a stripe along a run of N points, and how its pixels are weighed.
+
+    Parameters
+    ----------
+    sections
+        (N, 4) the columns of `core.image.profile.Sections`.
+    kind
+        (N,) which of the weights suits each point.
+    weights
+        (K, DEGREE + 1) ψ as `core.image.influence` gives it.
+    noise
+        The variance of a dark pixel, and what each grey level adds to it.
+    """
+
+    sections: Array
+    kind: NDArray[np.int64]
+    weights: Array
+    noise: tuple[float, float]
 
 
 class CutModel(NamedTuple):
@@ -36,8 +59,9 @@ class CutModel(NamedTuple):
 
 
 @njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
-def cut_model(run: Array, model: Array, near: int, upright: bool, noise: tuple[float, float]) -> CutModel:
-    """The model of the cut at point `near` of a `run` (N, 5), whose sections are the rows of `model` (N, 4)."""
+def cut_model(run: Array, light: Light, near: int, upright: bool) -> CutModel:
+    """The model of the cut at point `near` of a `run` (N, 5) of this `light`."""
+    model, noise = light.sections, light.noise
     height, width, background = model[near, 0], model[near, 1], model[near, 2]
     across, slip = (run[near, 2], -run[near, 3]) if upright else (run[near, 3], run[near, 2])
     reach = math.ceil(3 * width)

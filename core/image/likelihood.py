@@ -31,6 +31,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from core.image.cut_model import Light
 from core.image.cuts import cut_residuals, cuts_of
 from core.image.guide import guide
 from core.image.influence import influences
@@ -90,9 +91,8 @@ def refine(
         σ in px of the window along the stripe.
     """
     kind, weights, shares = _weights(sections, noise, speckle)
-    law = (noise.read_grey**2, noise.grey_per_electron)
-    model = np.column_stack(sections)
-    curve, variance, support = _likeliest(picture, state, curve, weight, clear, model, kind, weights, law, filter_px)
+    light = Light(np.column_stack(sections), kind, weights, (noise.read_grey**2, noise.grey_per_electron))
+    curve, variance, support = _likeliest(picture, state, curve, weight, clear, light, filter_px)
     # grains reach further along the stripe than the pixel: the window averages over fewer of them than of pixels
     grown = math.sqrt(1 + median(shares[kind[::_SAMPLE]]) * (speckle.grain_px / (2 * filter_px)) ** 2)
     usual = 1 / math.sqrt(2 * math.pi) / filter_px
@@ -107,23 +107,20 @@ def _likeliest(
     start: Array,
     weight: Array,
     clear: NDArray[np.bool_],
-    model: Array,
-    kind: NDArray[np.int64],
-    weights: Array,
-    law: tuple[float, float],
+    light: Light,
     filter_px: float,
 ) -> tuple[Array, Array, Array]:
     """The curve (N, 5), the variance of its points and the weight of all cuts they rest on, (N,)."""
     curve, arc, last = start.copy(), arc_length(start), False
     while True:
         cuts = cuts_of(curve, arc)
-        sums = score_cuts(picture, state, curve, cuts, clear, model, kind, weights, law)
+        sums = score_cuts(picture, state, curve, cuts, clear, light)
         found = averages(arc, cuts[:, 0], sums, filter_px)
         near = True
         for k in range(len(curve)):
             curve[k, 0] += found[k, 0] * curve[k, 2]
             curve[k, 1] += found[k, 0] * curve[k, 3]
-            near &= abs(found[k, 0]) < _NEAR * model[k, 1]
+            near &= abs(found[k, 0]) < _NEAR * light.sections[k, 1]
         if near or last:
             break
         curve, last = guide(curve, arc, weight, filter_px), True

@@ -13,7 +13,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from core.image.cut_model import TAIL, cut_model
+from core.image.cut_model import TAIL, Light, cut_model
 from core.image.influence import DEGREE, REACH
 from core.image.marks import IGNORED, SATURATED
 from core.image.seeds import Picture
@@ -54,17 +54,10 @@ def score_cuts(
     run: Array,
     cuts: Array,
     clear: NDArray[np.bool_],
-    model: Array,
-    kind: NDArray[np.int64],
-    weights: Array,
-    noise: tuple[float, float],
+    light: Light,
 ) -> Array:
-    """Σ ψ·(I − model) and Σ ψ·d of each cut, (K, 2); zeros where it cannot be used.
-
-    `model` (N, 4) are the sections at the points of the `run` (N, 5), `kind` (N,) says which of the `weights` ψ suits
-    each; `noise` is the variance of a pixel and what each grey level adds to it.
-    """
-    sums, longest = np.zeros((len(cuts), 2)), max(picture.shape)
+    """Σ ψ·(I − model) and Σ ψ·d of each cut of a `run` (N, 5), (K, 2); zeros where it cannot be used."""
+    model, sums, longest = light.sections, np.zeros((len(cuts), 2)), max(picture.shape)
     block = _Block(
         np.empty(_LANES, dtype=np.int64),
         np.empty(_LANES, dtype=np.int64),
@@ -72,7 +65,7 @@ def score_cuts(
         np.ones((longest, _LANES), dtype=np.float32),
         np.empty((_FIGURES, _LANES), dtype=np.float32),
     )
-    results, single = np.empty((7, _LANES), dtype=np.float32), weights.astype(np.float32)
+    results, single = np.empty((7, _LANES), dtype=np.float32), light.weights.astype(np.float32)
     usable = _usable(picture.shape, run, cuts, clear, model)
     begin = 0
     while begin < len(usable):
@@ -82,9 +75,9 @@ def score_cuts(
         backwards = cuts[usable[end - 1], 1] < cuts[usable[begin], 1]
         for lane in range(_LANES):  # the last cut fills a block up
             block.cut[lane] = usable[max(end - 1 - lane, begin) if backwards else min(begin + lane, end - 1)]
-        pixels = _prepare(picture.shape, run, cuts, model, noise, block)
+        pixels = _prepare(picture.shape, run, cuts, light, block)
         marked = _read(picture, state, cuts, pixels, block)
-        weight = single[kind[int(cuts[usable[(begin + end) // 2], 3])]]
+        weight = single[light.kind[int(cuts[usable[(begin + end) // 2], 3])]]
         _work_out(block.grey[:pixels], block.seen[:pixels], block.figures, weight, results)
         if marked:
             block.seen[:pixels] = F(1)
@@ -114,23 +107,21 @@ def _usable(
 
 
 @njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
-def _prepare(
-    shape: tuple[int, int], run: Array, cuts: Array, model: Array, noise: tuple[float, float], block: _Block
-) -> int:
+def _prepare(shape: tuple[int, int], run: Array, cuts: Array, light: Light, block: _Block) -> int:
     """Fill in the figures of the cuts of a block and their first pixels; how many pixels each has."""
     upright, figures, pixels = cuts[block.cut[0], 4] > 0, block.figures, 0
     for begin in range(0, _LANES, _TOGETHER):
         first, last = 1e9, -1e9
         for lane in range(begin, begin + _TOGETHER):
             cut = cuts[block.cut[lane]]
-            light = cut_model(run, model, int(cut[3]), upright, noise)
-            half = REACH * light.width / abs(light.across)
+            model = cut_model(run, light, int(cut[3]), upright)
+            half = REACH * model.width / abs(model.across)
             first, last = min(first, math.ceil(cut[2] - half)), max(last, math.floor(cut[2] + half))
-            figures[_ACROSS, lane], figures[_BEND, lane] = 2 * light.across, light.bend
-            figures[_FADE, lane], figures[_WIDENING, lane] = light.fade, 2 * light.widening
-            figures[_HEIGHT, lane], figures[_INVERSE, lane] = light.height, 0.5 / (light.width * light.width)
-            figures[_BACKGROUND, lane], figures[_SLOPE, lane] = light.background, light.slope
-            figures[_OTHER, lane], figures[_PER_LIGHT, lane] = light.other, light.per_light
+            figures[_ACROSS, lane], figures[_BEND, lane] = 2 * model.across, model.bend
+            figures[_FADE, lane], figures[_WIDENING, lane] = model.fade, 2 * model.widening
+            figures[_HEIGHT, lane], figures[_INVERSE, lane] = model.height, 0.5 / (model.width * model.width)
+            figures[_BACKGROUND, lane], figures[_SLOPE, lane] = model.background, model.slope
+            figures[_OTHER, lane], figures[_PER_LIGHT, lane] = model.other, model.per_light
         pixels = max(pixels, int(last - first) + 1)
         block.first[begin : begin + _TOGETHER] = int(first)
     length = shape[1] if upright else shape[0]
