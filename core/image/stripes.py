@@ -11,7 +11,7 @@ noise, speckle                     pixels are weighted by both (`core.image.infl
                                    the stripe itself (`core.image.speckle`): 1.04 of the Cramér–Rao bound
 pixel phase                        the model is compared with each pixel where it is: below 0.001 px
 curvature, radius R                distances are measured from the stripe's own curve (`core.image.guide`): below
-                                   0.003 px for R > 40 s
+                                   0.003 px on the whole for R ≥ 17 s, at each point for R > 40 s
 background slope                   the weights do not see a slope: below 0.001 px for 0.1 grey/px
 end of a stripe, kink, jump        4 px (2.5 g) and 2 g are left out, but nothing where a stripe goes on beyond the
                                    picture's border; a piece never crosses them
