@@ -190,6 +190,7 @@ def _readme(app: QApplication, bench: Bench, window: MainWindow, folder: Path) -
         _settle(app, bench, 8.0)
         _drawn(app, bench, window, name)
         window.statusBar().clearMessage()  # it may name a folder of this machine
+        _settle(app, bench, 0.3)
         small = grab(window).scaledToWidth(README_WIDTH, Qt.TransformationMode.SmoothTransformation)
         path = folder / f"{name}.png"
         small.save(str(path))
