@@ -57,7 +57,7 @@ class Points:
     @property
     def share_sd(self) -> float:
         """Standard uncertainty of `share`, from how much calibrations differ."""
-        return float(np.std(self.within, ddof=1) / np.sqrt(len(self.within))) if len(self.within) > 1 else float("nan")
+        return sd_of_mean(self.within)
 
     @property
     def normalised(self) -> float:
@@ -70,6 +70,11 @@ class Points:
             f"median {np.median(self.within):.1%}, lowest {np.min(self.within):.1%}; "
             f"error / sigma {self.normalised:.2f} rms"
         )
+
+
+def sd_of_mean(values: np.ndarray) -> float:
+    """Standard uncertainty of the mean of `values` (N,), from how much they differ; NaN of one."""
+    return float(np.std(values, ddof=1) / np.sqrt(len(values))) if len(values) > 1 else float("nan")
 
 
 def run(calibrations: int, scale: float = 0.5) -> Points:

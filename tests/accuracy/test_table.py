@@ -1,8 +1,10 @@
 """What the accuracy table says of given results."""
 
+import numpy as np
+
 from core.simulate.scenario import Scenario
-from tests.accuracy.cases import FULL, HEIGHTS, Case, cases
-from tests.accuracy.table import table
+from tests.accuracy.cases import FULL, HALF, HEIGHTS, Case, cases
+from tests.accuracy.table import table, within_2_sigma
 
 SCANS = [Case("wide", Scenario(height_mm=height, scale=FULL), paper=height == 50.0) for height in HEIGHTS]
 
@@ -38,6 +40,16 @@ def test_what_the_papers_procedure_could_not_measure_is_said():
 def test_the_papers_thickness_is_that_of_the_sweeps_points_and_the_fans_own_are_told_apart():
     told = line(table(SCANS, results(0, 0, 0, 0, paper={"error_of_sweeps": -3.25, "error": 0.5})), "largest")[3]
     assert told == "3.250 mm (1 of 1 scans); with the fan's own points 0.500 mm (1 of 1 scans)"
+
+
+def test_a_calibration_counts_once_however_many_scans_share_it():
+    other = Case("narrow", Scenario(seed=2, scale=FULL))
+    shares = results(0, 0, 0, 0)
+    for scan, share in zip(SCANS, (0.9, 1.0, 1.0, 0.9), strict=True):
+        shares[scan.name]["within_2_sigma"] = share
+    shares[other.name] = {"within_2_sigma": 0.6}
+    np.testing.assert_allclose(within_2_sigma([*SCANS, other], shares, FULL), [0.95, 0.6])
+    assert not len(within_2_sigma([*SCANS, other], shares, HALF))
 
 
 def test_rows_without_scans_are_left_out():
