@@ -15,6 +15,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from core.files.project import KeptStudy
 from workbench.pages import inspect_study_words as words
 from workbench.pages.inspect_presenter import InspectPresenter
 from workbench.pages.inspect_study_editor import StudyEditor
@@ -33,7 +34,7 @@ class StudiesTab(QWidget):
     def __init__(self, presenter: InspectPresenter, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._presenter, self._studies = presenter, presenter.studies
-        self._shown: object = None
+        self._shown: tuple[KeptStudy, ...] = ()
         self._shown_study: object = None
         self.list, self.rows, self.table = QTreeWidget(), ValueRows(), DataTable()
         self.title, self.words, self.notes = QLabel(), muted(), muted()
@@ -117,15 +118,19 @@ class StudiesTab(QWidget):
     def _show_list(self) -> None:
         studies = self._studies
         if studies.all != self._shown:
+            before = [one.id for one in self._shown]
             self._shown = studies.all
             self.list.blockSignals(True)
-            self.list.clear()
-            for one in studies.all:
-                item = QTreeWidgetItem([words.kind_title(one.kind), one.title])
+            if before != [one.id for one in studies.all]:  # else a tick is on its way from one of the items
+                self.list.clear()
+                self.list.addTopLevelItems([QTreeWidgetItem() for _ in studies.all])
+            for number, one in enumerate(studies.all):
+                item = self.list.topLevelItem(number)
+                item.setText(0, words.kind_title(one.kind))
+                item.setText(1, one.title)
                 item.setData(0, Qt.ItemDataRole.UserRole, one.id)
                 item.setCheckState(0, Qt.CheckState.Checked if one.included else Qt.CheckState.Unchecked)
                 item.setToolTip(0, self.tr("Ticked studies are printed in the report"))
-                self.list.addTopLevelItem(item)
                 if one.id == studies.chosen:
                     self.list.setCurrentItem(item)
             self.list.blockSignals(False)

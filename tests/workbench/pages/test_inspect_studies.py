@@ -124,7 +124,9 @@ def test_the_type1_study_of_the_repeats_is_kept_ticked_unticked_removed_and_expo
     made(studies, qtbot)
     kept = studies.all[0]
     assert (kept.kind, kept.included) == ("type1", True)
-    tab.list.topLevelItem(0).setCheckState(0, Qt.CheckState.Unchecked)
+    item = tab.list.topLevelItem(0)
+    item.setCheckState(0, Qt.CheckState.Unchecked)
+    assert tab.list.topLevelItem(0) is item, "an item that tells of its tick is not deleted meanwhile"
     assert not studies.all[0].included
     undo(presenter)
     assert studies.all[0].included and tab.list.topLevelItem(0).checkState(0) is Qt.CheckState.Checked
