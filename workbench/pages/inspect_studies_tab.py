@@ -126,6 +126,7 @@ class StudiesTab(QWidget):
                 self.list.addTopLevelItems([QTreeWidgetItem() for _ in studies.all])
             for number, one in enumerate(studies.all):
                 item = self.list.topLevelItem(number)
+                assert item is not None  # there is one for each
                 item.setText(0, words.kind_title(one.kind))
                 item.setText(1, one.title)
                 item.setData(0, Qt.ItemDataRole.UserRole, one.id)
