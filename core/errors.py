@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from core.messages import ENGLISH, Language, Message, plain
+
 
 class InputError(Exception):
     """Something in the input keeps us from measuring: one clear sentence.
@@ -11,26 +13,49 @@ class InputError(Exception):
     Parameters
     ----------
     what
-        What is wrong, and why, without a full stop: ``"the board has 8 × 6 inner corners, not 9 × 6"``.
+        What is wrong, and why, without a full stop: 'the board has 8 × 6 inner corners, not 9 × 6'.
     where
-        File, frame or field it was found in; put in front of the sentence.
+        File, frame or field it was found in, or a message that names it; put in front of the sentence.
     todo
         What to do next; put behind it.
     """
 
-    def __init__(self, what: str, *, where: object = "", todo: str = "") -> None:
-        self.what = what
-        self.where = str(where)
-        self.todo = todo
-        front = f"{self.where}: " if self.where else ""
-        back = f"; {todo}" if todo else ""
-        super().__init__(f"{front}{what}{back}.")
+    def __init__(self, what: Message | str, *, where: object = "", todo: Message | str = "") -> None:
+        self.what = what if isinstance(what, Message) else plain(what)
+        self.where = where if isinstance(where, Message) else str(where)
+        self.todo = todo if isinstance(todo, Message) else plain(todo)
+        super().__init__(self.told())
+
+    @property
+    def code(self) -> str:
+        """What programs know the error by."""
+        return self.what.code
+
+    def told(self, language: Language = ENGLISH) -> str:
+        """The sentence in a reader's language."""
+        where, todo = self.where, language(self.todo)
+        front = f"{language(where) if isinstance(where, Message) else where}: " if where else ""
+        return f"{front}{language(self.what)}{f'; {todo}' if todo else ''}."
+
+    @property
+    def message(self) -> Message:
+        """The whole sentence as a message, for notes and files."""
+        where, what, todo = self.where, self.what, self.todo
+        if not isinstance(where, Message):
+            where = plain(where)
+        if where.text and todo.text:
+            return Message("input.where_what_todo", "{where}: {what}; {todo}.", where=where, what=what, todo=todo)
+        if where.text:
+            return Message("input.where_what", "{where}: {what}.", where=where, what=what)
+        if todo.text:
+            return Message("input.what_todo", "{what}; {todo}.", what=what, todo=todo)
+        return Message("input.what", "{what}.", what=what)
 
     def __reduce__(self) -> tuple[object, ...]:
         return _restored, (type(self), self.what, self.where, self.todo)
 
 
-def _restored(kind: type[InputError], what: str, where: str, todo: str) -> InputError:
+def _restored(kind: type[InputError], what: Message, where: Message | str, todo: Message) -> InputError:
     """An InputError that came from another process."""
     return kind(what, where=where, todo=todo)
 

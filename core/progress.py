@@ -1,4 +1,4 @@
-"""How a long job tells how far it is, and learns that it should stop."""
+"""Progress of long jobs: they report how far they are, and learn that they should stop."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ T = TypeVar("T")
 
 
 class Progress(Protocol):
-    """What any job that can last a second is given.
+    """Receiver of a job's progress; every job that can last a second takes one.
 
     Called with a short name of the step, how much is done and of how much. It may raise
     :class:`core.errors.Cancelled`; the job lets that pass and leaves nothing half done.
@@ -22,10 +22,10 @@ def silent(step: str, done: int, total: int) -> None:
     """Say nothing and never cancel: the default."""
 
 
-class Told:
-    """A progress that remembers what it told last.
+class StepProgress:
+    """A progress that remembers its last report.
 
-    `again` is the progress for a part of a step: it moves nothing, but the job can be cancelled there too.
+    `within_step` is the progress for a part of a step: it moves nothing, but the job can be cancelled there too.
     """
 
     def __init__(self, progress: Progress) -> None:
@@ -36,8 +36,8 @@ class Told:
         self._last = (step, done, total)
         self._progress(step, done, total)
 
-    def again(self, step: str, done: int, total: int) -> None:
-        """Tell once more where the whole step is, whatever a part of it says."""
+    def within_step(self, step: str, done: int, total: int) -> None:
+        """Report once more where the whole step is, whatever a part of it reports."""
         self._progress(*(self._last or (step, done, total)))
 
 

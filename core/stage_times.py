@@ -1,4 +1,4 @@
-"""What the stages of a long job cost: processor time, whichever threads it is spent on."""
+"""Processor time that the stages of a long job cost, whichever threads it is spent on."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from core.progress import Progress, silent
 
 
 class StageTimes:
-    """A progress that books processor time to the step told last, and to stages that run on other threads.
+    """A progress that books processor time to the step reported last, and to stages that run on other threads.
 
     Time in which a thread waits for another one does not count, so the sum is what the job costs, and `wall_s` how
     long it has taken.
@@ -27,7 +27,7 @@ class StageTimes:
         self._started = time.perf_counter()
 
     def __call__(self, step: str, done: int, total: int) -> None:
-        """Tell how far the job is; by the thread that has made this object."""
+        """Report how far the job is; to be called by the thread that has made this object."""
         self._book_own()
         self._step = step
         self._progress(step, done, total)
@@ -70,5 +70,5 @@ class StageTimes:
 
 
 def stage(times: StageTimes | None, name: str) -> AbstractContextManager[None]:
-    """`times.stage(name)`, or nothing where nobody wants to know."""
+    """Book a stage with `times.stage(name)`; nothing where there are no `times`."""
     return nullcontext() if times is None else times.stage(name)

@@ -1,4 +1,4 @@
-"""Work side by side in bounded memory, results in order."""
+"""Parallel work in threads with bounded memory and results in order."""
 
 from __future__ import annotations
 
@@ -12,7 +12,11 @@ Item = TypeVar("Item")
 Result = TypeVar("Result")
 
 IDLE_EVERY_S = 0.2
-"""How often `idle` is called while a result is waited for."""
+"""Time in s between calls of `idle` while a result is waited for: a job is cancelled within this."""
+MOST_WORKERS = 4
+"""Threads that are used unless more are asked for: decoding and filtering gain little by more."""
+READ_AHEAD = 2
+"""Items for each worker that are begun before their turn."""
 
 
 def ordered_map(
@@ -24,17 +28,17 @@ def ordered_map(
     """Apply `function` to `items` in threads, yielding results in the order of the items.
 
     At most two items per worker are read ahead, so memory does not grow with their number. Pictures are decoded and
-    filtered outside Python's lock; that is what makes threads worth while. An exception is raised at its item's turn.
+    filtered outside Python's lock; so threads help. An exception is raised at its item's turn.
     While a result is waited for, `idle` is called now and then, on the caller's thread; when it raises, what is under
     way is left to end by itself.
     """
-    workers = workers or min(4, os.cpu_count() or 1)
+    workers = workers or min(MOST_WORKERS, os.cpu_count() or 1)
     pool = ThreadPoolExecutor(workers)
     waiting: deque[Future[Result]] = deque()
     try:
         for item in items:
             waiting.append(pool.submit(function, item))
-            if len(waiting) > 2 * workers:
+            if len(waiting) > READ_AHEAD * workers:
                 yield _result(waiting.popleft(), idle)
         while waiting:
             yield _result(waiting.popleft(), idle)

@@ -9,6 +9,7 @@ from pathlib import Path
 from core.acquire.pace import Pace
 from core.acquire.source import Capabilities, Ended, Frame, Lasers, Picture, SourceSettings, Step, Unplugged
 from core.errors import InputError
+from core.messages import Message
 
 RATE_HZ = 10.0
 ANY_RATE_HZ = (0.0, 10_000.0)
@@ -74,8 +75,14 @@ class ReplaySource:
     def open(self) -> None:
         """See that the folder is there; frames are counted anew."""
         if not self._folder.is_dir():
-            what = "this is a file, not a folder" if self._folder.exists() else "there is no such folder"
-            raise InputError(what, where=self._folder, todo="choose a folder of pictures")
+            what = (
+                Message("source.file_not_folder", "this is a file, not a folder")
+                if self._folder.exists()
+                else Message("source.no_such_folder", "there is no such folder")
+            )
+            raise InputError(
+                what, where=self._folder, todo=Message("advice.choose_pictures", "choose a folder of pictures")
+            )
         self._count = 0
         self._pace.restart()
         self._list()
@@ -142,7 +149,9 @@ class ReplaySource:
                 self._decoded = path, self._read(path)
             except InputError as damage:
                 if not self._folder.is_dir():
-                    raise Unplugged("the folder is not there any more", where=self._folder) from damage
+                    raise Unplugged(
+                        Message("source.folder_gone", "the folder is not there any more"), where=self._folder
+                    ) from damage
                 self._at, self._shown = self._at + 1, 0
                 raise
         return self._decoded[1].copy()

@@ -7,6 +7,7 @@ from dataclasses import dataclass, fields, replace
 from typing import Any
 
 from core.errors import InputError
+from core.messages import Message, label
 
 LARGEST_REGION_PX = 65_536
 
@@ -16,12 +17,12 @@ SOFTWARE = "Software"
 """The trigger by which whoever reads a picture also asks for it."""
 
 TITLES = {
-    "exposure_ms": ("exposure time", "ms"),
-    "gain_db": ("gain", "dB"),
-    "rate_hz": ("frame rate", "Hz"),
-    "trigger": ("trigger", ""),
-    "pixel_format": ("pixel format", ""),
-    "region": ("region", ""),
+    "exposure_ms": (label("exposure time"), "ms"),
+    "gain_db": (label("gain"), "dB"),
+    "rate_hz": (label("frame rate"), "Hz"),
+    "trigger": (label("trigger"), ""),
+    "pixel_format": (label("pixel format"), ""),
+    "region": (label("region"), ""),
 }
 """What each setting is called, and its unit."""
 
@@ -48,10 +49,22 @@ class Region:
     def __post_init__(self) -> None:
         ends = (self.left + self.width, self.top + self.height)
         if min(self.left, self.top) < 0 or min(self.width, self.height) < 1 or max(ends) > LARGEST_REGION_PX:
-            raise InputError(f"{self} is not within a sensor", where="region", todo="give columns and rows of it")
+            raise InputError(
+                Message("source.no_region", "{region} is not within a sensor", region=self.message),
+                where="region",
+                todo=Message("advice.give_part_of_sensor", "give columns and rows of it"),
+            )
+
+    @property
+    def message(self) -> Message:
+        """The region in words."""
+        return Message(
+            "source.region", "{width} × {height} pixels from column {left}, row {top}",
+            width=self.width, height=self.height, left=self.left, top=self.top,
+        )  # fmt: skip
 
     def __str__(self) -> str:
-        return f"{self.width} × {self.height} pixels from column {self.left}, row {self.top}"
+        return str(self.message)
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,15 +102,31 @@ class SourceSettings:
 
     def __post_init__(self) -> None:
         if self.exposure_ms is not None and not 0 < self.exposure_ms <= 60_000:
-            raise InputError(f"{self.exposure_ms:g} ms is not above 0 and at most 60 000 ms", where="exposure")
+            raise InputError(
+                Message(
+                    "source.exposure_range",
+                    "{exposure_ms:g} ms is not above 0 and at most 60 000 ms",
+                    exposure_ms=self.exposure_ms,
+                ),
+                where="exposure",
+            )
         if self.gain_db is not None and not -40 <= self.gain_db <= 80:
-            raise InputError(f"{self.gain_db:g} dB is not between -40 and 80 dB", where="gain")
+            raise InputError(
+                Message("source.gain_range", "{gain_db:g} dB is not between -40 and 80 dB", gain_db=self.gain_db),
+                where="gain",
+            )
         if self.rate_hz is not None and not 0 <= self.rate_hz <= 10_000:
-            raise InputError(f"{self.rate_hz:g} Hz is not between 0 and 10 000 Hz", where="frame rate")
+            raise InputError(
+                Message("source.rate_range", "{rate_hz:g} Hz is not between 0 and 10 000 Hz", rate_hz=self.rate_hz),
+                where="frame rate",
+            )
         for name in ("trigger", "pixel_format"):
             word = getattr(self, name)
             if word is not None and not (word.isascii() and word.isalnum()):
-                raise InputError(f"{word!r} is no {TITLES[name][0]}", where=TITLES[name][0])
+                raise InputError(
+                    Message("source.no_such_word", "{word!r} is no {titles}", word=word, titles=TITLES[name][0]),
+                    where=TITLES[name][0],
+                )
 
     @property
     def told(self) -> dict[str, Any]:
@@ -171,7 +200,11 @@ class Capabilities:
 
 def no_such_setting(name: str, where: str) -> InputError:
     """The sentence for a setting that a source does not have."""
-    return InputError(f"the source does not let its {TITLES[name][0]} be set", where=where, todo="leave it as it is")
+    return InputError(
+        Message("source.setting_fixed", "the source does not let its {titles} be set", titles=TITLES[name][0]),
+        where=where,
+        todo=Message("advice.leave_setting", "leave it as it is"),
+    )
 
 
 def check_number(name: str, value: float, limits: Limits, where: str) -> None:
@@ -179,17 +212,44 @@ def check_number(name: str, value: float, limits: Limits, where: str) -> None:
     title, unit = TITLES[name]
     if not limits[0] <= value <= limits[1]:
         raise InputError(
-            f"the {title} of {value:g} {unit} is not between {limits[0]:g} and {limits[1]:g} {unit}", where=where
+            Message(
+                "source.value_range",
+                "the {title} of {value:g} {unit} is not between {limits:g} and {limits2:g} {unit}",
+                title=title,
+                value=value,
+                unit=unit,
+                limits=limits[0],
+                limits2=limits[1],
+            ),
+            where=where,
         )
 
 
 def check_choice(name: str, value: str, choices: tuple[str, ...], where: str) -> None:
     """InputError unless `value` is one of `choices`."""
     if value not in choices:
-        raise InputError(f"the {TITLES[name][0]} {value} is not one of {', '.join(choices)}", where=where)
+        raise InputError(
+            Message(
+                "source.value_not_one_of",
+                "the {titles} {value} is not one of {choices}",
+                titles=TITLES[name][0],
+                value=value,
+                choices=tuple(choices),
+            ),
+            where=where,
+        )
 
 
 def check_region(region: Region, sensor: tuple[int, int], where: str) -> None:
     """InputError unless `region` lies within a sensor of (width, height)."""
     if region.left + region.width > sensor[0] or region.top + region.height > sensor[1]:
-        raise InputError(f"{region} is not within its {sensor[0]} × {sensor[1]}", where=where)
+        raise InputError(
+            Message(
+                "source.region_beyond_sensor",
+                "{region} is not within its {sensor} × {sensor2}",
+                region=region.message,
+                sensor=sensor[0],
+                sensor2=sensor[1],
+            ),
+            where=where,
+        )

@@ -52,11 +52,10 @@ class SourceChoice:
     Parameters
     ----------
     kind
-        "simulated", "opencv", "replay", "basler", "genicam" or "aravis"; see :data:`core.pipeline.sources.SOURCES`.
+        One of :data:`core.pipeline.live.sources.SOURCES`.
     id
-        Number or address of an OpenCV camera, folder of a replay, serial number of a Basler camera, a GenTL producer's
-        or Aravis's name of a camera, scenario of the simulated rig (TOML, or the path of a TOML file). "" is the first
-        or usual one.
+        What that kind knows it by (`SourceKind.device_help`): a number, a name, an address, a folder, a scenario. "" is
+        the first or usual one.
     """
 
     kind: str

@@ -1,4 +1,4 @@
-"""A board that is not as it should be: bowed, twisted, or printed longer one way than the other.
+"""Shape of a board that is not as it should be: bowed, twisted, or printed longer one way than the other.
 
 The shape is common to all views and unknown; views from different sides tell it. It is a second-degree surface
 z = a x² + b y² + c x y over the board, in units of half its size, so that a, b and c are millimetres at its edges, and
@@ -26,15 +26,16 @@ SHAPE_PARAMETERS = ("bow_x", "bow_y", "twist", "aspect")
 """Names and order of a shape's parameters: mm, mm, mm and a share."""
 
 SUSPECTED_MM = 0.2
-"""How far from flat a board may be of which nothing is known."""
+"""Standard deviation in mm of how far a board may be from flat of which nothing is known: a print on a usual board."""
 
 SURE = 1e-4
-"""It is bowed for sure if a flat one would look so bowed more rarely than this."""
+"""A board is bowed for sure if the probability that a flat one looks so is smaller; tests/calibrate/test_board_shape.py
+holds it."""
 
 
 @dataclass(frozen=True, slots=True)
 class BoardTolerance:
-    """What is known of a printed board.
+    """Tolerance of a printed board, as far as it is known.
 
     Parameters
     ----------
@@ -96,7 +97,7 @@ class Board:
         return derivative
 
     def shaped(self, points: Array, values: Array) -> Array:
-        """Flat `points` (N, 3) where a board of a shape of these `values` (4,) has them."""
+        """Move flat `points` (N, 3) to where a board of a shape of these `values` (4,) has them."""
         return np.asarray(points + self.changes(points) @ values, dtype=np.float64)
 
 
@@ -123,7 +124,7 @@ class BoardShape:
 
     @property
     def surely_bowed(self) -> bool:
-        """Whether chance alone hardly bows a flat board so much."""
+        """Whether noise alone would hardly ever make a flat board look so bowed."""
         bow = self.values[:3]
         if not bow.any():
             return False
@@ -131,5 +132,5 @@ class BoardShape:
         return chance < SURE
 
     def shaped(self, points: Array) -> Array:
-        """Flat `points` (N, 3) where this board has them."""
+        """Move flat `points` (N, 3) to where this board has them."""
         return self.board.shaped(points, self.values)

@@ -1,4 +1,4 @@
-"""One standard uncertainty of camera and fan together, direction by direction.
+"""Principal deviations of camera and fan together, each one standard uncertainty large.
 
 The fan was calibrated through the camera, so that their errors are not independent: a camera that is off takes the fan
 with it, which makes up for a part of the error. A set of deviations whose squares add up carries all of that through
@@ -17,8 +17,8 @@ from typing import Literal
 
 import numpy as np
 
-from core.calibrate.camera_covariance import principal_deviations
-from core.calibrate.reprojection import parameters_of
+from core.calibrate.camera.covariance import principal_deviations
+from core.calibrate.camera.reprojection import parameters_of
 from core.calibrate.results import CameraCalibration, FanCalibration
 from core.model import Camera, Fan, LightPlane
 from core.model.arrays import Array
@@ -26,12 +26,12 @@ from core.model.arrays import Array
 Source = Literal["camera", "fan", "scale"]
 
 NEGLIGIBLE = 1e-12
-"""Directions with less than this share of the largest variance are left out."""
+"""Share of the largest variance below which a direction is left out: rounding."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Deviation:
-    """A camera and a fan that the calibrations hold for as possible, one standard uncertainty off in one direction.
+    """A camera and a fan displaced together by one standard uncertainty in one direction.
 
     `source` says whose error it is: "camera" (the fan moves along with it, as it would have been calibrated through
     such a camera), "fan" (the camera is as calibrated), "scale" (the plane target is larger than stated).
@@ -43,7 +43,7 @@ class Deviation:
 
 
 def calibration_deviations(camera: CameraCalibration, fan: FanCalibration) -> tuple[Deviation, ...]:
-    """Pairs of camera and fan, each displaced by one standard uncertainty along one principal direction.
+    """Make pairs of camera and fan, each displaced by one standard uncertainty along one principal direction.
 
     Let q be anything measured with a camera and a fan, and q₀ the same with the calibrated ones. Then, to first order,
     Σ (q − q₀)² over all deviations is the variance of q from the calibrations, and the sums over those of one `source`
@@ -66,14 +66,14 @@ def calibration_deviations(camera: CameraCalibration, fan: FanCalibration) -> tu
 
 
 def fan_behind(fan: FanCalibration, calibrated: Camera, camera: Camera) -> Fan:
-    """The fan as it comes out of the same pictures with `camera` in place of the `calibrated` one, to first order."""
+    """Compute the fan that the same pictures give with `camera` in place of the `calibrated` one, to first order."""
     if fan.by_camera is None:
         return fan.fan
     return moved_fan(fan.fan, fan.by_camera @ (parameters_of(camera) - parameters_of(calibrated)))
 
 
 def moved_fan(fan: Fan, change: Array) -> Fan:
-    """`fan` with `change` (3N,) in 1/mm added to its stacked π."""
+    """Add `change` (3N,) in 1/mm to the stacked π of `fan`."""
     return Fan(tuple(LightPlane(pi) for pi in fan.pis + change.reshape(-1, 3)), fan.covariance)
 
 

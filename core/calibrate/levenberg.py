@@ -1,7 +1,7 @@
 """Levenberg–Marquardt for unknowns that are not a vector: planes, pencils, poses.
 
-The state may be anything. `linearise` gives residuals and their derivatives by a small local step, `move` takes the
-step; so rotations need no special parametrisation and never meet a singularity.
+The state may be anything. `linearise` gives the residuals near it as normal equations of a small local step,
+`move` takes the step; so rotations need no special parametrisation and never meet a singularity.
 
 References
 ----------
@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Generic, TypeVar
+from typing import Generic, Protocol, TypeVar
 
 import numpy as np
 
@@ -20,41 +20,60 @@ from core.model.arrays import Array
 
 State = TypeVar("State")
 
+# Damping relative to the scaled normal matrix, whose diagonal is 1; Marquardt's factor 10 up and down.
+FIRST_DAMPING, DAMPING_FACTOR = 1e-6, 10
+"""Starts are near: at first nearly Gauss–Newton."""
+LEAST_DAMPING, MOST_DAMPING = 1e-12, 1e8
+"""Beyond the largest no step lowers the sum any more: the minimum to the last digit."""
 
-@dataclass(frozen=True, eq=False, slots=True)
-class Solution(Generic[State]):
-    """A minimum: the state, residuals (M,) and Jacobian (M, P) there, and whether it converged."""
 
-    state: State
-    residuals: Array
-    jacobian: Array
-    converged: bool
+class Linearised(Protocol):
+    """A sum of squared residuals near a state, as its normal equations."""
 
     @property
-    def covariance(self) -> Array:
-        """(P, P) of the local step, for residuals of unit variance; infinite variance along undetermined directions."""
-        return inverse_normal_matrix(self.jacobian)
+    def cost(self) -> float:
+        """The sum of squares at the state."""
+
+    def step(self, damping: float) -> Array:
+        """The local step (P,) to the minimum, with the diagonal raised by `damping` of itself."""
 
 
-def inverse_normal_matrix(jacobian: Array) -> Array:
-    """(JᵀJ)⁻¹, with columns scaled to unit length first so that mm, rad and 1/mm do not upset it."""
-    scale = np.linalg.norm(jacobian, axis=0)
-    scale[scale == 0] = 1.0
-    scaled = jacobian / scale
-    values, vectors = np.linalg.eigh(scaled.T @ scaled)
-    values = np.maximum(values, 1e-15 * values[-1])
-    inverse: Array = (vectors / values) @ vectors.T / np.outer(scale, scale)
-    return inverse
+class Dense:
+    """Residuals (M,) with their full Jacobian (M, P)."""
+
+    def __init__(self, residuals: Array, jacobian: Array) -> None:
+        self.residuals, self.jacobian = residuals, jacobian
+        self.cost = float(residuals @ residuals)
+        self._scale = np.linalg.norm(jacobian, axis=0)
+        self._scale[self._scale == 0] = 1.0
+        scaled = jacobian / self._scale
+        self._normal, self._gradient = scaled.T @ scaled, scaled.T @ residuals
+
+    def step(self, damping: float) -> Array:
+        damped = self._normal + damping * np.eye(len(self._gradient))
+        return np.asarray(-np.linalg.solve(damped, self._gradient) / self._scale, dtype=np.float64)
+
+
+Model = TypeVar("Model", bound=Linearised)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Solution(Generic[State, Model]):
+    """A minimum: the state, the residuals with their derivatives there, and whether it converged."""
+
+    state: State
+    linear: Model
+    converged: bool
 
 
 def minimise(
     state: State,
-    linearise: Callable[[State], tuple[Array, Array]],
+    linearise: Callable[[State], Model],
     move: Callable[[State, Array], State],
     *,
     iterations: int = 50,
     tolerance: float = 1e-9,
-) -> Solution[State]:
+) -> Solution[State, Model]:
     """Minimise the sum of squared residuals.
 
     Parameters
@@ -62,33 +81,26 @@ def minimise(
     state
         Where to start.
     linearise
-        Gives residuals (M,) and their derivatives (M, P) by the local step at a state.
+        Gives the residuals near a state.
     move
         Takes a local step (P,) from a state.
     iterations, tolerance
         Stops when a step lowers the sum by less than `tolerance` of itself.
     """
-    residuals, jacobian = linearise(state)
-    cost = float(residuals @ residuals)
-    damping = 1e-6
+    linear = linearise(state)
+    damping: float = FIRST_DAMPING
     for _ in range(iterations):
-        scale = np.linalg.norm(jacobian, axis=0)
-        scale[scale == 0] = 1.0
-        scaled = jacobian / scale
-        normal, gradient = scaled.T @ scaled, scaled.T @ residuals
         while True:
-            damped = normal + damping * np.eye(len(gradient))
-            trial = move(state, -np.linalg.solve(damped, gradient) / scale)
-            trial_residuals, trial_jacobian = linearise(trial)
-            trial_cost = float(trial_residuals @ trial_residuals)
-            if trial_cost <= cost:
+            trial = move(state, linear.step(damping))
+            trial_linear = linearise(trial)
+            if trial_linear.cost <= linear.cost:
                 break
-            damping *= 10
-            if damping > 1e8:  # no step lowers the sum any more: the minimum to the last digit
-                return Solution(state, residuals, jacobian, converged=True)
-        gain = cost - trial_cost
-        state, residuals, jacobian, cost = trial, trial_residuals, trial_jacobian, trial_cost
-        damping = max(damping / 10, 1e-12)
-        if gain <= tolerance * cost:
-            return Solution(state, residuals, jacobian, converged=True)
-    return Solution(state, residuals, jacobian, converged=False)
+            damping *= DAMPING_FACTOR
+            if damping > MOST_DAMPING:
+                return Solution(state, linear, converged=True)
+        gain = linear.cost - trial_linear.cost
+        state, linear = trial, trial_linear
+        damping = max(damping / DAMPING_FACTOR, LEAST_DAMPING)
+        if gain <= tolerance * linear.cost:
+            return Solution(state, linear, converged=True)
+    return Solution(state, linear, converged=False)

@@ -1,4 +1,4 @@
-"""What the calibrations give: frozen results with their own quality."""
+"""Results of the calibrations, with their own quality."""
 
 from __future__ import annotations
 
@@ -10,20 +10,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.calibrate.board_shape import BoardShape
-from core.image.target_view import TargetView
+from core.image.targets.target_view import TargetView
+from core.messages import Message
 from core.model import Camera, Fan, Pose
 from core.model.arrays import Array
 
 CAMERA_PARAMETERS = ("alpha", "beta", "gamma", "u0", "v0", "k1", "k2", "p1", "p2", "k3")
 """Names and order of the camera's parameters in covariances."""
 
-LEFT_OUT = "left out by hand"
-"""Why a view, a pose or a frame was not used that the technician has left out."""
+LEFT_OUT = Message("set.left_out_by_hand", "left out by hand")
+"""Reason of a view, a pose or a frame that the technician has left out."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class ViewQuality:
-    """How one view of the target fits the calibrated camera.
+    """Quality of one view: how it fits the calibrated camera.
 
     Residuals are observed − predicted, (N, 2) in pixels. `counted` (N,) is False for single corners left out as
     misfound; `rms_px` and `mean_px` are of the residual vectors' lengths of those that count. `tilt` is the angle in
@@ -38,20 +39,20 @@ class ViewQuality:
     mean_px: float
     tilt: float
     used: bool
-    reason: str = ""
+    reason: Message | None = None
     counted: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, dtype=np.bool_))
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class CameraCalibration:
-    """A calibrated camera and how far it can be trusted.
+    """A calibrated camera with its covariance and quality.
 
     `covariance` is (10, 10) in the order of CAMERA_PARAMETERS, zero rows for fixed parameters.
     `rms_px` is the root mean square of the residual vectors' lengths over used views, `mean_px` their mean length
     (the paper judges by this one). `coverage` is the share (0…1) of the picture's cells that hold a corner;
     `tilt_range` the largest angle in rad between two views' target normals. `cross_validation_mm` is the RMS
     distance between the points that cameras solved from odd and from even views give over the work volume, NaN when
-    there are too few views for two cameras. `notes` are sentences for the technician. `board` is the shape of the
+    there are too few views for two cameras. `notes` are for the technician. `board` is the shape of the
     target as all views together tell it, which the residuals have taken into account.
     """
 
@@ -63,7 +64,7 @@ class CameraCalibration:
     coverage: float
     tilt_range: float
     cross_validation_mm: float
-    notes: tuple[str, ...] = ()
+    notes: tuple[Message, ...] = ()
     board: BoardShape = field(default_factory=BoardShape)
 
     @property
@@ -96,13 +97,13 @@ class PlanePose:
     distances: tuple[Array, ...]
     rms_mm: float
     used: bool
-    reason: str = ""
+    reason: Message | None = None
     prediction_mm: float = math.nan
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class FanCalibration:
-    """A calibrated fan and how far it can be trusted.
+    """A calibrated fan with its covariance and quality.
 
     `fan` is the result to use (constrained when the constraint suits the laser), `free` the planes fitted each on
     its own; their covariances take the camera as known. `rms_mm` per line. `angles` (rad) between neighbouring planes
@@ -126,9 +127,9 @@ class FanCalibration:
     free_angles: tuple[float, ...]
     pencil_gap_mm: float
     constraint_suits: bool | None
-    verdict: str
+    verdict: Message | None
     poses: tuple[PlanePose, ...]
-    notes: tuple[str, ...] = ()
+    notes: tuple[Message, ...] = ()
     constraint_p: float = math.nan
     stripe_sd_mm: float = math.nan
     corner_scale: float = math.nan
@@ -138,6 +139,20 @@ class FanCalibration:
     camera: Camera | None = None
     camera_covariance: Array | None = None
     board: BoardShape = field(default_factory=BoardShape)
+
+    @property
+    def minority(self) -> Message | None:
+        """What is to be decided where fewer than half of the poses that show target and stripes are used."""
+        speaking = [pose for pose in self.poses if pose.used or (np.isfinite(pose.rms_mm) and pose.reason != LEFT_OUT)]
+        used = sum(pose.used for pose in speaking)
+        if 2 * used >= len(speaking):
+            return None
+        return Message(
+            "fan.minority",
+            "only {used} of the {all} poses that show target and stripes agree on the light planes",
+            used=used,
+            all=len(speaking),
+        )
 
     def camera_used(self, given: CameraCalibration) -> CameraCalibration:
         """The camera this fan is to be used with: the `given` calibration, corrected if the poses did so."""

@@ -17,14 +17,13 @@ from typer.core import TyperGroup
 
 from core import __version__
 from core.cli.measuring_commands import commands as measuring
-from core.cli.options import EPILOG
+from core.cli.options import EPILOG, ExitCode
 from core.cli.preparing_commands import commands as preparing
 from core.cli.result_commands import commands as results
-from core.cli.simulating_commands import commands as simulating
+from core.cli.simulating import commands as simulating
 from core.cli.study_commands import studies
 from core.errors import Cancelled, InputError
-
-BAD_INPUT, INTERRUPTED = 2, 130
+from core.messages import as_json as as_json_message
 
 
 class _Commands(TyperGroup):
@@ -77,11 +76,11 @@ def main(arguments: Sequence[str] | None = None) -> None:
     try:
         _run(words)
     except InputError as error:
-        _refuse(str(error), as_json="--json" in words)
-        sys.exit(BAD_INPUT)
+        _refuse(error, as_json="--json" in words)
+        sys.exit(ExitCode.BAD_INPUT)
     except Cancelled:
         sys.stderr.write("trisect: interrupted; what was finished before is whole, nothing is half written.\n")
-        sys.exit(INTERRUPTED)
+        sys.exit(ExitCode.INTERRUPTED)
     except BrokenPipeError:
         # Whoever read our output has left; Python would complain once more when it closes standard output.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -95,9 +94,15 @@ def _run(words: list[str]) -> None:
         sys.stdout.flush()  # here, where a closed pipe can still be told apart from a failure
 
 
-def _refuse(sentence: str, *, as_json: bool) -> None:
+def _refuse(error: InputError, *, as_json: bool) -> None:
     if as_json:
         from core.files.json_text import to_json
 
-        sys.stdout.write(to_json({"error": sentence}))
-    sys.stderr.write(f"trisect: {sentence}\n")
+        told = {
+            "error": str(error),
+            **as_json_message(error.what),
+            "where": str(error.where),
+            "todo": as_json_message(error.todo),
+        }
+        sys.stdout.write(to_json(told))
+    sys.stderr.write(f"trisect: {error}\n")

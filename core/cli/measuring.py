@@ -3,33 +3,33 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
-from core.calibrate.camera_options import CameraOptions
+from rich.table import Table
+
+from core.calibrate.camera.adjustment import CameraOptions
 from core.cli import output
+from core.cli.options import ExitCode
 from core.errors import InputError
-from core.files.exclusion import excluded_names
-from core.files.recording_set import open_set
-from core.image.stripe import StripeSettings
+from core.files.recording.options import Options
+from core.files.recording.recording_set import excluded_names, open_set
+from core.image.stripes.stripe import StripeSettings
 from core.inspect.results import GaugeResult
-from core.pipeline import (
-    Options,
-    RunResult,
-    Workspace,
-    camera_step,
-    gauge_step,
-    planes_step,
-    run,
-    scan_step,
-)
+from core.messages import Message
+from core.pipeline.steps.batch import SetResult, run_batch
+from core.pipeline.steps.camera_step import camera_step
+from core.pipeline.steps.executors import executor_of
+from core.pipeline.steps.gauge_step import gauge_step
+from core.pipeline.steps.planes_step import planes_step
+from core.pipeline.steps.run import RunResult, run
+from core.pipeline.steps.scan_step import scan_step
+from core.pipeline.steps.workspace import Workspace
 from core.progress import Progress
+from core.report.wording import grouped, with_uncertainty
 from core.scan.method import Method
 from core.stage_times import StageTimes
-
-PROVEN = ("", "conforming")
-"""Verdicts that leave with exit code 0."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -38,38 +38,57 @@ class Shown:
 
     rows: output.Rows
     values: Mapping[str, Any]
-    notes: tuple[str, ...] = ()
+    notes: tuple[Message | str, ...] = ()
     files: Mapping[str, Path] = field(default_factory=dict)
 
     def show(self, *, as_json: bool) -> None:
         """Print it, for people or for machines."""
         if as_json:
-            output.print_json({**self.values, "notes": self.notes, "files": output.files_json(self.files)})
+            output.print_json(
+                {**self.values, "notes": [str(note) for note in self.notes], "files": output.files_json(self.files)}
+            )
         else:
             output.print_rows(self.rows, self.notes, self.files)
 
 
 def options(
-    method: str,
+    method: Method,
     sigma_cut: float,
     *,
-    skew: bool = True,
+    skew: bool | None = None,
     k3: bool = False,
     part: str = "",
     stripe_width: float = 0.0,
     contrast: float = 0.0,
     adjust_camera: bool = False,
+    accept_few_poses: bool = False,
 ) -> Options:
     """The pipeline's options from the command line's; InputError if one is absurd."""
+    camera = CameraOptions(skew=skew, k3=k3)
+    stripe = _stripe(stripe_width, contrast)
+    return Options(
+        method, sigma_cut, camera, part, stripe, adjust_camera=adjust_camera, accept_few_poses=accept_few_poses
+    )
+
+
+def plane_options(adjust_camera: bool, accept_few_poses: bool, stripe_width: float, contrast: float) -> Options:
+    """The options of the planes step alone, where width and contrast are those of the stripes on the plane target."""
+    stripe = _stripe(stripe_width, contrast)
+    return Options(adjust_camera=adjust_camera, accept_few_poses=accept_few_poses, plane_stripe=stripe)
+
+
+def _stripe(stripe_width: float, contrast: float) -> StripeSettings | None:
+    """Width and contrast of stripes, None where they are to be chosen; InputError where only one is given."""
     if (stripe_width > 0) != (contrast > 0) or min(stripe_width, contrast) < 0:
         raise InputError(
-            "width and contrast of the stripes belong together, both above 0",
+            Message(
+                "options.stripe_incomplete",
+                "width and contrast of the stripes belong together, both above 0",
+            ),
             where="--stripe-width, --contrast",
-            todo="give both, or neither to have them chosen from the pictures",
+            todo=Message("advice.give_both_or_neither", "give both, or neither to have them chosen from the pictures"),
         )
-    stripe = StripeSettings(stripe_width, contrast) if stripe_width > 0 else None
-    camera = CameraOptions(skew=skew, k3=k3)
-    return Options(cast(Method, method), sigma_cut, camera, part, stripe, adjust_camera=adjust_camera)
+    return StripeSettings(stripe_width, contrast) if stripe_width > 0 else None
 
 
 def leaving_out(chosen: Options, folder: Path, names: Sequence[str] | None) -> Options:
@@ -88,9 +107,9 @@ def show_times(progress: Progress) -> None:
         output.print_times(progress.seconds(), progress.wall_s)
 
 
-def exit_code(gauge: GaugeResult | None) -> int:
-    """0, or 1 where a verdict was asked for and is not "conforming"."""
-    return 0 if gauge is None or gauge.verdict in PROVEN else 1
+def exit_code(verdict: str, good: Sequence[str] = ("conforming",)) -> ExitCode:
+    """The code of a verdict; "" where none was asked for."""
+    return ExitCode.DONE if not verdict or verdict in good else ExitCode.NOT_PROVEN
 
 
 def run_all(folder: Path, out: Path, chosen: Options, progress: Progress) -> RunResult:
@@ -152,3 +171,58 @@ def _shown(work: Workspace, step: str, rows: output.Rows, values: Mapping[str, A
     files = work.written()
     notes = tuple(work.record().notes.get(step, ()))
     return Shown(rows, values, notes, {name: files[name] for name in names})
+
+
+_SET_COLUMNS = ("set", "thickness", "U", "verdict", "points", "frames", "time")
+
+
+def run_sets(
+    sets: Sequence[Path], out: Path, executor: str, workers: int | None, chosen: Options, progress: Progress
+) -> tuple[SetResult, ...]:
+    """Measure all sets."""
+    with executor_of(executor, workers) as pool:
+        return run_batch(sets, out, pool, chosen, progress)
+
+
+def batch_exit_code(results: Sequence[SetResult]) -> ExitCode:
+    """The worst of the sets' own: 2 where one could not be measured, 1 where one is not proven to conform, else 0."""
+    if any(result.error for result in results):
+        return ExitCode.BAD_INPUT
+    return max((exit_code(result.verdict) for result in results), default=ExitCode.DONE)
+
+
+def show_sets(results: Sequence[SetResult], *, as_json: bool) -> None:
+    """Say what became of each set."""
+    if as_json:
+        output.print_json({"sets": [_set_values(result) for result in results]})
+        return
+    console = output.console()
+    table = Table(box=None, padding=(0, 2, 0, 0))
+    for name in _SET_COLUMNS:
+        table.add_column(name, justify="left" if name in ("set", "verdict") else "right")
+    for result in results:
+        table.add_row(*_set_row(result))
+    console.print(table)
+    for result in results:
+        if result.error:
+            console.print(f"{result.folder.name}: {result.error}", markup=False, soft_wrap=True)
+
+
+def _set_values(result: SetResult) -> dict[str, Any]:
+    return {
+        **{one.name: getattr(result, one.name) for one in fields(result)},
+        "folder": str(result.folder),
+        "out": str(result.out),
+        "error": "" if result.error is None else str(result.error),
+    }
+
+
+def _set_row(result: SetResult) -> tuple[str, ...]:
+    seconds = f"{result.seconds:.1f} s"
+    if result.error:
+        return result.folder.name, "", "", "not measured", "", "", seconds
+    thickness = U = ""
+    if result.thickness_mm is not None and result.U_mm is not None:
+        thickness, U = (f"{text} mm" for text in with_uncertainty(result.thickness_mm, result.U_mm))
+    frames = f"{result.frames_used} of {result.frames}"
+    return result.folder.name, thickness, U, result.verdict or "none", grouped(result.points), frames, seconds

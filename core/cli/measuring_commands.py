@@ -11,20 +11,21 @@ from core.cli.bars import bars
 from core.cli.options import (
     EPILOG,
     K3,
+    AcceptFewPoses,
     AdjustCamera,
     Contrast,
     Exclude,
     Json,
-    Method,
     MethodOption,
-    NoSkew,
     Out,
     Part,
     Profile,
     Set,
     SigmaCut,
+    Skew,
     StripeWidth,
 )
+from core.scan.method import Method
 
 commands = typer.Typer()
 
@@ -33,13 +34,14 @@ commands = typer.Typer()
 def run(
     folder: Set,
     out: Out,
-    method: MethodOption = Method.network,
+    method: MethodOption = Method.NETWORK,
     sigma_cut: SigmaCut = 0.05,
     stripe_width: StripeWidth = 0.0,
     contrast: Contrast = 0.0,
-    no_skew: NoSkew = False,
+    skew: Skew = None,
     k3: K3 = False,
     adjust_camera: AdjustCamera = False,
+    accept_few_poses: AcceptFewPoses = False,
     part: Part = "",
     exclude: Exclude = None,
     profile: Profile = False,
@@ -49,14 +51,15 @@ def run(
     from core.cli import measuring
 
     options = measuring.options(
-        method.value,
+        method,
         sigma_cut,
-        skew=not no_skew,
+        skew=skew,
         k3=k3,
         part=part,
         stripe_width=stripe_width,
         contrast=contrast,
         adjust_camera=adjust_camera,
+        accept_few_poses=accept_few_poses,
     )
     options = measuring.leaving_out(options, folder, exclude)
     with bars() as progress:
@@ -64,7 +67,7 @@ def run(
         result = measuring.run_all(folder, out, options, watched)
     measuring.show_run(result, as_json=json)
     measuring.show_times(watched)
-    raise typer.Exit(measuring.exit_code(result.gauge))
+    raise typer.Exit(measuring.exit_code(result.gauge.verdict if result.gauge else ""))
 
 
 @commands.command(epilog=EPILOG)
@@ -75,28 +78,28 @@ def batch(
         str, typer.Option(metavar="WHO", help="processes, threads, or dask://HOST:PORT for a Dask cluster.")
     ] = "processes",
     workers: Annotated[int | None, typer.Option(metavar="N", help="Sets at a time; else one for each core.")] = None,
-    method: MethodOption = Method.network,
+    method: MethodOption = Method.NETWORK,
     sigma_cut: SigmaCut = 0.05,
     json: Json = False,
 ) -> None:
     """Measure many recording sets side by side, each into a folder of its name in DIR."""
-    from core.cli import batching, measuring
+    from core.cli import measuring
 
-    options = measuring.options(method.value, sigma_cut)
+    options = measuring.options(method, sigma_cut)
     with bars() as progress:
-        results = batching.run_sets(sets, out, executor, workers, options, progress)
-    batching.show(results, as_json=json)
-    raise typer.Exit(batching.exit_code(results))
+        results = measuring.run_sets(sets, out, executor, workers, options, progress)
+    measuring.show_sets(results, as_json=json)
+    raise typer.Exit(measuring.batch_exit_code(results))
 
 
 @commands.command()
 def camera(
-    folder: Set, out: Out, no_skew: NoSkew = False, k3: K3 = False, exclude: Exclude = None, json: Json = False
+    folder: Set, out: Out, skew: Skew = None, k3: K3 = False, exclude: Exclude = None, json: Json = False
 ) -> None:
     """Calibrate the camera from SET/camera; writes camera.json."""
     from core.cli import measuring
 
-    options = measuring.leaving_out(measuring.options("network", 0.05, skew=not no_skew, k3=k3), folder, exclude)
+    options = measuring.leaving_out(measuring.options(Method.NETWORK, 0.05, skew=skew, k3=k3), folder, exclude)
     with bars() as progress:
         shown = measuring.run_camera(folder, out, options, progress)
     shown.show(as_json=json)
@@ -104,12 +107,19 @@ def camera(
 
 @commands.command()
 def planes(
-    folder: Set, out: Out, adjust_camera: AdjustCamera = False, exclude: Exclude = None, json: Json = False
+    folder: Set,
+    out: Out,
+    adjust_camera: AdjustCamera = False,
+    accept_few_poses: AcceptFewPoses = False,
+    stripe_width: StripeWidth = 0.0,
+    contrast: Contrast = 0.0,
+    exclude: Exclude = None,
+    json: Json = False,
 ) -> None:
     """Calibrate the fan's light planes from SET/planes, with camera.json in DIR; writes planes.json."""
     from core.cli import measuring
 
-    chosen = measuring.options("network", 0.05, adjust_camera=adjust_camera)
+    chosen = measuring.plane_options(adjust_camera, accept_few_poses, stripe_width, contrast)
     options = measuring.leaving_out(chosen, folder, exclude)
     with bars() as progress:
         shown = measuring.run_planes(folder, out, options, progress)
@@ -120,7 +130,7 @@ def planes(
 def scan(
     folder: Set,
     out: Out,
-    method: MethodOption = Method.network,
+    method: MethodOption = Method.NETWORK,
     sigma_cut: SigmaCut = 0.05,
     stripe_width: StripeWidth = 0.0,
     contrast: Contrast = 0.0,
@@ -131,7 +141,7 @@ def scan(
     """Measure the surface from SET/scan, with the calibrations in DIR; writes cloud.ply and mesh.ply."""
     from core.cli import measuring
 
-    options = measuring.options(method.value, sigma_cut, stripe_width=stripe_width, contrast=contrast)
+    options = measuring.options(method, sigma_cut, stripe_width=stripe_width, contrast=contrast)
     options = measuring.leaving_out(options, folder, exclude)
     with bars() as progress:
         watched = measuring.timed(progress, profile)
@@ -148,4 +158,4 @@ def gauge(folder: Set, out: Out, json: Json = False) -> None:
     with bars() as progress:
         result, shown = measuring.run_gauge(folder, out, progress)
     shown.show(as_json=json)
-    raise typer.Exit(measuring.exit_code(result))
+    raise typer.Exit(measuring.exit_code(result.verdict))

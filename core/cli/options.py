@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
-from enum import Enum
+from enum import Enum, IntEnum
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from core.scan.method import Method
+
 EPILOG = "Exit code: 0 done, 1 measured but out of tolerance or not proven, 2 bad input, 130 interrupted."
 
 
-class Method(str, Enum):  # noqa: UP042  (Typer shows the values of a str Enum)
-    """How a scan is solved."""
+class ExitCode(IntEnum):
+    """What the program leaves with."""
 
-    network = "network"
-    three_crossings = "three-crossings"
+    DONE = 0
+    NOT_PROVEN = 1
+    BAD_INPUT = 2
+    INTERRUPTED = 130
 
 
 class Which(str, Enum):  # noqa: UP042
@@ -38,7 +42,15 @@ MethodOption = Annotated[
 SigmaCut = Annotated[
     float, typer.Option("--sigma-cut", metavar="MM", help="Leave out points with a larger standard uncertainty.")
 ]
-NoSkew = Annotated[bool, typer.Option("--no-skew", help="Fix the camera's skew γ to 0.")]
+Skew = Annotated[
+    bool | None,
+    typer.Option(
+        "--skew/--no-skew",
+        help="Solve for the camera's skew γ, as the paper does, or fix it to 0. Without either it is solved for only "
+        "where that predicts views left out better.",
+        show_default=False,
+    ),
+]
 Part = Annotated[str, typer.Option(metavar="NAME", help="Name of the part in the report; else the name of SET.")]
 K3 = Annotated[bool, typer.Option("--k3", help="Free the third radial coefficient, for wide lenses.")]
 
@@ -55,13 +67,19 @@ AdjustCamera = Annotated[
 
 StripeWidth = Annotated[
     float,
-    typer.Option(
-        "--stripe-width", metavar="PX", help="Visible width of the scan's stripes; 0: chosen from the pictures."
-    ),
+    typer.Option("--stripe-width", metavar="PX", help="Visible width of the stripes; 0: chosen from the pictures."),
 ]
 Contrast = Annotated[
     float,
     typer.Option("--contrast", metavar="GREY", help="Height of a rather faint stripe above its background; 0: chosen."),
+]
+
+
+AcceptFewPoses = Annotated[
+    bool,
+    typer.Option(
+        "--accept-few-poses", help="Use light planes even though fewer than half of the target's poses agree with them."
+    ),
 ]
 
 

@@ -12,10 +12,12 @@ from rich.console import Console
 from rich.table import Table
 
 from core.calibrate.results import CAMERA_PARAMETERS, CameraCalibration, FanCalibration
-from core.files.gauge_file import gauge_summary
 from core.files.json_text import to_json
+from core.files.results.gauge_file import gauge_summary
 from core.inspect.results import GaugeResult
+from core.messages import Message
 from core.report.wording import count, decimals_of, fixed, grouped, thickness_line, with_uncertainty
+from core.scan.features.frames import NO_REASON
 from core.scan.results import FrameRecord
 
 Rows = list[tuple[str, str]]
@@ -38,7 +40,7 @@ def console() -> Console:
     return out
 
 
-def print_rows(rows: Rows, notes: Sequence[str] = (), files: Mapping[str, Path] | None = None) -> None:
+def print_rows(rows: Rows, notes: Sequence[Message | str] = (), files: Mapping[str, Path] | None = None) -> None:
     """A table of labels and values, the notes below it, then where the files are."""
     out = console()
     table = Table(box=None, show_header=False, padding=(0, 2, 0, 0))
@@ -102,7 +104,7 @@ def fan_rows(calibration: FanCalibration) -> Rows:
     rows.append(("poses", f"{used} of {count(len(calibration.poses), 'pose')} used"))
     if math.isfinite(calibration.cross_validation_mm):
         rows.append(("poses foretold", f"to {calibration.cross_validation_mm:.3f} mm RMS, each by the others"))
-    return [*rows, ("verdict", calibration.verdict)] if calibration.verdict else rows
+    return [*rows, ("verdict", str(calibration.verdict))] if calibration.verdict else rows
 
 
 def fan_summary(calibration: FanCalibration) -> str:
@@ -134,7 +136,7 @@ def frame_rows(frames: Sequence[FrameRecord], points: int) -> Rows:
     reasons: dict[str, list[str]] = {}
     for frame in frames:
         if not frame.used:
-            reasons.setdefault(frame.reason, []).append(frame.name)
+            reasons.setdefault(str(frame.reason or NO_REASON), []).append(frame.name)
     used = sum(frame.used for frame in frames)
     rows = [("frames", f"{used} of {count(len(frames), 'frame')} used")]
     for reason, names in reasons.items():
@@ -158,7 +160,9 @@ def frames_json(frames: Sequence[FrameRecord], points: int) -> dict[str, Any]:
     return {
         "points": points,
         "frames_used": sum(frame.used for frame in frames),
-        "frames_left_out": [{"name": frame.name, "reason": frame.reason} for frame in frames if not frame.used],
+        "frames_left_out": [
+            {"name": frame.name, "reason": str(frame.reason or NO_REASON)} for frame in frames if not frame.used
+        ],
     }
 
 
@@ -171,7 +175,7 @@ def camera_json(calibration: CameraCalibration) -> dict[str, Any]:
         "distortion": calibration.camera.distortion,
         "views_used": sum(view.used for view in calibration.views),
         "views_left_out": [
-            {"name": view.view.name, "reason": view.reason} for view in calibration.views if not view.used
+            {"name": view.view.name, "reason": str(view.reason or "")} for view in calibration.views if not view.used
         ],
     }
 
@@ -185,7 +189,9 @@ def fan_json(calibration: FanCalibration) -> dict[str, Any]:
         "angles_deg": [math.degrees(angle) for angle in calibration.angles],
         "constraint_suits": calibration.constraint_suits,
         "poses_used": sum(pose.used for pose in calibration.poses),
-        "poses_left_out": [{"name": pose.name, "reason": pose.reason} for pose in calibration.poses if not pose.used],
+        "poses_left_out": [
+            {"name": pose.name, "reason": str(pose.reason or "")} for pose in calibration.poses if not pose.used
+        ],
     }
 
 

@@ -40,16 +40,16 @@ def target(
     json: Json = False,
 ) -> None:
     """Write a calibration target as a PDF to scale, to be printed at 100 %."""
-    from core.cli import target_sheets
+    from core.cli import preparing
 
-    target_sheets.chosen(kind, rig)
+    preparing.one_choice(kind, rig)
     printed = (
-        target_sheets.from_rig(rig, which.value)
+        preparing.target_of_rig(rig, which.value)
         if rig
-        else target_sheets.described(kind, columns, rows, size_mm, marker_mm, dictionary, asymmetric=asymmetric)
+        else preparing.target_of_words(kind, columns, rows, size_mm, marker_mm, dictionary, asymmetric=asymmetric)
     )
-    target_sheets.write_sheet(printed, paper, title, out)
-    target_sheets.show(printed, paper, out, as_json=json)
+    preparing.write_sheet(printed, paper, title, out)
+    preparing.show_sheet(printed, paper, out, as_json=json)
 
 
 @commands.command()
@@ -69,10 +69,10 @@ def plan(
     json: Json = False,
 ) -> None:
     """Predict what a rig will measure, before anything is bolted down: U of a thickness, σ, what helps most."""
-    from core.cli import planning
+    from core.cli import preparing
 
     with bars() as progress:
-        shown = planning.run_plan(
+        shown = preparing.run_plan(
             rig, out, scans=scans, changes=not no_changes, sigma_cut=sigma_cut, bounds=bounds, progress=progress
         )
     shown.show(as_json=json)

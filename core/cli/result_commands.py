@@ -38,12 +38,12 @@ def inspect(
     json: Json = False,
 ) -> None:
     """Measure the features of a plan on a scan; writes inspection.json."""
-    from core.cli import inspecting
+    from core.cli import results as work
 
     with bars() as progress:
-        inspection, written = inspecting.run_inspect(source, plan, out, progress)
-    inspecting.show(inspection, written, as_json=json)
-    raise typer.Exit(inspecting.exit_code(inspection))
+        inspection, written = work.run_inspect(source, plan, out, progress)
+    work.show_inspection(inspection, written, as_json=json)
+    raise typer.Exit(work.inspection_exit_code(inspection))
 
 
 @commands.command()
@@ -63,11 +63,11 @@ def mesh(
     json: Json = False,
 ) -> None:
     """Make the surface in DIR ready for other programs; writes surface.*, mesh.ply stays as it is."""
-    from core.cli import meshing
-    from core.pipeline.mesh_step import MeshOptions
+    from core.cli import results as work
+    from core.pipeline.steps.mesh_step import MeshOptions
 
     with bars() as progress:
-        shown = meshing.run_mesh(results, formats, MeshOptions(fill_holes, triangles, error), to, progress)
+        shown = work.run_mesh(results, formats, MeshOptions(fill_holes, triangles, error), to, progress)
     shown.show(as_json=json)
 
 
@@ -95,13 +95,11 @@ def report(
     json: Json = False,
 ) -> None:
     """Put the results of SET in DIR into report.pdf, with inspection.json where there is one."""
-    from core.cli import reporting
+    from core.cli import results as work
 
-    chosen = reporting.ReportOptions(
-        part, template, language, paper, without or (), serial, customer, operator, study or ()
-    )
+    chosen = work.ReportOptions(part, template, language, paper, without or (), serial, customer, operator, study or ())
     with bars() as progress:
-        shown = reporting.run_report(folder, out, chosen, progress)
+        shown = work.run_report(folder, out, chosen, progress)
     shown.show(as_json=json)
 
 
@@ -127,11 +125,11 @@ def export(
     json: Json = False,
 ) -> None:
     """Write the results in DIR in the formats of other programs."""
-    from core.cli import reporting
+    from core.cli import results as work
 
-    chosen = reporting.ReportOptions(part, template, serial=serial, customer=customer, operator=operator)
+    chosen = work.ReportOptions(part, template, serial=serial, customer=customer, operator=operator)
     with bars() as progress:
-        shown = reporting.run_export(results, formats, to, chosen, progress)
+        shown = work.run_export(results, formats, to, chosen, progress)
     shown.show(as_json=json)
 
 
@@ -142,6 +140,6 @@ def import_camera(
     json: Json = False,
 ) -> None:
     """Take a camera calibrated by OpenCV or ROS; writes camera.json."""
-    from core.cli import reporting
+    from core.cli import results as work
 
-    reporting.run_import(file, out).show(as_json=json)
+    work.run_import(file, out).show(as_json=json)

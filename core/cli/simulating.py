@@ -1,4 +1,4 @@
-"""What `trisect simulate` and `trisect demo` do: recordings without a rig."""
+"""`trisect simulate` and `trisect demo`: recordings without a rig. Light to import."""
 
 from __future__ import annotations
 
@@ -8,47 +8,115 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
+from typing import Annotated
 
-from core.cli import output
-from core.pipeline import RunResult
+import typer
+
+from core.cli.bars import bars
+from core.cli.options import EPILOG, Json
 from core.progress import Progress
-from core.report.wording import thickness_line
-from core.simulate.recording import simulate_set
-from core.simulate.sample import sample_scenario, sample_set
-from core.simulate.scenario import Scenario
+from core.scan.method import Method
+from core.simulate.scenario import CAMERA_TARGETS, OBJECTS, PLANE_TARGETS, Scenario
 
-PART = "gauge block of the embedded sample"
-QUICK_SCALE, QUICK_FRAMES, QUICK_CUT_MM = 0.25, 24, 0.3
+commands = typer.Typer()
 
-
-def render(scenario: Scenario, out: Path, progress: Progress) -> None:
-    """Write the recording set of a scenario into a new folder; InputError if something is there already."""
-    simulate_set(scenario, out, progress)
+SCENARIO = Scenario()
+"""The defaults of a simulated recording."""
+_PART = "gauge block of the embedded sample"
+_QUICK_SCALE, _QUICK_FRAMES, _QUICK_CUT_MM = 0.25, 24, 0.3
 
 
-def show(out: Path, *, as_json: bool) -> None:
-    """Say where the set is and what to do with it."""
-    if as_json:
+@commands.command()
+def simulate(
+    thing: Annotated[str, typer.Argument(metavar="OBJECT", help=f"What stands on the table: {', '.join(OBJECTS)}.")],
+    out: Annotated[Path, typer.Option("--out", "-o", metavar="SET", help="Folder of the new recording set.")],
+    height: Annotated[
+        float,
+        typer.Option("--height", metavar="MM", help="Height of a block or mask, diameter of a sphere or cylinder."),
+    ] = SCENARIO.height_mm,
+    stl: Annotated[str, typer.Option("--stl", metavar="FILE", help="The file of an stl.")] = SCENARIO.stl_path,
+    frames: Annotated[int, typer.Option(help="Frames of the scan.")] = SCENARIO.frames,
+    views: Annotated[int, typer.Option(help="Views of the camera target.")] = SCENARIO.camera_views,
+    poses: Annotated[int, typer.Option(help="Poses of the plane target.")] = SCENARIO.plane_poses,
+    seed: Annotated[int, typer.Option(help="The same seed gives the same pictures.")] = SCENARIO.seed,
+    scale: Annotated[float, typer.Option(help="Picture size over 3840 × 2748.")] = SCENARIO.scale,
+    noise: Annotated[float, typer.Option(help="Factor on shot and read noise; 0 for none.")] = SCENARIO.noise,
+    speckle: Annotated[float, typer.Option(help="Contrast of the lasers' speckle; 0 for none.")] = SCENARIO.speckle,
+    bits: Annotated[int, typer.Option(help="Depth of the pictures, 8 or 16.")] = SCENARIO.bits,
+    ambient: Annotated[float, typer.Option(help="Grey level of a white surface in the room's light.")] = (
+        SCENARIO.ambient_grey
+    ),
+    texture: Annotated[float, typer.Option(help="Relative unevenness of the surfaces.")] = SCENARIO.texture,
+    camera_target: Annotated[str, typer.Option(help=f"One of {', '.join(CAMERA_TARGETS)}.")] = SCENARIO.camera_target,
+    plane_target: Annotated[str, typer.Option(help=f"One of {', '.join(PLANE_TARGETS)}.")] = SCENARIO.plane_target,
+    published_planes: Annotated[
+        bool, typer.Option("--published-planes", help="The paper's printed planes instead of an exact 5° pencil.")
+    ] = False,
+    no_reference: Annotated[bool, typer.Option("--no-reference", help="Leave scan/reference.png out.")] = False,
+    json: Json = False,
+) -> None:
+    """Render a recording set as the paper's rig would record it; its truth is written beside it, never inside."""
+    from core.cli import output
+    from core.simulate.recording import simulate_set
+
+    scenario = Scenario(
+        object=thing,
+        stl_path=stl,
+        height_mm=height,
+        frames=frames,
+        camera_views=views,
+        plane_poses=poses,
+        seed=seed,
+        scale=scale,
+        noise=noise,
+        speckle=speckle,
+        bits=bits,
+        ambient_grey=ambient,
+        texture=texture,
+        camera_target=camera_target,
+        plane_target=plane_target,
+        published_planes=published_planes,
+        reference=not no_reference,
+    )
+    with bars() as progress:
+        simulate_set(scenario, out, progress)
+    if json:
         output.print_json({"set": str(out)})
     else:
         sys.stdout.write(f"recording set in {out}; measure it with: trisect run {out} --out DIR\n")
 
 
+@commands.command(epilog=EPILOG)
+def demo(
+    out: Annotated[Path, typer.Option("--out", "-o", metavar="DIR", help="Folder of the results.")] = Path("out"),
+    quick: Annotated[bool, typer.Option("--quick", help="A smaller sample: sooner done, less exact.")] = False,
+    json: Json = False,
+) -> None:
+    """Measure the embedded sample, a 50 mm gauge block; it is rendered on first use and kept in your cache."""
+    from core.cli import measuring
+    from core.report.wording import thickness_line
+
+    options = measuring.options(Method.NETWORK, _QUICK_CUT_MM if quick else 0.05, part=_PART)
+    with bars() as progress, _sample(progress, quick=quick) as folder:
+        result = measuring.run_all(folder, out, options, progress)
+    measuring.show_run(result, as_json=json)
+    if result.gauge is not None and not json:
+        line = thickness_line(result.gauge)
+        sys.stdout.write(f"\nThe sample block measures {line}; the report is {result.files['report']}.\n")
+    raise typer.Exit(measuring.exit_code(result.gauge.verdict if result.gauge else ""))
+
+
 @contextmanager
-def sample(progress: Progress, *, quick: bool) -> Iterator[Path]:
+def _sample(progress: Progress, *, quick: bool) -> Iterator[Path]:
     """The embedded sample's folder, rendered on first use; the quick one is smaller and forgotten afterwards."""
+    from core.simulate.recording import simulate_set
+    from core.simulate.sample import sample_scenario, sample_set
+
     if not quick:
         yield sample_set(progress)
         return
-    scenario = replace(sample_scenario(), scale=QUICK_SCALE, frames=QUICK_FRAMES)
+    scenario = replace(sample_scenario(), scale=_QUICK_SCALE, frames=_QUICK_FRAMES)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "sample"
         simulate_set(scenario, path, progress)
         yield path
-
-
-def show_demo(result: RunResult) -> None:
-    """The last line of the demo: the one number, and what to open."""
-    if result.gauge is not None:
-        line = thickness_line(result.gauge)
-        sys.stdout.write(f"\nThe sample block measures {line}; the report is {result.files['report']}.\n")

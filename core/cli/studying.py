@@ -9,20 +9,22 @@ from typing import cast
 
 import typer
 
-from core.cli import study_output
-from core.cli.measuring import Shown
+from core.cli.measuring import Shown, exit_code
+from core.cli.output import Rows
 from core.errors import InputError
-from core.files.study_file import Study, study_values, write_study
-from core.files.study_input import read_crossed, read_readings, read_repeats
-from core.pipeline.acceptance_step import Artefact, read_positions
+from core.files.study.input import read_crossed, read_readings, read_repeats
+from core.files.study.study_file import Study, study_values, write_study
+from core.messages import Message
+from core.pipeline.steps.acceptance_step import Artefact, read_positions
 from core.progress import Progress
-from core.study.acceptance import AcceptanceCheck, Quantity, acceptance_check
-from core.study.grr import ACCEPTABLE, GrrStudy, grr_study
-from core.study.repeats import RepeatStudy, repeat_study
-from core.study.repeats_budget import from_budgets, from_stated
-from core.study.type1 import CAPABLE, Type1Study, type1_study
+from core.report.wording import count, decimals_of, fixed
+from core.study.acceptance import AcceptanceCheck, CheckedQuantity, Quantity, acceptance_check
+from core.study.budget import UncertaintyBudget, from_budgets, from_stated
+from core.study.grr import ACCEPTABLE, AnovaRow, Component, GrrStudy, grr_study
+from core.study.repeats import RepeatStudy, Requirement, repeat_study
+from core.study.type1 import CAPABLE, LIMIT, Type1Study, type1_study
 
-GOOD = ("", "conforming", CAPABLE, ACCEPTABLE)
+GOOD = ("conforming", CAPABLE, ACCEPTABLE)
 """Verdicts that leave with exit code 0."""
 ARTEFACTS = ("sphere", "bar", "plane")
 
@@ -30,8 +32,8 @@ ARTEFACTS = ("sphere", "bar", "plane")
 def finish(study: Study, out: Path | None, *, as_json: bool) -> None:
     """Write study.json if asked to, say what was found, and leave with the verdict's exit code."""
     files = {} if out is None else {"study": write_study(out, study)}
-    Shown(study_output.rows(study), study_values(study), study.notes, files).show(as_json=as_json)
-    raise typer.Exit(0 if study.verdict in GOOD else 1)
+    Shown(study_rows(study), study_values(study), study.notes, files).show(as_json=as_json)
+    raise typer.Exit(exit_code(study.verdict, GOOD))
 
 
 def repeats(
@@ -49,10 +51,16 @@ def repeats(
     if limits is None and asked is not None and nominal == asked.nominal:
         limits = asked.lower, asked.upper
     if limits is not None and nominal is None:
-        raise InputError("a tolerance needs a nominal value", where="--tolerance", todo="give --nominal as well")
+        raise InputError(
+            Message("study.tolerance_without_nominal", "a tolerance needs a nominal value"),
+            where="--tolerance",
+            todo=Message("advice.give_nominal", "give --nominal as well"),
+        )
     if len(found.values) == 1 and u is None and found.u is None:
         raise InputError(
-            "one value alone, with no stated uncertainty, is no study", where=files[0], todo="measure again"
+            Message("study.one_value_without_u", "one value alone, with no stated uncertainty, is no study"),
+            where=files[0],
+            todo=Message("advice.measure_again", "measure again"),
         )
     if u is None and found.budgets:
         budget = from_budgets(found.values, found.budgets, unit=found.unit)
@@ -60,7 +68,7 @@ def repeats(
         budget = from_stated(found.values, found.u if u is None else u, unit=found.unit)
     return repeat_study(
         found.values, budget, complete=u is not None or found.u is not None, name=name, labels=found.labels, U=found.U,
-        nominal=nominal, limits=limits, r=guard, unit=found.unit,
+        asked=Requirement(nominal, limits, guard),
     )  # fmt: skip
 
 
@@ -76,14 +84,25 @@ def type1(
         limits = limits or (found.limits.lower, found.limits.upper)
     if nominal is None or limits is None or not math.isfinite(limits[1] - limits[0]):
         raise InputError(
-            "a type-1 study needs the calibrated value of the part and the tolerance it is measured against",
+            Message(
+                "study.type1_needs_reference",
+                "a type-1 study needs the calibrated value of the part and the tolerance it is measured against",
+            ),
             where="--nominal, --tolerance",
-            todo="give both",
+            todo=Message("advice.give_both", "give both"),
         )
     if len(found.values) < 2:
-        raise InputError("one value alone is no study", where=files[0], todo="measure the part again")
+        raise InputError(
+            Message("study.one_value", "one value alone is no study"),
+            where=files[0],
+            todo=Message("advice.measure_part_again", "measure the part again"),
+        )
     if resolution is not None and not (resolution > 0 and math.isfinite(resolution)):
-        raise InputError(f"{resolution:g} is no resolution", where="--resolution", todo="give a value above 0")
+        raise InputError(
+            Message("study.no_resolution", "{resolution:g} is no resolution", resolution=resolution),
+            where="--resolution",
+            todo=Message("advice.give_value_above_zero", "give a value above 0"),
+        )
     return type1_study(found.values, nominal, limits[1] - limits[0], resolution=resolution, unit=found.unit)
 
 
@@ -92,7 +111,11 @@ def grr(file: Path, name: str, tolerance: float | None) -> GrrStudy:
     limits = _both_sides(tolerance)
     found = read_crossed(file, name)
     if found.values.max() == found.values.min():
-        raise InputError("all values are the same", where=file, todo="measure parts that differ")
+        raise InputError(
+            Message("study.all_values_same", "all values are the same"),
+            where=file,
+            todo=Message("advice.measure_parts_differ", "measure parts that differ"),
+        )
     return grr_study(
         found.values,
         parts=found.parts,
@@ -115,16 +138,32 @@ def acceptance(
     given = cast(dict[Quantity, float], {name: limit for name, limit in limits.items() if limit is not None})
     for name, limit in given.items():
         if not (limit > 0 and math.isfinite(limit)):
-            raise InputError(f"{limit:g} mm is no limit", where=f"--{name}", todo="give a length above 0")
+            raise InputError(
+                Message("study.no_limit", "{limit:g} mm is no limit", limit=limit),
+                where=f"--{name}",
+                todo=Message("advice.give_length_above_zero", "give a length above 0"),
+            )
     _not_negative(u, "--u")
     if len(files) == 1 and not files[0].is_dir():
         return acceptance_check(read_readings(files[0]), given)
     if artefact not in ARTEFACTS:
-        raise InputError(f'"{artefact}" is no artefact', where="--artefact", todo=f"choose {', '.join(ARTEFACTS)}")
+        raise InputError(
+            Message("study.no_artefact", '"{artefact}" is no artefact', artefact=artefact),
+            where="--artefact",
+            todo=Message("advice.choose_artefact", "choose {artefacts}", artefacts=tuple(ARTEFACTS)),
+        )
     if artefact != "plane" and not _is_length(nominal):
-        raise InputError(f"the {artefact} has no calibrated value", where="--nominal", todo="give it in mm, above 0")
+        raise InputError(
+            Message("study.no_calibrated_value", "the {artefact} has no calibrated value", artefact=artefact),
+            where="--nominal",
+            todo=Message("advice.give_mm_above_zero", "give it in mm, above 0"),
+        )
     if artefact == "bar" and not _is_length(diameter):
-        raise InputError("the spheres of the bar have no diameter", where="--diameter", todo="give it in mm, above 0")
+        raise InputError(
+            Message("study.no_sphere_diameter", "the spheres of the bar have no diameter"),
+            where="--diameter",
+            todo=Message("advice.give_mm_above_zero", "give it in mm, above 0"),
+        )
     readings = read_positions(
         files,
         cast(Artefact, artefact),
@@ -145,15 +184,135 @@ def _both_sides(tolerance: float | None) -> tuple[float, float] | None:
     if tolerance is None:
         return None
     if not (tolerance > 0 and math.isfinite(tolerance)):
-        raise InputError(f"{tolerance:g} is no tolerance", where="--tolerance", todo="give a value above 0")
+        raise InputError(
+            Message("study.no_tolerance", "{tolerance:g} is no tolerance", tolerance=tolerance),
+            where="--tolerance",
+            todo=Message("advice.give_value_above_zero", "give a value above 0"),
+        )
     return -tolerance, tolerance
 
 
 def _finite(value: float | None, where: str) -> None:
     if value is not None and not math.isfinite(value):
-        raise InputError(f"{value:g} is not a finite number", where=where)
+        raise InputError(Message("study.not_finite", "{value:g} is not a finite number", value=value), where=where)
 
 
 def _not_negative(value: float | None, where: str) -> None:
     if value is not None and not (value >= 0 and math.isfinite(value)):
-        raise InputError(f"{value:g} is not a finite number of 0 or more", where=where)
+        raise InputError(
+            Message("study.not_finite_or_negative", "{value:g} is not a finite number of 0 or more", value=value),
+            where=where,
+        )
+
+
+def study_rows(study: Study) -> Rows:
+    """What a study found, and its verdict."""
+    match study:
+        case RepeatStudy():
+            found = _repeats(study)
+        case Type1Study():
+            found = _type1(study)
+        case GrrStudy():
+            found = _grr(study)
+        case AcceptanceCheck():
+            found = [row for one in study.quantities for row in _quantity(one)]
+    return [*found, ("verdict", study.verdict or "none: no limit was given")]
+
+
+def _repeats(study: RepeatStudy) -> Rows:
+    found, unit = study.statistics, study.unit
+    digits = max(decimals_of(study.budget.U), decimals_of(found.std_mm), 3)
+
+    def shown(value: float | None, *, signed: bool = False) -> str:
+        return "unknown" if value is None else f"{fixed(value, digits, signed=signed)} {unit}"
+
+    lines = [
+        (study.name, f"{count(found.n, 'scan')}, mean {shown(found.mean_mm)}"),
+        ("STD (n − 1)", shown(found.std_mm)),
+    ]
+    if study.nominal is not None:
+        lines += [
+            ("nominal", f"{study.nominal:g} {unit}"),
+            ("mean error", shown(found.error_mm, signed=True)),
+            ("RMSE", shown(found.rmse_mm)),
+            ("largest error", shown(found.largest_error_mm)),
+        ]
+    if study.run is not None:
+        lines.append(("run chart", f"{shown(study.run.lower)} to {shown(study.run.upper)} (individual values)"))
+    lines += [("U of the mean", _expanded(study.budget, digits)), ("from", _sources(study.budget, digits))]
+    if study.zones is not None:
+        limits = f"{fixed(study.zones.lower, 3, signed=True)} to {fixed(study.zones.upper, 3, signed=True)} {unit}"
+        lines.append(("rule", f"ISO 14253-1, deviation {limits}, guard band {shown(study.zones.guard_band)}"))
+    return lines
+
+
+def _expanded(budget: UncertaintyBudget, digits: int) -> str:
+    dof = "∞" if math.isinf(budget.dof) else f"{budget.dof:.1f}"
+    return f"{fixed(budget.U, digits)} {budget.unit} (k = {budget.k:.2f}, ν_eff = {dof}, {budget.coverage:.2%})"
+
+
+def _sources(budget: UncertaintyBudget, digits: int) -> str:
+    largest = sorted(budget.rows, key=lambda row: -row.u_mm)
+    return ", ".join(
+        f"{row.source} {fixed(row.u_mm, digits)} {budget.unit}" for row in largest if row.u_mm >= 0.1 * budget.u > 0
+    )
+
+
+def _type1(study: Type1Study) -> Rows:
+    digits, unit = max(decimals_of(study.s) + 1, 3), study.unit
+
+    def shown(value: float, *, signed: bool = False) -> str:
+        return f"{fixed(value, digits, signed=signed)} {unit}"
+
+    low, high = (fixed(value, digits, signed=True) for value in study.bias_interval)
+    lines = [
+        ("repeats", f"{study.n}, mean {shown(study.mean)}, s {shown(study.s)}"),
+        ("reference", f"{study.reference:g} {unit}, T = {study.tolerance:g} {unit}"),
+        ("bias", f"{shown(study.bias, signed=True)} (95 %: {low} to {high}), t = {study.t:.2f}, p = {study.p:.2g}"),
+        ("Cg", f"{_index(study.cg)} (95 %: {_index(study.cg_interval[0])} to {_index(study.cg_interval[1])})"),
+        ("Cgk", f"{_index(study.cgk)}; both must be {LIMIT} or more"),
+        ("smallest T", f"{shown(study.smallest_tolerance)} for which they would be"),
+    ]
+    if study.resolution_share is not None:
+        judged = "suffices" if study.resolution_suffices else "does not suffice: 5 % at most"
+        lines.append(("resolution", f"{study.resolution:g} {unit}, {study.resolution_share:.1%} of T: {judged}"))
+    return lines
+
+
+def _index(value: float) -> str:
+    return "∞" if math.isinf(value) and value > 0 else fixed(value, 2)
+
+
+def _grr(study: GrrStudy) -> Rows:
+    p, o, r = study.values.shape
+    lines = [("measured", f"{count(p, 'part')} × {count(o, 'operator')} × {count(r, 'repeat')}")]
+    lines += [(f"ANOVA {row.source}", _anova(row)) for row in (study.pooled_anova or study.anova)]
+    lines += [(one.source, _component(one, study.unit)) for one in study.components]
+    low, high = study.grr_interval
+    gauge = study.component("gauge R&R")
+    lines.append(("%GRR of total", f"{gauge.of_total:.1%} (95 %: {low:.1%} to {high:.1%})"))
+    if study.tolerance_interval is not None and gauge.of_tolerance is not None:
+        low, high = study.tolerance_interval
+        said = f"{gauge.of_tolerance:.1%} (95 %: {low:.1%} to {high:.1%}), T = {study.tolerance:g} {study.unit}"
+        lines.append(("%GRR of T", said))
+    low, high = study.ndc_interval
+    lines.append(("ndc", f"{study.categories or '∞'} ({_index(study.ndc)}; 95 %: {_index(low)} to {_index(high)})"))
+    return lines
+
+
+def _anova(row: AnovaRow) -> str:
+    tested = "" if row.f is None or row.p is None else f", F {row.f:.3g}, p {row.p:.3g}"
+    return f"SS {row.ss:.6g}, ν {row.dof}" + ("" if math.isnan(row.ms) else f", MS {row.ms:.4g}") + tested
+
+
+def _component(one: Component, unit: str) -> str:
+    of_tolerance = "" if one.of_tolerance is None else f", {one.of_tolerance:.1%} of T"
+    low, high = (math.sqrt(value) for value in one.variance_interval)
+    return f"σ {one.sigma:.4g} {unit} (95 %: {low:.3g} to {high:.3g}), {one.of_total:.1%} of total{of_tolerance}"
+
+
+def _quantity(one: CheckedQuantity) -> Rows:
+    limit = "no limit" if one.limit is None else f"limit {one.limit:g} mm"
+    positions = count(len({reading.position for reading in one.readings}), "position")
+    said = f"{fixed(one.largest_error, 4, signed=True)} mm at {one.worst.position}, {positions}, {limit}"
+    return [(str(one.title), said + (f": {one.verdict}" if one.verdict else ""))]

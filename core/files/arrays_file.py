@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import io
 import zipfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -14,8 +15,9 @@ from numpy.typing import NDArray
 
 from core.errors import InputError
 from core.files.atomic import write_bytes
-from core.files.pictures import read_bytes
-from core.image.centreline import Centreline
+from core.files.reading import MISSING, read_bytes
+from core.image.stripes.centreline import Centreline
+from core.messages import Message, as_text, from_text
 
 Arrays = Mapping[str, NDArray[Any]]
 
@@ -29,7 +31,7 @@ def write_arrays(path: Path, arrays: Arrays) -> None:
     write_bytes(path, data.getvalue())
 
 
-def read_arrays(path: Path, names: Sequence[str], *, todo: str) -> Arrays:
+def read_arrays(path: Path, names: Sequence[str], *, todo: Message) -> Arrays:
     """Read all arrays, of which `names` must be there.
 
     Raises
@@ -38,19 +40,40 @@ def read_arrays(path: Path, names: Sequence[str], *, todo: str) -> Arrays:
         If the file is missing or damaged, lacks an array, or holds numbers that are not finite.
     """
     if not path.exists():
-        raise InputError("the file is missing", where=path, todo=todo)
+        raise InputError(MISSING, where=path, todo=todo)
     try:
         with np.load(io.BytesIO(read_bytes(path)), allow_pickle=False) as file:
             arrays = dict(file)
     except (zipfile.BadZipFile, ValueError, EOFError, OSError) as error:
-        raise InputError(f"this is no whole file of arrays ({error})", where=path, todo=todo) from error
+        what = Message("file.no_whole_arrays", "this is no whole file of arrays ({reason})", reason=str(error))
+        raise InputError(what, where=path, todo=todo) from error
     for name in names:
         if name not in arrays:
-            raise InputError(f"the array {name} is missing", where=path, todo=todo)
+            raise InputError(_missing(name), where=path, todo=todo)
     for name, array in arrays.items():
         if array.dtype.kind == "f" and not np.isfinite(array).all():
-            raise InputError(f"the array {name} holds values that are not finite", where=path, todo=todo)
+            what = Message("file.array_not_finite", "the array {name} holds values that are not finite", name=name)
+            raise InputError(what, where=path, todo=todo)
     return arrays
+
+
+@contextmanager
+def unpacking(path: Path, *, todo: Message) -> Iterator[None]:
+    """Tell as InputError that an array of `path` is missing, or that arrays do not fit together, which unpacking finds.
+
+    Within it, KeyError is for a missing array, ValueError and TypeError for what does not fit.
+    """
+    try:
+        yield
+    except KeyError as error:
+        raise InputError(_missing(str(error.args[0])), where=path, todo=todo) from error
+    except (ValueError, TypeError) as error:
+        what = Message("file.arrays_do_not_fit", "its arrays do not fit together ({reason})", reason=str(error))
+        raise InputError(what, where=path, todo=todo) from error
+
+
+def _missing(name: str) -> Message:
+    return Message("file.array_missing", "the array {name} is missing", name=name)
 
 
 def pack_centrelines(prefix: str, groups: Sequence[Sequence[Centreline]]) -> dict[str, NDArray[Any]]:
@@ -77,6 +100,16 @@ def unpack_centrelines(prefix: str, arrays: Arrays) -> tuple[tuple[Centreline, .
     ]
     starts = np.concatenate([[0], np.cumsum(arrays[f"{prefix}_counts"])])
     return tuple(tuple(pieces[a:b]) for a, b in pairwise(starts.tolist()))
+
+
+def pack_messages(messages: Sequence[Message | None]) -> NDArray[Any]:
+    """An array of messages as texts; '' for none. `unpack_messages` reads it."""
+    return pack_texts([as_text(message) for message in messages])
+
+
+def unpack_messages(texts: NDArray[Any]) -> list[Message | None]:
+    """The messages that `pack_messages` packed; older files hold bare sentences."""
+    return [from_text(text) for text in texts.tolist()]
 
 
 def pack_texts(texts: Sequence[str]) -> NDArray[Any]:

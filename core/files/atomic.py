@@ -6,25 +6,38 @@ import contextlib
 import errno
 import os
 import secrets
+import shutil
 import tempfile
+import time
 from collections.abc import Callable
 from pathlib import Path
 
 from core.errors import InputError
+from core.messages import Message, plain
 
-ANOTHER_OUT = "choose another folder with --out"
-"""What to do on the command line where nothing can be written; a window says something else."""
+ANOTHER_OUT = Message("advice.another_out", "choose another folder with --out")
+"""What to do on the command line where nothing can be written; a window has its own advice by this code."""
+_FREE_SPACE = Message("advice.free_space", "free some space or choose another folder, then run again")
+_ANOTHER_FOLDER = Message("advice.choose_another_folder", "choose another folder")
+_NO_PERMISSION = Message("file.no_permission", "there is no permission to write here")
+_FILE_IN_THE_WAY = Message("file.file_for_folder", "a file stands where a folder is needed")
 
 _REASONS = {
-    errno.ENOSPC: ("the disk is full", "free some space or choose another folder, then run again"),
-    errno.EDQUOT: ("your disk quota is used up", "free some space or choose another folder, then run again"),
-    errno.EFBIG: ("the file system does not take a file of this size", "choose another folder"),
-    errno.EACCES: ("there is no permission to write here", ANOTHER_OUT),
-    errno.EPERM: ("there is no permission to write here", ANOTHER_OUT),
-    errno.EROFS: ("the disk is read-only", ANOTHER_OUT),
-    errno.ENOTDIR: ("a file stands where a folder is needed", ANOTHER_OUT),
-    errno.EEXIST: ("a file stands where a folder is needed", ANOTHER_OUT),
-    errno.EISDIR: ("a folder stands where a file is to be written", "move it away or choose another folder"),
+    errno.ENOSPC: (Message("file.disk_full", "the disk is full"), _FREE_SPACE),
+    errno.EDQUOT: (Message("file.quota_full", "your disk quota is used up"), _FREE_SPACE),
+    errno.EFBIG: (
+        Message("file.too_large", "the file system does not take a file of this size"),
+        _ANOTHER_FOLDER,
+    ),
+    errno.EACCES: (_NO_PERMISSION, ANOTHER_OUT),
+    errno.EPERM: (_NO_PERMISSION, ANOTHER_OUT),
+    errno.EROFS: (Message("file.read_only", "the disk is read-only"), ANOTHER_OUT),
+    errno.ENOTDIR: (_FILE_IN_THE_WAY, ANOTHER_OUT),
+    errno.EEXIST: (_FILE_IN_THE_WAY, ANOTHER_OUT),
+    errno.EISDIR: (
+        Message("file.folder_for_file", "a folder stands where a file is to be written"),
+        Message("advice.move_away", "move it away or choose another folder"),
+    ),
 }
 
 
@@ -94,5 +107,41 @@ def make_folder(path: Path) -> Path:
 
 def cannot_write(path: Path, error: OSError) -> InputError:
     """The sentence for a file or folder that could not be written."""
-    what, todo = _REASONS.get(error.errno or 0, (error.strerror or str(error), ANOTHER_OUT))
-    return InputError(f"cannot be written, because {what}", where=path, todo=todo)
+    what, todo = _REASONS.get(error.errno or 0, (plain(error.strerror or str(error)), ANOTHER_OUT))
+    return InputError(
+        Message("file.cannot_be_written", "cannot be written, because {what}", what=what), where=path, todo=todo
+    )
+
+
+QUIET_S = 15 * 60.0
+"""Nobody works any longer on a folder in which nothing has happened for so long."""
+
+
+def remove_leftovers(folder: Path, quiet_s: float = QUIET_S) -> None:
+    """Remove the hidden folders (`.NAME.anything`) beside `folder` in which it was to be made.
+
+    Parameters
+    ----------
+    folder
+        What was to appear in one step.
+    quiet_s
+        Leave alone what has changed within so many seconds: another program may be at it.
+    """
+    try:
+        found = [path for path in folder.parent.glob(f".{folder.name}.*") if path.is_dir()]
+    except OSError:
+        return  # nothing there, or nothing to be seen
+    for path in found:
+        if time.time() - _changed_at(path) >= quiet_s:
+            shutil.rmtree(path, ignore_errors=True)
+
+
+def _changed_at(folder: Path) -> float:
+    """When anything was last put into a folder, or into one of its folders two floors down."""
+    times = []
+    for path in (folder, *folder.glob("*/"), *folder.glob("*/*/")):
+        try:
+            times.append(path.stat().st_mtime)
+        except OSError:
+            times.append(time.time())  # it is being changed right now
+    return max(times)

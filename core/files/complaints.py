@@ -3,27 +3,35 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from dataclasses import fields, is_dataclass
 from difflib import get_close_matches
 from pathlib import Path
-from typing import Any, get_args
+from typing import Any, TypeVar, get_args, get_type_hints
 
-from pydantic import BaseModel, ValidationError
+from pydantic import BaseModel, RootModel, ValidationError
 from pydantic.fields import FieldInfo
 
 from core.errors import InputError
+from core.messages import Message, label
 
+_Model = TypeVar("_Model", bound=BaseModel)
 _TYPES = {
-    "finite_number": "a finite number",
-    "float_type": "a finite number",
-    "int_type": "a whole number",
-    "string_type": "a text",
-    "bool_type": "true or false",
-    "list_type": "a list",
-    "model_type": "a table",
-    "dict_type": "a table",
+    "finite_number": label("a finite number"),
+    "float_type": label("a finite number"),
+    "int_type": label("a whole number"),
+    "string_type": label("a text"),
+    "bool_type": label("true or false"),
+    "list_type": label("a list"),
+    "model_type": label("a table"),
+    "dataclass_type": label("a table"),
+    "dict_type": label("a table"),
 }
 """What a field without a description must be, by pydantic's names of errors."""
+
+
+_UNKNOWN = ("extra_forbidden", "unexpected_keyword_argument")
+"""Pydantic's names of unknown keys, of models and of dataclasses."""
 
 
 class Clash(ValueError):
@@ -32,45 +40,69 @@ class Clash(ValueError):
     Raise it from a model's validator; `what` continues the sentence that the key begins.
     """
 
-    def __init__(self, key: str, what: str) -> None:
+    def __init__(self, key: str, what: Message) -> None:
         self.key = key
         self.what = what
-        super().__init__(what)
+        super().__init__(str(what))
 
 
-def complaint(path: Path, error: ValidationError, model: type[BaseModel]) -> InputError:
-    """The sentence for the most telling of the errors found when `model` was read from `path`.
+def checked(model: type[_Model], tables: object, path: Path) -> _Model:
+    """What `path` holds as a `model`; InputError for the most telling of all that is wrong with it.
 
     The `description` of a field completes "… is <value>, not <description>".
     """
+    try:
+        return model.model_validate(tables)
+    except ValidationError as error:
+        raise InputError(_complaint(error, model), where=path) from error
+
+
+def checked_json(model: type[_Model], tables: object, path: Path) -> _Model:
+    """As `checked`, by the rules of JSON: lists may become tuples and sets there, and tables dataclasses."""
+    try:
+        return model.model_validate_json(json.dumps(tables))
+    except ValidationError as error:
+        raise InputError(_complaint(error, model), where=path) from error
+
+
+def _complaint(error: ValidationError, model: type[BaseModel]) -> Message:
     # A misspelt key is unknown under one name and missing under the other: the first says more.
-    errors = sorted(error.errors(include_url=False), key=lambda one: one["type"] != "extra_forbidden")
+    errors = sorted(error.errors(include_url=False), key=lambda one: one["type"] not in _UNKNOWN)
     first = errors[0]
     names, field, tables = _locate(model, first["loc"])
     name = ".".join(names)
-    if first["type"] == "extra_forbidden":
-        return InputError(_unknown_key(name, tables), where=path)
+    if first["type"] in _UNKNOWN:
+        return _unknown_key(name, tables)
     clash = first.get("ctx", {}).get("error")
     if isinstance(clash, Clash):
-        return InputError(f"{'.'.join([*names, clash.key])} {clash.what}", where=path)
+        return Message("file.clash", "{field} {what}", field=".".join([*names, clash.key]), what=clash.what)
     if first["type"] in ("union_tag_invalid", "union_tag_not_found"):
         kinds = " or ".join(f'"{kind}"' for kind in _kinds(tables))
         given = first.get("ctx", {}).get("tag")
-        found = "is missing" if given is None else f'is "{given}"'
-        return InputError(f"{name}.kind {found}, not {kinds}", where=path)
-    wanted = field.description if field is not None and field.description else _TYPES.get(first["type"], first["msg"])
+        if given is None:
+            return Message("file.kind_missing", "{field}.kind is missing, not {kinds}", field=name, kinds=kinds)
+        return Message(
+            "file.kind_unknown", '{field}.kind is "{given}", not {kinds}', field=name, given=given, kinds=kinds
+        )
+    described = field.description if field is not None and field.description else None
+    wanted = label(described) if described else _TYPES.get(first["type"], first["msg"])
     if first["type"] == "missing":
-        return InputError(f"{name} is missing; it must be {wanted}", where=path)
+        return Message("file.field_missing", "{field} is missing; it must be {wanted}", field=name, wanted=wanted)
     whole = ".".join([*names[:-1], names[-1].partition("[")[0]]) if names else ""
-    allowed = f"not {wanted}" if whole == name else f"but {whole} must be {wanted}"
-    return InputError(f"{name} is {_shown(first['input'])}, {allowed}", where=path)
+    given = _shown(first["input"])
+    if whole == name:
+        return Message("file.field_wrong", "{field} is {given}, not {wanted}", field=name, given=given, wanted=wanted)
+    return Message(
+        "file.item_wrong", "{field} is {given}, but {whole} must be {wanted}",
+        field=name, given=given, whole=whole, wanted=wanted,
+    )  # fmt: skip
 
 
 def _locate(model: type[BaseModel], loc: tuple[int | str, ...]) -> tuple[list[str], FieldInfo | None, list[Any]]:
     """Names along `loc`, the innermost field, and the models that hold the innermost name (or may stand there)."""
     names: list[str] = []
     field: FieldInfo | None = None
-    tables: list[Any] = [model]
+    tables = list(_models(model.model_fields["root"].annotation)) if issubclass(model, RootModel) else [model]
     for part in loc:
         if isinstance(part, int):
             names[-1] += f"[{part}]"
@@ -80,17 +112,26 @@ def _locate(model: type[BaseModel], loc: tuple[int | str, ...]) -> tuple[list[st
             tables = tagged
             continue
         names.append(part)
-        fields = [table.model_fields[part] for table in tables if part in table.model_fields]
-        if fields:
-            field = fields[0]
+        found = [known[part] for known in map(_fields, tables) if part in known]
+        if found:
+            field = found[0]
             inner = list(_models(field.annotation))
             tables = inner or tables
     return names, field, tables
 
 
-def _models(annotation: Any) -> Iterator[type[BaseModel]]:
-    """The models within an annotation: unions, lists and Annotated opened up."""
-    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+def _fields(table: Any) -> Mapping[str, FieldInfo]:
+    """The fields of a model or a dataclass."""
+    if issubclass(table, BaseModel):
+        known: Mapping[str, FieldInfo] = table.model_fields
+        return known
+    hints = get_type_hints(table, include_extras=True)
+    return {one.name: FieldInfo.from_annotation(hints[one.name]) for one in fields(table)}
+
+
+def _models(annotation: Any) -> Iterator[Any]:
+    """The models and dataclasses within an annotation: unions, lists and Annotated opened up."""
+    if isinstance(annotation, type) and (issubclass(annotation, BaseModel) or is_dataclass(annotation)):
         yield annotation
     for argument in get_args(annotation):
         yield from _models(argument)
@@ -98,15 +139,20 @@ def _models(annotation: Any) -> Iterator[type[BaseModel]]:
 
 def _kinds(tables: list[Any]) -> list[str]:
     """The values of `kind` by which `tables` are told apart."""
-    fields = [table.model_fields["kind"] for table in tables if "kind" in table.model_fields]
-    return [kind for field in fields for kind in get_args(field.annotation)]
+    found = [known["kind"] for known in map(_fields, tables) if "kind" in known]
+    return [kind for field in found for kind in get_args(field.annotation)]
 
 
-def _unknown_key(name: str, tables: list[Any]) -> str:
-    known = [key for table in tables for key in table.model_fields]
+def _unknown_key(name: str, tables: list[Any]) -> Message:
+    known = [key for table in tables for key in _fields(table)]
     near = get_close_matches(name.rpartition(".")[2], known, n=1, cutoff=0.6)
-    hint = f"did you mean {near[0]}?" if near else "known here are " + ", ".join(known)
-    return f"{name} is an unknown key ({hint})"
+    if near:
+        return Message(
+            "file.misspelt_key", "{field} is an unknown key (did you mean {near}?)", field=name, near=near[0]
+        )
+    return Message(
+        "file.unknown_key", "{field} is an unknown key (known here are {known})", field=name, known=tuple(known)
+    )
 
 
 def _shown(value: object) -> str:

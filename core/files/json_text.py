@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from core.errors import InputError
+from core.files.atomic import write_text
 
 WIDTH = 110
 """Lists of lists or tables longer than this many characters are broken into lines, one item each."""
@@ -22,27 +22,14 @@ def to_json(value: object) -> str:
     return _text(_plain(value), 0) + "\n"
 
 
+def write_json(path: Path, value: object) -> None:
+    """Write `value` as JSON, whole or not at all; InputError if it cannot be written."""
+    write_text(path, to_json(value))
+
+
 def rounded(values: ArrayLike, digits: int) -> Any:
     """Nested lists of `values`, rounded: for bulky arrays that only serve plots and residual tables."""
     return (np.round(np.asarray(values, dtype=np.float64), digits) + 0.0).tolist()
-
-
-def read_json(path: Path, *, todo: str = "") -> Any:
-    """The content of a JSON file.
-
-    Raises
-    ------
-    InputError
-        If it is missing (`todo` says how to come by it), unreadable or no JSON.
-    """
-    try:
-        return json.loads(path.read_text(encoding="utf-8"))
-    except FileNotFoundError as error:
-        raise InputError("the file is missing", where=path, todo=todo) from error
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"cannot be read as UTF-8 text ({error})", where=path) from error
-    except json.JSONDecodeError as error:
-        raise InputError(f"this is no valid JSON: {error}", where=path, todo=todo) from error
 
 
 def _plain(value: object) -> Any:

@@ -13,7 +13,65 @@ from numpy.typing import NDArray
 from core.acquire.grey import Channel, to_grey
 from core.errors import InputError
 from core.files.atomic import write_bytes
-from core.files.pgm import MAGIC, pgm_damage, pgm_parts, read_pgm
+from core.files.reading import read_bytes
+from core.messages import Message
+
+MAGIC = b"P5"
+
+_WHITE = {np.dtype(np.uint8): 255, np.dtype(np.uint16): 65535}
+
+
+def pgm_parts(picture: NDArray[np.uint8] | NDArray[np.uint16]) -> tuple[bytes, memoryview]:
+    """Head and pixels of the file for (height, width) uint8 or uint16 grey levels; ValueError for anything else."""
+    if picture.ndim != 2 or picture.dtype not in _WHITE:
+        raise ValueError(f"a picture is 2-D uint8 or uint16, not {picture.ndim}-D {picture.dtype}")
+    height, width = picture.shape
+    levels = picture if picture.dtype == np.uint8 else picture.astype(">u2")
+    return f"P5\n{width} {height}\n{_WHITE[picture.dtype]}\n".encode(), np.ascontiguousarray(levels).data
+
+
+def read_pgm(data: bytes) -> NDArray[np.uint8] | NDArray[np.uint16] | None:
+    """The grey levels of an undamaged file, or None if its white is neither 255 nor 65535."""
+    width, height, white, begin = _head(data)
+    if white == 255:
+        return np.frombuffer(data, np.uint8, width * height, begin).reshape(height, width).copy()
+    if white == 65535:
+        return np.frombuffer(data, ">u2", width * height, begin).reshape(height, width).astype(np.uint16)
+    return None
+
+
+def _pgm_damage(data: bytes) -> Message | None:
+    """What is wrong with the bytes of a PGM file; None if they are as many as its head says."""
+    try:
+        width, height, white, begin = _head(data)
+    except EOFError:
+        return _ENDS_EARLY
+    except ValueError:
+        return Message("picture.no_pgm_header", "is damaged (its header is no PGM header)")
+    return None if len(data) >= begin + width * height * (2 if white > 255 else 1) else _ENDS_EARLY
+
+
+def _head(data: bytes) -> tuple[int, int, int, int]:
+    """Width, height, white, and where the pixels begin; EOFError if it ends early, ValueError if it is none."""
+    fields: list[int] = []
+    at = len(MAGIC)
+    while len(fields) < 3:
+        while at < len(data) and data[at : at + 1].isspace():
+            at += 1
+        if data[at : at + 1] == b"#":
+            at = data.find(b"\n", at) + 1
+            if at == 0:
+                raise EOFError
+            continue
+        start = at
+        while at < len(data) and data[at : at + 1].isdigit():
+            at += 1
+        if start == at:
+            raise EOFError if at >= len(data) else ValueError("no number")
+        fields.append(int(data[start:at]))
+    width, height, white = fields
+    return width, height, white, at + 1
+
 
 Picture = NDArray[np.uint8] | NDArray[np.uint16]
 _Any = NDArray[Any]
@@ -21,6 +79,7 @@ _Any = NDArray[Any]
 SUFFIXES = frozenset({".png", ".tif", ".tiff", ".bmp", ".jpg", ".jpeg", ".pgm"})
 """Endings (lower case) of the files that count as pictures."""
 
+_ENDS_EARLY = Message("picture.ends_early", "ends early")
 _PNG = b"\x89PNG\r\n\x1a\n"
 _QUICKLY = [cv2.IMWRITE_PNG_COMPRESSION, 1, cv2.IMWRITE_PNG_STRATEGY, cv2.IMWRITE_PNG_STRATEGY_HUFFMAN_ONLY]
 """Noise has no repeats worth looking for: half the time of run lengths, and no larger."""
@@ -56,19 +115,15 @@ def read_picture(path: Path, channel: Channel | None = None) -> Picture:
     return decode_picture(read_bytes(path), path, channel)
 
 
-def read_bytes(path: Path) -> bytes:
-    """The bytes of a file; InputError if it cannot be read."""
-    try:
-        return path.read_bytes()
-    except OSError as error:
-        raise InputError(f"cannot be read ({error.strerror or error})", where=path) from error
-
-
 def decode_picture(data: bytes, path: Path, channel: Channel | None = None) -> Picture:
     """Decode the bytes of a picture file; `path` names it in messages. Else as :func:`read_picture`."""
     damage = _damage(data)
-    if damage:
-        raise InputError(f"the picture {damage}", where=path, todo="record or copy it again")
+    if damage is not None:
+        raise InputError(
+            Message("picture.damaged", "the picture {reason}", reason=damage),
+            where=path,
+            todo=Message("advice.record_or_copy_again", "record or copy it again"),
+        )
     plain = read_pgm(data) if data.startswith(MAGIC) else None
     if plain is not None:
         return plain
@@ -77,9 +132,17 @@ def decode_picture(data: bytes, path: Path, channel: Channel | None = None) -> P
     except cv2.error:
         picture = None
     if picture is None:
-        raise InputError("this is no readable picture", where=path, todo="use png, tif, bmp, jpg or pgm")
+        raise InputError(
+            Message("picture.unreadable", "this is no readable picture"),
+            where=path,
+            todo=Message("advice.use_picture_format", "use png, tif, bmp, jpg or pgm"),
+        )
     if picture.dtype not in (np.uint8, np.uint16):
-        raise InputError(f"the picture holds {picture.dtype} values", where=path, todo="save it with 8 or 16 bit")
+        raise InputError(
+            Message("picture.depth_not_supported", "the picture holds {dtype} values", dtype=str(picture.dtype)),
+            where=path,
+            todo=Message("advice.save_with_8_or_16_bit", "save it with 8 or 16 bit"),
+        )
     return to_grey(picture, channel)
 
 
@@ -112,52 +175,52 @@ def picture_parts(path: Path, picture: Picture) -> tuple[bytes | memoryview, ...
     return (data.data,)
 
 
-def _damage(data: bytes) -> str:
-    """What is wrong with the bytes of a picture file, as the end of a sentence, or "".
+def _damage(data: bytes) -> Message | None:
+    """What is wrong with the bytes of a picture file, as the end of a sentence; None if nothing is.
 
     Decoders fill up what is missing with grey and only mumble about it, so each kind of file is checked for its end
     (and PNG for its checksums) before it is decoded. TIFF needs none of this: its decoder fails on missing strips.
     """
     if not data:
-        return "is empty (0 bytes)"
+        return Message("picture.empty", "is empty (0 bytes)")
     if data.startswith(_PNG):
         return _png_damage(data)
     if data.startswith(b"\xff\xd8"):
         return _jpeg_damage(data)
     if data.startswith(b"BM") and len(data) >= 6:
-        return "" if len(data) >= int.from_bytes(data[2:6], "little") else "ends early"
+        return None if len(data) >= int.from_bytes(data[2:6], "little") else _ENDS_EARLY
     if data.startswith(MAGIC):
-        return pgm_damage(data)
-    return ""
+        return _pgm_damage(data)
+    return None
 
 
-def _png_damage(data: bytes) -> str:
+def _png_damage(data: bytes) -> Message | None:
     """Walk the chunks of a PNG up to IEND, checking the checksum of each."""
     at = len(_PNG)
     view = memoryview(data)
     while at + 12 <= len(data):
         end = at + 8 + int.from_bytes(view[at : at + 4], "big")
         if end + 4 > len(data):
-            return "ends early"
+            return _ENDS_EARLY
         if zlib.crc32(view[at + 4 : end]) != int.from_bytes(view[end : end + 4], "big"):
-            return "is damaged (a checksum is wrong)"
+            return Message("picture.wrong_checksum", "is damaged (a checksum is wrong)")
         if data[at + 4 : at + 8] == b"IEND":
-            return ""
+            return None
         at = end + 4
-    return "ends early"
+    return _ENDS_EARLY
 
 
-def _jpeg_damage(data: bytes) -> str:
+def _jpeg_damage(data: bytes) -> Message | None:
     """Walk the segments of a JPEG up to its scan, then look for the end marker; a thumbnail may hold another."""
     at = 2
     while at + 4 <= len(data):
         if data[at] != 0xFF:
-            return "is damaged (a marker is missing)"
+            return Message("picture.marker_missing", "is damaged (a marker is missing)")
         marker = data[at + 1]
         if marker == 0xFF:  # a fill byte
             at += 1
             continue
         at += 2 + int.from_bytes(data[at + 2 : at + 4], "big")
         if marker == 0xDA:
-            return "" if data.find(b"\xff\xd9", at) >= 0 else "ends early"
-    return "ends early"
+            return None if data.find(b"\xff\xd9", at) >= 0 else _ENDS_EARLY
+    return _ENDS_EARLY

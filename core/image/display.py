@@ -1,4 +1,4 @@
-"""Pictures in 8 bit, for looking at."""
+"""Pictures converted to 8 bit for display."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-_FEWEST_BITS = 10  # of cameras that give 16-bit pictures
+_LEAST_BITS = 10  # bits; cameras that give 16-bit pictures have at least so many: a dark picture stays dark
 
 
 def in_8_bit(picture: NDArray[Any], brightest: float) -> NDArray[np.uint8]:
-    """Grey levels from 0 to `brightest` spread over 0 … 255; what is darker or brighter is cut off."""
+    """Scale the grey levels 0 … `brightest` of a picture of any shape to 0 … 255, and clip what is outside."""
     if picture.dtype == np.uint8 and brightest == 255:
         return np.asarray(picture, dtype=np.uint8)
     scaled = picture.astype(np.float32) * np.float32(255 / max(brightest, 1e-6))
@@ -20,14 +20,14 @@ def in_8_bit(picture: NDArray[Any], brightest: float) -> NDArray[np.uint8]:
 
 
 def white_level(picture: NDArray[Any]) -> float:
-    """The grey level to show white: the largest of a camera with as many bits as `picture` makes use of."""
+    """Largest grey level that a camera with the bits `picture` uses can give, to be shown as white."""
     if picture.dtype == np.uint8:
         return 255.0
-    return float(2 ** max(int(picture.max()).bit_length(), _FEWEST_BITS) - 1)
+    return float(2 ** max(int(picture.max()).bit_length(), _LEAST_BITS) - 1)
 
 
 def halved(picture: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    """Half as wide and high, (h // 2, w // 2) or with colours (h // 2, w // 2, 3): means of four pixels each."""
+    """A picture at half size, (H // 2, W // 2) or in colour (H // 2, W // 2, 3): means of four pixels each."""
     rows, columns = picture.shape[0] // 2, picture.shape[1] // 2
     small = cv2.resize(picture[: 2 * rows, : 2 * columns], (columns, rows), interpolation=cv2.INTER_AREA)
     return np.ascontiguousarray(small, dtype=np.uint8)

@@ -1,4 +1,4 @@
-"""How a stripe is exposed, and by how much the exposure should change."""
+"""Exposure of stripes, and by how much it should change."""
 
 from __future__ import annotations
 
@@ -7,25 +7,25 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.image.centreline import Centreline
+from core.image.stripes.centreline import Centreline
 
-BEST_LEVEL = 0.5
-"""Height of a well exposed stripe over the largest grey level: speckle stands up to half as high again above it."""
+# Heights of a stripe over the largest grey level. Chosen so that one step is enough and a good exposure stays as it is:
+# tests/pipeline/live/test_exposure.py holds them.
+BEST_LEVEL = 0.5  # aimed at: speckle stands up to half as high again above it
+FAINTEST, BRIGHTEST = 0.1, 0.75  # between these nothing is changed
 
-FAINTEST, BRIGHTEST = 0.1, 0.75
-"""Between these a stripe is left as it is."""
+# Shares of a stripe's points that are saturated, and what is then done; chosen likewise.
+MOST_SATURATED = 0.05  # accepted: some always are where stripes cross or a face shines
+_MOSTLY_SATURATED = 0.3  # from here on the light is halved
+_STEP_DOWN, _LARGE_STEP_DOWN = 0.7, 0.5  # factors of light: how far above white a stripe is cannot be seen
 
-MOST_SATURATED = 0.05
-"""Share of its points: some always are where stripes cross or a face shines."""
-
-_HALF_IS_LOST = 0.3
-_LARGEST_FACTOR = 4.0
-_FEWEST_POINTS = 50
+_LARGEST_FACTOR = 4.0  # factor of light in one step up: a very faint stripe tells its height badly
+_LEAST_POINTS = 50  # stripe points; fewer do not tell the exposure
 
 
 @dataclass(frozen=True, slots=True)
 class Exposure:
-    """How the stripes of a picture are exposed.
+    """Exposure of the stripes of a picture.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ class Exposure:
 
 
 def stripe_exposure(centrelines: Sequence[Centreline], full_scale: float) -> Exposure | None:
-    """How stripes are exposed; None where too little of them is seen to tell.
+    """Exposure of the stripes of one picture, and by how much it should change.
 
     Parameters
     ----------
@@ -57,18 +57,22 @@ def stripe_exposure(centrelines: Sequence[Centreline], full_scale: float) -> Exp
     full_scale
         Largest grey level the picture can hold.
 
+    Returns
+    -------
+    None where the stripes have too few points to tell.
+
     Notes
     -----
     How far a saturated stripe is above white cannot be seen. So the factor is then a step (0.7, or 0.5 where much is
     lost) that leads to the right exposure in a few pictures; a stripe that is not saturated is put right in one.
     """
-    if sum(map(len, centrelines)) < _FEWEST_POINTS:
+    if sum(map(len, centrelines)) < _LEAST_POINTS:
         return None
     lost = np.concatenate([piece.saturated for piece in centrelines])
     level = float(np.median(np.concatenate([piece.strength for piece in centrelines]))) / full_scale
     saturated = float(np.mean(lost))
     if saturated > MOST_SATURATED:
-        factor = 0.5 if saturated > _HALF_IS_LOST else 0.7
+        factor = _LARGE_STEP_DOWN if saturated > _MOSTLY_SATURATED else _STEP_DOWN
     elif not FAINTEST <= level <= BRIGHTEST:
         factor = min(BEST_LEVEL / max(level, 1e-6), _LARGEST_FACTOR)
     else:

@@ -1,4 +1,4 @@
-"""How sharp a picture is where it matters: at the marks of a target."""
+"""Sharpness of a picture at the marks of a target."""
 
 from __future__ import annotations
 
@@ -10,17 +10,18 @@ from core.image.targets.picture import Picture
 from core.model.arrays import Array
 
 SMOOTHING_PX = 1.0
-"""σ of the Gaussian that keeps noise from passing for a steep edge; taken off the result."""
+"""σ of the Gaussian that keeps noise from passing for a steep edge; its variance is subtracted from the result."""
 
-_CENTRAL_DIFFERENCE = 4 / 12
-"""Variance in px² of the central difference's own footprint, two pixels wide."""
+_DIFFERENCE_VARIANCE = 4 / 12
+"""Variance in px² of the central difference, which averages over two pixels: 2²/12."""
 
-_MOST_MARKS = 40
-_SMALLEST_REACH, _LARGEST_REACH = 4, 32
+# Chosen by the time this takes with each live picture: tests/image/test_sharpness.py holds them.
+_MOST_MARKS = 40  # marks looked at
+_SMALLEST_REACH, _LARGEST_REACH = 4, 32  # px around a mark
 
 
 def edge_blur_px(picture: Picture, uv: Array) -> float:
-    """Gaussian σ in pixels of the edges around the marks at `uv` (N, 2); NaN if there is no edge.
+    """Blur of the edges around the marks at `uv` (N, 2) as a Gaussian σ in pixels; NaN if there is no edge.
 
     A step of height c blurred by σ is at most c / (√(2π) σ) steep. Around each mark, as far as half-way to the next,
     c is the range of grey levels and the steepness the largest gradient: that of the steepest edge, and that of the
@@ -45,7 +46,7 @@ def edge_blur_px(picture: Picture, uv: Array) -> float:
     if not sigmas:
         return float("nan")
     middle = float(np.quantile(sigmas, 0.5, method="lower"))
-    return float(np.sqrt(max(middle**2 - SMOOTHING_PX**2 - _CENTRAL_DIFFERENCE, 0.01)))
+    return float(np.sqrt(max(middle**2 - SMOOTHING_PX**2 - _DIFFERENCE_VARIANCE, 0.01)))
 
 
 def _steepness_both_ways(rise_u: Array, rise_v: Array) -> float:
@@ -61,7 +62,7 @@ def _steepness_both_ways(rise_u: Array, rise_v: Array) -> float:
 
 
 def _reach(uv: Array) -> int:
-    """How far around a mark to look: not as far as its neighbour."""
+    """Half width in px of the part around a mark that is used: less than half-way to its neighbour."""
     if len(uv) < 2:
         return _LARGEST_REACH
     distances = np.asarray(cKDTree(uv).query(uv, k=2)[0], dtype=np.float64)

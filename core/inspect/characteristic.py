@@ -6,8 +6,9 @@ import math
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
-from core.inspect.conformity import NOT_PROVEN, decide_between
+from core.inspect.conformity import Verdict, decide_between
 from core.inspect.results import Contribution
+from core.messages import Message
 
 Quantity: TypeAlias = Literal["length", "angle"]
 
@@ -55,9 +56,9 @@ class Characteristic:
     budget
         What u is made of.
     rule
-        In words, what exactly was measured.
+        What exactly was measured; None: nobody said.
     notes
-        Whole sentences.
+        What is to be known of it.
     complete
         Whether u holds all that is known to act on the value; if not, it is a lower bound and proves nothing.
     """
@@ -70,8 +71,8 @@ class Characteristic:
     k: float = 2.0
     limits: Limits | None = None
     budget: tuple[Contribution, ...] = ()
-    rule: str = ""
-    notes: tuple[str, ...] = ()
+    rule: Message | None = None
+    notes: tuple[Message, ...] = ()
     complete: bool = True
 
     @property
@@ -85,13 +86,13 @@ class Characteristic:
         return None if self.limits is None else self.value - self.limits.nominal
 
     @property
-    def verdict(self) -> str:
-        """Decision by ISO 14253-1: "conforming", "not conforming", "not proven", or "" without limits.
+    def verdict(self) -> Verdict:
+        """Decision by ISO 14253-1; none without limits.
 
         A value or an uncertainty that is not known, or not all of it, proves nothing.
         """
         if self.limits is None:
-            return ""
+            return Verdict.NONE
         if not self.complete or math.isnan(self.value) or math.isnan(self.u):
-            return NOT_PROVEN
+            return Verdict.NOT_PROVEN
         return decide_between(self.value - self.limits.nominal, self.limits.lower, self.limits.upper, self.U)

@@ -3,17 +3,34 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
+from enum import StrEnum
 from functools import partial
 
 from scipy.special import ndtr, stdtr
 
-CONFORMING = "conforming"
-NOT_CONFORMING = "not conforming"
-NOT_PROVEN = "not proven"
+
+class Verdict(StrEnum):
+    """What a measurement proves about a tolerance; its values stand in files."""
+
+    CONFORMING = "conforming"
+    NOT_CONFORMING = "not conforming"
+    NOT_PROVEN = "not proven"
+    NONE = ""
+    """Nothing was asked."""
+
+    @classmethod
+    def worst(cls, verdicts: Iterable[Verdict]) -> Verdict:
+        """Of several on one part: what does not conform, then what is not proven; NONE where nothing is asked."""
+        found = set(verdicts)
+        return next((one for one in WORST_FIRST if one in found), cls.NONE)
 
 
-def decide(deviation_mm: float, tolerance_mm: float, U_mm: float) -> str:
+WORST_FIRST = (Verdict.NOT_CONFORMING, Verdict.NOT_PROVEN, Verdict.CONFORMING)
+
+
+def decide(deviation_mm: float, tolerance_mm: float, U_mm: float) -> Verdict:
     """Conformity with the tolerance ± `tolerance_mm` by ISO 14253-1, for the maker of a part.
 
     The expanded uncertainty U narrows the tolerance for the proof of conformity and widens it for the proof of
@@ -28,11 +45,6 @@ def decide(deviation_mm: float, tolerance_mm: float, U_mm: float) -> str:
     U_mm
         Expanded uncertainty of the deviation.
 
-    Returns
-    -------
-    str
-        "conforming", "not conforming" or "not proven".
-
     Raises
     ------
     ValueError
@@ -44,15 +56,15 @@ def decide(deviation_mm: float, tolerance_mm: float, U_mm: float) -> str:
 
     Examples
     --------
-    >>> decide(0.05, 0.20, 0.10), decide(0.15, 0.20, 0.10), decide(-0.35, 0.20, 0.10)
-    ('conforming', 'not proven', 'not conforming')
+    >>> [str(decide(deviation, 0.20, 0.10)) for deviation in (0.05, 0.15, -0.35)]
+    ['conforming', 'not proven', 'not conforming']
     """
     if not tolerance_mm > 0:
         raise ValueError(f"no decision from a tolerance of {tolerance_mm}")
     return decide_between(deviation_mm, -tolerance_mm, tolerance_mm, U_mm)
 
 
-def decide_between(deviation: float, lower: float, upper: float, U: float, *, r: float = 1.0) -> str:
+def decide_between(deviation: float, lower: float, upper: float, U: float, *, r: float = 1.0) -> Verdict:
     """Conformity with deviations permitted from `lower` to `upper` (±inf: no limit), by the same rule, in any one unit.
 
     Raises
@@ -62,7 +74,7 @@ def decide_between(deviation: float, lower: float, upper: float, U: float, *, r:
 
     Examples
     --------
-    >>> decide_between(0.03, -0.01, 0.05, 0.01), decide_between(0.045, float("-inf"), 0.05, 0.01)
+    >>> str(decide_between(0.03, -0.01, 0.05, 0.01)), str(decide_between(0.045, float("-inf"), 0.05, 0.01))
     ('conforming', 'not proven')
     """
     if math.isnan(deviation):
@@ -134,12 +146,12 @@ class Zones:
         below, above = self.conformance
         return tuple(zone for zone in ((low, below), (above, high)) if math.isfinite(zone[0]))
 
-    def verdict(self, value: float) -> str:
-        """CONFORMING, NOT_CONFORMING or NOT_PROVEN."""
+    def verdict(self, value: float) -> Verdict:
+        """The decision on a measured value."""
         if self.conformance is not None and self.conformance[0] <= value <= self.conformance[1]:
-            return CONFORMING
+            return Verdict.CONFORMING
         low, high = self.nonconformance
-        return NOT_CONFORMING if value < low or value > high else NOT_PROVEN
+        return Verdict.NOT_CONFORMING if value < low or value > high else Verdict.NOT_PROVEN
 
 
 def probability_of_conformity(value: float, u: float, lower: float, upper: float, dof: float = math.inf) -> float:

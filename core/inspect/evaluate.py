@@ -11,42 +11,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.errors import InputError
-from core.inspect.alignment import three_two_one
 from core.inspect.characteristic import Characteristic
-from core.inspect.elements import Element
-from core.inspect.feature_spec import FeatureSpec, Kind
-from core.inspect.features.cylinder import measure_cylinder
-from core.inspect.features.derived import measure_angle, measure_distance
-from core.inspect.features.deviation import measure_deviation
+from core.inspect.conformity import Verdict
 from core.inspect.features.measured import FeatureResult, Measure, Scene
-from core.inspect.features.plane import measure_plane, measure_point
-from core.inspect.features.section import measure_section
-from core.inspect.features.sphere import measure_sphere
-from core.inspect.features.steps import measure_steps
-from core.inspect.features.thickness import measure_thickness, with_limits
-from core.inspect.inspection_plan import InspectionPlan, PartFrame
-from core.inspect.plane_search import FoundPlane
-from core.inspect.point_errors import PointErrors
-from core.inspect.temperature import at_reference, compared
-from core.inspect.uncertainty import CAMERA, FAN_CALIBRATION
+from core.inspect.features.thickness import with_limits
+from core.inspect.fit.elements import Element
+from core.inspect.fit.plane_search import FoundPlane
+from core.inspect.plan.alignment import three_two_one
+from core.inspect.plan.feature_spec import FeatureSpec
+from core.inspect.plan.inspection_plan import InspectionPlan, PartFrame
+from core.inspect.plan.kinds import kind_of
+from core.inspect.plan.temperature import at_reference, compared
+from core.inspect.uncertainty.point_errors import PointErrors
+from core.messages import Message
 from core.model import Pose
 from core.progress import Progress, silent
-from core.scan.cloud import Cloud
-from core.scan.surface import Mesh
-from core.scan.triangles import Triangles
-
-MEASURES: Mapping[Kind, Measure] = {
-    "plane": measure_plane,
-    "sphere": measure_sphere,
-    "cylinder": measure_cylinder,
-    "point": measure_point,
-    "thickness": measure_thickness,
-    "steps": measure_steps,
-    "distance": measure_distance,
-    "angle": measure_angle,
-    "section": measure_section,
-    "deviation": measure_deviation,
-}
+from core.scan.surface.cloud import Cloud
+from core.scan.surface.fused_surface import Mesh
+from core.scan.surface.triangles import Triangles
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -62,9 +44,9 @@ class Inspection:
     pose_camera_part
         Part coordinates into the camera frame; None: they are the camera's, or their features were not measured.
     notes
-        Whole sentences.
+        What is to be known of the whole.
     scan_key
-        Names the scan.
+        Hash of the scan's content.
     planes
         Plane faces found in it, by their margin: for the next inspection of the same scan.
     """
@@ -72,7 +54,7 @@ class Inspection:
     plan: InspectionPlan
     results: tuple[FeatureResult, ...]
     pose_camera_part: Pose | None = None
-    notes: tuple[str, ...] = ()
+    notes: tuple[Message, ...] = ()
     scan_key: str = ""
     planes: Mapping[float, tuple[FoundPlane, ...]] = field(default_factory=dict)
 
@@ -82,8 +64,8 @@ class Inspection:
         return tuple(row for result in self.results for row in result.characteristics)
 
     @property
-    def problems(self) -> tuple[str, ...]:
-        """One sentence for each feature that could not be measured."""
+    def problems(self) -> tuple[Message, ...]:
+        """Why each feature that could not be measured was not."""
         return tuple(result.problem for result in self.results if result.problem)
 
     def result(self, name: str) -> FeatureResult:
@@ -91,15 +73,12 @@ class Inspection:
         return {result.spec.name: result for result in self.results}[name]
 
     @property
-    def verdict(self) -> str:
-        """The worst of all: "not conforming", "not proven", "conforming", or "" where nothing is asked.
-
-        A feature with limits that could not be measured proves nothing.
-        """
+    def verdict(self) -> Verdict:
+        """The worst of all. A feature with limits that could not be measured proves nothing."""
         verdicts = {row.verdict for row in self.characteristics}
         if any(result.problem and result.spec.limits for result in self.results):
-            verdicts.add("not proven")
-        return next((one for one in ("not conforming", "not proven", "conforming") if one in verdicts), "")
+            verdicts.add(Verdict.NOT_PROVEN)
+        return Verdict.worst(verdicts)
 
 
 def evaluate(
@@ -141,7 +120,7 @@ def evaluate(
     nominal_keys = {name: _sum_of([surface.corners]) for name, surface in (nominals or {}).items()}
     if previous is not None and previous.scan_key == scan_key:
         scene.found_planes.update(previous.planes)
-    frame_problem = ""
+    frame_problem: Message | None = None
     for number, spec in enumerate(ordered):
         progress("features", number, len(ordered))
         framed = spec.in_part_coordinates and plan.frame is not None
@@ -150,9 +129,9 @@ def evaluate(
         nominal = "" if spec.deviation is None else nominal_keys.get(spec.deviation.nominal, "")
         key = _key(plan, spec, scene, scan_key + nominal, framed=framed)
         if key in known:
-            result = _asked_anew(known[key], spec)
+            result = _with_limits_of(known[key], spec)
         else:
-            result = _measured(plan, spec, scene, frame_problem if framed else "")
+            result = _measured(plan, spec, scene, frame_is_known=not (framed and frame_problem))
         scene.found[spec.name] = replace(result, key=key)
     if plan.frame is not None and scene.pose_camera_part is None and not frame_problem:
         scene.pose_camera_part, frame_problem = _frame(plan.frame, scene)
@@ -162,17 +141,19 @@ def evaluate(
     return Inspection(plan, results, scene.pose_camera_part, notes, scan_key, scene.found_planes)
 
 
-def _measured(plan: InspectionPlan, spec: FeatureSpec, scene: Scene, frame_problem: str) -> FeatureResult:
+def _measured(plan: InspectionPlan, spec: FeatureSpec, scene: Scene, *, frame_is_known: bool) -> FeatureResult:
     """One feature, its lengths at 20 °C and compared with the master; a problem instead of a complaint."""
+    where = Message("feature.where", "feature {name}", name=spec.name)
     broken = [name for name in spec.needs if scene.found[name].problem]
-    if broken or frame_problem:
-        why = f"{broken[0]} was not measured" if broken else "there are no part coordinates"
-        return FeatureResult(spec, problem=f"feature {spec.name}: {why}.")
     try:
-        result = MEASURES[spec.kind](spec, scene)
+        if broken:
+            raise InputError(Message("feature.was_not_measured", "{name} was not measured", name=broken[0]))
+        if not frame_is_known:
+            raise InputError(Message("feature.no_part_coordinates", "there are no part coordinates"))
+        measure: Measure = kind_of(spec).measure
+        result = measure(spec, scene)
     except InputError as error:
-        where = f"feature {spec.name}"
-        return FeatureResult(spec, problem=str(InputError(error.what, where=where, todo=error.todo)))
+        return FeatureResult(spec, problem=InputError(error.what, where=where, todo=error.todo).message)
     rows = result.characteristics
     if plan.temperature is not None:
         rows = tuple(at_reference(row, plan.temperature) for row in rows)
@@ -181,7 +162,7 @@ def _measured(plan: InspectionPlan, spec: FeatureSpec, scene: Scene, frame_probl
     return replace(result, characteristics=rows)
 
 
-def _asked_anew(result: FeatureResult, spec: FeatureSpec) -> FeatureResult:
+def _with_limits_of(result: FeatureResult, spec: FeatureSpec) -> FeatureResult:
     """The same measurement with the limits of `spec`, which differs from its own in nothing else."""
     start = len(spec.name) + 1
     rows = tuple(replace(row, limits=spec.limits_of(row.name[start:])) for row in result.characteristics)
@@ -190,24 +171,28 @@ def _asked_anew(result: FeatureResult, spec: FeatureSpec) -> FeatureResult:
     return replace(result, spec=spec, characteristics=result.characteristics if same else rows, gauge=gauge)
 
 
-def _frame(frame: PartFrame, scene: Scene) -> tuple[Pose | None, str]:
+def _frame(frame: PartFrame, scene: Scene) -> tuple[Pose | None, Message | None]:
     """The part's frame, or why there is none."""
     elements: list[Element] = []
     for name in frame.names:
         result = scene.found.get(name)
         if result is None or result.element is None:
-            return None, f"There are no part coordinates: {name} was not measured as a plane, axis or point."
+            why = Message("feature.frame_not_measured", "{name} was not measured as a plane, axis or point.", name=name)
+            return None, _no_frame(why)
         elements.append(result.element)
     try:
-        return three_two_one(elements[0], elements[1], elements[2] if len(elements) > 2 else None), ""
+        return three_two_one(elements[0], elements[1], elements[2] if len(elements) > 2 else None), None
     except InputError as error:
-        return None, f"There are no part coordinates: {error}"
+        return None, _no_frame(error.message)
+
+
+def _no_frame(why: Message) -> Message:
+    return Message("inspection.no_frame", "There are no part coordinates: {why}", why=why)
 
 
 def _key(plan: InspectionPlan, spec: FeatureSpec, scene: Scene, of: str, *, framed: bool) -> str:
-    """Names all that a feature's measurement follows from, its own name among it; what is asked of it is not.
-
-    `of` names the scan, and the nominal surface where it is compared with one.
+    """Hash of all that a feature's measurement follows from: its own specification without limits, which change no
+    number, the features and the frame it rests on, and `of`, the hash of the scan and of its nominal surface.
     """
     rests_on = [scene.found[name].key for name in spec.needs]
     frame = (plan.frame, [scene.found[name].key for name in plan.frame.names]) if framed and plan.frame else None
@@ -218,7 +203,7 @@ def _key(plan: InspectionPlan, spec: FeatureSpec, scene: Scene, of: str, *, fram
 
 
 def _digest(cloud: Cloud, mesh: Mesh | None, errors: PointErrors | None) -> str:
-    """Names a scan by its content."""
+    """Hash of a scan's content."""
     arrays = [cloud.points, cloud.sigma, cloud.uv, cloud.sweep, cloud.normals]
     if mesh is not None:
         arrays += [mesh.vertices, mesh.triangles]
@@ -232,19 +217,36 @@ def _digest(cloud: Cloud, mesh: Mesh | None, errors: PointErrors | None) -> str:
 
 
 def _sum_of(arrays: Iterable[NDArray[Any]]) -> str:
-    """Names arrays by their content."""
+    """Hash of the content of arrays."""
     digest = hashlib.blake2b(digest_size=16)
     for array in arrays:
         digest.update(np.ascontiguousarray(array).view(np.uint8).data if array.size else b"")
     return digest.hexdigest()
 
 
-def _missing(errors: PointErrors) -> tuple[str, ...]:
-    """A sentence on what the stated uncertainties do not hold."""
-    missing = [] if errors.sweep_covariance is not None else ["the sweeps' light planes"]
-    known = () if errors.common is None else errors.common.sources
-    missing += [name for name, source in (("the camera", CAMERA), ("the fan", FAN_CALIBRATION)) if source not in known]
+def _missing(errors: PointErrors) -> tuple[Message, ...]:
+    """What the stated uncertainties do not hold."""
+    missing = []
+    if errors.sweep_covariance is None:
+        missing.append(Message("inspection.without_sweeps", "the sweeps' light planes"))
+    if not errors.knows("camera"):
+        missing.append(Message("inspection.without_camera", "the camera"))
+    if not errors.knows("fan"):
+        missing.append(Message("inspection.without_fan", "the fan"))
     if not missing:
         return ()
-    proof = "" if errors.sweep_covariance is not None else ", and prove nothing"
-    return (f"The stated uncertainties do not hold that of {', '.join(missing)}: they are less than is known{proof}.",)
+    if errors.sweep_covariance is not None:
+        return (
+            Message(
+                "inspection.missing_in_u",
+                "The stated uncertainties do not hold that of {missing}: they are less than is known.",
+                missing=missing,
+            ),
+        )
+    return (
+        Message(
+            "inspection.missing_in_u_proves_nothing",
+            "The stated uncertainties do not hold that of {missing}: they are less than is known, and prove nothing.",
+            missing=missing,
+        ),
+    )

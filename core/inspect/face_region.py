@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from core.model.arrays import Array
 
 CELL_MM = 0.5
+"""Side of a cell: below the spacing of stripes on a usual scan, so that a face's edge is found to half a cell."""
 SMALLEST_GAP_MM, LARGEST_GAP_MM = 4.0, 10.0
 """Half the widest gap between two stripes that counts as covered lies between these, by how dense the stripes are."""
 GAP_SHARE = 6.0
@@ -18,6 +19,7 @@ GAP_SHARE = 6.0
 SMALL_PART = 0.05
 """Parts of a face smaller than this share of its largest one are clutter that happens to lie in its plane."""
 MOST_CELLS = 4000
+"""Along a side: on faces beyond 2 m the cells grow instead, so that a map needs 16 MB at most."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)

@@ -1,6 +1,6 @@
 """The two parallel faces of a part, found in the cloud or given as polygons in the picture.
 
-Of all pairs of parallel planes (`core.inspect.plane_search`) the pair whose smaller face is largest wins.
+Of all pairs of parallel planes (`core.inspect.fit.plane_search`) the pair whose smaller face is largest wins.
 """
 
 from __future__ import annotations
@@ -13,9 +13,25 @@ from numpy.typing import ArrayLike, NDArray
 
 from core.errors import InputError
 from core.inspect.face_region import Region, inside_polygon
-from core.inspect.plane_search import FEWEST_POINTS, find_planes, largest_plane, points_on, search_tolerance
+from core.inspect.fit.plane_search import (
+    FEWEST_POINTS,
+    POINT_CLOUD,
+    find_planes,
+    largest_plane,
+    points_on,
+    search_tolerance,
+)
+from core.messages import Field, Message
 from core.progress import Progress, silent
-from core.scan.cloud import Cloud
+from core.scan.surface.cloud import Cloud
+
+DRAW_OVER_FACE = Message("feature.advice_draw_over_face", "draw it over a face that the scan covers")
+
+
+def region_field(face: str) -> Message:
+    """Where the region of a face stands in rig.toml; a window names it as a region of the picture."""
+    return Message("gauge.where_region", "[gauge] {face}_polygon_px", face=face)
+
 
 SMALLEST_MM2 = 60.0
 """A face found by itself is at least this large inside its margin."""
@@ -68,9 +84,17 @@ def find_faces(
     ]
     if not pairs:
         raise InputError(
-            f"among {len(large)} plane faces no two are parallel, so there is no thickness to measure",
-            where="point cloud",
-            todo="scan both faces, or outline them as [gauge] upper_polygon_px and lower_polygon_px in rig.toml",
+            Message(
+                "gauge.no_parallel_faces",
+                "among {n} plane faces no two are parallel, so there is no thickness to measure",
+                n=len(large),
+            ),
+            where=POINT_CLOUD,
+            todo=Message(
+                "gauge.advice_outline_faces",
+                "scan both faces, or outline them as [gauge] upper_polygon_px and {lower}",
+                lower=Field("gauge.lower_polygon_px"),
+            ),
         )
     best = max(pairs, key=lambda pair: sorted(plane.region.area_mm2 for plane in pair))
     upper, lower = sorted(best, key=lambda plane: plane.distance)
@@ -95,24 +119,31 @@ def faces_in_polygons(
         If a polygon has fewer than 3 corners or holds no plane face, naming it, or both hold the same one.
     """
     chosen = []
-    for name, polygon in (("upper_polygon_px", upper_polygon_px), ("lower_polygon_px", lower_polygon_px)):
+    for face, polygon in (("upper", upper_polygon_px), ("lower", lower_polygon_px)):
         corners = np.asarray(polygon, dtype=np.float64)
         if corners.ndim != 2 or corners.shape[1:] != (2,) or len(corners) < 3 or not np.isfinite(corners).all():
-            raise InputError("a polygon needs at least three corners [u, v]", where=f"[gauge] {name}")
+            raise InputError(
+                Message("gauge.polygon_corners", "a region needs at least three corners [u, v]"),
+                where=region_field(face),
+            )
         inside = inside_polygon(cloud.uv, corners)
         indices = face_inside(cloud, inside, margin_mm=margin_mm, seed=seed)
         if len(indices) < FEWEST_POINTS:
             raise InputError(
-                f"the polygon holds {inside.sum()} measured points but no plane face",
-                where=f"[gauge] {name}",
-                todo="draw it over a face that the scan covers",
+                Message(
+                    "gauge.polygon_holds_no_face",
+                    "the region holds {n} measured points but no plane face",
+                    n=inside.sum(),
+                ),
+                where=region_field(face),
+                todo=DRAW_OVER_FACE,
             )
         chosen.append(indices)
     if len(np.intersect1d(chosen[0], chosen[1])) > SAME_FACE * min(map(len, chosen)):
         raise InputError(
-            "both polygons hold one and the same face",
-            where="[gauge] upper_polygon_px",
-            todo="draw each of them over a face of its own",
+            Message("gauge.one_face_twice", "both regions hold one and the same face"),
+            where=region_field("upper"),
+            todo=Message("gauge.advice_two_faces", "draw each of them over a face of its own"),
         )
     return FacePair(chosen[0], chosen[1])
 

@@ -1,9 +1,9 @@
 """The thickness of a gauge block: distance of its two parallel faces.
 
 Baseline rule: **thickness is the distance of two parallel planes fitted jointly and robustly to the points of both
-faces**, one common normal and two distances. `core.inspect.plane_fit` finds which points belong to them, as if points
-were independent; `core.inspect.parallel_faces` then fits the same planes with the points' true covariance. No point
-of the table is extrapolated by itself, and no mean height is taken.
+faces**, one common normal and two distances. `core.inspect.fit.plane_fit` finds which points belong to them as if
+points were independent, and then fits the same planes with the points' true covariance. No point of the table is
+extrapolated by itself, and no mean height is taken.
 """
 
 from __future__ import annotations
@@ -14,24 +14,34 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from core.errors import InputError
-from core.inspect.conformity import decide
-from core.inspect.coverage import student_factor
-from core.inspect.faces import FacePair, faces_in_polygons, find_faces
-from core.inspect.parallel_faces import FittedFaces, fit_faces
-from core.inspect.plane_fit import ParallelPlanes, PlaneFit, fit_parallel_planes, fit_plane
-from core.inspect.point_errors import PointErrors
+from core.inspect.conformity import Verdict, decide
+from core.inspect.faces import FacePair, faces_in_polygons, find_faces, region_field
+from core.inspect.fit.plane_fit import (
+    FittedFaces,
+    ParallelPlaneFit,
+    PlaneFit,
+    fit_faces,
+    fit_parallel_planes,
+    fit_plane,
+)
 from core.inspect.results import Contribution, Face, GaugeResult
-from core.inspect.uncertainty import CAMERA, FAN_CALIBRATION, budget, combined
+from core.inspect.uncertainty.budget import budget, combined
+from core.inspect.uncertainty.coverage import student_factor
+from core.inspect.uncertainty.point_errors import PointErrors
+from core.messages import Message
 from core.model import LightPlane
 from core.progress import Progress, silent
-from core.scan.cloud import Cloud
+from core.scan.surface.cloud import Cloud
 
 Polygons = tuple[ArrayLike, ArrayLike]
 
-RULE = "distance of two parallel planes fitted jointly and robustly to the points of both faces"
-RULE_LINE = (
-    "distance of two parallel lines fitted jointly and robustly to one light profile, "
-    "at right angles to them and along the reference normal"
+RULE = Message(
+    "gauge.rule_planes", "distance of two parallel planes fitted jointly and robustly to the points of both faces"
+)
+RULE_LINE = Message(
+    "gauge.rule_lines",
+    "distance of two parallel lines fitted jointly and robustly to one light profile, at right angles to them and "
+    "along the reference normal",
 )
 
 
@@ -45,7 +55,7 @@ class GaugeFit:
     """
 
     faces: FittedFaces
-    robust: ParallelPlanes
+    robust: ParallelPlaneFit
     pair: FacePair
     upper: Face
     lower: Face
@@ -53,7 +63,7 @@ class GaugeFit:
     budget: tuple[Contribution, ...]
 
     @property
-    def planes(self) -> ParallelPlanes:
+    def planes(self) -> ParallelPlaneFit:
         """The joint fit's planes."""
         return self.faces.planes
 
@@ -103,9 +113,9 @@ def fit_gauge(
     robust = fit_parallel_planes(upper.points, lower.points, upper.sigma, lower.sigma)
     if robust.thickness <= 0:
         raise InputError(
-            "the upper face lies behind the lower one as the camera sees them",
-            where="[gauge] upper_polygon_px",
-            todo="exchange upper_polygon_px and lower_polygon_px",
+            Message("gauge.upper_face_behind", "the upper face lies behind the lower one as the camera sees them"),
+            where=region_field("upper"),
+            todo=Message("gauge.advice_exchange_faces", "exchange upper_polygon_px and lower_polygon_px"),
         )
     faces = fit_faces(upper, lower, robust, errors)
     free = [
@@ -160,7 +170,7 @@ def measure_gauge(
     errors = errors or PointErrors()
     fit = fit_gauge(cloud, errors=errors, regions=regions, seed=seed, progress=progress)
     u, k = combined(fit.budget), student_factor(k, fit.budget)
-    verdict = ""
+    verdict = Verdict.NONE
     if nominal_mm is not None and tolerance_mm is not None:
         verdict = decide(fit.thickness_mm - nominal_mm, tolerance_mm, k * u)
     return GaugeResult(
@@ -186,7 +196,7 @@ def _budget(faces: FittedFaces, errors: PointErrors) -> tuple[Contribution, ...]
         faces.sources,
         own=faces.fit.own,
         form_mm=faces.fit.form_mm,
-        calibrations=() if errors.common is None else errors.common.sources,
+        calibrations=errors.calibrations,
     )
 
 
@@ -199,15 +209,17 @@ def _face(fit: PlaneFit, indices: NDArray[np.int64]) -> Face:
     return Face(plane, indices[kept], residuals, float(high - low), float(np.sqrt(np.mean(residuals**2))))
 
 
-def _notes(errors: PointErrors) -> tuple[str, ...]:
-    """Sentences on what the stated uncertainty does not hold."""
-    missing = [] if errors.sweep_covariance is not None else ["that of the sweeps' light planes"]
-    if not missing and errors.speckle is None:
-        missing = ["what the sweeps owe to the fan's speckle"]
-    known = () if errors.common is None else errors.common.sources
-    missing += [
-        f"that of {name}"
-        for name, cause in (("the camera", CAMERA), ("the fan", FAN_CALIBRATION))
-        if cause not in known
-    ]
-    return (f"The stated uncertainty does not hold {', '.join(missing)}.",) if missing else ()
+def _notes(errors: PointErrors) -> tuple[Message, ...]:
+    """What the stated uncertainty does not hold."""
+    missing = []
+    if errors.sweep_covariance is None:
+        missing.append(Message("gauge.without_sweeps", "that of the sweeps' light planes"))
+    elif errors.speckle is None:
+        missing.append(Message("gauge.without_speckle", "what the sweeps owe to the fan's speckle"))
+    if not errors.knows("camera"):
+        missing.append(Message("gauge.without_camera", "that of the camera"))
+    if not errors.knows("fan"):
+        missing.append(Message("gauge.without_fan", "that of the fan"))
+    if not missing:
+        return ()
+    return (Message("gauge.missing_in_u", "The stated uncertainty does not hold {missing}.", missing=missing),)

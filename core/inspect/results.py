@@ -8,6 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from core.inspect.conformity import Verdict
+from core.messages import Message
 from core.model import LightPlane as Plane
 from core.model.arrays import Array
 
@@ -35,7 +37,7 @@ class Contribution:
     Parameters
     ----------
     source
-        What it comes from.
+        What it comes from: one of `core.inspect.uncertainty.causes`, or words of somebody else's.
     u_mm
         Its contribution |c| u(x) to the result, in the result's unit: mm, or rad for an angle.
     point_mm
@@ -51,7 +53,7 @@ class Contribution:
         Of the input.
     """
 
-    source: str
+    source: Message
     u_mm: float
     point_mm: float | None = None
     distribution: str = "normal"
@@ -70,9 +72,8 @@ class GaugeResult:
     """The thickness of a gauge block: distance of two parallel faces.
 
     `normal` (3,) is the unit normal common to both faces, away from the camera; `parallelism` (rad) the angle between
-    the faces when each is fitted freely. `rule` says in words what the thickness is. `points_used` on the upper and
-    the lower face. `verdict` is "conforming", "not conforming" or "not proven" (ISO 14253-1), or "" without a nominal
-    value and a tolerance.
+    the faces when each is fitted freely. `rule` says what the thickness is. `points_used` on the upper and the lower
+    face. `verdict` is that of ISO 14253-1; none without a nominal value and a tolerance.
     """
 
     thickness_mm: float
@@ -84,10 +85,10 @@ class GaugeResult:
     budget: tuple[Contribution, ...]
     nominal_mm: float | None = None
     tolerance_mm: float | None = None
-    verdict: str = ""
+    verdict: Verdict = Verdict.NONE
     normal: Array | None = None
-    rule: str = ""
-    notes: tuple[str, ...] = ()
+    rule: Message | None = None
+    notes: tuple[Message, ...] = ()
 
     @property
     def points_used(self) -> tuple[int, int]:

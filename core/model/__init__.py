@@ -1,4 +1,4 @@
-"""The ground floor: camera, pose, light plane, fan and the rays between them. Millimetres and radians."""
+"""Model of the rig: camera, pose, light plane, fan and the rays between them. Millimetres and radians."""
 
 from core.model.camera import Camera
 from core.model.fan import Fan

@@ -1,4 +1,4 @@
-"""The camera: full intrinsics with skew, Brown–Conrady distortion, and rays.
+"""Camera model: full intrinsics with skew, Brown–Conrady distortion, and rays.
 
 Pinhole with skew (paper, eq. 1)::
 
@@ -31,6 +31,12 @@ from core.model.pose import Pose
 
 DISTORTION_NAMES = ("k1", "k2", "p1", "p2", "k3")
 """Names and order of the distortion coefficients."""
+
+
+# Newton's method for undistorting, in ray coordinates.
+_ROUNDS = 20  # at most; a usual lens takes four
+_SETTLED = 1e-12  # step that ends it: rounding
+_CONVERGED = 1e-9  # misfit with which a point counts as converged after all rounds, 5e-6 px
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -87,12 +93,12 @@ class Camera:
         return Camera((round(width * factor), round(height * factor)), matrix, self.distortion)
 
     def project(self, points: ArrayLike) -> Array:
-        """Image points (N, 2) in pixels of `points` (N, 3) in mm in the camera frame."""
+        """Project `points` (N, 3) in mm in the camera frame to image points (N, 2) in pixels."""
         xyz = np.asarray(points, dtype=np.float64)
         return self.pixels(xyz[:, :2] / xyz[:, 2:])
 
     def project_pose(self, pose_cam_target: Pose, points: ArrayLike) -> Array:
-        """Image points (N, 2) in pixels of `points` (N, 3) in mm in the frame of a target."""
+        """Project `points` (N, 3) in mm in the frame of a target to image points (N, 2) in pixels."""
         return self.project(pose_cam_target.apply(points))
 
     def pixels(self, xy: ArrayLike) -> Array:
@@ -135,14 +141,14 @@ class Camera:
         points = np.asarray(uv, dtype=np.float64).reshape(-1, 2)
         distorted = (points - self.matrix[:2, 2]) @ np.linalg.inv(self.matrix[:2, :2]).T
         xy = distorted.copy()
-        for _ in range(20):
+        for _ in range(_ROUNDS):
             error = self.distort(xy) - distorted
             step = _solve_2x2(self.distort_jacobian(xy), error)
             xy -= step
-            if not np.any(np.abs(step) > 1e-12):
+            if not np.any(np.abs(step) > _SETTLED):
                 break
         else:
-            xy[np.abs(self.distort(xy) - distorted).max(axis=1) > 1e-9] = np.nan
+            xy[np.abs(self.distort(xy) - distorted).max(axis=1) > _CONVERGED] = np.nan
         return xy
 
     def rays(self, uv: ArrayLike) -> Array:

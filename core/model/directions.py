@@ -1,4 +1,4 @@
-"""Directions square to others."""
+"""Directions perpendicular to others."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from core.model.arrays import Array
 
 
 def square_to(directions: ArrayLike) -> Array:
-    """Two unit vectors, the columns (…, 3, 2), square to each of `directions` (…, 3) and to each other.
+    """Find two unit vectors, the columns (…, 3, 2), perpendicular to each of `directions` (…, 3) and to each other.
 
     Which two is arbitrary, but the same for the same direction: the null space of a row by its singular value
     decomposition. `directions` may have any length but 0.

@@ -1,4 +1,4 @@
-"""The fan: the fixed laser of N lines, its light planes one pencil through a common axis."""
+"""Fan: the fixed laser of N lines, whose light planes form one pencil through a common axis."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Fan:
 
     @property
     def lines(self) -> int:
-        """How many lines the fan has."""
+        """Number of lines."""
         return len(self.planes)
 
     @property

@@ -1,4 +1,4 @@
-"""A sheet of laser light in inverse-depth form: π·X = 1 on the plane, π in 1/mm.
+"""Light plane of a laser in inverse-depth form: π·X = 1 on the plane, π in 1/mm.
 
 A point at depth z on ray r = (x, y, 1) is X = z r, so on a light plane 1/z = π·r: everything about light planes
 is linear in π. A plane through the camera's centre has no π; a laser is never there.

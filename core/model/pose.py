@@ -13,7 +13,7 @@ from core.model.arrays import Array, frozen_array, set_field
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Pose:
-    """X_to = R X_from + t, with R (3, 3) and t (3,) in mm."""
+    """Rigid motion X_to = R X_from + t, with R (3, 3) and t (3,) in mm."""
 
     rotation: Array
     translation: Array
@@ -24,7 +24,7 @@ class Pose:
 
     @classmethod
     def identity(cls) -> Pose:
-        """The motion that moves nothing."""
+        """The identity."""
         return cls(np.eye(3), np.zeros(3))
 
     @classmethod
@@ -44,9 +44,9 @@ class Pose:
         return moved
 
     def inverse(self) -> Pose:
-        """The motion back."""
+        """The inverse motion."""
         return Pose(self.rotation.T, -self.rotation.T @ self.translation)
 
     def __matmul__(self, other: Pose) -> Pose:
-        """First `other`, then this one."""
+        """Composition: first `other`, then this one."""
         return Pose(self.rotation @ other.rotation, self.rotation @ other.translation + self.translation)

@@ -11,15 +11,25 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
-from core.calibrate.reprojection import ray_changes
+from core.calibrate.camera.reprojection import ray_changes
+from core.messages import Message
 from core.model.arrays import Array
 from core.plan.design import Design
-from core.plan.information import CAMERA, Sensing, calibration_information, covariance
+from core.plan.information import (
+    CAMERA,
+    PlannedScan,
+    Seen,
+    Sensing,
+    ball_scan,
+    block_scan,
+    calibration_information,
+    covariance,
+)
 from core.plan.light_bounds import crossing_bound
-from core.plan.scan_information import PlannedScan, Seen, ball_scan, block_scan
 from core.progress import Progress, silent
 
 STRETCH_PX = 100
@@ -29,16 +39,25 @@ ARMS_PX = 120.0
 FREE_FORM_MM = 1.0
 """Length along a stripe that a point of a surface of unknown shape may be averaged over."""
 BALL_MM = 50.0
+"""Diameter of the ball that is bounded beside the blocks: that of the accuracy table."""
 
 
 @dataclass(frozen=True, slots=True)
 class Bound:
     """The least standard uncertainty of a `quantity`, in `unit`: of pictures `without` speckle, and `with_speckle`."""
 
-    quantity: str
+    quantity: Message
     unit: str
     without: float
     with_speckle: float
+
+
+class _Row(NamedTuple):
+    """A bound of one kind of light: the quantity, its unit and the least standard uncertainty."""
+
+    quantity: Message
+    unit: str
+    u: float
 
 
 def bounds_of(
@@ -63,7 +82,7 @@ def bounds_of(
         found.append(list(_Bounds(Sensing.of(design, speckle=speckle), seed).rows(heights, ball_mm)))
     progress("bounds", 2, 2)
     pairs = zip(*found, strict=True)
-    return tuple(Bound(quantity, unit, clean, grainy) for (quantity, unit, clean), (_, _, grainy) in pairs)
+    return tuple(Bound(clean.quantity, clean.unit, clean.u, grainy.u) for clean, grainy in pairs)
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,19 +92,33 @@ class _Bounds:
     sensing: Sensing
     seed: int
 
-    def rows(self, heights_mm: Sequence[float], ball_mm: float) -> Iterator[tuple[str, str, float]]:
-        """Quantity, unit and standard uncertainty."""
+    def rows(self, heights_mm: Sequence[float], ball_mm: float) -> Iterator[_Row]:
+        """All of them, in the order of the table."""
         scans = [block_scan(self.sensing, height, self.seed) for height in heights_mm]
         yield from _of_lines(scans[-1])
         known = covariance(self.calibration)
-        yield "focal length", "px", float(np.sqrt(known[0, 0]))
-        yield "depth on the fan's lines, from camera and fan", "mm", self._of_fan(scans[-1], known)
-        yield "depth on a sweep from its light plane, camera and fan known", "mm", self._of_sweeps(scans[-1])
-        yield f"depth of a point of free form, {FREE_FORM_MM:g} mm of stripe", "mm", self._of_points(scans[-1])
+        yield _Row(Message("plan.bound_focal", "focal length"), "px", float(np.sqrt(known[0, 0])))
+        of_fan = Message("plan.bound_on_fan", "depth on the fan's lines, from camera and fan")
+        yield _Row(of_fan, "mm", self._of_fan(scans[-1], known))
+        of_sweep = Message("plan.bound_on_sweep", "depth on a sweep from its light plane, camera and fan known")
+        yield _Row(of_sweep, "mm", self._of_sweeps(scans[-1]))
+        of_point = Message(
+            "plan.bound_free_form",
+            "depth of a point of free form, {length_mm:g} mm of stripe",
+            length_mm=FREE_FORM_MM,
+        )
+        yield _Row(of_point, "mm", self._of_points(scans[-1]))
         for height, scan in zip(heights_mm, scans, strict=True):
-            yield f"thickness of {height:g} mm", "mm", self._thickness(scan, known=False)
-            yield f"thickness of {height:g} mm, camera and fan known", "mm", self._thickness(scan, known=True)
-        yield f"diameter of a ball of {ball_mm:g} mm", "mm", self._diameter(ball_scan(self.sensing, ball_mm, self.seed))
+            thickness = Message("plan.bound_thickness", "thickness of {height_mm:g} mm", height_mm=height)
+            yield _Row(thickness, "mm", self._thickness(scan, known=False))
+            alone = Message(
+                "plan.bound_thickness_known",
+                "thickness of {height_mm:g} mm, camera and fan known",
+                height_mm=height,
+            )
+            yield _Row(alone, "mm", self._thickness(scan, known=True))
+        ball = Message("plan.bound_ball", "diameter of a ball of {diameter_mm:g} mm", diameter_mm=ball_mm)
+        yield _Row(ball, "mm", self._diameter(ball_scan(self.sensing, ball_mm, self.seed)))
 
     @cached_property
     def calibration(self) -> Array:
@@ -151,18 +184,26 @@ class _Bounds:
         return float(np.median(np.concatenate(sigma)))
 
 
-def _of_lines(scan: PlannedScan) -> Iterator[tuple[str, str, float]]:
+def _of_lines(scan: PlannedScan) -> Iterator[_Row]:
     """Of centrelines and crossings."""
     fan, hand = (_median_density(part) for part in (scan.fan, scan.sweeps))
-    for name, density in (("fan's", fan), ("sweeps'", hand)):
-        yield f"centreline of the {name} stripes, mean of {STRETCH_PX} px", "px", density / np.sqrt(STRETCH_PX)
+    of_fan = Message(
+        "plan.bound_fan_line", "centreline of the fan's stripes, mean of {length_px} px", length_px=STRETCH_PX
+    )
+    of_hand = Message(
+        "plan.bound_sweep_line", "centreline of the sweeps' stripes, mean of {length_px} px", length_px=STRETCH_PX
+    )
+    for line, density in ((of_fan, fan), (of_hand, hand)):
+        yield _Row(line, "px", density / np.sqrt(STRETCH_PX))
     for degrees in (90, 45, 20):
         own = crossing_bound(fan, hand, ARMS_PX, np.radians(degrees))
-        yield (
-            f"crossing at {degrees}°, arms of {ARMS_PX / 2:g} px, per coordinate",
-            "px",
-            float(np.sqrt(np.trace(own) / 2)),
+        crossing = Message(
+            "plan.bound_crossing",
+            "crossing at {angle_deg}°, arms of {arm_px:g} px, per coordinate",
+            angle_deg=degrees,
+            arm_px=ARMS_PX / 2,
         )
+        yield _Row(crossing, "px", float(np.sqrt(np.trace(own) / 2)))
 
 
 def _median_density(part: Sequence[Seen]) -> float:

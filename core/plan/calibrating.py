@@ -2,32 +2,33 @@
 
 from __future__ import annotations
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from core.calibrate.camera import calibrate_camera
-from core.calibrate.fan import FanOptions, fit_fan
-from core.calibrate.pose_features import PoseFeatures
+from core.calibrate.camera.adjustment import CameraOptions
+from core.calibrate.camera.calibration import calibrate_camera
+from core.calibrate.fan.calibration import FanOptions, fit_fan
+from core.calibrate.fan.pose_features import PoseFeatures
 from core.calibrate.results import CameraCalibration, FanCalibration
 from core.errors import InputError
-from core.image.centreline import Centreline
-from core.image.target_view import TargetView
+from core.image.stripes.centreline import Centreline
 from core.image.targets import BlackSquare, Target
+from core.image.targets.target_view import TargetView
+from core.messages import Message
 from core.model import Camera, Pose
 from core.model.arrays import Array
 from core.plan.design import Design
 from core.plan.light_lines import FlatFace, LitLine, lit_lines, runs
 from core.plan.seen_stripes import SeenStripes
 from core.progress import Progress, silent
-from core.simulate.boards import WHITE, printed
 from core.simulate.calibration import PLANE_GREY
-from core.simulate.image import generator
-from core.simulate.laser import fan_sheets
-from core.simulate.patterns import Pattern
 from core.simulate.poses import camera_poses, plane_poses
-from core.simulate.stage import TABLE_DEPTH_MM
-from core.simulate.targets import fan_centres, room_shade
+from core.simulate.scene.boards import WHITE, printed
+from core.simulate.scene.image import generator
+from core.simulate.scene.laser import fan_sheets
+from core.simulate.scene.patterns import Pattern
+from core.simulate.scene.stage import TABLE_DEPTH_MM
+from core.simulate.scene.targets import fan_centres, room_shade
 
 CORNER_PX = 0.020
 """Error in pixels per coordinate of a target's points: what the detectors leave on the twin's pictures, whatever their
@@ -55,7 +56,7 @@ def plan_camera(design: Design, seed: int, progress: Progress = silent) -> Camer
     camera, target = design.camera(), design.camera_target
     noise = generator(seed, "corner noise")
     views = [_view(f"view{i:02d}", camera, pose, target, noise) for i, pose in enumerate(view_poses(design, seed))]
-    return calibrate_camera(views, camera.image_size, progress=progress)
+    return calibrate_camera(views, camera.image_size, CameraOptions(skew=True), progress)
 
 
 def view_poses(design: Design, seed: int) -> list[Pose]:
@@ -66,16 +67,19 @@ def view_poses(design: Design, seed: int) -> list[Pose]:
     InputError
         If it does not fit into the picture.
     """
-    outline, rng = _plate(design.camera_target, "[camera_target]").outline, generator(seed, "camera poses")
+    outline, rng = printed(design.camera_target).outline, generator(seed, "camera poses")
     nearest = NEAREST_VIEW * design.distance_mm
     try:
         return camera_poses(design.camera(), outline, design.views, rng, nearest_mm=nearest)
     except ValueError as error:
         raise InputError(
-            "the target does not fit into the picture at any distance up to three times the table's, so the camera "
-            "could not be calibrated",
+            Message(
+                "plan.target_too_large",
+                "the target does not fit into the picture at any distance up to three times the table's, so the camera "
+                "could not be calibrated",
+            ),
             where="[camera_target]",
-            todo="plan a smaller target, a shorter focal_mm or more pixels",
+            todo=Message("plan.advice_smaller_target", "plan a smaller target, a shorter focal_mm or more pixels"),
         ) from error
 
 
@@ -101,7 +105,7 @@ def plan_fan(design: Design, camera: Camera, seed: int, progress: Progress = sil
 
 def plates_under_fan(design: Design, seed: int) -> list[tuple[Pose, list[LitLine]]]:
     """How the plane target is held in the planned poses, and the fan's stripes on the light parts of each."""
-    rig, plate = design.rig(), _plate(design.plane_target, "[plane_target]")
+    rig, plate = design.rig(), printed(design.plane_target)
     near, far = NEAREST_POSE * design.distance_mm, FARTHEST_POSE * design.distance_mm
     poses = plane_poses(fan_centres(rig, design.poses, near, far), plate.outline, generator(seed, "plane poses"))
     filter_px, nothing = SeenStripes.of_plates(design).filter_px, np.empty((0, 3, 3))
@@ -120,20 +124,17 @@ def plates_under_fan(design: Design, seed: int) -> list[tuple[Pose, list[LitLine
     ]
 
 
-def _plate(target: Target, where: str) -> Pattern:
-    try:
-        return printed(target)
-    except cv2.error as error:  # OpenCV's way of saying so
-        raise InputError(
-            "its dictionary has fewer markers than the board needs", where=where, todo="name a larger dictionary"
-        ) from error
-
-
 def _features(view: TargetView, centrelines: tuple[Centreline, ...], camera: Camera) -> PoseFeatures:
     inside = ((view.uv > 0) & (view.uv < np.array(camera.image_size) - 1)).all()
     if not inside:
-        return PoseFeatures(view.name, None, (), "the target would not be wholly in the picture")
-    return PoseFeatures(view.name, view, centrelines, "" if centrelines else "no stripe would fall on the target")
+        return PoseFeatures(
+            view.name,
+            None,
+            (),
+            Message("design.target_cut_off", "the target would not be wholly in the picture"),
+        )
+    dark = None if centrelines else Message("design.no_stripe", "no stripe would fall on the target")
+    return PoseFeatures(view.name, view, centrelines, dark)
 
 
 def _view(name: str, camera: Camera, pose: Pose, target: Target, rng: np.random.Generator) -> TargetView:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from core.errors import InputError
+from core.messages import Message
 from core.plan.design import Design
 from core.plan.predict import Planner, Prediction
 from core.progress import Progress, silent, steps
@@ -17,10 +18,10 @@ HELPS = 0.97
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """One step: its name, what it makes of the quantity, in words, and how."""
+    """One step: its name, what it makes of the quantity, and how."""
 
-    name: str
-    to: Callable[[Design], str]
+    name: Message
+    to: Callable[[Design], Message]
     make: Callable[[Design], Design]
 
 
@@ -28,11 +29,11 @@ class Change:
 class Effect:
     """What a change does to U of the thickness, in mm; `reason` says why it cannot be made, and then `U_mm` is None."""
 
-    change: str
-    to: str
+    change: Message
+    to: Message
     before_mm: float
     U_mm: float | None
-    reason: str = ""
+    reason: Message | None = None
 
     @property
     def share(self) -> float:
@@ -40,43 +41,61 @@ class Effect:
         return float("inf") if self.U_mm is None else self.U_mm / self.before_mm
 
 
-def _scaled(name: str, factor: float, label: str, shown: str) -> Change:
-    """A quantity made larger or smaller by a factor, and how its value is shown."""
+def _scaled(key: str, factor: float, name: Message, shown: Callable[[float], Message]) -> Change:
+    """The quantity of the design called `key` made larger or smaller by a factor, and how its value is shown."""
     return Change(
-        label,
-        lambda design: shown.format(getattr(design, name) * factor),
-        lambda design: _with(design, name, getattr(design, name) * factor),
+        name,
+        lambda design: shown(getattr(design, key) * factor),
+        lambda design: _with(design, key, getattr(design, key) * factor),
     )
 
 
-def _twice(name: str, label: str) -> Change:
+def _twice(key: str, name: Message) -> Change:
     """A number of pictures doubled."""
     return Change(
-        label,
-        lambda design: str(2 * getattr(design, name)),
-        lambda design: _with(design, name, 2 * getattr(design, name)),
+        name,
+        lambda design: Message("plan.number", "{n}", n=2 * getattr(design, key)),
+        lambda design: _with(design, key, 2 * getattr(design, key)),
     )
 
 
-def _with(design: Design, name: str, value: Any) -> Design:
-    return replace(design, **{name: value})
+def _with(design: Design, key: str, value: Any) -> Design:
+    return replace(design, **{key: value})
+
+
+def _mm(value: float) -> Message:
+    return Message("plan.millimetres", "{value_mm:.3g} mm", value_mm=value)
+
+
+def _degrees(value: float) -> Message:
+    return Message("plan.degrees", "{value_deg:.3g}°", value_deg=value)
+
+
+def _contrast(value: float) -> Message:
+    return Message("plan.contrast", "contrast {value:.2g}", value=value)
+
+
+def _grey(value: float) -> Message:
+    return Message("plan.grey_levels", "{value:.3g} grey levels", value=value)
 
 
 CHANGES = (
-    _scaled("baseline_mm", 1.2, "baseline of the fan 20 % longer", "{:.3g} mm"),
-    _scaled("baseline_mm", 0.8, "baseline of the fan 20 % shorter", "{:.3g} mm"),
-    _scaled("angle_deg", 1.4, "angle between the fan's planes 40 % wider", "{:.3g}°"),
-    _scaled("angle_deg", 0.7, "angle between the fan's planes 30 % narrower", "{:.3g}°"),
-    _scaled("focal_mm", 1.2, "focal length 20 % longer", "{:.3g} mm"),
-    _scaled("focal_mm", 0.8, "focal length 20 % shorter", "{:.3g} mm"),
-    _scaled("hand_baseline_mm", 1.2, "hand-held laser 20 % farther aside", "{:.3g} mm"),
-    _twice("poses", "poses of the plane target doubled"),
-    _twice("views", "views of the camera target doubled"),
-    _twice("sweeps", "sweeps doubled"),
-    _scaled("speckle", 0.5, "speckle halved", "contrast {:.2g}"),
-    _scaled("stripe_grey", 1.5, "stripes half as bright again", "{:.3g} grey levels"),
+    _scaled("baseline_mm", 1.2, Message("plan.change_baseline_up", "baseline of the fan 20 % longer"), _mm),
+    _scaled("baseline_mm", 0.8, Message("plan.change_baseline_down", "baseline of the fan 20 % shorter"), _mm),
+    _scaled("angle_deg", 1.4, Message("plan.change_angle_up", "angle between the fan's planes 40 % wider"), _degrees),
+    _scaled(
+        "angle_deg", 0.7, Message("plan.change_angle_down", "angle between the fan's planes 30 % narrower"), _degrees
+    ),
+    _scaled("focal_mm", 1.2, Message("plan.change_focal_up", "focal length 20 % longer"), _mm),
+    _scaled("focal_mm", 0.8, Message("plan.change_focal_down", "focal length 20 % shorter"), _mm),
+    _scaled("hand_baseline_mm", 1.2, Message("plan.change_hand_up", "hand-held laser 20 % farther aside"), _mm),
+    _twice("poses", Message("plan.change_poses", "poses of the plane target doubled")),
+    _twice("views", Message("plan.change_views", "views of the camera target doubled")),
+    _twice("sweeps", Message("plan.change_sweeps", "sweeps doubled")),
+    _scaled("speckle", 0.5, Message("plan.change_speckle", "speckle halved"), _contrast),
+    _scaled("stripe_grey", 1.5, Message("plan.change_brightness", "stripes half as bright again"), _grey),
 )
-"""The steps that are tried."""
+"""The steps that are tried: as much as one would change on a rig that stands, and within what most parts allow."""
 
 
 def compare(
@@ -104,9 +123,20 @@ def compare(
     return tuple(sorted(effects, key=lambda effect: effect.share))
 
 
-def advice(effects: tuple[Effect, ...]) -> str:
+def advice(effects: tuple[Effect, ...]) -> Message:
     """The change that helps most, in one sentence."""
     best = effects[0] if effects else None
     if best is None or best.U_mm is None or best.share > HELPS:
-        return "None of the changes tried helps by more than 3 %."
-    return f"Most helps: {best.change} ({best.to}): U {best.before_mm:.3f} → {best.U_mm:.3f} mm."
+        return Message(
+            "plan.no_change_helps",
+            "None of the changes tried helps by more than {percent:.0f} %.",
+            percent=100 * (1 - HELPS),
+        )
+    return Message(
+        "plan.best_change",
+        "Most helps: {change} ({to}): U {before_mm:.3f} → {after_mm:.3f} mm.",
+        change=best.change,
+        to=best.to,
+        before_mm=best.before_mm,
+        after_mm=best.U_mm,
+    )

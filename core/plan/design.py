@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from core.errors import InputError
 from core.image.targets import BlackSquare, Checkerboard, Target
+from core.messages import Message
 from core.model import Camera, Fan, LightPlane, Pose
 from core.model.arrays import Array
-from core.simulate.image import generator
-from core.simulate.laser import Sheet
-from core.simulate.objects import gauge_block, turned
 from core.simulate.rig import (
     DISTORTION,
     FAN_EMITTER_X_MM,
@@ -27,40 +27,54 @@ from core.simulate.rig import (
     pencil_fan,
 )
 from core.simulate.scenario import YAW_DEG
-from core.simulate.scene import Scene, Sphere
-from core.simulate.stage import TABLE_DEPTH_MM, WORK_POINT, aim_of, table_pose
+from core.simulate.scene.image import generator
+from core.simulate.scene.laser import Sheet
+from core.simulate.scene.objects import gauge_block, turned
+from core.simulate.scene.scene import Scene, Sphere
+from core.simulate.scene.stage import TABLE_DEPTH_MM, WORK_POINT, aim_of, table_pose
 from core.simulate.sweep import hand_course, sweep_range
 
 PAPER_PIXEL_UM = 1.67
+"""Side of a pixel of the paper's camera, a sensor of 10.7 MP and 1/2.3"."""
 _PAPER_FOCAL = math.sqrt(FULL_MATRIX[0][0] * FULL_MATRIX[1][1])
 _PAPER_AXIS, _AXIS_DIRECTION = fan_axis(pencil_fan())
 _FAN_FOCUS_MM, _HAND_FOCUS_MM = 240.0, 550.0
 _HAND_BASELINE_MM = 240.0
+"""As in the twin: `core.simulate.rig.paper_rig` and `core.simulate.sweep.hand_course`."""
 _UNDER_FAN_MM = TABLE_DEPTH_MM - float(WORK_POINT[2])
 """How far above the table the fan's middle line passes through the middle of the work."""
 
 BALL_AWAY_MM = 3.0
 """So that the outer fan lines are equally far from its rims."""
 
-RANGES: dict[str, tuple[float, float, str]] = {
-    "pixel_um": (0.5, 50.0, "µm"),
-    "focal_mm": (1.0, 500.0, "mm"),
-    "distance_mm": (100.0, 5000.0, "mm"),
-    "baseline_mm": (5.0, 2000.0, "mm"),
-    "hand_baseline_mm": (20.0, 2000.0, "mm"),
-    "angle_deg": (0.2, 30.0, "degrees"),
-    "lines": (1, 20, "lines"),
-    "views": (3, 200, "views"),
-    "poses": (2, 200, "poses"),
-    "sweeps": (3, 1000, "sweeps"),
-    "speckle": (0.0, 1.0, ""),
-    "stripe_grey": (5.0, 5000.0, "grey levels"),
-    "stripe_sigma_mm": (0.02, 3.0, "mm"),
-    "electrons_per_grey": (0.5, 10_000.0, "electrons"),
-    "read_noise_grey": (0.0, 50.0, "grey levels"),
-    "ambient_grey": (0.0, 250.0, "grey levels"),
+
+class Range(NamedTuple):
+    """Smallest and largest value of a quantity, and its unit."""
+
+    low: float
+    high: float
+    unit: str = ""
+
+
+RANGES: Mapping[str, Range] = {
+    "pixel_um": Range(0.5, 50.0, "µm"),
+    "focal_mm": Range(1.0, 500.0, "mm"),
+    "distance_mm": Range(100.0, 5000.0, "mm"),
+    "baseline_mm": Range(5.0, 2000.0, "mm"),
+    "hand_baseline_mm": Range(20.0, 2000.0, "mm"),
+    "angle_deg": Range(0.2, 30.0, "degrees"),
+    "lines": Range(1, 20, "lines"),
+    "views": Range(3, 200, "views"),
+    "poses": Range(2, 200, "poses"),
+    "sweeps": Range(3, 1000, "sweeps"),
+    "speckle": Range(0.0, 1.0),
+    "stripe_grey": Range(5.0, 5000.0, "grey levels"),
+    "stripe_sigma_mm": Range(0.02, 3.0, "mm"),
+    "electrons_per_grey": Range(0.5, 10_000.0, "electrons"),
+    "read_noise_grey": Range(0.0, 50.0, "grey levels"),
+    "ambient_grey": Range(0.0, 250.0, "grey levels"),
 }
-"""Smallest and largest value of each quantity, and its unit."""
+"""What each quantity may be: wider than any rig that was built, so that only slips are refused."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,17 +141,41 @@ class Design:
         for name, (low, high, unit) in RANGES.items():
             value = getattr(self, name)
             if not low <= value <= high:
-                raise _impossible(name, value, f"it must be from {low:g} to {high:g} {unit}".rstrip())
+                if unit:
+                    raise _impossible(
+                        name,
+                        value,
+                        Message(
+                            "plan.range_with_unit",
+                            "it must be from {low:g} to {high:g} {unit}",
+                            low=low,
+                            high=high,
+                            unit=unit,
+                        ),
+                    )
+                raise _impossible(
+                    name, value, Message("plan.range", "it must be from {low:g} to {high:g}", low=low, high=high)
+                )
         for name, values, low, high in (
             ("pixels", self.pixels, 100, 20_000),
             ("block_mm", self.block_mm, 5.0, 1000.0),
             ("heights_mm", self.heights_mm, 1.0, 1000.0),
         ):
             if not values or not all(low <= value <= high for value in values):
-                raise _impossible(name, list(values), f"each must be from {low:g} to {high:g}")
+                raise _impossible(
+                    name,
+                    list(values),
+                    Message("plan.range_each", "each must be from {low:g} to {high:g}", low=low, high=high),
+                )
         if max(self.heights_mm) > 0.6 * self.distance_mm:
             raise _impossible(
-                "heights_mm", max(self.heights_mm), f"the camera is only {self.distance_mm:g} mm above the table"
+                "heights_mm",
+                max(self.heights_mm),
+                Message(
+                    "plan.camera_too_near",
+                    "the camera is only {distance_mm:g} mm above the table",
+                    distance_mm=self.distance_mm,
+                ),
             )
 
     @property
@@ -175,7 +213,11 @@ class Design:
         steps = np.radians(self.angle_deg) * (np.arange(self.lines) - (self.lines - 1) / 2)
         normals = [Rotation.from_rotvec(sense * step * _AXIS_DIRECTION).apply(middle) for step in steps]
         if any(normal @ point <= 0 for normal in normals):
-            raise _impossible("baseline_mm", self.baseline_mm, "a plane of the fan would pass through the camera")
+            raise _impossible(
+                "baseline_mm",
+                self.baseline_mm,
+                Message("plan.fan_through_camera", "a plane of the fan would pass through the camera"),
+            )
         return Fan(tuple(LightPlane(normal / (normal @ point)) for normal in normals))
 
     def rig(self) -> Rig:
@@ -218,5 +260,9 @@ class Design:
         return np.array([0.0, self.baseline_mm, self.distance_mm - TABLE_DEPTH_MM + float(_PAPER_AXIS[2])])
 
 
-def _impossible(name: str, value: object, why: str) -> InputError:
-    return InputError(f"{value} is impossible: {why}", where=f"[plan] {name}", todo="change it in rig.toml")
+def _impossible(name: str, value: object, why: Message) -> InputError:
+    return InputError(
+        Message("plan.impossible", "{value} is impossible: {why}", value=value, why=why),
+        where=f"[plan] {name}",
+        todo=Message("plan.advice_change", "change it in rig.toml"),
+    )

@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import Any
 
 from core.errors import InputError
-from core.files.rig import read_planned_rig
-from core.files.rig_tables import PlannedRigTables, TargetTable
+from core.files.recording.rig import RigTables, TargetTable, read_rig_tables
 from core.image.targets import Target
+from core.messages import Message, plain
 from core.plan.design import PAPER_PIXEL_UM, Design
 
 
@@ -21,7 +21,7 @@ def read_design(path: Path) -> Design:
         If it cannot be read, has an unknown key, or a quantity is impossible.
     """
     file = path / "rig.toml" if path.is_dir() else path
-    tables = read_planned_rig(file)
+    tables = read_rig_tables(file)
     try:
         design = Design(**_quantities(tables, file))
         design.rig()  # what only camera, fan and work together can tell
@@ -30,7 +30,7 @@ def read_design(path: Path) -> Design:
     return design
 
 
-def _quantities(tables: PlannedRigTables, path: Path) -> dict[str, Any]:
+def _quantities(tables: RigTables, path: Path) -> dict[str, Any]:
     given: dict[str, Any] = {} if tables.plan is None else tables.plan.model_dump(exclude_none=True)
     if "focal_px" in given:
         given["focal_mm"] = given.pop("focal_px") * given.get("pixel_um", PAPER_PIXEL_UM) * 1e-3
@@ -53,4 +53,6 @@ def _target(table: TargetTable, name: str, path: Path) -> Target:
     try:
         return table.target()
     except ValueError as error:
-        raise InputError(f"{name}: {error}", where=path) from error
+        raise InputError(
+            Message("plan.impossible_target", "{name}: {why}", name=name, why=plain(str(error))), where=path
+        ) from error

@@ -18,8 +18,8 @@ from __future__ import annotations
 import numpy as np
 from scipy.special import ndtr
 
-from core.image.noise import NoiseModel
-from core.image.speckle import Speckle
+from core.image.stripes.noise import NoiseModel
+from core.image.stripes.speckle import Speckle
 from core.image.targets import Charuco, Checkerboard, CircleGrid
 from core.model.arrays import Array
 

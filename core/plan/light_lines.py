@@ -12,20 +12,21 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from core.image.pieces import arc_length
+from core.image.stripes.runs import arc_length
+from core.image.stripes.stripe import PIXEL_VARIANCE
 from core.model import Camera, Pose
 from core.model.arrays import Array
-from core.simulate.laser import Sheet
-from core.simulate.scene import Scene, Sphere
+from core.simulate.scene.laser import Sheet
+from core.simulate.scene.scene import Scene, Sphere
 
 END_IN_FILTERS = 2.5
 """What the extraction leaves out at either end of a stripe, in σ of its filter."""
 SHORTEST_IN_FILTERS = 7.0
 """Shorter stretches are no stripe to it."""
 _FINE_STEPS = 200
+"""Points of a cut by which its length in pixels is measured."""
 _CLEAR = 1e-4
 """A surface does not hide itself: shadow rays end this share of their length before it."""
-_PIXEL_AREA = 1 / 12
 _GRAZING = 0.02
 """Cosine of the light on a face below which there is no stripe to speak of."""
 
@@ -196,7 +197,7 @@ def _followed(
 
 
 def _section(sheet: Sheet, towards: Array, reflected: Array, gap_mm: Array, blur_px: float) -> tuple[Array, Array]:
-    """Height and σ in px of the cross-section, as `core.simulate.laser` lights it and the lens blurs it.
+    """Height and σ in px of the cross-section, as `core.simulate.scene.laser` lights it and the lens blurs it.
 
     `gap_mm` (N,) is how much farther from the sheet's middle a point one pixel aside lies.
     """
@@ -207,7 +208,7 @@ def _section(sheet: Sheet, towards: Array, reflected: Array, gap_mm: Array, blur
     crest = beam.peak_grey * beam.focus_mm * beam.sigma_mm / (rho * sigma) * reflected
     crest = np.maximum(crest * np.exp(-2 * (angle / beam.half_angle) ** 2), 1e-6)
     own = sigma / np.maximum(gap_mm, 1e-9)
-    width = np.sqrt(own**2 + blur_px**2 + _PIXEL_AREA)
+    width = np.sqrt(own**2 + blur_px**2 + PIXEL_VARIANCE)
     return crest * own / width, width
 
 

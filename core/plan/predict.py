@@ -18,21 +18,23 @@ from core.calibrate.deviations import calibration_deviations
 from core.calibrate.results import CameraCalibration, FanCalibration
 from core.errors import InputError
 from core.inspect.gauge import measure_gauge
-from core.inspect.point_errors import PointErrors
 from core.inspect.results import Contribution, GaugeResult
+from core.inspect.uncertainty.point_errors import PointErrors
+from core.messages import Message
 from core.model.arrays import Array
 from core.plan.calibrating import plan_camera, plan_fan
 from core.plan.design import Design
 from core.plan.scanning import plan_scan
-from core.progress import Progress, Told, silent
-from core.scan.cloud import Cloud
+from core.progress import Progress, StepProgress, silent
 from core.scan.common_errors import solve_common
-from core.scan.features import ScanFeatures
+from core.scan.features.extraction import ScanFeatures
 from core.scan.reconstruct import ReconstructOptions, reconstruct
+from core.scan.surface.cloud import Cloud
 
 MAP_COLUMNS = 48
 """Cells of the σ map across the picture."""
 FIRST_SEED = 1
+"""Scans are drawn with this seed and the following ones, so that a prediction can be repeated."""
 
 T = TypeVar("T")
 
@@ -111,7 +113,7 @@ class Planner:
         drawn = []
         for number in range(scans):
             self.progress("scans drawn", number, scans)
-            with _told_of_a_plan():
+            with _as_errors_of_a_plan():
                 drawn.append(self._draw(design, height_mm, FIRST_SEED + number))
         self.progress("scans drawn", scans, scans)
         gauges = [gauge for gauge, _ in drawn]
@@ -130,31 +132,37 @@ class Planner:
         )
 
     def _draw(self, design: Design, height_mm: float, seed: int) -> tuple[GaugeResult, Cloud]:
-        told = Told(self.progress)
+        told = StepProgress(self.progress)
         camera, fan = self._calibrations(design, seed)
         features = self._features(design, height_mm, seed)
         scan = reconstruct(
-            features, camera.camera, fan.fan, ReconstructOptions(sigma_cut_mm=self.sigma_cut_mm), told.again
+            features, camera.camera, fan.fan, ReconstructOptions(sigma_cut_mm=self.sigma_cut_mm), told.within_step
         )
         deviations = calibration_deviations(camera, fan)
-        common = solve_common(features, scan, camera.camera, fan.fan, deviations, progress=told.again)
+        common = solve_common(features, scan, camera.camera, fan.fan, deviations, progress=told.within_step)
         cloud = replace(scan.cloud, sigma_common=common.sigma(scan.cloud))
         errors = PointErrors.of_scan(features, scan.covariance, common, scan.speckle)
-        gauge = measure_gauge(cloud, errors=errors, progress=told.again)
+        gauge = measure_gauge(cloud, errors=errors, progress=told.within_step)
         if abs(gauge.thickness_mm / height_mm - 1) > 0.1:
             raise InputError(
-                f"the block's upper face ({height_mm:g} mm) would not be found among the points seen",
+                Message(
+                    "plan.face_not_found",
+                    "the block's upper face ({height_mm:g} mm) would not be found among the points seen",
+                    height_mm=height_mm,
+                ),
                 where="[plan]",
-                todo="plan more sweeps, a larger block, or a fan that falls on it",
+                todo=Message("plan.advice_more_sweeps", "plan more sweeps, a larger block, or a fan that falls on it"),
             )
         return gauge, cloud
 
     def _calibrations(self, design: Design, seed: int) -> tuple[CameraCalibration, FanCalibration]:
-        told = Told(self.progress)
+        told = StepProgress(self.progress)
         known = replace(design, poses=Design().poses, **_SCAN_ONLY)
-        camera = self._remembered(("camera", known, seed), lambda: plan_camera(known, seed, told.again))
+        camera = self._remembered(("camera", known, seed), lambda: plan_camera(known, seed, told.within_step))
         whole = replace(design, **_SCAN_ONLY)
-        return camera, self._remembered(("fan", whole, seed), lambda: plan_fan(design, camera.camera, seed, told.again))
+        return camera, self._remembered(
+            ("fan", whole, seed), lambda: plan_fan(design, camera.camera, seed, told.within_step)
+        )
 
     def _features(self, design: Design, height_mm: float, seed: int) -> ScanFeatures:
         known = replace(
@@ -165,7 +173,8 @@ class Planner:
             plane_target=Design().plane_target,
         )
         return self._remembered(
-            ("scan", known, height_mm, seed), lambda: plan_scan(design, height_mm, seed, Told(self.progress).again)
+            ("scan", known, height_mm, seed),
+            lambda: plan_scan(design, height_mm, seed, StepProgress(self.progress).within_step),
         )
 
     def _remembered(self, key: tuple[object, ...], make: Callable[[], T]) -> T:
@@ -182,16 +191,17 @@ _SCAN_ONLY = {
 
 
 @contextmanager
-def _told_of_a_plan() -> Iterator[None]:
+def _as_errors_of_a_plan() -> Iterator[None]:
     """What the solvers say of pictures, said of a rig that has none yet; complaints about the plan pass as they are."""
     try:
         yield
     except InputError as error:
-        if error.where.startswith("["):
+        if error.code.startswith("plan."):
             raise
-        what = f"a recording with this rig could not be measured ({error.what})"
         raise InputError(
-            what, where="[plan]", todo="go back to the paper's values one by one to see which of yours it is"
+            Message("plan.not_measurable", "a recording with this rig could not be measured ({why})", why=error.what),
+            where="[plan]",
+            todo=Message("plan.advice_go_back", "go back to the paper's values one by one to see which of yours it is"),
         ) from error
 
 

@@ -7,21 +7,20 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from core.errors import InputError
-from core.image.centreline import Centreline
-from core.image.stripe import WIDTH_IN_SIGMA, StripeSettings
+from core.image.stripes.centreline import Centreline
+from core.image.stripes.stripe import CONTRAST_QUANTILE, WIDTH_IN_SIGMA, StripeSettings
+from core.messages import Message
 from core.model import Camera
 from core.plan.design import Design
 from core.plan.light_lines import FlatFace, LitLine, faces_of, lit_lines
 from core.plan.seen_stripes import SeenStripes
 from core.progress import Progress, silent, steps
-from core.scan.features import NO_STRIPE, FrameFeatures, ScanFeatures, gather
-from core.simulate.image import generator
-from core.simulate.laser import Sheet, fan_sheets
+from core.scan.features.extraction import NO_STRIPE, FrameFeatures, ScanFeatures, gather
 from core.simulate.rig import Rig
 from core.simulate.scan import LAMP
-from core.simulate.scene import Scene
-
-_FAINT = 0.2  # quantile of the heights along all stripes that counts as their contrast
+from core.simulate.scene.image import generator
+from core.simulate.scene.laser import Sheet, fan_sheets
+from core.simulate.scene.scene import Scene
 
 
 def plan_scan(design: Design, height_mm: float, seed: int, progress: Progress = silent) -> ScanFeatures:
@@ -38,8 +37,18 @@ def plan_scan(design: Design, height_mm: float, seed: int, progress: Progress = 
     hand = SeenStripes.of_hand(design)
     sweep_lines = [stage.lines([sheet], hand) for sheet in steps(sheets, progress, "stripes", len(sheets))]
     every = [line for lines in sweep_lines for line in lines]
-    _require(fan_lines, "the fan", "check baseline_mm, distance_mm and focal_mm")
-    _require(every, "the hand-held laser", "check hand_baseline_mm, distance_mm and focal_mm")
+    if not fan_lines:
+        raise InputError(
+            Message("plan.fan_not_seen", "the camera would see no stripe of the fan on table and block"),
+            where="[plan]",
+            todo=Message("plan.advice_check_fan", "check baseline_mm, distance_mm and focal_mm"),
+        )
+    if not every:
+        raise InputError(
+            Message("plan.hand_not_seen", "the camera would see no stripe of the hand-held laser on table and block"),
+            where="[plan]",
+            todo=Message("plan.advice_check_hand", "check hand_baseline_mm, distance_mm and focal_mm"),
+        )
     background = stage.background_grey()
     fan_seen = SeenStripes.of_fan(design).tried(fan_lines, background)
     hand = hand.tried(every, background)
@@ -50,7 +59,7 @@ def plan_scan(design: Design, height_mm: float, seed: int, progress: Progress = 
         stage.camera.image_size,
         fan,
         [
-            FrameFeatures(index, f"sweep {index + 1}", pieces, "" if pieces else NO_STRIPE)
+            FrameFeatures(index, f"sweep {index + 1}", pieces, None if pieces else NO_STRIPE)
             for index, pieces in enumerate(frames)
         ],
         (_settings(fan_lines), _settings(every)),
@@ -93,10 +102,5 @@ def _longest_first(pieces: Iterable[Centreline]) -> tuple[Centreline, ...]:
 
 def _settings(lines: Sequence[LitLine]) -> StripeSettings:
     width = float(np.median(np.concatenate([line.width for line in lines])))
-    height = float(np.quantile(np.concatenate([line.height for line in lines]), _FAINT))
+    height = float(np.quantile(np.concatenate([line.height for line in lines]), CONTRAST_QUANTILE))
     return StripeSettings(WIDTH_IN_SIGMA * width, height)
-
-
-def _require(lines: Sequence[LitLine], what: str, todo: str) -> None:
-    if not lines:
-        raise InputError(f"the camera would see no stripe of {what} on table and block", where="[plan]", todo=todo)

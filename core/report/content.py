@@ -3,30 +3,123 @@
 from __future__ import annotations
 
 import hashlib
-from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from datetime import datetime
-from typing import Any
+from datetime import datetime, timedelta
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from core.calibrate.results import CameraCalibration, FanCalibration
+from core.image.stripes.centreline import Centreline
 from core.inspect.characteristic import Characteristic, Limits
+from core.inspect.plan.conditions import AT_REFERENCE
 from core.inspect.results import GaugeResult
-from core.report.parts import CalibrationMark, Deviations, Overlay, RepeatLine
-from core.report.section_names import SECTIONS
-from core.report.template import Language, Paper, ReportTemplate
-from core.scan.cloud import Cloud
+from core.messages import Message, label
+from core.model.arrays import Array, frozen_array, set_field
+from core.report.template import SECTIONS, Paper, ReportTemplate
 from core.scan.results import FrameRecord
-from core.scan.surface import Mesh
+from core.scan.surface.cloud import Cloud
+from core.scan.surface.fused_surface import Mesh
 from core.study.repeats import RepeatStatistics, repeat_statistics
 
-__all__ = ["SECTIONS", "CalibrationMark", "Deviations", "Overlay", "Paper", "RepeatLine", "ReportContent"]
+NO_REASON = Message("report.no_reason", "no reason recorded")
 
-AT_REFERENCE = "Stated at 20 °C"
-"""How the note of a length begins that was corrected to the reference temperature."""
+
+@dataclass(frozen=True, slots=True)
+class CalibrationMark:
+    """Which calibration a result rests on: its id, the SHA-256 of its file, and when it was made (None: not known)."""
+
+    of: Literal["camera", "fan"]
+    id: str
+    sha256: str
+    made_at: datetime | None = None
+
+    def age(self, at: datetime) -> timedelta | None:
+        """How old it was then; None where that is not known."""
+        return None if self.made_at is None else at - self.made_at
+
+
+@dataclass(frozen=True, slots=True)
+class RepeatLine:
+    """One of several scans of the same part: its thickness and U = k·u in mm, and the calibration it rests on."""
+
+    scan: str
+    thickness_mm: float
+    U_mm: float
+    k: float
+    calibration_id: str
+    measured_at: datetime
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Overlay:
+    """One frame and what was found in it.
+
+    Parameters
+    ----------
+    name
+        The frame, for the caption.
+    picture
+        (height, width) grey levels, uint8.
+    fan
+        For each line of the fan its centrelines; a line may have none.
+    sweep
+        Centrelines of the hand-moved laser in this frame.
+    sweep_sigma
+        For each centreline of `sweep` its (N,) standard uncertainty of depth in mm; NaN where there is none.
+    crossings
+        (M, 2) pixels of the crossings that were used.
+
+    Raises
+    ------
+    ValueError
+        If the picture is not a two-dimensional uint8 array or a shape does not match.
+    """
+
+    name: str
+    picture: NDArray[np.uint8]
+    fan: tuple[tuple[Centreline, ...], ...]
+    sweep: tuple[Centreline, ...]
+    sweep_sigma: tuple[Array, ...]
+    crossings: Array
+
+    def __post_init__(self) -> None:
+        if self.picture.ndim != 2 or self.picture.dtype != np.uint8:
+            raise ValueError(f"picture is {self.picture.dtype} {self.picture.shape}, not a grey uint8 picture")
+        if [len(line) for line in self.sweep] != [len(sigma) for sigma in self.sweep_sigma]:
+            raise ValueError("sweep_sigma does not match the points of sweep")
+        set_field(self, "crossings", frozen_array(np.reshape(self.crossings, (-1, 2)), (None, 2), "crossings"))
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Deviations:
+    """How far places of the surface are from the nominal one.
+
+    Parameters
+    ----------
+    name
+        Of the feature.
+    uv
+        (N, 2) pixels they are seen at.
+    deviation
+        (N,) in mm, outwards positive.
+    tolerance_mm
+        What colours and marks are shares of.
+    """
+
+    name: str
+    uv: Array
+    deviation: Array
+    tolerance_mm: float
+
+
+class LeftOut(NamedTuple):
+    """A reason, and the names of the pictures left out for it."""
+
+    reason: Message | str
+    names: list[str]
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -70,9 +163,9 @@ class ReportContent:
     settings
         Settings that led to the result, in printing order.
     notes
-        Warnings and remarks: whole sentences for the reader of the report.
+        Warnings and remarks for the reader of the report.
     limits
-        More sentences on what this result does not cover, printed below the ones that hold for every result.
+        What else this result does not cover, printed below what holds for every result.
     method
         How the sweeps were located, in words.
     version
@@ -111,9 +204,9 @@ class ReportContent:
     rig_id: str = ""
     overlay: Overlay | None = None
     frames: tuple[FrameRecord, ...] = ()
-    settings: Mapping[str, str] = field(default_factory=dict)
-    notes: tuple[str, ...] = ()
-    limits: tuple[str, ...] = ()
+    settings: Mapping[str, Message | str] = field(default_factory=dict)
+    notes: tuple[Message, ...] = ()
+    limits: tuple[Message, ...] = ()
     method: str = ""
     part: str = ""
     serial: str = ""
@@ -126,7 +219,7 @@ class ReportContent:
     repeats: tuple[RepeatLine, ...] = ()
     hidden: frozenset[str] = frozenset()
     paper: Paper = "A4"
-    language: Language = "en"
+    language: str = "en"
     template: ReportTemplate = field(default_factory=ReportTemplate)
 
     def __post_init__(self) -> None:
@@ -158,7 +251,7 @@ class ReportContent:
         """By name, which points each face or feature rests on."""
         if self.gauge is None or self._thickness_inspected:
             return self.points
-        faces = {"Upper face": self.gauge.upper.indices, "Lower face": self.gauge.lower.indices}
+        faces = {label("Upper face"): self.gauge.upper.indices, label("Lower face"): self.gauge.lower.indices}
         return {**faces, **self.points}
 
     @property
@@ -169,7 +262,7 @@ class ReportContent:
     @property
     def at_reference(self) -> bool:
         """Whether any result is stated at 20 °C; its own note then says what that changed."""
-        return any(note.startswith(AT_REFERENCE) for one in self.characteristics for note in one.notes)
+        return any(note.code == AT_REFERENCE for one in self.characteristics for note in one.notes)
 
     @property
     def report_id(self) -> str:
@@ -218,25 +311,31 @@ class ReportContent:
             "inputs": not self.hashes,
         }
         headings = dict(SECTIONS)
-        headings["maps"] = "Residuals of both faces" if self.gauge else "Depth and its uncertainty over the picture"
+        headings["maps"] = label(
+            "Residuals of both faces" if self.gauge else "Depth and its uncertainty over the picture"
+        )
         return {name: heading for name, heading in headings.items() if not missing.get(name, False)}
 
     @property
-    def all_notes(self) -> tuple[str, ...]:
+    def all_notes(self) -> tuple[Message, ...]:
         """The report's own notes, those of the gauge and of both calibrations, each once."""
         of_gauge = self.gauge.notes if self.gauge else ()
-        of_each = [f"{one.name}: {note}" for one in self.inspected for note in one.notes]
-        return tuple(dict.fromkeys((*self.notes, *of_gauge, *of_each, *self.camera.notes, *self.fan.notes)))
+        of_each = [
+            Message("report.note_of_result", "{name}: {note}", name=one.name, note=note)
+            for one in self.inspected
+            for note in one.notes
+        ]
+        every = (*self.notes, *of_gauge, *of_each, *self.camera.notes, *self.fan.notes)
+        return tuple({str(note): note for note in every}.values())
 
     @property
-    def frames_left_out(self) -> list[tuple[str, list[str]]]:
-        """(reason, names of the frames) of the frames left out, the commonest reason first."""
-        left_out = [frame for frame in self.frames if not frame.used]
-        reasons = Counter(frame.reason or "no reason recorded" for frame in left_out)
-        return [
-            (reason, [frame.name for frame in left_out if (frame.reason or "no reason recorded") == reason])
-            for reason, _ in reasons.most_common()
-        ]
+    def frames_left_out(self) -> list[LeftOut]:
+        """The frames left out by reason, the commonest reason first."""
+        reasons: dict[Message | str, list[str]] = {}
+        for frame in self.frames:
+            if not frame.used:
+                reasons.setdefault(frame.reason or NO_REASON, []).append(frame.name)
+        return sorted((LeftOut(*item) for item in reasons.items()), key=lambda one: -len(one.names))
 
 
 def thickness_characteristic(gauge: GaugeResult) -> Characteristic:

@@ -14,15 +14,14 @@ from reportlab.lib.units import mm
 from reportlab.lib.utils import ImageReader
 
 from core.progress import Progress
-from core.report import figures, plots
 from core.report.content import ReportContent
-from core.report.deviation_plot import deviation_figure
-from core.report.look import Look
-from core.report.overlay_plot import overlay_figure
-from core.report.points_plot import points_figure
-from core.report.run_chart import repeats_figure, run_chart_figure
-from core.report.studies import study_lines, study_values
-from core.report.style import TEXT_WIDTH
+from core.report.layout.style import TEXT_WIDTH, Look
+from core.report.plots import charts as plots
+from core.report.plots import figures
+from core.report.plots.charts import deviation_figure, points_figure
+from core.report.plots.overlay_plot import overlay_figure
+from core.report.plots.run_chart import repeats_figure, run_chart_figure
+from core.report.sections.studies import study_lines, study_values
 
 SURFACE_MM, OVERLAY_MM, POINTS_MM, FACES_MM, CLOUD_MM, CHART_MM, DEVIATION_MM = (
     104.0,

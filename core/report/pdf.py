@@ -13,16 +13,26 @@ from reportlab.lib.units import mm
 from reportlab.lib.utils import ImageReader
 from reportlab.platypus import BaseDocTemplate, Frame, PageTemplate, Paragraph
 
-from core.progress import Progress, Told, silent
+from core.progress import Progress, StepProgress, silent
 from core.report.content import ReportContent
 from core.report.drawings import drawings, image
-from core.report.head import TITLE
-from core.report.layout import Limits
-from core.report.look import Look
-from core.report.sections import story
-from core.report.style import HAIRLINE, INK, MUTED, SANS, TEXT_WIDTH, color, font_note, markup, prepare_reportlab
+from core.report.layout.blocks import Limits
+from core.report.layout.style import (
+    HAIRLINE,
+    INK,
+    MUTED,
+    SANS,
+    TEXT_WIDTH,
+    Look,
+    color,
+    font_note,
+    markup,
+    prepare_reportlab,
+)
+from core.report.sections.head import TITLE
+from core.report.sections.standard import story
 from core.report.template import Paper
-from core.report.wording import shown_name
+from core.report.wording import Words, shown_name
 
 MOST_PAGES = 4
 """Of one scan with one result; more results, repeats, studies or long remarks may have more."""
@@ -32,10 +42,10 @@ LONG_REMARKS = 1000
 """Characters of remarks beyond which they need room of their own."""
 
 PAGE_SIZES: Mapping[Paper, tuple[float, float]] = {"A4": A4, "Letter": LETTER}
-FOOT = 16 * mm
+FOOT = 16 * mm  # of the page, for its number and the report's name
 LONGEST_FOOTER = 160
 """Characters of a company's line: what fits below the page's own."""
-HEAD = 15 * mm
+HEAD = 15 * mm  # of the page, above the text
 
 LIMITS = (
     Limits(inputs=150, budgets=40, reasons=10, names=6, notes=12, settings=30, repeats=60, picture_scale=1.0),
@@ -64,9 +74,9 @@ def build_report(content: ReportContent, progress: Progress = silent) -> bytes:
     prepare_reportlab()
     if note := font_note(_names(content)):
         content = replace(content, notes=(*content.notes, note))
-    progress = told = Told(progress)
-    look = Look.of(content)
-    step, pending = "report", drawings(look, content, told.again)
+    progress = told = StepProgress(progress)
+    look = Look(Words.of(content.language), content.template.accent)
+    step, pending = "report", drawings(look, content, told.within_step)
     total = len(pending) + 2
     pictures = {}
     for done, (name, draw) in enumerate(pending.items()):
@@ -92,7 +102,7 @@ def build_report(content: ReportContent, progress: Progress = silent) -> bytes:
 def _names(content: ReportContent) -> Iterator[str]:
     """What people have called things, and what else may be in any script."""
     people, company = (content.laboratory, content.operator, content.customer), content.template
-    yield from (content.part, content.serial, content.remarks, *people, *content.notes, *content.rig.values())
+    yield from (content.part, content.serial, content.remarks, *people, *map(str, content.notes), *content.rig.values())
     yield from (company.name, company.text, company.footer, *company.address, *company.signatures)
     yield from (one.name for one in content.inspected)
     yield from (one.name for one in content.deviations)

@@ -8,14 +8,18 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias
 
+import cv2
+import numpy as np
 from reportlab.lib.units import mm
 from reportlab.pdfgen.canvas import Canvas
 
 from core.errors import InputError
-from core.image.targets import BlackSquare, Charuco, CircleGrid, Target
-from core.report.style import INK, MUTED, SANS, color, prepare_reportlab, text
-from core.report.target_art import TargetArt, target_art
-from core.report.wording import target_in_words
+from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid, Target
+from core.image.targets.charuco import dictionary_of
+from core.messages import Message, label
+from core.model.arrays import Array, frozen_array, set_field
+from core.report.layout.style import ACCENT, INK, MUTED, SANS, Look, color, prepare_reportlab
+from core.report.wording import ENGLISH, target_in_words
 
 SheetPaper: TypeAlias = Literal["A4", "A3", "A2", "Letter", "Tabloid"]
 """What a target can be printed on."""
@@ -32,7 +36,7 @@ PAPER_MM: Mapping[SheetPaper, tuple[float, float]] = {
 EDGE_MM = 6.0
 """What printers leave white at the edges of a sheet."""
 
-RULER_MM = 100.0
+RULER_MM = 100.0  # printed beside the target, to check the printer's scale by
 SIDE_MM, FOOT_MM = 8.0, 26.0
 """Room for the ruler at the left, and for the one below together with the words."""
 
@@ -42,10 +46,12 @@ CLEAR_MM = 5.0
 MOST_TITLE = 80
 """Longest title that leaves the words on their lines, in characters."""
 
-HOW_TO_PRINT = (
+HOW_TO_PRINT = label(
     "Print at 100 %, without fitting to the page, then measure both rulers: each must be 100.0 mm long. "
     "Glue the sheet flat on a stiff plate."
 )
+LOOK = Look(ENGLISH, ACCENT)
+"""Of every sheet: its words are English."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,13 +106,25 @@ def sheet_layout(target: Target, paper: SheetPaper) -> SheetLayout:
     larger = [name for name in PAPER_MM if _layout(art, name)]
     alike = [name for name in larger if name.startswith("A") == paper.startswith("A")]
     most = _largest_length(target, art, paper)
-    advice = [f"print it on {(alike or larger)[0]}"] if larger else []
-    if most > 0:
-        advice.append(f"make {_length_name(target)} at most {most:g} mm for {paper}")
-    room = " or ".join(f"{width:.0f} × {height:.0f} mm" for width, height in _rooms(paper))
+    next_paper = (alike or larger or [paper])[0]
+    larger_paper = Message("target.advice_larger_paper", "print it on {paper}", paper=next_paper)
+    smaller = _smaller(target, most, paper)
+    both = Message("target.advice_paper_or_size", "{first}, or {second}", first=larger_paper, second=smaller)
+    (width, height), (across, down) = _rooms(paper)
     raise InputError(
-        f"the target is {art.width_mm:.4g} × {art.height_mm:.4g} mm, and {paper} has room for {room}",
-        todo=", or ".join(advice) if advice else "",
+        Message(
+            "target.too_large_for_paper",
+            "the target is {width_mm:.4g} × {height_mm:.4g} mm, and {paper} has room for {room_width_mm:.0f} × "
+            "{room_height_mm:.0f} mm or {across_width_mm:.0f} × {across_height_mm:.0f} mm",
+            width_mm=art.width_mm,
+            height_mm=art.height_mm,
+            paper=paper,
+            room_width_mm=width,
+            room_height_mm=height,
+            across_width_mm=across,
+            across_height_mm=down,
+        ),
+        todo=(both if larger else smaller) if most > 0 else (larger_paper if larger else ""),
     )
 
 
@@ -146,10 +164,14 @@ def _length(target: Target) -> float:
     return target.side_mm if isinstance(target, BlackSquare) else target.square_mm
 
 
-def _length_name(target: Target) -> str:
+def _smaller(target: Target, most_mm: float, paper: SheetPaper) -> Message:
+    """Advice to make the target smaller, by the length that the user states of it."""
+    values = {"most_mm": most_mm, "paper": paper}
     if isinstance(target, CircleGrid):
-        return "its pitch"
-    return "its side" if isinstance(target, BlackSquare) else "its squares"
+        return Message("target.advice_smaller_pitch", "make its pitch at most {most_mm:g} mm for {paper}", **values)
+    if isinstance(target, BlackSquare):
+        return Message("target.advice_smaller_side", "make its side at most {most_mm:g} mm for {paper}", **values)
+    return Message("target.advice_smaller_squares", "make its squares at most {most_mm:g} mm for {paper}", **values)
 
 
 def _draw_art(canvas: Any, art: TargetArt, layout: SheetLayout) -> None:
@@ -199,9 +221,90 @@ def _draw_words(canvas: Any, target: Target, paper: SheetPaper, layout: SheetLay
     parts = [f"{target_in_words(target)[:1].upper()}{target_in_words(target)[1:]}"]
     parts += [target.dictionary_id] if isinstance(target, Charuco) else []
     name = f"{title[:MOST_TITLE]} · " if title else ""
-    head = text(f"{name}{', '.join(parts)}, on {paper}", "strong")
+    head = LOOK.text(f"{name}{', '.join(parts)}, on {paper}", "strong")
     top = (EDGE_MM + FOOT_MM - 12.5) * mm
-    for paragraph in (head, text(HOW_TO_PRINT, "small")):
+    for paragraph in (head, LOOK.say(HOW_TO_PRINT, "small")):
         _, height = paragraph.wrap(width, top)
         top -= height
         paragraph.drawOn(canvas, left, top)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class TargetArt:
+    """The black of a target, in mm from its upper left corner, x to the right and y down.
+
+    Parameters
+    ----------
+    width_mm, height_mm
+        The smallest upright rectangle around everything black.
+    rectangles
+        (N, 4) left, top, width, height; they may touch, and do not overlap.
+    discs
+        (M, 3) centre x, centre y, radius.
+    """
+
+    width_mm: float
+    height_mm: float
+    rectangles: Array
+    discs: Array
+
+    def __post_init__(self) -> None:
+        set_field(self, "rectangles", frozen_array(self.rectangles, (None, 4), "rectangles"))
+        set_field(self, "discs", frozen_array(self.discs, (None, 3), "discs"))
+
+
+def target_art(target: Target) -> TargetArt:
+    """The black of `target`, at its true size.
+
+    Raises
+    ------
+    InputError
+        If a ChArUco board needs more markers than its dictionary has.
+    """
+    match target:
+        case Checkerboard():
+            columns, rows = target.columns + 1, target.rows + 1
+            return _of_rectangles(_black_squares(columns, rows, target.square_mm), columns, rows, target.square_mm)
+        case Charuco():
+            return _charuco(target)
+        case CircleGrid():
+            return _circle_grid(target)
+        case BlackSquare():
+            return _of_rectangles(np.array([[0.0, 0.0, target.side_mm, target.side_mm]]), 1, 1, target.side_mm)
+
+
+def _of_rectangles(rectangles: Array, columns: int, rows: int, square: float) -> TargetArt:
+    return TargetArt(columns * square, rows * square, rectangles, np.zeros((0, 3)))
+
+
+def _black_squares(columns: int, rows: int, square: float) -> Array:
+    """Every second square, the first one black, as rectangles (N, 4)."""
+    row, column = np.nonzero(np.add.outer(np.arange(rows), np.arange(columns)) % 2 == 0)
+    side = np.full(len(row), square)
+    return np.column_stack([column * square, row * square, side, side])
+
+
+def _charuco(board: Charuco) -> TargetArt:
+    """OpenCV's pattern since 4.6: the first square black, markers numbered row by row in the white ones."""
+    dictionary = dictionary_of(board)
+    square, marker = board.square_mm, board.marker_mm
+    row, column = np.nonzero(np.add.outer(np.arange(board.rows), np.arange(board.columns)) % 2 == 1)
+    cells = dictionary.markerSize + 2  # with the black rim
+    cell, rim = marker / cells, (square - marker) / 2
+    rectangles = [_black_squares(board.columns, board.rows, square)]
+    for number, (j, i) in enumerate(zip(row, column, strict=True)):
+        black = cv2.aruco.generateImageMarker(dictionary, number, cells) < 128
+        y, x = np.nonzero(black)
+        side = np.full(len(x), cell)
+        rectangles.append(np.column_stack([i * square + rim + x * cell, j * square + rim + y * cell, side, side]))
+    return _of_rectangles(np.concatenate(rectangles), board.columns, board.rows, square)
+
+
+def _circle_grid(grid: CircleGrid) -> TargetArt:
+    """Discs half as wide as they are apart."""
+    centres = grid.points[:, :2]
+    nearest = float(np.sort(np.linalg.norm(centres - centres[0], axis=1))[1])
+    radius = nearest / 4
+    width, height = np.ptp(centres, axis=0) + 2 * radius
+    discs = np.column_stack([centres + radius, np.full(len(centres), radius)])
+    return TargetArt(float(width), float(height), np.zeros((0, 4)), discs)

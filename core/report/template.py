@@ -1,18 +1,47 @@
-"""How a company's reports look and what they say on every page: the same for all its parts."""
+"""What may be chosen about a report: paper, language, sections, and how a company's reports look."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Literal, TypeAlias
+
+from core.messages import label
+from core.translations import languages
 
 Paper: TypeAlias = Literal["A4", "Letter"]
 """What a report is printed on."""
 
-Language: TypeAlias = Literal["en", "de"]
-"""The language of a report's fixed words."""
+LANGUAGES = languages()
+"""The languages a report can be in, by their names."""
 
-LANGUAGES: tuple[Language, ...] = ("en", "de")
 PAPERS: tuple[Paper, ...] = ("A4", "Letter")
+
+
+SECTIONS: Mapping[str, str] = MappingProxyType(
+    {
+        "surface": label("Measured surface"),
+        "frame": label("One frame of the scan"),
+        "points": label("Points the results rest on"),
+        "maps": label("Residuals of both faces, or depth and σ of the cloud"),
+        "deviation": label("Deviation from the nominal surface"),
+        "budget": label("Uncertainty budget"),
+        "repeats": label("Repeated scans"),
+        "studies": label("Studies"),
+        "calibrations": label("Calibrations and rig"),
+        "frames": label("Frames and calibration pictures"),
+        "remarks": label("Remarks of the operator"),
+        "settings": label("Software and settings"),
+        "inputs": label("Inputs, each with its hash"),
+        "signatures": label("Signatures"),
+    }
+)
+"""Name and title of each section that can be left out, in printing order.
+
+What a reader must not miss is not among them: the result, what it does not cover, warnings, and the hash over all
+inputs.
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +77,7 @@ class ReportTemplate:
     signatures: tuple[str, ...] = ()
     without: frozenset[str] = frozenset()
     paper: Paper | None = None
-    language: Language | None = None
+    language: str | None = None
 
     @property
     def words(self) -> tuple[object, ...]:

@@ -1,13 +1,73 @@
-"""Numbers and sentences of the report: rounding by the uncertainty, the verdict in words, what is not covered."""
+"""Words and numbers of the report in its language: rounding by the uncertainty, the verdict, what is not covered."""
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
+from decimal import ROUND_HALF_EVEN, Decimal
 
+from core import messages
 from core.image.targets import Charuco, Checkerboard, CircleGrid, Target
 from core.inspect.characteristic import Characteristic
+from core.inspect.conformity import Verdict
 from core.inspect.results import GaugeResult
-from core.report.language import ENGLISH, Words, grouped
+from core.messages import MINUS, NO_BREAK_SPACE, Language, Message, label, plural_message
+from core.translations import language
+
+RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+@dataclass(frozen=True, slots=True)
+class Words:
+    """The words of one language and the numbers of a report in it: `words("{n} of {m} used", n=3, m=5)`."""
+
+    language: Language = messages.ENGLISH
+
+    @classmethod
+    def of(cls, name: str) -> Words:
+        """Those of a language by its name."""
+        return cls(language(name))
+
+    def __call__(self, said: str | Message, /, **values: object) -> str:
+        """Fixed words, their places filled with `values`, or a message."""
+        return self.language(said) if isinstance(said, Message) else self.language.label(said, **values)
+
+    def known(self, said: str | Message) -> str:
+        """What other rooms say: a message, or fixed words; what is neither, a name, stays as it is."""
+        return self.language(said) if isinstance(said, Message) and said.code else self.language.label(str(said))
+
+    def fixed(self, value: float, decimals: int, *, signed: bool = False) -> str:
+        """`value` with so many decimals (negative: rounded to tens, hundreds), true minus sign, no minus zero."""
+        if not math.isfinite(value):
+            return self("unknown")
+        step = Decimal(1).scaleb(-decimals)
+        rounded = Decimal(repr(float(value))).quantize(step, rounding=ROUND_HALF_EVEN)
+        if rounded == 0:
+            rounded = abs(rounded)
+        return self.numeral(f"{rounded:+f}" if signed and rounded != 0 else f"{rounded:f}")
+
+    def general(self, value: float) -> str:
+        """A value as somebody stated it: no more digits than it has, a power of ten for very small and large ones."""
+        digits, _, power = f"{value:g}".partition("e")
+        return self.numeral(digits) + (f"·10{str(int(power)).translate(RAISED)}" if power else "")
+
+    def numeral(self, digits: str) -> str:
+        """Digits with the language's decimal sign and a true minus sign."""
+        return digits.replace("-", MINUS).replace(".", self.language.decimal)
+
+
+ENGLISH = Words()
+
+
+def points_counted(number: int) -> Message:
+    """'1 204 points'."""
+    return plural_message("report.points", "{n:,} point", "{n:,} points", n=number)
+
+
+def grouped(number: int) -> str:
+    """An integer with no-break spaces between thousands."""
+    return f"{number:,}".replace(",", NO_BREAK_SPACE)
+
 
 __all__ = ["grouped"]
 
@@ -15,10 +75,10 @@ COVERAGE = {1.0: "68", 2.0: "95", 3.0: "99.7"}
 """Coverage of a normal distribution in %, for the factors k in common use."""
 
 VERDICTS = {
-    "conforming": "Conforming",
-    "not conforming": "Not conforming",
-    "not proven": "Not proven",
-    "": "No verdict",
+    Verdict.CONFORMING: label("Conforming"),
+    Verdict.NOT_CONFORMING: label("Not conforming"),
+    Verdict.NOT_PROVEN: label("Not proven"),
+    Verdict.NONE: label("No verdict"),
 }
 
 
@@ -86,12 +146,12 @@ def uncertainty_sentence(k: float, U: float, words: Words = ENGLISH) -> str:
     return meaning + words("; u is the combined standard uncertainty.")
 
 
-def verdict_sentence(gauge: GaugeResult) -> str:
+def verdict_sentence(gauge: GaugeResult, words: Words = ENGLISH) -> str:
     """Why the verdict on a thickness is what it is (ISO 14253-1), with the numbers that decide."""
     if not gauge.verdict or gauge.nominal_mm is None or gauge.tolerance_mm is None or gauge.deviation_mm is None:
-        return "No nominal value with a tolerance was given, so the thickness is stated without a verdict."
-    tolerance = ENGLISH.general(gauge.tolerance_mm)
-    return _reason(gauge.verdict, gauge.deviation_mm, gauge.U_mm, f"±{tolerance} mm", "mm", ENGLISH)
+        return words("No nominal value with a tolerance was given, so the thickness is stated without a verdict.")
+    tolerance = words.general(gauge.tolerance_mm)
+    return _reason(gauge.verdict, gauge.deviation_mm, gauge.U_mm, f"±{tolerance} mm", "mm", words)
 
 
 def decision_sentence(one: Characteristic, words: Words = ENGLISH) -> str:
@@ -124,7 +184,7 @@ def _signed(value: float, words: Words) -> str:
     return words.numeral(f"{value:+g}") if value else "0"
 
 
-def _reason(verdict: str, deviation: float, U: float, tolerance: str, unit: str, words: Words) -> str:
+def _reason(verdict: Verdict, deviation: float, U: float, tolerance: str, unit: str, words: Words) -> str:
     if not math.isfinite(U):
         return words("The uncertainty is unknown, so neither conformity nor non-conformity is proven.")
     decimals = max(decimals_of(U), 0)
@@ -133,13 +193,13 @@ def _reason(verdict: str, deviation: float, U: float, tolerance: str, unit: str,
         "U": f"{words.fixed(U, decimals)} {unit}",
         "tolerance": tolerance,
     }
-    if verdict == "conforming":
+    if verdict == Verdict.CONFORMING:
         return words(
             "Conformity is proven: the deviation of {deviation} from the nominal value, enlarged by U = {U}, stays "
             "within the tolerance of {tolerance}.",
             **shown,
         )
-    if verdict == "not conforming":
+    if verdict == Verdict.NOT_CONFORMING:
         return words(
             "Non-conformity is proven: the deviation of {deviation} from the nominal value, even lessened by U = {U}, "
             "is outside the tolerance of {tolerance}.",
@@ -154,7 +214,7 @@ def _reason(verdict: str, deviation: float, U: float, tolerance: str, unit: str,
 
 def limits_of_thickness(gauge: GaugeResult, words: Words = ENGLISH, *, temperatures: bool = False) -> tuple[str, ...]:
     """What no thickness of this instrument covers; `temperatures`: whether somebody stated them."""
-    rule = words.known(gauge.rule or "distance of two parallel planes fitted to the points of both faces")
+    rule = words(gauge.rule or label("distance of two parallel planes fitted to the points of both faces"))
     return (
         words(
             "The thickness is the {rule}. It is no local length: form deviations of the faces are stated apart, as "
@@ -214,7 +274,7 @@ def temperatures_line(
     air_celsius: float | None, part_celsius: float | None, words: Words = ENGLISH, *, corrected: bool = False
 ) -> str:
     """'air 20.4 °C, part 21.0 °C; no correction to 20 °C was made', or nothing where neither is known."""
-    known = {"air {value}": air_celsius, "part {value}": part_celsius}
+    known = {label("air {value}"): air_celsius, label("part {value}"): part_celsius}
     shown = [words(name, value=f"{words.fixed(value, 1)} °C") for name, value in known.items() if value is not None]
     if not shown or corrected:
         return ", ".join(shown)

@@ -1,7 +1,7 @@
-"""A scan solved twice: the second time with its stripes where their light planes cut the surface found first.
+"""Correction of a scan for a surface that bends: it is solved a second time with its stripes moved.
 
-On a surface that bends all stripes lie a little beside their light planes (`core.scan.sections`), the same way, so no
-mean gets rid of it: a ball comes out too small. How far, is known once the surface is.
+On such a surface all stripes lie a little beside their light planes (`core.scan.surface.sections`), the same way, so no
+mean removes it: a ball comes out too small. How far they lie is known once a first solution has given the surface.
 """
 
 from __future__ import annotations
@@ -11,30 +11,33 @@ from dataclasses import replace
 
 import numpy as np
 
-from core.image.centreline import Centreline
-from core.image.pieces import arc_length
+from core.image.stripes.centreline import Centreline
+from core.image.stripes.runs import arc_length
 from core.model import Camera, Fan
 from core.model.arrays import Array
 from core.progress import Progress, silent
-from core.scan.bends import Bends, bends_of
-from core.scan.bent_crossings import BentLine, met_again
-from core.scan.fan_lines import UNASSIGNED
-from core.scan.features import ScanFeatures
+from core.scan.features.bent_crossings import BentLine, crossed_again
+from core.scan.features.extraction import ScanFeatures
+from core.scan.features.straightening import straightened
+from core.scan.method import Method
 from core.scan.reconstruct import ReconstructOptions, reconstruct
 from core.scan.results import ScanResult
-from core.scan.sections import Stripe, light_of, toward_light
-from core.scan.straightening import straightened
+from core.scan.surface.bends import Bends, bends_of
+from core.scan.surface.sections import Stripe, estimate_light, toward_light
+from core.scan.sweeps.fan_lines import UNASSIGNED
 
-NOTICED_PX = 1e-3
-"""Points that would move by less need not."""
-FEW = 0.003
+# When a scan is solved twice. So that a ball comes out true and a flat part stays as it is:
+# tests/scan/test_bend_correction.py holds them.
+LEAST_OFFSET_PX = 1e-3
+"""Points that would move by less do not count: a tenth of the floor of a centreline's σ."""
+LEAST_MOVED_SHARE = 0.003
 """Where no larger share of the points would move, all stay: edges, not a bend."""
-LAW = 0.25
-"""Share of t by which the law, bend and light direction may be wrong: uncertainty of what is moved."""
+OFFSET_UNCERTAINTY = 0.25
+"""Standard uncertainty of an offset as a share of it: the law, the bend and the light's direction may be wrong."""
 
 
 Offsets = dict[tuple[int, int], Array]
-"""How far (N,) in px along its normals the light of a centreline, given by frame (−1: the fan) and piece, lies off."""
+"""Offsets (N,) in px along the normals of a centreline, given by its frame (−1: the fan) and piece."""
 
 
 def reconstruct_twice(
@@ -44,9 +47,9 @@ def reconstruct_twice(
     options: ReconstructOptions | None = None,
     progress: Progress = silent,
 ) -> tuple[ScanFeatures, ScanResult]:
-    """Solve the scan, and where its surface bends again: the features it rests on in the end, and the solution.
+    """Solve the scan, and again where its surface bends; returns the features it rests on in the end, and the solution.
 
-    By the paper's method it is solved once: nothing of ours is in it.
+    By the paper's method it is solved once, as the paper does.
 
     Raises
     ------
@@ -54,24 +57,24 @@ def reconstruct_twice(
         As `core.scan.reconstruct.reconstruct`.
     """
     first = reconstruct(features, camera, fan, options, progress)
-    if options is not None and options.method != "network":
+    if options is not None and options.method != Method.NETWORK:
         return features, first
-    even = evened(features, first, camera, fan)
-    if even is features:
+    corrected = corrected_for_bends(features, first, camera, fan)
+    if corrected is features:
         return features, first
-    return even, reconstruct(even, camera, fan, options, progress, first.fan_lines)
+    return corrected, reconstruct(corrected, camera, fan, options, progress, first.fan_lines)
 
 
-def evened(features: ScanFeatures, scan: ScanResult, camera: Camera, fan: Fan) -> ScanFeatures:
-    """The features with centrelines and crossings where the light planes cut the surface that `scan` has found.
+def corrected_for_bends(features: ScanFeatures, scan: ScanResult, camera: Camera, fan: Fan) -> ScanFeatures:
+    """Move centrelines and crossings to where the light planes cut the surface that `scan` has found.
 
-    `features` themselves where the surface has no bend that matters.
+    Returns `features` themselves where the surface has no bend that matters.
     """
     bends = bends_of(scan.cloud, features.image_size)
     if bends.flat:
         return features
     stripes = list(_stripes(features, scan, camera, fan, bends))
-    fan_light, sweep_light, blur = light_of(stripes)
+    fan_light, sweep_light, blur = estimate_light(stripes)
     of_sheet: dict[int, list[Stripe]] = {}
     for stripe in stripes:
         of_sheet.setdefault(stripe.sheet, []).append(stripe)
@@ -81,7 +84,7 @@ def evened(features: ScanFeatures, scan: ScanResult, camera: Camera, fan: Fan) -
         toward = toward_light(mine, light, blur)
         offsets |= {(stripe.frame, stripe.piece): stripe.offsets(light, blur, toward) for stripe in mine}
     moved = np.concatenate([np.zeros(0), *offsets.values()])
-    if np.count_nonzero(np.abs(moved) > NOTICED_PX) <= FEW * len(moved):
+    if np.count_nonzero(np.abs(moved) > LEAST_OFFSET_PX) <= LEAST_MOVED_SHARE * len(moved):
         return features
     return _moved(features, stripes, offsets, camera)
 
@@ -111,10 +114,10 @@ def _moved(features: ScanFeatures, stripes: Sequence[Stripe], offsets: Offsets, 
             line = (fan if stripe.frame < 0 else frames[stripe.frame].centrelines)[stripe.piece]
             arc = arc_length(straightened((line,), camera)[0].uv)
             bent[stripe.frame, stripe.piece] = BentLine(line, arc, stripe.bent)
-    return replace(features, fan=fan, frames=frames, crossings=met_again(features.crossings, bent))
+    return replace(features, fan=fan, frames=frames, crossings=crossed_again(features.crossings, bent))
 
 
 def _line(line: Centreline, off: Array | None) -> Centreline:
     if off is None:
         return line
-    return replace(line, uv=line.uv - off[:, None] * line.normal, sigma=np.hypot(line.sigma, LAW * off))
+    return replace(line, uv=line.uv - off[:, None] * line.normal, sigma=np.hypot(line.sigma, OFFSET_UNCERTAINTY * off))

@@ -1,4 +1,4 @@
-"""Does a scan agree with the calibration it is solved with, and what does it know of it?
+"""Check of the calibrations by a scan: whether they agree, and how much the scan knows of them.
 
 A scan's crossings cannot tell everything of the calibrations: π → s π + c of all planes, the fan's included, leaves
 every crossing as it is. But how the fan's planes stand to each other, and the camera's distortion, they do see: with a
@@ -11,7 +11,7 @@ network's unknowns, eliminated::
 
 N = 1 in a direction of z means that the scan knows as much of it as the calibration, and would halve its variance. If
 nothing has moved, the part of g that belongs to m has the covariance N_mz N_zm + M, with M from the noise of the scan
-alone, of which the crossings' whole covariance (`core.scan.adjustment`) is taken.
+alone, of which the crossings' whole covariance (`core.scan.network.equations`) is taken.
 
 References
 ----------
@@ -29,29 +29,34 @@ from scipy.spatial.transform import Rotation
 from scipy.stats import chi2
 
 from core.calibrate.deviations import Deviation
+from core.messages import Message
 from core.model import Camera, Fan, LightPlane
 from core.model.arrays import Array
-from core.scan.adjustment import Adjustment, Solution
-from core.scan.features import ScanFeatures
-from core.scan.geometry import CrossingRays
-from core.scan.line_errors import LineErrors
-from core.scan.locate import by_sweep, numbered
+from core.scan.features.extraction import ScanFeatures
+from core.scan.network.equations import Adjustment, Solution
+from core.scan.network.geometry import CrossingRays
+from core.scan.network.line_errors import LineErrors
 from core.scan.results import ScanResult
+from core.scan.sweeps.locate import by_sweep, numbered
 
-KNOWN = 1e-6
+# When it is said that laser and camera have moved. Chosen so that no true calibration is accused and a moved laser is
+# found: tests/scan/test_calibration_check.py holds them.
+SIGNIFICANCE = 1e-4
+"""Something has moved if the probability that chance alone would look so is smaller."""
+LEAST_FACTOR = 3.0
+"""Less than this many times what the calibrations and the scan's noise let one expect is not reported."""
+LEAST_SEEN_SHARE = 1e-6
 """A scan does not see a motion of which less than this share is left once the sweeps may follow it."""
-SURE = 1e-4
-"""Something has moved for sure if chance alone would look so more rarely than this."""
-MUCH = 3.0
-"""Less than this many times what the calibrations and the scan's noise let one expect is not worth a word."""
-STEP = 1e-4
-"""rad, and times 1000 mm: derivatives by motions are taken over such steps."""
+
+MOTION_STEP = 1e-4
+"""Step of the derivatives by motions: rad, and times 1000 mm. Large against rounding, small against any bend."""
 _ROUNDS = 2
+"""Rounds of Gauss–Helmert, with the weights of the solution: the first moves the crossings, the second settles."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class CalibrationCheck:
-    """What a scan says of the calibrations.
+    """Result of checking the calibrations by a scan.
 
     Parameters
     ----------
@@ -83,21 +88,29 @@ class CalibrationCheck:
         return float(chi2.sf(self.squares, self.freedom)) if self.freedom else 1.0
 
     @property
-    def notes(self) -> tuple[str, ...]:
-        """A sentence if laser and camera have moved against each other since they were calibrated."""
+    def notes(self) -> tuple[Message, ...]:
+        """A note if laser and camera have moved against each other since they were calibrated."""
         times = float(np.sqrt(self.squares / max(self.freedom, 1)))
-        if self.p > SURE or times < MUCH:
+        if self.p > SIGNIFICANCE or times < LEAST_FACTOR:
             return ()
         return (
-            f"The fan is {times:.0f} times further from where it was calibrated than the calibration allows: laser or "
-            "camera have moved since, or the target was not true; calibrate the fan again.",
+            Message(
+                "scan.fan_has_moved",
+                "The fan is {times:.0f} times further from where it was calibrated than the calibration allows: laser "
+                "or camera have moved since, or the target was not true; calibrate the fan again.",
+                times=times,
+            ),
         )
 
 
 def check_calibration(
     features: ScanFeatures, scan: ScanResult, camera: Camera, fan: Fan, deviations: Sequence[Deviation]
 ) -> CalibrationCheck:
-    """What a `scan` of `features`, its sweeps solved together with `camera` and `fan`, says of the `deviations`."""
+    """Check the calibrations by a scan.
+
+    `scan` is the solution of `features` by the network with `camera` and `fan`; `deviations` are the K principal
+    deviations of their calibrations.
+    """
     crossings, line = numbered(features.crossings, scan.fan_lines)
     table = by_sweep(crossings.select(scan.of_solved), scan.sweep_frames)
     geometry = CrossingRays.of(table, camera)
@@ -131,7 +144,7 @@ def _squares(gradient: Array, information: Array, followed: Array, expected: Arr
     """
     unit = 1 / np.sqrt(np.maximum(followed, 1e-300))
     values, vectors = np.linalg.eigh(information * np.outer(unit, unit))
-    seen = unit[:, None] * vectors[:, values > KNOWN]
+    seen = unit[:, None] * vectors[:, values > LEAST_SEEN_SHARE]
     part = seen.T @ gradient
     return float(part @ np.linalg.solve(seen.T @ expected @ seen, part)), len(part)
 
@@ -142,8 +155,8 @@ def _motions(fan: Fan, geometry: CrossingRays) -> list[Fan]:
     pivot = ray / np.median(fan.pis @ ray)
     moved = []
     for axis in np.eye(3):
-        turn = Rotation.from_rotvec(STEP * axis).as_matrix()
-        for rotation, shift in ((turn, np.zeros(3)), (np.eye(3), 1e3 * STEP * axis)):
+        turn = Rotation.from_rotvec(MOTION_STEP * axis).as_matrix()
+        for rotation, shift in ((turn, np.zeros(3)), (np.eye(3), 1e3 * MOTION_STEP * axis)):
             planes = []
             for plane in fan.planes:
                 normal = rotation @ plane.normal

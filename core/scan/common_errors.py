@@ -1,4 +1,4 @@
-"""What the uncertainty of camera and fan does to all points of a scan at once.
+"""Errors common to all points of a scan: those of the camera's and the fan's calibration.
 
 A covariance is the sum of the outer products of its principal deviations. So the scan is solved again with camera and
 fan displaced along each of them, one standard deviation at a time, and every pixel triangulated again: to first order
@@ -8,28 +8,22 @@ needed, and what points have in common stays common.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from core.calibrate.deviations import Deviation
-from core.calibrate.reprojection import camera_of, parameters_of
+from core.calibrate.camera.reprojection import camera_of, parameters_of
+from core.calibrate.deviations import Deviation, Source
 from core.model import Camera, Fan
 from core.model.arrays import Array, frozen_array, set_field
-from core.progress import Progress, Told, silent
-from core.scan.cloud import Cloud
-from core.scan.crossings import Index
-from core.scan.features import ScanFeatures
-from core.scan.locate import locate_each, locate_together, numbered
+from core.progress import Progress, StepProgress, silent
+from core.scan.features.crossings import Index
+from core.scan.features.extraction import ScanFeatures
 from core.scan.method import Method
 from core.scan.results import ScanResult
-
-CAMERA = "camera calibration"
-FAN_CALIBRATION = "fan calibration"
-SCALE = "scale of the targets"
-NAMES: Mapping[str, str] = {"camera": CAMERA, "fan": FAN_CALIBRATION, "scale": SCALE}
-"""What budgets call the sources of `core.calibrate.deviations`."""
+from core.scan.surface.cloud import Cloud
+from core.scan.sweeps.locate import locate_each, locate_together, numbered
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -51,7 +45,7 @@ class CommonErrors:
     """
 
     image_size: tuple[int, int]
-    sources: tuple[str, ...]
+    sources: tuple[Source, ...]
     cameras: Array
     fans: Array
     sweeps: Array
@@ -62,13 +56,13 @@ class CommonErrors:
             set_field(self, name, frozen_array(getattr(self, name), shape, name))
 
     def changes(self, uv: Array, sweep: Index) -> Iterator[Array]:
-        """How far (N, 3), in mm, each displacement moves the points that pixels `uv` (N, 2) of `sweep` (N,) show."""
+        """Yield the changes (N, 3) in mm of the points seen at `uv` (N, 2) px in `sweep` (N,) by each displacement."""
         here = self._points(0, uv, sweep)
         for row in range(1, 1 + len(self.sources)):
             yield self._points(row, uv, sweep) - here
 
     def sigma(self, cloud: Cloud) -> Array:
-        """Standard uncertainty (N,) in mm of the depth seen by each pixel of a cloud that calibrations cause."""
+        """Standard uncertainty (N,) in mm of the depths of a cloud that is due to the calibrations."""
         variance = np.zeros(len(cloud))
         for change in self.changes(cloud.uv, cloud.sweep):
             variance += change[:, 2] ** 2
@@ -92,7 +86,7 @@ def solve_common(
     camera: Camera,
     fan: Fan,
     deviations: Sequence[Deviation],
-    method: Method = "network",
+    method: Method = Method.NETWORK,
     progress: Progress = silent,
 ) -> CommonErrors:
     """Solve `scan` again by the same `method` with each of the `deviations`, from the same `features`.
@@ -104,19 +98,19 @@ def solve_common(
     InputError
         If a scan cannot be solved with one of them.
     """
-    told = Told(progress)
-    told("calibration uncertainty", 0, len(deviations))
-    solve = locate_together if method == "network" else locate_each
+    reported = StepProgress(progress)
+    reported("calibration uncertainty", 0, len(deviations))
+    solve = locate_together if method == Method.NETWORK else locate_each
     crossings, line = numbered(features.crossings, scan.fan_lines)
     crossings, line = crossings.select(scan.of_solved), line[scan.of_solved]
     sweeps = [scan.pis]
     for number, one in enumerate(deviations):
-        again = solve(crossings, line, one.camera, one.fan, told.again)
+        again = solve(crossings, line, one.camera, one.fan, reported.within_step)
         sweeps.append(again.pis[np.searchsorted(again.frames, scan.sweep_frames)])
-        told("calibration uncertainty", number + 1, len(deviations))
+        reported("calibration uncertainty", number + 1, len(deviations))
     return CommonErrors(
         features.image_size,
-        tuple(NAMES[one.source] for one in deviations),
+        tuple(one.source for one in deviations),
         np.array([parameters_of(camera), *(parameters_of(one.camera) for one in deviations)]),
         np.array([fan.pis, *(one.fan.pis for one in deviations)]),
         np.array(sweeps),

@@ -12,34 +12,40 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.errors import InputError
+from core.messages import Field, Message, plural_message
 from core.model import Camera, Fan
 from core.model.arrays import Array
-from core.progress import Progress, Told, silent
-from core.scan.cloud import FAN, Cloud
-from core.scan.crossings import CrossingTable
-from core.scan.datum import Datum, datum_of
-from core.scan.fan_lines import UNASSIGNED, FanLines
-from core.scan.fan_speckle import FanSpeckle, fan_speckle
-from core.scan.features import ScanFeatures
-from core.scan.left_out import reasons_of
-from core.scan.locate import LocatedSweeps, by_sweep, locate_each, locate_together, number_fan_lines, numbered
+from core.progress import Progress, StepProgress, silent
+from core.scan.features.crossings import CrossingTable
+from core.scan.features.extraction import ScanFeatures
 from core.scan.method import Method
-from core.scan.records import frame_records
+from core.scan.network.datum import Datum, datum_of
+from core.scan.network.fan_speckle import FanSpeckle, fan_speckle
+from core.scan.records import frame_records, reasons_of
 from core.scan.results import ScanResult
-from core.scan.still_part import still_part
-from core.scan.triangulate import OwnLine, join, triangulate
+from core.scan.standstill import still_part
+from core.scan.surface.cloud import FAN, Cloud
+from core.scan.surface.triangulate import OwnLine, join, triangulate
+from core.scan.sweeps.fan_lines import UNASSIGNED, FanLines
+from core.scan.sweeps.locate import LocatedSweeps, by_sweep, locate_each, locate_together, number_fan_lines, numbered
+
+SIGMA_CUT_MM = 0.05
+"""Standard uncertainty of depth in mm above which points are left out, unless another is asked for (the method's
+default)."""
+
+NEAREST_SHARE, FARTHEST_SHARE = 0.6, 1.5
+"""Of the nearest and the farthest depth at which the fan sees the object: points beyond are reflections."""
 
 
 @dataclass(frozen=True, slots=True)
 class ReconstructOptions:
-    """How a scan is solved.
+    """Options of solving a scan.
 
-    `method`: "network" adjusts all sweeps together; "three-crossings" solves each frame from its own crossings with the
-    fan, as the paper does. Points with a σ above `sigma_cut_mm` are left out.
+    `method`: how sweeps are located. Points with a σ above `sigma_cut_mm` are left out.
     """
 
-    method: Method = "network"
-    sigma_cut_mm: float = 0.05
+    method: Method = Method.NETWORK
+    sigma_cut_mm: float = SIGMA_CUT_MM
 
 
 def reconstruct(
@@ -58,17 +64,25 @@ def reconstruct(
         If no sweep crosses the fan, or no point is left.
     """
     options = options or ReconstructOptions()
-    progress = told = Told(progress)
+    progress = reported = StepProgress(progress)
     progress("network", 0, 3)
-    lines = fan_lines or number_fan_lines(features.fan, features.crossings, camera, fan, told.again)
+    lines = fan_lines or number_fan_lines(features.fan, features.crossings, camera, fan, reported.within_step)
     crossings, line = numbered(features.crossings, lines)
     if not np.any(crossings.with_fan):
         raise InputError(
-            "no sweep crosses the fan in any frame, so nothing says where the hand-held laser was",
+            Message(
+                "scan.no_crossing",
+                "no sweep crosses the fan in any frame, so nothing says where the hand-held laser was",
+            ),
             where="scan",
-            todo="sweep the single line across the fan's lines, and check that the fan was on",
+            todo=Message(
+                "scan.advice_cross_the_fan",
+                "sweep the single line across the fan's lines, and check that the fan was on",
+            ),
         )
-    solved = _solve(options.method, crossings, line, camera, fan, [frame.name for frame in features.frames], told.again)
+    solved = _solve(
+        options.method, crossings, line, camera, fan, [frame.name for frame in features.frames], reported.within_step
+    )
     sweeps = solved.sweeps
     progress("network", 1, 3)
     clouds = _fan_clouds(features, lines, camera, fan) + _sweep_clouds(features, sweeps, camera)
@@ -76,10 +90,14 @@ def reconstruct(
     progress("network", 2, 3)
     if not np.any(cloud.sweep >= 0):
         raise InputError(
-            f"no point of any sweep is known to {options.sigma_cut_mm} mm" + "".join(f" ({n})" for n in sweeps.notes),
+            _no_points(options.sigma_cut_mm, sweeps.notes),
             where="scan",
-            todo="cross more of the fan with each sweep and tilt the laser between sweeps, check laser_fan.lines in "
-            "rig.toml, or raise the σ cut",
+            todo=Message(
+                "scan.advice_locate_better",
+                "cross more of the fan with each sweep and tilt the laser between sweeps, check {field}, or raise the "
+                "σ cut",
+                field=Field("laser_fan.lines"),
+            ),
         )
     records = frame_records(features, crossings, line, solved.reasons, sweeps.frames, cloud, camera)
     progress("network", 3, 3)
@@ -95,7 +113,7 @@ def reconstruct(
         scale=sweeps.scale,
         notes=features.notes + solved.notes + _fan_notes(lines),
         datum=solved.datum,
-        speckle=_speckle(features, lines, sweeps, camera, fan) if options.method == "network" else None,
+        speckle=_speckle(features, lines, sweeps, camera, fan) if options.method == Method.NETWORK else None,
         crossing_reasons=solved.reasons,
     )
 
@@ -107,7 +125,7 @@ class _Solved:
     sweeps: LocatedSweeps
     weights: Array
     reasons: NDArray[np.int64]
-    notes: tuple[str, ...]
+    notes: tuple[Message, ...]
     datum: Datum | None = None
 
 
@@ -120,7 +138,7 @@ def _solve(
     names: Sequence[str],
     progress: Progress,
 ) -> _Solved:
-    if method != "network":
+    if method != Method.NETWORK:
         sweeps = locate_each(crossings, line, camera, fan, progress)
         everywhere = np.ones(len(crossings), dtype=np.bool_)
         located = np.isin(crossings.a, sweeps.frames) & crossings.with_fan
@@ -137,7 +155,7 @@ def _solve(
         sweeps,
         weights,
         reasons_of(crossings.with_fan, weights, kept, np.ones(len(crossings), dtype=np.bool_)),
-        part.note(names, len(sweeps.frames)) + sweeps.notes + (datum.sentence,),
+        part.note(names, len(sweeps.frames)) + sweeps.notes + (datum.note,),
         datum,
     )
 
@@ -152,7 +170,7 @@ def _fan_clouds(features: ScanFeatures, lines: FanLines, camera: Camera, fan: Fa
 
 
 def _speckle(features: ScanFeatures, lines: FanLines, sweeps: LocatedSweeps, camera: Camera, fan: Fan) -> FanSpeckle:
-    """What the fan's own points have in common with the sweeps."""
+    """Compute the errors common to the fan's own points and the sweeps."""
     planes = [None if line == UNASSIGNED else fan.planes[line] for line in lines.line]
     cell_px = features.crossings.half_length_px
     return fan_speckle(features.fan, planes, camera, cell_px, sweeps.fan_cells, sweeps.fan_covariance)
@@ -182,16 +200,34 @@ def _by_cell(mine: NDArray[np.bool_], cell: NDArray[np.int64], covariance: Array
 
 
 def _cut(cloud: Cloud, sigma_cut_mm: float) -> Cloud:
-    """Points known well enough, and not wildly away from where the fan sees the object (reflections)."""
+    """Select points that are known well enough and lie at depths where the fan sees the object."""
     depth = cloud.points[:, 2]
     own = depth[cloud.sweep <= FAN]
-    near, far = (0.6 * own.min(), 1.5 * own.max()) if len(own) else (0.0, np.inf)
+    near, far = (NEAREST_SHARE * own.min(), FARTHEST_SHARE * own.max()) if len(own) else (0.0, np.inf)
     return cloud.select((cloud.sigma <= sigma_cut_mm) & (depth > near) & (depth < far))
 
 
-def _fan_notes(lines: FanLines) -> tuple[str, ...]:
-    left_out = [reason for reason in lines.reason if reason]
+def _no_points(sigma_cut_mm: float, notes: tuple[Message, ...]) -> Message:
+    if not notes:
+        return Message("scan.no_points", "no point of any sweep is known to {cut_mm} mm", cut_mm=sigma_cut_mm)
+    return Message(
+        "scan.no_points_because",
+        "no point of any sweep is known to {cut_mm} mm ({reasons:;})",
+        cut_mm=sigma_cut_mm,
+        reasons=notes,
+    )
+
+
+def _fan_notes(lines: FanLines) -> tuple[Message, ...]:
+    left_out = [reason for reason in lines.reason if reason is not None]
     if not left_out:
         return ()
-    many = "1 stretch" if len(left_out) == 1 else f"{len(left_out)} stretches"
-    return (f"Not used of the fan's light: {many} ({left_out[0]}).",)
+    return (
+        plural_message(
+            "scan.fan_light_unused",
+            "Not used of the fan's light: {n} stretch ({reason}).",
+            "Not used of the fan's light: {n} stretches ({reason}).",
+            n=len(left_out),
+            reason=left_out[0],
+        ),
+    )

@@ -1,4 +1,4 @@
-"""What became of each frame of a scan, and why."""
+"""Records of the frames of a scan and of their crossings: what was used, what was left out, and why."""
 
 from __future__ import annotations
 
@@ -8,15 +8,17 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from core.messages import Message
 from core.model import Camera
-from core.scan.cloud import Cloud
-from core.scan.crossings import CrossingTable, Index
-from core.scan.features import ScanFeatures
-from core.scan.frame_record import FrameRecord
-from core.scan.left_out import MOVED, REASONS
-from core.scan.sweep_plane import plane_condition
+from core.model.arrays import Array
+from core.scan.features.crossings import CrossingTable, Index
+from core.scan.features.extraction import ScanFeatures
+from core.scan.features.frames import FEW_CROSSINGS, CrossingUse, FrameRecord
+from core.scan.network.adjustment import SILENCED
+from core.scan.network.sweep_plane import plane_condition
+from core.scan.surface.cloud import Cloud
 
-MOVED_FRAME = "object or camera moved between this frame and those that are used"
+MOVED_FRAME = Message("scan.frame_moved_between", "object or camera moved between this frame and those that are used")
 
 
 def frame_records(
@@ -28,7 +30,7 @@ def frame_records(
     cloud: Cloud,
     camera: Camera,
 ) -> tuple[FrameRecord, ...]:
-    """One record a frame; `line` and `reasons` (M,) of each crossing, `solved` the frames with a light plane."""
+    """Make one record a frame; `line` and `reasons` (M,) of each crossing, `solved` the frames with a light plane."""
     rays = camera.rays(crossings.uv)
     count: Callable[[NDArray[np.bool_]], int] = np.count_nonzero
     records = []
@@ -43,7 +45,7 @@ def frame_records(
                 index=frame.index,
                 name=frame.name,
                 used=number > 0,
-                reason="" if number else frame.reason or _why_no_points(reasons[mine], frame.index in solved),
+                reason=None if number else frame.reason or _why_no_points(reasons[mine], frame.index in solved),
                 stripes=len(frame.centrelines),
                 stripe_px=sum(len(piece) for piece in frame.centrelines),
                 fan_crossings=count(with_fan),
@@ -53,15 +55,27 @@ def frame_records(
                 condition=plane_condition(rays[with_fan]),
                 points=number,
                 sigma_mm=float(np.median(cloud.sigma[points])) if number else float("nan"),
-                left_out_reasons=tuple((REASONS[reason], why[reason]) for reason in sorted(why)),
+                left_out_reasons=tuple((CrossingUse(reason), why[reason]) for reason in sorted(why)),
             )
         )
     return tuple(records)
 
 
-def _why_no_points(reasons: Index, solved: bool) -> str:
+def _why_no_points(reasons: Index, solved: bool) -> Message:
     if not len(reasons):
-        return "its stripe crosses neither the fan nor another sweep"
+        return Message("scan.frame_without_crossing", "its stripe crosses neither the fan nor another sweep")
     if not solved:
-        return MOVED_FRAME if np.any(reasons == MOVED) else "fewer than three crossings with the fan"
-    return "its light plane is too uncertain for any point to pass the σ cut"
+        if np.any(reasons == CrossingUse.MOVED):
+            return MOVED_FRAME
+        return FEW_CROSSINGS
+    return Message("scan.frame_uncertain", "its light plane is too uncertain for any point to pass the σ cut")
+
+
+def reasons_of(
+    with_fan: NDArray[np.bool_], weights: Array, still: NDArray[np.bool_], located: NDArray[np.bool_]
+) -> NDArray[np.int64]:
+    """Determine the `CrossingUse` (M,) of crossings by their weights, of frames that stood still and were located."""
+    disagrees = np.where(with_fan, CrossingUse.NOT_THE_FAN, CrossingUse.NOT_THE_SWEEPS)
+    reasons = np.where(weights < SILENCED, disagrees, CrossingUse.COUNTS)
+    reasons = np.where(located, reasons, CrossingUse.NOT_LOCATED)
+    return np.where(still, reasons, CrossingUse.MOVED).astype(np.int64)

@@ -1,4 +1,4 @@
-"""What a scan gives: the cloud, the sweeps, and a record of every frame."""
+"""Result of a scan: the cloud, the sweeps, and a record of every frame."""
 
 from __future__ import annotations
 
@@ -7,13 +7,14 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from core.messages import Message
 from core.model.arrays import Array
-from core.scan.cloud import Cloud
-from core.scan.crossings import CrossingTable
-from core.scan.datum import Datum
-from core.scan.fan_lines import FanLines
-from core.scan.fan_speckle import FanSpeckle
-from core.scan.frame_record import FrameRecord
+from core.scan.features.crossings import CrossingTable
+from core.scan.features.frames import FrameRecord
+from core.scan.network.datum import Datum
+from core.scan.network.fan_speckle import FanSpeckle
+from core.scan.surface.cloud import Cloud
+from core.scan.sweeps.fan_lines import FanLines
 
 __all__ = ["FrameRecord", "ScanResult"]
 
@@ -37,17 +38,17 @@ class ScanResult:
     crossings, crossing_weights
         All crossings, and the weight (0 left out … 1) each had.
     crossing_reasons
-        (M,) why a crossing was left out: index into `core.scan.left_out.REASONS`, 0 where it was not.
+        (M,) whether a crossing counts, or why not: `core.scan.features.frames.CrossingUse`.
     fan_lines
         The number given to each of the fan's centrelines.
     scale
         Standard deviation of unit weight of the adjustment; 1 where the noise model is true.
     notes
-        Sentences for the technician.
+        Notes for the technician.
     datum
-        How strongly the fan fixes scale and place; None when frames were solved each on its own.
+        Strength with which the fan fixes scale and place; None when frames were solved each on its own.
     speckle
-        What the fan's own points and the sweeps are both wrong by; None when frames were solved each on its own.
+        The error common to the fan's own points and the sweeps; None when frames were solved each on its own.
     """
 
     cloud: Cloud
@@ -59,7 +60,7 @@ class ScanResult:
     crossing_weights: Array
     fan_lines: FanLines
     scale: float
-    notes: tuple[str, ...] = ()
+    notes: tuple[Message, ...] = ()
     datum: Datum | None = None
     speckle: FanSpeckle | None = None
     crossing_reasons: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, dtype=np.int64))

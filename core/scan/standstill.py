@@ -1,4 +1,4 @@
-"""Did object and camera stand still during the scan? What crossings between early and late frames say of it.
+"""Test whether object and camera stood still during a scan, and choice of the part that can be measured if not.
 
 If something moved before frame k, later sweeps saw the surface elsewhere than earlier ones and the fan, whose lines
 are those of the reference. On a surface with normal n at X a shift t and a turn ω change the inverse depth of the ray
@@ -8,7 +8,7 @@ numbers. Whether they differ from 0 for a given k is a score test on the network
 g = Bᵀ W r with B the derivatives of the crossings by the twelve numbers, r the residuals and W their weights;
 T = gᵀ cov(g)⁻¹ g is χ² distributed if nothing has moved.
 
-What can not be seen does no harm: a shift of two parallel planes along their normal changes all later sweeps by
+What cannot be seen does no harm: a shift of two parallel planes along their normal changes all later sweeps by
 π → s π + c, and they give the surface as it was in the reference.
 
 References
@@ -19,37 +19,50 @@ Soc. 44 (1948), doi:10.1017/S0305004100023987.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.linalg import cho_solve
 from scipy.sparse import diags_array
 from scipy.spatial import cKDTree
 
+from core.errors import InputError
+from core.messages import Message
 from core.model import Camera, Fan
 from core.model.arrays import Array
-from core.scan.adjustment import Adjustment, Solution
-from core.scan.crossings import CrossingTable, Index
-from core.scan.geometry import CrossingRays
-from core.scan.line_errors import LineErrors
-from core.scan.locate import by_sweep, sweeping_frames
-from core.scan.main_plane import main_plane
-from core.scan.network import huber_weights
+from core.model.robust import huber_weights
+from core.progress import Progress, silent
+from core.scan.features.crossings import CrossingTable, Index
+from core.scan.network.adjustment import HUBER_AT
+from core.scan.network.datum import main_plane
+from core.scan.network.equations import Adjustment, Solution
+from core.scan.network.geometry import CrossingRays
+from core.scan.network.line_errors import LineErrors
+from core.scan.sweeps.locate import by_sweep, locate_together, sweeping_frames
 
-SURE = 40.0
-"""T above which something has moved. Scans in which nothing did reach 20 at most over all k (see the tests)."""
-
-FEWEST_SWEEPS, FEWEST_ACROSS = 5, 20
-"""A movement is looked for between so many sweeps on either side that have so many crossings."""
-
-_ROUNDS = 5
-_TRIED = 40
-"""About so many places are tried in a long scan, and then those about the best."""
-
-_NEIGHBOURS = 12
-TAKEN_UP = 1e-3
+# The test for a movement. Held by tests/scan/test_standstill.py on scans in which nothing moved and in which something
+# did.
+SCORE_LIMIT = 40.0
+"""T above which something has moved. Scans in which nothing did reach 20 at most over all k."""
+SWEEPS_ASIDE, CROSSINGS_ACROSS = 5, 20
+"""Sweeps on either side of a place where a movement is looked for, and crossings between them, at least."""
+LEAST_SEEN_SHARE = 1e-3
 """A movement of whose effect on the crossings less than this share (of the squares) is left by the sweeps' planes,
 which follow it as far as they can, is not to be seen."""
+_NEIGHBOURS = 12
+"""Points from which a surface normal is taken."""
+_ROUNDS = 5
+"""Rounds of reweighting by Huber before the test."""
+_PLACES = 40
+"""Places tried, about, in a long scan; then those about the best. Chosen by the time it takes."""
+
+# What is measured of a scan in which something moved; held by the same tests.
+LEAST_SWEEPS = 12
+"""A part of a scan with fewer sweeps, or fewer of their crossings with the fan, is not measured."""
+MUCH_WORSE = 1.5
+"""The larger part is not taken if it disagrees with the fan so many times more than the smaller."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,26 +78,26 @@ class Movement:
 
 
 def find_movement(crossings: CrossingTable, line: Index, camera: Camera, fan: Fan) -> Movement | None:
-    """When something moved most noticeably during the scan; None if nothing did.
+    """Find when something moved most noticeably during the scan; None if nothing did.
 
     `line` (M,) is the fan's line of each crossing, −1 between sweeps.
     """
     frames = sweeping_frames(crossings)
-    if len(frames) < 2 * FEWEST_SWEEPS:
+    if len(frames) < 2 * SWEEPS_ASIDE:
         return None
     table = by_sweep(crossings, frames)
     geometry = CrossingRays.of(crossings, camera)
     equations = Adjustment(table, geometry, line, fan, len(frames), LineErrors.of(crossings))
     solution = equations.start()
     for _ in range(_ROUNDS):
-        solution = equations.improve(solution, huber_weights(solution.residuals))
+        solution = equations.improve(solution, huber_weights(solution.residuals, HUBER_AT))
     scores = _Scores.of(equations, solution)
-    first, last = FEWEST_SWEEPS, len(frames) - FEWEST_SWEEPS
-    stride = max(1, len(frames) // _TRIED)
+    first, last = SWEEPS_ASIDE, len(frames) - SWEEPS_ASIDE
+    stride = max(1, len(frames) // _PLACES)
     _, about = max((scores.at(k), k) for k in range(first, last + 1, stride))
     near = range(max(first, about - stride + 1), min(last, about + stride - 1) + 1)
     score, k = max((scores.at(k), k) for k in near)
-    return Movement(int(frames[k - 1]), int(frames[k]), score) if score > SURE else None
+    return Movement(int(frames[k - 1]), int(frames[k]), score) if score > SCORE_LIMIT else None
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -119,7 +132,7 @@ class _Scores:
     def at(self, k: int) -> float:
         """T for a movement before sweep k; 0 with too few crossings."""
         across = (self.earlier < k) & (self.later >= k)
-        if np.count_nonzero(across) < FEWEST_ACROSS:
+        if np.count_nonzero(across) < CROSSINGS_ACROSS:
             return 0.0
         solution, equations = self.solution, self.equations
         weight = solution.weights / solution.sigma**2
@@ -139,7 +152,7 @@ class _Scores:
 def _chi_square(score: Array, covariance: Array) -> float:
     """gᵀ C⁻¹ g over the directions that the sweeps' planes do not take up all but wholly."""
     values, vectors = np.linalg.eigh(covariance)
-    known = values > TAKEN_UP
+    known = values > LEAST_SEEN_SHARE
     return float(np.sum((vectors.T @ score)[known] ** 2 / values[known]))
 
 
@@ -162,3 +175,89 @@ def _movements(rays: Array, inverse_depths: Array) -> Array:
         arm /= np.sqrt(np.mean(np.sum(arm[body] ** 2, axis=1)))
         columns += [np.where(body[:, None], gain[:, None] * way, 0.0) for way in (normals, np.cross(arm, normals))]
     return np.hstack(columns)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class StillPart:
+    """The crossings (M,) that are kept, and when something moved."""
+
+    kept: NDArray[np.bool_]
+    movements: tuple[Movement, ...]
+
+    def note(self, names: Sequence[str], frames: int) -> tuple[Message, ...]:
+        """Note for the technician if anything moved; `frames` frames are used."""
+        if not self.movements:
+            return ()
+        return (
+            Message(
+                "scan.moved",
+                "Object or camera moved {when:and}: crossings of the frames before and after disagree. Only {n} frames "
+                "between which nothing moved are used. Hold both still and scan again to use them all.",
+                when=_when(self.movements, names),
+                n=frames,
+            ),
+        )
+
+
+def still_part(
+    crossings: CrossingTable,
+    line: Index,
+    camera: Camera,
+    fan: Fan,
+    names: Sequence[str],
+    progress: Progress = silent,
+) -> StillPart:
+    """Choose the larger part of a scan, before or after each movement, that agrees with itself and with the fan.
+
+    `line` (M,) is the fan's line of each crossing, −1 between sweeps; `names` are the frames'.
+
+    Raises
+    ------
+    InputError
+        If too little is left.
+    """
+    kept, movements = np.ones(len(crossings), dtype=np.bool_), []
+    while movement := find_movement(crossings.select(kept), line[kept], camera, fan):
+        movements.append(movement)
+        later_a, later_b = crossings.a >= movement.first_after, crossings.b >= movement.first_after
+        parts = [
+            kept & ~later_a & (crossings.with_fan | ~later_b),
+            kept & later_a & (crossings.with_fan | later_b),
+        ]
+        solved = []
+        for part in parts:
+            count = _sweeps(crossings, part)
+            if count >= LEAST_SWEEPS and np.count_nonzero(crossings.with_fan & part) >= LEAST_SWEEPS:
+                scale = locate_together(crossings.select(part), line[part], camera, fan, progress).scale
+                solved.append((count, scale, part))
+        if not solved:
+            raise InputError(
+                Message(
+                    "scan.moved_too_much",
+                    "object or camera moved {when:and}, and too few frames are left between which nothing did",
+                    when=_when(movements, names),
+                ),
+                where="scan",
+                todo=Message("scan.advice_hold_still", "hold both still and scan again"),
+            )
+        solved.sort(key=lambda one: -one[0])
+        worse = len(solved) > 1 and solved[0][1] > MUCH_WORSE * max(solved[1][1], 1.0)
+        kept = solved[int(worse)][2]
+    return StillPart(kept, tuple(movements))
+
+
+def _sweeps(crossings: CrossingTable, rows: NDArray[np.bool_]) -> int:
+    return len(np.unique(np.concatenate([crossings.a[rows], crossings.b[rows & ~crossings.with_fan]])))
+
+
+def _when(movements: Sequence[Movement], names: Sequence[str]) -> list[Message]:
+    ordered = sorted(movements, key=lambda one: one.first_after)
+    return [
+        Message(
+            "scan.between_frames",
+            "between {first} and {second}",
+            first=names[one.last_before],
+            second=names[one.first_after],
+        )
+        for one in ordered
+    ]

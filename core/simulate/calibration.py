@@ -1,25 +1,25 @@
-"""The calibration pictures of a simulated set: which plates are shown, how they are held, and their pictures."""
+"""Calibration pictures of a simulated set: plates, poses and the pictures of them."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
 
-from core.files.rig import GaugeSpec, rig_to_toml
-from core.files.rig import Rig as StatedRig
+from core.files.recording.rig import GaugeSpec, rig_to_toml
+from core.files.recording.rig import Rig as StatedRig
 from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid, Target
 from core.model import Pose
-from core.simulate.boards import printed
-from core.simulate.image import Picture, Sensor, generator
 from core.simulate.poses import camera_poses, plane_poses
-from core.simulate.rays import Map
 from core.simulate.rig import Rig
 from core.simulate.scenario import Scenario
-from core.simulate.targets import Studio, camera_picture, fan_centres, plane_pictures
+from core.simulate.scene.boards import printed
+from core.simulate.scene.image import Picture, Sensor, generator
+from core.simulate.scene.rays import Map
+from core.simulate.scene.targets import RenderContext, camera_picture, fan_centres, plane_pictures
 
-CAMERA_GREY = 230.0
-PLANE_GREY = 75.0
-"""8-bit grey level of a white surface in the room's light, while the camera and while the fan is calibrated."""
+CAMERA_GREY, PLANE_GREY = 230.0, 75.0
+"""8-bit grey level of a white surface in the room's light, while the camera and while the fan is calibrated: the target
+nearly white, and dark enough for the fan's stripes to stand out."""
 
 PLATES: dict[str, Target] = {
     "checkerboard": Checkerboard(17, 12, 10.0),
@@ -27,11 +27,19 @@ PLATES: dict[str, Target] = {
     "circle_grid": CircleGrid(13, 10, 14.0),
     "black_square": BlackSquare(60.0),
 }
+"""Plates by their kind, lengths in mm: the black square is the paper's, the others are about as large together."""
+
+GAUGE_TOLERANCE_MM = 0.2
+"""Stated in rig.toml for a simulated gauge block."""
 
 
 def rig_toml(scenario: Scenario) -> str:
-    """The text of rig.toml for a scenario."""
-    gauge = GaugeSpec(float(scenario.height_mm), 0.2) if scenario.object in ("block", "narrow-block") else None
+    """Write the text of rig.toml for a scenario."""
+    gauge = (
+        GaugeSpec(float(scenario.height_mm), GAUGE_TOLERANCE_MM)
+        if scenario.object in ("block", "narrow-block")
+        else None
+    )
     targets = PLATES[scenario.camera_target], PLATES[scenario.plane_target]
     return rig_to_toml(StatedRig(*targets, lines=3, angle=math.radians(5.0), gauge=gauge))
 
@@ -41,7 +49,7 @@ class CalibrationPictures:
 
     def __init__(self, scenario: Scenario, rig: Rig, rays: Map) -> None:
         self._seed = scenario.seed
-        self._studio = Studio(rig, rays, Sensor(rig.optics, scenario.bits, scenario.noise))
+        self._context = RenderContext(rig, rays, Sensor(rig.optics, scenario.bits, scenario.noise))
         self._camera_plate = printed(PLATES[scenario.camera_target])
         self._plane_plate = printed(PLATES[scenario.plane_target])
         views = camera_poses(
@@ -54,16 +62,16 @@ class CalibrationPictures:
         self.plane_poses = {f"pose{i:02d}": pose for i, pose in enumerate(shown)}
 
     def render(self, name: str) -> Iterator[tuple[str, Picture]]:
-        """The pictures of one view or pose, each with its path within the set."""
+        """Render the pictures of one view or pose, each with its path within the set."""
         if name in self.camera_poses:
             yield f"camera/{name}.png", self._view(name, self.camera_poses[name])
             return
         index = list(self.plane_poses).index(name)
         pose = self.plane_poses[name]
-        on, off = plane_pictures(self._studio, self._plane_plate, pose, PLANE_GREY, self._seed, index)
+        on, off = plane_pictures(self._context, self._plane_plate, pose, PLANE_GREY, self._seed, index)
         yield f"planes/{name}.png", on
         yield f"planes/{name}_off.png", off
 
     def _view(self, name: str, pose: Pose) -> Picture:
         rng = generator(self._seed, "camera", list(self.camera_poses).index(name))
-        return camera_picture(self._studio, self._camera_plate, pose, CAMERA_GREY, rng)
+        return camera_picture(self._context, self._camera_plate, pose, CAMERA_GREY, rng)

@@ -1,4 +1,4 @@
-"""Recording sets as a stranger would record them, with the truth beside them."""
+"""Simulated recording sets as another program would record them, with the truth beside them."""
 
 from __future__ import annotations
 
@@ -13,21 +13,23 @@ from typing import cast
 from core.errors import InputError
 from core.files.atomic import cannot_write, make_folder, write_text
 from core.files.pictures import write_picture
+from core.messages import Message
 from core.model import LightPlane, Pose
 from core.progress import Progress, silent, steps
 from core.simulate.calibration import CalibrationPictures, rig_toml
-from core.simulate.image import Picture, Sensor, generator
-from core.simulate.laser import Sheet
-from core.simulate.rays import ray_map
 from core.simulate.rig import Optics, Rig, paper_rig
 from core.simulate.scan import ScanStage
 from core.simulate.scenario import Scenario
-from core.simulate.stage import WORK_POINT, aim_of, build_scene
+from core.simulate.scene.image import Picture, Sensor, generator
+from core.simulate.scene.laser import Sheet
+from core.simulate.scene.rays import ray_map
+from core.simulate.scene.stage import WORK_POINT, aim_of, build_scene
 from core.simulate.sweep import hand_sweeps, sweep_range
 from core.simulate.truth import TRUTH_FILE, Truth, load_truth, save_truth, truth_folder
 from core.threads import ordered_map
 
 RENDER_THREADS = 2
+"""Pictures rendered and written at once: as many as a small machine has cores."""
 
 
 def simulate_set(
@@ -60,10 +62,17 @@ def simulate_set(
     """
     folder = folder.absolute()
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
-        raise InputError("there is something already", where=folder, todo="name a new folder, or empty this one")
+        raise InputError(
+            Message("simulate.not_empty", "there is something already"),
+            where=folder,
+            todo=Message("simulate.advice_new_folder", "name a new folder, or empty this one"),
+        )
     beside_it = truth_folder(folder)
     if beside_it.exists() and not (beside_it / TRUTH_FILE).exists():
-        raise InputError("this is where the truth would go, but it is something else", where=beside_it)
+        raise InputError(
+            Message("simulate.no_place_for_truth", "this is where the truth would go, but it is something else"),
+            where=beside_it,
+        )
     make_folder(folder.parent)
     try:
         with tempfile.TemporaryDirectory(prefix=f".{folder.name}.", dir=folder.parent) as beside:
@@ -157,7 +166,11 @@ def _copy_calibration(earlier: Path, made: Path, rig: Rig) -> tuple[dict[str, Po
     truth = load_truth(earlier)
     same = truth.camera.image_size == rig.camera.image_size and abs(truth.fan.pis - rig.fan.pis).max() < 1e-12
     if not same:
-        raise InputError("its rig or picture size is another one", where=earlier, todo="render the calibration anew")
+        raise InputError(
+            Message("simulate.other_rig", "its rig or picture size is another one"),
+            where=earlier,
+            todo=Message("simulate.advice_render_anew", "render the calibration anew"),
+        )
     for part in ("camera", "planes"):
         shutil.copytree(earlier / part, made / part, dirs_exist_ok=True)
     return dict(truth.camera_poses), dict(truth.plane_poses)

@@ -1,4 +1,4 @@
-"""The rig that is simulated: the paper's camera, the paper's fan, and how light and lens behave.
+"""The simulated rig: the paper's camera, the paper's fan, and the model of light and lens.
 
 Camera and fan are those of Sun et al., Sensors 2023, 23, 13, §5.1 and eq. (6), doi:10.3390/s23010013. The sign of the
 last term of eq. (6) is a misprint (with it no plane is seen by that camera nearer than 2 m), so the planes are
@@ -15,19 +15,26 @@ from scipy.spatial.transform import Rotation
 from core.model import Camera, Fan, LightPlane
 from core.model.arrays import Array
 
+# Sun et al. 2023.
 FULL_SIZE = (3840, 2748)
 FULL_MATRIX = ((4990.2635, 0.77900164, 1929.2399), (0.0, 4993.9024, 1279.1607), (0.0, 0.0, 1.0))
 DISTORTION = (0.0815, -0.3809, 0.0042, -0.0004)
+"""The paper's camera, §5.1: (width, height) in px, A in px, and k1, k2, p1, p2."""
 PUBLISHED_COEFFICIENTS = ((0.922, -7.397, -1.429), (1.321, -9.319, -0.992), (1.986, -12.52, -0.263))
 """(A, B, C) of eq. (6), line 1 … 3."""
-
 FAN_ANGLE = np.radians(5.0)
-FAN_EMITTER_X_MM = 120.0  # on the fan's axis, just outside the lower right corner of the picture
+"""rad, nominal, between neighbouring planes."""
+
+# What the paper does not tell; chosen so that things lie in the picture and in the light.
+FAN_EMITTER_X_MM = 120.0
+"""x of the point on the fan's axis from which its light comes: just outside the lower right corner of the picture."""
+FAN_FOCUS_MM, SWEEP_FOCUS_MM = 240.0, 550.0
+"""Distances from the emitters at which the fan and the hand-held laser are focused: where the object is."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Optics:
-    """What blurs, sparkles and limits the pictures.
+    """Blur, speckle and noise of the pictures; the defaults are those of a usual industrial camera and lens.
 
     Lengths on the sensor are given in pixels of the full-resolution camera and scale with it; each pixel size adds
     its own part in quadrature, as micro-lenses and read-out do.
@@ -122,12 +129,12 @@ class Rig:
 
 
 def published_fan() -> Fan:
-    """The three planes of eq. (6) as printed but for the sign: angles 4.929° and 4.919°, not quite one pencil."""
+    """Make the three planes of eq. (6) as printed but for the sign: angles 4.929° and 4.919°, not quite one pencil."""
     return Fan(tuple(LightPlane(-np.array(row) / 1000.0) for row in PUBLISHED_COEFFICIENTS))
 
 
 def fan_axis(fan: Fan) -> tuple[Array, Array]:
-    """The axis of a fan: its point at x = 0 (3,) in mm and its unit direction (3,), towards +x.
+    """Compute the axis of a fan: its point at x = 0 (3,) in mm and its unit direction (3,), towards +x.
 
     The planes as points π lie on one straight line in π-space; the axis is all X with π·X = 1 for the whole line.
     """
@@ -140,7 +147,7 @@ def fan_axis(fan: Fan) -> tuple[Array, Array]:
 
 
 def pencil_fan() -> Fan:
-    """The exact 5° pencil nearest to the published planes: their axis, their middle plane, ±5°."""
+    """Make the exact 5° pencil nearest to the published planes: their axis, their middle plane, ±5°."""
     published = published_fan()
     point, direction = fan_axis(published)
     planes = []
@@ -155,7 +162,7 @@ def pencil_fan() -> Fan:
 
 
 def paper_rig(scale: float = 1.0, *, published_planes: bool = False, optics: Optics | None = None) -> Rig:
-    """The paper's rig with pictures resized by `scale` (0.5 gives 1920 × 1374).
+    """Make the paper's rig with pictures resized by `scale` (0.5 gives 1920 × 1374).
 
     Parameters
     ----------
@@ -164,11 +171,11 @@ def paper_rig(scale: float = 1.0, *, published_planes: bool = False, optics: Opt
     published_planes
         Take eq. (6) as printed (4.929°, 4.919°) instead of the exact 5° pencil nearest to it.
     optics
-        Lens, speckle and noise; the default is a believable industrial camera.
+        Lens, speckle and noise; the default is a usual industrial camera.
     """
     camera = Camera(FULL_SIZE, np.array(FULL_MATRIX), np.array(DISTORTION)).scaled(scale)
     fan = published_fan() if published_planes else pencil_fan()
     point, direction = fan_axis(fan)
     emitter = point + direction * (FAN_EMITTER_X_MM / direction[0])
-    beam = Beam(focus_mm=240.0)
-    return Rig(camera, fan, emitter, scale, optics or Optics(), beam, replace(beam, focus_mm=550.0))
+    beam = Beam(focus_mm=FAN_FOCUS_MM)
+    return Rig(camera, fan, emitter, scale, optics or Optics(), beam, replace(beam, focus_mm=SWEEP_FOCUS_MM))

@@ -18,17 +18,17 @@ SAMPLE = "sample.toml"
 
 
 def sample_scenario() -> Scenario:
-    """What the sample shows."""
+    """Read the scenario of the sample."""
     return Scenario.from_toml((files("resources") / "sample" / SAMPLE).read_text(encoding="utf-8"), SAMPLE)
 
 
 def sample_folder() -> Path:
-    """Where the sample's recording set is kept, once it is rendered."""
+    """Folder in which the sample's recording set is kept, once it is rendered."""
     return Path(platformdirs.user_cache_dir("trisect", appauthor=False)) / f"sample-{_key(sample_scenario())}"
 
 
 def sample_set(progress: Progress = silent) -> Path:
-    """The folder of the sample's recording set, rendered (in well under a minute) if it is not there yet.
+    """Find the folder of the sample's recording set, rendered (in well under a minute) if it is not there yet.
 
     Raises
     ------
@@ -51,9 +51,8 @@ def _whole(folder: Path) -> bool:
 
 
 def _key(scenario: Scenario) -> str:
-    """Another scenario, another release or changed rendering make another sample."""
+    """Key of the sample: another scenario, another release or changed rendering make another one."""
     digest = hashlib.sha256(f"{core.__version__} {scenario.key}".encode())
-    for source in sorted(files("core.simulate").iterdir(), key=lambda entry: entry.name):
-        if source.name.endswith(".py"):
-            digest.update(source.read_bytes())
+    for source in sorted(Path(core.__file__).parent.joinpath("simulate").rglob("*.py")):
+        digest.update(source.read_bytes())
     return digest.hexdigest()[:16]

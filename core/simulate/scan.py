@@ -1,4 +1,4 @@
-"""The pictures of a scan: a still object under the fan, and one sweep a frame."""
+"""Pictures of a scan: a still object under the fan, and one sweep a frame."""
 
 from __future__ import annotations
 
@@ -6,19 +6,27 @@ import cv2
 import numpy as np
 
 from core.model.arrays import Array
-from core.simulate.image import Picture, Sensor, blurred, generator
-from core.simulate.laser import Sheet, fan_sheets, laser_light
-from core.simulate.rays import Map
 from core.simulate.rig import Rig
-from core.simulate.scene import Scene, SurfaceMaps, surface_maps
-from core.simulate.speckle import Speckle
+from core.simulate.scene.image import Picture, Sensor, blurred, generator
+from core.simulate.scene.laser import Sheet, fan_sheets, laser_light
+from core.simulate.scene.rays import Map
+from core.simulate.scene.scene import Scene, SurfaceMaps, surface_maps
+from core.simulate.scene.speckle import LEAST_LIGHT, Speckle
 
 LAMP = np.array([-0.35, -0.5, -0.79])
 """Direction (3,) from the scene to the lamp that gives the room's light its shade, in the camera frame."""
+DIFFUSE_SHARE, LAMP_SHARE = 0.4, 0.6
+"""Of the room's light, from all sides and from the lamp."""
+
+# Uneven albedo: smooth patches, never black and never more than a white sheet.
+PATCH_PX = 30
+"""Side in px at full resolution."""
+LEAST_FACTOR, LARGEST_FACTOR = 0.2, 1.6
+"""Of the surface's albedo."""
 
 
 class ScanStage:
-    """A still scene before a rig, everything that does not change from frame to frame computed once.
+    """Renders a still scene before a rig; what does not change from frame to frame is computed once.
 
     Parameters
     ----------
@@ -76,7 +84,7 @@ class ScanStage:
     def lit_by(self, sheet: Sheet, rng: np.random.Generator, *, fan: bool = True) -> Map:
         """Light (h, w) in grey levels with the hand-held laser at `sheet`; `rng` chooses its speckle."""
         light = blurred(laser_light(sheet, self.scene, self.maps), self.rig.blur_px)
-        light = self._sparkling(light, rng)
+        light = self._with_speckle(light, rng)
         light += self._still if fan else self._room_light
         return light
 
@@ -88,16 +96,16 @@ class ScanStage:
         return light
 
     def _fan(self, aim: Array) -> Map:
-        return self._sparkling(blurred(self.fan_light(aim), self.rig.blur_px), generator(self.seed, "fan"))
+        return self._with_speckle(blurred(self.fan_light(aim), self.rig.blur_px), generator(self.seed, "fan"))
 
     def _room(self, grey: float) -> Map:
         facing = np.maximum(self.maps.normals @ (LAMP / np.linalg.norm(LAMP)).astype(np.float32), 0)
-        return blurred(self.maps.albedo * (np.float32(grey) * (0.4 + 0.6 * facing)), self.rig.blur_px)
+        return blurred(self.maps.albedo * (np.float32(grey) * (DIFFUSE_SHARE + LAMP_SHARE * facing)), self.rig.blur_px)
 
-    def _sparkling(self, light: Map, rng: np.random.Generator) -> Map:
+    def _with_speckle(self, light: Map, rng: np.random.Generator) -> Map:
         if self._speckle is None:
             return light
-        rows, columns = np.nonzero(light > 0.02)
+        rows, columns = np.nonzero(light > LEAST_LIGHT)
         light[rows, columns] *= self._speckle.at(rows, columns, rng)
         return light
 
@@ -107,9 +115,9 @@ def _textured(maps: SurfaceMaps, texture: float, scale: float, seed: int) -> Sur
     if texture <= 0:
         return maps
     height, width = maps.albedo.shape
-    step = max(4, round(30 * scale))
+    step = max(4, round(PATCH_PX * scale))
     rng = generator(seed, "texture")
     coarse = rng.standard_normal((height // step + 2, width // step + 2), dtype=np.float32)
     patches = cv2.resize(coarse, (width, height), interpolation=cv2.INTER_CUBIC)
-    albedo = maps.albedo * np.clip(1 + np.float32(texture) * patches, 0.2, 1.6)
+    albedo = maps.albedo * np.clip(1 + np.float32(texture) * patches, LEAST_FACTOR, LARGEST_FACTOR)
     return SurfaceMaps(maps.points, maps.normals, albedo, maps.table)

@@ -1,4 +1,4 @@
-"""What to simulate: one frozen description from which every picture follows, byte for byte."""
+"""Scenario of a simulated recording: one frozen description from which every picture follows, byte for byte."""
 
 from __future__ import annotations
 
@@ -9,20 +9,21 @@ from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 
 from core.errors import InputError
+from core.messages import Message, plain
 
 OBJECTS = ("block", "narrow-block", "steps", "sphere", "cylinder", "mask", "stl", "plane")
-"""What can stand on the table."""
+"""Objects that can stand on the table."""
 
 CAMERA_TARGETS = ("checkerboard", "charuco", "circle_grid")
 PLANE_TARGETS = ("black_square", *CAMERA_TARGETS)
 
 YAW_DEG = 4.0
-"""Nobody puts a part down quite straight."""
+"""Degrees by which the object is turned on the table: nobody puts a part down quite straight."""
 
 
 @dataclass(frozen=True, slots=True)
 class Scenario:
-    """A recording to be simulated.
+    """Description of a recording to be simulated.
 
     Parameters
     ----------
@@ -86,8 +87,15 @@ class Scenario:
         )
         for name, allowed in choices:
             if getattr(self, name) not in allowed:
-                listed = ", ".join(str(one) for one in allowed)
-                raise InputError(f"{getattr(self, name)!r} is not one of {listed}", where=name)
+                raise InputError(
+                    Message(
+                        "simulate.not_one_of",
+                        "'{value}' is not one of {allowed}",
+                        value=getattr(self, name),
+                        allowed=allowed,
+                    ),
+                    where=name,
+                )
         ranges = (
             ("height_mm", 1.0, 120.0),
             ("seed", 0, 2**63 - 1),
@@ -105,9 +113,20 @@ class Scenario:
         )
         for name, low, high in ranges:
             if not low <= getattr(self, name) <= high:
-                raise InputError(f"{getattr(self, name)} is not between {low} and {high}", where=name)
+                raise InputError(
+                    Message(
+                        "simulate.out_of_range",
+                        "{value} is not between {low} and {high}",
+                        value=getattr(self, name),
+                        low=low,
+                        high=high,
+                    ),
+                    where=name,
+                )
         if self.object == "stl" and not self.stl_path:
-            raise InputError("an STL object needs the path of its file", where="stl_path")
+            raise InputError(
+                Message("simulate.no_stl_path", "an STL object needs the path of its file"), where="stl_path"
+            )
 
     @property
     def key(self) -> str:
@@ -126,14 +145,27 @@ class Scenario:
         try:
             values = tomllib.loads(text)
         except tomllib.TOMLDecodeError as problem:
-            raise InputError(f"it is not valid TOML ({problem})", where=where) from problem
+            raise InputError(
+                Message("simulate.bad_toml", "it is not valid TOML ({why})", why=plain(str(problem))), where=where
+            ) from problem
         known = {field.name: type(field.default) for field in fields(cls)}
         for name, value in values.items():
             if name not in known:
-                raise InputError(f"{name!r} is not a field of a scenario", where=where)
+                raise InputError(
+                    Message("simulate.unknown_field", "'{name}' is not a field of a scenario", name=name), where=where
+                )
             fits = isinstance(value, known[name]) or (known[name] is float and isinstance(value, int))
             if not fits or (isinstance(value, bool) and known[name] is not bool):
-                raise InputError(f"{name} = {value!r} is not of type {known[name].__name__}", where=where)
+                raise InputError(
+                    Message(
+                        "simulate.wrong_type",
+                        "{name} = {value} is not of type {kind}",
+                        name=name,
+                        value=repr(value),
+                        kind=known[name].__name__,
+                    ),
+                    where=where,
+                )
         return cls(**values)
 
     @classmethod
@@ -142,5 +174,7 @@ class Scenario:
         try:
             text = path.read_text(encoding="utf-8")
         except (OSError, UnicodeDecodeError) as problem:
-            raise InputError(f"it cannot be read ({problem})", where=path) from problem
+            raise InputError(
+                Message("simulate.unreadable", "it cannot be read ({why})", why=plain(str(problem))), where=path
+            ) from problem
         return cls.from_toml(text, path)

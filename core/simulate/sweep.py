@@ -1,4 +1,4 @@
-"""The hand that moves the single-line laser: where it is and how it is held in each frame of a scan.
+"""Course of the hand that moves the single-line laser: its position and direction in each frame of a scan.
 
 A scan is several passes over the object, there and back, alternately from both sides of the camera, the stripe tilted
 now one way, now the other: it meets the fan's lines at 35° to 90°, and stripes of different passes meet everywhere on
@@ -14,21 +14,33 @@ from numpy.typing import NDArray
 
 from core.model import LightPlane
 from core.model.arrays import Array
-from core.simulate.laser import Sheet
 from core.simulate.rig import Rig
-from core.simulate.scene import Scene
+from core.simulate.scene.laser import Sheet
+from core.simulate.scene.scene import Scene
 
+# The hand's course. Chosen so that stripes meet the fan's lines at 35° to 90° and each other everywhere:
+# tests/simulate/test_sweep.py holds it.
 FRAMES_PER_PASS = 12
+"""Frames of one pass over the object."""
+LEAST_PASSES = 4
+"""Passes of a short scan, if it has so many frames."""
 TILTS_DEG = (18.0, -24.0, 42.0, -40.0, 4.0, 33.0, -10.0, -33.0)
 """Middle tilt of the stripe against the picture's vertical, pass by pass."""
-
+LARGEST_TILT = 0.8
+"""rad, 46°: of the stripe with all that the hand adds."""
+BASELINE_MM, BASELINE_RANGE_MM = 240.0, 55.0
+"""Distance of the laser from the optical axis, and how far the hand wanders from it."""
+HEIGHT_MM, HEIGHT_RANGE_MM = 40.0, 35.0
+"""z of the laser, and how far the hand wanders from it."""
 RIM_MM = 20.0
 """How far beyond the object the hand goes before it turns back."""
+EMPTY_HALF_WIDTH_MM = 40.0
+"""Half the width that is swept where nothing stands on the table."""
 
 
 @dataclass(frozen=True, slots=True)
 class SweepRange:
-    """How far a scan reaches: the stripe's aim runs over ± `half_width_mm` about `centre` (3,), given as a tuple."""
+    """Range of a scan: the stripe's aim runs over ± `half_width_mm` about `centre` (3,), given as a tuple."""
 
     centre: tuple[float, float, float]
     half_width_mm: float = 75.0
@@ -36,7 +48,7 @@ class SweepRange:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class HandCourse:
-    """The hand at N instants: where the laser is held, and how.
+    """Course of the hand: position and direction of the laser at N instants.
 
     Parameters
     ----------
@@ -74,8 +86,8 @@ class HandCourse:
 
 
 def hand_course(reach: SweepRange, frames: int, rng: np.random.Generator) -> HandCourse:
-    """How the hand moves during a scan of `frames` frames, in the order of time."""
-    passes = max(min(4, frames), round(frames / FRAMES_PER_PASS))
+    """Make the course of the hand during a scan of `frames` frames, in the order of time."""
+    passes = max(min(LEAST_PASSES, frames), round(frames / FRAMES_PER_PASS))
     number = np.arange(frames) * passes // frames
     begins = np.searchsorted(number, np.arange(passes))
     counts = np.diff(np.append(begins, frames))
@@ -84,24 +96,26 @@ def hand_course(reach: SweepRange, frames: int, rng: np.random.Generator) -> Han
     wander = _wander(frames, 5, rng)
     side = np.where((number // 2 + number) % 2 == 0, 1.0, -1.0)
     middle = np.radians(np.array(TILTS_DEG)[number % len(TILTS_DEG)])
-    tilt = np.clip(middle + np.radians(4.0) * wander[:, 0] + rng.normal(0, np.radians(0.5), frames), -0.8, 0.8)
-    baseline = 240.0 + 55.0 * np.tanh(wander[:, 1])
-    nearness = 40.0 + 35.0 * np.tanh(wander[:, 3])
+    tilt = np.clip(
+        middle + np.radians(4.0) * wander[:, 0] + rng.normal(0, np.radians(0.5), frames), -LARGEST_TILT, LARGEST_TILT
+    )
+    baseline = BASELINE_MM + BASELINE_RANGE_MM * np.tanh(wander[:, 1])
+    nearness = HEIGHT_MM + HEIGHT_RANGE_MM * np.tanh(wander[:, 3])
     across = (2 * along - 1) * reach.half_width_mm + rng.normal(0, 0.8, frames)
     aims = np.array(reach.centre) + np.column_stack([across, 6 * wander[:, 4], np.zeros(frames)])
     return HandCourse(number, tilt, side, baseline, wander[:, 2], nearness, aims)
 
 
 def hand_sweeps(rig: Rig, reach: SweepRange, frames: int, rng: np.random.Generator) -> list[Sheet]:
-    """The sheets of light of a scan of `frames` frames, in the camera frame, in the order of time."""
+    """Make the sheets of light of a scan of `frames` frames, in the camera frame, in the order of time."""
     return hand_course(reach, frames, rng).sheets(rig)
 
 
 def sweep_range(scene: Scene, centre: Array) -> SweepRange:
-    """Aim past `centre` (3,) in mm over everything that stands on the table and a rim of it on both sides."""
+    """Choose the range: past `centre` (3,) in mm over all that stands on the table and a rim on both sides."""
     extents = [mesh.triangles.reshape(-1, 3)[:, 0] for mesh in scene.meshes]
     extents += [sphere.centre[0] + np.array([-sphere.radius, sphere.radius]) for sphere in scene.spheres]
-    widest = max((float(np.abs(x - centre[0]).max()) for x in extents), default=40.0)
+    widest = max((float(np.abs(x - centre[0]).max()) for x in extents), default=EMPTY_HALF_WIDTH_MM)
     return SweepRange((float(centre[0]), float(centre[1]), float(centre[2])), widest + RIM_MM)
 
 

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from core.errors import InputError
 from core.files.atomic import write_bytes, write_text
+from core.messages import Message
 from core.model import Camera, Fan, LightPlane, Pose
 
 TRUTH_FILE = "truth.json"
@@ -22,7 +23,7 @@ DEPTH_FILE = "depth.npz"
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Truth:
-    """What really was before the camera.
+    """Truth of a simulated set: what was rendered.
 
     Parameters
     ----------
@@ -52,7 +53,7 @@ class Truth:
 
 
 def truth_folder(set_folder: Path) -> Path:
-    """Where the truth of the set in `set_folder` is: SET.truth beside SET."""
+    """Folder of the truth of the set in `set_folder`: SET.truth beside SET."""
     return set_folder.with_name(set_folder.name + ".truth")
 
 
@@ -79,7 +80,7 @@ def save_truth(folder: Path, truth: Truth, scenario: Mapping[str, Any]) -> None:
 
 
 def load_truth(folder: Path) -> Truth:
-    """The truth of a simulated set; `folder` is the set's or that of the truth itself.
+    """Load the truth of a simulated set; `folder` is the set's or that of the truth itself.
 
     Raises
     ------
@@ -92,7 +93,9 @@ def load_truth(folder: Path) -> Truth:
         with np.load(inside / DEPTH_FILE) as maps:
             depth, table = maps["depth"], maps["table"]
     except FileNotFoundError as error:
-        raise InputError("there is no truth beside this set: it was not simulated here", where=folder) from error
+        raise InputError(
+            Message("simulate.no_truth", "there is no truth beside this set: it was not simulated here"), where=folder
+        ) from error
     camera = content["camera"]
     return Truth(
         Camera(tuple(camera["image_size"]), camera["matrix"], camera["distortion"]),

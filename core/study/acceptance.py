@@ -7,35 +7,131 @@ What is checked, each against a limit of its own:
 - sphere-spacing error: the measured distance of two spheres' centres less the calibrated one;
 - flatness error: the range of the distances of a plane's points from the plane fitted to them.
 
-Fits are by least squares, and three points in a thousand may be left out. The check follows the guideline's pattern; it
-is no certificate, and nobody's accreditation stands behind it.
+Fits are by plain least squares with nothing weighted; of the points three in a thousand may be left out, the worst.
+Form and flatness are ranges: they grow with the number of points and hold their noise, as the guideline wants them to.
+The check follows the guideline's pattern; it is no certificate, and nobody's accreditation stands behind it.
 
 References
 ----------
-VDI/VDE 2634 part 2:2012, Optical 3-D measuring systems – Systems based on area scanning.
+VDI/VDE 2634 part 2:2012, Optical 3-D measuring systems – Systems based on area scanning
+(probing, sphere-spacing and flatness error; 3 ‰ of the points may be left out).
 ISO 14253-1:2017 (the uncertainty of the check counts against whoever proves).
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal, TypeAlias, get_args
 
-from core.inspect.conformity import CONFORMING, NOT_CONFORMING, NOT_PROVEN, Zones
+import numpy as np
+
+from core.inspect.conformity import Verdict, Zones
+from core.messages import Message
+from core.model.arrays import Array
+
+LEFT_OUT = 0.003
+"""Share of the points that may be left out."""
+ROUNDS = 20
+"""Of fitting and leaving out, at most; it ends when the worst points stay the same."""
+FEWEST = 12
+"""Points of an artefact: three times what a sphere needs."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class ProbedSphere:
+    """A sphere by least squares: `centre` (3,), `diameter`, `form` (range of radial distances), in mm; points used."""
+
+    centre: Array
+    diameter: float
+    form: float
+    points: int
+
+
+def probed_sphere(points: Array) -> ProbedSphere:
+    """The sphere of free radius through (N, 3) points in mm.
+
+    Raises
+    ------
+    ValueError
+        If there are fewer than FEWEST points, or they lie in one plane.
+    """
+    _enough(points, "sphere")
+    fitted, residuals, used = _trimmed(points, _sphere)
+    return ProbedSphere(fitted[:3], 2 * float(fitted[3]), float(np.ptp(residuals)), used)
+
+
+def probed_flatness(points: Array) -> tuple[float, int]:
+    """Range in mm of the distances of (N, 3) points from their plane, and how many were used; ValueError as above."""
+    _enough(points, "plane")
+    _, residuals, used = _trimmed(points, _plane)
+    return float(np.ptp(residuals)), used
+
+
+def _enough(points: Array, what: str) -> None:
+    if len(points) < FEWEST or not np.isfinite(points).all():
+        raise ValueError(f"a {what} needs {FEWEST} finite points or more")
+
+
+def _trimmed(points: Array, fit: Callable[[Array], tuple[Array, Callable[[Array], Array]]]) -> tuple[Array, Array, int]:
+    """Parameters and residuals of the points kept: the worst LEFT_OUT of all are left out, until they stay the same."""
+    kept = np.ones(len(points), dtype=bool)
+    allowed = int(LEFT_OUT * len(points))
+    for _ in range(ROUNDS):
+        parameters, residuals_of = fit(points[kept])
+        residuals = residuals_of(points)
+        before, kept = kept, np.ones(len(points), dtype=bool)
+        if allowed:
+            kept[np.argsort(np.abs(residuals), kind="stable")[-allowed:]] = False
+        if (kept == before).all():
+            break
+    return parameters, residuals[kept], int(kept.sum())
+
+
+def _sphere(points: Array) -> tuple[Array, Callable[[Array], Array]]:
+    """(4,) centre and radius of least orthogonal distances, by Gauss–Newton from the algebraic sphere."""
+    middle = points.mean(axis=0)
+    centred = points - middle
+    start, _, rank, _ = np.linalg.lstsq(
+        np.column_stack([2 * centred, np.ones(len(points))]), (centred**2).sum(axis=1), rcond=1e-9
+    )
+    if rank < 4:
+        raise ValueError("the points of the sphere lie in one plane")
+    centre, radius = start[:3], float(np.sqrt(start[3] + start[:3] @ start[:3]))
+    for _ in range(50):
+        away = centred - centre
+        distance = np.linalg.norm(away, axis=1)
+        design = np.column_stack([-away / distance[:, None], -np.ones(len(points))])
+        step = np.linalg.lstsq(design, radius - distance, rcond=None)[0]
+        centre, radius = centre + step[:3], radius + float(step[3])
+        if np.abs(step).max() < 1e-10:
+            break
+    found = np.append(centre + middle, radius)
+    return found, lambda all_points: np.asarray(np.linalg.norm(all_points - found[:3], axis=1) - found[3])
+
+
+def _plane(points: Array) -> tuple[Array, Callable[[Array], Array]]:
+    """(4,) unit normal and offset of least orthogonal distances."""
+    middle = points.mean(axis=0)
+    normal = np.linalg.svd(points - middle, full_matrices=False)[2][2]
+    offset = float(normal @ middle)
+    return np.append(normal, offset), lambda all_points: np.asarray(all_points @ normal - offset)
+
 
 Quantity: TypeAlias = Literal["form", "size", "spacing", "flatness"]
 QUANTITIES: tuple[Quantity, ...] = get_args(Quantity)
 
 POSITIONS: Mapping[Quantity, int] = {"form": 10, "size": 10, "spacing": 7, "flatness": 6}
 """Positions in the measuring volume that the guideline asks for."""
-TITLES: Mapping[Quantity, str] = {
-    "form": "probing error, form",
-    "size": "probing error, size",
-    "spacing": "sphere-spacing error",
-    "flatness": "flatness error",
+TITLES: Mapping[Quantity, Message] = {
+    "form": Message("study.probing_form", "probing error, form"),
+    "size": Message("study.probing_size", "probing error, size"),
+    "spacing": Message("study.sphere_spacing", "sphere-spacing error"),
+    "flatness": Message("study.flatness_error", "flatness error"),
 }
-PATTERN = "Acceptance check after the pattern of VDI/VDE 2634 part 2; not a certificate."
+PATTERN = Message(
+    "study.after_the_guideline", "Acceptance check after the pattern of VDI/VDE 2634 part 2; not a certificate."
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,8 +186,8 @@ class CheckedQuantity:
     k: float
 
     @property
-    def title(self) -> str:
-        """In words."""
+    def title(self) -> Message:
+        """What is checked."""
         return TITLES[self.quantity]
 
     @property
@@ -104,14 +200,16 @@ class CheckedQuantity:
         """Error of the worst reading, with its sign."""
         return self.worst.error
 
-    def verdict_of(self, reading: Reading) -> str:
-        """Decision on one reading, "" without a limit."""
-        return "" if self.limit is None else Zones(-self.limit, self.limit, self.k * reading.u).verdict(reading.error)
+    def verdict_of(self, reading: Reading) -> Verdict:
+        """Decision on one reading, none without a limit."""
+        if self.limit is None:
+            return Verdict.NONE
+        return Zones(-self.limit, self.limit, self.k * reading.u).verdict(reading.error)
 
     @property
-    def verdict(self) -> str:
+    def verdict(self) -> Verdict:
         """Of the worst of the readings: one that does not conform is enough, all must conform."""
-        return _worst(self.verdict_of(one) for one in self.readings)
+        return Verdict.worst(self.verdict_of(one) for one in self.readings)
 
     @property
     def enough_positions(self) -> bool:
@@ -126,20 +224,34 @@ class AcceptanceCheck:
     quantities: tuple[CheckedQuantity, ...]
 
     @property
-    def verdict(self) -> str:
-        """Of the worst quantity with a limit; "" if none has one."""
-        return _worst(one.verdict for one in self.quantities if one.verdict)
+    def verdict(self) -> Verdict:
+        """Of the worst quantity with a limit; none if none has one."""
+        return Verdict.worst(one.verdict for one in self.quantities)
 
     @property
-    def notes(self) -> tuple[str, ...]:
-        """What to know about the figures, whole sentences; the first says what this is and is not."""
+    def notes(self) -> tuple[Message, ...]:
+        """What to know about the figures; the first says what this is and is not."""
         said = [PATTERN]
         for one in self.quantities:
             if not one.enough_positions:
                 count = len({reading.position for reading in one.readings})
-                said.append(f"{one.title}: {count} of the {POSITIONS[one.quantity]} positions the guideline asks for.")
+                said.append(
+                    Message(
+                        "study.few_positions",
+                        "{what}: {n} of the {all} positions the guideline asks for.",
+                        what=one.title,
+                        n=count,
+                        all=POSITIONS[one.quantity],
+                    )
+                )
             if one.limit is not None and not any(reading.u for reading in one.readings):
-                said.append(f"{one.title}: no uncertainty of the artefact was stated; the verdict takes it as nothing.")
+                said.append(
+                    Message(
+                        "study.artefact_without_u",
+                        "{what}: no uncertainty of the artefact was stated; the verdict takes it as nothing.",
+                        what=one.title,
+                    )
+                )
         return tuple(said)
 
 
@@ -165,8 +277,3 @@ def acceptance_check(
         if mine:
             found.append(CheckedQuantity(quantity, mine, limits.get(quantity), k))
     return AcceptanceCheck(tuple(found))
-
-
-def _worst(verdicts: Iterable[str]) -> str:
-    found = set(verdicts)
-    return next((one for one in (NOT_CONFORMING, NOT_PROVEN, CONFORMING) if one in found), "")

@@ -10,31 +10,125 @@ With p parts, o operators, r repeats and the mean squares MS of parts, operators
 A negative estimate becomes 0. An interaction that is not significant (p > 0.05) is pooled with the error: MS_E and
 MS_PO are then both (SS_PO + SS_E) / (ν_PO + ν_E), and σ_PO² is 0. Reproducibility is σ_O² + σ_PO², gauge R&R σ_E² more.
 
+Confidence intervals are generalised ones: each mean square is its expectation times χ²_ν/ν. So a draw θ* = ν MS / χ²_ν
+of each, put into the formulas of the components, is a generalised pivotal quantity of any function of them (%GRR, ndc);
+the 2.5 % and 97.5 % quantiles of many draws bound it. For the repeatability that is the exact χ² interval. The draws
+are seeded: the same study, the same bounds.
+
 References
 ----------
 AIAG, Measurement systems analysis, 4th ed., 2010, chapter III-B and appendix A.
 Burdick, Borror, Montgomery, A review of methods for measurement systems capability analysis, Journal of Quality
 Technology 35 (2003) 342.
+Hamada, Weerahandi, Measurement system assessment via generalized inference, Journal of Quality Technology 32 (2000)
+241.
+Burdick, Borror, Montgomery, Design and analysis of gauge R&R studies, SIAM 2005, chapter 3 and appendix B,
+doi:10.1137/1.9780898718379.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Literal, TypeAlias, get_args
 
 import numpy as np
 from scipy.special import fdtrc
 
+from core.messages import Message
 from core.model.arrays import Array
-from core.study.grr_intervals import Interval, intervals
+
+Interval: TypeAlias = tuple[float, float]
+Fitness: TypeAlias = Literal["acceptable", "acceptable with reservations", "not acceptable"]
+ACCEPTABLE, CONDITIONAL, NOT_ACCEPTABLE = get_args(Fitness)
+
+DRAWS = 40_000
+"""Of the pivotal quantities: a bound's share of the draws is then known to 0.0008."""
+TAIL = 0.025
+"""Share of the draws beyond each bound of a 95 % interval."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class GrrIntervals:
+    """Variances by source, and their 95 % intervals; those of %GRR of total and of T (fractions); ndc and its own."""
+
+    estimates: Mapping[str, float]
+    variances: Mapping[str, Interval]
+    of_total: Interval
+    of_tolerance: Interval | None
+    ndc: float
+    categories: Interval
+
+
+def intervals(
+    squares: Mapping[str, tuple[float, int]], shape: tuple[int, ...], tolerance: float | None, seed: int = 0
+) -> GrrIntervals:
+    """Components and intervals from mean squares.
+
+    Parameters
+    ----------
+    squares
+        Mean square and degrees of freedom of "parts", "error", and, where they are in the model, "operators" and
+        "interaction".
+    shape
+        (p, o, r): parts, operators, repeats.
+    tolerance
+        Its full width T; None if there is none.
+    seed
+        Of the draws.
+    """
+    rng = np.random.default_rng(seed)
+    estimates = {
+        source: float(value[0])
+        for source, value in components({k: np.array([v[0]]) for k, v in squares.items()}, shape).items()
+    }
+    drawn = components({source: ms * dof / rng.chisquare(dof, DRAWS) for source, (ms, dof) in squares.items()}, shape)
+    grr, part = estimates["gauge R&R"], estimates["parts"]
+    with np.errstate(divide="ignore"):
+        ratio = np.sqrt(drawn["gauge R&R"] / drawn["total"])
+        categories = np.sqrt(2 * drawn["parts"] / drawn["gauge R&R"])
+    return GrrIntervals(
+        estimates,
+        {source: _bounds(values) for source, values in drawn.items()},
+        _bounds(ratio),
+        None if tolerance is None else _bounds(6 * np.sqrt(drawn["gauge R&R"]) / tolerance),
+        math.sqrt(2 * part / grr) if grr else math.inf,
+        _bounds(categories),
+    )
+
+
+def components(squares: Mapping[str, Array], shape: tuple[int, ...]) -> dict[str, Array]:
+    """Variances by source, each (n,), none below 0, from mean squares (n,); see `core.study.grr` for the formulas."""
+    _, operators, repeats = shape
+    error = squares["error"]
+    both = squares.get("interaction", error)
+    interaction = np.maximum(both - error, 0) / repeats
+    operator = np.maximum(squares.get("operators", both) - both, 0) / (shape[0] * repeats)
+    part = np.maximum(squares["parts"] - both, 0) / (operators * repeats)
+    grr = error + operator + interaction
+    return {
+        "gauge R&R": grr,
+        "repeatability": error,
+        "reproducibility": operator + interaction,
+        "operators": operator,
+        "interaction": interaction,
+        "parts": part,
+        "total": grr + part,
+    }
+
+
+def _bounds(values: Array) -> Interval:
+    low, high = np.quantile(values, [TAIL, 1 - TAIL])
+    return float(low), float(high)
+
 
 POOLED_ABOVE = 0.05
 """An interaction with a larger p is pooled with the error."""
 GOOD, USABLE = 0.10, 0.30
 """%GRR up to which a gauge is acceptable, and up to which it may be, by what hangs on it (AIAG)."""
 ENOUGH_CATEGORIES = 5
-ACCEPTABLE, CONDITIONAL, NOT_ACCEPTABLE = "acceptable", "acceptable with reservations", "not acceptable"
+"""Distinct categories that a gauge must tell apart (AIAG, chapter II-D)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,29 +238,50 @@ class GrrStudy:
         return of_all.of_total if of_all.of_tolerance is None else of_all.of_tolerance
 
     @property
-    def verdict(self) -> str:
-        """ACCEPTABLE up to 10 %, CONDITIONAL up to 30 %, else NOT_ACCEPTABLE (AIAG, chapter II-D)."""
-        if self.grr <= GOOD:
-            return ACCEPTABLE
-        return CONDITIONAL if self.grr <= USABLE else NOT_ACCEPTABLE
+    def verdict(self) -> Fitness:
+        """By %GRR: acceptable up to 10 %, with reservations up to 30 % (AIAG, chapter II-D)."""
+        limits = ((GOOD, ACCEPTABLE), (USABLE, CONDITIONAL))
+        return next((fitness for most, fitness in limits if self.grr <= most), NOT_ACCEPTABLE)
 
     @property
-    def notes(self) -> tuple[str, ...]:
-        """What to know about the figures: whole sentences."""
+    def notes(self) -> tuple[Message, ...]:
+        """What to know about the figures."""
         p, o, r = self.values.shape
         said = []
         if self.pooled:
             said.append(
-                "The interaction of parts and operators is not significant (p > 0.05) and is pooled with the error."
+                Message(
+                    "study.interaction_pooled",
+                    "The interaction of parts and operators is not significant (p > {limit}) and is pooled with the "
+                    "error.",
+                    limit=POOLED_ABOVE,
+                )
             )
         if o == 1:
-            said.append("One operator alone shows no reproducibility: gauge R&R is the repeatability.")
+            said.append(
+                Message(
+                    "study.one_operator",
+                    "One operator alone shows no reproducibility: gauge R&R is the repeatability.",
+                )
+            )
         if p < 10 or o < 3 or r < 2 or p * o * r < 60:
-            said.append(f"{p} × {o} × {r} measurements are few: 10 parts, 3 operators and 2 to 3 repeats are usual.")
+            said.append(
+                Message(
+                    "study.few_measurements",
+                    "{p} × {o} × {r} measurements are few: 10 parts, 3 operators and 2 to 3 repeats are usual.",
+                    p=p,
+                    o=o,
+                    r=r,
+                )
+            )
         if self.categories is not None and self.categories < ENOUGH_CATEGORIES:
             said.append(
-                f"{self.categories} distinct categories: with fewer than {ENOUGH_CATEGORIES} the gauge hardly tells "
-                "these parts apart."
+                Message(
+                    "study.few_categories",
+                    "{n} distinct categories: with fewer than {least} the gauge hardly tells these parts apart.",
+                    n=self.categories,
+                    least=ENOUGH_CATEGORIES,
+                )
             )
         return tuple(said)
 

@@ -17,13 +17,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from core.inspect.conformity import NOT_PROVEN, Zones
+from core.inspect.conformity import Verdict, Zones
+from core.messages import Message
 from core.model.arrays import Array
 
 if TYPE_CHECKING:  # a window shows statistics long before it shows a budget
     from core.study.budget import UncertaintyBudget
 
 MOST_BINS = 20
+"""Of a histogram: more cannot be told apart in the drawing."""
 TO_LIMITS = 2.66
 """3/d₂ with d₂ = 1.128 of two values: from the mean moving range to three standard deviations (ISO 7870-2)."""
 
@@ -139,25 +141,52 @@ class RepeatStudy:
     unit: str = "mm"
 
     @property
-    def verdict(self) -> str:
-        """By ISO 14253-1, of the mean; "not proven" while its uncertainty is not complete, "" without limits."""
+    def verdict(self) -> Verdict:
+        """By ISO 14253-1, of the mean; nothing is proven while its uncertainty is not complete, none without limits."""
         if self.zones is None or self.nominal is None:
-            return ""
-        return self.zones.verdict(self.statistics.mean_mm - self.nominal) if self.complete else NOT_PROVEN
+            return Verdict.NONE
+        return self.zones.verdict(self.statistics.mean_mm - self.nominal) if self.complete else Verdict.NOT_PROVEN
 
     @property
-    def notes(self) -> tuple[str, ...]:
-        """What to know about the figures: whole sentences."""
+    def notes(self) -> tuple[Message, ...]:
+        """What to know about the figures."""
         said = []
         if not self.complete:
             said.append(
-                "U of the mean holds the scatter of the repeats alone: no scan states its own uncertainty, so what is "
-                "common to all of them (calibration) is not in it, and nothing is proven."
+                Message(
+                    "study.scatter_alone",
+                    "U of the mean holds the scatter of the repeats alone: no scan states its own uncertainty, so what "
+                    "is common to all of them (calibration) is not in it, and nothing is proven.",
+                )
             )
         if self.run is not None and self.run.outside:
-            names = ", ".join(self.labels[place] for place in self.run.outside)
-            said.append(f"Beyond the limits of the run chart: {names}; look for what changed there.")
+            said.append(
+                Message(
+                    "study.beyond_run_chart",
+                    "Beyond the limits of the run chart: {names}; look for what changed there.",
+                    names=[self.labels[place] for place in self.run.outside],
+                )
+            )
         return tuple(said)
+
+
+@dataclass(frozen=True, slots=True)
+class Requirement:
+    """What is asked of the mean of repeats.
+
+    Parameters
+    ----------
+    nominal
+        None: there is no nominal value.
+    limits
+        Deviations permitted from it, the lower first; ±inf where a side has none; None: no decision is made.
+    r
+        Guard band over U, see `core.inspect.conformity.Zones`.
+    """
+
+    nominal: float | None = None
+    limits: tuple[float, float] | None = None
+    r: float = 1.0
 
 
 def repeat_study(
@@ -168,39 +197,35 @@ def repeat_study(
     name: str = "thickness",
     labels: Sequence[str] = (),
     U: Sequence[float] = (),
-    nominal: float | None = None,
-    limits: tuple[float, float] | None = None,
-    r: float = 1.0,
-    unit: str = "mm",
+    asked: Requirement = Requirement(),
 ) -> RepeatStudy:
-    """Study of n ≥ 1 repeats.
+    """Study of n ≥ 1 repeats, in the unit of the budget of their mean.
 
     Parameters
     ----------
-    values, labels, U, name, nominal, unit
+    values, labels, U, name
         See `RepeatStudy`; without labels "1", "2", …
     budget, complete
-        Of the mean: `core.study.repeats_budget`.
-    limits
-        Deviations permitted from the nominal value, the lower first; ±inf for none.
-    r
-        Guard band over U, see `Zones`.
+        Of the mean: `core.study.budget`.
+    asked
+        Nominal value and limits.
 
     Raises
     ------
     ValueError
         If there is no value, one is not finite, or the limits are not in order.
     """
+    nominal, limits = asked.nominal, asked.limits
     statistics = repeat_statistics(values, nominal)
     measured = np.array(values, dtype=np.float64)
     stated = np.array(U, dtype=np.float64) if len(U) else np.full(len(measured), np.nan)
     measured.setflags(write=False)
     stated.setflags(write=False)
     names = tuple(labels) or tuple(str(number) for number in range(1, len(measured) + 1))
-    zones = None if limits is None or nominal is None else Zones(*limits, budget.U, r)
+    zones = None if limits is None or nominal is None else Zones(*limits, budget.U, asked.r)
     return RepeatStudy(
         name, names, measured, stated, statistics, run_chart(measured), histogram(measured), budget, complete, nominal,
-        zones, unit,
+        zones, budget.unit,
     )  # fmt: skip
 
 

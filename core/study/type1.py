@@ -11,18 +11,22 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Literal, TypeAlias, get_args
 
 import numpy as np
 from scipy.special import chdtri, stdtr, stdtrit
 
+from core.messages import Message
 from core.model.arrays import Array
 
-CAPABLE, NOT_CAPABLE = "capable", "not capable"
+Capability: TypeAlias = Literal["capable", "not capable"]
+CAPABLE, NOT_CAPABLE = get_args(Capability)
 LIMIT = 1.33
 """What Cg and Cgk must reach."""
 RESOLUTION_SHARE = 0.05
 """Of the tolerance: what the resolution may be at most."""
 SIGNIFICANCE = 0.05
+"""Level of the t-test, and of the intervals: 95 %."""
 FEW = 25
 """Repeats below which a study says little; 50 are usual."""
 
@@ -108,23 +112,38 @@ class Type1Study:
         return 10 * (abs(self.bias) + 3 * LIMIT * self.s)
 
     @property
-    def verdict(self) -> str:
+    def verdict(self) -> Capability:
         """CAPABLE if Cg and Cgk reach the limit and the resolution, if stated, suffices; else NOT_CAPABLE."""
         suffices = min(self.cg, self.cgk) >= LIMIT and self.resolution_suffices is not False
-        return CAPABLE if suffices else NOT_CAPABLE
+        found: Capability = CAPABLE if suffices else NOT_CAPABLE
+        return found
 
     @property
-    def notes(self) -> tuple[str, ...]:
-        """What to know about the figures: whole sentences."""
+    def notes(self) -> tuple[Message, ...]:
+        """What to know about the figures."""
         said = []
         if self.n < FEW:
-            said.append(f"{self.n} repeats say little about the spread: {FEW} or more are asked for, 50 are usual.")
+            said.append(
+                Message(
+                    "study.few_repeats",
+                    "{n} repeats say little about the spread: {least} or more are asked for, 50 are usual.",
+                    n=self.n,
+                    least=FEW,
+                )
+            )
         if self.cgk < LIMIT <= self.cg:
-            said.append("The spread would suffice; the bias does not: correct it, or calibrate anew.")
+            said.append(
+                Message(
+                    "study.bias_too_large",
+                    "The spread would suffice; the bias does not: correct it, or calibrate anew.",
+                )
+            )
         if self.bias_is_significant:
-            said.append(f"The bias differs from zero (t-test, p = {self.p:.2g}).")
+            said.append(
+                Message("study.bias_significant", "The bias differs from zero (t-test, p = {p:.2g}).", p=self.p)
+            )
         if self.s == 0:
-            said.append("All values are the same: the resolution hides the spread.")
+            said.append(Message("study.no_spread", "All values are the same: the resolution hides the spread."))
         return tuple(said)
 
 

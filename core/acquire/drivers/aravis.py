@@ -7,19 +7,24 @@ import importlib
 import importlib.util
 import sys
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from core.acquire.features import Features
-from core.acquire.genicam import BUFFERS, DriverError, Grabbed
+from core.acquire.drivers.genicam import BUFFERS, DriverError, GenICamSource, Grabbed
+from core.acquire.drivers.genicam_features import Features
+from core.acquire.source import SourceChoice, SourceInfo
+from core.acquire.source_kind import DEVICE, FIRST_CAMERA, GENICAM_SETTINGS, SourceKind
 from core.errors import InputError
+from core.messages import Message
 
 VERSION = "0.8"
-INSTALL = (
+INSTALL = Message(
+    "source.install_aravis",
     "Aravis is not installed: on Debian and Ubuntu, apt install gir1.2-aravis-0.8 python3-gi, "
-    "and run Trisect with the system's own version of Python."
+    "and run Trisect with the system's own version of Python",
 )
 
 SYSTEM_PACKAGES = Path("/usr/lib/python3/dist-packages")
@@ -47,7 +52,7 @@ def aravis() -> Any:
         _introspection()
         return importlib.import_module("gi.repository.Aravis")
     except (ImportError, ValueError) as missing:
-        raise InputError(INSTALL.removesuffix(".")) from missing
+        raise InputError(INSTALL) from missing
 
 
 def list_cameras() -> list[tuple[str, str, str]]:
@@ -74,18 +79,34 @@ def connect(identifier: str) -> AravisDriver:
     """
     module = aravis()
     if not identifier and not list_cameras():
-        raise InputError("no camera is found", where="Aravis", todo="plug it in, and see that it has a network address")
+        raise InputError(
+            Message("camera.none_found", "no camera is found"),
+            where="Aravis",
+            todo=Message("advice.plug_in_with_address", "plug it in, and see that it has a network address"),
+        )
     try:
         with _telling():
             return AravisDriver(module, module.Camera.new(identifier or None))
     except DriverError as problem:
-        what = f"the camera {identifier}".rstrip()
-        todo = "see that it is plugged in and no other program uses it, then try again"
-        raise InputError(f"{what} cannot be opened ({problem})", where="Aravis", todo=todo) from problem
+        todo = Message(
+            "advice.check_plug_then_try_again", "see that it is plugged in and no other program uses it, then try again"
+        )
+        raise InputError(
+            Message(
+                "camera.one_cannot_be_opened",
+                "the camera {id} cannot be opened ({reason})",
+                id=identifier,
+                reason=str(problem),
+            )
+            if identifier
+            else Message("camera.cannot_be_opened_why", "the camera cannot be opened ({reason})", reason=str(problem)),
+            where="Aravis",
+            todo=todo,
+        ) from problem
 
 
 class AravisDriver:
-    """One camera of Aravis (:class:`core.acquire.genicam.Driver`)."""
+    """One camera of Aravis (:class:`core.acquire.drivers.genicam.Driver`)."""
 
     def __init__(self, module: Any, camera: Any) -> None:
         self._module, self._camera = module, camera
@@ -150,7 +171,7 @@ class AravisDriver:
 
 
 class DeviceFeatures:
-    """The features of a device (:class:`core.acquire.features.Features`)."""
+    """The features of a device (:class:`core.acquire.drivers.genicam_features.Features`)."""
 
     def __init__(self, module: Any, device: Any) -> None:
         self._module, self._device = module, device
@@ -232,3 +253,27 @@ def _telling() -> Iterator[None]:
         if type(problem).__module__.split(".")[0] != "gi":
             raise
         raise DriverError(getattr(problem, "message", str(problem)).strip().removesuffix(".")) from problem
+
+
+def _make(id_: str, rig: Any) -> GenICamSource:
+    name = id_ or "Aravis camera"
+    return GenICamSource(name.strip(), partial(connect, id_), None if rig is None else rig.channel)
+
+
+def _list() -> tuple[SourceInfo, ...]:
+    return tuple(SourceInfo(SourceChoice("aravis", id_), name, detail) for id_, name, detail in list_cameras())
+
+
+KIND = SourceKind(
+    "aravis",
+    Message("source.aravis", "GigE or USB3 camera"),
+    Message("source.aravis_help", "An industrial camera of any maker, by Aravis"),
+    DEVICE,
+    Message("source.aravis_device", "Name or network address of the camera; empty: the first one found"),
+    FIRST_CAMERA,
+    _make,
+    _list,
+    GENICAM_SETTINGS,
+    is_missing=is_missing,
+    install=INSTALL,
+)

@@ -4,15 +4,22 @@ from __future__ import annotations
 
 import contextlib
 import importlib
+import importlib.util
 from collections.abc import Callable, Iterator
+from functools import partial
 from typing import Any
 
-from core.acquire.features import TRIGGER, Features
-from core.acquire.genicam import BUFFERS, DriverError, Grabbed
+from core.acquire.drivers.genicam import BUFFERS, DriverError, GenICamSource, Grabbed
+from core.acquire.drivers.genicam_features import TRIGGER, Features
+from core.acquire.source import SourceChoice, SourceInfo
+from core.acquire.source_kind import DEVICE, FIRST_CAMERA, GENICAM_SETTINGS, SourceKind
 from core.errors import InputError
+from core.messages import Message
 
 MODULE = "pypylon"
-INSTALL = "Basler cameras need pypylon: install it with pip install 'trisect[basler]'."
+INSTALL = Message(
+    "source.install_pypylon", "Basler cameras need pypylon: install it with pip install 'trisect[basler]'"
+)
 
 READY_MS = 200
 
@@ -50,8 +57,12 @@ def connect(serial: str, setup: Callable[[Any], None] | None = None) -> PylonDri
     pylon = pylon_module()
     found = [one for one in _devices(pylon) if serial in ("", one.GetSerialNumber())]
     if not found:
-        todo = "plug it in, and see that it shows in the pylon Viewer"
-        what = f"there is no camera with the serial number {serial}" if serial else "no camera is found"
+        todo = Message("advice.plug_in_pylon", "plug it in, and see that it shows in the pylon Viewer")
+        what = (
+            Message("camera.none_with_serial", "there is no camera with the serial number {serial}", serial=serial)
+            if serial
+            else Message("camera.none_found", "no camera is found")
+        )
         raise InputError(what, where="Basler", todo=todo)
     name = found[0].GetFriendlyName()
     camera = None
@@ -66,8 +77,12 @@ def connect(serial: str, setup: Callable[[Any], None] | None = None) -> PylonDri
         _let_go(camera)
         if not isinstance(problem, DriverError):
             raise
-        todo = "see that no other program uses it, then try again"
-        raise InputError(f"the camera cannot be opened ({problem})", where=name, todo=todo) from problem
+        todo = Message("advice.close_other_programs", "see that no other program uses it, then try again")
+        raise InputError(
+            Message("camera.cannot_be_opened_why", "the camera cannot be opened ({reason})", reason=str(problem)),
+            where=name,
+            todo=todo,
+        ) from problem
 
 
 def pylon_module() -> Any:
@@ -75,11 +90,11 @@ def pylon_module() -> Any:
     try:
         return importlib.import_module(f"{MODULE}.pylon")
     except ImportError as missing:
-        raise InputError(INSTALL.removesuffix(".")) from missing
+        raise InputError(INSTALL) from missing
 
 
 class PylonDriver:
-    """One open Basler camera (:class:`core.acquire.genicam.Driver`)."""
+    """One open Basler camera (:class:`core.acquire.drivers.genicam.Driver`)."""
 
     def __init__(self, pylon: Any, camera: Any, name: str) -> None:
         self.name, self.camera = name, camera
@@ -128,7 +143,7 @@ class PylonDriver:
 
 
 class PylonFeatures:
-    """The nodes of a camera (:class:`core.acquire.features.Features`)."""
+    """The nodes of a camera (:class:`core.acquire.drivers.genicam_features.Features`)."""
 
     def __init__(self, camera: Any) -> None:
         self._camera = camera
@@ -189,7 +204,14 @@ def _devices(pylon: Any) -> list[Any]:
         with _telling():
             return list(pylon.TlFactory.GetInstance().EnumerateDevices())
     except DriverError as problem:
-        raise InputError(f"the drivers cannot look for cameras ({problem})", where="Basler") from problem
+        raise InputError(
+            Message(
+                "camera.drivers_fail",
+                "the drivers cannot look for cameras ({reason})",
+                reason=str(problem),
+            ),
+            where="Basler",
+        ) from problem
 
 
 def _let_go(camera: Any) -> None:
@@ -213,3 +235,27 @@ def _telling() -> Iterator[None]:
         raise
     except _genicam().GenericException as problem:
         raise DriverError(str(problem).split(" : ")[0].strip().removesuffix(".")) from problem
+
+
+def _make(id_: str, rig: Any) -> GenICamSource:
+    name = f"Basler {id_}"
+    return GenICamSource(name.strip(), partial(connect, id_), None if rig is None else rig.channel)
+
+
+def _list() -> tuple[SourceInfo, ...]:
+    return tuple(SourceInfo(SourceChoice("basler", id_), name, detail) for id_, name, detail in list_cameras())
+
+
+KIND = SourceKind(
+    "basler",
+    Message("source.basler", "Basler camera"),
+    Message("source.basler_help", "An industrial camera of Basler; needs pypylon"),
+    DEVICE,
+    Message("source.basler_device", "Serial number of the camera; empty: the first one found"),
+    FIRST_CAMERA,
+    _make,
+    _list,
+    GENICAM_SETTINGS,
+    is_missing=lambda: importlib.util.find_spec(MODULE) is None,
+    install=INSTALL,
+)

@@ -9,12 +9,13 @@ from typing import Any, Protocol
 
 from numpy.typing import NDArray
 
-from core.acquire.features import TRIGGER, Features, apply, capabilities_of, is_asked_for, make_grey
-from core.acquire.frame_numbers import FrameNumbers
+from core.acquire.drivers.frame_numbers import FrameNumbers
+from core.acquire.drivers.genicam_features import TRIGGER, Features, apply, capabilities_of, is_asked_for, make_grey
+from core.acquire.drivers.pixel_formats import decode
 from core.acquire.grey import Channel
-from core.acquire.pixel_formats import decode
 from core.acquire.source import Capabilities, Frame, Lasers, SourceSettings, Step, Unplugged
 from core.errors import InputError
+from core.messages import Message, plain
 
 BUFFERS = 8
 """Frames that a driver keeps for a reader that is a little late; it counts those it has no room for."""
@@ -117,7 +118,7 @@ class GenICamSource:
         try:
             return capabilities_of(self._driver.features)
         except DriverError as problem:
-            raise self._gone(str(problem)) from problem
+            raise self._gone(plain(str(problem))) from problem
 
     def open(self) -> None:
         """Find the camera, open it and let it run."""
@@ -132,8 +133,12 @@ class GenICamSource:
             self._start(driver)
         except DriverError as problem:
             driver.close()
-            todo = "see that no other program uses it, then try again"
-            raise InputError(f"the camera cannot be opened ({problem})", where=self.name, todo=todo) from problem
+            todo = Message("advice.close_other_programs", "see that no other program uses it, then try again")
+            raise InputError(
+                Message("camera.cannot_be_opened_why", "the camera cannot be opened ({reason})", reason=str(problem)),
+                where=self.name,
+                todo=todo,
+            ) from problem
         except BaseException:
             driver.close()
             raise
@@ -147,8 +152,15 @@ class GenICamSource:
                 self._tell(driver, settings)
             except DriverError as problem:
                 if driver.gone():
-                    raise self._gone(str(problem)) from problem
-                raise InputError(f"the camera does not take this setting ({problem})", where=self.name) from problem
+                    raise self._gone(plain(str(problem))) from problem
+                raise InputError(
+                    Message(
+                        "camera.setting_refused_why",
+                        "the camera does not take this setting ({reason})",
+                        reason=str(problem),
+                    ),
+                    where=self.name,
+                ) from problem
         self._wanted = self._wanted.updated(settings)
 
     def prepare(self, step: Step) -> None:
@@ -162,7 +174,7 @@ class GenICamSource:
         """The next frame, None if there is none within the time; Unplugged when the camera is gone."""
         driver = self._driver
         if driver is None:
-            raise self._unplugged("it is not open")
+            raise self._unplugged(Message("camera.not_open", "it is not open"))
         try:
             if self._ask and self._clock() >= self._ask_again_s:
                 driver.features.run(TRIGGER)
@@ -170,10 +182,10 @@ class GenICamSource:
             grabbed = driver.grab(timeout_s)
             if grabbed is None:
                 if driver.gone():
-                    raise self._gone("it was pulled out")
+                    raise self._gone(Message("camera.pulled_out", "it was pulled out"))
                 return None
         except DriverError as problem:
-            raise self._gone(str(problem)) from problem
+            raise self._gone(plain(str(problem))) from problem
         self._ask_again_s = float("-inf")
         return self._frame(grabbed)
 
@@ -211,12 +223,18 @@ class GenICamSource:
         try:
             picture = decode(grabbed.data, grabbed.pixel_format, grabbed.width, grabbed.height, self._channel)
         except ValueError as wrong:
-            raise InputError(f"the picture is damaged ({wrong})", where=self.name) from wrong
+            raise InputError(
+                Message("camera.picture_damaged", "the picture is damaged ({wrong})", wrong=wrong), where=self.name
+            ) from wrong
         return Frame(picture, index, time_s - self._origin, self._dropped)
 
-    def _gone(self, why: str) -> Unplugged:
+    def _gone(self, why: Message) -> Unplugged:
         self.close()
         return self._unplugged(why)
 
-    def _unplugged(self, why: str) -> Unplugged:
-        return Unplugged(f"the camera sends no pictures any more ({why})", where=self.name, todo="plug it in again")
+    def _unplugged(self, why: Message) -> Unplugged:
+        return Unplugged(
+            Message("camera.stopped_why", "the camera sends no pictures any more ({why})", why=why),
+            where=self.name,
+            todo=Message("advice.plug_in_again", "plug it in again"),
+        )

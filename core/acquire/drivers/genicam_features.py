@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Protocol
 
-from core.acquire.pixel_formats import is_grey, readable
+from core.acquire.drivers.pixel_formats import is_grey, readable
 from core.acquire.settings import (
     FREE_RUNNING,
     SOFTWARE,
@@ -19,6 +19,7 @@ from core.acquire.settings import (
     no_such_setting,
 )
 from core.errors import InputError
+from core.messages import Message
 
 TRIGGER = "TriggerSoftware"
 """The command that asks for one picture."""
@@ -89,7 +90,11 @@ def make_grey(features: Features, where: str) -> str:
     if is_grey(now):
         return now
     if not offered:
-        raise InputError(f"the camera gives {now} and no grey levels", where=where, todo="set it to Mono8")
+        raise InputError(
+            Message("camera.no_grey_levels", "the camera gives {now} and no grey levels", now=now),
+            where=where,
+            todo=Message("advice.set_mono8", "set it to Mono8"),
+        )
     best = offered[0] if is_grey(offered[0]) or now not in offered else now
     if best != now:
         features.choose("PixelFormat", best)
@@ -201,7 +206,14 @@ def _set_region(features: Features, region: Region, where: str) -> None:
     wanted |= {name: shift for name, shift in shifts.items() if shift or features.has(name)}
     for name, value in wanted.items():
         if not features.has(name):
-            raise InputError(f"the camera's region begins at its first pixel: it has no {name}", where=where)
+            raise InputError(
+                Message(
+                    "camera.region_fixed",
+                    "the camera's region begins at its first pixel: it has no {name}",
+                    name=name,
+                ),
+                where=where,
+            )
         _check_step(name, value, features.limits(name), where)
         features.set_number(name, value)
 
@@ -210,7 +222,18 @@ def _check_step(name: str, value: int, limits: tuple[float, float, float], where
     low, high, step = limits
     if not low <= value <= high or (step > 1 and (value - low) % step):
         steps = f" in steps of {step:g}" if step > 1 else ""
-        raise InputError(f"the region's {name} of {value} is not between {low:g} and {high:g}{steps}", where=where)
+        raise InputError(
+            Message(
+                "camera.region_range",
+                "the region's {name} of {value} is not between {low:g} and {high:g}{steps}",
+                name=name,
+                value=value,
+                low=low,
+                high=high,
+                steps=steps,
+            ),
+            where=where,
+        )
 
 
 def _must_have(there: bool, name: str, where: str) -> None:

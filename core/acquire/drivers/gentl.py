@@ -4,20 +4,27 @@ from __future__ import annotations
 
 import contextlib
 import importlib
+import importlib.util
 import os
 import time
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from core.acquire.features import Features
-from core.acquire.genicam import BUFFERS, DriverError, Grabbed
+from core.acquire.drivers.genicam import BUFFERS, DriverError, GenICamSource, Grabbed
+from core.acquire.drivers.genicam_features import Features
+from core.acquire.source import SourceChoice, SourceInfo
+from core.acquire.source_kind import DEVICE, FIRST_CAMERA, GENICAM_SETTINGS, SourceKind
 from core.errors import InputError
+from core.messages import Message
 
 MODULE = "harvesters"
-INSTALL = "GenICam cameras need harvesters: install it with pip install 'trisect[genicam]'."
+INSTALL = Message(
+    "source.install_harvesters", "GenICam cameras need harvesters: install it with pip install 'trisect[genicam]'"
+)
 
 PATH = "GENICAM_GENTL64_PATH"
 """Environment variable with the folders of the producers, by the GenTL standard."""
@@ -51,7 +58,14 @@ def list_cameras() -> list[tuple[str, str, str]]:
         with _telling():
             return [(one.id_, _name(one), _kind_of(one)) for one in harvester.device_info_list]
     except DriverError as problem:
-        raise InputError(f"the producers cannot look for cameras ({problem})", where="GenICam") from problem
+        raise InputError(
+            Message(
+                "camera.producers_fail",
+                "the producers cannot look for cameras ({reason})",
+                reason=str(problem),
+            ),
+            where="GenICam",
+        ) from problem
     finally:
         harvester.reset()
 
@@ -73,8 +87,16 @@ def connect(identifier: str) -> GenTLDriver:
     file, camera = _parts(identifier)
     files = (file,) if file is not None else producers()
     if not files:
-        todo = f"install the camera maker's GenTL producer, or name its .cti file; {PATH} must hold its folder"
-        raise InputError("there is no GenTL producer on this computer", where="GenICam", todo=todo)
+        todo = Message(
+            "advice.install_producer",
+            "install the camera maker's GenTL producer, or name its .cti file; {path} must hold its folder",
+            path=PATH,
+        )
+        raise InputError(
+            Message("camera.no_producer", "there is no GenTL producer on this computer"),
+            where="GenICam",
+            todo=todo,
+        )
     harvester = _harvester(files, must_work=file is not None)
     try:
         with _telling():
@@ -83,19 +105,31 @@ def connect(identifier: str) -> GenTLDriver:
                 return GenTLDriver(harvester, found[0])
     except DriverError as problem:
         harvester.reset()
-        todo = "see that no other program uses it, then try again"
-        raise InputError(f"the camera cannot be opened ({problem})", where="GenICam", todo=todo) from problem
+        todo = Message("advice.close_other_programs", "see that no other program uses it, then try again")
+        raise InputError(
+            Message("camera.cannot_be_opened_why", "the camera cannot be opened ({reason})", reason=str(problem)),
+            where="GenICam",
+            todo=todo,
+        ) from problem
     except BaseException:
         harvester.reset()
         raise
     harvester.reset()
-    what = f"there is no camera {camera}" if camera else "no camera is found"
+    what = (
+        Message("camera.no_camera_named", "there is no camera {camera}", camera=camera)
+        if camera
+        else Message("camera.none_found", "no camera is found")
+    )
     names = ", ".join(path.name for path in files)
-    raise InputError(what, where="GenICam", todo=f"plug it in; asked were {names}")
+    raise InputError(
+        what,
+        where="GenICam",
+        todo=Message("advice.plug_in_asked", "plug it in; asked were {names}", names=names),
+    )
 
 
 class GenTLDriver:
-    """One camera of a producer (:class:`core.acquire.genicam.Driver`)."""
+    """One camera of a producer (:class:`core.acquire.drivers.genicam.Driver`)."""
 
     def __init__(self, harvester: Any, info: Any) -> None:
         self.name = _name(info)
@@ -143,7 +177,7 @@ class GenTLDriver:
 
 
 class NodeFeatures:
-    """The nodes of a camera (:class:`core.acquire.features.Features`)."""
+    """The nodes of a camera (:class:`core.acquire.drivers.genicam_features.Features`)."""
 
     def __init__(self, nodes: Any) -> None:
         self._nodes = nodes
@@ -192,11 +226,15 @@ def _harvester(files: tuple[Path, ...], *, must_work: bool = False) -> Any:
     try:
         made = importlib.import_module(f"{MODULE}.core").Harvester()
     except ImportError as missing:
-        raise InputError(INSTALL.removesuffix(".")) from missing
+        raise InputError(INSTALL) from missing
     try:
         for file in files:
             if not file.is_file():
-                raise InputError("there is no such GenTL producer", where=file, todo="choose a .cti file")
+                raise InputError(
+                    Message("camera.no_such_producer", "there is no such GenTL producer"),
+                    where=file,
+                    todo=Message("advice.choose_producer_file", "choose a .cti file"),
+                )
             with _telling():
                 made.add_file(str(file), check_validity=must_work)
         with _telling():
@@ -204,7 +242,10 @@ def _harvester(files: tuple[Path, ...], *, must_work: bool = False) -> Any:
     except DriverError as problem:
         made.reset()
         names = ", ".join(path.name for path in files)
-        raise InputError(f"the producer cannot be used ({problem})", where=names) from problem
+        raise InputError(
+            Message("camera.producer_unusable", "the producer cannot be used ({reason})", reason=str(problem)),
+            where=names,
+        ) from problem
     except BaseException:
         made.reset()
         raise
@@ -273,5 +314,29 @@ def _is_drivers(problem: Exception) -> bool:
 
 
 def _said(problem: Exception) -> str:
-    text = str(problem).split("Message from the source: ")[-1].split(") (ID")[0]
+    text = str(problem).split("from the source: ")[-1].split(") (ID")[0]
     return text.strip().removesuffix(".") or type(problem).__name__
+
+
+def _make(id_: str, rig: Any) -> GenICamSource:
+    name = id_ or "GenICam camera"
+    return GenICamSource(name.strip(), partial(connect, id_), None if rig is None else rig.channel)
+
+
+def _list() -> tuple[SourceInfo, ...]:
+    return tuple(SourceInfo(SourceChoice("genicam", id_), name, detail) for id_, name, detail in list_cameras())
+
+
+KIND = SourceKind(
+    "genicam",
+    Message("source.genicam", "GenICam camera"),
+    Message("source.genicam_help", "An industrial camera of any maker, by its GenTL producer (.cti)"),
+    DEVICE,
+    Message("source.genicam_device", "The producer's name of the camera; empty: the first one found"),
+    FIRST_CAMERA,
+    _make,
+    _list,
+    GENICAM_SETTINGS,
+    is_missing=lambda: importlib.util.find_spec(MODULE) is None,
+    install=INSTALL,
+)

@@ -12,11 +12,24 @@ from typing import Any
 import cv2
 import numpy as np
 
+from core.acquire.drivers.opencv_devices import Capture, capture_of, exposure_of, list_cameras, opencv_name
 from core.acquire.grey import Channel, to_grey
-from core.acquire.opencv_devices import Capture, capture_of, exposure_of, opencv_name
 from core.acquire.pace import Pace
-from core.acquire.source import Capabilities, Ended, Frame, Lasers, Picture, SourceSettings, Step, Unplugged
+from core.acquire.source import (
+    Capabilities,
+    Ended,
+    Frame,
+    Lasers,
+    Picture,
+    SourceChoice,
+    SourceInfo,
+    SourceSettings,
+    Step,
+    Unplugged,
+)
+from core.acquire.source_kind import DEVICE, SourceKind
 from core.errors import InputError
+from core.messages import Message
 
 WAITING = 3
 """Frames kept for a reader that is a little late; older ones are dropped and counted."""
@@ -137,7 +150,11 @@ class OpenCVSource:
     def _grey(self, raw: Any) -> Picture:
         picture = to_grey(raw, self._channel)
         if picture.dtype not in (np.uint8, np.uint16):
-            raise InputError(f"the pictures hold {picture.dtype} values", where=self.name, todo="set 8 or 16 bit")
+            raise InputError(
+                Message("camera.pictures_hold_values", "the pictures hold {dtype} values", dtype=str(picture.dtype)),
+                where=self.name,
+                todo=Message("advice.set_8_or_16_bit", "set 8 or 16 bit"),
+            )
         return picture
 
     def _apply(self, settings: SourceSettings) -> None:
@@ -156,23 +173,31 @@ class OpenCVSource:
         assert self._capture is not None
         if not self._capture.set(key, value):
             raise InputError(
-                f"the camera does not let its {what} be set",
+                Message("camera.setting_refused", "the camera does not let its {what} be set", what=what),
                 where=self.name,
-                todo="leave it as it is, or set it with the camera's own program",
+                todo=Message("advice.set_in_its_program", "leave it as it is, or set it with the camera's own program"),
             )
 
     def _cannot_open(self) -> InputError:
         if self._is_file:
-            return InputError("this is no video that can be read", where=self._address)
-        todo = "see that it is plugged in, and close other programs that use it"
+            return InputError(
+                Message("camera.unreadable_video", "this is no video that can be read"), where=self._address
+            )
+        todo = Message(
+            "advice.check_plug_and_programs", "see that it is plugged in, and close other programs that use it"
+        )
         if "://" in self._address:
-            todo = "see that the address is right and the camera is on the network"
+            todo = Message("advice.check_address", "see that the address is right and the camera is on the network")
         elif self._address and not self._address.isdigit():
-            return InputError("there is no such video file", where=self._address)
-        return InputError("the camera cannot be opened", where=self.name, todo=todo)
+            return InputError(Message("camera.no_such_video", "there is no such video file"), where=self._address)
+        return InputError(Message("camera.cannot_be_opened", "the camera cannot be opened"), where=self.name, todo=todo)
 
     def _unplugged(self) -> Unplugged:
-        return Unplugged("the camera sends no pictures any more", where=self.name, todo="plug it in again")
+        return Unplugged(
+            Message("camera.stopped", "the camera sends no pictures any more"),
+            where=self.name,
+            todo=Message("advice.plug_in_again", "plug it in again"),
+        )
 
 
 class _Grabber:
@@ -221,3 +246,25 @@ class _Grabber:
                 index += 1
         finally:
             self._capture.release()
+
+
+def _make(id_: str, rig: Any) -> OpenCVSource:
+    return OpenCVSource(id_, None if rig is None else rig.channel)
+
+
+def _list() -> tuple[SourceInfo, ...]:
+    return tuple(
+        SourceInfo(SourceChoice("opencv", number), name, opencv_name(number)) for number, name in list_cameras()
+    )
+
+
+KIND = SourceKind(
+    "opencv",
+    Message("source.opencv", "Camera or video"),
+    Message("source.opencv_help", "A camera of this computer, a network camera, or a video file"),
+    DEVICE,
+    Message("source.opencv_device", "Number of the camera (0, 1, …) or its address (rtsp://…, http://…)"),
+    Message("source.opencv_usual", "0, the first camera"),
+    _make,
+    _list,
+)

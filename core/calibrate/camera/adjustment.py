@@ -1,4 +1,4 @@
-"""Camera and poses from the views and corners that fit together, and the board's shape beside them.
+"""Adjustment of camera, poses and the board's shape to the views and corners that fit together; its options.
 
 The plain least-squares solution and the judgement of views and corners follow each other until the judgement stands.
 """
@@ -6,36 +6,81 @@ The plain least-squares solution and the judgement of views and corners follow e
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from core.calibrate.board_fit import BoardFit
 from core.calibrate.board_shape import SHAPE_PARAMETERS, Board, BoardTolerance
-from core.calibrate.bundle import NO_PARAMETERS, Bundle, Observed, refine, refine_robustly, residual_lengths
-from core.calibrate.camera_options import CameraOptions
-from core.calibrate.screening import Verdict, judge
+from core.calibrate.camera.board_fit import BoardFit
+from core.calibrate.camera.bundle import NO_PARAMETERS, Bundle, Observed, refine, refine_robustly, residual_lengths
+from core.calibrate.camera.screening import Outliers, Verdict, judge
+from core.calibrate.results import CAMERA_PARAMETERS
 
-MIN_VIEWS = 3
-_MAX_JUDGEMENTS = 8
+LEAST_VIEWS = 3
+"""Of a flat target, for all of A with its skew (Zhang 2000, §3.1)."""
+_MOST_JUDGEMENTS = 8
+"""Rounds of solving and judging views at most; mostly two."""
 _SHAPE_STEPS = 4
+"""Gauss–Newton steps of the board's shape at most: it is nearly linear."""
 _SHAPE_SETTLED = 1e-4
+"""Step, as a share of the parameters' prior standard deviations, below which the shape is found."""
 
 
-def what_counts(observed: Sequence[Observed], verdicts: Sequence[Verdict]) -> tuple[list[int], list[Observed]]:
-    """Indices of the views that are used, and of each of them the corners that count."""
+@dataclass(frozen=True)
+class CameraOptions:
+    """Options of a camera calibration: free parameters, and which outliers are left out.
+
+    Parameters
+    ----------
+    skew
+        Whether γ is free; else it is 0. None: it is free only where that predicts views left out better.
+    fixed
+        Those of k1, k2, p1, p2 that are fixed to 0.
+    k3
+        Whether k3 is free; else it is 0.
+    outliers
+        "keep": every corner of every view counts. "gross": views out of line with the others are left out, and
+        corners that stand out against the plain standard deviation of their view, which they raise themselves. "all":
+        also corners that stand out against the median of their view only.
+
+    Raises
+    ------
+    ValueError
+        If `fixed` names another parameter.
+    """
+
+    skew: bool | None = None
+    fixed: frozenset[str] = frozenset()
+    k3: bool = False
+    outliers: Outliers = "gross"
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "fixed", frozenset(self.fixed))
+        unknown = self.fixed - {"k1", "k2", "p1", "p2"}
+        if unknown:
+            raise ValueError(f"only k1, k2, p1 and p2 can be fixed, not {', '.join(sorted(unknown))}")
+
+    @property
+    def free(self) -> NDArray[np.intp]:
+        """Indices of the free parameters in CAMERA_PARAMETERS."""
+        zero = self.fixed | ({"gamma"} if self.skew is False else set()) | (set() if self.k3 else {"k3"})
+        return np.array([i for i, name in enumerate(CAMERA_PARAMETERS) if name not in zero], dtype=np.intp)
+
+
+def counted_observations(observed: Sequence[Observed], verdicts: Sequence[Verdict]) -> tuple[list[int], list[Observed]]:
+    """Select the views that are used, by their indices, and of each of them the corners that count."""
     used = [i for i, verdict in enumerate(verdicts) if verdict.used]
     return used, [observed[i].select(verdicts[i].counted) for i in used]
 
 
 def solve_judged(start: Bundle, observed: Sequence[Observed], options: CameraOptions) -> tuple[Bundle, list[Verdict]]:
-    """Least squares on the views and corners that count, judged again until the judgement stands."""
+    """Solve by least squares on the views and corners that count, judged again until the judgement stands."""
     bundle = start
     verdicts = judge(residual_lengths(bundle, observed), [True] * len(observed), options.outliers)
-    for _ in range(_MAX_JUDGEMENTS):
+    for _ in range(_MOST_JUDGEMENTS):
         used = [verdict.used for verdict in verdicts]
-        if sum(used) < MIN_VIEWS:
+        if sum(used) < LEAST_VIEWS:
             break
         bundle = _fit(bundle, observed, verdicts, options.free)
         before, verdicts = verdicts, judge(residual_lengths(bundle, observed), used, options.outliers)
@@ -48,7 +93,7 @@ def solve_judged(start: Bundle, observed: Sequence[Observed], options: CameraOpt
 
 def _fit(start: Bundle, observed: Sequence[Observed], verdicts: Sequence[Verdict], free: NDArray[np.intp]) -> Bundle:
     """The camera from the views that are used, and every view's pose before that camera."""
-    used, counted = what_counts(observed, verdicts)
+    used, counted = counted_observations(observed, verdicts)
     solved = refine(start.of_views(used), counted, free)
     poses = dict(zip(used, solved.poses, strict=True))
     for i, view in enumerate(observed):
@@ -65,10 +110,10 @@ def with_shape(
     options: CameraOptions,
     tolerance: BoardTolerance,
 ) -> tuple[BoardFit, Bundle, list[Verdict]]:
-    """The board's shape beside the camera, from the solution with a `flat` board; the views are judged once more."""
+    """Solve for the board's shape beside the camera, from the solution with a `flat` board; judge the views again."""
     fit = BoardFit(Board.of([view.points for view in observed]), tolerance, np.zeros(len(SHAPE_PARAMETERS)))
-    used, counted = what_counts(observed, verdicts)
-    if not len(fit.free) or len(used) < MIN_VIEWS:
+    used, counted = counted_observations(observed, verdicts)
+    if not len(fit.free) or len(used) < LEAST_VIEWS:
         return fit, flat, verdicts
     freedom = freedom_of(counted, options.free)
     bundle = flat

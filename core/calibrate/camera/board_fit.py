@@ -1,4 +1,4 @@
-"""Solving for the shape of the board beside camera and poses.
+"""Estimation of the board's shape together with camera and poses.
 
 The shape changes each point by a fixed direction, so that its columns stand beside the camera's in the normal
 equations with the poses eliminated; after each step the camera is solved anew with the points where the board has
@@ -14,14 +14,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.calibrate.board_shape import Board, BoardShape, BoardTolerance
-from core.calibrate.bundle import Bundle, Normal, Observed, normal_equations
-from core.calibrate.camera_covariance import Widening, free_covariance
+from core.calibrate.camera.bundle import Bundle, Normal, Observed, normal_equations
+from core.calibrate.camera.covariance import Widening, free_covariance
 from core.model.arrays import Array
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class BoardFit:
-    """A board in the making: what is known of it, and the `values` (4,) of its shape so far."""
+    """Estimate of a board: its tolerance as prior, and the `values` (4,) of its shape so far."""
 
     board: Board
     tolerance: BoardTolerance
@@ -62,7 +62,7 @@ class BoardFit:
         return BoardShape(self.board, self.values, own)
 
     def _precision(self, variance: float, camera_parameters: int) -> Array:
-        """What the prior adds to the diagonal of the information, for residuals of `variance` per unit weight."""
+        """Diagonal that the prior adds to the information, for residuals of `variance` per unit weight."""
         own = variance / self.tolerance.sd[self.free] ** 2
         return np.concatenate([np.zeros(camera_parameters), own])
 

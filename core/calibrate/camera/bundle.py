@@ -1,4 +1,4 @@
-"""Camera and poses together: Levenberg–Marquardt on the reprojection residuals of all views.
+"""Bundle adjustment of camera and poses: Levenberg–Marquardt on the reprojection residuals of all views.
 
 Every residual depends on the camera and on one pose only, so each view's six pose unknowns are eliminated
 (Schur complement) and the system solved has as many unknowns as the camera has free parameters.
@@ -17,20 +17,30 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from core.calibrate.reprojection import camera_of, linearise, moved, parameters_of
+from core.calibrate.camera.reprojection import camera_of, linearise, moved, parameters_of
 from core.model import Camera, Pose
 from core.model.arrays import Array
+from core.model.robust import huber_weights
 
 RAYLEIGH_MEDIAN = 1.1774100225154747
 """Median length of a residual vector whose two components have standard deviation 1: √(2 ln 2)."""
 
 NO_PARAMETERS = np.zeros(0, dtype=np.intp)
-"""For `refine`: the camera is known and only the poses are looked for."""
+"""For `refine`: the camera is known and only the poses are estimated."""
 
-_MAX_ITERATIONS = 60
-_HUBER_LIMIT = 2.5
-_HUBER_ROUNDS = 6
+# Levenberg–Marquardt: damping relative to the normal matrix's diagonal, Marquardt's factor 10 up and down.
+_FIRST_DAMPING, _DAMPING_FACTOR = 1e-3, 10  # starts are rough
+_LEAST_DAMPING, _MOST_DAMPING = 1e-12, 1e10  # beyond the largest no step lowers the cost any more
+_MOST_ITERATIONS = 60  # mostly ten
+
+# The robust start among outliers; tests/calibrate/camera/test_calibration.py (misfound corners, wrong views) holds it.
+_HUBER_LIMIT = 2.5  # standard deviations by the median residual
+_HUBER_ROUNDS = 6  # of reweighting
+_HUBER_TOLERANCE = 1e-6  # gain as a share of the cost at which a round ends: the next one has other weights
+_LEAST_SCALE_PX = 1e-9  # of the residuals: exact views have none
+
 _NEAREST_MM = 1e-6
+"""Depth below which a point is not in front of the camera."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -42,7 +52,7 @@ class Observed:
     weights: Array
 
     def select(self, keep: NDArray[np.bool_]) -> Observed:
-        """Those corners alone for which `keep` (N,) is true."""
+        """Select the corners for which `keep` (N,) is true."""
         return Observed(self.points[keep], self.uv[keep], self.weights[keep])
 
 
@@ -60,7 +70,7 @@ class Bundle:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Normal:
-    """Reduced normal equations of a bundle: what views and corners know of the camera's F free parameters.
+    """Normal equations of a bundle for the camera's F free parameters, the poses eliminated.
 
     `information` (V, F, F) of the views with their poses eliminated, in units of the weights; `gradients` the (N, F)
     shares of each view's corners in the gradient; `cost` the weighted sum of squared residuals.
@@ -97,24 +107,24 @@ class _Block:
 
 
 def refine(start: Bundle, views: Sequence[Observed], free: NDArray[np.intp], tolerance: float = 1e-12) -> Bundle:
-    """The bundle that minimises the weighted sum of squared residuals, near `start`.
+    """Minimise the weighted sum of squared residuals from `start`.
 
     `free` are the indices (F,) of the camera's free parameters in CAMERA_PARAMETERS; none means that only the poses
     are found. Stops when a step gains less than `tolerance` of the cost.
     """
     current, cost = start, _cost(start, views)
-    damping = 1e-3
+    damping: float = _FIRST_DAMPING
     blocks = _blocks(current, views, free)
-    for _ in range(_MAX_ITERATIONS):
+    for _ in range(_MOST_ITERATIONS):
         proposal = _step(current, [block.damped(damping) for block in blocks], free)
         proposed = np.inf if proposal is None else _cost(proposal, views)
         if proposal is None or not proposed <= cost:
-            damping *= 10
-            if damping > 1e10:
+            damping *= _DAMPING_FACTOR
+            if damping > _MOST_DAMPING:
                 break
             continue
         gain, cost, current = cost - proposed, proposed, proposal
-        damping = max(damping / 10, 1e-12)
+        damping = max(damping / _DAMPING_FACTOR, _LEAST_DAMPING)
         if gain <= tolerance * cost:
             break
         blocks = _blocks(current, views, free)
@@ -122,19 +132,19 @@ def refine(start: Bundle, views: Sequence[Observed], free: NDArray[np.intp], tol
 
 
 def refine_robustly(start: Bundle, views: Sequence[Observed], free: NDArray[np.intp]) -> Bundle:
-    """As `refine`, but with Huber's weights about a scale from the median residual: for a start among outliers."""
+    """Minimise with Huber's weights about a scale from the median residual: a start among outliers for `refine`."""
     current = start
     for _ in range(_HUBER_ROUNDS):
         lengths = [
             np.linalg.norm(residuals(current.camera, pose, view), axis=1) * np.sqrt(view.weights)
             for pose, view in zip(current.poses, views, strict=True)
         ]
-        limit = _HUBER_LIMIT * max(float(np.median(np.concatenate(lengths))) / RAYLEIGH_MEDIAN, 1e-9)
+        limit = _HUBER_LIMIT * max(float(np.median(np.concatenate(lengths))) / RAYLEIGH_MEDIAN, _LEAST_SCALE_PX)
         weighted = [
-            replace(view, weights=view.weights * np.minimum(1, limit / np.maximum(length, 1e-12)))
+            replace(view, weights=view.weights * huber_weights(length, limit))
             for view, length in zip(views, lengths, strict=True)
         ]
-        current = refine(current, weighted, free, tolerance=1e-6)
+        current = refine(current, weighted, free, tolerance=_HUBER_TOLERANCE)
     return current
 
 
@@ -157,7 +167,7 @@ def residual_lengths(bundle: Bundle, observed: Sequence[Observed]) -> list[Array
 def normal_equations(
     bundle: Bundle, views: Sequence[Observed], free: NDArray[np.intp], target_changes: Sequence[Array] | None = None
 ) -> Normal:
-    """The reduced normal equations at `bundle`.
+    """Compute the reduced normal equations at `bundle`.
 
     `target_changes`, (N, 3, B) for each view, are the derivatives of its target points by B further unknowns common to
     all views, which stand behind the camera's.

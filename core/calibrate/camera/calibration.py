@@ -14,33 +14,52 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
 
-from core.calibrate.board_fit import BoardFit
 from core.calibrate.board_shape import BoardShape, BoardTolerance
-from core.calibrate.bundle import Bundle, Observed, refine_robustly
-from core.calibrate.camera_adjustment import MIN_VIEWS, freedom_of, solve_judged, what_counts, with_shape
-from core.calibrate.camera_covariance import Widening
-from core.calibrate.camera_notes import notes_on
-from core.calibrate.camera_options import CameraOptions
-from core.calibrate.camera_quality import cross_validation_mm, rms_and_mean, view_qualities, view_without_part
-from core.calibrate.camera_start import start_of
-from core.calibrate.coverage import coverage, tilt_range
+from core.calibrate.camera.adjustment import (
+    LEAST_VIEWS,
+    CameraOptions,
+    counted_observations,
+    freedom_of,
+    solve_judged,
+    with_shape,
+)
+from core.calibrate.camera.board_fit import BoardFit
+from core.calibrate.camera.bundle import Bundle, Observed, refine_robustly, residual_lengths
+from core.calibrate.camera.covariance import Widening
+from core.calibrate.camera.coverage import coverage, tilt_range
+from core.calibrate.camera.quality import cross_validation_mm, notes_on, rms_and_mean, view_qualities, view_without_part
+from core.calibrate.camera.screening import screen
+from core.calibrate.camera.skew import skew_helps
+from core.calibrate.camera.zhang import centred_matrix, intrinsic_matrix, pose_from_homography, radial_start
 from core.calibrate.results import LEFT_OUT, CameraCalibration, ViewQuality
-from core.calibrate.screening import screen
 from core.errors import InputError
-from core.image.target_view import TargetView
+from core.image.targets.target_view import TargetView
+from core.messages import Message
+from core.model import Camera
 from core.model.arrays import Array
 from core.progress import Progress, silent
 
-_MIN_TILT = np.deg2rad(3.0)
-_LOOSE_FOCAL = 0.05
-_LOOSE_CENTRE = 0.1
+# Limits beyond which views do not determine a camera; tests/calibrate/camera/test_calibration.py (parallel views) holds
+# them.
+_LEAST_TILT_RANGE = np.deg2rad(3.0)
+"""rad between the targets' planes of two views at least: in parallel planes a focal length is not told from a
+distance."""
+_MOST_FOCAL_SD = 0.05
+"""Standard deviation of the focal length as a share of it."""
+_MOST_CENTRE_SD = 0.1
+"""Standard deviation of the principal point as a share of the picture's longer side."""
+
 _STEP = "Calibrating the camera"
 _STAGES = 5
-_MORE_VIEWS = "take 10 to 15 pictures of the whole target, tilted by up to 30° in different directions"
+"""Name of the step for the progress, and its parts."""
+_MORE_VIEWS = Message(
+    "advice.more_views", "take 10 to 15 pictures of the whole target, tilted by up to 30° in different directions"
+)
 
 
 def calibrate_camera(
@@ -53,9 +72,11 @@ def calibrate_camera(
 ) -> CameraCalibration:
     """Calibrate the camera that took `views` of a flat target, in pictures of `image_size` (width, height).
 
-    Corners are weighted by their `sigma` relative to each other; how large it really is, the residuals tell. Views
-    whose name is in `excluded` have no part in the solution; they come back with their residuals under it. The target's
-    shape is solved for, too, within its `tolerance`.
+    Whether the skew is worth solving for is decided here if the options leave it open.
+
+    Corners are weighted by their `sigma` relative to each other; its true size is estimated from the residuals. Views
+    whose name is in `excluded` have no part in the solution; they are returned with their residuals under it. The
+    target's shape is estimated, too, within its `tolerance`.
 
     Raises
     ------
@@ -77,7 +98,13 @@ def calibrate_camera(
         else next(solved)
         for view in views
     )
-    note = f"{len(left_out)} of {len(views)} views are left out by hand: {', '.join(view.name for view in left_out)}."
+    note = Message(
+        "camera.views_left_out_by_hand",
+        "{n} of {all} views are left out by hand: {names}.",
+        n=len(left_out),
+        all=len(views),
+        names=tuple(view.name for view in left_out),
+    )
     return replace(calibration, views=qualities, notes=(note, *calibration.notes))
 
 
@@ -91,11 +118,11 @@ def _calibrated(
     """The camera from those of `views` that fit together."""
     progress(_STEP, 0, _STAGES)
     screened = [screen(view) for view in views]
-    usable = [index for index, (_, reason) in enumerate(screened) if not reason]
-    reasons = {index: reason for index, (_, reason) in enumerate(screened) if reason}
+    reasons = {index: found for index, found in enumerate(screened) if isinstance(found, Message)}
+    usable = [index for index in range(len(views)) if index not in reasons]
     _require_views(views, usable, reasons)
     observed = _observed([views[index] for index in usable])
-    homographies = [matrix for matrix, _ in screened if matrix is not None]
+    homographies = [found for found in screened if not isinstance(found, Message)]
 
     bundle = start_of(homographies, observed, image_size, options)
     progress(_STEP, 1, _STAGES)
@@ -103,17 +130,21 @@ def _calibrated(
         bundle = refine_robustly(bundle, observed, options.free)
     progress(_STEP, 2, _STAGES)
     bundle, verdicts = solve_judged(bundle, observed, options)
+    if options.skew is None:
+        used, counted = counted_observations(observed, verdicts)
+        if not skew_helps(bundle.of_views(used), counted, options.free):
+            return _calibrated(views, image_size, replace(options, skew=False), tolerance, progress)
     fit, bundle, verdicts = with_shape(bundle, verdicts, observed, options, tolerance)
-    reasons |= {index: v.reason for index, v in zip(usable, verdicts, strict=True) if not v.used}
+    reasons |= {index: v.reason for index, v in zip(usable, verdicts, strict=True) if v.reason is not None}
     _require_views(views, [index for index in usable if index not in reasons], reasons)
 
     progress(_STEP, 3, _STAGES)
-    used, counted = what_counts(observed, verdicts)
+    used, counted = counted_observations(observed, verdicts)
     solved = bundle.of_views(used)
     covariance, shape, widening = _covariance(solved, counted, options.free, fit)
     progress(_STEP, 4, _STAGES)
     fits = {index: (pose, verdict) for index, pose, verdict in zip(usable, bundle.poses, verdicts, strict=True)}
-    qualities = view_qualities(views, [reason for _, reason in screened], bundle.camera, fits, shape)
+    qualities = view_qualities(views, reasons, bundle.camera, fits, shape)
     calibration = replace(_summary(qualities, solved, fit.shaped(counted), covariance, options.free), board=shape)
     progress(_STEP, _STAGES, _STAGES)
     return replace(calibration, notes=notes_on(calibration, widening))
@@ -136,10 +167,14 @@ def _covariance(
     InputError where the views do not determine the camera.
     """
     range_of_tilt = tilt_range(bundle.poses)
-    if range_of_tilt < _MIN_TILT:
+    if range_of_tilt < _LEAST_TILT_RANGE:
         raise InputError(
-            "all views show the target in parallel planes, from which a focal length cannot be told from a distance "
-            f"(tilted by at most {np.rad2deg(range_of_tilt):.1f}° against each other)",
+            Message(
+                "camera.parallel_views",
+                "all views show the target in parallel planes, from which a focal length cannot be told from a "
+                "distance (tilted by at most {tilt:.1f}° against each other)",
+                tilt=np.rad2deg(range_of_tilt),
+            ),
             todo=_MORE_VIEWS,
         )
     covariance = np.zeros((10, 10))
@@ -147,15 +182,21 @@ def _covariance(
         both, widening = fit.covariance(bundle, counted, free, freedom_of(counted, free))
         covariance[np.ix_(free, free)] = both[: len(free), : len(free)]
     except np.linalg.LinAlgError:
-        raise InputError("the views do not determine the camera: too much alike", todo=_MORE_VIEWS) from None
+        what = Message("camera.views_alike", "the views do not determine the camera: too much alike")
+        raise InputError(what, todo=_MORE_VIEWS) from None
     deviation = np.sqrt(np.maximum(np.diag(covariance), 0))
     camera = bundle.camera
     loose_focal = max(deviation[0] / camera.matrix[0, 0], deviation[1] / camera.matrix[1, 1])
     loose_centre = max(deviation[3], deviation[4]) / max(camera.image_size)
-    if loose_focal > _LOOSE_FOCAL or loose_centre > _LOOSE_CENTRE:
+    if loose_focal > _MOST_FOCAL_SD or loose_centre > _MOST_CENTRE_SD:
         raise InputError(
-            f"the views do not determine the camera: its focal length is uncertain by {100 * loose_focal:.0f} %, the "
-            f"centre of its picture by {100 * loose_centre:.0f} % of the picture",
+            Message(
+                "camera.not_determined",
+                "the views do not determine the camera: its focal length is uncertain by {focal:.0f} %, the centre of "
+                "its picture by {centre:.0f} % of the picture",
+                focal=100 * loose_focal,
+                centre=100 * loose_centre,
+            ),
             todo=_MORE_VIEWS,
         )
     return covariance, fit.shape(both, len(free)), widening
@@ -183,12 +224,52 @@ def _summary(
     )
 
 
-def _require_views(views: Sequence[TargetView], usable: Sequence[int], reasons: dict[int, str]) -> None:
-    if len(usable) >= MIN_VIEWS:
+def _require_views(views: Sequence[TargetView], usable: Sequence[int], reasons: dict[int, Message]) -> None:
+    if len(usable) >= LEAST_VIEWS:
         return
-    why = "; ".join(f"{views[index].name or f'view {index + 1}'}: {reason}" for index, reason in reasons.items())
-    raise InputError(
-        f"only {len(usable)} of {len(views)} views of the target can be used and a camera needs at least {MIN_VIEWS}"
-        + (f" ({why})" if why else ""),
-        todo=_MORE_VIEWS,
+    numbers = {"n": len(usable), "all": len(views), "least": LEAST_VIEWS}
+    what = Message(
+        "camera.few_usable_views",
+        "only {n} of {all} views of the target can be used and a camera needs at least {least}",
+        **numbers,
     )
+    if reasons:
+        what = Message(
+            "camera.few_usable_views_why",
+            "only {n} of {all} views of the target can be used and a camera needs at least {least} ({reasons:;})",
+            reasons=tuple(_of_view(views[index], index, reason) for index, reason in reasons.items()),
+            **numbers,
+        )
+    raise InputError(what, todo=_MORE_VIEWS)
+
+
+def _of_view(view: TargetView, index: int, reason: Message) -> Message:
+    """Message with the reason of one view."""
+    name = view.name or Message("camera.view_number", "view {number}", number=index + 1)
+    return Message("camera.of_view", "{view}: {reason}", view=name, reason=reason)
+
+
+def start_of(
+    homographies: Sequence[Array], observed: Sequence[Observed], image_size: tuple[int, int], options: CameraOptions
+) -> Bundle:
+    """Choose the closed-form start with the smallest median residual: Zhang's or one with a centred camera.
+
+    `homographies` (3, 3) are those of the views `observed`, in the same order.
+    """
+    matrices = [
+        centred_matrix(homographies, image_size),
+        intrinsic_matrix(homographies, image_size, options.skew is not False),
+    ]
+    free = ("k1" not in options.fixed, "k2" not in options.fixed)
+    starts = []
+    for matrix, radial in product(matrices, (free, (False, False))):
+        if matrix is None:
+            continue
+        poses = tuple(pose_from_homography(matrix, h) for h in homographies)
+        undistorted = Camera(image_size, matrix)
+        positions = np.concatenate([p.apply(view.points) for p, view in zip(poses, observed, strict=True)])
+        uv = np.concatenate([view.uv for view in observed])
+        k1, k2 = radial_start(matrix, positions[:, :2] / positions[:, 2:], uv, radial)
+        camera = replace(undistorted, distortion=np.array([k1, k2, 0, 0]))
+        starts.append(Bundle(camera, poses))
+    return min(starts, key=lambda start: float(np.median(np.concatenate(residual_lengths(start, observed)))))

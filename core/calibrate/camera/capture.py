@@ -1,4 +1,4 @@
-"""When a live view of the target is worth taking: still, sharp, and unlike those taken before."""
+"""Choice of live views of the target: still, sharp, and unlike those taken before."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from core.calibrate.coverage import picture_cells
-from core.calibrate.missing import (
+from core.calibrate.camera.coverage import MAP_COLUMNS, picture_cells
+from core.calibrate.camera.missing import (
     CAMERA_VIEWS,
     Series,
     ViewGeometry,
@@ -20,25 +20,27 @@ from core.calibrate.missing import (
     view_geometry,
     what_is_missing,
 )
-from core.image.target_view import TargetView
+from core.image.targets.target_view import TargetView
+from core.messages import Message
 from core.model import Camera
 from core.model.arrays import Array
 
 __all__ = ["CaptureJudge", "CaptureLimits", "Verdict", "moved_px", "what_is_missing"]
 
-COLUMNS = 16
-"""Cells across the picture in the map of what the views cover."""
-
-_LIKE_PLACE = 0.6
+# Held by tests/calibrate/camera/test_capture.py on the simulated camera.
+_SAME_PLACE_SHARE = 0.6
 """Two views share their place in the picture if the cells of both are this share of the cells of either."""
-
 _SHOWN_FOR_S = 1.0
-"""How long "Taken." stays."""
+"""Time in s that TAKEN stays."""
+_SHARPEST_PX = 0.7
+"""Gaussian σ in px that the sharpest view counts as at least: no lens is sharper on its pixels."""
+_REFERENCE_WIDTH_PX = 1920
+"""Width of the picture for which limits in px are stated."""
 
 
 @dataclass(frozen=True, slots=True)
 class CaptureLimits:
-    """When a view is taken.
+    """Limits within which a view is taken.
 
     Parameters
     ----------
@@ -61,18 +63,23 @@ class CaptureLimits:
     nearer: float = 1.2
 
 
+TAKEN = Message("live.taken", "Taken.")
+HOLD_STILL = Message("live.hold_still", "Hold still.")
+
+
 @dataclass(frozen=True, slots=True)
 class Verdict:
     """Whether to take the view, and the sentence that says why or why not."""
 
     take: bool
-    sentence: str
+    sentence: Message
 
 
 class CaptureJudge:
     """Judges the views of a live picture one after another.
 
-    `views` are those taken so far and those known from before, `cells` (rows, COLUMNS) what of the picture they cover.
+    `views` are those taken so far and those known from before, `cells` (rows, MAP_COLUMNS) what of the picture they
+    cover.
     """
 
     def __init__(
@@ -85,7 +92,7 @@ class CaptureJudge:
         self._series = series
         self._image_size, self._limits = image_size, limits or CaptureLimits()
         self._camera = camera or stand_in_camera(image_size)
-        self._rows = max(1, round(COLUMNS * image_size[1] / image_size[0]))
+        self._rows = max(1, round(MAP_COLUMNS * image_size[1] / image_size[0]))
         self._recent: deque[tuple[float, TargetView]] = deque()
         self._sharpest = float("inf")
         self._taken: list[tuple[TargetView, ViewGeometry | None]] = []
@@ -98,11 +105,11 @@ class CaptureJudge:
 
     @property
     def cells(self) -> NDArray[np.bool_]:
-        """Which cells (rows, COLUMNS) of the picture hold a point of a view taken."""
+        """Cells (rows, MAP_COLUMNS) of the picture, True where a view taken has a point."""
         return self._cells(np.concatenate([np.zeros((0, 2)), *(view.uv for view in self.views)]))
 
-    def judge(self, view: TargetView | None, blur_px: float, time_s: float, why_not: str = "") -> Verdict:
-        """Whether to take this view.
+    def judge(self, view: TargetView | None, blur_px: float, time_s: float, why_not: Message | None = None) -> Verdict:
+        """Judge whether to take this view.
 
         Parameters
         ----------
@@ -115,40 +122,43 @@ class CaptureJudge:
         """
         if view is None:
             self._recent.clear()
-            return Verdict(False, self._just_taken(time_s) or why_not or "The target is not seen.")
+            unseen = why_not or Message("live.target_unseen", "The target is not seen.")
+            return Verdict(False, TAKEN if self._just_taken(time_s) else unseen)
         self._recent.append((time_s, view))
-        if sentence := self._just_taken(time_s):
-            return Verdict(False, sentence)
+        if self._just_taken(time_s):
+            return Verdict(False, TAKEN)
         if not self._still():
-            return Verdict(False, "Hold still.")
+            return Verdict(False, HOLD_STILL)
         self._sharpest = min(self._sharpest, blur_px)
-        if not blur_px <= min(self._limits.blur_px, self._limits.blurred * max(self._sharpest, 0.7)):
-            return Verdict(False, f"Too blurred (edges {blur_px:.1f} px wide): hold still or focus.")
-        if sentence := self._already_there(view):
-            return Verdict(False, sentence)
-        return Verdict(True, "Taken.")
+        if not blur_px <= min(self._limits.blur_px, self._limits.blurred * max(self._sharpest, _SHARPEST_PX)):
+            blurred = Message(
+                "live.too_blurred", "Too blurred (edges {blur_px:.1f} px wide): hold still or focus.", blur_px=blur_px
+            )
+            return Verdict(False, blurred)
+        already_there = self._already_there(view)
+        return Verdict(True, TAKEN) if already_there is None else Verdict(False, already_there)
 
     def know(self, views: Iterable[TargetView]) -> None:
-        """Views of an earlier recording, which new ones are added to; they cannot be thrown away here."""
+        """Add the views of an earlier recording, which new ones are added to; they cannot be deleted here."""
         for view in views:
             nameless = TargetView(view.points, view.uv, view.sigma, "")
             self._taken.append((nameless, view_geometry(nameless, self._camera)))
 
     def taken(self, view: TargetView, time_s: float) -> None:
-        """The view was taken, by this judge's word or by hand."""
+        """Record that the view was taken, on this judgement or by hand."""
         self._taken.append((view, view_geometry(view, self._camera)))
         self._taken_at = time_s
 
     def forget(self, name: str) -> None:
-        """The view of this name was thrown away."""
+        """Forget the view of this name, which was deleted."""
         self._taken = [(view, geometry) for view, geometry in self._taken if view.name != name]
 
-    def missing(self) -> tuple[str, ...]:
-        """What the views taken so far lack, in words."""
+    def missing(self) -> tuple[Message, ...]:
+        """Advise on what the views taken so far lack."""
         return missing_from(self.views, [geometry for _, geometry in self._taken], self._image_size, self._series)
 
-    def _just_taken(self, time_s: float) -> str:
-        return "Taken." if 0 <= time_s - self._taken_at < _SHOWN_FOR_S else ""
+    def _just_taken(self, time_s: float) -> bool:
+        return 0 <= time_s - self._taken_at < _SHOWN_FOR_S
 
     def _still(self) -> bool:
         """Whether the target has rested for long enough; forgets what is older than needed to tell."""
@@ -157,38 +167,45 @@ class CaptureJudge:
             recent.popleft()
         if len(recent) < 2 or recent[-1][0] - recent[0][0] < self._limits.still_s:
             return False
-        limit = self._limits.still_px_s * max(self._image_size) / 1920
+        limit = self._limits.still_px_s * max(self._image_size) / _REFERENCE_WIDTH_PX
         return all(
             moved_px(view, moved) <= limit * max(after - before, 1e-3)
             for (before, view), (after, moved) in pairwise(recent)
         )
 
-    def _already_there(self, view: TargetView) -> str:
-        """The sentence for a view like one that was taken, or "" if it adds something."""
+    def _already_there(self, view: TargetView) -> Message | None:
+        """The sentence for a view like one that was taken; None if it adds something."""
+        thing = self._series.thing
         geometry, cells = view_geometry(view, self._camera), self._cells(view.uv)
         here = False
         for other, seen in self._taken:
             covered = self._cells(other.uv)
-            if np.sum(cells & covered) < _LIKE_PLACE * np.sum(cells | covered):
+            if np.sum(cells & covered) < _SAME_PLACE_SHARE * np.sum(cells | covered):
                 continue
             here = True
             if geometry is None or seen is None:
-                return f"Move the {self._series.thing}: this place is already taken."
+                return Message("live.place_taken", "Move the {thing}: this place is already taken.", thing=thing)
             turned = geometry.angle_to(seen) >= self._limits.turned
             nearer = abs(np.log(geometry.distance / seen.distance)) >= np.log(self._limits.nearer)
             if not turned and not nearer:
-                return f"Turn the {self._series.thing}: this tilt is already there."
+                return Message("live.tilt_taken", "Turn the {thing}: this tilt is already there.", thing=thing)
         if here or geometry is None or not np.all(self.cells[cells]):
-            return ""
+            return None
         alike = any(seen is not None and geometry.angle_to(seen) < self._limits.turned for _, seen in self._taken)
-        return f"Turn or move the {self._series.thing}: this tilt and place are already there." if alike else ""
+        if not alike:
+            return None
+        return Message(
+            "live.tilt_and_place_taken",
+            "Turn or move the {thing}: this tilt and place are already there.",
+            thing=thing,
+        )
 
     def _cells(self, uv: Array) -> NDArray[np.bool_]:
-        return picture_cells(uv, self._image_size, COLUMNS, self._rows)
+        return picture_cells(uv, self._image_size, MAP_COLUMNS, self._rows)
 
 
 def moved_px(before: TargetView, after: TargetView) -> float:
-    """Median movement in pixels of the points that both views show; infinite if there are none."""
+    """Compute the median movement in pixels of the points that both views show; infinite if there are none."""
     first, second = (
         np.round(view.points[:, 0] * 1e3) * 1e7 + np.round(view.points[:, 1] * 1e3) for view in (before, after)
     )

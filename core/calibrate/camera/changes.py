@@ -1,4 +1,4 @@
-"""Two calibrations of one camera side by side."""
+"""Comparison of two calibrations of one camera."""
 
 from __future__ import annotations
 
@@ -7,6 +7,9 @@ from dataclasses import dataclass
 
 from core.calibrate.results import CAMERA_PARAMETERS, CameraCalibration
 from core.progress import Progress, silent
+
+UNLIKELY = 3.0
+"""Standard deviations beyond which chance alone hardly explains a change: 0.3 %."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,12 +29,12 @@ class ParameterChange:
     @property
     def unlikely(self) -> bool:
         """Whether chance alone hardly explains the change."""
-        return abs(self.change) > 3 * self.sd > 0
+        return abs(self.change) > UNLIKELY * self.sd > 0
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class CameraChanges:
-    """What is different between two calibrations: parameters, RMS in px, and how many views were used."""
+    """Differences between two calibrations: parameters, RMS in px, and how many views were used."""
 
     parameters: tuple[ParameterChange, ...]
     rms_px: tuple[float, float]

@@ -1,4 +1,4 @@
-"""How far the parameters of a calibrated camera can be trusted, and how to carry that on.
+"""Covariance of a calibrated camera, widened for errors that corners share, and its principal deviations.
 
 References
 ----------
@@ -14,13 +14,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.calibrate.bundle import Normal
-from core.calibrate.reprojection import camera_of, parameters_of
+from core.calibrate.camera.bundle import Normal
+from core.calibrate.camera.reprojection import camera_of, parameters_of
 from core.calibrate.results import CameraCalibration
 from core.model import Camera
 from core.model.arrays import Array
 
 _SINGULAR = 1e-13
+"""Smallest eigenvalue over the largest, of the scaled information, below which views do not determine the parameters:
+some hundred units of rounding."""
 
 
 @dataclass(frozen=True)
@@ -50,7 +52,7 @@ class Widening:
 def free_covariance(
     normal: Normal, points: Sequence[Array], degrees_of_freedom: int, precision: Array | None = None
 ) -> tuple[Array, Widening]:
-    """Covariance (F, F) of the free parameters, widened for errors that corners share.
+    """Compute the covariance (F, F) of the free parameters, widened for errors that corners share.
 
     The scale of the residuals is measured, not assumed. Where corners of a view err together, the views' gradients g
     scatter more than independent corners would make them: for these E[Σ gᵀ S⁻¹ g] = σ² (F − Σ tr(S⁻¹ S_v S⁻¹ S_v)).
@@ -98,7 +100,7 @@ def _scatter(gradients: Array, inverse: Array) -> float:
 
 
 def principal_deviations(calibration: CameraCalibration) -> tuple[Camera, ...]:
-    """Cameras one standard deviation off along each principal axis of the covariance.
+    """Make cameras one standard deviation off along each principal axis of the covariance.
 
     For any quantity f of the camera, Σ (f(deviated) − f(camera))² over them is its variance from the calibration, to
     first order. Axes are those of the correlation matrix, so that they do not depend on units; a fixed parameter

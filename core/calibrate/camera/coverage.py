@@ -1,4 +1,4 @@
-"""What a set of target views covers: of the picture, of tilts, and what two halves of it agree on."""
+"""Coverage of target views, in the picture and in tilts, and the disagreement of two cameras."""
 
 from __future__ import annotations
 
@@ -9,18 +9,33 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import Delaunay
 
-from core.calibrate.bundle import Bundle, Observed, refine, residuals
+from core.calibrate.camera.bundle import NO_PARAMETERS, Bundle, Observed, refine, residuals
+from core.messages import Message
 from core.model import Camera, Pose
 from core.model.arrays import Array
 
+MAP_COLUMNS = 16
+"""Cells across the picture in the map of what the views cover, as it is shown."""
 _COLUMNS = 8
-_GRID = (16, 12)
-_DEPTHS = 3
-_NO_PARAMETERS = np.zeros(0, dtype=np.intp)
+"""Cells across the picture in the share that is covered: coarser, for a board has gaps between its corners."""
+_GRID, _DEPTHS = (16, 12), 3
+"""Pixels across and down, and depths, at which two cameras are compared; a few hundred points of a smooth field."""
+_REGIONS = (
+    Message("picture.upper_left", "upper left"),
+    Message("picture.top", "top"),
+    Message("picture.upper_right", "upper right"),
+    Message("picture.left", "left"),
+    Message("picture.middle", "middle"),
+    Message("picture.right", "right"),
+    Message("picture.lower_left", "lower left"),
+    Message("picture.bottom", "bottom"),
+    Message("picture.lower_right", "lower right"),
+)
+"""The ninths of a picture, row by row."""
 
 
 def picture_cells(uv: Array, image_size: tuple[int, int], columns: int, rows: int) -> NDArray[np.bool_]:
-    """Which of (rows, columns) equal cells of the picture hold a point of `uv` (N, 2)."""
+    """Find which of (rows, columns) equal cells of the picture hold a point of `uv` (N, 2)."""
     width, height = image_size
     column = np.clip((uv[:, 0] + 0.5) * columns // width, 0, columns - 1).astype(np.intp)
     row = np.clip((uv[:, 1] + 0.5) * rows // height, 0, rows - 1).astype(np.intp)
@@ -30,18 +45,15 @@ def picture_cells(uv: Array, image_size: tuple[int, int], columns: int, rows: in
 
 
 def coverage(uv: Array, image_size: tuple[int, int]) -> float:
-    """Share (0 … 1) of the picture's cells, eight across and about square, that hold a point of `uv` (N, 2)."""
+    """Compute the share (0 … 1) of the picture's cells, eight across and about square, with a point of `uv` (N, 2)."""
     rows = max(1, round(_COLUMNS * image_size[1] / image_size[0]))
     return float(picture_cells(uv, image_size, _COLUMNS, rows).mean())
 
 
-def empty_regions(uv: Array, image_size: tuple[int, int]) -> list[str]:
-    """Names of those ninths of the picture that hold no point of `uv` (N, 2): "upper left", "middle", ..."""
+def empty_regions(uv: Array, image_size: tuple[int, int]) -> tuple[Message, ...]:
+    """Name those ninths of the picture that hold no point of `uv` (N, 2): "upper left", "middle", …"""
     cells = picture_cells(uv, image_size, 3, 3)
-    names = np.array(
-        [["upper left", "top", "upper right"], ["left", "middle", "right"], ["lower left", "bottom", "lower right"]]
-    )
-    return [str(name) for name in names[~cells]]
+    return tuple(region for region, seen in zip(_REGIONS, cells.ravel(), strict=True) if not seen)
 
 
 def tilt(pose: Pose) -> float:
@@ -58,11 +70,11 @@ def tilt_range(poses: Sequence[Pose]) -> float:
 
 
 def disagreement_mm(first: Camera, second: Camera, uv: Array, depths: tuple[float, float]) -> float:
-    """RMS distance in mm between where two cameras see the same pixels, over a work volume.
+    """Compute the RMS distance in mm between where two cameras see the same pixels, over a work volume.
 
-    The volume is what the pixels inside the hull of `uv` (N, 2) see between the two `depths` in mm. A camera's frame is
-    its own affair, so the second is first moved to where the rays of both fit best; what is left is the distance
-    across the ray. NaN where the cameras have no such rays.
+    The volume is what the pixels inside the hull of `uv` (N, 2) see between the two `depths` in mm. Each camera
+    has a frame of its own, so the second is first moved to where the rays of both fit best; what is left is the
+    distance across the ray. NaN where the cameras have no such rays.
     """
     low, high = uv.min(axis=0), uv.max(axis=0)
     grid = np.stack(np.meshgrid(*(np.linspace(low[i], high[i], _GRID[i]) for i in range(2))), axis=-1).reshape(-1, 2)
@@ -73,6 +85,6 @@ def disagreement_mm(first: Camera, second: Camera, uv: Array, depths: tuple[floa
     if len(pixels) < _DEPTHS * 4:
         return float("nan")
     view = Observed(first.rays(pixels) * depth[:, None], pixels, depth**2)
-    pose = refine(Bundle(second, (Pose.identity(),)), [view], _NO_PARAMETERS).poses[0]
+    pose = refine(Bundle(second, (Pose.identity(),)), [view], NO_PARAMETERS).poses[0]
     across = second.ray_jacobian(second.rays(pixels)) @ residuals(second, pose, view)[:, :, None]
     return float(np.sqrt(np.mean(np.sum((across[:, :, 0] * depth[:, None]) ** 2, axis=1))))

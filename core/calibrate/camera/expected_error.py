@@ -1,4 +1,4 @@
-"""How far off a calibrated camera may see a point, over the picture; and how the corners fit it.
+"""Expected error of a calibrated camera over the picture, and its residuals.
 
 References
 ----------
@@ -14,13 +14,15 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull, Delaunay
 
-from core.calibrate.reprojection import linearise
+from core.calibrate.camera.reprojection import linearise
 from core.calibrate.results import CameraCalibration
 from core.model import Camera, Pose
 from core.model.arrays import Array
 
 _VOLUME = (24, 18, 3)
-"""Points across, down and deep that stand for the work volume."""
+"""Points across, down and deep that stand for the work volume: errors are smooth, more change nothing."""
+GRID = (24, 18)
+"""Columns and rows of the map over the picture."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -64,7 +66,7 @@ class ResidualField:
 
 
 def expected_error(
-    calibration: CameraCalibration, depth_mm: float | None = None, grid: tuple[int, int] = (24, 18)
+    calibration: CameraCalibration, depth_mm: float | None = None, grid: tuple[int, int] = GRID
 ) -> ExpectedError:
     """Carry the camera's covariance to points at depth `depth_mm` (None: the middle of the corners' depths).
 
@@ -110,7 +112,7 @@ def expected_error(
 
 
 def residual_field(calibration: CameraCalibration) -> ResidualField:
-    """Where the corners that count were found, and how far from where the camera sees them."""
+    """Collect the corners that count and their residuals."""
     used = [(index, view) for index, view in enumerate(calibration.views) if view.used]
     if not used:
         return ResidualField(np.zeros((0, 2)), np.zeros((0, 2)), np.zeros(0, np.intp))
@@ -143,7 +145,7 @@ def _inside(uv: Array, corners: Array) -> NDArray[np.bool_]:
 
 
 def _across(camera: Camera, uv: Array, depths: Array) -> tuple[Array, Array]:
-    """How points at pixels `uv` (N, 2) and `depths` (N,) shift across their rays, in mm.
+    """Derivatives of points at pixels `uv` (N, 2) and `depths` (N,) across their rays, in mm.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Where a camera sees a target's points, and how that changes with every parameter of camera and pose.
+"""Projection of a target's points, and its derivatives by every parameter of camera and pose.
 
 The camera is a vector of ten numbers in the order of CAMERA_PARAMETERS. A pose changes by a small rotation vector ω
 in rad, applied in front of the rotation, and a shift of the translation in mm: six numbers.
@@ -20,19 +20,19 @@ def parameters_of(camera: Camera) -> Array:
 
 
 def camera_of(parameters: Array, image_size: tuple[int, int]) -> Camera:
-    """The camera with these ten `parameters`; ValueError when they are no camera's."""
+    """Make the camera with these ten `parameters`; ValueError when they are no camera's."""
     alpha, beta, gamma, u0, v0 = parameters[:5]
     return Camera(image_size, np.array([[alpha, gamma, u0], [0, beta, v0], [0, 0, 1]]), parameters[5:])
 
 
 def moved(pose: Pose, step: Array) -> Pose:
-    """`pose` after a small change (6,): rotation vector in rad, then shift in mm."""
+    """Change a pose by a small step (6,): rotation vector in rad, then shift in mm."""
     turn = Rotation.from_rotvec(step[:3]).as_matrix()
     return Pose(turn @ pose.rotation, pose.translation + step[3:])
 
 
 def linearise(camera: Camera, pose: Pose, points: Array) -> tuple[Array, Array, Array]:
-    """Image points of `points` (N, 3) and their derivatives.
+    """Project `points` (N, 3), with derivatives.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Which views, and which corners of them, a camera calibration may rest on, and why not the others.
+"""Screening of views and corners for a camera calibration, with reasons for what is left out.
 
 References
 ----------
@@ -14,25 +14,32 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from core.calibrate.bundle import RAYLEIGH_MEDIAN
-from core.calibrate.zhang import homography, homography_misfit
-from core.image.target_view import TargetView
+from core.calibrate.camera.bundle import RAYLEIGH_MEDIAN
+from core.calibrate.camera.zhang import homography, homography_misfit
+from core.image.targets.target_view import TargetView
+from core.messages import Message
 from core.model.arrays import Array
 
 Outliers = Literal["keep", "gross", "all"]
 
-MIN_CORNERS = 6
-"""A view with fewer corners hardly holds its own pose."""
-
-VIEW_LIMIT = 6.0
-"""A view whose median residual is this many times that of the views is left out."""
-
-CORNER_LIMIT = 7.0
-"""A corner this many standard deviations off is left out."""
-
-_MIN_COUNTED_SHARE = 0.7
+# Which views are screened out; tests/calibrate/camera/test_calibration.py (misfound corners, wrong views) holds them.
+LEAST_CORNERS = 6
+"""Corners of a view: fewer hardly determine its own pose."""
 _GRID_MISFIT = 0.05
+"""Median misfit to a homography, as a share of the target's extent: distortion bends a target by a percent or two of
+its size, corners in a wrong order miss by a third of it."""
+_LEAST_FLATNESS = 1e-3
+"""Second singular value over the first of the corners: with less they lie on one straight line."""
+
+# Outliers; held by the same tests.
+VIEW_LIMIT = 6.0
+"""Times the usual median residual of the views at which a view is left out."""
+CORNER_LIMIT = 7.0
+"""Standard deviations off at which a corner is left out."""
+_LEAST_COUNTED_SHARE = 0.7
+"""Of its corners that must count, or the view is left out."""
 _FLOOR_PX = 1e-3
+"""Usual residual in px at least: views without noise are not compared by their rounding."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -41,30 +48,35 @@ class Verdict:
 
     used: bool
     counted: NDArray[np.bool_]
-    reason: str = ""
+    reason: Message | None = None
 
 
-def screen(view: TargetView) -> tuple[Array | None, str]:
-    """The homography (3, 3) of `view`, or None and the reason why it is no view of a flat target.
-
-    Distortion bends a target by a percent or two of its size; corners in a wrong order miss by a third of it.
-    """
-    if len(view.points) < MIN_CORNERS:
-        return None, f"only {len(view.points)} corners were found and a pose needs at least {MIN_CORNERS}"
+def screen(view: TargetView) -> Array | Message:
+    """Fit the homography (3, 3) of `view`, or give the reason why it is no view of a flat target."""
+    if len(view.points) < LEAST_CORNERS:
+        return Message(
+            "camera.few_corners",
+            "only {n} corners were found and a pose needs at least {least}",
+            n=len(view.points),
+            least=LEAST_CORNERS,
+        )
     if not (np.isfinite(view.uv).all() and np.isfinite(view.points).all()):
-        return None, "it holds corners without finite coordinates"
-    if _flatness(view.points[:, :2]) < 1e-3 or _flatness(view.uv) < 1e-3:
-        return None, "its corners lie on one straight line"
+        return Message("camera.corners_not_finite", "it holds corners without finite coordinates")
+    if _flatness(view.points[:, :2]) < _LEAST_FLATNESS or _flatness(view.uv) < _LEAST_FLATNESS:
+        return Message("camera.corners_on_line", "its corners lie on one straight line")
     matrix = homography(view.points[:, :2], view.uv)
     misfit = float(np.median(homography_misfit(matrix, view.points[:, :2], view.uv)))
     extent = float(np.linalg.norm(np.ptp(view.uv, axis=0)))
     if not misfit < _GRID_MISFIT * extent:
-        return None, "its corners do not form the target's pattern: found in a wrong order, or another target"
-    return matrix, ""
+        return Message(
+            "camera.no_pattern",
+            "its corners do not form the target's pattern: found in a wrong order, or another target",
+        )
+    return matrix
 
 
 def judge(lengths: Sequence[Array], used: Sequence[bool], outliers: Outliers) -> list[Verdict]:
-    """Verdicts on views with weighted residual vectors of these `lengths` (N,), in pixels of a typical corner.
+    """Judge views with weighted residual vectors of these `lengths` (N,), in pixels of a typical corner.
 
     A view is compared by its median with the median of those that are `used` so far, so that single corners neither
     condemn nor save it. `outliers` says which corners to leave out: "keep" none (and no view); "gross" those that
@@ -81,13 +93,22 @@ def judge(lengths: Sequence[Array], used: Sequence[bool], outliers: Outliers) ->
 def _verdict(lengths: Array, median: float, typical: float, outliers: Outliers) -> Verdict:
     counted = _counted(lengths, typical / RAYLEIGH_MEDIAN, outliers)
     if median > VIEW_LIMIT * typical:
-        reason = (
-            f"its residuals (median {median:.2f} px) are out of line with the other views' ({typical:.2f} px): "
-            "blurred, moved, or not the same target"
+        reason = Message(
+            "camera.view_out_of_line",
+            "its residuals (median {rms_px:.2f} px) are out of line with the other views' ({usual_px:.2f} px): "
+            "blurred, moved, or not the same target",
+            rms_px=median,
+            usual_px=typical,
         )
         return Verdict(False, counted, reason)
-    if counted.mean() < _MIN_COUNTED_SHARE or counted.sum() < MIN_CORNERS:
-        return Verdict(False, counted, f"only {counted.sum()} of its {len(lengths)} corners fit the camera")
+    if counted.mean() < _LEAST_COUNTED_SHARE or counted.sum() < LEAST_CORNERS:
+        reason = Message(
+            "camera.corners_misfit",
+            "only {n} of its {all} corners fit the camera",
+            n=int(counted.sum()),
+            all=len(lengths),
+        )
+        return Verdict(False, counted, reason)
     return Verdict(True, counted)
 
 

@@ -17,10 +17,15 @@ from core.model import Pose
 from core.model.arrays import Array
 
 _REWEIGHTINGS = 8
+"""Rounds of Cauchy's weights in a homography; single misfound corners have lost theirs by then."""
+_CAUCHY_LIMIT = 3.0
+"""Median misfits at which a corner has half its weight."""
+_LEAST_INVERSE_SQUARE = 1e-4
+"""Square of picture width over focal length below which views do not give a focal length: 100 widths."""
 
 
 def homography(points: Array, uv: Array) -> Array:
-    """The homography (3, 3) from target points (N, 2) in mm to image points (N, 2) in pixels, N ≥ 5.
+    """Fit the homography (3, 3) from target points (N, 2) in mm to image points (N, 2) in pixels, N ≥ 5.
 
     Normalised direct linear transform, reweighted so that single misfound corners do not count.
     """
@@ -41,13 +46,15 @@ def homography(points: Array, uv: Array) -> Array:
         depth = lifted @ matrix[6:]
         misfit = np.linalg.norm(rows @ matrix, axis=1) / np.maximum(np.abs(depth), 1e-9)
         scale = max(float(np.median(misfit)), 1e-9)
-        weights = 1 / (np.abs(depth) * (1 + (misfit / (3 * scale)) ** 2))  # Cauchy; 1/depth makes it geometric
+        weights = 1 / (
+            np.abs(depth) * (1 + (misfit / (_CAUCHY_LIMIT * scale)) ** 2)
+        )  # Cauchy; 1/depth makes it geometric
     result: Array = np.linalg.inv(to_image) @ matrix.reshape(3, 3) @ from_target
     return result / np.linalg.norm(result)
 
 
 def homography_misfit(matrix: Array, points: Array, uv: Array) -> Array:
-    """Distances (N,) in pixels between `uv` and where `matrix` takes the target points (N, 2)."""
+    """Compute distances (N,) in pixels between `uv` and where `matrix` takes the target points (N, 2)."""
     lifted = np.column_stack([points, np.ones(len(points))]) @ matrix.T
     with np.errstate(divide="ignore", invalid="ignore"):
         distances: Array = np.linalg.norm(lifted[:, :2] / lifted[:, 2:] - uv, axis=1)
@@ -55,7 +62,7 @@ def homography_misfit(matrix: Array, points: Array, uv: Array) -> Array:
 
 
 def intrinsic_matrix(homographies: Sequence[Array], image_size: tuple[int, int], skew: bool) -> Array | None:
-    """A (3, 3) from the image of the absolute conic (Zhang §3.1), or None where the conic found is not one.
+    """Compute A (3, 3) from the image of the absolute conic (Zhang §3.1), or None where the conic found is not one.
 
     Every homography gives two linear equations for B = A⁻ᵀ A⁻¹; without `skew` B₁₂ = 0 is one more.
     """
@@ -81,7 +88,7 @@ def intrinsic_matrix(homographies: Sequence[Array], image_size: tuple[int, int],
 
 
 def centred_matrix(homographies: Sequence[Array], image_size: tuple[int, int]) -> Array:
-    """A (3, 3) with square pixels and the principal point in the picture's middle, the focal length fitted.
+    """Compute A (3, 3) with square pixels and the principal point in the picture's middle, the focal length fitted.
 
     For views that do not carry the full closed form. Where they do not even give a focal length it is taken as the
     picture's width.
@@ -98,12 +105,12 @@ def centred_matrix(homographies: Sequence[Array], image_size: tuple[int, int]) -
         planar += [a[:2] @ b[:2], a[:2] @ a[:2] - b[:2] @ b[:2]]
         constant += [a[2] * b[2], a[2] ** 2 - b[2] ** 2]
     inverse_square = -float(np.dot(planar, constant) / max(np.dot(planar, planar), 1e-300))
-    focal = width / np.sqrt(inverse_square) if inverse_square > 1e-4 else float(width)
+    focal = width / np.sqrt(inverse_square) if inverse_square > _LEAST_INVERSE_SQUARE else float(width)
     return np.array([[focal, 0, centre[0]], [0, focal, centre[1]], [0, 0, 1]])
 
 
 def pose_from_homography(matrix: Array, h: Array) -> Pose:
-    """The target's pose in front of a camera with `matrix` that sees it through homography `h`."""
+    """Compute the target's pose in front of a camera with `matrix` that sees it through homography `h`."""
     columns: Array = np.asarray(np.linalg.solve(matrix, h), dtype=np.float64)
     columns *= 2 / (np.linalg.norm(columns[:, 0]) + np.linalg.norm(columns[:, 1]))
     if columns[2, 2] < 0:
@@ -115,7 +122,7 @@ def pose_from_homography(matrix: Array, h: Array) -> Pose:
 
 
 def radial_start(matrix: Array, rays: Array, uv: Array, free: tuple[bool, bool]) -> tuple[float, float]:
-    """k1 and k2 by linear least squares (Zhang §3.3), a fixed one 0.
+    """Estimate k1 and k2 by linear least squares (Zhang §3.3), a fixed one 0.
 
     `rays` (N, 2) are the undistorted x, y that the poses predict for the image points `uv` (N, 2).
     """

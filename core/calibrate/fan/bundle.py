@@ -1,13 +1,16 @@
 """The fan's planes and the target's poses solved together, with the camera known or corrected along with them.
 
-How much to trust each observation (`core.calibrate.fan_observations`) is taken from the data: target points get a
+How much to trust each observation (`core.calibrate.fan.observations`) is taken from the data: target points get a
 common factor on their stated uncertainty, stripes an additional standard deviation in mm for their offset and another
 for their slope (a plate not quite flat, a lens not quite modelled), all such that residuals are as large as they should
-be.
+be. Where poses disagree by more than noise (a curled sheet, a pose that is off), the stripes of one pose err together,
+and more on some poses than on others: then the covariance is widened to what leaving out single poses moves the planes
+by.
 
 References
 ----------
 Förstner, W., Ein Verfahren zur Schätzung von Varianz- und Kovarianzkomponenten, AVN 86 (1979) 446.
+Efron, B., Bootstrap methods: another look at the jackknife, Ann. Statist. 7 (1979) 1–26, doi:10.1214/aos/1176344552.
 """
 
 from __future__ import annotations
@@ -19,15 +22,21 @@ from functools import partial
 import numpy as np
 
 from core.calibrate.board_shape import BoardShape
-from core.calibrate.fan_observations import PARAMETERS, BundlePose, Observations, Plate, State, Trust
+from core.calibrate.fan.observations import PARAMETERS, BundlePose, Observations, Plate, State, Trust
+from core.calibrate.fan.pencil import PlaneSet
+from core.calibrate.fan.pose_equations import PoseEquations, inverse
 from core.calibrate.levenberg import Solution, minimise
-from core.calibrate.pencil import PlaneSet, huber_weights
 from core.model import Camera, Pose
 from core.model.arrays import Array
+from core.model.robust import huber_weights
 
 PRIOR_FREEDOM = 6.0
 """Belief in the stated uncertainties, counted in residuals: few residuals cannot overthrow them."""
 ROUNDS = 12
+SCATTERED = 3.0
+"""Poses that disagree by this many times their noise do so by themselves, not by chance of points and stripes."""
+HUBER = 2.0
+"""Stripes further than this many standard deviations from their plane lose weight."""
 CORNER_SCALE_RANGE = (0.3, 30.0)
 
 
@@ -60,6 +69,12 @@ class Bundle:
     pose_errors
         For each pose (P,), RMS of the residuals of its stripes or, if that is larger, of its target points, in
         standard deviations.
+    expected_mm
+        RMS distance in mm that stripes on poses where the target's points alone put them would have from the true
+        planes, by the stated uncertainty of points and stripes.
+    without_each
+        (P, U + B): the step of the planes' own unknowns and the plate's bows that leaving out each pose makes, to first
+        order, the camera taken as known.
     """
 
     planes: PlaneSet
@@ -73,6 +88,8 @@ class Bundle:
     corner_scale: float
     extra_mm: float
     pose_errors: Array
+    expected_mm: float
+    without_each: Array
 
 
 def solve(
@@ -117,22 +134,19 @@ def _at_first(seen: Observations, state: State) -> Trust:
     return Trust(1.0, seen.stripes.noise_mm(state.planes, state.poses), extra, np.ones(count))
 
 
-def _improved(trust: Trust, seen: Observations, solution: Solution[State]) -> Trust:
+def _improved(trust: Trust, seen: Observations, solution: Solution[State, PoseEquations]) -> Trust:
     """The standard deviations and the stripes' weights again, from residuals and redundancies."""
-    share = ((solution.jacobian @ solution.covariance) * solution.jacobian).sum(axis=1)
-    first = len(seen.free) + seen.bows
-    end = first + seen.corners
-    of_corners = slice(first, end)
-    corner = _variance_factor(solution.residuals[of_corners], share[of_corners])
+    residuals, share = solution.linear.residuals, solution.linear.leverages()
+    corner = _variance_factor(residuals[: seen.corners], share[: seen.corners])
     scale = float(np.clip(trust.corner_scale * np.sqrt(corner), *CORNER_SCALE_RANGE))
     own = float(np.median(trust.noise) ** 2)
     extra = trust.extra.copy()
     for part in range(seen.stripes.parts):
-        rows = slice(end + part, None, seen.stripes.parts)
-        factor = _variance_factor(solution.residuals[rows], share[rows])
+        rows = slice(seen.corners + part, None, seen.stripes.parts)
+        factor = _variance_factor(residuals[rows], share[rows])
         extra[part] = np.sqrt(max(factor * extra[part] ** 2 + (factor - 1) * own, 0.0))
     trust = replace(trust, corner_scale=scale, extra=extra)
-    return replace(trust, weight=huber_weights(_errors(seen, solution.state, trust)))
+    return replace(trust, weight=huber_weights(_errors(seen, solution.state, trust), HUBER))
 
 
 def _settled(before: Trust, after: Trust) -> bool:
@@ -146,32 +160,48 @@ def _errors(seen: Observations, state: State, trust: Trust) -> Array:
     return np.asarray(np.sqrt((distances**2).mean(axis=1)), dtype=np.float64)
 
 
-def _result(seen: Observations, solution: Solution[State], trust: Trust) -> Bundle:
+def _result(seen: Observations, solution: Solution[State, PoseEquations], trust: Trust) -> Bundle:
     state = solution.state
     unknowns = state.planes.jacobian.shape[1]
-    residuals, jacobian = seen.observed(state, trust)
-    alone, by_camera = jacobian[:, :-PARAMETERS], jacobian[:, -PARAMETERS:]
-    local = Solution(state, residuals, alone, solution.converged).covariance
-    stripes = alone[-seen.stripes.parts * len(seen.stripes) :]
+    known = unknowns + seen.bows
+    every = seen.with_every_camera_parameter(state, trust)
+    alone = every.by_first(known)
+    covariance = alone.covariance
     to_pis = state.planes.jacobian
+    extra_mm = float(trust.extra[0] / np.sqrt(2))
+    expected_mm = seen.expected_mm(state, trust)
+    without_each = alone.steps_without_each()
+    if extra_mm > SCATTERED * expected_mm:
+        covariance = covariance * _widening(covariance[:unknowns, :unknowns], without_each[:, :unknowns])
     corrected = None
     if len(seen.free):
         corrected = np.zeros((PARAMETERS, PARAMETERS))
-        last = len(seen.free)
-        corrected[np.ix_(seen.free, seen.free)] = solution.covariance[-last:, -last:]
+        corrected[np.ix_(seen.free, seen.free)] = solution.linear.covariance[known:, known:]
     return Bundle(
         planes=state.planes,
-        covariance=to_pis @ local[:unknowns, :unknowns] @ to_pis.T,
-        by_camera=-to_pis @ (local[:unknowns] @ (alone.T @ by_camera)),
+        covariance=to_pis @ covariance[:unknowns, :unknowns] @ to_pis.T,
+        by_camera=to_pis @ every.followed_by(known)[:unknowns],
         camera=seen.camera(state),
         camera_covariance=corrected,
         poses=state.poses,
-        shape=seen.shape(state.bow, local[len(local) - seen.bows :, len(local) - seen.bows :]),
-        freedom=len(stripes) - float(((stripes @ local) * stripes).sum()),
+        shape=seen.shape(state.bow, covariance[unknowns:, unknowns:]),
+        freedom=float((1 - alone.leverages()[seen.corners :]).sum()),
         corner_scale=trust.corner_scale,
-        extra_mm=float(trust.extra[0] / np.sqrt(2)),
-        pose_errors=_pose_errors(seen, residuals, _errors(seen, state, trust)),
+        extra_mm=extra_mm,
+        pose_errors=_pose_errors(seen, alone.residuals, _errors(seen, state, trust)),
+        expected_mm=expected_mm,
+        without_each=without_each,
     )
+
+
+def _widening(covariance: Array, without_each: Array) -> float:
+    """Factor ≥ 1 on a covariance (U, U): the jackknife's variance over it, the mean of all directions."""
+    count, unknowns = without_each.shape
+    if count <= unknowns:
+        return 1.0
+    off = without_each - without_each.mean(axis=0)
+    variance = (count - 1) / count * float(np.einsum("pi,ij,pj->", off, inverse(covariance), off)) / unknowns
+    return float(max(variance, 1.0))
 
 
 def _pose_errors(seen: Observations, residuals: Array, of_stripes: Array) -> Array:
@@ -179,7 +209,7 @@ def _pose_errors(seen: Observations, residuals: Array, of_stripes: Array) -> Arr
     count, pose_of = len(seen.known), seen.stripes.pose_of
     summed = np.bincount(pose_of, of_stripes**2, minlength=count)
     stripes = summed / np.maximum(np.bincount(pose_of, minlength=count), 1)
-    of_corners = residuals[seen.bows : seen.bows + seen.corners]
+    of_corners = residuals[: seen.corners]
     corners = [float((of_corners[rows] ** 2).mean()) for rows in seen.rows]
     return np.asarray(np.sqrt(np.maximum(stripes, corners)), dtype=np.float64)
 

@@ -17,29 +17,37 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from core.calibrate.board_shape import Board
-from core.calibrate.fan_bundle import Bundle, solve
-from core.calibrate.fan_cross_validation import prediction_errors
-from core.calibrate.fan_observations import BundlePose, Plate
-from core.calibrate.fan_summary import summarise
-from core.calibrate.fan_verdict import Constrained, judge
-from core.calibrate.line_assignment import NOT_SEEN, assign_lines
-from core.calibrate.located_pose import LocatedPose, locate
-from core.calibrate.pencil import FreePlanes, PlaneSet
-from core.calibrate.plane_pose import PoseFeatures
+from core.calibrate.fan.bundle import Bundle, solve
+from core.calibrate.fan.cross_validation import prediction_errors
+from core.calibrate.fan.line_assignment import NOT_SEEN, assign_lines
+from core.calibrate.fan.located_pose import LocatedPose, locate
+from core.calibrate.fan.observations import BundlePose, Plate
+from core.calibrate.fan.pencil import FreePlanes, PlaneSet
+from core.calibrate.fan.pose_features import PoseFeatures
+from core.calibrate.fan.stripe_lines import StripeLine
+from core.calibrate.fan.summary import summarise
+from core.calibrate.fan.target_plane import on_target
+from core.calibrate.fan.verdict import Constrained, judge
 from core.calibrate.results import LEFT_OUT, FanCalibration
-from core.calibrate.target_plane import on_target
 from core.errors import InputError
+from core.messages import Field, Message
 from core.model import Camera
 from core.model.arrays import Array
 from core.progress import Progress, silent, steps
 
 WHERE = "planes"
-MORE_POSES = "record more poses of the target, at different distances and tilts"
+MORE_POSES = Message("advice.more_poses", "record more poses of the target, at different distances and tilts")
+_LINES = Field("laser_fan.lines", whole=True)
 SMALLEST_SPREAD = 0.01
 """A plane is not determined by stripes that lie nearer to one straight line than this share of their depth (RMS)."""
+_DISAGREES = Message("fan.no_common_stripe", "no stripe on the target agrees with the other poses")
 DISTINCT = 0.01
 """Light planes are two if they cut a ray at depths that differ by more than this share."""
-ODD = 5.0
+MOST_BOWED = 3.0
+"""A bow of this many times the stated flatness is not believed."""
+TILTS_OF_USE = np.deg2rad(60.0)
+"""The most that a target can be tilted and still be seen well."""
+OUTLYING = 5.0
 """A pose this many times worse than the median pose is left out."""
 
 
@@ -96,7 +104,7 @@ def fit_fan(
     Parameters
     ----------
     features
-        What the pictures of each pose show, from :func:`core.calibrate.plane_pose.measure_plane_pose`.
+        What the pictures of each pose show, from :func:`core.calibrate.fan.plane_pose.measure_plane_pose`.
     camera
         The calibrated camera. May differ a little from the one the features were measured with, so that a fit can be
         repeated to see how the camera's uncertainty goes on into the fan's.
@@ -120,7 +128,8 @@ def fit_fan(
     _check_spread(located, options.lines)
     further = _further_line(located, camera, rough)
     plate = _plate(located, options.flatness_mm)
-    located, free = _solve_without_odd_poses(FreePlanes(rough), located, camera, plate)
+    located, free = _solve_without_outlying_poses(FreePlanes(rough), located, camera, plate)
+    _check_bow(free, options.flatness_mm)
     volume = _points_by_line(located, free)
     verdict = judge(free, volume, options.angle, options.constrained)
     if camera_covariance is not None and camera_covariance.any():
@@ -139,16 +148,34 @@ def _check_poses(located: Sequence[LocatedPose]) -> None:
     usable = sum(pose.used for pose in located)
     if usable >= 2:
         return
-    reasons = "; ".join([f"{pose.features.name}: {pose.reason}" for pose in located if not pose.used][:3])
+    reasons = tuple(
+        Message("fan.of_pose", "{pose}: {reason}", pose=pose.features.name, reason=pose.reason)
+        for pose in located
+        if pose.reason is not None
+    )[:3]
     if not located:
-        what = "there are no poses of the target"
+        what = Message("fan.no_poses", "there are no poses of the target")
     elif usable == 0:
-        what = f"none of the {len(located)} poses can be used ({reasons})"
-    else:
-        what = "only one pose can be used, which does not determine a light plane" + (
-            f" ({reasons})" if reasons else ""
+        what = Message(
+            "fan.no_usable_pose", "none of the {n} poses can be used ({reasons:;})", n=len(located), reasons=reasons
         )
-    raise InputError(what, where=WHERE, todo=MORE_POSES + ", with the fan on and the whole target in the picture")
+    elif reasons:
+        what = Message(
+            "fan.one_usable_pose_why",
+            "only one pose can be used, which does not determine a light plane ({reasons:;})",
+            reasons=reasons,
+        )
+    else:
+        what = Message("fan.one_usable_pose", "only one pose can be used, which does not determine a light plane")
+    raise InputError(
+        what,
+        where=WHERE,
+        todo=Message(
+            "advice.more_poses_with_fan",
+            "{advice}, with the fan on and the whole target in the picture",
+            advice=MORE_POSES,
+        ),
+    )
 
 
 def _assigned(located: Sequence[LocatedPose], camera: Camera, options: FanOptions) -> tuple[list[LocatedPose], Array]:
@@ -158,30 +185,47 @@ def _assigned(located: Sequence[LocatedPose], camera: Camera, options: FanOption
     if found < options.lines:
         usable = sum(pose.used for pose in located)
         raise InputError(
-            f"only {found} of the {options.lines} promised fan lines were seen in enough of the {usable} usable poses",
+            Message(
+                "fan.few_lines",
+                "only {n} of the {all} promised fan lines were seen in enough of the {poses} usable poses",
+                n=found,
+                all=options.lines,
+                poses=usable,
+            ),
             where=WHERE,
-            todo="check laser_fan.lines in rig.toml, and that every line falls on the target in several poses",
+            todo=Message(
+                "advice.check_lines_and_poses",
+                "check {field}, and that every line falls on the target in several poses",
+                field=_LINES,
+            ),
         )
     sorted_poses = []
     for pose, which in zip(located, assignment.which.T, strict=True):
         stripes = {line: pose.lines[index] for line, index in enumerate(which) if index != NOT_SEEN}
         if pose.used and not stripes:
-            sorted_poses.append(pose.left_out("no stripe on the target agrees with the other poses"))
+            sorted_poses.append(pose.left_out(_DISAGREES))
         else:
             sorted_poses.append(replace(pose, stripes=stripes))
     return sorted_poses, assignment.pis
 
 
-def _further_line(located: Sequence[LocatedPose], camera: Camera, rough: Array) -> list[str]:
+def _further_line(located: Sequence[LocatedPose], camera: Camera, rough: Array) -> list[Message]:
     """A note if one more light plane than promised is seen in most poses."""
     rest = [replace(pose, lines=pose.lines_left) for pose in located]
-    assignment = assign_lines([pose.as_lines(camera) for pose in rest], 1, None)
+    assignment = assign_lines([pose.as_lines(camera) for pose in rest], 1, None, wider=(1.0,))
     for pi, which in zip(assignment.pis, assignment.which, strict=True):
         lines = [pose.lines[index] for pose, index in zip(rest, which, strict=True) if index != NOT_SEEN]
         rays = np.vstack([line.pivots for line in lines])
         apart = np.abs(rays @ (rough - pi).T) / np.abs(rays @ pi)[:, None]
         if 2 * len(lines) > sum(pose.used for pose in located) and np.median(apart, axis=0).min() > DISTINCT:
-            return [f"a further light plane is seen in {len(lines)} poses: check laser_fan.lines in rig.toml"]
+            return [
+                Message(
+                    "fan.further_plane",
+                    "a further light plane is seen in {n} poses: check {field}",
+                    n=len(lines),
+                    field=_LINES,
+                )
+            ]
     return []
 
 
@@ -193,11 +237,74 @@ def _check_spread(located: Sequence[LocatedPose], lines: int) -> None:
         spread = np.linalg.svd(ends - ends.mean(axis=0), compute_uv=False)[1] / np.sqrt(len(ends))
         if spread < SMALLEST_SPREAD * ends[:, 2].mean():
             raise InputError(
-                f"the poses are too alike: the stripes of fan line {line + 1} on all of them lie within "
-                f"{spread:.1f} mm (RMS) of one straight line, which does not determine its plane",
+                Message(
+                    "fan.poses_alike",
+                    "the poses are too alike: the stripes of fan line {line} on all of them lie within {spread:.1f} mm "
+                    "(RMS) of one straight line, which does not determine its plane",
+                    line=line + 1,
+                    spread=spread,
+                ),
                 where=WHERE,
-                todo=MORE_POSES,
+                todo=_missing_tilt([pose.stripes[line] for pose in showing], ends, spread),
             )
+
+
+def _missing_tilt(stripes: Sequence[StripeLine], ends: Array, spread: float) -> Message:
+    """Which tilt of the target, and how much more of it, would take stripes with these `ends` (2N, 3) off one line.
+
+    `spread` in mm is how far they are off it now. A tilt about the axis across a stripe moves its ends in depth.
+    """
+    depth = float(ends[:, 2].mean())
+    wanted = 2 * SMALLEST_SPREAD * depth  # twice what is just enough
+    half = float(np.linalg.norm(ends[1::2] - ends[::2], axis=1).mean()) / 2
+    tilts = [float(np.arcsin(min(value / half, 1.0))) for value in (spread, wanted)]
+    upright = np.mean([abs(stripe.across[0]) for stripe in stripes]) < np.mean(
+        [abs(stripe.across[1]) for stripe in stripes]
+    )
+    if tilts[1] > TILTS_OF_USE:
+        return Message(
+            "advice.other_distances",
+            "move the target nearer or farther by {mm:.0f} mm between poses",
+            mm=2 * (wanted - spread),
+        )
+    more = float(np.degrees(tilts[1] - tilts[0]))
+    if upright:
+        return Message(
+            "advice.turn_target",
+            "turn the target by {more:.0f}° more to the left and to the right, or move it nearer and farther by "
+            "{mm:.0f} mm",
+            more=more,
+            mm=2 * (wanted - spread),
+        )
+    return Message(
+        "advice.nod_target",
+        "tilt the target by {more:.0f}° more forward and back, or move it nearer and farther by {mm:.0f} mm",
+        more=more,
+        mm=2 * (wanted - spread),
+    )
+
+
+def _check_bow(fit: Bundle, flatness_mm: float | None) -> None:
+    """InputError if the target comes out far more bowed than it was said that it may be."""
+    bow = float(np.abs(fit.shape.values[:3]).max())
+    if not flatness_mm or bow <= MOST_BOWED * flatness_mm:
+        return
+    raise InputError(
+        Message(
+            "fan.bow_beyond_flatness",
+            "the plane target comes out bowed by {bow:.2f} mm at its edges, {times:.0f} times its stated flatness of "
+            "{flatness:g} mm: something else is wrong that looks like a bow, or it is not so flat",
+            bow=bow,
+            times=bow / flatness_mm,
+            flatness=flatness_mm,
+        ),
+        where=WHERE,
+        todo=Message(
+            "advice.check_flatness",
+            "check the target's size and {field}, and fix it to something flat",
+            field=Field("plane_target.flatness_mm"),
+        ),
+    )
 
 
 def _plate(located: Sequence[LocatedPose], flatness_mm: float | None) -> Plate | None:
@@ -220,7 +327,7 @@ def _bundle_poses(located: Sequence[LocatedPose]) -> list[BundlePose]:
     ]
 
 
-def _solve_without_odd_poses(
+def _solve_without_outlying_poses(
     planes: PlaneSet, located: list[LocatedPose], camera: Camera, plate: Plate | None
 ) -> tuple[list[LocatedPose], Bundle]:
     """The fit; poses far worse than the others are left out one by one, at most a third of them."""
@@ -232,9 +339,13 @@ def _solve_without_odd_poses(
         times = float(bundle.pose_errors[worst] / np.median(bundle.pose_errors))
         trial = list(located)
         trial[used[worst]] = located[used[worst]].left_out(
-            f"its stripes or target points fit {times:.0f} times worse than in the other poses"
+            Message(
+                "fan.outlying_pose",
+                "its stripes or target points fit {times:.0f} times worse than in the other poses",
+                times=times,
+            )
         )
-        if dispensable == 0 or times < ODD or not _seen_twice(trial, len(planes.pis)):
+        if dispensable == 0 or times < OUTLYING or not _seen_twice(trial, len(planes.pis)):
             return located, bundle
         located, dispensable, planes = trial, dispensable - 1, bundle.planes
 

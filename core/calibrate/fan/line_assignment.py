@@ -4,17 +4,27 @@ Two stripes on two poses of the target suggest a light plane: π·r = τ·r at t
 target in the same inverse-depth form. The true planes find a stripe in nearly every pose; a wrong pairing, a stripe
 on the table behind the target or the edge of a mark finds none elsewhere. So nobody has to say which stripe is
 which, and a pose may show only some of them.
+
+The plane of nearly parallel targets themselves goes through every stripe on them, whatever drew it: a suggestion gains
+nothing by poses whose target it nearly is. How far poses may disagree is not known beforehand: where some poses agree
+with no plane, wider tolerances are tried, and the one is kept whose agreement chance explains least.
+
+References
+----------
+Moisan, L. & Stival, B., A probabilistic criterion to detect rigid point matches, Int. J. Computer Vision 57 (2004)
+201–218, doi:10.1023/B:VISI.0000013094.38752.54.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from core.calibrate.stripe_lines import StripeLine
+from core.calibrate.fan.stripe_lines import StripeLine
 from core.model.arrays import Array
 
 NOT_SEEN = -1
@@ -22,8 +32,23 @@ NOT_SEEN = -1
 
 MIN_TOLERANCE, MAX_TOLERANCE = 0.003, 0.01
 """How far a stripe may be off a suggested plane along its ray, as a share of its depth: at least and at most."""
+WIDER = (1.0, 2.0, 4.0, 8.0)
+"""Factors on the tolerance that are tried where poses disagree."""
+REACH = 2.0
+"""Of the wider tolerance in the end: a bound within the scatter would keep the middle of it only."""
+SURE = -2.0
+"""log₁₀ of the most often that chance may make a plane of a wider tolerance."""
+LEAST_ANGLE = np.deg2rad(10.0)
+"""A light plane that meets a target at a flatter angle cannot be told from the target's own plane there."""
+LIKELIEST = 0.9
+"""Bound on the probability that a pose agrees by chance."""
+PAIRS = 20_000
+"""Pairs of stripes tried at most, drawn by chance where there are more: of 12 stripes a pose one in 144 is of a given
+line, which still makes more than a hundred true pairs."""
 KEPT = 60
 """Suggested planes compared with each other in the end."""
+VARIANT = 0.9
+"""A suggested plane that shares more of its stripes than this with a better one is the same plane."""
 ANGLE_PENALTY = 1.0
 """Poses that two planes must win back when the angle between them is not a multiple of the fan's."""
 
@@ -32,12 +57,14 @@ ANGLE_PENALTY = 1.0
 class PoseLines:
     """The straight stripes of one pose, and the plane they lie on.
 
-    `target` (3,) is τ in 1/mm with τ·X = 1 on the target, `covariance` (3, 3) its covariance.
+    `target` (3,) is τ in 1/mm with τ·X = 1 on the target, `covariance` (3, 3) its covariance, `points` (N, 3) rays of
+    the target's points.
     """
 
     lines: tuple[StripeLine, ...]
     target: Array
     covariance: Array
+    points: Array
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -48,7 +75,9 @@ class Assignment:
     pis: Array
 
 
-def assign_lines(poses: Sequence[PoseLines], lines: int, angle: float | None) -> Assignment:
+def assign_lines(
+    poses: Sequence[PoseLines], lines: int, angle: float | None, wider: Sequence[float] = WIDER
+) -> Assignment:
     """Find the `lines` light planes that explain the stripes of most poses.
 
     Parameters
@@ -59,23 +88,77 @@ def assign_lines(poses: Sequence[PoseLines], lines: int, angle: float | None) ->
         How many light planes are looked for.
     angle
         In rad between neighbouring planes, if known: used where the poses alone leave a doubt.
+    wider
+        Factors on the tolerance; the further ones are for poses that disagree.
 
     Returns
     -------
     The planes found, in order across the fan (from the top of the picture, or from the left where stripes are
     steep); fewer than `lines` if no more are seen in enough poses.
     """
-    candidates = _Candidates(poses)
+    best, least, chosen = _nothing(len(poses)), 0.0, wider[0]
+    shown = np.array([len(pose.lines) > 0 for pose in poses])
+    for factor in wider:
+        found = _assigned(_Candidates(poses, factor), lines, angle)
+        chance = _log_chance(found, poses, factor)
+        surely = factor == wider[0] or bool((chance < SURE).all())
+        more = len(found.pis) - len(best.pis)
+        if surely and (more > 0 or (more == 0 and chance.sum() < least)):
+            best, least, chosen = found, float(chance.sum()), factor
+        if len(found.pis) == lines and (found.which != NOT_SEEN).any(axis=0)[shown].all():
+            break
+    return best if chosen == wider[0] else _completed(best, _Candidates(poses, REACH * chosen))
+
+
+def _completed(found: Assignment, candidates: _Candidates) -> Assignment:
+    """With the stripes that are nearest to the same planes within the tolerance of `candidates`."""
+    nearest = np.array(
+        [candidates.index_in_pose(own) for own in candidates.best_in_pose(candidates.scores(found.pis))[0]]
+    )
+    which = found.which.copy()
+    for line, pose in zip(*np.nonzero((which == NOT_SEEN) & (nearest != NOT_SEEN)), strict=True):
+        if nearest[line, pose] not in which[:, pose]:
+            which[line, pose] = nearest[line, pose]
+    return Assignment(which, found.pis)
+
+
+def _assigned(candidates: _Candidates, lines: int, angle: float | None) -> Assignment:
+    """The planes found within one tolerance."""
     if candidates.count == 0:
-        return _nothing(len(poses))
+        return _nothing(candidates.poses)
     suggestions = _suggest(candidates, lines)
     best = _best_set(candidates, suggestions, lines, angle)
     if not best:
-        return _nothing(len(poses))
+        return _nothing(candidates.poses)
     ordered = _in_order(candidates, best)
     return Assignment(
         np.array([candidates.index_in_pose(s.stripes) for s in ordered]), np.array([s.pi for s in ordered])
     )
+
+
+def _log_chance(found: Assignment, poses: Sequence[PoseLines], wider: float) -> Array:
+    """(N,) log₁₀ of how often stripes anywhere on the targets would agree with a plane as well as these, by chance."""
+    shown = np.array([len(pose.lines) > 0 for pose in poses])
+    found_so = []
+    for pi, which in zip(found.pis, found.which, strict=True):
+        agreeing = np.flatnonzero(which != NOT_SEEN)
+        total = math.log10(math.comb(int(shown.sum()), len(agreeing)))
+        for pose in (poses[int(index)] for index in agreeing):
+            inverse_depth = pose.points @ pose.target
+            reach = float(np.ptp((pose.points @ pi) / inverse_depth))
+            tolerance = wider * _tolerance(pose.points.mean(axis=0)[None], pose.target, pose.covariance)[0]
+            chance = len(pose.lines) * 2 * tolerance / max(reach * float(inverse_depth.mean()), 1e-12)
+            total += math.log10(min(chance, LIKELIEST))
+        found_so.append(total)
+    return np.array(found_so)
+
+
+def _tolerance(rays: Array, target: Array, covariance: Array) -> Array:
+    """How far in 1/mm stripes of `rays` (..., 3) on a target may be off a plane: (...)."""
+    inverse_depth = np.einsum("...j,...j->...", rays, target)
+    sd = np.sqrt(np.maximum(np.einsum("...j,...jk,...k->...", rays, covariance, rays), 0.0))
+    # as much again for the poses that suggested the plane
+    return np.asarray(np.clip(6 * sd / inverse_depth, MIN_TOLERANCE, MAX_TOLERANCE) * inverse_depth, dtype=np.float64)
 
 
 def _nothing(poses: int) -> Assignment:
@@ -96,9 +179,9 @@ class _Suggestion:
 
 
 class _Candidates:
-    """All stripes of all poses as equations π·r = 1/z at two rays each, with tolerances."""
+    """All stripes of all poses as equations π·r = 1/z at two rays each, with tolerances `wider` than usual."""
 
-    def __init__(self, poses: Sequence[PoseLines]) -> None:
+    def __init__(self, poses: Sequence[PoseLines], wider: float) -> None:
         self.pose = np.repeat(np.arange(len(poses)), [len(p.lines) for p in poses])
         self.first = np.concatenate([[0], np.cumsum([len(p.lines) for p in poses])[:-1]]).astype(np.intp)
         self.poses = len(poses)
@@ -109,11 +192,9 @@ class _Candidates:
         self.across = np.array([line.across for line in stripes]).reshape(-1, 2)
         target = np.array([p.target for p in poses])[self.pose]
         covariance = np.array([p.covariance for p in poses])[self.pose]
+        self.normal = target / np.maximum(np.linalg.norm(target, axis=1), 1e-300)[:, None]
         self.inverse_depth = np.einsum("sij,sj->si", self.rays, target)
-        sd = np.sqrt(np.maximum(np.einsum("sij,sjk,sik->si", self.rays, covariance, self.rays), 0.0))
-        # as much again for the poses that suggested the plane
-        relative = np.clip(6 * sd / self.inverse_depth, MIN_TOLERANCE, MAX_TOLERANCE)
-        self.tolerance = relative * self.inverse_depth
+        self.tolerance = wider * _tolerance(self.rays, target[:, None], covariance[:, None])
 
     def plane(self, stripes: NDArray[np.intp]) -> Array:
         """π (H, 3) nearest to sets of stripes (H, n) in the sense of inverse depths within their tolerances."""
@@ -127,10 +208,15 @@ class _Candidates:
         return np.asarray(np.linalg.solve(normal, transposed @ depth)[..., 0], dtype=np.float64)
 
     def scores(self, pis: Array) -> Array:
-        """How well planes (H, 3) fit each stripe: (H, S), 1 exactly, 0 at the tolerance and beyond."""
+        """How well planes (H, 3) fit each stripe: (H, S), 1 exactly, 0 at the tolerance and beyond.
+
+        0 as well where the plane nearly is the target the stripe lies on.
+        """
         off = np.einsum("hj,sij->hsi", pis, self.rays, optimize=True) - self.inverse_depth
         worst: Array = np.abs(off / self.tolerance).max(axis=2)
-        return np.asarray(np.maximum(1 - worst**2, 0.0), dtype=np.float64)
+        cosine = np.abs(pis @ self.normal.T) / np.linalg.norm(pis, axis=1)[:, None]
+        scores = np.where(cosine > np.cos(LEAST_ANGLE), 0.0, np.maximum(1 - worst**2, 0.0))
+        return np.asarray(scores, dtype=np.float64)
 
     def best_in_pose(self, scores: Array) -> tuple[NDArray[np.intp], Array]:
         """For scores (H, S) the best stripe of each pose (H, P), or NOT_SEEN, and its score (H, P)."""
@@ -154,17 +240,37 @@ def _suggest(candidates: _Candidates, lines: int) -> list[_Suggestion]:
     first, second = np.triu_indices(candidates.count, 1)
     apart = candidates.pose[first] != candidates.pose[second]
     pairs = np.column_stack([first[apart], second[apart]])
+    if len(pairs) > PAIRS:
+        pairs = pairs[np.random.default_rng(0).choice(len(pairs), PAIRS, replace=False)]
     found: dict[bytes, _Suggestion] = {}
     for start in range(0, len(pairs), 4096):
         block = pairs[start : start + 4096]
         scores = candidates.scores(candidates.plane(block))
         own = np.minimum(*(scores[np.arange(len(block)), block[:, side]] for side in (0, 1)))
         stripes, best = candidates.best_in_pose(scores[own > 0])
-        for chosen in stripes[np.argsort(-best.sum(axis=1))[: KEPT * lines]]:
+        stripes = stripes[np.argsort(-best.sum(axis=1))]
+        for chosen in stripes[_distinct(stripes, KEPT * lines)]:
             if chosen.tobytes() not in found:
                 found[chosen.tobytes()] = _refined(candidates, chosen)
     unique = {suggestion.stripes.tobytes(): suggestion for suggestion in found.values()}
-    return sorted(unique.values(), key=lambda suggestion: -suggestion.score)[:KEPT]
+    ranked = sorted(unique.values(), key=lambda suggestion: -suggestion.score)
+    return [ranked[index] for index in _distinct(np.array([own.stripes for own in ranked]), KEPT)] if ranked else []
+
+
+def _distinct(stripes: NDArray[np.intp], most: int) -> list[int]:
+    """Indices of at most `most` of sets of stripes (H, P), best first, none nearly all of whose stripes a better has.
+
+    Of many poses the variants of one plane are legion, and would leave no room for the others.
+    """
+    kept: list[int] = []
+    for index, own in enumerate(stripes):
+        if len(kept) == most:
+            break
+        shown = own != NOT_SEEN
+        same = np.count_nonzero((stripes[kept] == own) & shown, axis=1)
+        if not len(kept) or same.max() <= VARIANT * np.count_nonzero(shown):
+            kept.append(index)
+    return kept
 
 
 def _refined(candidates: _Candidates, stripes: NDArray[np.intp]) -> _Suggestion:

@@ -6,11 +6,12 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from core.calibrate.line_assignment import PoseLines
-from core.calibrate.plane_pose import PoseFeatures
-from core.calibrate.stripe_lines import StripeLine, straight_lines
-from core.calibrate.target_plane import target_plane, target_plane_covariance
+from core.calibrate.fan.line_assignment import PoseLines
+from core.calibrate.fan.pose_features import PoseFeatures
+from core.calibrate.fan.stripe_lines import StripeLine, straight_lines
+from core.calibrate.fan.target_plane import target_plane, target_plane_covariance
 from core.image.targets import TargetNotFound, estimate_pose
+from core.messages import Message
 from core.model import Camera, Pose
 
 
@@ -31,7 +32,7 @@ class LocatedPose:
     stripes
         Fan line (from 0) → the stripe it draws here, once that is known.
     reason
-        Why the pose is not used; empty if it is.
+        Why the pose is not used; None if it is.
     """
 
     features: PoseFeatures
@@ -39,34 +40,34 @@ class LocatedPose:
     rms_px: float
     lines: tuple[StripeLine, ...]
     stripes: dict[int, StripeLine] = field(default_factory=dict)
-    reason: str = ""
+    reason: Message | None = None
 
     @property
     def used(self) -> bool:
         """Whether the pose takes part in the fit."""
-        return not self.reason
+        return self.reason is None
 
     @property
     def lines_left(self) -> tuple[StripeLine, ...]:
         """The straight stripes that no fan line drew."""
         return tuple(line for line in self.lines if all(line is not stripe for stripe in self.stripes.values()))
 
-    def left_out(self, reason: str) -> LocatedPose:
+    def left_out(self, reason: Message) -> LocatedPose:
         """The same pose, not used."""
         return replace(self, stripes={}, reason=reason)
 
     def as_lines(self, camera: Camera) -> PoseLines:
         """The stripes and the target's plane, for their assignment; no stripes if the pose is not used."""
         if not self.used or self.features.view is None:
-            return PoseLines((), np.zeros(3), np.zeros((3, 3)))
+            return PoseLines((), np.zeros(3), np.zeros((3, 3)), np.zeros((0, 3)))
         covariance = target_plane_covariance(self.features.view, self.pose, camera)
-        return PoseLines(self.lines, target_plane(self.pose), covariance)
+        return PoseLines(self.lines, target_plane(self.pose), covariance, camera.rays(self.features.view.uv))
 
 
 def locate(features: PoseFeatures, camera: Camera) -> LocatedPose:
     """Pose of the target and straight lines among its stripes, or the reason why there are none."""
     nowhere = LocatedPose(features, Pose.identity(), np.nan, (), reason=features.reason)
-    if features.reason or features.view is None:
+    if features.reason is not None or features.view is None:
         return nowhere
     try:
         estimate = estimate_pose(features.view, camera)
@@ -74,4 +75,6 @@ def locate(features: PoseFeatures, camera: Camera) -> LocatedPose:
         return nowhere.left_out(error.what)
     lines = straight_lines(features.centrelines, camera)
     located = LocatedPose(features, estimate.pose, estimate.rms_px, lines)
-    return located if lines else located.left_out("no straight stripe was found on the target")
+    if lines:
+        return located
+    return located.left_out(Message("fan.no_straight_stripe", "no straight stripe was found on the target"))

@@ -23,12 +23,13 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from core.calibrate import reprojection
 from core.calibrate.board_shape import SHAPE_PARAMETERS, Board, BoardShape
-from core.calibrate.pencil import PlaneSet
-from core.calibrate.stripe_distances import BOWS, Distances, Stripes
-from core.calibrate.stripe_lines import StripeLine
-from core.image.target_view import TargetView
+from core.calibrate.camera import reprojection
+from core.calibrate.fan.pencil import PlaneSet
+from core.calibrate.fan.pose_equations import PoseEquations, inverse
+from core.calibrate.fan.stripe_distances import BOWS, Distances, Stripes
+from core.calibrate.fan.stripe_lines import StripeLine
+from core.image.targets.target_view import TargetView
 from core.model import Camera, Pose
 from core.model.arrays import Array
 
@@ -86,8 +87,8 @@ class Trust:
 class Observations:
     """Target points and stripes of all poses, stacked once.
 
-    Columns of all Jacobians are the planes' unknowns, six for each pose, the plate's bows if it may have any, and the
-    camera's ten parameters. What is known of camera and bows stands in the first rows.
+    The unknowns that all poses have in common are the planes', the plate's bows if it may have any, and the camera's
+    ten parameters, in this order; each pose has six of its own.
     """
 
     def __init__(
@@ -106,6 +107,13 @@ class Observations:
         ends = np.cumsum([0, *(2 * len(pose.view.points) for pose in poses)])
         self.rows = [slice(int(first), int(last)) for first, last in pairwise(ends)]
         self.corners = int(ends[-1])
+        of_pose = np.concatenate(
+            [
+                np.repeat(np.arange(len(poses)), [rows.stop - rows.start for rows in self.rows]),
+                np.repeat(self.stripes.pose_of, self.stripes.parts),
+            ]
+        )
+        self.rows_of_pose = [np.flatnonzero(of_pose == pose) for pose in range(len(poses))]
         self.free, self.whiten = _whitening(camera_covariance)
 
     def camera(self, state: State) -> Camera:
@@ -118,43 +126,52 @@ class Observations:
         """Of the stripes from the light planes."""
         return self.stripes.distances(state.planes, state.poses, state.camera, state.bow)
 
-    def linearise(self, state: State, trust: Trust) -> tuple[Array, Array]:
-        """Residuals and Jacobian by the unknowns, what is known of the camera included."""
-        residuals, jacobian = self.observed(state, trust)
-        known = jacobian.shape[1] - PARAMETERS
-        if not len(self.free):
-            return residuals, jacobian[:, :known]
-        columns = np.concatenate([np.arange(known), known + self.free])
-        prior = np.hstack([np.zeros((len(self.free), known)), self.whiten])
-        return (
-            np.concatenate([self.whiten @ state.camera[self.free], residuals]),
-            np.vstack([prior, jacobian[:, columns]]),
+    def linearise(self, state: State, trust: Trust) -> PoseEquations:
+        """All that is seen and known, by the unknowns that are free."""
+        residuals, common, own = self.observed(state, trust)
+        known = common.shape[1] - PARAMETERS
+        prior, by_bow = self._known_of_bows(state, known)
+        by_camera = np.hstack([np.zeros((len(self.free), known)), self.whiten])
+        by_bow = np.hstack([by_bow, np.zeros((len(by_bow), len(self.free)))])
+        return PoseEquations(
+            residuals,
+            common[:, np.concatenate([np.arange(known), known + self.free])],
+            own,
+            self.rows_of_pose,
+            (np.concatenate([prior, self.whiten @ state.camera[self.free]]), np.vstack([by_bow, by_camera])),
         )
 
-    def observed(self, state: State, trust: Trust) -> tuple[Array, Array]:
-        """Residuals of the bows, target points and stripes in standard deviations, and their Jacobian, all columns."""
+    def with_every_camera_parameter(self, state: State, trust: Trust) -> PoseEquations:
+        """The same as if nothing was known of the camera, all its parameters among the unknowns."""
+        residuals, common, own = self.observed(state, trust)
+        prior, by_bow = self._known_of_bows(state, common.shape[1])
+        return PoseEquations(residuals, common, own, self.rows_of_pose, (prior, by_bow))
+
+    def observed(self, state: State, trust: Trust) -> tuple[Array, Array, Array]:
+        """Residuals (M,) of target points and stripes in standard deviations.
+
+        And their derivatives by the common unknowns (M, C) and by those of the pose each is of (M, 6).
+        """
         unknowns = state.planes.jacobian.shape[1]
-        width = unknowns + 6 * len(state.poses) + self.bows + PARAMETERS
-        bows = slice(width - PARAMETERS - self.bows, width - PARAMETERS)
-        residuals, blocks = self._known_of_bows(state, width, bows)
+        width = unknowns + self.bows + PARAMETERS
         points = self._target_points(state) / trust.corner_scale
-        block = np.zeros((self.corners, width))
-        block[:, -PARAMETERS - self.bows :] = points[:, 7:]
-        for index, rows in enumerate(self.rows):
-            block[rows, unknowns + 6 * index : unknowns + 6 * index + 6] = points[rows, 1:7]
-        residuals.append(points[:, 0])
-        blocks.append(block)
+        of_points = np.hstack([np.zeros((self.corners, unknowns)), points[:, 7:]])
         distances = self.distances(state)
         weight = np.sqrt(trust.weight)[:, None] / trust.sd
-        block = np.zeros((*distances.mm.shape, width))
-        block[..., :unknowns] = distances.by_planes
-        block[..., bows] = distances.by_bow
-        block[..., -PARAMETERS:] = distances.by_camera
-        columns = unknowns + 6 * self.stripes.pose_of[:, None] + np.arange(6)
-        np.put_along_axis(block, np.repeat(columns[:, None], self.stripes.parts, axis=1), distances.by_pose, axis=2)
-        residuals.append((distances.mm * weight).ravel())
-        blocks.append((block * weight[..., None]).reshape(-1, width))
-        return np.concatenate(residuals), np.vstack(blocks)
+        of_stripes = np.concatenate([distances.by_planes, distances.by_bow, distances.by_camera], axis=2)
+        return (
+            np.concatenate([points[:, 0], (distances.mm * weight).ravel()]),
+            np.vstack([of_points, (of_stripes * weight[..., None]).reshape(-1, width)]),
+            np.vstack([points[:, 1:7], (distances.by_pose * weight[..., None]).reshape(-1, 6)]),
+        )
+
+    def expected_mm(self, state: State, trust: Trust) -> float:
+        """RMS in mm of stripes' offsets and slopes by noise alone, the poses where the target's points put them."""
+        points, distances = self._target_points(state), self.distances(state)
+        by_pose = [points[rows, 1:7] for rows in self.rows]
+        covariance = np.array([inverse(own.T @ own) for own in by_pose])[self.stripes.pose_of]
+        of_pose = np.einsum("skp,spq,skq->sk", distances.by_pose[:, :2], covariance, distances.by_pose[:, :2])
+        return float(np.sqrt(np.mean(of_pose + trust.noise[:, None] ** 2)))
 
     def _target_points(self, state: State) -> Array:
         """Residuals of all target points in stated standard deviations and their derivatives by pose, bows and camera.
@@ -182,24 +199,31 @@ class Observations:
         ]
         return np.concatenate(whitened)
 
-    def _known_of_bows(self, state: State, width: int, columns: slice) -> tuple[list[Array], list[Array]]:
-        """Residuals and rows of the Jacobian that hold the plate to its flatness."""
-        if self.plate is None:
-            return [], []
+    def _known_of_bows(self, state: State, width: int) -> tuple[Array, Array]:
+        """Residuals of what is known of the plate's flatness, and their derivatives by the first `width` unknowns."""
+        first = state.planes.jacobian.shape[1]
         rows = np.zeros((self.bows, width))
-        rows[:, columns] = np.eye(self.bows) / self.plate.flatness_mm
-        return [state.bow / self.plate.flatness_mm], [rows]
+        if self.plate is None:
+            return np.zeros(0), rows
+        rows[:, first : first + self.bows] = np.eye(self.bows) / self.plate.flatness_mm
+        return state.bow / self.plate.flatness_mm, rows
 
     def move(self, state: State, step: Array) -> State:
         """The state after a step of the unknowns that are free."""
         first = state.planes.jacobian.shape[1]
-        last = first + 6 * len(state.poses)
-        bow = state.bow + step[last : last + self.bows]
-        steps: list[NDArray[np.float64]] = list(step[first:last].reshape(-1, 6))
+        last = first + self.bows + len(self.free)
+        steps: list[NDArray[np.float64]] = list(step[last:].reshape(-1, 6))
         poses = tuple(reprojection.moved(pose, own) for pose, own in zip(state.poses, steps, strict=True))
+        moved = self.move_common(state, step[:last])
+        return State(moved.planes, poses, moved.bow, moved.camera)
+
+    def move_common(self, state: State, step: Array) -> State:
+        """The state after a step of the free unknowns that all poses have in common."""
+        first = state.planes.jacobian.shape[1]
+        bow = state.bow + step[first : first + self.bows]
         camera = state.camera.copy()
-        camera[self.free] += step[last + self.bows :]
-        return State(state.planes.moved(step[:first]), poses, bow, camera)
+        camera[self.free] += step[first + self.bows :]
+        return State(state.planes.moved(step[:first]), state.poses, bow, camera)
 
     def shape(self, bow: Array, covariance: Array) -> BoardShape:
         """The plate with this bow (3 or 0,) and its covariance; flat where it was said to be."""

@@ -21,9 +21,6 @@ from scipy.spatial.transform import Rotation
 
 from core.model.arrays import Array, frozen_array, set_field
 
-HUBER = 2.0
-"""Distances beyond this many standard deviations lose weight."""
-
 
 class PlaneSet(Protocol):
     """N light planes described by local unknowns."""
@@ -153,13 +150,3 @@ def plane_distances(pis: Array, points: Array) -> tuple[Array, Array]:
     distances = (np.einsum("ni,ni->n", pis, points) - 1) / length
     by_pi = (points - distances[:, None] * pis / length[:, None]) / length[:, None]
     return distances, by_pi
-
-
-def huber_weights(scaled: Array) -> Array:
-    """Factors (N,) ≤ 1 for residuals given in standard deviations (N,)."""
-    return np.minimum(1.0, HUBER / np.maximum(np.abs(scaled), 1e-12))
-
-
-def robust_sd(residuals: Array) -> float:
-    """Standard deviation of the good part of `residuals` (N,), by the median of their absolute values."""
-    return float(1.4826 * np.median(np.abs(residuals)))

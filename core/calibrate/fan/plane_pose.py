@@ -16,20 +16,21 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import map_coordinates
 
-from core.calibrate.pose_features import PoseFeatures
-from core.image.centreline import Centreline
-from core.image.noise import estimate_noise
-from core.image.stripes import StripeSettings, choose_settings, extract_centrelines
-from core.image.target_view import TargetView
+from core.calibrate.fan.pose_features import PoseFeatures
+from core.image.stripes.centreline import Centreline
+from core.image.stripes.extraction import StripeSettings, choose_settings, extract_centrelines
+from core.image.stripes.noise import estimate_noise
 from core.image.targets import Target, TargetNotFound, camera_shift, detect, picture_shift
+from core.image.targets.target_view import TargetView
+from core.messages import Message
 from core.model import Camera
 from core.model.arrays import Array
-
-__all__ = ["PoseFeatures", "measure_plane_pose"]
 
 Picture = NDArray[Any]
 """(H, W) grey levels, uint8 or uint16."""
 
+TARGET_MOVED = "fan.target_moved"
+"""Code of the reason that the target moved between the two pictures of a pair."""
 MOVED_PX = 0.5
 """A target that moved so far between the two pictures of a pair spoils its pose."""
 PULL_PX = 0.05
@@ -72,21 +73,30 @@ def measure_plane_pose(
         raise ValueError(f"the pictures of {name} differ: {on.shape} {on.dtype} and {off.shape} {off.dtype}")
     plate = on if off is None else off
     try:
-        view = detect(target, plate, name, camera)
+        view = detect(target, plate, name, camera, plane_only=True)
     except TargetNotFound as error:
         return PoseFeatures(name, None, (), error.what)
     moved = None if off is None else _movement(on, off, view, target, camera)
     if moved is not None and moved >= MOVED_PX:
-        reason = f"the target moved by {moved:.2f} px between the pictures with the fan off and on"
+        reason = Message(
+            "fan.target_moved",
+            "the target moved by {shift_px:.2f} px between the pictures with the fan off and on",
+            shift_px=moved,
+        )
         return PoseFeatures(name, view, (), reason)
     centrelines = _stripes(on, off, view, settings)
     if not centrelines:
-        return PoseFeatures(name, view, (), "no stripe was found: is the fan on?")
+        return PoseFeatures(name, view, (), Message("fan.no_stripe", "no stripe was found: is the fan on?"))
     level = DARK * _plate_level(plate, view)
     centrelines = _on_even_plate(centrelines, plate, level, laser_off=off is not None)
-    notes: tuple[str, ...] = ()
+    notes: tuple[Message, ...] = ()
     if off is not None and moved is None:
-        notes = (f"{name}: with the fan on the target is not found, so it was not checked whether it moved",)
+        note = Message(
+            "fan.movement_unchecked",
+            "{pose}: with the fan on the target is not found, so it was not checked whether it moved",
+            pose=name,
+        )
+        notes = (note,)
     return PoseFeatures(name, view, centrelines, notes=notes)
 
 
@@ -113,8 +123,10 @@ def _movement(on: Picture, off: Picture, view: TargetView, target: Target, camer
 
     Where a line of the fan lies along an edge, the target is not found, but its other edges tell.
     """
+    if not view.placed:
+        return picture_shift(view, off, on)
     try:
-        return camera_shift(view, detect(target, on, view.name, camera))
+        return camera_shift(view, detect(target, on, view.name, camera, thorough=False))
     except TargetNotFound:
         return picture_shift(view, off, on)
 

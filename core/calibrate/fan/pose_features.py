@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from core.image.centreline import Centreline
-from core.image.target_view import TargetView
+from core.image.stripes.centreline import Centreline
+from core.image.targets.target_view import TargetView
+from core.messages import Message
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -21,13 +22,13 @@ class PoseFeatures:
     centrelines
         All stripes in the picture, on the target or not.
     reason
-        Why the pose cannot be used; empty if it can.
+        Why the pose cannot be used; None if it can.
     notes
-        Sentences for the technician.
+        For the technician.
     """
 
     name: str
     view: TargetView | None
     centrelines: tuple[Centreline, ...]
-    reason: str = ""
-    notes: tuple[str, ...] = ()
+    reason: Message | None = None
+    notes: tuple[Message, ...] = ()

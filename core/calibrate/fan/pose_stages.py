@@ -1,21 +1,49 @@
-"""Which fan line each stripe on a pose of the target is, once the fan is known: for showing a pose, used or not."""
+"""One pose of the plane target as it is shown, used or not: its picture, its stripes and the fan line each is of."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
-from core.calibrate.located_pose import locate
-from core.calibrate.pose_features import PoseFeatures
-from core.calibrate.pose_stages import NOT_SEEN, NumberedStripe
-from core.calibrate.stripe_lines import StripeLine
-from core.calibrate.target_plane import on_target
+from core.calibrate.fan.located_pose import locate
+from core.calibrate.fan.pose_features import PoseFeatures
+from core.calibrate.fan.stripe_lines import StripeLine
+from core.calibrate.fan.target_plane import on_target
+from core.messages import Message
 from core.model import Camera, Fan, LightPlane, Pose
 from core.model.arrays import Array
 
+NOT_SEEN = -1
+"""The number of a stripe that no fan line drew, or of which it is not known."""
 TOO_FAR = 0.005
 """A stripe whose points are further (RMS) from a light plane than this share of their depth is not of that plane."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class NumberedStripe:
+    """One straight stripe: its points (N, 2) in pixels, and the fan line (from 0) that drew it or NOT_SEEN."""
+
+    uv: Array
+    line: int
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class PoseStages:
+    """The picture (H, W) of a pose with the fan on, and what was found.
+
+    `corners` (N, 2) in pixels are the target's points, none if it was not found; `stripes` the straight stripes with
+    the fan line each is of; `reason` why the pose cannot be used, None if it can.
+    """
+
+    name: str
+    picture: NDArray[np.uint8]
+    corners: Array
+    stripes: tuple[NumberedStripe, ...]
+    reason: Message | None
+    notes: tuple[Message, ...]
 
 
 def numbered_stripes(features: PoseFeatures, camera: Camera, fan: Fan | None = None) -> tuple[NumberedStripe, ...]:

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.calibrate.board_shape import Board
-from core.calibrate.pencil import PlaneSet, plane_distances
-from core.calibrate.stripe_lines import StripeLine
-from core.calibrate.target_plane import on_target, target_plane_changes
+from core.calibrate.fan.pencil import PlaneSet, plane_distances
+from core.calibrate.fan.stripe_lines import StripeLine
+from core.calibrate.fan.target_plane import on_target, target_plane_changes
 from core.model import Pose
 from core.model.arrays import Array
 

@@ -1,7 +1,7 @@
 """The straight lines among a picture's centrelines: on a flat target a plane of light is one straight line of rays.
 
 A stripe that leaves the target for the table behind it goes on along another line, a reflection or the edge of a
-mark is a line of its own: all of them come out, longest first, and :mod:`core.calibrate.line_assignment` decides by
+mark is a line of its own: all of them come out, longest first, and :mod:`core.calibrate.fan.line_assignment` decides by
 all poses together which of them the fan drew.
 """
 
@@ -13,11 +13,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from core.calibrate.pencil import huber_weights, robust_sd
-from core.calibrate.reprojection import ray_changes
-from core.image.centreline import Centreline
+from core.calibrate.camera.reprojection import ray_changes
+from core.image.stripes.centreline import Centreline
 from core.model import Camera
 from core.model.arrays import Array
+from core.model.robust import huber_weights, mad_sd
 
 CHUNK = 24
 """Neighbouring points judged as one piece: longer than any speckle grain, shorter than any stripe of use."""
@@ -27,6 +27,8 @@ SEEDS = 48
 """A line is searched for through any two of this many chunks."""
 STRAIGHT_PX = 1.5
 """How far in pixels a chunk may be off its line when lines are searched for."""
+HUBER = 2.0
+"""Points further than this many standard deviations from their line lose weight."""
 REJECT = 4.0
 """Points further than this many standard deviations from their line are not on it."""
 
@@ -166,8 +168,8 @@ def _fit(chunks: _Chunks, members: NDArray[np.intp], camera: Camera) -> StripeLi
         centre, along, spread = _moments(xy, weight)
         across = np.array([-along[1], along[0]])
         off = (xy - centre) @ across
-        scaled = off / (sigma * max(robust_sd(off / sigma), 1e-9))
-        weight = huber_weights(scaled) / sigma**2
+        scaled = off / (sigma * max(mad_sd(off / sigma), 1e-9))
+        weight = huber_weights(scaled, HUBER) / sigma**2
     good = np.abs(scaled) < REJECT
     if good.sum() < SHORTEST:
         return None

@@ -4,23 +4,25 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from core.calibrate.board_shape import BoardShape
-from core.calibrate.fan_bundle import Bundle
-from core.calibrate.fan_verdict import Verdict, fan_of
-from core.calibrate.located_pose import LocatedPose
-from core.calibrate.results import FanCalibration, PlanePose
-from core.calibrate.target_plane import on_target
+from core.calibrate.fan.bundle import SCATTERED, Bundle
+from core.calibrate.fan.located_pose import LocatedPose
+from core.calibrate.fan.target_plane import on_target
+from core.calibrate.fan.verdict import Verdict, fan_of
+from core.calibrate.results import LEFT_OUT, FanCalibration, PlanePose
+from core.messages import Field, Message
 from core.model import LightPlane, Pose
 from core.model.arrays import Array
 
-ODDLY_PREDICTED = 4.0
-"""A pose that the others foretell this many times worse than the median pose is worth a word."""
+POORLY_PREDICTED = 4.0
+"""A pose that the others predict this many times worse than the median pose is worth a note."""
 
-WORTH_A_WORD_MM = 0.05
-"""Of a prediction that is odd, and of a bow."""
+WORTH_A_NOTE_MM = 0.05
+"""Errors of prediction and bows below this are not noted."""
 
 SATURATED_SHARE = 1 / 3
 """A share of saturated stripe points worth a warning."""
@@ -32,7 +34,7 @@ def summarise(
     used: Bundle,
     verdict: Verdict,
     prediction_errors: Array,
-    notes: Sequence[str],
+    notes: Sequence[Message],
 ) -> FanCalibration:
     """Put together the result of a free fit, the fit in use and the verdict between them, with `notes` in front.
 
@@ -43,7 +45,7 @@ def summarise(
     poses = tuple(
         _plane_pose(pose, next(adjusted), pis, used.shape, next(errors))
         if pose.used
-        else _plane_pose(pose, None, pis, used.shape)
+        else replace(_plane_pose(pose, None, pis, used.shape), rms_mm=_distance_left_out(pose, pis))
         for pose in located
     )
     free_fan = fan_of(free.planes, free.covariance)
@@ -57,7 +59,13 @@ def summarise(
         constraint_suits=verdict.suits,
         verdict=verdict.sentence,
         poses=poses,
-        notes=(*notes, *_notes(located), *_notes_on_predictions(poses), *_notes_on_bow(used.shape)),
+        notes=(
+            *notes,
+            *_notes(located, poses),
+            *_notes_on_scatter(prediction_errors, used.expected_mm),
+            *_notes_on_predictions(poses),
+            *_notes_on_bow(used.shape),
+        ),
         constraint_p=verdict.p,
         stripe_sd_mm=used.extra_mm,
         corner_scale=used.corner_scale,
@@ -88,43 +96,115 @@ def _plane_pose(
     )
 
 
+def _distance_left_out(located: LocatedPose, pis: Array) -> float:
+    """RMS distance in mm of a left-out pose's stripes from the planes, each plane with the stripe nearest to it.
+
+    NaN where no target or no straight stripe was found.
+    """
+    points = [on_target(line.rays, located.pose) for line in located.lines]
+    if not points or not np.isfinite(located.rms_px):
+        return math.nan
+    off = [[_rms([LightPlane(pi).distances(own)]) for own in points] for pi in pis]
+    nearest = np.min(off, axis=1)[: len(points)]
+    return float(np.sqrt(np.mean(nearest**2)))
+
+
 def _rms(distances: Sequence[Array]) -> float:
     joined = np.concatenate(distances)
     return float(np.sqrt((joined**2).mean())) if len(joined) else float("nan")
 
 
-def _notes(located: Sequence[LocatedPose]) -> tuple[str, ...]:
+def _notes(located: Sequence[LocatedPose], poses: Sequence[PlanePose]) -> tuple[Message, ...]:
+    """On the poses that are left out, and on saturated stripes."""
     notes = []
-    out = [f"{pose.features.name} ({pose.reason})" for pose in located if not pose.used]
+    out = [
+        Message("fan.pose_and_reason", "{pose} ({reason})", pose=pose.name, reason=pose.reason)
+        if math.isnan(pose.rms_mm) or pose.reason == LEFT_OUT
+        else Message(
+            "fan.pose_reason_and_distance",
+            "{pose} ({reason}; {off:.2f} mm off)",
+            pose=pose.name,
+            reason=pose.reason,
+            off=pose.rms_mm,
+        )
+        for pose in poses
+        if pose.reason is not None
+    ]
     if out:
-        notes.append(f"{len(out)} of {len(located)} poses left out: {'; '.join(out)}")
+        notes.append(
+            Message(
+                "fan.poses_left_out",
+                "{n} of {all} poses left out: {names:;}",
+                n=len(out),
+                all=len(located),
+                names=tuple(out),
+            )
+        )
     stripes = [stripe for pose in located for stripe in pose.stripes.values()]
     share = float(np.average([s.saturated for s in stripes], weights=[len(s) for s in stripes]))
     if share > SATURATED_SHARE:
         notes.append(
-            f"the stripes are saturated at {share:.0%} of their points, which can shift them: expose shorter, dim the "
-            "laser, or set channel in rig.toml to a colour in which the laser is weaker"
+            Message(
+                "fan.saturated_stripes",
+                "the stripes are saturated at {share:.0%} of their points, which can shift them: expose shorter, dim "
+                "the laser, or set {field} to a colour in which the laser is weaker",
+                share=share,
+                field=Field("channel"),
+            )
         )
     return tuple(notes)
 
 
-def _notes_on_predictions(poses: Sequence[PlanePose]) -> tuple[str, ...]:
+def _notes_on_scatter(prediction_errors: Array, expected_mm: float) -> tuple[Message, ...]:
+    """On poses that agree far worse than their noise allows."""
+    known = prediction_errors[np.isfinite(prediction_errors)]
+    if not len(known):
+        return ()
+    # of the usual pose, for a single bad one has a note of its own: the median of squares of a plane error is 0.69
+    scatter = float(np.sqrt(np.median(known**2) / np.log(2)))
+    times = scatter / expected_mm
+    if scatter < WORTH_A_NOTE_MM or times < SCATTERED:
+        return ()
+    return (
+        Message(
+            "fan.poses_scatter",
+            "the poses scatter by {scatter:.2f} mm, {times:.0f} times their noise, which the planes' uncertainty "
+            "contains: is the target curled, its size as stated, the camera well calibrated?",
+            scatter=scatter,
+            times=times,
+        ),
+    )
+
+
+def _notes_on_predictions(poses: Sequence[PlanePose]) -> tuple[Message, ...]:
+    """On the poses that the others predict badly."""
     known = [pose for pose in poses if np.isfinite(pose.prediction_mm)]
     if not known:
         return ()
     usual = float(np.median([pose.prediction_mm for pose in known]))
     return tuple(
-        f"the other poses foretell the stripes of {pose.name} to {pose.prediction_mm:.3f} mm only, those of a usual "
-        f"pose to {usual:.3f} mm: look at its pictures, or take more poses like it"
+        Message(
+            "fan.poorly_predicted",
+            "the other poses foretell the stripes of {pose} to {error:.3f} mm only, those of a usual pose to "
+            "{usual:.3f} mm: look at its pictures, or take more poses like it",
+            pose=pose.name,
+            error=pose.prediction_mm,
+            usual=usual,
+        )
         for pose in known
-        if pose.prediction_mm > max(ODDLY_PREDICTED * usual, WORTH_A_WORD_MM)
+        if pose.prediction_mm > max(POORLY_PREDICTED * usual, WORTH_A_NOTE_MM)
     )
 
 
-def _notes_on_bow(shape: BoardShape) -> tuple[str, ...]:
-    if not shape.surely_bowed or shape.departure_mm < WORTH_A_WORD_MM:
+def _notes_on_bow(shape: BoardShape) -> tuple[Message, ...]:
+    """On a plate that is surely bowed."""
+    if not shape.surely_bowed or shape.departure_mm < WORTH_A_NOTE_MM:
         return ()
     return (
-        f"the plane target is bowed by {shape.departure_mm:.2f} mm from its lowest to its highest place, which is "
-        "taken into account: better fix it to something flat",
+        Message(
+            "fan.bowed_target",
+            "the plane target is bowed by {bow:.2f} mm from its lowest to its highest place, which is taken into "
+            "account: better fix it to something flat",
+            bow=shape.departure_mm,
+        ),
     )

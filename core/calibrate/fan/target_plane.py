@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from core.calibrate import reprojection
 from core.calibrate.board_shape import BoardShape
-from core.image.target_view import TargetView
+from core.calibrate.camera import reprojection
+from core.image.targets.target_view import TargetView
 from core.model import Camera, Pose
 from core.model.arrays import Array
 

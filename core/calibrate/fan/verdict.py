@@ -13,9 +13,10 @@ from typing import Literal
 import numpy as np
 from scipy.stats import f as f_distribution
 
-from core.calibrate.fan_bundle import Bundle
-from core.calibrate.levenberg import minimise
-from core.calibrate.pencil import FreePlanes, Pencil, PlaneSet, pencil_near
+from core.calibrate.fan.bundle import Bundle
+from core.calibrate.fan.pencil import FreePlanes, Pencil, PlaneSet, pencil_near
+from core.calibrate.levenberg import Dense, minimise
+from core.messages import Message
 from core.model import Fan, LightPlane
 from core.model.arrays import Array
 
@@ -39,7 +40,7 @@ class Verdict:
     suits: bool | None
     p: float
     pencil_gap_mm: float
-    sentence: str
+    sentence: Message
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -68,9 +69,11 @@ def judge(free: Bundle, volume: Sequence[Array], angle: float | None, constraine
     count = len(pis)
     free_angles = fan_of(free.planes).angles
     if count == 1 or (count == 2 and angle is None):
-        sentence = "one light plane: there is no pencil to hold it to"
+        sentence = Message("fan.one_plane", "one light plane: there is no pencil to hold it to")
         if count == 2:
-            sentence = "two planes at an unknown angle always are a pencil: nothing constrains them"
+            sentence = Message(
+                "fan.two_planes", "two planes at an unknown angle always are a pencil: nothing constrains them"
+            )
         return Verdict(FreePlanes(pis), free_angles, None, np.nan, 0.0, sentence)
     axis_only = _trial(free, None)
     gap = max(
@@ -103,14 +106,14 @@ def _trial(free: Bundle, angle: float | None) -> _Trial:
     scale = np.sqrt(np.diag(free.covariance))
     whiten = np.linalg.inv(np.linalg.cholesky(free.covariance / np.outer(scale, scale))) / scale
 
-    def linearise(pencil: Pencil) -> tuple[Array, Array]:
-        return whiten @ (pencil.pis - pis).ravel(), whiten @ pencil.jacobian
+    def linearise(pencil: Pencil) -> Dense:
+        return Dense(whiten @ (pencil.pis - pis).ravel(), whiten @ pencil.jacobian)
 
     solution = minimise(pencil_near(pis, angle), linearise, Pencil.moved)
-    constraints = solution.jacobian.shape[0] - solution.jacobian.shape[1]
+    constraints = pis.size - solution.linear.jacobian.shape[1]
     if constraints == 0:
         return _Trial(solution.state, 1.0)
-    excess = float(solution.residuals @ solution.residuals) / constraints
+    excess = solution.linear.cost / constraints
     return _Trial(solution.state, float(f_distribution.sf(excess, constraints, max(free.freedom, 1.0))))
 
 
@@ -135,25 +138,43 @@ def _angle_sds(free: Bundle) -> tuple[float, ...]:
 
 def _sentence(
     start: PlaneSet, tied: _Trial, axis_only: _Trial, free: Bundle, angle: float | None, gap: float, asked: bool
-) -> str:
-    sds = np.degrees(_angle_sds(free))
-    angles = ", ".join(
-        f"{found:.3f}° ± {sd:.3f}°" for found, sd in zip(np.degrees(fan_of(free.planes).angles), sds, strict=True)
+) -> Message:
+    """What the comparison found and which planes are used."""
+    angles = tuple(
+        Message("fan.angle_with_sd", "{angle:.3f}° ± {sd:.3f}°", angle=found, sd=sd)
+        for found, sd in zip(np.degrees(fan_of(free.planes).angles), np.degrees(_angle_sds(free)), strict=True)
     )
-    wanted = "one common axis" if angle is None else f"one common axis and angles of {np.degrees(angle):g}°"
+    if angle is None:
+        wanted = Message("fan.one_axis", "one common axis")
+    else:
+        wanted = Message(
+            "fan.one_axis_and_angles", "one common axis and angles of {angle:g}°", angle=float(np.degrees(angle))
+        )
     if tied.p >= SIGNIFICANT:
-        finding = f"{wanted}: this suits the laser"
+        finding = Message("fan.suits", "{wanted}: this suits the laser", wanted=wanted)
     elif angle is not None and axis_only.p >= SIGNIFICANT:
-        finding = f"{wanted}: this does not suit the laser; its planes do share an axis, but not at these angles"
+        finding = Message(
+            "fan.suits_but_angles",
+            "{wanted}: this does not suit the laser; its planes do share an axis, but not at these angles",
+            wanted=wanted,
+        )
     else:
-        finding = f"{wanted}: this does not suit the laser"
-    facts = (
-        f"fitted freely, the angles are {angles}, and the planes miss one axis by up to {gap:.3f} mm; p = {tied.p:.2g}"
-    )
+        finding = Message("fan.suits_not", "{wanted}: this does not suit the laser", wanted=wanted)
     if isinstance(start, FreePlanes):
-        use = "the freely fitted planes are used"
+        use = Message("fan.free_planes_used", "the freely fitted planes are used")
     elif start is axis_only.pencil and angle is not None:
-        use = "a pencil with free angles is used"
+        use = Message("fan.free_angles_used", "a pencil with free angles is used")
     else:
-        use = "the constrained planes are used"
-    return f"{finding} ({facts}); {use}{', as asked' if asked else ''}"
+        use = Message("fan.constrained_used", "the constrained planes are used")
+    if asked:
+        use = Message("fan.used_as_asked", "{use}, as asked", use=use)
+    return Message(
+        "fan.verdict",
+        "{finding} (fitted freely, the angles are {angles}, and the planes miss one axis by up to {gap:.3f} mm; "
+        "p = {p:.2g}); {use}",
+        finding=finding,
+        angles=angles,
+        gap=gap,
+        p=tied.p,
+        use=use,
+    )

@@ -77,7 +77,7 @@ def _description(number: int, one: Characteristic) -> dict[str, str]:
     keys |= {key: _number(value) for key, value in limits.items() if value is not None}
     keys |= {"K2120": f"{int('K2110' in keys)}", "K2121": f"{int('K2111' in keys)}", "K2142": row["unit"]}
     U = "unknown" if row["U"] is None else f"{row['U']:.{_decimals(one)}f} {row['unit']}"
-    said = f"{one.kind}; U = {U} (k = {one.k:g}); decision: {row['decision']}; {one.rule}"
+    said = f"{one.kind}; U = {U} (k = {one.k:g}); decision: {row['decision']}; {row['rule']}"
     return keys | {"K2900": _cut(said.rstrip("; "), _TEXT)}
 
 

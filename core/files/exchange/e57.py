@@ -19,7 +19,8 @@ from pye57 import libe57
 
 from core.errors import InputError
 from core.files.atomic import cannot_write
-from core.scan.cloud import Cloud
+from core.messages import Message
+from core.scan.surface.cloud import Cloud
 
 METRES = 1e-3
 _GPS_EPOCH = datetime(1980, 1, 6, tzinfo=UTC)
@@ -49,7 +50,7 @@ def write_e57(path: Path, cloud: Cloud, at: datetime, *, name: str = "", calibra
         If there is no point, or the file cannot be written.
     """
     if not len(cloud):
-        raise InputError("the cloud has no point, and E57 takes none without", where=path)
+        raise InputError(Message("file.empty_cloud", "the cloud has no point, and E57 takes none without"), where=path)
     beside = path.with_name(f".{path.name}.{secrets.token_hex(4)}.part")
     try:
         beside.touch(exist_ok=False)  # says what is wrong with the place, which the library does not

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from core.calibrate.results import CAMERA_PARAMETERS, CameraCalibration
 from core.errors import InputError
+from core.messages import Message
 from core.model import Camera
 
 OURS = 5
@@ -30,20 +31,34 @@ def imported_camera(
     coefficients = np.asarray(distortion, dtype=np.float64).ravel()
     if np.any(coefficients[OURS:] != 0):
         raise InputError(
-            f"has {len(coefficients)} distortion coefficients, of which more than k1, k2, p1, p2, k3 are not zero, and "
-            "those are all that is modelled here",
+            Message(
+                "file.distortion_not_modelled",
+                "has {coefficients} distortion coefficients, of which more than k1, k2, p1, p2, k3 are not zero, "
+                "and those are all that is modelled here",
+                coefficients=len(coefficients),
+            ),
             where=path,
-            todo="calibrate again with the five-coefficient model (plumb_bob)",
+            todo=Message(
+                "advice.calibrate_with_five_coefficients", "calibrate again with the five-coefficient model (plumb_bob)"
+            ),
         )
     values = np.zeros(OURS)
     values[: len(coefficients[:OURS])] = coefficients[:OURS]
     matrix = np.asarray(matrix, dtype=np.float64)
     if matrix.shape != (3, 3) or matrix[1, 0] != 0 or matrix[2].tolist() != [0, 0, 1]:
-        raise InputError("the camera matrix is not of the form [[α, γ, u0], [0, β, v0], [0, 0, 1]]", where=path)
+        raise InputError(
+            Message(
+                "file.camera_matrix_form",
+                "the camera matrix is not of the form [[α, γ, u0], [0, β, v0], [0, 0, 1]]",
+            ),
+            where=path,
+        )
     try:
         camera = Camera(image_size, matrix, values)
     except ValueError as error:
-        raise InputError(f"this is no camera: {error}", where=path) from error
+        raise InputError(
+            Message("file.no_camera", "this is no camera: {reason}", reason=str(error)), where=path
+        ) from error
     size = len(CAMERA_PARAMETERS)
     return CameraCalibration(
         camera=camera,
@@ -55,7 +70,11 @@ def imported_camera(
         tilt_range=math.nan,
         cross_validation_mm=math.nan,
         notes=(
-            f"The camera was calibrated by another program and read from {path.name}: its standard deviations are not "
-            "known, so no uncertainty here holds the camera's share.",
+            Message(
+                "camera.imported",
+                "The camera was calibrated by another program and read from {name}: its standard deviations are not "
+                "known, so no uncertainty here holds the camera's share.",
+                name=path.name,
+            ),
         ),
     )

@@ -19,7 +19,8 @@ from core.calibrate.results import CameraCalibration
 from core.errors import InputError
 from core.files.atomic import write_text
 from core.files.exchange.imported import imported_camera
-from core.files.pictures import read_bytes
+from core.files.reading import read_bytes
+from core.messages import Message
 
 _NAMES = {
     "matrix": ("camera_matrix", "cameraMatrix", "Camera_Matrix", "K", "M1"),
@@ -69,10 +70,17 @@ def read_opencv(path: Path) -> CameraCalibration:
         width, height = (_real(found[side]) for side in ("width", "height"))
         rms = _real(found["rms"])
     except (cv2.error, SystemError, ValueError) as error:
-        raise InputError("this is no file of OpenCV's FileStorage that can be read", where=path) from error
+        raise InputError(
+            Message("file.no_opencv_storage", "this is no file of OpenCV's FileStorage that can be read"),
+            where=path,
+        ) from error
     for what, value in (("matrix", matrix), ("distortion", distortion), ("width", width), ("height", height)):
         if value is None:
-            raise InputError(f"there is no {_NAMES[what][0]}", where=path, todo="write it with OpenCV's FileStorage")
+            raise InputError(
+                Message("file.opencv_value_missing", "there is no {names}", names=_NAMES[what][0]),
+                where=path,
+                todo=Message("advice.write_with_opencv", "write it with OpenCV's FileStorage"),
+            )
     size = (int(width or 0), int(height or 0))
     coefficients = [] if distortion is None else [float(value) for value in distortion.ravel()]
     return imported_camera(path, size, np.eye(3) if matrix is None else matrix, coefficients, rms or math.nan)

@@ -110,8 +110,8 @@ def _characteristics(parent: Any, rows: list[tuple[Characteristic, list[int]]], 
     for one, (definition_id, nominal_id, item_id, _) in rows:
         kind, row = _kind(one), result_row(one)
         definition = _put(definitions, f"{kind}CharacteristicDefinition", id=f"{definition_id}")
-        if one.rule:
-            _put(definition, "Description", one_line(one.rule))
+        if row["rule"]:
+            _put(definition, "Description", one_line(row["rule"]))
         _put(definition, "Name", one_line(one.name))
         if kind in FORM.values():
             _put(definition, "ToleranceValue", _number(row["upper_limit"]))

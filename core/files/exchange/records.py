@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from core.inspect.characteristic import Characteristic
-from core.inspect.coverage import effective_dof
+from core.inspect.uncertainty.coverage import effective_dof
 from core.report.content import ReportContent
 
 Row = Mapping[str, Any]
@@ -68,7 +68,7 @@ def result_row(one: Characteristic) -> dict[str, Any]:
         "k": one.k,
         "U": finite(factor * one.U),
         "decision": one.verdict or "none",
-        "rule": one.rule,
+        "rule": str(one.rule or ""),
     }
 
 
@@ -79,7 +79,7 @@ def budget_rows(one: Characteristic) -> list[dict[str, Any]]:
     return [
         {
             "characteristic": one.name,
-            "source": row.source,
+            "source": str(row.source),
             "value": row.value,
             "input_unit": row.unit,
             "distribution": row.distribution,
@@ -101,7 +101,10 @@ def degrees_of_freedom(one: Characteristic) -> float | None:
 
 def frame_rows(content: ReportContent) -> list[dict[str, Any]]:
     """Every frame of the recording: FRAME_COLUMNS."""
-    return [{name: plain(getattr(frame, name)) for name in FRAME_COLUMNS} for frame in content.frames]
+    return [
+        {name: plain(getattr(frame, name)) for name in FRAME_COLUMNS} | {"reason": str(frame.reason or "")}
+        for frame in content.frames
+    ]
 
 
 def setting_rows(content: ReportContent) -> list[tuple[str, str]]:
@@ -127,7 +130,11 @@ def setting_rows(content: ReportContent) -> list[tuple[str, str]]:
         known[f"{mark.of} calibration, made at"] = "" if mark.made_at is None else mark.made_at.isoformat()
         known[f"{mark.of} calibration, SHA-256"] = mark.sha256
     rows = [(name, value) for name, value in known.items() if value]
-    return [*rows, *content.settings.items(), *((f"rig: {name}", value) for name, value in content.rig.items())]
+    return [
+        *rows,
+        *((name, str(value)) for name, value in content.settings.items()),
+        *((f"rig: {name}", value) for name, value in content.rig.items()),
+    ]
 
 
 def finite(value: float) -> float | None:

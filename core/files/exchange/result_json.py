@@ -8,10 +8,12 @@ from typing import Any
 from core.files.atomic import write_text
 from core.files.exchange.records import budget_rows, degrees_of_freedom, frame_rows, result_row
 from core.files.json_text import to_json
+from core.messages import as_json
 from core.report.content import CalibrationMark, ReportContent
 
 SCHEMA = "trisect-measurement"
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
+"""2: notes, rules, reasons and sources of uncertainty are messages with code and values, no longer bare texts."""
 
 
 def write_result_json(path: Path, content: ReportContent) -> None:
@@ -35,7 +37,7 @@ def result_tables(content: ReportContent) -> dict[str, Any]:
         "method": content.method,
         "rig": {"id": content.rig_id, "description": dict(content.rig)},
         "calibrations": [_mark(mark, content) for mark in content.calibrations],
-        "settings": dict(content.settings),
+        "settings": {name: str(value) for name, value in content.settings.items()},
         "settings_sha256": content.settings_digest,
         "inputs_sha256": content.inputs_digest,
         "inputs": dict(content.hashes),
@@ -43,15 +45,21 @@ def result_tables(content: ReportContent) -> dict[str, Any]:
             {
                 **result_row(one),
                 "effective_dof": degrees_of_freedom(one),
-                "notes": one.notes,
+                "rule": None if one.rule is None else as_json(one.rule),
+                "notes": [as_json(note) for note in one.notes],
                 "budget": [
-                    {key: value for key, value in row.items() if key != "characteristic"} for row in budget_rows(one)
+                    {key: value for key, value in row.items() if key != "characteristic"}
+                    | {"source": as_json(cause.source)}
+                    for row, cause in zip(budget_rows(one), one.budget, strict=True)
                 ],
             }
             for one in content.characteristics
         ],
-        "frames": frame_rows(content),
-        "notes": content.all_notes,
+        "frames": [
+            row | {"reason": None if frame.reason is None else as_json(frame.reason)}
+            for row, frame in zip(frame_rows(content), content.frames, strict=True)
+        ],
+        "notes": [as_json(note) for note in content.all_notes],
         "remarks": content.remarks,
     }
 

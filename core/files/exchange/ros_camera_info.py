@@ -15,7 +15,8 @@ from core.calibrate.results import CameraCalibration
 from core.errors import InputError
 from core.files.atomic import write_text
 from core.files.exchange.imported import imported_camera
-from core.files.pictures import read_bytes
+from core.files.reading import read_bytes
+from core.messages import Message
 
 MODELS = ("plumb_bob", "rational_polynomial")
 """Models that can be read; of the second only what the first could say."""
@@ -33,9 +34,15 @@ def write_camera_info(path: Path, calibration: CameraCalibration, name: str = "c
     matrix, skew = camera.matrix, float(camera.matrix[0, 1])
     if skew != 0:
         raise InputError(
-            f"ROS's camera_info has no skew, and this camera's is {skew:.3g} px",
+            Message(
+                "file.camera_info_without_skew",
+                "ROS's camera_info has no skew, and this camera's is {skew:.3g} px",
+                skew=skew,
+            ),
             where=path,
-            todo="calibrate without it (--no-skew), or hand over the OpenCV file",
+            todo=Message(
+                "advice.calibrate_without_skew", "calibrate without it (--no-skew), or hand over the OpenCV file"
+            ),
         )
     projection = [[*row, 0.0] for row in matrix.tolist()]
     lines = [
@@ -62,12 +69,20 @@ def read_camera_info(path: Path) -> CameraCalibration:
     try:
         file = yaml.safe_load(read_bytes(path))
     except (yaml.YAMLError, UnicodeDecodeError) as error:
-        raise InputError("this is no YAML that can be read", where=path) from error
+        raise InputError(Message("file.no_yaml", "this is no YAML that can be read"), where=path) from error
     if not isinstance(file, Mapping):
-        raise InputError("this is no camera_info of ROS", where=path)
+        raise InputError(Message("file.no_camera_info", "this is no camera_info of ROS"), where=path)
     model = file.get("distortion_model", MODELS[0])
     if model not in MODELS:
-        raise InputError(f"distortion_model is {model!r}, and only {MODELS[0]} can be used here", where=path)
+        raise InputError(
+            Message(
+                "file.distortion_model",
+                "distortion_model is {model!r}, and only {models} can be used here",
+                model=model,
+                models=MODELS[0],
+            ),
+            where=path,
+        )
     size = tuple(_numbers(path, file, key, 1)[0] for key in ("image_width", "image_height"))
     matrix = _numbers(path, file, "camera_matrix", 9)
     distortion = _numbers(path, file, "distortion_coefficients", 0)
@@ -81,7 +96,7 @@ def _numbers(path: Path, file: Mapping[str, Any], key: str, count: int) -> list[
     values: list[Any] = list(value) if isinstance(value, Sequence) and not isinstance(value, str) else [value]
     if not all(isinstance(one, int | float) for one in values) or (count and len(values) != count):
         wanted = "a number" if count == 1 else f"{count} numbers" if count else "a list of numbers"
-        raise InputError(f"{key} is not {wanted}", where=path)
+        raise InputError(Message("file.value_wrong", "{key} is not {wanted}", key=key, wanted=wanted), where=path)
     return [float(one) for one in values]
 
 

@@ -6,8 +6,10 @@ from pathlib import Path
 from typing import Any
 
 from core.errors import InputError
-from core.files.inspection_plan_tables import MasterTable
-from core.inspect.conditions import Master
+from core.files.plan.tables import MasterTable
+from core.inspect.plan.conditions import Master
+from core.inspect.uncertainty.causes import cause_named
+from core.messages import Message
 
 
 def master_of(table: MasterTable, path: Path) -> Master:
@@ -18,17 +20,23 @@ def master_of(table: MasterTable, path: Path) -> Master:
     InputError
         If its result is missing, or has no such characteristic.
     """
-    measured, budget = table.measured_mm, tuple((row.source, row.u_mm) for row in table.budget)
+    measured, budget = table.measured_mm, tuple((cause_named(row.source), row.u_mm) for row in table.budget)
     if table.result is not None:
-        from core.files.inspection_file import read_inspection  # the whole of inspecting: only now
+        from core.files.results.inspection_file import read_inspection  # the whole of inspecting: only now
 
         rows = {row.name: row for row in read_inspection(path.parent / table.result).characteristics}
         if table.characteristic not in rows:
             known = ", ".join(rows) or "nothing"
             raise InputError(
-                f"there is no {table.characteristic!r} in {table.result}, which holds {known}",
+                Message(
+                    "inspection.no_such_characteristic",
+                    "there is no {characteristic!r} in {result}, which holds {known}",
+                    characteristic=table.characteristic,
+                    result=table.result,
+                    known=known,
+                ),
                 where=f"{path}, master.characteristic",
-                todo="name one of these",
+                todo=Message("advice.name_one_of", "name one of these"),
             )
         row = rows[table.characteristic]
         measured, budget = row.value, tuple((one.source, one.u_mm) for one in row.budget)
@@ -52,6 +60,6 @@ def master_table(master: Master) -> dict[str, Any]:
         "u_certified_mm": master.u_certified_mm,
         "features": list(master.features),
         "measured_mm": master.measured_mm,
-        "budget": [{"source": source, "u_mm": u} for source, u in master.budget],
+        "budget": [{"source": str(source), "u_mm": u} for source, u in master.budget],
         "same_calibration": master.same_calibration,
     }

@@ -23,18 +23,20 @@ limits.diameter = { nominal_mm = 50.0, tolerance_mm = 0.05 }
 
 from __future__ import annotations
 
-import tomllib
 from pathlib import Path
-
-from pydantic import ValidationError
 
 from core.errors import InputError
 from core.files.atomic import write_text
-from core.files.complaints import complaint
-from core.files.inspection_plan_tables import PlanTables
-from core.files.inspection_plan_translation import plan_of, plan_tables
+from core.files.complaints import checked
+from core.files.plan.tables import PlanTables
+from core.files.plan.translation import plan_of, plan_tables
+from core.files.reading import read_toml
+from core.files.recording.rig import WRITE_ONE
 from core.files.toml_text import toml_text
-from core.inspect.inspection_plan import InspectionPlan
+from core.inspect.plan.inspection_plan import InspectionPlan
+from core.messages import Message
+
+_MISSING = Message("inspection.plan_missing", "the file is missing; it says what is to be inspected")
 
 
 def read_plan(path: Path) -> InspectionPlan:
@@ -46,21 +48,8 @@ def read_plan(path: Path) -> InspectionPlan:
         If it is missing, is no TOML, has an unknown key, a value is absurd, or features do not fit together. The
         sentence names the file and the field or feature.
     """
-    try:
-        tables = tomllib.loads(path.read_text(encoding="utf-8"))
-    except FileNotFoundError as error:
-        raise InputError(
-            "the file is missing; it says what is to be inspected", where=path, todo="write one as the README shows"
-        ) from error
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"cannot be read as UTF-8 text ({error})", where=path) from error
-    except tomllib.TOMLDecodeError as error:
-        raise InputError(f"this is no valid TOML: {error}", where=path) from error
-    try:
-        checked = PlanTables.model_validate(tables)
-    except ValidationError as error:
-        raise complaint(path, error, PlanTables) from error
-    plan = plan_of(checked, path)
+    tables = read_toml(path, missing=_MISSING, todo=WRITE_ONE)
+    plan = plan_of(checked(PlanTables, tables, path), path)
     try:
         plan.ordered()
     except InputError as error:

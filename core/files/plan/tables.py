@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field, field_validator, model_validator
 
 from core.files.complaints import Clash
-from core.files.rig_tables import Table
-from core.inspect.feature_spec import Kind
+from core.files.recording.rig import Table
+from core.inspect.plan.kinds import KINDS, kind_named
+from core.messages import Message, label
 
 # The description of a field ends the sentence "… is <value>, not <description>".
 _Number = Annotated[float, Field(allow_inf_nan=False)]
@@ -16,10 +17,10 @@ _Pair = Annotated[list[_Number], Field(min_length=2, max_length=2)]
 _Triple = Annotated[list[_Number], Field(min_length=3, max_length=3)]
 _Above = Annotated[float, Field(gt=0, le=5000, allow_inf_nan=False)]
 _NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
-_A_LENGTH = "a length in mm above 0 and at most 5000"
-_A_NUMBER = "a finite number"
-_NOT_BELOW_0 = "a number not below 0"
-_A_NAME = "the name of a feature"
+_A_LENGTH = label("a length in mm above 0 and at most 5000")
+_A_NUMBER = label("a finite number")
+_NOT_BELOW_0 = label("a number not below 0")
+_A_NAME = label("the name of a feature")
 _Name = Annotated[str, Field(min_length=1, max_length=80)]
 
 
@@ -41,7 +42,14 @@ class RegionTable(Table):
         given = [key for key in type(self).model_fields if getattr(self, key) is not None]
         if len(given) != 1:
             named = " and ".join(given) or "none"
-            raise Clash("polygon_px", f"or number, sphere_mm, box_mm or points_of is wanted, one of them, not {named}")
+            raise Clash(
+                "polygon_px",
+                Message(
+                    "inspection.one_kind_of_region",
+                    "or number, sphere_mm, box_mm or points_of is wanted, one of them, not {named}",
+                    named=named,
+                ),
+            )
         return self
 
 
@@ -76,15 +84,36 @@ class LimitsTable(Table):
         unit = "deg" if self.in_degrees else "mm"
         given = {key for key in type(self).model_fields if getattr(self, key) is not None}
         if any(not key.endswith(unit) for key in given):
-            raise Clash("nominal_mm", "is of a length and nominal_deg of an angle; give those of one unit")
+            raise Clash(
+                "nominal_mm",
+                Message(
+                    "inspection.limit_units",
+                    "is of a length and nominal_deg of an angle; give those of one unit",
+                ),
+            )
         sides = {f"lower_{unit}", f"upper_{unit}"} & given
         if f"tolerance_{unit}" in given and sides:
-            raise Clash(f"tolerance_{unit}", "is one limit too many; give it, or lower and upper deviations")
+            raise Clash(
+                f"tolerance_{unit}",
+                Message("inspection.limit_twice", "is one limit too many; give it, or lower and upper deviations"),
+            )
         if f"tolerance_{unit}" not in given and not sides:
-            raise Clash(f"tolerance_{unit}", "is missing; without a limit nothing can be decided")
+            raise Clash(
+                f"tolerance_{unit}",
+                Message("inspection.limit_missing", "is missing; without a limit nothing can be decided"),
+            )
         lower, upper = getattr(self, f"lower_{unit}"), getattr(self, f"upper_{unit}")
         if lower is not None and upper is not None and lower > upper:
-            raise Clash(f"lower_{unit}", f"is {lower:g}, above upper_{unit} = {upper:g}")
+            raise Clash(
+                f"lower_{unit}",
+                Message(
+                    "inspection.above_upper",
+                    "is {lower:g}, above upper_{unit} = {upper:g}",
+                    lower=lower,
+                    unit=unit,
+                    upper=upper,
+                ),
+            )
         return self
 
 
@@ -110,7 +139,10 @@ class SectionTable(Table):
     @model_validator(mode="after")
     def _one_plane(self) -> SectionTable:
         if (self.line_px is None) == (self.point_mm is None or self.normal is None):
-            raise Clash("line_px", "or point_mm with normal says where to cut; give one of the two")
+            raise Clash(
+                "line_px",
+                Message("inspection.cut_twice", "or point_mm with normal says where to cut; give one of the two"),
+            )
         return self
 
 
@@ -129,9 +161,7 @@ class FeatureTable(Table):
     """[[feature]]."""
 
     name: _Name = Field(description="a name of 1 to 80 characters")
-    kind: Kind = Field(
-        description="plane, sphere, cylinder, point, thickness, steps, distance, angle, section or deviation"
-    )
+    kind: str = Field(description=f"{', '.join(kind.name for kind in KINDS[:-1])} or {KINDS[-1].name}")
     region: RegionTable | Literal["auto"] | None = Field(None, description='a table as { polygon_px = … }, or "auto"')
     regions: list[RegionTable | Literal["auto"]] | None = Field(
         None, max_length=20, description="a list of regions: upper and lower face, or levels"
@@ -144,10 +174,18 @@ class FeatureTable(Table):
     section: SectionTable | None = Field(None, description="a table")
     deviation: DeviationTable | None = Field(None, description="a table")
 
+    @field_validator("kind")
+    @classmethod
+    def _known(cls, kind: str) -> str:
+        try:
+            return kind_named(kind).name
+        except KeyError as error:
+            raise ValueError(f"no kind of feature: {kind}") from error
+
     @model_validator(mode="after")
     def _region_or_regions(self) -> FeatureTable:
         if self.region is not None and self.regions is not None:
-            raise Clash("regions", "is one too many; give region or regions")
+            raise Clash("regions", Message("inspection.region_twice", "is one too many; give region or regions"))
         return self
 
 
@@ -161,8 +199,8 @@ class FrameTable(Table):
 
 _Celsius = Annotated[float, Field(ge=-50, le=200, allow_inf_nan=False)]
 _Alpha = Annotated[float, Field(ge=-1e-4, le=1e-3, allow_inf_nan=False)]
-_A_TEMPERATURE = "a temperature in °C from −50 to 200"
-_AN_ALPHA = "an expansion coefficient in 1/K, as 11.5e-6"
+_A_TEMPERATURE = label("a temperature in °C from −50 to 200")
+_AN_ALPHA = label("an expansion coefficient in 1/K, as 11.5e-6")
 
 
 class TemperatureTable(Table):
@@ -201,9 +239,18 @@ class MasterTable(Table):
     @model_validator(mode="after")
     def _measured_once(self) -> MasterTable:
         if (self.measured_mm is None) == (self.result is None):
-            raise Clash("measured_mm", "or result says what the master measures; give one of the two")
+            raise Clash(
+                "measured_mm",
+                Message(
+                    "inspection.master_measured_twice",
+                    "or result says what the master measures; give one of the two",
+                ),
+            )
         if (self.result is None) != (self.characteristic is None):
-            raise Clash("characteristic", "and result go together; give both or neither")
+            raise Clash(
+                "characteristic",
+                Message("inspection.master_result_incomplete", "and result go together; give both or neither"),
+            )
         return self
 
 

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from core.files.inspection_plan_tables import (
+from core.files.plan.master_file import master_of, master_table
+from core.files.plan.tables import (
     FeatureTable,
     FrameTable,
     LimitsTable,
@@ -16,11 +18,10 @@ from core.files.inspection_plan_tables import (
     SectionTable,
     TemperatureTable,
 )
-from core.files.master_file import master_of, master_table
 from core.inspect.characteristic import Limits
-from core.inspect.conditions import Temperature
-from core.inspect.feature_spec import (
-    ONE_SIDED,
+from core.inspect.plan.conditions import Temperature
+from core.inspect.plan.feature_kind import ResultKind
+from core.inspect.plan.feature_spec import (
     Auto,
     Cut,
     Deviation,
@@ -33,7 +34,8 @@ from core.inspect.feature_spec import (
     Region,
     Section,
 )
-from core.inspect.inspection_plan import InspectionPlan, PartFrame
+from core.inspect.plan.inspection_plan import InspectionPlan, PartFrame
+from core.inspect.plan.kinds import results_of
 
 
 def plan_tables(plan: InspectionPlan) -> dict[str, Any]:
@@ -78,17 +80,20 @@ def _temperature(table: TemperatureTable) -> Temperature:
 
 def _feature(table: FeatureTable) -> FeatureSpec:
     regions = table.regions if table.regions is not None else [table.region]
-    return FeatureSpec(
+    spec = FeatureSpec(
         name=table.name,
         kind=table.kind,
         regions=tuple(_region(region) for region in regions),
         of=tuple(table.of),
         filters=Filters() if table.filters is None else Filters(**table.filters.model_dump()),
-        limits=tuple((result, _limits(result, limits)) for result, limits in table.limits.items()),
         nominal_heights=tuple(table.nominal_heights_mm),
         over=table.over,
         section=None if table.section is None else _section(table.section),
         deviation=None if table.deviation is None else Deviation(**table.deviation.model_dump()),
+    )
+    kinds = results_of(spec)
+    return replace(
+        spec, limits=tuple((name, _limits(limits, kinds.get(name))) for name, limits in table.limits.items())
     )
 
 
@@ -108,8 +113,8 @@ def _region(table: RegionTable | str | None) -> Region:
     return PointsOf(table.points_of or "")
 
 
-def _limits(result: str, table: LimitsTable) -> Limits:
-    """In mm or rad."""
+def _limits(table: LimitsTable, result: ResultKind | None) -> Limits:
+    """In mm or rad; `result` is what they are of, None if the feature has no such."""
     if table.in_degrees:
         unit, nominal, tolerance = math.radians(1), table.nominal_deg, table.tolerance_deg
         lower, upper = table.lower_deg, table.upper_deg
@@ -117,7 +122,7 @@ def _limits(result: str, table: LimitsTable) -> Limits:
         unit, nominal, tolerance = 1.0, table.nominal_mm, table.tolerance_mm
         lower, upper = table.lower_mm, table.upper_mm
     if tolerance is not None:
-        lower, upper = None if result in ONE_SIDED else -tolerance, tolerance
+        lower, upper = None if result is not None and result.one_sided else -tolerance, tolerance
     return Limits(
         (nominal or 0.0) * unit,
         -math.inf if lower is None else lower * unit,
@@ -171,7 +176,8 @@ def _feature_table(spec: FeatureSpec) -> dict[str, Any]:
         one = spec.deviation
         table["deviation"] = {key: getattr(one, key) for key in ("nominal", "align", "tolerance_mm", "reach_mm")}
     if spec.limits:
-        table["limits"] = {result: _limits_table(limits, angle=spec.kind == "angle") for result, limits in spec.limits}
+        kinds = results_of(spec)
+        table["limits"] = {name: _limits_table(limits, kinds.get(name)) for name, limits in spec.limits}
     return table
 
 
@@ -187,7 +193,8 @@ def _region_table(region: Region) -> Any:
     return {"points_of": region.feature}
 
 
-def _limits_table(limits: Limits, *, angle: bool) -> dict[str, float]:
+def _limits_table(limits: Limits, result: ResultKind | None) -> dict[str, float]:
+    angle = result is not None and result.quantity == "angle"
     unit, name = (math.degrees(1), "deg") if angle else (1.0, "mm")
     table = {f"nominal_{name}": limits.nominal * unit}
     if math.isfinite(limits.lower):

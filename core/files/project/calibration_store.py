@@ -14,24 +14,24 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import datetime
 from pathlib import Path
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import Field, ValidationError
+from pydantic import ConfigDict, Field, RootModel
 
-from core.calibrate.plane_pose import PoseFeatures
+from core.calibrate.fan.pose_features import PoseFeatures
 from core.calibrate.results import CameraCalibration, FanCalibration
 from core.errors import InputError
-from core.files.atomic import make_folder, write_bytes, write_text
-from core.files.camera_file import camera_id, read_camera, write_camera
-from core.files.complaints import complaint
-from core.files.fan_file import fan_id, read_fan, write_fan
-from core.files.json_text import read_json, to_json
-from core.files.options import Options
-from core.files.pictures import read_bytes
-from core.files.poses_file import read_poses, write_poses
-from core.files.project_data import Accepted
-from core.files.project_tables import Time
-from core.files.result_file import Finite, Maybe, ResultFile, number
+from core.files.atomic import make_folder, write_bytes
+from core.files.complaints import checked_json
+from core.files.json_text import write_json
+from core.files.project.data import Accepted
+from core.files.reading import read_bytes, read_json
+from core.files.recording.features_file import read_poses, write_poses
+from core.files.recording.options import Options
+from core.files.results.camera_file import camera_id, read_camera, write_camera
+from core.files.results.fan_file import fan_id, read_fan, write_fan
+from core.files.tables import KeptMessage, OrNan, Time, kept
+from core.messages import Message
 from core.model import Camera
 
 FOLDER = "calibrations"
@@ -70,33 +70,23 @@ class StoredCalibration:
         Sentences on single pictures that the calibration itself does not hold.
     """
 
-    kind: Kind
-    id: str
-    kept_at: datetime
-    used: int
-    total: int
-    rms_px: float = math.nan
-    expected_error_mm: float = math.nan
-    rms_mm: tuple[float, ...] = ()
-    camera_id: str = ""
-    settings: Mapping[str, Any] = field(default_factory=dict, hash=False)
-    inputs: Mapping[str, str] = field(default_factory=dict, hash=False)
-    notes: tuple[str, ...] = ()
-
-
-class _KeptFile(ResultFile):
-    kind: Kind = Field(description='"camera" or "fan"')
+    kind: Annotated[Kind, Field(description='"camera" or "fan"')]
     id: str
     kept_at: Time
     used: int
     total: int
-    rms_px: Maybe = None
-    expected_error_mm: Maybe = None
-    rms_mm: list[Finite | None] = Field(default_factory=list, description="a list of lengths in mm")
+    rms_px: OrNan = math.nan
+    expected_error_mm: OrNan = math.nan
+    rms_mm: Annotated[tuple[OrNan, ...], Field(description="a list of lengths in mm")] = ()
     camera_id: str = ""
-    settings: dict[str, Any] = Field(default_factory=dict)
-    inputs: dict[str, str] = Field(default_factory=dict)
-    notes: list[str] = Field(default_factory=list)
+    settings: Mapping[str, Any] = field(default_factory=dict, hash=False)
+    inputs: Mapping[str, str] = field(default_factory=dict, hash=False)
+    notes: tuple[KeptMessage, ...] = ()
+    __pydantic_config__ = ConfigDict(extra="ignore", strict=True)
+
+
+class _KeptFile(RootModel[StoredCalibration]):
+    pass
 
 
 def keep_camera(
@@ -153,7 +143,7 @@ def keep_fan(
         "camera_id": camera_id(camera),
         "settings": settings or {},
         "inputs": inputs or {},
-        "notes": [note for pose in poses for note in pose.notes],
+        "notes": [kept(note) for pose in poses for note in pose.notes],
     }
     _write_about(folder, "fan", id_, about)
     return id_
@@ -212,7 +202,10 @@ def put_in_place(project_folder: Path, accepted: Accepted, results: Path) -> Non
     """
     for kind, id_ in (("camera", accepted.camera), ("laser planes", accepted.fan)):
         if not id_:
-            raise InputError(f"no calibration of the {kind} is accepted yet", todo="calibrate, and accept the result")
+            raise InputError(
+                Message("project.none_accepted", "no calibration of the {kind} is accepted yet", kind=kind),
+                todo=Message("advice.calibrate_camera_and_accept", "calibrate, and accept the result"),
+            )
     camera = read_stored_camera(project_folder, accepted.camera)
     read_stored_fan(project_folder, accepted.fan, camera.camera)
     fan = _found(project_folder, "fan", accepted.fan)
@@ -233,13 +226,21 @@ def _path(folder: Path, kind: Kind, id_: str) -> Path:
 def _found(project_folder: Path, kind: Kind, id_: str) -> Path:
     path = _path(project_folder / FOLDER, kind, id_)
     if not path.exists():
-        raise InputError(f"the calibration {id_} is not in the project", where=path, todo="calibrate again")
+        raise InputError(
+            Message("project.calibration_missing", "the calibration {id} is not in the project", id=id_),
+            where=path,
+            todo=Message("advice.calibrate_again", "calibrate again"),
+        )
     return path
 
 
 def _check_id(path: Path, found: str, wanted: str) -> None:
     if found != wanted:
-        raise InputError(f"the file holds the calibration {found}", where=path, todo="it was changed; calibrate again")
+        raise InputError(
+            Message("project.other_calibration", "the file holds the calibration {found}", found=found),
+            where=path,
+            todo=Message("advice.changed_calibrate_again", "it was changed; calibrate again"),
+        )
 
 
 def _counts(used: Sequence[bool]) -> dict[str, int]:
@@ -249,28 +250,11 @@ def _counts(used: Sequence[bool]) -> dict[str, int]:
 def _write_about(folder: Path, kind: Kind, id_: str, about: Mapping[str, Any]) -> None:
     kept_at = datetime.now().astimezone().isoformat()
     path = _path(folder, kind, id_)
-    write_text(path.with_suffix(_KEPT), to_json({"kind": kind, "id": id_, "kept_at": kept_at, **about}))
+    write_json(path.with_suffix(_KEPT), {"kind": kind, "id": id_, "kept_at": kept_at, **about})
 
 
 def _read_about(path: Path) -> StoredCalibration:
-    try:
-        file = _KeptFile.model_validate(read_json(path))
-    except ValidationError as error:
-        raise complaint(path, error, _KeptFile) from error
-    return StoredCalibration(
-        kind=file.kind,
-        id=file.id,
-        kept_at=file.kept_at,
-        used=file.used,
-        total=file.total,
-        rms_px=number(file.rms_px),
-        expected_error_mm=number(file.expected_error_mm),
-        rms_mm=tuple(number(rms) for rms in file.rms_mm),
-        camera_id=file.camera_id,
-        settings=file.settings,
-        inputs=file.inputs,
-        notes=tuple(file.notes),
-    )
+    return checked_json(_KeptFile, read_json(path), path).root
 
 
 def _copy(source: Path, target: Path) -> None:

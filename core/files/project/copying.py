@@ -8,7 +8,8 @@ from pathlib import Path
 
 from core.errors import InputError
 from core.files.atomic import cannot_write
-from core.files.project_folder import AUTOSAVE
+from core.files.project.folder import AUTOSAVE
+from core.messages import Message
 from core.progress import Progress, silent, steps
 
 _LEFT_BEHIND = (AUTOSAVE, ".new")
@@ -27,9 +28,17 @@ def copy_project(folder: Path, to: Path, progress: Progress = silent) -> Path:
         If `to` is there already or lies within the project, a file cannot be read, or nothing can be written there.
     """
     if to.exists():
-        raise InputError("is there already", where=to, todo="choose another name")
+        raise InputError(
+            Message("project.folder_taken", "is there already"),
+            where=to,
+            todo=Message("advice.choose_another_name", "choose another name"),
+        )
     if to.resolve().is_relative_to(folder.resolve()):
-        raise InputError("lies within the project that is to be copied", where=to, todo="choose another folder")
+        raise InputError(
+            Message("project.copy_within_itself", "lies within the project that is to be copied"),
+            where=to,
+            todo=Message("advice.choose_another_folder", "choose another folder"),
+        )
     beside = to.with_name(f".{to.name}.{secrets.token_hex(4)}.part")
     try:
         beside.mkdir(parents=True)

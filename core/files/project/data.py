@@ -5,11 +5,23 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from datetime import datetime
+from typing import Annotated
 
-from core.files.options import Options
-from core.files.rig import Rig, default_rig
-from core.inspect.inspection_plan import InspectionPlan
-from core.report.template import Language, Paper
+from pydantic import ConfigDict, Field
+
+from core.files.recording.options import Options
+from core.files.recording.rig import Rig, default_rig
+from core.files.tables import Finite, Time
+from core.inspect.plan.inspection_plan import InspectionPlan
+from core.report.template import Paper
+
+# What project.json may hold in a field is checked as it is annotated here; `core.files.complaints` tells the rest.
+_CHECKED = ConfigDict(extra="forbid", strict=True)
+_Celsius = Annotated[
+    Annotated[float, Field(ge=-273.15, le=2000, allow_inf_nan=False)] | None,
+    Field(description="a temperature in °C, or null"),
+]
+Id = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]*$", description="the id of a calibration: letters, digits, - and _")]
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,9 +34,10 @@ class ProjectInfo:
     operator: str = ""
     customer: str = ""
     laboratory: str = ""
-    air_celsius: float | None = None
-    part_celsius: float | None = None
+    air_celsius: _Celsius = None
+    part_celsius: _Celsius = None
     notes: str = ""
+    __pydantic_config__ = _CHECKED
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,14 +51,16 @@ class Sources:
     camera: str = ""
     planes: str = ""
     scan: str = ""
+    __pydantic_config__ = _CHECKED
 
 
 @dataclass(frozen=True, slots=True)
 class Accepted:
     """Ids of the calibrations to measure with, in the project's history; nothing where none is accepted yet."""
 
-    camera: str = ""
-    fan: str = ""
+    camera: Id = ""
+    fan: Id = ""
+    __pydantic_config__ = _CHECKED
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,21 +68,26 @@ class Repeat:
     """The thickness of one scan in a series of the same part: in mm, with the expanded uncertainty U = k·u."""
 
     scan: str
-    thickness_mm: float
-    U_mm: float
-    k: float
+    thickness_mm: Annotated[Finite, Field(description="a length in mm")]
+    U_mm: Annotated[Finite, Field(ge=0, description="a length in mm, 0 or above")]
+    k: Annotated[Finite, Field(gt=0, description="a number above 0")]
     calibration_id: str
-    measured_at: datetime
+    measured_at: Time
+    __pydantic_config__ = _CHECKED
 
 
 @dataclass(frozen=True, slots=True)
 class KeptStudy:
     """A study kept in the project: `id` names its folder below studies, `included` puts it into the report."""
 
-    id: str
-    kind: str
+    id: Annotated[str, Field(pattern=r"^[0-9a-f]+$", description="the name of a folder below studies")]
+    kind: Annotated[
+        str,
+        Field(pattern="^(repeats|type1|grr|acceptance)$", description='"repeats", "type1", "grr" or "acceptance"'),
+    ]
     title: str
     included: bool = True
+    __pydantic_config__ = _CHECKED
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,10 +97,11 @@ class ReportChoices:
     `template` is named as `Sources` are: within the project relative to its folder, elsewhere in full; nothing: none.
     """
 
-    hidden: frozenset[str] = frozenset()
-    paper: Paper = "A4"
-    language: Language = "en"
+    hidden: Annotated[frozenset[str], Field(description="a list of names of sections")] = frozenset()
+    paper: Annotated[Paper, Field(description='"A4" or "Letter"')] = "A4"
+    language: Annotated[str, Field(pattern="^(en|de)$", description='"en" or "de"')] = "en"
     template: str = ""
+    __pydantic_config__ = _CHECKED
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,8 +129,11 @@ class Done:
     """One finished result: its own key, the keys of all it rests on by their names, and when it was finished."""
 
     key: str
-    rests_on: Mapping[str, str] = field(default_factory=dict, hash=False)
-    at: datetime = field(default_factory=lambda: datetime.now().astimezone())
+    rests_on: Annotated[Mapping[str, str], Field(description="a table of texts")] = field(
+        default_factory=dict, hash=False
+    )
+    at: Time = field(default_factory=lambda: datetime.now().astimezone())
+    __pydantic_config__ = _CHECKED
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,18 +13,20 @@ Layout::
 
 from __future__ import annotations
 
+import os
 import re
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from datetime import datetime
 from pathlib import Path
 
 from core.errors import InputError
 from core.files.atomic import ANOTHER_OUT, cannot_write, make_folder, write_bytes, write_text
-from core.files.project_data import Project, ProjectFile, ProjectInfo, Sources
-from core.files.project_json import project_text, read_project_text
-from core.files.recording_set import PARTS
-from core.files.rig import read_rig
+from core.files.project.data import Project, ProjectFile, ProjectInfo, Sources
+from core.files.project.json_form import project_text, read_project_text
+from core.files.recording.recording_set import PARTS
+from core.files.recording.rig import read_rig
+from core.messages import Message
 
 PROJECT = "project.json"
 AUTOSAVE = ".autosave.json"
@@ -37,7 +39,10 @@ KEPT = 5
 
 _BACKUP = re.compile(r"^project-(\d+)-\d{8}-\d{6}\.json$")
 _OPENER_SAYS = "This file opens the project in its folder with Trisect; the project itself is in project.json.\n"
-_ELSEWHERE = "make the folder writable, or copy the project to another disk and open it there"
+_ELSEWHERE = Message(
+    "advice.make_writable_or_copy",
+    "make the folder writable, or copy the project to another disk and open it there",
+)
 
 
 def is_project(path: Path) -> bool:
@@ -59,7 +64,11 @@ def read_project(path: Path) -> ProjectFile:
     """
     file = _file_of(path)
     if path.is_dir() and not file.exists():
-        raise InputError(f"there is no {PROJECT} here", where=path, todo="choose the folder of a project")
+        raise InputError(
+            Message("project.not_here", "there is no {project} here", project=PROJECT),
+            where=path,
+            todo=Message("advice.choose_project", "choose the folder of a project"),
+        )
     return read_project_text(file)
 
 
@@ -144,6 +153,33 @@ def recoverable(folder: Path) -> ProjectFile | None:
     return autosaved if autosaved.saved >= saved.saved else None
 
 
+@dataclass(frozen=True, slots=True)
+class Version:
+    """An earlier state of a project that can be read; `autosaved` tells it from one of the last saved ones."""
+
+    path: Path
+    file: ProjectFile
+    autosaved: bool
+
+
+def rescues(folder: Path) -> tuple[Version, ...]:
+    """The states that are there beside project.json: the autosaved one, and the newest good one in backups.
+
+    The newer one comes first; what cannot be read either is left out.
+    """
+    autosaved = _readable(folder / AUTOSAVE)
+    found = [] if autosaved is None else [Version(folder / AUTOSAVE, autosaved, autosaved=True)]
+    saved = ((path, file) for path in backups(folder) if (file := _readable(path)) is not None)
+    if (newest := next(saved, None)) is not None:
+        found.append(Version(*newest, autosaved=False))
+    return tuple(sorted(found, key=_age, reverse=True))
+
+
+def can_be_saved(folder: Path) -> bool:
+    """Whether the project in `folder` can be written to, as far as can be told without writing."""
+    return os.access(folder, os.W_OK | os.X_OK)
+
+
 def stored_source(project_folder: Path, pictures: Path) -> str:
     """How a project names a folder of pictures: relative inside the project's folder, in full elsewhere."""
     full = pictures.resolve()
@@ -176,7 +212,8 @@ def project_from_set(folder: Path, name: str) -> Project:
         If rig.toml is missing or wrong.
     """
     rig = read_rig(folder / "rig.toml")
-    return Project(ProjectInfo(name=name, part=folder.resolve().name), rig, sources_of_set(folder))
+    stated = replace(rig, unstated=frozenset())  # the window shows the paper's where rig.toml says nothing
+    return Project(ProjectInfo(name=name, part=folder.resolve().name), stated, sources_of_set(folder))
 
 
 def _file_of(path: Path) -> Path:
@@ -191,10 +228,14 @@ def _readable(path: Path) -> ProjectFile | None:
         return None
 
 
+def _age(version: Version) -> float:
+    return version.file.saved.timestamp() if version.file.saved is not None else 0.0
+
+
 def _unsaved(path: Path, error: InputError | OSError) -> InputError:
     """Why nothing can be written, and what to do about it in a window, which has no --out."""
     told = error if isinstance(error, InputError) else cannot_write(path, error)
-    todo = _ELSEWHERE if told.todo == ANOTHER_OUT else told.todo
+    todo = _ELSEWHERE if told.todo.code == ANOTHER_OUT.code else told.todo
     return InputError(told.what, where=told.where, todo=todo)
 
 

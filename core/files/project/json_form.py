@@ -6,20 +6,21 @@ from collections.abc import Callable, Mapping
 from dataclasses import asdict
 from datetime import datetime
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, Literal
 
-from pydantic import ValidationError
+from pydantic import Field
 
 from core import __version__
-from core.calibrate.camera_options import CameraOptions
+from core.calibrate.camera.adjustment import CameraOptions
 from core.errors import InputError
-from core.files.complaints import complaint
-from core.files.inspection_plan_translation import plan_of, plan_tables
-from core.files.json_text import read_json, to_json
-from core.files.options import Options
-from core.files.project_data import (
+from core.files.complaints import checked_json
+from core.files.json_text import to_json
+from core.files.plan.tables import PlanTables
+from core.files.plan.translation import plan_of, plan_tables
+from core.files.project.data import (
     Accepted,
     Done,
+    Id,
     KeptStudy,
     Project,
     ProjectFile,
@@ -28,9 +29,77 @@ from core.files.project_data import (
     ReportChoices,
     Sources,
 )
-from core.files.project_tables import OptionsTable, ProjectTables
-from core.files.rig import rig_of, rig_tables
-from core.image.stripe import StripeSettings
+from core.files.reading import read_json
+from core.files.recording.options import Options
+from core.files.recording.rig import RigTables, Table, rig_of, rig_tables
+from core.files.tables import A_TIME, Time
+from core.image.stripes.stripe import StripeSettings
+from core.messages import Message
+from core.scan.method import Method
+
+_Above0 = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+_Name = Annotated[str, Field(pattern=r"^(camera|planes|scan)/.")]
+
+
+class CameraOptionsTable(Table):
+    """Under "camera" of the options."""
+
+    skew: bool | None = None
+    fixed: frozenset[Literal["k1", "k2", "p1", "p2"]] = Field(
+        default=frozenset(), description="a list of those of k1, k2, p1, p2 that are fixed to 0"
+    )
+    k3: bool = False
+    outliers: Literal["keep", "gross", "all"] = Field(default="gross", description='"keep", "gross" or "all"')
+
+
+class StripeTable(Table):
+    """Under "stripe" of the options."""
+
+    width_px: _Above0 = Field(description="a width in pixels above 0")
+    contrast: _Above0 = Field(description="a number of grey levels above 0")
+
+
+class OptionsTable(Table):
+    """Under "options"."""
+
+    method: Method = Field(
+        default=Method.NETWORK, strict=False, description=" or ".join(f'"{method}"' for method in Method)
+    )
+    sigma_cut_mm: Annotated[float, Field(gt=0, le=10, allow_inf_nan=False)] = Field(
+        default=0.05, description="a length in mm above 0 and at most 10"
+    )
+    camera: CameraOptionsTable = CameraOptionsTable()
+    part: str = ""
+    stripe: StripeTable | None = Field(default=None, description="a table of width_px and contrast, or null")
+    excluded: frozenset[_Name] = Field(
+        default=frozenset(),
+        description='a list of pictures as "camera/view00.png", "planes/pose00", "scan/frame0000.png"',
+    )
+    constrain_fan: bool = True
+    adjust_camera: bool = False
+    plane_stripe: StripeTable | None = Field(default=None, description="a table of width_px and contrast, or null")
+    accept_few_poses: bool = False
+
+
+class ProjectTables(Table):
+    """All of project.json."""
+
+    schema_version: int
+    version: str = ""
+    created: Time | None = Field(default=None, description=A_TIME)
+    saved: Time | None = Field(default=None, description=A_TIME)
+    info: ProjectInfo = Field(description="a table of name, part, …")
+    rig: RigTables = Field(description="a table as in rig.toml")
+    sources: Sources = Sources()
+    options: OptionsTable = OptionsTable()
+    accepted: Accepted = Accepted()
+    rejected: frozenset[Id] = Field(default=frozenset(), description="a list of ids of calibrations")
+    repeats: tuple[Repeat, ...] = ()
+    report: ReportChoices = ReportChoices()
+    inspection: PlanTables = PlanTables()
+    studies: tuple[KeptStudy, ...] = ()
+    results: dict[str, Done] = Field(default_factory=dict)
+
 
 SCHEMA = 5
 """Raised with every change of the keys: an older program then says that the project is too new for it."""
@@ -43,7 +112,7 @@ MIGRATIONS: Mapping[int, Callable[[dict[str, Any]], dict[str, Any]]] = {
 }
 """By schema: the tables as the next schema has them, from those of this one."""
 
-_TODO = "open a version in backups, or make a new project"
+_TODO = Message("advice.open_backup", "open a version in backups, or make a new project")
 
 
 class NewerProject(InputError):
@@ -76,7 +145,7 @@ def project_text(file: ProjectFile, path: Path) -> str:
         "studies": [asdict(study) for study in project.studies],
         "results": {step: _done_table(done) for step, done in sorted(file.results.items())},
     }
-    _checked(tables, path)
+    checked_json(ProjectTables, tables, path)
     return to_json(tables)
 
 
@@ -91,53 +160,63 @@ def read_project_text(path: Path) -> ProjectFile:
     """
     tables = read_json(path, todo=_TODO)
     if not isinstance(tables, dict) or type(tables.get("schema_version")) is not int:  # true would count as 1
-        raise InputError("this is no project: there is no schema version in it", where=path, todo=_TODO)
+        raise InputError(
+            Message("project.no_schema_version", "this is no project: there is no schema version in it"),
+            where=path,
+            todo=_TODO,
+        )
     schema = tables["schema_version"]
     if schema > SCHEMA:
         raise NewerProject(
-            f"the project was written by a newer program (schema version {schema}, this program knows up to {SCHEMA})",
+            Message(
+                "project.newer_program",
+                "the project was written by a newer program "
+                "(schema version {schema}, this program knows up to {known})",
+                schema=schema,
+                known=SCHEMA,
+            ),
             where=path,
-            todo="open it with a newer version of Trisect",
+            todo=Message("advice.open_with_newer_program", "open it with a newer version of Trisect"),
         )
     while schema < SCHEMA:
         if schema not in MIGRATIONS:
             raise InputError(
-                f"schema_version is {schema}, not a whole number from 1 to {SCHEMA}", where=path, todo=_TODO
+                Message(
+                    "project.unknown_schema_version",
+                    "schema_version is {schema}, not a whole number from 1 to {schema2}",
+                    schema=schema,
+                    schema2=SCHEMA,
+                ),
+                where=path,
+                todo=_TODO,
             )
         tables = MIGRATIONS[schema](tables)
         schema += 1
-    return _project_file(_checked({**tables, "schema_version": SCHEMA}, path), path)
-
-
-def _checked(tables: Mapping[str, Any], path: Path) -> ProjectTables:
-    try:
-        return ProjectTables.model_validate(tables)
-    except ValidationError as error:
-        raise complaint(path, error, ProjectTables) from error
+    return _project_file(checked_json(ProjectTables, {**tables, "schema_version": SCHEMA}, path), path)
 
 
 def _project_file(file: ProjectTables, path: Path) -> ProjectFile:
-    report, repeats = file.report, file.repeats
     project = Project(
-        info=ProjectInfo(**dict(file.info)),
+        info=file.info,
         rig=rig_of(file.rig, path, within="rig."),
-        sources=Sources(**dict(file.sources)),
+        sources=file.sources,
         options=_options(file.options),
-        accepted=Accepted(**dict(file.accepted)),
-        rejected=frozenset(file.rejected),
-        repeats=tuple(Repeat(**dict(repeat)) for repeat in repeats),
-        report=ReportChoices(**{**dict(report), "hidden": frozenset(report.hidden)}),
+        accepted=file.accepted,
+        rejected=file.rejected,
+        repeats=file.repeats,
+        report=file.report,
         inspection=plan_of(file.inspection, path),
-        studies=tuple(KeptStudy(**dict(study)) for study in file.studies),
+        studies=file.studies,
     )
-    results = {step: Done(done.key, done.rests_on, done.at) for step, done in file.results.items()}
-    return ProjectFile(project, results, file.created, file.saved)
+    return ProjectFile(project, file.results, file.created, file.saved)
 
 
 def _options(table: OptionsTable) -> Options:
-    camera = CameraOptions(**{**dict(table.camera), "fixed": frozenset(table.camera.fixed)})
-    stripe = StripeSettings(table.stripe.width_px, table.stripe.contrast) if table.stripe else None
-    return Options(**{**dict(table), "camera": camera, "stripe": stripe, "excluded": frozenset(table.excluded)})
+    stripe, plane_stripe = (
+        StripeSettings(**dict(told)) if told else None for told in (table.stripe, table.plane_stripe)
+    )
+    kept = {"camera": CameraOptions(**dict(table.camera)), "stripe": stripe, "plane_stripe": plane_stripe}
+    return Options(**{**dict(table), **kept})
 
 
 def _options_table(options: Options) -> dict[str, Any]:

@@ -12,15 +12,16 @@ from dataclasses import asdict
 from datetime import datetime
 from typing import Any
 
-from core.files.inspection_plan_translation import plan_tables
-from core.files.project_data import Done, Project, ReportChoices
-from core.files.rig import rig_tables
+from core.files.plan.translation import plan_tables
+from core.files.project.data import Done, Project, ReportChoices
+from core.files.recording.rig import rig_tables
+from core.messages import label
 
 STEPS = ("camera", "planes", "scan", "inspect", "features", "report")
 """The steps that have a result, in the order of work; "inspect" is the thickness, "features" the plan's inspection."""
 
 Keys = Mapping[str, str]
-"""Name of an input, in the user's words → its key."""
+"""Name of an input, fixed words of the catalogues → its key."""
 
 
 def rests_on(step: str, project: Project, results: Mapping[str, Done]) -> dict[str, str]:
@@ -65,28 +66,31 @@ def finished(step: str, project: Project, results: Mapping[str, Done], at: datet
 def _camera(project: Project) -> dict[str, str]:
     camera = project.options.camera
     return {
-        "pictures of the camera target": project.sources.camera,
-        "camera target": _digest(rig_tables(project.rig)["camera_target"]),
-        "colour channel": project.rig.channel or "",
-        "left-out views": _left_out(project, "camera"),
-        "camera settings": _digest([camera.skew, camera.k3, sorted(camera.fixed), camera.outliers]),
-        "accepted camera calibration": _whether(project.accepted.camera),
+        label("pictures of the camera target"): project.sources.camera,
+        label("camera target"): _digest(rig_tables(project.rig)["camera_target"]),
+        label("colour channel"): project.rig.channel or "",
+        label("left-out views"): _left_out(project, "camera"),
+        label("camera settings"): _digest([camera.skew, camera.k3, sorted(camera.fixed), camera.outliers]),
+        label("accepted camera calibration"): _whether(project.accepted.camera),
     }
 
 
 def _planes(project: Project) -> dict[str, str]:
     tables = rig_tables(project.rig)
-    adjusted = {"adjustment of the camera": str(True)} if project.options.adjust_camera else {}
+    adjusted = {label("adjustment of the camera"): str(True)} if project.options.adjust_camera else {}
+    stripe = project.options.plane_stripe
+    stated = {label("stripes on the plane target"): _digest([stripe.width_px, stripe.contrast])} if stripe else {}
     return {
-        "camera calibration": project.accepted.camera,
-        "pictures of the plane target": project.sources.planes,
-        "plane target": _digest(tables["plane_target"]),
-        "laser": _digest(tables["laser_fan"]),
-        "colour channel": project.rig.channel or "",
-        "left-out poses": _left_out(project, "planes"),
-        "constraint of the fan": str(project.options.constrain_fan),
+        label("camera calibration"): project.accepted.camera,
+        label("pictures of the plane target"): project.sources.planes,
+        label("plane target"): _digest(tables["plane_target"]),
+        label("laser"): _digest(tables["laser_fan"]),
+        label("colour channel"): project.rig.channel or "",
+        label("left-out poses"): _left_out(project, "planes"),
+        label("constraint of the fan"): str(project.options.constrain_fan),
         **adjusted,
-        "accepted laser planes": _whether(project.accepted.fan),
+        **stated,
+        label("accepted laser planes"): _whether(project.accepted.fan),
     }
 
 
@@ -94,39 +98,39 @@ def _scan(project: Project) -> dict[str, str]:
     options, stripe = project.options, project.options.stripe
     settings = [options.method, options.sigma_cut_mm, [stripe.width_px, stripe.contrast] if stripe else None]
     return {
-        "camera calibration": project.accepted.camera,
-        "laser planes": project.accepted.fan,
-        "recording": project.sources.scan,
-        "colour channel": project.rig.channel or "",
-        "left-out frames": _left_out(project, "scan"),
-        "scan settings": _digest(settings),
+        label("camera calibration"): project.accepted.camera,
+        label("laser planes"): project.accepted.fan,
+        label("recording"): project.sources.scan,
+        label("colour channel"): project.rig.channel or "",
+        label("left-out frames"): _left_out(project, "scan"),
+        label("scan settings"): _digest(settings),
     }
 
 
 def _inspect(project: Project, results: Mapping[str, Done]) -> dict[str, str]:
     gauge = rig_tables(project.rig).get("gauge", {})
     return {
-        "scan": _key_of("scan", results),
-        "thickness regions": _digest([gauge.get("upper_polygon_px"), gauge.get("lower_polygon_px")]),
-        "nominal thickness": _digest([gauge.get("nominal_mm"), gauge.get("tolerance_mm")]),
+        label("scan"): _key_of("scan", results),
+        label("thickness regions"): _digest([gauge.get("upper_polygon_px"), gauge.get("lower_polygon_px")]),
+        label("nominal thickness"): _digest([gauge.get("nominal_mm"), gauge.get("tolerance_mm")]),
     }
 
 
 def _features(project: Project, results: Mapping[str, Done]) -> dict[str, str]:
-    return {"scan": _key_of("scan", results), "features": _digest(plan_tables(project.inspection))}
+    return {label("scan"): _key_of("scan", results), label("features"): _digest(plan_tables(project.inspection))}
 
 
 def _report(project: Project, results: Mapping[str, Done]) -> dict[str, str]:
     studies = [study.id for study in project.studies if study.included]
-    inspected = {"features": _key_of("features", results)} if "features" in results else {}
+    inspected = {label("features"): _key_of("features", results)} if "features" in results else {}
     return {
-        "scan": _key_of("scan", results),
-        "thickness": _key_of("inspect", results),
+        label("scan"): _key_of("scan", results),
+        label("thickness"): _key_of("inspect", results),
         **inspected,
-        **({"studies": _digest(studies)} if studies else {}),
-        "project fields": _digest(asdict(project.info)),
-        "repeats": _digest([[*asdict(repeat).values()] for repeat in project.repeats]),
-        "sections of the report": _digest([sorted(project.report.hidden), *_printing(project.report)]),
+        **({label("studies"): _digest(studies)} if studies else {}),
+        label("project fields"): _digest(asdict(project.info)),
+        label("repeats"): _digest([[*asdict(repeat).values()] for repeat in project.repeats]),
+        label("sections of the report"): _digest([sorted(project.report.hidden), *_printing(project.report)]),
     }
 
 

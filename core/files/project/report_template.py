@@ -19,19 +19,18 @@ All keys may be left out; an unknown one is refused by name.
 from __future__ import annotations
 
 import io
-import tomllib
 from pathlib import Path
 from typing import Annotated
 
 from PIL import Image
-from pydantic import Field, ValidationError
+from pydantic import Field
 
 from core.errors import InputError
-from core.files.complaints import complaint
-from core.files.pictures import read_bytes
-from core.files.rig_tables import Table
-from core.report.section_names import SECTIONS
-from core.report.template import LANGUAGES, PAPERS, Language, Paper, ReportTemplate
+from core.files.complaints import checked
+from core.files.reading import read_bytes, read_toml
+from core.files.recording.rig import Table
+from core.messages import Message
+from core.report.template import LANGUAGES, PAPERS, SECTIONS, Paper, ReportTemplate
 
 _LARGEST_LOGO = 4_000_000
 """Bytes of a logo: it is in every report."""
@@ -47,7 +46,9 @@ class _Template(Table):
     signatures: list[str] = Field(default_factory=list, max_length=6, description="a list of at most 6 names")
     without: list[str] = Field(default_factory=list, description="a list of names of sections")
     paper: Paper | None = Field(None, description=" or ".join(f'"{one}"' for one in PAPERS))
-    language: Language | None = Field(None, description=" or ".join(f'"{one}"' for one in LANGUAGES))
+    language: str | None = Field(
+        None, pattern=f"^({'|'.join(LANGUAGES)})$", description=" or ".join(f'"{one}"' for one in LANGUAGES)
+    )
 
 
 def read_report_template(path: Path) -> ReportTemplate:
@@ -58,13 +59,7 @@ def read_report_template(path: Path) -> ReportTemplate:
     InputError
         If it is missing or no TOML, a key is unknown or wrong, there is no such section, or the logo is no picture.
     """
-    try:
-        tables = tomllib.loads(read_bytes(path).decode("utf-8"))
-        file = _Template.model_validate(tables)
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise InputError(f"this is no valid TOML: {error}", where=path) from error
-    except ValidationError as error:
-        raise complaint(path, error, _Template) from error
+    file = checked(_Template, read_toml(path), path)
     return ReportTemplate(
         name=file.name,
         address=tuple(file.address),
@@ -83,8 +78,11 @@ def section_set(names: list[str], *, where: str) -> frozenset[str]:
     """Names of sections to be left out; InputError if there is no such section."""
     for name in names:
         if name not in SECTIONS:
-            raise InputError(f'there is no section "{name}" to leave out', where=where,
-                             todo=f"choose among {', '.join(SECTIONS)}")  # fmt: skip
+            raise InputError(
+                Message("project.no_such_section", 'there is no section "{name}" to leave out', name=name),
+                where=where,
+                todo=Message("advice.choose_among", "choose among {choices}", choices=tuple(SECTIONS)),
+            )
     return frozenset(names)
 
 
@@ -92,10 +90,16 @@ def _logo(path: Path) -> bytes:
     """The bytes of a logo, after it has proved to be a picture that the report can print."""
     data = read_bytes(path)
     if len(data) > _LARGEST_LOGO:
-        raise InputError(f"the logo has {len(data) / 1e6:.1f} MB", where=path, todo="make it smaller than 4 MB")
+        raise InputError(
+            Message("project.logo_too_large", "the logo has {data:.1f} MB", data=len(data) / 1e6),
+            where=path,
+            todo=Message("advice.make_logo_smaller", "make it smaller than 4 MB"),
+        )
     try:
         with Image.open(io.BytesIO(data), formats=("PNG", "JPEG")) as picture:
             picture.load()
     except (OSError, ValueError, Image.DecompressionBombError) as error:
-        raise InputError("the logo is no PNG or JPEG picture that can be read", where=path) from error
+        raise InputError(
+            Message("project.logo_unreadable", "the logo is no PNG or JPEG picture that can be read"), where=path
+        ) from error
     return data

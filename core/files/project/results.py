@@ -8,10 +8,11 @@ from pathlib import Path
 
 from core.calibrate.results import CameraCalibration, FanCalibration
 from core.inspect.results import GaugeResult
-from core.scan.cloud import Cloud
-from core.scan.frame_record import FrameRecord
-from core.scan.stages import SettledScan
-from core.scan.surface import Mesh
+from core.messages import Message
+from core.scan.features.frames import FrameRecord
+from core.scan.preview.shown import SettledScan
+from core.scan.surface.cloud import Cloud
+from core.scan.surface.fused_surface import Mesh
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -31,15 +32,15 @@ class ScanSummary:
     calibration_id
         Names the calibrations the scan was measured with.
     files
-        The results, by their names in `core.pipeline.workspace.FILES`.
+        The results, by their names in `core.pipeline.steps.workspace.FILES`.
     """
 
     frames: tuple[FrameRecord, ...]
     points: int
     triangles: int
     gauge: GaugeResult | None
-    no_gauge: str
-    notes: tuple[str, ...]
+    no_gauge: Message | None
+    notes: tuple[Message, ...]
     calibration_id: str
     files: Mapping[str, Path]
 
@@ -61,9 +62,9 @@ class ProjectResults:
     calibration_id
         Names the two calibrations.
     files
-        Everything that is there, by its name in `core.pipeline.workspace.FILES`.
+        Everything that is there, by its name in `core.pipeline.steps.workspace.FILES`.
     problems
-        Why a result that is there is not among them: whole sentences.
+        Why a result that is there is not among them.
     """
 
     camera: CameraCalibration | None = None
@@ -73,7 +74,7 @@ class ProjectResults:
     gauge: GaugeResult | None = None
     frames: tuple[FrameRecord, ...] = ()
     settled: SettledScan | None = None
-    notes: tuple[str, ...] = ()
+    notes: tuple[Message, ...] = ()
     calibration_id: str = ""
     files: Mapping[str, Path] = field(default_factory=dict)
-    problems: tuple[str, ...] = ()
+    problems: tuple[Message, ...] = ()

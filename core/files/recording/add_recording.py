@@ -8,7 +8,7 @@ import shutil
 from pathlib import Path
 
 from core.files.atomic import cannot_write
-from core.files.set_listing import pictures_in
+from core.files.recording.set_listing import pictures_in
 from core.progress import Progress, silent
 
 _OFF = "_off"

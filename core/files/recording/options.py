@@ -6,12 +6,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from core.calibrate.camera_options import CameraOptions
+from core.calibrate.camera.adjustment import CameraOptions
 from core.errors import InputError
-from core.image.stripe import StripeSettings
-from core.scan.method import METHODS, Method
-
-__all__ = ["METHODS", "Options"]
+from core.image.stripes.stripe import StripeSettings
+from core.messages import Message
+from core.scan.method import Method
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,14 +20,15 @@ class Options:
     Parameters
     ----------
     method
-        "network": all sweeps adjusted together; "three-crossings": each frame from its own crossings with the fan, as
-        the paper does.
+        How sweeps are located; its name will do.
     sigma_cut_mm
         Points with a larger standard uncertainty of depth are left out.
     camera
         Which camera parameters are free.
     stripe
         Width and contrast of the stripes in the scan's pictures; None: chosen from the pictures, for each laser.
+    plane_stripe
+        The same of the stripes on the plane target.
     part
         Name of the part for the report; else it is named like the set.
     excluded
@@ -38,6 +38,8 @@ class Options:
     adjust_camera
         Let the poses of the plane target correct the camera, in one adjustment with the fan; else it stays as its own
         views gave it.
+    accept_few_poses
+        Use light planes even though fewer than half of the poses agree with them.
 
     Raises
     ------
@@ -45,7 +47,7 @@ class Options:
         If the method is unknown or the cut is absurd.
     """
 
-    method: Method = "network"
+    method: Method = Method.NETWORK
     sigma_cut_mm: float = 0.05
     camera: CameraOptions = field(default_factory=CameraOptions)
     part: str = ""
@@ -53,12 +55,30 @@ class Options:
     excluded: frozenset[str] = frozenset()
     constrain_fan: bool = True
     adjust_camera: bool = False
+    plane_stripe: StripeSettings | None = None
+    accept_few_poses: bool = False
 
     def __post_init__(self) -> None:
-        if self.method not in METHODS:
-            raise InputError(f"{self.method!r} is not {' or '.join(METHODS)}", where="method")
+        if self.method not in list(Method):
+            raise InputError(
+                Message(
+                    "options.no_such_method",
+                    "{method!r} is not {method2}",
+                    method=self.method,
+                    method2=" or ".join(Method),
+                ),
+                where="method",
+            )
+        object.__setattr__(self, "method", Method(self.method))
         if not 0 < self.sigma_cut_mm <= 10:
-            raise InputError(f"{self.sigma_cut_mm:g} is not above 0 and at most 10 mm", where="sigma-cut")
+            raise InputError(
+                Message(
+                    "options.sigma_cut_range",
+                    "{sigma_cut_mm:g} is not above 0 and at most 10 mm",
+                    sigma_cut_mm=self.sigma_cut_mm,
+                ),
+                where="sigma-cut",
+            )
 
     @property
     def camera_settings(self) -> Mapping[str, Any]:

@@ -11,9 +11,9 @@ from typing import Literal
 from core.acquire.source import Frame, Picture
 from core.errors import InputError
 from core.files.atomic import make_folder
-from core.files.direct_file import DirectWriter
 from core.files.pictures import picture_parts
-from core.files.recording_log import LoggedFrame, RecordingLog
+from core.files.recording.direct_file import DirectWriter
+from core.files.recording.recording_log import LoggedFrame, RecordingLog
 
 Ending = Literal[".png", ".pgm"]
 
@@ -37,7 +37,7 @@ class Recorder:
     waiting_bytes
         How much may wait for the disk; at least one picture always may.
     put
-        Writes one picture; None: straight to the disk (:mod:`core.files.direct_file`).
+        Writes one picture; None: straight to the disk (:mod:`core.files.recording.direct_file`).
 
     Raises
     ------
@@ -93,7 +93,7 @@ class Recorder:
         picture
             What it holds.
         frame
-            The frame it is of, for the log (:mod:`core.files.recording_log`); without it there is no line.
+            The frame it is of, for the log (:mod:`core.files.recording.recording_log`); without it there is no line.
 
         Returns
         -------

@@ -17,6 +17,8 @@ from pathlib import Path
 
 from core.errors import InputError
 from core.files.atomic import cannot_write
+from core.files.reading import read_text
+from core.messages import Message
 
 LOG = "recording.csv"
 _COLUMNS = ("name", "index", "time_s", "dropped")
@@ -78,17 +80,16 @@ def read_log(folder: Path) -> tuple[LoggedFrame, ...]:
     path = folder / LOG
     if not path.is_file():
         return ()
-    try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"cannot be read ({error})", where=path) from error
+    text = read_text(path)
     whole = text[: text.rfind("\n") + 1]
     rows = list(csv.reader(whole.splitlines()))
     try:
         return tuple(LoggedFrame(name, int(index), float(time), int(lost)) for name, index, time, lost in rows[1:])
     except ValueError as error:
         raise InputError(
-            f"a line is damaged ({error})", where=path, todo="remove the file: frames need it not"
+            Message("set.log_damaged", "a line is damaged ({reason})", reason=str(error)),
+            where=path,
+            todo=Message("advice.remove_log", "remove the file: frames need it not"),
         ) from error
 
 

@@ -15,27 +15,19 @@ from __future__ import annotations
 
 import contextlib
 import hashlib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from difflib import get_close_matches
 from pathlib import Path
 
 from core.acquire.folder import read_ahead
 from core.errors import InputError
-from core.files.pictures import Picture, decode_picture, read_bytes
-from core.files.rig import Rig, read_rig, rig_to_toml
-from core.files.set_listing import PlanePair, check_sizes, pictures_in, plane_pairs, scan_frames
+from core.files.pictures import Picture, decode_picture
+from core.files.reading import read_bytes
+from core.files.recording.rig import Rig, read_rig, require_tables, rig_to_toml
+from core.files.recording.set_listing import PlanePair, check_sizes, pictures_in, plane_pairs, scan_frames
+from core.messages import Message
 from core.stage_times import StageTimes, stage
-
-__all__ = [
-    "PARTS",
-    "PlanePair",
-    "RecordingSet",
-    "gather_set",
-    "open_set",
-    "require_camera",
-    "require_planes",
-    "require_scan",
-]
 
 PARTS = ("camera", "planes", "scan")
 """The parts of a set, each a folder of pictures."""
@@ -82,12 +74,17 @@ class RecordingSet:
         """
         part, _, file = name.partition("/")
         if part not in self.folders or not file:
-            raise InputError("there is no such picture in the set", where=name)
+            raise InputError(Message("set.no_such_picture", "there is no such picture in the set"), where=name)
         return self.folders[part] / file
 
     def where(self, part: str) -> Path | str:
         """The folder of a part, or its name if it has none: what a complaint about it begins with."""
         return self.folders.get(part, part)
+
+    @property
+    def rig_file(self) -> Path:
+        """Where rig.toml lies, or would."""
+        return next((folder.parent for folder in self.folders.values()), Path(self.name)) / RIG
 
     def contains(self, folder: Path) -> bool:
         """Whether `folder` holds a part of the set, so that nothing else should be written there."""
@@ -122,7 +119,7 @@ class RecordingSet:
                 with stage(times, "decoding"):
                     return self.read(path)
             except InputError as error:
-                return error.what
+                return str(error.what)
 
         first: tuple[str, Picture] | None = None
         for path, result in read_ahead(paths, attempt):
@@ -135,9 +132,15 @@ class RecordingSet:
     def _check_depth(self, path: Path, picture: Picture, first_name: str, first: Picture) -> None:
         if picture.dtype != first.dtype:
             raise InputError(
-                f"the picture has {picture.dtype.itemsize * 8} bit, but {first_name} has {first.dtype.itemsize * 8}",
+                Message(
+                    "set.depth_differs",
+                    "the picture has {itemsize} bit, but {first_name} has {itemsize2}",
+                    itemsize=picture.dtype.itemsize * 8,
+                    first_name=first_name,
+                    itemsize2=first.dtype.itemsize * 8,
+                ),
                 where=path,
-                todo="record all pictures with one depth",
+                todo=Message("advice.record_with_one_depth", "record all pictures with one depth"),
             )
 
 
@@ -150,13 +153,19 @@ def open_set(folder: Path) -> RecordingSet:
         If the folder is missing or empty, rig.toml is wrong, or the pictures are not all of one size.
     """
     if not folder.is_dir():
-        what = "is a file, not a folder" if folder.exists() else "there is no such folder"
-        raise InputError(what, where=folder, todo="name the folder of a recording set")
+        what = (
+            Message("set.file_not_folder", "is a file, not a folder")
+            if folder.exists()
+            else Message("source.no_such_folder", "there is no such folder")
+        )
+        raise InputError(
+            what, where=folder, todo=Message("advice.name_recording_set", "name the folder of a recording set")
+        )
     if not any(folder.iterdir()):
         raise InputError(
-            "the recording set is empty",
+            Message("set.empty", "the recording set is empty"),
             where=folder,
-            todo="it needs rig.toml and pictures in camera, planes and scan",
+            todo=Message("advice.set_needs_pictures", "it needs rig.toml and pictures in camera, planes and scan"),
         )
     rig = read_rig(folder / RIG)
     found = _listed(folder.resolve().name, rig, {part: folder / part for part in PARTS}, _hash_of(folder / RIG))
@@ -183,7 +192,9 @@ def gather_set(rig: Rig, camera: Path | None, planes: Path | None, scan: Path | 
         other = taken.setdefault(folder.resolve(), part)
         if other != part:
             raise InputError(
-                f"is the folder of both {other} and {part}", where=folder, todo="keep their pictures in two folders"
+                Message("set.folder_twice", "is the folder of both {other} and {part}", other=other, part=part),
+                where=folder,
+                todo=Message("advice.keep_in_two_folders", "keep their pictures in two folders"),
             )
     places = [folders[part] for part in reversed(PARTS) if part in folders]
     found = _listed(name or (places[0].resolve().parent.name if places else ""), rig, folders, _rig_hash(rig, places))
@@ -193,20 +204,24 @@ def gather_set(rig: Rig, camera: Path | None, planes: Path | None, scan: Path | 
 
 
 def require_camera(found: RecordingSet) -> None:
-    """InputError unless the set has views of the camera target."""
+    """InputError unless the set has views of the camera target, and says what that is."""
+    require_tables(found.rig, found.rig_file, "camera_target")
     if not found.camera:
         raise InputError(
-            "there are no pictures of the camera target", where=found.where("camera"), todo="record ten or more"
+            Message("set.no_camera_pictures", "there are no pictures of the camera target"),
+            where=found.where("camera"),
+            todo=Message("advice.record_views", "record ten or more"),
         )
 
 
 def require_planes(found: RecordingSet) -> None:
-    """InputError unless the set has pictures of the plane target with the fan on."""
+    """InputError unless the set has pictures of the plane target with the fan on, and says what both are."""
+    require_tables(found.rig, found.rig_file, "plane_target", "laser_fan")
     if not found.planes:
         raise InputError(
-            "there are no pictures of the plane target with the fan on",
+            Message("set.no_plane_pictures", "there are no pictures of the plane target with the fan on"),
             where=found.where("planes"),
-            todo="record five or more poses",
+            todo=Message("advice.record_poses", "record five or more poses"),
         )
 
 
@@ -214,7 +229,9 @@ def require_scan(found: RecordingSet) -> None:
     """InputError unless the set has frames of a scan."""
     if not found.frames:
         raise InputError(
-            "there are no frames of a scan", where=found.where("scan"), todo="record 30 or more sweep positions"
+            Message("set.no_frames", "there are no frames of a scan"),
+            where=found.where("scan"),
+            todo=Message("advice.record_sweeps", "record 30 or more sweep positions"),
         )
 
 
@@ -242,3 +259,43 @@ def _rig_hash(rig: Rig, places: Sequence[Path]) -> str:
 
 def _hash_of(path: Path) -> str:
     return hashlib.sha256(read_bytes(path)).hexdigest()
+
+
+def excludable(found: RecordingSet) -> tuple[str, ...]:
+    """All that can be left out of a set: views and frames as files, poses (on and off together) by their name."""
+    views = (found.name_of(path) for path in found.camera)
+    frames = (found.name_of(path) for path in found.frames)
+    return (*views, *(f"planes/{pair.name}" for pair in found.planes), *frames)
+
+
+def excluded_names(found: RecordingSet, typed: Iterable[str]) -> frozenset[str]:
+    """The names in `typed` as the options want them: a pose may also be named by one of its pictures.
+
+    Raises
+    ------
+    InputError
+        If there is no such picture in the set; names the nearest one.
+    """
+    known = excludable(found)
+    poses = {
+        found.name_of(path): f"planes/{pair.name}"
+        for pair in found.planes
+        for path in (pair.on, pair.off)
+        if path is not None
+    }
+    names = [poses.get(name, name) for name in (one.replace("\\", "/") for one in typed)]
+    for name in names:
+        if name not in known:
+            raise InputError(
+                Message("set.no_such_picture_to_leave_out", "there is no picture {name} to leave out", name=name),
+                where=found.name,
+                todo=_hint(name, known),
+            )
+    return frozenset(names)
+
+
+def _hint(name: str, known: tuple[str, ...]) -> Message:
+    near = get_close_matches(name, known, n=1, cutoff=0.5)
+    if near:
+        return Message("advice.nearest_picture", "the nearest is {name}", name=near[0])
+    return Message("advice.name_as_in_set", "name it as in the set: camera/view00.png, planes/pose00")

@@ -11,6 +11,7 @@ from PIL import Image
 
 from core.errors import InputError
 from core.files.pictures import is_picture
+from core.messages import Message
 
 _OFF = "_off"
 _REFERENCE = "reference"
@@ -32,7 +33,10 @@ def pictures_in(folder: Path | None) -> tuple[Path, ...]:
     try:
         found = [path for path in folder.iterdir() if is_picture(path)]
     except OSError as error:
-        raise InputError(f"cannot be listed ({error.strerror or error})", where=folder) from error
+        raise InputError(
+            Message("set.cannot_be_listed", "cannot be listed ({reason})", reason=str(error.strerror or error)),
+            where=folder,
+        ) from error
     return tuple(sorted(found, key=lambda path: path.name))
 
 
@@ -47,7 +51,11 @@ def plane_pairs(folder: Path | None) -> tuple[PlanePair, ...]:
         if stem.endswith(_OFF) and path not in partners:
             wanted = stem.removesuffix(_OFF) + path.suffix
             raise InputError(
-                f"there is no picture {wanted} with the fan on beside it", where=path, todo="add it or remove this one"
+                Message(
+                    "set.no_picture_with_fan", "there is no picture {wanted} with the fan on beside it", wanted=wanted
+                ),
+                where=path,
+                todo=Message("advice.add_or_remove", "add it or remove this one"),
             )
     return tuple(pairs)
 
@@ -58,9 +66,14 @@ def scan_frames(folder: Path | None) -> tuple[Path | None, tuple[Path, ...]]:
     references = [path for path in scan if path.stem.lower() == _REFERENCE]
     if len(references) > 1:
         raise InputError(
-            f"there are {len(references)} references ({', '.join(path.name for path in references)})",
+            Message(
+                "set.several_references",
+                "there are {references} references ({references2})",
+                references=len(references),
+                references2=tuple(path.name for path in references),
+            ),
             where=folder,
-            todo="keep one of them",
+            todo=Message("advice.keep_one", "keep one of them"),
         )
     return references[0] if references else None, tuple(path for path in scan if path not in references)
 
@@ -73,11 +86,25 @@ def check_sizes(paths: Sequence[Path]) -> None:
     usual = Counter(sizes.values()).most_common(1)[0][0]
     odd = [path for path, size in sizes.items() if size != usual]
     width, height = sizes[odd[0]]
-    others = f" (and {len(odd) - 1} more like it)" if len(odd) > 1 else ""
+    sizes_px = {"width": width, "height": height, "usual_width": usual[0], "usual_height": usual[1]}
     raise InputError(
-        f"the picture has {width} × {height} pixels{others}, but the others of the set have {usual[0]} × {usual[1]}",
+        Message(
+            "set.size_differs",
+            "the picture has {width} × {height} pixels, but the others of the set have {usual_width} × {usual_height}",
+            **sizes_px,
+        )
+        if len(odd) == 1
+        else Message(
+            "set.sizes_differ",
+            "the picture has {width} × {height} pixels (and {n} more like it), "
+            "but the others of the set have {usual_width} × {usual_height}",
+            n=len(odd) - 1,
+            **sizes_px,
+        ),
         where=odd[0],
-        todo="record all pictures with one camera setting, or take this one out",
+        todo=Message(
+            "advice.record_with_one_setting", "record all pictures with one camera setting, or take this one out"
+        ),
     )
 
 

@@ -10,7 +10,7 @@ from typing import get_args
 from core.acquire.source import Step
 from core.errors import InputError
 from core.files.atomic import cannot_write, make_folder, write_text
-from core.files.set_listing import pictures_in
+from core.files.recording.set_listing import pictures_in
 
 NOTE = Path("recordings") / ".unfinished.json"
 """Within the project; there only while something is recorded, or after a crash."""

@@ -8,16 +8,17 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import numpy as np
-from pydantic import Field, ValidationError, model_validator
+from pydantic import Field, model_validator
 
 from core import __version__
 from core.calibrate.board_shape import SHAPE_PARAMETERS, Board, BoardShape
 from core.calibrate.results import CAMERA_PARAMETERS, CameraCalibration, ViewQuality
-from core.files.atomic import write_text
-from core.files.complaints import Clash, complaint
-from core.files.json_text import read_json, rounded, to_json
-from core.files.result_file import Finite, Maybe, ResultFile, Row2, Row3, number
-from core.image.target_view import TargetView
+from core.files.complaints import Clash, checked
+from core.files.json_text import rounded, write_json
+from core.files.reading import read_json
+from core.files.tables import Finite, KeptMessage, OptionalMessage, OrNan, ResultFile, Row2, Row3, kept
+from core.image.targets.target_view import TargetView
+from core.messages import Command, Message
 from core.model import Camera, Pose
 from core.model.camera import DISTORTION_NAMES
 
@@ -33,16 +34,16 @@ class _Distortion(ResultFile):
 class _View(ResultFile):
     name: str
     used: bool
-    reason: str = ""
-    rms_px: Maybe = None
-    mean_px: Maybe = None
-    tilt_deg: Maybe = None
+    reason: OptionalMessage = None
+    rms_px: OrNan = math.nan
+    mean_px: OrNan = math.nan
+    tilt_deg: OrNan = math.nan
     rotation_vector: Row3
     translation_mm: Row3
     points_mm: list[Row3]
     uv_px: list[Row2]
     sigma_px: list[Finite]
-    residuals_px: list[list[Maybe]]
+    residuals_px: list[list[Finite | None]]
     counted: list[bool] = Field(default_factory=list)
 
 
@@ -64,25 +65,34 @@ class _CameraFile(ResultFile):
     matrix: list[Row3] = Field(min_length=3, max_length=3, description="3 × 3 finite numbers")
     distortion: _Distortion = Field(description="a table of k1, k2, p1, p2")
     covariance: list[list[Finite]] | None = Field(None, description="10 × 10 finite numbers")
-    rms_px: Maybe = None
-    mean_px: Maybe = None
-    coverage: Maybe = None
-    tilt_range_deg: Maybe = None
-    cross_validation_mm: Maybe = None
+    rms_px: OrNan = math.nan
+    mean_px: OrNan = math.nan
+    coverage: OrNan = math.nan
+    tilt_range_deg: OrNan = math.nan
+    cross_validation_mm: OrNan = math.nan
     board: BoardTable | None = None
     views: list[_View] = Field(default_factory=list)
-    notes: list[str] = Field(default_factory=list)
+    notes: list[KeptMessage] = Field(default_factory=list)
 
     @model_validator(mode="after")
     def _is_a_camera(self) -> _CameraFile:
         for i in range(2):
             if self.matrix[i][i] <= 0:
-                raise Clash(f"matrix[{i}][{i}]", f"is {self.matrix[i][i]:g}, but a focal length in pixels is above 0")
+                raise Clash(
+                    f"matrix[{i}][{i}]",
+                    Message(
+                        "camera.focal_length_not_positive",
+                        "is {matrix:g}, but a focal length in pixels is above 0",
+                        matrix=self.matrix[i][i],
+                    ),
+                )
         if self.matrix[1][0] != 0 or self.matrix[2] != [0, 0, 1]:
-            raise Clash("matrix", "is not of the form [[α, γ, u0], [0, β, v0], [0, 0, 1]]")
+            raise Clash(
+                "matrix", Message("camera.matrix_form", "is not of the form [[α, γ, u0], [0, β, v0], [0, 0, 1]]")
+            )
         size = len(CAMERA_PARAMETERS)
         if self.covariance is not None and [len(row) for row in self.covariance] != [size] * size:
-            raise Clash("covariance", f"is not {size} × {size} numbers")
+            raise Clash("covariance", Message("camera.covariance_shape", "is not {size} × {size} numbers", size=size))
         return self
 
 
@@ -95,28 +105,26 @@ def camera_id(camera: Camera) -> str:
 def write_camera(path: Path, calibration: CameraCalibration) -> None:
     """Write camera.json; InputError if it cannot be written."""
     camera = calibration.camera
-    write_text(
+    write_json(
         path,
-        to_json(
-            {
-                "image_size": camera.image_size,
-                "matrix": camera.matrix,
-                "distortion": dict(zip(DISTORTION_NAMES, camera.distortion.tolist(), strict=True)),
-                "rms_px": calibration.rms_px,
-                "mean_px": calibration.mean_px,
-                "sd": dict(calibration.sd),
-                "coverage": calibration.coverage,
-                "tilt_range_deg": math.degrees(calibration.tilt_range),
-                "cross_validation_mm": calibration.cross_validation_mm,
-                "notes": calibration.notes,
-                "id": camera_id(camera),
-                "version": __version__,
-                "parameters": CAMERA_PARAMETERS,
-                "covariance": calibration.covariance,
-                "board": board_table(calibration.board),
-                "views": [_view(quality) for quality in calibration.views],
-            }
-        ),
+        {
+            "image_size": camera.image_size,
+            "matrix": camera.matrix,
+            "distortion": dict(zip(DISTORTION_NAMES, camera.distortion.tolist(), strict=True)),
+            "rms_px": calibration.rms_px,
+            "mean_px": calibration.mean_px,
+            "sd": dict(calibration.sd),
+            "coverage": calibration.coverage,
+            "tilt_range_deg": math.degrees(calibration.tilt_range),
+            "cross_validation_mm": calibration.cross_validation_mm,
+            "notes": [kept(note) for note in calibration.notes],
+            "id": camera_id(camera),
+            "version": __version__,
+            "parameters": CAMERA_PARAMETERS,
+            "covariance": calibration.covariance,
+            "board": board_table(calibration.board),
+            "views": [_view(quality) for quality in calibration.views],
+        },
     )
 
 
@@ -128,11 +136,15 @@ def read_camera(path: Path) -> CameraCalibration:
     InputError
         If it is missing, or a value is not finite, absurd or of a wrong shape; names file and field.
     """
-    tables = read_json(path, todo="calibrate the camera first: trisect camera SET --out DIR")
-    try:
-        file = _CameraFile.model_validate(tables)
-    except ValidationError as error:
-        raise complaint(path, error, _CameraFile) from error
+    tables = read_json(
+        path,
+        todo=Message(
+            "advice.calibrate_camera_first",
+            "calibrate the camera first{command}",
+            command=Command("trisect camera SET --out DIR"),
+        ),
+    )
+    file = checked(_CameraFile, tables, path)
     distortion = file.distortion
     camera = Camera(
         (file.image_size[0], file.image_size[1]),
@@ -144,11 +156,11 @@ def read_camera(path: Path) -> CameraCalibration:
         camera=camera,
         covariance=np.zeros((size, size)) if file.covariance is None else np.array(file.covariance),
         views=tuple(_quality(view) for view in file.views),
-        rms_px=number(file.rms_px),
-        mean_px=number(file.mean_px),
-        coverage=number(file.coverage),
-        tilt_range=math.radians(number(file.tilt_range_deg)),
-        cross_validation_mm=number(file.cross_validation_mm),
+        rms_px=file.rms_px,
+        mean_px=file.mean_px,
+        coverage=file.coverage,
+        tilt_range=math.radians(file.tilt_range_deg),
+        cross_validation_mm=file.cross_validation_mm,
         notes=tuple(file.notes),
         board=board_shape(file.board),
     )
@@ -180,7 +192,7 @@ def _view(quality: ViewQuality) -> dict[str, Any]:
     return {
         "name": quality.view.name,
         "used": quality.used,
-        "reason": quality.reason,
+        "reason": kept(quality.reason),
         "rms_px": quality.rms_px,
         "mean_px": quality.mean_px,
         "tilt_deg": math.degrees(quality.tilt),
@@ -204,9 +216,9 @@ def _quality(view: _View) -> ViewQuality:
         ),
         pose=Pose.from_vector([*view.rotation_vector, *view.translation_mm]),
         residuals=np.array(view.residuals_px, dtype=np.float64).reshape(-1, 2),
-        rms_px=number(view.rms_px),
-        mean_px=number(view.mean_px),
-        tilt=math.radians(number(view.tilt_deg)),
+        rms_px=view.rms_px,
+        mean_px=view.mean_px,
+        tilt=math.radians(view.tilt_deg),
         used=view.used,
         reason=view.reason,
         counted=np.array(view.counted, dtype=np.bool_),

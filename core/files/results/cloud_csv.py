@@ -9,7 +9,7 @@ import numpy as np
 
 from core.files.atomic import write_bytes
 from core.progress import Progress, silent
-from core.scan.cloud import Cloud
+from core.scan.surface.cloud import Cloud
 
 POINT_COLUMNS = {
     "x_mm": "%.6f",

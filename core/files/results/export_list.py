@@ -1,6 +1,7 @@
 """Everything that can be handed over, by name: what it is called, how its file is called and what it is made from.
 
-Apart from what writes it (`core.pipeline.export_kinds`), because a window lists it without needing those libraries.
+Apart from what writes it (`core.pipeline.steps.export_kinds`), because a window lists it without needing those
+libraries.
 """
 
 from __future__ import annotations
@@ -10,6 +11,8 @@ from dataclasses import dataclass
 from pathlib import PurePath
 from types import MappingProxyType
 from typing import Literal
+
+from core.messages import label
 
 Needs = Literal["camera", "scan", "inspect"]
 """The step whose result something is written from."""
@@ -44,23 +47,23 @@ class ExportKind:
 
 
 _ALL = (
-    ExportKind("pdf", "Report (PDF)", "report.pdf", "scan"),
-    ExportKind("cloud", "Point cloud (PLY)", "cloud.ply", "scan"),
-    ExportKind("e57", "Point cloud, σ as intensity (E57)", "cloud.e57", "scan"),
-    ExportKind("csv", "Points as a table (CSV)", "points.csv", "scan"),
-    ExportKind("mesh", "Surface (PLY)", "mesh.ply", "scan", "surface"),
-    ExportKind("stl", "Surface (STL)", "mesh.stl", "scan"),
-    ExportKind("obj", "Surface (OBJ)", "mesh.obj", "scan"),
-    ExportKind("3mf", "Surface (3MF)", "mesh.3mf", "scan"),
-    ExportKind("table", "Results as a table (CSV)", "result.csv", "inspect", "results"),
-    ExportKind("xlsx", "Results as a workbook (XLSX)", "result.xlsx", "inspect", "results"),
-    ExportKind("results", "Results with their schema (JSON)", "result.json", "inspect", "results"),
-    ExportKind("dfq", "Results for statistics (Q-DAS DFQ)", "result.dfq", "inspect", "results"),
-    ExportKind("qif", "Results (QIF 3.0)", "result.qif", "inspect", "results"),
-    ExportKind("json", "Thickness (JSON)", "gauge.json", "inspect", "thickness"),
-    ExportKind("opencv", "Camera (OpenCV YAML)", "camera_opencv.yml", "camera", "camera"),
-    ExportKind("opencv-json", "Camera (OpenCV JSON)", "camera_opencv.json", "camera", "camera"),
-    ExportKind("ros", "Camera (ROS camera_info)", "camera_info.yaml", "camera", "camera"),
+    ExportKind("pdf", label("Report (PDF)"), "report.pdf", "scan"),
+    ExportKind("cloud", label("Point cloud (PLY)"), "cloud.ply", "scan"),
+    ExportKind("e57", label("Point cloud, σ as intensity (E57)"), "cloud.e57", "scan"),
+    ExportKind("csv", label("Points as a table (CSV)"), "points.csv", "scan"),
+    ExportKind("mesh", label("Surface (PLY)"), "mesh.ply", "scan", label("surface")),
+    ExportKind("stl", label("Surface (STL)"), "mesh.stl", "scan"),
+    ExportKind("obj", label("Surface (OBJ)"), "mesh.obj", "scan"),
+    ExportKind("3mf", label("Surface (3MF)"), "mesh.3mf", "scan"),
+    ExportKind("table", label("Results as a table (CSV)"), "result.csv", "inspect", label("results")),
+    ExportKind("xlsx", label("Results as a workbook (XLSX)"), "result.xlsx", "inspect", label("results")),
+    ExportKind("results", label("Results with their schema (JSON)"), "result.json", "inspect", label("results")),
+    ExportKind("dfq", label("Results for statistics (Q-DAS DFQ)"), "result.dfq", "inspect", label("results")),
+    ExportKind("qif", label("Results (QIF 3.0)"), "result.qif", "inspect", label("results")),
+    ExportKind("json", label("Thickness (JSON)"), "gauge.json", "inspect", label("thickness")),
+    ExportKind("opencv", label("Camera (OpenCV YAML)"), "camera_opencv.yml", "camera", label("camera")),
+    ExportKind("opencv-json", label("Camera (OpenCV JSON)"), "camera_opencv.json", "camera", label("camera")),
+    ExportKind("ros", label("Camera (ROS camera_info)"), "camera_info.yaml", "camera", label("camera")),
 )
 
 EXPORTS: Mapping[str, ExportKind] = MappingProxyType({kind.name: kind for kind in _ALL})

@@ -8,36 +8,37 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import numpy as np
-from pydantic import Field, ValidationError, model_validator
+from pydantic import Field, model_validator
 
 from core import __version__
 from core.calibrate.results import CAMERA_PARAMETERS, FanCalibration, PlanePose
 from core.errors import InputError
-from core.files.atomic import write_text
-from core.files.camera_file import BoardTable, board_shape, board_table, camera_id
-from core.files.complaints import Clash, complaint
-from core.files.json_text import read_json, to_json
-from core.files.result_file import Finite, Maybe, ResultFile, Row3, number
+from core.files.complaints import Clash, checked
+from core.files.json_text import write_json
+from core.files.reading import read_json
+from core.files.results.camera_file import BoardTable, board_shape, board_table, camera_id
+from core.files.tables import Finite, KeptMessage, OptionalMessage, OrNan, ResultFile, Row3, kept
+from core.messages import Command, Message, label
 from core.model import Camera, Fan, LightPlane, Pose
 
 _PARAMETERS = len(CAMERA_PARAMETERS)
-_VECTOR = "three finite numbers, not all zero"
+_VECTOR = label("three finite numbers, not all zero")
 
 
 class _Plane(ResultFile):
     pi: Row3 = Field(description=_VECTOR)
     normal: Row3 | None = None
     d_mm: Finite | None = None
-    rms_mm: Maybe = None
+    rms_mm: OrNan = math.nan
 
     @model_validator(mode="after")
     def _is_a_plane(self) -> _Plane:
         if not any(self.pi):
-            raise Clash("pi", f"is [0, 0, 0], not {_VECTOR}")
+            raise Clash("pi", Message("fan.zero_vector", "is [0, 0, 0], not {vector}", vector=_VECTOR))
         if self.normal is not None and self.d_mm is not None:
             said = [coordinate * self.d_mm for coordinate in self.pi]
             if not np.allclose(said, self.normal, rtol=0, atol=1e-6):
-                raise Clash("normal", "and d_mm do not agree with pi")
+                raise Clash("normal", Message("fan.normal_disagrees", "and d_mm do not agree with pi"))
         return self
 
 
@@ -49,10 +50,10 @@ class _Angles(ResultFile):
 class _Pose(ResultFile):
     name: str
     used: bool
-    reason: str = ""
-    rms_mm: Maybe = None
-    prediction_mm: Maybe = None
-    target_rms_px: Maybe = None
+    reason: OptionalMessage = None
+    rms_mm: OrNan = math.nan
+    prediction_mm: OrNan = math.nan
+    target_rms_px: OrNan = math.nan
     rotation_vector: Row3
     translation_mm: Row3
 
@@ -74,25 +75,50 @@ class _PlanesFile(ResultFile):
     covariance: list[list[Finite]] | None = Field(None, description="3N × 3N finite numbers for N planes")
     by_camera: list[list[Finite]] | None = Field(None, description="3N × 10 finite numbers for N planes")
     scale_sd: Finite = Field(0.0, ge=0, le=0.1, description="a share of the target's size from 0 to 0.1")
-    cross_validation_mm: Maybe = None
+    cross_validation_mm: OrNan = math.nan
     camera: _Camera | None = None
     board: BoardTable | None = None
-    pencil_gap_mm: Maybe = None
+    pencil_gap_mm: OrNan = math.nan
     constraint_suits: bool | None = None
-    verdict: str = ""
+    verdict: OptionalMessage = None
     camera_id: str = ""
     poses: list[_Pose] = Field(default_factory=list)
-    notes: list[str] = Field(default_factory=list)
+    notes: list[KeptMessage] = Field(default_factory=list)
 
     @model_validator(mode="after")
     def _shapes(self) -> _PlanesFile:
         size = 3 * len(self.planes)
         if self.covariance is not None and [len(row) for row in self.covariance] != [size] * size:
-            raise Clash("covariance", f"is not {size} × {size} numbers, as {len(self.planes)} planes need")
+            raise Clash(
+                "covariance",
+                Message(
+                    "fan.covariance_shape",
+                    "is not {size} × {size} numbers, as {planes} planes need",
+                    size=size,
+                    planes=len(self.planes),
+                ),
+            )
         if self.by_camera is not None and [len(row) for row in self.by_camera] != [_PARAMETERS] * size:
-            raise Clash("by_camera", f"is not {size} × {_PARAMETERS} numbers, as {len(self.planes)} planes need")
+            raise Clash(
+                "by_camera",
+                Message(
+                    "fan.sensitivity_shape",
+                    "is not {size} × {parameters} numbers, as {planes} planes need",
+                    size=size,
+                    parameters=_PARAMETERS,
+                    planes=len(self.planes),
+                ),
+            )
         if self.free_planes and len(self.free_planes) != len(self.planes):
-            raise Clash("free_planes", f"has {len(self.free_planes)} planes, not {len(self.planes)} as planes has")
+            raise Clash(
+                "free_planes",
+                Message(
+                    "fan.free_planes_count",
+                    "has {free_planes} planes, not {planes} as planes has",
+                    free_planes=len(self.free_planes),
+                    planes=len(self.planes),
+                ),
+            )
         return self
 
 
@@ -107,32 +133,30 @@ def write_fan(path: Path, calibration: FanCalibration, camera: Camera) -> None:
         "constrained": [math.degrees(angle) for angle in calibration.angles],
         "free": [math.degrees(angle) for angle in calibration.free_angles],
     }
-    write_text(
+    write_json(
         path,
-        to_json(
-            {
-                "planes": [
-                    _plane(plane) | {"rms_mm": rms}
-                    for plane, rms in zip(calibration.fan.planes, calibration.rms_mm, strict=True)
-                ],
-                "angles_deg": degrees,
-                "cross_validation_mm": calibration.cross_validation_mm,
-                "pencil_gap_mm": calibration.pencil_gap_mm,
-                "constraint_suits": calibration.constraint_suits,
-                "verdict": calibration.verdict,
-                "notes": calibration.notes,
-                "free_planes": [_plane(plane) for plane in calibration.free.planes],
-                "id": fan_id(calibration.fan),
-                "camera_id": camera_id(camera),
-                "version": __version__,
-                "covariance": calibration.fan.covariance,
-                "by_camera": calibration.by_camera,
-                "scale_sd": calibration.scale_sd,
-                "camera": _corrected_camera(calibration),
-                "board": board_table(calibration.board) if calibration.board.values.any() else None,
-                "poses": [_pose(pose) for pose in calibration.poses],
-            }
-        ),
+        {
+            "planes": [
+                _plane(plane) | {"rms_mm": rms}
+                for plane, rms in zip(calibration.fan.planes, calibration.rms_mm, strict=True)
+            ],
+            "angles_deg": degrees,
+            "cross_validation_mm": calibration.cross_validation_mm,
+            "pencil_gap_mm": calibration.pencil_gap_mm,
+            "constraint_suits": calibration.constraint_suits,
+            "verdict": kept(calibration.verdict),
+            "notes": [kept(note) for note in calibration.notes],
+            "free_planes": [_plane(plane) for plane in calibration.free.planes],
+            "id": fan_id(calibration.fan),
+            "camera_id": camera_id(camera),
+            "version": __version__,
+            "covariance": calibration.fan.covariance,
+            "by_camera": calibration.by_camera,
+            "scale_sd": calibration.scale_sd,
+            "camera": _corrected_camera(calibration),
+            "board": board_table(calibration.board) if calibration.board.values.any() else None,
+            "poses": [_pose(pose) for pose in calibration.poses],
+        },
     )
 
 
@@ -146,16 +170,29 @@ def read_fan(path: Path, camera: Camera) -> FanCalibration:
     InputError
         If it is missing, a value is not finite, zero or of a wrong shape, or it belongs to another camera calibration.
     """
-    tables = read_json(path, todo="calibrate the fan first: trisect planes SET --out DIR")
-    try:
-        file = _PlanesFile.model_validate(tables)
-    except ValidationError as error:
-        raise complaint(path, error, _PlanesFile) from error
+    tables = read_json(
+        path,
+        todo=Message(
+            "advice.calibrate_fan_first",
+            "calibrate the fan first{command}",
+            command=Command("trisect planes SET --out DIR"),
+        ),
+    )
+    file = checked(_PlanesFile, tables, path)
     if file.camera_id and file.camera_id != camera_id(camera):
         raise InputError(
-            f"camera_id is {file.camera_id}, but camera.json is {camera_id(camera)}: the camera was calibrated again",
+            Message(
+                "fan.other_camera",
+                "camera_id is {camera_id}, but camera.json is {camera_id2}: the camera was calibrated again",
+                camera_id=file.camera_id,
+                camera_id2=camera_id(camera),
+            ),
             where=path,
-            todo="calibrate the fan again: trisect planes SET --out DIR",
+            todo=Message(
+                "advice.calibrate_fan_again",
+                "calibrate the fan again{command}",
+                command=Command("trisect planes SET --out DIR"),
+            ),
         )
     fan = Fan(
         tuple(LightPlane(np.array(plane.pi)) for plane in file.planes),
@@ -165,17 +202,17 @@ def read_fan(path: Path, camera: Camera) -> FanCalibration:
     return FanCalibration(
         fan=fan,
         free=free,
-        rms_mm=tuple(number(plane.rms_mm) for plane in file.planes),
+        rms_mm=tuple(plane.rms_mm for plane in file.planes),
         angles=tuple(math.radians(angle) for angle in file.angles_deg.constrained) or fan.angles,
         free_angles=tuple(math.radians(angle) for angle in file.angles_deg.free) or free.angles,
-        pencil_gap_mm=number(file.pencil_gap_mm),
+        pencil_gap_mm=file.pencil_gap_mm,
         constraint_suits=file.constraint_suits,
         verdict=file.verdict,
         poses=tuple(_plane_pose(pose) for pose in file.poses),
         notes=tuple(file.notes),
         by_camera=None if file.by_camera is None else np.array(file.by_camera),
         scale_sd=file.scale_sd,
-        cross_validation_mm=number(file.cross_validation_mm),
+        cross_validation_mm=file.cross_validation_mm,
         camera=_camera(path, file.camera, camera.image_size),
         camera_covariance=None if file.camera is None else np.array(file.camera.covariance),
         board=board_shape(file.board),
@@ -200,7 +237,11 @@ def _camera(path: Path, table: _Camera | None, image_size: tuple[int, int]) -> C
     try:
         return Camera(image_size, np.array(table.matrix), np.array(table.distortion))
     except ValueError as error:
-        raise InputError(f"camera is none: {error}", where=path, todo="calibrate the fan again") from error
+        raise InputError(
+            Message("fan.camera_invalid", "camera is none: {reason}", reason=str(error)),
+            where=path,
+            todo=Message("advice.solve_fan_again", "calibrate the fan again"),
+        ) from error
 
 
 def _plane(plane: LightPlane) -> dict[str, Any]:
@@ -212,7 +253,7 @@ def _pose(pose: PlanePose) -> dict[str, Any]:
     return {
         "name": pose.name,
         "used": pose.used,
-        "reason": pose.reason,
+        "reason": kept(pose.reason),
         "rms_mm": pose.rms_mm,
         "prediction_mm": pose.prediction_mm,
         "target_rms_px": pose.target_rms_px,
@@ -226,11 +267,11 @@ def _plane_pose(pose: _Pose) -> PlanePose:
     return PlanePose(
         name=pose.name,
         pose=Pose.from_vector([*pose.rotation_vector, *pose.translation_mm]),
-        target_rms_px=number(pose.target_rms_px),
+        target_rms_px=pose.target_rms_px,
         points=(),
         distances=(),
-        rms_mm=number(pose.rms_mm),
+        rms_mm=pose.rms_mm,
         used=pose.used,
-        prediction_mm=number(pose.prediction_mm),
+        prediction_mm=pose.prediction_mm,
         reason=pose.reason,
     )

@@ -4,26 +4,32 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, ValidationError
+from pydantic import BeforeValidator, Field
 
 from core import __version__
 from core.errors import InputError
 from core.files.arrays_file import read_arrays, write_arrays
 from core.files.atomic import write_text
-from core.files.budget_rows import BudgetRow, row_tables
-from core.files.complaints import complaint
-from core.files.json_text import read_json, to_json
-from core.files.result_file import Finite, ResultFile, Row3
+from core.files.complaints import checked
+from core.files.json_text import to_json
+from core.files.reading import read_json
+from core.files.tables import BudgetRow, Finite, KeptMessage, OptionalMessage, ResultFile, Row3, kept, row_tables
 from core.inspect.characteristic import Characteristic, Limits
+from core.inspect.conformity import Verdict
 from core.inspect.results import Contribution, Face, GaugeResult
+from core.messages import Command, Message
 from core.model import LightPlane
-from core.scan.cloud import Cloud
+from core.scan.surface.cloud import Cloud
 
-_TODO = "measure the thickness first: trisect gauge SET --out DIR"
+_TODO = Message(
+    "advice.measure_thickness_first",
+    "measure the thickness first{command}",
+    command=Command("trisect gauge SET --out DIR"),
+)
 
 
 class _Pair(ResultFile):
@@ -57,10 +63,10 @@ class _GaugeFile(ResultFile):
     faces: _Faces = Field(description="a table of upper and lower")
     nominal_mm: Finite | None = None
     tolerance_mm: Finite | None = None
-    verdict: str = ""
-    rule: str = ""
+    verdict: Annotated[Verdict, BeforeValidator(Verdict)] = Verdict.NONE
+    rule: OptionalMessage = None
     normal: Row3 | None = None
-    notes: list[str] = Field(default_factory=list)
+    notes: list[KeptMessage] = Field(default_factory=list)
     budget: list[_Contribution] = Field(default_factory=list)
     calibration_id: str = ""
 
@@ -89,8 +95,8 @@ def write_gauge(path: Path, gauge: GaugeResult, calibration_id: str) -> None:
         to_json(
             {
                 **gauge_summary(gauge),
-                "rule": gauge.rule,
-                "notes": gauge.notes,
+                "rule": kept(gauge.rule),
+                "notes": [kept(note) for note in gauge.notes],
                 "points": dict(zip(("upper", "lower"), gauge.points_used, strict=True)),
                 "normal": gauge.normal,
                 "budget": [_row(row, gauge.u_mm) for row in gauge.budget],
@@ -142,10 +148,7 @@ def read_thickness(path: Path) -> Characteristic:
 
 def _read(path: Path) -> _GaugeFile:
     tables = read_json(path, todo=_TODO)
-    try:
-        return _GaugeFile.model_validate(tables)
-    except ValidationError as error:
-        raise complaint(path, error, _GaugeFile) from error
+    return checked(_GaugeFile, tables, path)
 
 
 def _row(row: Contribution, u_mm: float) -> dict[str, Any]:
@@ -167,5 +170,9 @@ def _members(path: Path, count: int) -> dict[str, NDArray[np.int64]]:
     members = {name: np.asarray(arrays[name], dtype=np.int64) for name in ("upper", "lower")}
     for name, indices in members.items():
         if indices.ndim != 1 or (len(indices) and (indices.min() < 0 or indices.max() >= count)):
-            raise InputError(f"{name} names points that the cloud does not have", where=path, todo=_TODO)
+            raise InputError(
+                Message("file.points_beyond_cloud", "{name} names points that the cloud does not have", name=name),
+                where=path,
+                todo=_TODO,
+            )
     return members

@@ -10,26 +10,30 @@ from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, ValidationError
+from pydantic import Field
 
 from core import __version__
 from core.errors import InputError
 from core.files.arrays_file import read_arrays, write_arrays
 from core.files.atomic import write_text
-from core.files.budget_rows import BudgetRow, row_tables
-from core.files.complaints import complaint
-from core.files.json_text import read_json, to_json
-from core.files.result_file import Finite, ResultFile
+from core.files.complaints import checked
+from core.files.json_text import to_json
+from core.files.reading import read_json
+from core.files.tables import BudgetRow, Finite, KeptMessage, OptionalMessage, ResultFile, kept, row_tables
 from core.inspect.characteristic import Characteristic, Limits
 from core.inspect.evaluate import Inspection
 from core.inspect.features.measured import FeatureResult
 from core.inspect.results import Contribution
-from core.inspect.shapes import Ball, Levels, Tube
+from core.messages import Command, Message
 
 NAME = "inspection.json"
 """Among the results of a scan."""
 SCHEMA = 1
-_TODO = "inspect the scan first: trisect inspect SET --plan plan.toml --out DIR"
+_TODO = Message(
+    "advice.inspect_scan_first",
+    "inspect the scan first{command}",
+    command=Command("trisect inspect SET --plan plan.toml --out DIR"),
+)
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -43,7 +47,7 @@ class InspectionFile:
     kinds
         Kind of the feature each comes from, by the feature's name.
     problems, notes
-        Whole sentences.
+        Why features were not measured, and what else is to be known.
     points
         Indices of the points of the cloud that each feature used, by its name.
     calibration_id
@@ -52,8 +56,8 @@ class InspectionFile:
 
     characteristics: tuple[Characteristic, ...]
     kinds: dict[str, str]
-    problems: tuple[str, ...]
-    notes: tuple[str, ...]
+    problems: tuple[Message, ...]
+    notes: tuple[Message, ...]
     points: dict[str, NDArray[np.int64]]
     calibration_id: str
 
@@ -81,22 +85,22 @@ class _Characteristic(ResultFile):
     quantity: Literal["length", "angle"] = "length"
     limits: _Limits | None = None
     complete: bool = True
-    rule: str = ""
-    notes: list[str] = Field(default_factory=list)
+    rule: OptionalMessage = None
+    notes: list[KeptMessage] = Field(default_factory=list)
     budget: list[_Contribution] = Field(default_factory=list)
 
 
 class _Feature(ResultFile):
     name: str
     kind: str
-    problem: str = ""
+    problem: OptionalMessage = None
 
 
 class _InspectionFile(ResultFile):
     schema_version: Literal[1] = Field(description="1: this file is of another version of Trisect")
     characteristics: list[_Characteristic] = Field(description="a list of characteristics")
     features: list[_Feature] = Field(default_factory=list)
-    notes: list[str] = Field(default_factory=list)
+    notes: list[KeptMessage] = Field(default_factory=list)
     calibration_id: str = ""
 
 
@@ -111,7 +115,7 @@ def inspection_values(inspection: Inspection) -> dict[str, Any]:
         ],
         "features": [_feature(result) for result in inspection.results],
         "pose_camera_part": None if pose is None else {"rotation": pose.rotation, "translation_mm": pose.translation},
-        "notes": inspection.notes,
+        "notes": [kept(note) for note in inspection.notes],
     }
 
 
@@ -144,10 +148,7 @@ def read_inspection(path: Path) -> InspectionFile:
         If it is missing, damaged or a value is absurd; names it.
     """
     tables = read_json(path, todo=_TODO)
-    try:
-        file = _InspectionFile.model_validate(tables)
-    except ValidationError as error:
-        raise complaint(path, error, _InspectionFile) from error
+    file = checked(_InspectionFile, tables, path)
     members = path.with_suffix(".npz")
     arrays = read_arrays(members, (), todo=_TODO) if members.exists() else {}
     points = {
@@ -182,8 +183,8 @@ def _row(row: Characteristic, feature: str) -> dict[str, Any]:
         "deviation": row.deviation,
         "verdict": row.verdict,
         "complete": row.complete,
-        "rule": row.rule,
-        "notes": row.notes,
+        "rule": kept(row.rule),
+        "notes": [kept(note) for note in row.notes],
         "budget": [row_tables(one, "u") for one in row.budget],
     }
 
@@ -192,20 +193,11 @@ def _feature(result: FeatureResult) -> dict[str, Any]:
     return {
         "name": result.spec.name,
         "kind": result.spec.kind,
-        "problem": result.problem,
+        "problem": kept(result.problem),
         "points": len(result.indices),
         "rms_mm": float(np.sqrt(np.mean(result.residuals**2))) if len(result.residuals) else None,
-        "shape": None if result.shape is None else _shape(result.shape),
+        "shape": None if result.shape is None else result.shape.values(),
     }
-
-
-def _shape(shape: Levels | Ball | Tube) -> dict[str, Any]:
-    """The fitted surface in the camera frame, mm."""
-    if isinstance(shape, Ball):
-        return {"centre": shape.centre, "radius_mm": shape.radius}
-    if isinstance(shape, Tube):
-        return {"centre": shape.centre, "direction": shape.direction, "radius_mm": shape.radius}
-    return {"normal": shape.outward_normal, "centres": shape.centres}
 
 
 def _characteristic(row: _Characteristic, path: Path) -> Characteristic:
@@ -214,7 +206,11 @@ def _characteristic(row: _Characteristic, path: Path) -> Characteristic:
         lower = -math.inf if row.limits.lower is None else row.limits.lower
         upper = math.inf if row.limits.upper is None else row.limits.upper
         if lower > upper:
-            raise InputError(f"the limits of {row.name} are not in order", where=path, todo=_TODO)
+            raise InputError(
+                Message("inspection.limits_out_of_order", "the limits of {name} are not in order", name=row.name),
+                where=path,
+                todo=_TODO,
+            )
         limits = Limits(row.limits.nominal, lower, upper)
     return Characteristic(
         name=row.name,

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from core import __version__
 from core.files.atomic import write_bytes, write_text
 from core.model.arrays import Array
-from core.scan.surface import Mesh
+from core.scan.surface.fused_surface import Mesh
 
 _EPOCH = (1980, 1, 1, 0, 0, 0)
 """The time of all parts of a 3MF file, so that the same mesh gives the same bytes."""
@@ -97,3 +97,26 @@ def _object(number: int, name: str, vertices: Array, triangles: NDArray[np.int64
     faces = "".join(f'<triangle v1="{a}" v2="{b}" v3="{c}"/>' for a, b, c in corners.reshape(-1, 3).tolist())
     shape = f"<mesh><vertices>{places}</vertices><triangles>{faces}</triangles></mesh>"
     return f'<object id="{number}" type="surface" name={quoteattr(name)}>{shape}</object>'
+
+
+_HEAD = 80
+_TRIANGLE = np.dtype([("normal", "<f4", (3,)), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+
+
+def write_stl(path: Path, mesh: Mesh, calibration_id: str = "") -> None:
+    """Write the triangles of `mesh` as binary STL, in mm, in the camera frame; normals point towards the camera.
+
+    Raises
+    ------
+    InputError
+        If it cannot be written.
+    """
+    triangles = np.zeros(len(mesh.triangles), dtype=_TRIANGLE)
+    corners = mesh.vertices[mesh.triangles]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
+    triangles["normal"] = np.divide(normals, lengths, out=np.zeros_like(normals), where=lengths > 0)
+    triangles["corners"] = corners
+    head = f"Trisect {__version__}; unit mm; calibration {calibration_id}".encode("ascii", "replace")[:_HEAD]
+    count = np.array(len(triangles), dtype="<u4")
+    write_bytes(path, head.ljust(_HEAD) + count.tobytes() + triangles.tobytes())

@@ -7,10 +7,11 @@ from pathlib import Path
 import numpy as np
 
 from core.errors import InputError
-from core.inspect.inspection_plan import InspectionPlan
-from core.scan.triangles import Triangles
+from core.inspect.plan.inspection_plan import InspectionPlan
+from core.messages import Message
+from core.scan.surface.triangles import Triangles
 
-_TODO = "export the part again as STL, in mm"
+_TODO = Message("advice.export_stl_again", "export the part again as STL, in mm")
 
 
 def read_nominal(path: Path) -> Triangles:
@@ -24,17 +25,33 @@ def read_nominal(path: Path) -> Triangles:
     import trimesh  # slow to import, and only this function needs it
 
     if not path.is_file():
-        raise InputError("the nominal surface is missing", where=path, todo="name an STL file beside the plan")
+        raise InputError(
+            Message("inspection.nominal_surface_missing", "the nominal surface is missing"),
+            where=path,
+            todo=Message("advice.name_stl_beside_plan", "name an STL file beside the plan"),
+        )
     try:
         loaded = trimesh.load_mesh(str(path), file_type="stl", process=False)
         corners = np.asarray(loaded.triangles, dtype=np.float64)
     except (OSError, ValueError, AttributeError, IndexError, KeyError) as problem:
-        raise InputError(f"it cannot be read as an STL mesh ({problem})", where=path, todo=_TODO) from problem
+        raise InputError(
+            Message(
+                "inspection.nominal_unreadable", "it cannot be read as an STL mesh ({reason})", reason=str(problem)
+            ),
+            where=path,
+            todo=_TODO,
+        ) from problem
     if not len(corners) or not np.isfinite(corners).all():
-        raise InputError("it holds no usable triangle", where=path, todo=_TODO)
+        raise InputError(
+            Message("inspection.nominal_without_triangle", "it holds no usable triangle"), where=path, todo=_TODO
+        )
     area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
     if not (area > 0).any():
-        raise InputError("all of its triangles are without area", where=path, todo=_TODO)
+        raise InputError(
+            Message("inspection.nominal_without_area", "all of its triangles are without area"),
+            where=path,
+            todo=_TODO,
+        )
     return Triangles(corners[area > 0])
 
 

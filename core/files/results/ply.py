@@ -15,9 +15,11 @@ from plyfile import PlyData, PlyElement, PlyParseError
 from core import __version__
 from core.errors import InputError
 from core.files.atomic import write_bytes
+from core.files.reading import MISSING, cannot_read
+from core.messages import Command, Message
 from core.model.arrays import Array
-from core.scan.cloud import Cloud
-from core.scan.surface import Mesh
+from core.scan.surface.cloud import Cloud
+from core.scan.surface.fused_surface import Mesh
 
 _COMMON = "sigma_common"
 _NORMALS = [("nx", "f4"), ("ny", "f4"), ("nz", "f4")]
@@ -32,6 +34,10 @@ _CLOUD = [
 _MESH = [("x", "f4"), ("y", "f4"), ("z", "f4"), *_NORMALS, ("sigma", "f4")]
 _FILLED = "filled"
 _CALIBRATION = "calibration "
+
+_TODO = Message(
+    "advice.measure_scan_first", "measure the scan first{command}", command=Command("trisect scan SET --out DIR")
+)
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -73,7 +79,7 @@ def read_cloud(path: Path) -> CloudFile:
     InputError
         If it is missing, damaged, lacks a property or holds values that are not finite; names it.
     """
-    data = _read(path, "measure the scan first: trisect scan SET --out DIR")
+    data = _read(path, _TODO)
     vertices = _element(data, "vertex", [name for name, _ in _CLOUD if name != _COMMON], path)
     known = _COMMON in (vertices.dtype.names or ())  # files of earlier versions have none
 
@@ -83,9 +89,18 @@ def read_cloud(path: Path) -> CloudFile:
     for name in ("x", "y", "z", "sigma", "image_u", "image_v", *([_COMMON] if known else [])):
         wrong = int(np.count_nonzero(~np.isfinite(vertices[name])))
         if wrong:
-            raise InputError(f"property {name} is not finite in {wrong} of {len(vertices)} points", where=path)
+            raise InputError(
+                Message(
+                    "file.property_not_finite",
+                    "property {name} is not finite in {wrong} of {vertices} points",
+                    name=name,
+                    wrong=wrong,
+                    vertices=len(vertices),
+                ),
+                where=path,
+            )
     if np.any(vertices["sigma"] <= 0):
-        raise InputError("property sigma is not above 0 in every point", where=path)
+        raise InputError(Message("file.sigma_not_positive", "property sigma is not above 0 in every point"), where=path)
     cloud = Cloud(
         points=columns("x", "y", "z"),
         uv=columns("image_u", "image_v"),
@@ -130,12 +145,14 @@ def read_mesh(path: Path) -> Mesh:
     InputError
         If it is missing, damaged or lacks a property; names it.
     """
-    data = _read(path, "measure the scan first: trisect scan SET --out DIR")
+    data = _read(path, _TODO)
     vertices = _element(data, "vertex", [name for name, _ in _MESH], path)
     faces = _element(data, "face", ["vertex_indices"], path)
     corners = np.array(faces["vertex_indices"], dtype=np.int64).reshape(-1, 3)
     if len(corners) and (corners.min() < 0 or corners.max() >= len(vertices)):
-        raise InputError("a triangle names a vertex that is not there", where=path)
+        raise InputError(
+            Message("file.triangle_without_vertex", "a triangle names a vertex that is not there"), where=path
+        )
     return Mesh(
         vertices=np.column_stack([vertices[name] for name in ("x", "y", "z")]).astype(np.float64),
         normals=np.column_stack([vertices[name] for name in ("nx", "ny", "nz")]).astype(np.float64),
@@ -159,24 +176,36 @@ def _write(path: Path, elements: list[PlyElement], comments: list[str], calibrat
     write_bytes(path, text.getvalue())
 
 
-def _read(path: Path, todo: str) -> PlyData:
+def _read(path: Path, todo: Message) -> PlyData:
     """The whole file, mapped into memory: reading it row by row would take seconds."""
     if not path.exists():
-        raise InputError("the file is missing", where=path, todo=todo)
+        raise InputError(MISSING, where=path, todo=todo)
     try:
         return PlyData.read(str(path), known_list_len={"face": {"vertex_indices": 3}})
     except (PlyParseError, UnicodeDecodeError, ValueError, EOFError) as error:
-        raise InputError(f"this is no whole PLY file ({error})", where=path, todo="make it again") from error
+        raise InputError(
+            Message("file.no_whole_ply", "this is no whole PLY file ({reason})", reason=str(error)),
+            where=path,
+            todo=Message("advice.make_file_again", "make it again"),
+        ) from error
     except OSError as error:
-        raise InputError(f"cannot be read ({error.strerror or error})", where=path) from error
+        raise cannot_read(path, error) from error
 
 
 def _element(data: PlyData, name: str, properties: Sequence[str], path: Path) -> NDArray[Any]:
     """The rows of one element, all `properties` there."""
     if name not in data:
-        raise InputError(f"there is no element {name}", where=path)
+        raise InputError(Message("file.no_element", "there is no element {name}", name=name), where=path)
     rows: NDArray[Any] = data[name].data
     missing = [one for one in properties if one not in (rows.dtype.names or ())]
     if missing:
-        raise InputError(f"element {name} lacks the property {missing[0]}", where=path)
+        raise InputError(
+            Message(
+                "file.element_lacks_property",
+                "element {name} lacks the property {missing}",
+                name=name,
+                missing=missing[0],
+            ),
+            where=path,
+        )
     return rows

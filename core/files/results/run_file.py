@@ -12,21 +12,21 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
-from pydantic import Field, ValidationError
+from pydantic import Field
 
 from core import __version__
-from core.errors import InputError
-from core.files.atomic import write_text
-from core.files.complaints import complaint
-from core.files.json_text import read_json, to_json
-from core.files.project_tables import Time
-from core.files.result_file import Finite, Maybe, ResultFile
-from core.scan.results import FrameRecord
+from core.files.complaints import checked
+from core.files.json_text import write_json
+from core.files.reading import read_json
+from core.files.tables import Finite, KeptMessage, OptionalMessage, OrInfinite, OrNan, ResultFile, Time, kept
+from core.messages import Command, Message, plain
+from core.scan.features.frames import CrossingUse, FrameRecord
 
 LIBRARIES = ("numpy", "scipy", "opencv-python-headless", "numba", "matplotlib", "reportlab")
 """The packages that numbers and pictures come from; their versions are recorded."""
 
-_A_TIME = "a date and time as in 2025-01-31T12:00:00+00:00"
+_USES = {use.name.lower(): use for use in CrossingUse} | {str(use.message): use for use in CrossingUse}
+"""By the names that files hold; older ones hold the English texts."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +40,7 @@ class RunRecord:
     measured_at
         When the last measuring step began, with its time zone.
     settings, notes
-        By step: what it was told, and its sentences for the technician.
+        By step: what it was told, and what it tells the technician.
     timings
         Seconds by step.
     inputs
@@ -55,27 +55,32 @@ class RunRecord:
     part: str
     measured_at: datetime
     settings: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
-    notes: Mapping[str, Sequence[str]] = field(default_factory=dict)
+    notes: Mapping[str, Sequence[Message]] = field(default_factory=dict)
     timings: Mapping[str, float] = field(default_factory=dict)
     inputs: Mapping[str, str] = field(default_factory=dict)
     frames: tuple[FrameRecord, ...] = ()
     made_at: Mapping[str, datetime] = field(default_factory=dict)
 
     def with_step(
-        self, step: str, seconds: float, inputs: Mapping[str, str], settings: Mapping[str, Any], notes: Sequence[str]
+        self,
+        step: str,
+        seconds: float,
+        inputs: Mapping[str, str],
+        settings: Mapping[str, Any],
+        notes: Sequence[Message | str],
     ) -> RunRecord:
         """The record after `step`; what an earlier run of the same step said is replaced."""
         return replace(
             self,
             settings={**self.settings, step: settings},
-            notes={**self.notes, step: tuple(notes)},
+            notes={**self.notes, step: tuple(note if isinstance(note, Message) else plain(note) for note in notes)},
             timings={**self.timings, step: round(seconds, 3)},
             inputs=dict(sorted({**self.inputs, **inputs}.items())),
         )
 
     @property
-    def all_notes(self) -> tuple[str, ...]:
-        """The sentences of all steps, in the order the steps were done."""
+    def all_notes(self) -> tuple[Message, ...]:
+        """The notes of all steps, in the order the steps were done."""
         return tuple(note for notes in self.notes.values() for note in notes)
 
 
@@ -83,25 +88,25 @@ class _Frame(ResultFile):
     index: int
     name: str
     used: bool
-    reason: str = ""
+    reason: OptionalMessage = None
     stripes: int = 0
     stripe_px: int = 0
     fan_crossings: int = 0
     fan_lines_met: int = 0
     sweep_crossings: int = 0
     left_out: int = 0
-    condition: Maybe = None
+    condition: OrInfinite = math.inf
     points: int = 0
-    sigma_mm: Maybe = None
+    sigma_mm: OrNan = math.nan
     left_out_reasons: dict[str, int] = Field(default_factory=dict)
 
 
 class _RunFile(ResultFile):
     set: str
     part: str = ""
-    measured_at: str = Field(description=_A_TIME)
+    measured_at: Time
     settings: dict[str, dict[str, Any]] = Field(default_factory=dict)
-    notes: dict[str, list[str]] = Field(default_factory=dict)
+    notes: dict[str, list[KeptMessage]] = Field(default_factory=dict)
     timings_s: dict[str, Finite] = Field(default_factory=dict)
     inputs: dict[str, str] = Field(default_factory=dict)
     frames: list[_Frame] = Field(default_factory=list)
@@ -110,42 +115,39 @@ class _RunFile(ResultFile):
 
 def write_run(path: Path, record: RunRecord) -> None:
     """Write run.json; InputError if it cannot be written."""
-    write_text(
+    write_json(
         path,
-        to_json(
-            {
-                "version": __version__,
-                "set": record.set_name,
-                "part": record.part,
-                "measured_at": record.measured_at.isoformat(timespec="seconds"),
-                "made_at": {step: at.isoformat(timespec="seconds") for step, at in record.made_at.items()},
-                "timings_s": record.timings,
-                "settings": record.settings,
-                "notes": record.notes,
-                "versions": _versions(),
-                "frames": [_frame(frame) for frame in record.frames],
-                "inputs": record.inputs,
-            }
-        ),
+        {
+            "version": __version__,
+            "set": record.set_name,
+            "part": record.part,
+            "measured_at": record.measured_at.isoformat(timespec="seconds"),
+            "made_at": {step: at.isoformat(timespec="seconds") for step, at in record.made_at.items()},
+            "timings_s": record.timings,
+            "settings": record.settings,
+            "notes": {step: [kept(note) for note in notes] for step, notes in record.notes.items()},
+            "versions": _versions(),
+            "frames": [_frame(frame) for frame in record.frames],
+            "inputs": record.inputs,
+        },
     )
 
 
 def read_run(path: Path) -> RunRecord:
     """Read run.json; InputError if it is missing or a field is not what it must be."""
-    tables = read_json(path, todo="measure the set first: trisect run SET --out DIR")
-    try:
-        file = _RunFile.model_validate(tables)
-        measured_at = datetime.fromisoformat(file.measured_at)
-    except ValidationError as error:
-        raise complaint(path, error, _RunFile) from error
-    except ValueError as error:
-        raise InputError(f"measured_at is {file.measured_at!r}, not {_A_TIME}", where=path) from error
+    tables = read_json(
+        path,
+        todo=Message(
+            "advice.measure_set_first", "measure the set first{command}", command=Command("trisect run SET --out DIR")
+        ),
+    )
+    file = checked(_RunFile, tables, path)
     return RunRecord(
         set_name=file.set,
         part=file.part or file.set,
-        measured_at=measured_at,
+        measured_at=file.measured_at,
         settings=file.settings,
-        notes=file.notes,
+        notes={step: tuple(notes) for step, notes in file.notes.items()},
         timings=file.timings_s,
         inputs=file.inputs,
         frames=tuple(_record(frame) for frame in file.frames),
@@ -164,12 +166,11 @@ def _versions() -> dict[str, str]:
 
 def _frame(frame: FrameRecord) -> dict[str, Any]:
     values = {one.name: getattr(frame, one.name) for one in fields(frame)}
-    return values | {"left_out_reasons": dict(frame.left_out_reasons)}
+    reasons = {use.name.lower(): count for use, count in frame.left_out_reasons}
+    return values | {"reason": kept(frame.reason), "left_out_reasons": reasons}
 
 
 def _record(frame: _Frame) -> FrameRecord:
-    values = frame.model_dump()
-    values["condition"] = math.inf if frame.condition is None else frame.condition
-    values["sigma_mm"] = math.nan if frame.sigma_mm is None else frame.sigma_mm
-    values["left_out_reasons"] = tuple(frame.left_out_reasons.items())
-    return FrameRecord(**values)
+    reasons = [(_USES.get(name), count) for name, count in frame.left_out_reasons.items()]
+    known = tuple((use, count) for use, count in reasons if use is not None)
+    return FrameRecord(**{**dict(frame), "left_out_reasons": known})

@@ -17,21 +17,30 @@ from core.errors import InputError
 from core.files.arrays_file import (
     Arrays,
     pack_centrelines,
+    pack_messages,
     pack_texts,
     read_arrays,
     unpack_centrelines,
+    unpack_messages,
+    unpacking,
     write_arrays,
 )
-from core.image.stripe import StripeSettings
+from core.image.stripes.stripe import StripeSettings
+from core.inspect.uncertainty.causes import CALIBRATIONS
+from core.messages import Command, Message
 from core.model.arrays import Array
 from core.scan.common_errors import CommonErrors
-from core.scan.crossings import CrossingTable
-from core.scan.fan_speckle import FanSpeckle
-from core.scan.features import FrameFeatures, ScanFeatures
+from core.scan.features.crossings import CrossingTable
+from core.scan.features.extraction import FrameFeatures, ScanFeatures
+from core.scan.network.fan_speckle import FanSpeckle
 
-_TODO = "measure the scan first: trisect scan SET --out DIR"
+_TODO = Message(
+    "advice.measure_scan_first", "measure the scan first{command}", command=Command("trisect scan SET --out DIR")
+)
 _NO_FRAME = -1
 _COMMON = ("sources", "cameras", "fans", "sweeps")
+_OLDER_SOURCES = {str(cause): source for source, cause in CALIBRATIONS.items()}
+"""Files of earlier versions call them as budgets do."""
 _SPECKLE = tuple(one.name for one in fields(FanSpeckle))
 _CROSSINGS = tuple(one.name for one in fields(CrossingTable))
 
@@ -94,9 +103,9 @@ def write_scan(path: Path, scan: ScanFile) -> None:
         "shown": np.array(_NO_FRAME if scan.shown is None else scan.shown),
         "crossings_used": scan.crossings_used,
         "frame_names": pack_texts([frame.name for frame in features.frames]),
-        "frame_reasons": pack_texts([frame.reason for frame in features.frames]),
+        "frame_reasons": pack_messages([frame.reason for frame in features.frames]),
         "frame_shift_px": np.array([frame.shift_px for frame in features.frames], dtype=np.float64),
-        "notes": pack_texts(features.notes),
+        "notes": pack_messages(features.notes),
         "stripes": _stripes(features.fan_stripe, features.sweep_stripe),
         **({f"common_{name}": np.asarray(getattr(common, name)) for name in _COMMON} if common else {}),
         **({f"speckle_{name}": getattr(speckle, name) for name in _SPECKLE} if speckle else {}),
@@ -119,21 +128,20 @@ def read_scan(path: Path) -> ScanFile:
     sweeps = len(arrays["sweep_frames"])
     for name, shape in (("pis", (sweeps, 3)), ("covariance", (3 * sweeps, 3 * sweeps))):
         if arrays[name].shape != shape:
-            wanted = " × ".join(map(str, shape))
-            raise InputError(f"the array {name} has shape {arrays[name].shape}, not {wanted}", where=path, todo=_TODO)
-    try:
+            what = Message(
+                "file.array_shape", "the array {name} has shape {shape}, not {wanted}",
+                name=name, shape=str(arrays[name].shape), wanted=" × ".join(map(str, shape)),
+            )  # fmt: skip
+            raise InputError(what, where=path, todo=_TODO)
+    with unpacking(path, todo=_TODO):
         return _unpacked(arrays)
-    except KeyError as error:
-        raise InputError(f"the array {error} is missing", where=path, todo=_TODO) from error
-    except (ValueError, TypeError) as error:
-        raise InputError(f"its arrays do not fit together ({error})", where=path, todo=_TODO) from error
 
 
 def _unpacked(arrays: Arrays) -> ScanFile:
     frames = zip(
         arrays["frame_names"].tolist(),
         unpack_centrelines("sweep", arrays),
-        arrays["frame_reasons"].tolist(),
+        unpack_messages(arrays["frame_reasons"]),
         arrays["frame_shift_px"].tolist(),
         strict=True,
     )
@@ -149,7 +157,7 @@ def _unpacked(arrays: Arrays) -> ScanFile:
         crossings=CrossingTable(**table),
         sweep_stripe=sweep_stripe,
         fan_stripe=fan_stripe,
-        notes=tuple(arrays["notes"].tolist()),
+        notes=tuple(filter(None, unpack_messages(arrays["notes"]))),
     )
     return ScanFile(
         features=features,
@@ -171,7 +179,8 @@ def _common(arrays: Arrays, image_size: tuple[int, int]) -> CommonErrors | None:
     if "common_sources" not in arrays:
         return None
     cameras, fans, sweeps = (arrays[f"common_{name}"] for name in _COMMON[1:])
-    common = CommonErrors(image_size, tuple(arrays["common_sources"].tolist()), cameras, fans, sweeps)
+    sources = tuple(_OLDER_SOURCES.get(name, name) for name in arrays["common_sources"].tolist())
+    common = CommonErrors(image_size, sources, cameras, fans, sweeps)
     if common.sweeps.shape[1] != len(arrays["sweep_frames"]):
         raise ValueError(f"common_sweeps holds {common.sweeps.shape[1]} sweeps, not {len(arrays['sweep_frames'])}")
     return common

@@ -16,12 +16,14 @@ from numpy.typing import NDArray
 
 from core.errors import InputError
 from core.files.arrays_file import Arrays, pack_texts, read_arrays, write_arrays
-from core.files.inspection_file import read_inspection
-from core.files.json_text import read_json, to_json
-from core.files.pictures import read_bytes
+from core.files.json_text import to_json
+from core.files.reading import read_bytes, read_json
+from core.files.results.inspection_file import read_inspection
 from core.inspect.characteristic import Characteristic
-from core.inspect.deviation_map import bounds, mark
-from core.inspect.shown_features import ShownClass, ShownDeviations, ShownFeature, ShownInspection, ShownProfile
+from core.inspect.conformity import Verdict
+from core.inspect.shown.deviation_map import bounds, mark
+from core.inspect.shown.shown_features import ShownClass, ShownDeviations, ShownFeature, ShownInspection, ShownProfile
+from core.messages import as_text, from_text, plain
 
 NAME = "shown.npz"
 """Among the results of a scan."""
@@ -38,7 +40,13 @@ def write_shown(inspection: Path, shown: ShownInspection) -> None:
             arrays |= {f"{name}_{number}": getattr(one.profile, name) for name in _PROFILE}
         if one.deviations is not None:
             arrays |= _deviation_arrays(number, one.deviations)
-        about = {"name": one.name, "kind": one.kind, "used": one.used, "problem": one.problem, "rows": len(one.rows)}
+        about = {
+            "name": one.name,
+            "kind": one.kind,
+            "used": one.used,
+            "problem": as_text(one.problem),
+            "rows": len(one.rows),
+        }
         tolerance = None if one.deviations is None else one.deviations.tolerance_mm
         features.append(about | {"profile": one.profile is not None, "tolerance_mm": tolerance})
     about = {"features": features, "verdict": shown.verdict, "of": _hash(inspection)}
@@ -61,7 +69,7 @@ def read_shown(inspection: Path, plan: Mapping[str, Any]) -> ShownInspection | N
     if read_json(inspection).get("plan") != json.loads(to_json(plan)):
         return None
     try:
-        arrays = read_arrays(path, ("about",), todo="")
+        arrays = read_arrays(path, ("about",), todo=plain(""))
         about = json.loads(str(arrays["about"][0]))
         if about["of"] != _hash(inspection):
             return None
@@ -84,12 +92,12 @@ def _shown(about: Mapping[str, Any], arrays: Arrays, inspection: Path) -> ShownI
                 used=one["used"],
                 places=arrays[f"places_{number}"],
                 uv=arrays[f"uv_{number}"],
-                problem=one["problem"],
+                problem=from_text(one["problem"]),
                 profile=ShownProfile(*(arrays[f"{name}_{number}"] for name in _PROFILE)) if one["profile"] else None,
                 deviations=None if one["tolerance_mm"] is None else _deviations(number, one["tolerance_mm"], arrays),
             )
         )
-    return ShownInspection(tuple(features), about["verdict"], file.notes, file.calibration_id)
+    return ShownInspection(tuple(features), Verdict(about["verdict"]), file.notes, file.calibration_id)
 
 
 def _deviation_arrays(number: int, found: ShownDeviations) -> dict[str, NDArray[Any]]:

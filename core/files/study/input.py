@@ -18,10 +18,11 @@ from typing import cast
 import numpy as np
 
 from core.errors import InputError
-from core.files.study_results import Measured, measured_in
-from core.files.study_table import Table, read_table
+from core.files.study.results import Measured, measured_in
+from core.files.study.table import Table, read_table
 from core.inspect.characteristic import Limits
 from core.inspect.results import Contribution
+from core.messages import Message
 from core.model.arrays import Array
 from core.study.acceptance import QUANTITIES, Quantity, Reading
 
@@ -100,7 +101,9 @@ def read_repeats(paths: Sequence[Path], name: str = THICKNESS) -> Repeats:
 def read_crossed(path: Path, name: str = THICKNESS) -> Crossed:
     """A gauge R&R study from the table at `path`; InputError as `crossed_of`, or if it cannot be read."""
     if path.is_dir():
-        raise InputError("a gauge R&R study needs a table of part, operator and value", where=path)
+        raise InputError(
+            Message("study.grr_needs_table", "a gauge R&R study needs a table of part, operator and value"), where=path
+        )
     return crossed_of(read_table(path), name)
 
 
@@ -128,13 +131,29 @@ def crossed_of(table: Table, name: str = THICKNESS) -> Crossed:
     for (part, operator), cell in cells.items():
         if len(cell) != most:
             raise InputError(
-                f"part {part} was measured {len(cell)} times by operator {operator}, others {most} times",
+                Message(
+                    "study.unequal_repeats",
+                    "part {part} was measured {cell} times by operator {operator}, others {most} times",
+                    part=part,
+                    cell=len(cell),
+                    operator=operator,
+                    most=most,
+                ),
                 where=path,
-                todo="a crossed study needs every part as often by every operator",
+                todo=Message(
+                    "advice.measure_all_parts_alike", "a crossed study needs every part as often by every operator"
+                ),
             )
     if len(names[0]) < 2 or most < 2:
         raise InputError(
-            f"{len(names[0])} parts and {most} repeats are too few", where=path, todo="measure 2 or more of each"
+            Message(
+                "study.too_few_parts_or_repeats",
+                "{names} parts and {most} repeats are too few",
+                names=len(names[0]),
+                most=most,
+            ),
+            where=path,
+            todo=Message("advice.measure_two_of_each", "measure 2 or more of each"),
         )
     shaped = np.array([[cells[part, operator] for operator in names[1]] for part in names[0]])
     return Crossed(shaped, *names, unit)
@@ -152,7 +171,14 @@ def readings_of(table: Table) -> tuple[Reading, ...]:
     for line, quantity in zip(table.lines, quantities, strict=True):
         if quantity not in QUANTITIES:
             raise InputError(
-                f'line {line}, column quantity is "{quantity}", not {", ".join(QUANTITIES[:-1])} or {QUANTITIES[-1]}',
+                Message(
+                    "study.cell_no_quantity",
+                    'line {line}, column quantity is "{quantity}", not {quantities} or {quantities2}',
+                    line=line,
+                    quantity=quantity,
+                    quantities=tuple(QUANTITIES[:-1]),
+                    quantities2=QUANTITIES[-1],
+                ),
                 where=path,
             )
     positions, measured = table.texts("position"), table.numbers("measured_mm", "measured")
@@ -161,7 +187,15 @@ def readings_of(table: Table) -> tuple[Reading, ...]:
     _not_negative(table, "u_mm", u)
     for line, quantity, value in zip(table.lines, quantities, calibrated, strict=True):
         if quantity in ("size", "spacing") and not value > 0:
-            raise InputError(f"line {line}, column calibrated_mm must be above 0 for {quantity}", where=path)
+            raise InputError(
+                Message(
+                    "study.calibrated_not_positive",
+                    "line {line}, column calibrated_mm must be above 0 for {quantity}",
+                    line=line,
+                    quantity=quantity,
+                ),
+                where=path,
+            )
     return tuple(map(Reading, cast(tuple[Quantity, ...], quantities), positions, measured, calibrated, u))
 
 
@@ -171,21 +205,38 @@ def _table_among(paths: Sequence[Path]) -> Table | None:
     if not files:
         return None
     if len(paths) > 1:
-        raise InputError("a study takes one table, or folders of results", where=files[0], todo="give it alone")
+        raise InputError(
+            Message("study.table_among_folders", "a study takes one table, or folders of results"),
+            where=files[0],
+            todo=Message("advice.give_alone", "give it alone"),
+        )
     return read_table(files[0])
 
 
 def _of_results(paths: Sequence[Path], found: Sequence[Measured], name: str) -> Repeats:
     units = {one.unit for one in found}
     if len(units) > 1:
-        raise InputError(f"{name} is a length in one folder and an angle in another", where=paths[0])
+        raise InputError(
+            Message(
+                "study.length_and_angle",
+                "{name} is a length in one folder and an angle in another",
+                name=name,
+            ),
+            where=paths[0],
+        )
     labels = _labels(paths)
     places: dict[tuple[float, float], str] = {}
     for label, one in zip(labels, found, strict=True):
         twin = places.setdefault((one.value, one.u), label)
         if twin != label or labels.count(label) > 1:
             raise InputError(
-                f"it holds the same measurement as {twin}, to the last digit", where=label, todo="scan the part anew"
+                Message(
+                    "study.same_measurement_twice",
+                    "it holds the same measurement as {twin}, to the last digit",
+                    twin=twin,
+                ),
+                where=label,
+                todo=Message("advice.scan_part_anew", "scan the part anew"),
             )
     return Repeats(
         name,
@@ -212,10 +263,28 @@ def _labels(paths: Sequence[Path]) -> tuple[str, ...]:
 def _not_negative(table: Table, name: str, values: Sequence[float]) -> None:
     for line, value in zip(table.lines, values, strict=True):
         if value < 0:
-            raise InputError(f"line {line}, column {name} is {value:g}, not a length of 0 or more", where=table.path)
+            raise InputError(
+                Message(
+                    "study.cell_negative",
+                    "line {line}, column {name} is {value:g}, not a length of 0 or more",
+                    line=line,
+                    name=name,
+                    value=value,
+                ),
+                where=table.path,
+            )
 
 
 def _above_zero(table: Table, name: str, values: Sequence[float]) -> None:
     for line, value in zip(table.lines, values, strict=True):
         if not value > 0:
-            raise InputError(f"line {line}, column {name} is {value:g}, not a number above 0", where=table.path)
+            raise InputError(
+                Message(
+                    "study.cell_not_positive",
+                    "line {line}, column {name} is {value:g}, not a number above 0",
+                    line=line,
+                    name=name,
+                    value=value,
+                ),
+                where=table.path,
+            )

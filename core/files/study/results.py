@@ -7,10 +7,11 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from core.errors import InputError
-from core.files.gauge_file import read_thickness
-from core.files.inspection_file import read_inspection
+from core.files.results.gauge_file import read_thickness
+from core.files.results.inspection_file import read_inspection
 from core.inspect.characteristic import Characteristic, Limits
 from core.inspect.results import Contribution
+from core.messages import Command, Message
 
 GAUGE, INSPECTION = "gauge.json", "inspection.json"
 
@@ -49,7 +50,7 @@ def measured_in(folder: Path, name: str) -> Measured:
     """
     found = _find(folder, name)
     if not math.isfinite(found.value) or not math.isfinite(found.u):
-        raise InputError(f"the {name} is not known", where=folder)
+        raise InputError(Message("study.unknown_quantity", "the {name} is not known", name=name), where=folder)
     if found.quantity == "length":
         return Measured(found.value, found.u, found.k, found.budget, "mm", found.limits)
     degree = math.degrees(1.0)
@@ -61,15 +62,21 @@ def measured_in(folder: Path, name: str) -> Measured:
 
 def _find(folder: Path, name: str) -> Characteristic:
     if not folder.is_dir():
-        raise InputError("there is no such folder of results", where=folder)
+        raise InputError(Message("study.no_such_folder", "there is no such folder of results"), where=folder)
     known = list(characteristics_in(folder))
     found = [one for one in known if one.name == name]
     if not found:
-        names = ", ".join(one.name for one in known)
+        names = tuple(one.name for one in known)
         raise InputError(
-            f'no result is called "{name}"' + (f"; there are {names}" if names else ""),
+            Message("study.no_such_result", 'no result is called "{name}"; there are {names}', name=name, names=names)
+            if names
+            else Message("study.no_results_at_all", 'no result is called "{name}"', name=name),
             where=folder,
-            todo="choose another --characteristic" if names else "measure first: trisect run SET --out DIR",
+            todo=Message("advice.another_characteristic", "choose another --characteristic")
+            if names
+            else Message(
+                "advice.measure_first", "measure first{command}", command=Command("trisect run SET --out DIR")
+            ),
         )
     return found[0]
 

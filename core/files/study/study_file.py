@@ -2,19 +2,28 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Annotated, Any, Literal, TypeAlias
+
+import numpy as np
+from pydantic import Field, RootModel
 
 from core import __version__
+from core.errors import InputError
 from core.files.atomic import make_folder, write_text
+from core.files.complaints import checked
 from core.files.json_text import to_json
+from core.files.reading import read_json
+from core.files.tables import Finite, KeptCause, ResultFile, kept
 from core.inspect.conformity import Zones
 from core.inspect.results import Contribution
-from core.study.acceptance import AcceptanceCheck, CheckedQuantity
-from core.study.budget import UncertaintyBudget
-from core.study.grr import AnovaRow, Component, GrrStudy
-from core.study.repeats import RepeatStudy
-from core.study.type1 import Type1Study
+from core.messages import Command, Message
+from core.study.acceptance import AcceptanceCheck, CheckedQuantity, Quantity, Reading, acceptance_check
+from core.study.budget import UncertaintyBudget, add_up
+from core.study.grr import AnovaRow, Component, GrrStudy, grr_study
+from core.study.repeats import RepeatStudy, Requirement, repeat_study
+from core.study.type1 import Type1Study, type1_study
 
 Study: TypeAlias = RepeatStudy | Type1Study | GrrStudy | AcceptanceCheck
 
@@ -47,7 +56,7 @@ def study_values(study: Study) -> dict[str, Any]:
             values = {"kind": "grr", **_grr(study)}
         case AcceptanceCheck():
             values = {"kind": "acceptance", "unit": "mm", "quantities": [_quantity(one) for one in study.quantities]}
-    return {**values, "verdict": study.verdict, "notes": study.notes}
+    return {**values, "verdict": study.verdict, "notes": [kept(note) for note in study.notes]}
 
 
 def _repeats(study: RepeatStudy) -> dict[str, Any]:
@@ -92,7 +101,7 @@ def budget_values(budget: UncertaintyBudget) -> dict[str, Any]:
 def row_values(row: Contribution) -> dict[str, Any]:
     """A row of a budget; `u_input` in `unit`, `contribution` in the result's."""
     return {
-        "source": row.source,
+        "source": kept(row.source),
         "value": row.value,
         "unit": row.unit,
         "distribution": row.distribution,
@@ -180,7 +189,7 @@ def _component(one: Component) -> dict[str, Any]:
 def _quantity(one: CheckedQuantity) -> dict[str, Any]:
     return {
         "quantity": one.quantity,
-        "title": one.title,
+        "title": kept(one.title),
         "limit": one.limit,
         "k": one.k,
         "largest_error": one.largest_error,
@@ -199,3 +208,152 @@ def _quantity(one: CheckedQuantity) -> dict[str, Any]:
             for reading in one.readings
         ],
     }
+
+
+_TODO = Message(
+    "advice.make_study_again", "make the study again{command}", command=Command("trisect study … --out DIR")
+)
+
+
+class _Row(ResultFile):
+    source: KeptCause
+    contribution: Finite
+    u_input: Finite | None = None
+    distribution: str = "normal"
+    dof: Finite | None = None
+    value: Finite | None = None
+    unit: str = "mm"
+
+    def row(self) -> Contribution:
+        dof = math.inf if self.dof is None else self.dof
+        return Contribution(self.source, self.contribution, self.u_input, self.distribution, dof, self.value, self.unit)
+
+
+class _Budget(ResultFile):
+    rows: list[_Row]
+    coverage: Finite
+    value: Finite | None = None
+    unit: str = "mm"
+
+    def budget(self) -> UncertaintyBudget:
+        return add_up([one.row() for one in self.rows], value=self.value, coverage=self.coverage, unit=self.unit)
+
+
+class _Scan(ResultFile):
+    scan: str
+    value: Finite
+    U: Finite | None = None
+
+
+class _Decision(ResultFile):
+    lower: Finite | None = None
+    upper: Finite | None = None
+    r: Finite
+
+
+class _Repeats(ResultFile):
+    kind: Literal["repeats"]
+    characteristic: str
+    unit: str
+    scans: list[_Scan]
+    nominal: Finite | None = None
+    budget_of_mean: _Budget
+    budget_is_complete: bool
+    decision: _Decision | None = None
+
+    def study(self) -> RepeatStudy:
+        asked, limits = self.decision, None
+        if asked is not None:
+            limits = (
+                -math.inf if asked.lower is None else asked.lower,
+                math.inf if asked.upper is None else asked.upper,
+            )
+        return repeat_study(
+            [one.value for one in self.scans],
+            self.budget_of_mean.budget(),
+            complete=self.budget_is_complete,
+            name=self.characteristic,
+            labels=[one.scan for one in self.scans],
+            U=[math.nan if one.U is None else one.U for one in self.scans],
+            asked=Requirement(self.nominal, limits, 1.0 if asked is None else asked.r),
+        )
+
+
+class _Type1(ResultFile):
+    kind: Literal["type1"]
+    unit: str
+    values: list[Finite]
+    reference: Finite
+    tolerance_width: Finite
+    resolution: Finite | None = None
+
+    def study(self) -> Type1Study:
+        return type1_study(
+            self.values, self.reference, self.tolerance_width, resolution=self.resolution, unit=self.unit
+        )
+
+
+class _Grr(ResultFile):
+    kind: Literal["grr"]
+    unit: str
+    parts: list[str]
+    operators: list[str]
+    values: list[list[list[Finite]]]
+    tolerance_width: Finite | None = None
+
+    def study(self) -> GrrStudy:
+        return grr_study(
+            np.array(self.values),
+            parts=self.parts,
+            operators=self.operators,
+            tolerance=self.tolerance_width,
+            unit=self.unit,
+        )
+
+
+class _Reading(ResultFile):
+    position: str
+    measured: Finite
+    calibrated: Finite
+    u: Finite
+
+
+class _Quantity(ResultFile):
+    quantity: Quantity
+    limit: Finite | None = None
+    k: Finite
+    readings: list[_Reading]
+
+
+class _Acceptance(ResultFile):
+    kind: Literal["acceptance"]
+    quantities: list[_Quantity]
+
+    def study(self) -> AcceptanceCheck:
+        readings = [
+            Reading(one.quantity, row.position, row.measured, row.calibrated, row.u)
+            for one in self.quantities
+            for row in one.readings
+        ]
+        limits = {one.quantity: one.limit for one in self.quantities if one.limit is not None}
+        return acceptance_check(readings, limits, k=self.quantities[0].k if self.quantities else 2.0)
+
+
+class _StudyFile(RootModel[Annotated[_Repeats | _Type1 | _Grr | _Acceptance, Field(discriminator="kind")]]):
+    pass
+
+
+def read_study(path: Path) -> Study:
+    """Read study.json.
+
+    Raises
+    ------
+    InputError
+        If it is missing, damaged, or no study can be made of what it holds.
+    """
+    tables = read_json(path, todo=_TODO)
+    file = checked(_StudyFile, tables, path)
+    try:
+        return file.root.study()
+    except ValueError as error:
+        raise InputError(str(error), where=path, todo=_TODO) from error

@@ -14,6 +14,8 @@ from difflib import get_close_matches
 from pathlib import Path
 
 from core.errors import InputError
+from core.files.reading import read_text
+from core.messages import Message
 
 SEPARATORS = ";\t,"
 
@@ -35,7 +37,9 @@ class Table:
         found = [name for name in names if name in self.columns]
         if len(found) > 1:
             raise InputError(
-                f"the columns {' and '.join(found)} say the same", where=self.path, todo="keep one of them"
+                Message("study.same_columns", "the columns {found:and} say the same", found=tuple(found)),
+                where=self.path,
+                todo=Message("advice.keep_one", "keep one of them"),
             )
         return found[0] if found else None
 
@@ -44,7 +48,11 @@ class Table:
         name = self._needed(names)
         for line, cell in zip(self.lines, self.columns[name], strict=True):
             if not cell:
-                raise InputError(f"line {line}, column {name} is empty", where=self.path, todo="fill it in")
+                raise InputError(
+                    Message("study.cell_empty", "line {line}, column {name} is empty", line=line, name=name),
+                    where=self.path,
+                    todo=Message("advice.fill_cell", "fill it in"),
+                )
         return self.columns[name]
 
     def numbers(self, *names: str) -> tuple[float, ...]:
@@ -69,8 +77,15 @@ class Table:
         name = self.name_of(names)
         if name is None:
             near = [hit for one in names for hit in get_close_matches(one, self.columns, n=1, cutoff=0.75)]
-            hint = f"did you mean {near[0]}?" if near else f"its columns are {', '.join(self.columns)}"
-            raise InputError(f"the column {names[0]} is missing ({hint})", where=self.path)
+            hint = (
+                Message("study.nearest_column", "did you mean {name}?", name=near[0])
+                if near
+                else Message("study.its_columns", "its columns are {names}", names=tuple(self.columns))
+            )
+            raise InputError(
+                Message("study.column_missing", "the column {name} is missing ({hint})", name=names[0], hint=hint),
+                where=self.path,
+            )
         return name
 
     def _number(self, name: str, row: int) -> float:
@@ -80,8 +95,19 @@ class Table:
         except ValueError:
             value = math.nan
         if not math.isfinite(value):
-            shown = f'is "{cell}", not a finite number' if cell else "is empty, not a number"
-            raise InputError(f"line {self.lines[row]}, column {name} {shown}", where=self.path)
+            line = self.lines[row]
+            raise InputError(
+                Message(
+                    "study.cell_not_a_number", 'line {line}, column {name} is "{cell}", not a finite number',
+                    line=line, name=name, cell=cell,
+                )
+                if cell
+                else Message(
+                    "study.cell_without_number", "line {line}, column {name} is empty, not a number",
+                    line=line, name=name,
+                ),
+                where=self.path,
+            )  # fmt: skip
         return value
 
 
@@ -93,13 +119,7 @@ def read_table(path: Path) -> Table:
     InputError
         If the file is missing or no text; else as `table_of`.
     """
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-    except FileNotFoundError as error:
-        raise InputError("the file is missing", where=path) from error
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"cannot be read as UTF-8 text ({error})", where=path) from error
-    return table_of(text, path)
+    return table_of(read_text(path), path)
 
 
 def table_of(text: str, path: Path) -> Table:
@@ -116,7 +136,7 @@ def table_of(text: str, path: Path) -> Table:
         if line.strip() and not line.lstrip().startswith("#")
     ]
     if len(lines) < 2:
-        raise InputError("the table has no rows below its head", where=path)
+        raise InputError(Message("study.table_without_rows", "the table has no rows below its head"), where=path)
     head = lines[0][1]
     separator = next((one for one in SEPARATORS if one in head), ",")
     names, *rows = (
@@ -124,10 +144,19 @@ def table_of(text: str, path: Path) -> Table:
     )
     twice = next((name for name in names if names.count(name) > 1), None)
     if twice is not None:
-        raise InputError(f'the column "{twice}" is there twice', where=path)
+        raise InputError(Message("study.column_twice", 'the column "{twice}" is there twice', twice=twice), where=path)
     numbers = tuple(number for number, _ in lines[1:])
     for number, row in zip(numbers, rows, strict=True):
         if len(row) != len(names):
-            raise InputError(f"line {number} has {len(row)} cells, but the head has {len(names)}", where=path)
+            raise InputError(
+                Message(
+                    "study.row_length",
+                    "line {number} has {row} cells, but the head has {names}",
+                    number=number,
+                    row=len(row),
+                    names=len(names),
+                ),
+                where=path,
+            )
     columns = {name: tuple(row[place] for row in rows) for place, name in enumerate(names)}
     return Table(path, numbers, columns, decimal_comma=separator != ",")

@@ -1,9 +1,9 @@
-"""Where a line has a kink or a jump: what no local fit may cross.
+"""Kinks and jumps of a line, which no local fit may cross.
 
 Extraction cuts a stripe at the kinks and jumps that a few points show. Seen over a hundred pixels much smaller ones
 matter, and they are looked for here, bin by bin: first by least squares, with and without a jump and a kink in a
 parabola on either side, which is quick; and where that finds one, by the likelihoods of two lines and of one, of any
-curvature (`core.image.kriging`), so that a bend is not taken for a kink.
+curvature (`core.image.crossings.kriging`), so that a bend is not taken for a kink.
 """
 
 from __future__ import annotations
@@ -14,29 +14,31 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from core.image.kriging import log_odds_of_break
-from core.image.line_bins import ARC, INFORMATION, U, V, in_frame
+from core.image.crossings.kriging import log_odds_of_break
+from core.image.crossings.line_bins import ARC, INFORMATION, U, V, in_frame
 from core.model.arrays import Array
 
+# All in bins, about 8 px long. Held by tests/image/crossings/test_crossing_bound.py (ridge of a roof, step) on roofs
+# and steps of several sizes.
 _ARMS = (4, 10)
-"""Bins looked at on either side by least squares."""
-_FEWEST = 3
-"""Bins on either side of a break that can be judged."""
+"""Fitted on either side by least squares: a short arm for sharp breaks, a long one for slight ones."""
+_LEAST_BINS = 3
+"""On either side of a break that can be judged."""
+_NEIGHBOURS = 4
+"""On either side: of suspects so near to each other only the likeliest is one."""
 _SUSPECT = 16.0
-"""χ² that a jump and a kink must explain to be looked at."""
+"""χ² that a jump and a kink must explain, both together, before the likelihoods are compared."""
 _PRIOR = math.log(1 / 50 / (0.6 * 0.15))
 """Log of: a break in one bin of 50, jump and kink spread over 0.6 px and 0.15 rad. Larger ones are cut before."""
-_NEAR = 4
-"""Bins: of neighbouring suspects only the likeliest is one."""
 
 
 @njit(cache=True, nogil=True)
 def breaks(bins: Array, reach: float) -> NDArray[np.bool_]:
-    """(B,) True for those of a line's `bins` in which it has a kink or a jump, judged from ± `reach` px."""
+    """Find the `bins` of a line in which it has a kink or a jump, judged from ± `reach` px: (B,) True there."""
     count = len(bins)
     broken = np.zeros(count, dtype=np.bool_)
     best = np.full(count, np.inf)  # misfit of the broken curve where a break explains much
-    for at in range(_FEWEST, count - _FEWEST):
+    for at in range(_LEAST_BINS, count - _LEAST_BINS):
         for arm in _ARMS:
             explained, misfit = _explained(bins, at, arm, reach)
             if explained > _SUSPECT:
@@ -45,10 +47,10 @@ def breaks(bins: Array, reach: float) -> NDArray[np.bool_]:
         if not best[at] < np.inf:
             break
         # a fit beside the break is spoilt by it too: the break is where the broken curve fits best
-        first, end = max(_FEWEST, at - _NEAR), min(count - _FEWEST, at + _NEAR + 1)
-        if best[at] > best[first:end].min() or broken[max(0, at - _FEWEST) : at + _FEWEST + 1].any():
+        first, end = max(_LEAST_BINS, at - _NEIGHBOURS), min(count - _LEAST_BINS, at + _NEIGHBOURS + 1)
+        if best[at] > best[first:end].min() or broken[max(0, at - _LEAST_BINS) : at + _LEAST_BINS + 1].any():
             continue
-        for place in range(max(_FEWEST, at - 1), min(count - _FEWEST, at + 2)):
+        for place in range(max(_LEAST_BINS, at - 1), min(count - _LEAST_BINS, at + 2)):
             broken[at] |= _is_break(bins, place, broken, reach)
     return broken
 
@@ -64,7 +66,7 @@ def _is_break(bins: Array, at: int, broken: NDArray[np.bool_], reach: float) -> 
     left = in_frame(bins, np.arange(at - 1, first - 1, -1), frame)
     right = in_frame(bins, np.arange(at + 1, last + 1), frame)
     left, right = left[: _outwards(-left[:, 0])], right[: _outwards(right[:, 0])]
-    if min(len(left), len(right)) < _FEWEST:
+    if min(len(left), len(right)) < _LEAST_BINS:
         return False
     widest = max(right[-1, 0], -left[-1, 0])
     return bool(log_odds_of_break(right, left, widest) + _PRIOR - math.log(widest) > 0)
@@ -83,7 +85,7 @@ def _outwards(x: Array) -> int:
 
 @njit(cache=True, nogil=True)
 def _frame(bins: Array, first: int, last: int, at: int) -> Array:
-    first, last = max(first, at - _FEWEST), min(last, at + _FEWEST)
+    first, last = max(first, at - _LEAST_BINS), min(last, at + _LEAST_BINS)
     tu, tv = bins[last, U] - bins[first, U], bins[last, V] - bins[first, V]
     length = math.hypot(tu, tv)
     return np.array([bins[at, U], bins[at, V], tu / length, tv / length])
@@ -113,7 +115,7 @@ def _explained(bins: Array, at: int, arm: int, reach: float) -> tuple[float, flo
             rhs[i] += bins[k, INFORMATION] * row[i] * y
             for j in range(5):
                 normal[i, j] += bins[k, INFORMATION] * row[i] * row[j]
-    if min(before, used - before) < _FEWEST:
+    if min(before, used - before) < _LEAST_BINS:
         return 0.0, np.inf
     for i in range(5):
         normal[i, i] *= 1 + 1e-9

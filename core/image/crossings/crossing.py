@@ -1,13 +1,13 @@
-"""Crossings: where the centrelines of two pictures meet.
+"""Crossings of the centrelines of two pictures.
 
-Each line is fitted near the meeting by kriging (`core.image.kriging`) over a window that ends where the piece does, at
-kinks and at jumps (`core.image.local_fit`): as a parabola over all of it where it is one, and elsewhere as far as its
-bend can be foretold. The two curves are met by Newton's method.
+Each line is fitted near the meeting by kriging (`core.image.crossings.kriging`) over a window that ends where the piece
+does, at kinks and at jumps (`core.image.crossings.local_fit`): as a parabola over all of it where it is one, and
+elsewhere as far as its bend can be foretold. The two curves are met by Newton's method.
 
 With ε_a, ε_b the errors of the fits along the lines' normals n_a, n_b, the meeting moves by M·ε, M = [n_a; n_b]⁻¹, so
 its covariance is M·diag(σ_a², σ_b²)·Mᵀ: errors grow with 1/sin θ.
 
-How near that comes to the bound, and how honest σ is, is measured in tests/image/test_crossing_bound.py.
+How near that comes to the bound, and how honest σ is, is measured in tests/image/crossings/test_crossing_bound.py.
 """
 
 from __future__ import annotations
@@ -16,25 +16,40 @@ import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Literal
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
-from core.image.centreline import Centreline
-from core.image.local_fit import BEND, FIT, PLACE, REACH, SIGMA, SLOPE, T_U, T_V, local_fit
-from core.image.segments import CELL_REACH, CELLS, Stack, meeting_segments
+from core.image.crossings.local_fit import BEND, FIT, PLACE, REACH, SIGMA, SLOPE, T_U, T_V, LineAt, local_fit
+from core.image.crossings.segments import CELL_REACH, CELLS, Stack, meeting_segments
+from core.image.stripes.centreline import Centreline
 from core.model.arrays import Array, frozen_array, set_field
 
-_REASONS = ("angle too small", "arm too short", "lines do not meet")
+NoCrossing = Literal["angle too small", "arm too short", "do not meet"]
+"""Why two lines whose segments cut each other give no crossing."""
+_REASONS: tuple[NoCrossing, ...] = ("angle too small", "arm too short", "do not meet")
+HALF_LENGTH_PX = 40.0
+"""Length of a cell, a third of how far a local fit may reach on either side: tests/image/crossings/
+test_crossing_bound.py holds it near the bound for lines of any curvature."""
+LEAST_ANGLE = math.radians(15)
+"""rad: errors along the lines grow with 1/sin θ, fourfold here."""
+REASON, UV, TANGENTS, SIGMAS, CURVED = 0, 1, 3, 7, 9
+"""Columns of a meeting as `cross_segments` gives it: 0 or which of the reasons it is no crossing for; u, v in px; unit
+tangents of a and of b; σ of the fits along their normals in px; 1 where a bend matters."""
 MEETING = 10
-"""Figures that `cross_segments` gives of a meeting."""
-_SHORTEST_ARM = 0.75  # of the correlation length
+"""Number of these columns."""
+_SHORTEST_ARM, _LEAST_POINTS = 0.75, 3.0  # correlation lengths, and points, that a line must have on either side
+_ROUNDS = 10  # of Newton's method at most; mostly three
+_SETTLED_PX = 1e-9  # a step of it that ends the rounds
+_NOT_MET_PX = 1e-6  # a last step beyond which the curves do not meet
+_SINGULAR = 1e-3  # determinant of the normals, sin θ: with less a step is not defined
+_SIGNIFICANT_BEND = 3.0  # standard uncertainties by which a straight fit would be off
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Crossing:
-    """Where line a of one picture and line b of another meet.
+    """Crossing of line a of one picture with line b of another.
 
     Parameters
     ----------
@@ -49,11 +64,11 @@ class Crossing:
     covariance
         (2, 2) of `uv` in px².
     curved
-        Whether the bend of either line matters: a straight fit would be off by three standard uncertainties.
+        Whether the bend of either line matters: a straight fit would be off by more than three standard uncertainties.
     along_a, along_b
-        Where on each line, as length along it from its first point, in pixels.
+        Position on each line: length along it from its first point, in pixels.
     cell_a, cell_b, share_a, share_b
-        What each fit has in common with others on the same line: see `core.scan.crossings.CrossingTable`.
+        What each fit has in common with others on the same line, see `core.scan.features.crossings.CrossingTable`.
     """
 
     uv: Array
@@ -79,14 +94,21 @@ class Crossing:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class CrossingSearch:
-    """All crossings of two pictures: (piece of a, piece of b, crossing).
+    """Crossings of two pictures, and what was left out.
 
-    `rejected` counts those left out by reason; `left_out` has about where (2,) in pixels each of them is, and why.
+    Parameters
+    ----------
+    found
+        (piece of a, piece of b, crossing) of each.
+    rejected
+        How many were left out for each reason.
+    left_out
+        Of each of these the rough position (2,) in pixels, and the reason.
     """
 
     found: tuple[tuple[int, int, Crossing], ...]
-    rejected: Mapping[str, int]
-    left_out: tuple[tuple[Array, str], ...] = ()
+    rejected: Mapping[NoCrossing, int]
+    left_out: tuple[tuple[Array, NoCrossing], ...] = ()
 
 
 Lines = Sequence[Centreline] | Stack
@@ -94,16 +116,16 @@ Lines = Sequence[Centreline] | Stack
 
 
 def cross_centrelines(
-    a: Lines, b: Lines, half_length_px: float = 40.0, min_angle: float = math.radians(15)
+    a: Lines, b: Lines, half_length_px: float = HALF_LENGTH_PX, min_angle: float = LEAST_ANGLE
 ) -> list[tuple[int, int, Crossing]]:
-    """All crossings of the pieces `a` of one picture with the pieces `b` of another; see `search_crossings`."""
+    """Find all crossings of the pieces `a` of one picture with the pieces `b` of another; see `search_crossings`."""
     return list(search_crossings(a, b, half_length_px, min_angle).found)
 
 
 def search_crossings(
-    a: Lines, b: Lines, half_length_px: float = 40.0, min_angle: float = math.radians(15)
+    a: Lines, b: Lines, half_length_px: float = HALF_LENGTH_PX, min_angle: float = LEAST_ANGLE
 ) -> CrossingSearch:
-    """All crossings of the pieces `a` of one picture with the pieces `b` of another.
+    """Find all crossings of the pieces `a` of one picture with the pieces `b` of another, and count what is left out.
 
     Parameters
     ----------
@@ -113,19 +135,24 @@ def search_crossings(
         A third of how far along the line on either side the local fit may reach.
     min_angle
         Lines that meet at a smaller angle in rad are left out.
+
+    Raises
+    ------
+    ValueError
+        If a `Stack` was made with cells of another length.
     """
-    rejected: Counter[str] = Counter()
+    rejected: Counter[NoCrossing] = Counter()
     found: list[tuple[int, int, Crossing]] = []
-    left_out: list[tuple[Array, str]] = []
+    left_out: list[tuple[Array, NoCrossing]] = []
     if not len(a) or not len(b):
         return CrossingSearch((), rejected)
     of_a, of_b = _stack(a, half_length_px), _stack(b, half_length_px)
     met = meeting_segments(of_a.points, of_a.starts, of_a.boxes, of_b.points, of_b.starts, of_b.boxes)
     for i, k, j, m in met:
-        reason, crossing = _cross_at(of_a, i, k, of_b, j, m, min_angle)
-        if crossing is None:
-            rejected[reason] += 1
-            left_out.append((of_a.points[of_a.starts[i] + k, :2].copy(), reason))
+        crossing = _cross_at(of_a, i, k, of_b, j, m, min_angle)
+        if not isinstance(crossing, Crossing):
+            rejected[crossing] += 1
+            left_out.append((of_a.points[of_a.starts[i] + k, :2].copy(), crossing))
         elif not any(  # one meeting of two rough lines may be met twice
             (i, j) == (p, q) and np.hypot(*(c.uv - crossing.uv)) < half_length_px / 2 for p, q, c in found
         ):
@@ -141,27 +168,23 @@ def _stack(lines: Lines, cell_px: float) -> Stack:
     return lines
 
 
-def _cross_at(
-    of_a: Stack, i: int, k: int, of_b: Stack, j: int, m: int, min_angle: float
-) -> tuple[str, Crossing | None]:
+def _cross_at(of_a: Stack, i: int, k: int, of_b: Stack, j: int, m: int, min_angle: float) -> Crossing | NoCrossing:
     """The crossing of the segments k of piece i and m of piece j, or the reason there is none."""
     piece_a, piece_b = of_a.piece(i), of_b.piece(j)
     cell = of_a.cell_px
     arc_a, arc_b = 0.5 * (piece_a.arc[k] + piece_a.arc[k + 1]), 0.5 * (piece_b.arc[m] + piece_b.arc[m + 1])
     cell_a, cell_b = (max(0, math.floor(arc / cell) - CELL_REACH) for arc in (arc_a, arc_b))
     share = np.zeros((2, CELLS))
-    row = cross_segments(
-        piece_a.points, k, piece_a.bins, piece_a.broken, arc_a, piece_a.correlation_px, cell_a,
-        piece_b.points, m, piece_b.bins, piece_b.broken, arc_b, piece_b.correlation_px, cell_b,
-        cell, min_angle, share,
-    )  # fmt: skip
-    if row[0] > 0:
-        return _REASONS[int(row[0]) - 1], None
+    at_a = LineAt(piece_a.points, k, piece_a.bins, piece_a.broken, arc_a, piece_a.correlation_px, cell_a)
+    at_b = LineAt(piece_b.points, m, piece_b.bins, piece_b.broken, arc_b, piece_b.correlation_px, cell_b)
+    row = cross_segments(at_a, at_b, cell, min_angle, share)
+    if row[REASON] > 0:
+        return _REASONS[int(row[REASON]) - 1]
     _, u, v, tau, tav, tbu, tbv, sigma_a, sigma_b, curved = row.tolist()
     sine, cosine = abs(tau * tbv - tav * tbu), abs(tau * tbu + tav * tbv)
     a, b = sigma_a / sine, sigma_b / sine
     spread = np.array([[a * tbu, -b * tau], [a * tbv, -b * tav]])  # the inverse of both normals, or its negative
-    crossing = Crossing(
+    return Crossing(
         uv=np.array([u, v]),
         tangent_a=np.array([tau, tav]),
         tangent_b=np.array([tbu, tbv]),
@@ -177,66 +200,56 @@ def _cross_at(
         share_a=share[0],
         share_b=share[1],
     )
-    return "", crossing
 
 
 @njit(cache=True, nogil=True)
-def _arm_too_short(points: Array, at: int, origin: Array, half: float, correlation: float) -> bool:
-    """Whether there is too little to either side of the segment `at` within `half` px of it."""
-    least = max(3.0, _SHORTEST_ARM * correlation)
+def _arm_too_short(line: LineAt, origin: Array, reach: float) -> bool:
+    """Whether a line has too few points to either side of its segment within `reach` px of it."""
+    points, at, least = line.points, line.segment, max(_LEAST_POINTS, _SHORTEST_ARM * line.correlation_px)
     behind, ahead = 0, 0
     for k in range(at, -1, -1):
-        if math.hypot(points[k, 0] - origin[0], points[k, 1] - origin[1]) > half or behind >= least:
+        if math.hypot(points[k, 0] - origin[0], points[k, 1] - origin[1]) > reach or behind >= least:
             break
         behind += points[k, 2] > 0
     for k in range(at + 1, len(points)):
-        if math.hypot(points[k, 0] - origin[0], points[k, 1] - origin[1]) > half or ahead >= least:
+        if math.hypot(points[k, 0] - origin[0], points[k, 1] - origin[1]) > reach or ahead >= least:
             break
         ahead += points[k, 2] > 0
     return bool(min(behind, ahead) < least)
 
 
 @njit(cache=True, nogil=True)
-def cross_segments(
-    a: Array,
-    k: int,
-    bins_a: Array,
-    broken_a: NDArray[np.bool_],
-    arc_a: float,
-    correlation_a: float,
-    cell_a: int,
-    b: Array,
-    m: int,
-    bins_b: Array,
-    broken_b: NDArray[np.bool_],
-    arc_b: float,
-    correlation_b: float,
-    cell_b: int,
-    half: float,
-    min_angle: float,
-    share: Array,
-) -> Array:
-    """Meeting of two lines near the segments k and m.
+def cross_segments(a: LineAt, b: LineAt, half: float, min_angle: float, share: Array) -> Array:
+    """Meet the local fits of two lines near one segment of each: (MEETING,) figures, named by REASON and the others.
 
-    Returns (MEETING,): 0 or the number of a reason, u, v, both tangents, σ_a, σ_b, whether curved; into `share` (2, K)
-    what cells share.
+    Parameters
+    ----------
+    a, b
+        The lines at these segments.
+    half
+        A third of how far the local fits may reach, and the length of a cell, in px.
+    min_angle
+        Lines at a smaller angle in rad are no crossing.
+    share
+        (2, K), filled with what the fits have in common with others on the same line: see `local_fit`.
     """
     result = np.zeros(MEETING)
     fits = np.zeros((2, FIT))
-    origin = 0.25 * (a[k, :2] + a[k + 1, :2] + b[m, :2] + b[m + 1, :2])
+    k, m = a.segment, b.segment
+    origin = 0.25 * (a.points[k, :2] + a.points[k + 1, :2] + b.points[m, :2] + b.points[m + 1, :2])
     reach = CELL_REACH * half
     if (
-        _arm_too_short(a, k, origin, reach, correlation_a)
-        or _arm_too_short(b, m, origin, reach, correlation_b)
-        or not local_fit(bins_a, broken_a, arc_a, origin, reach, half, cell_a, fits[0], share[0])
-        or not local_fit(bins_b, broken_b, arc_b, origin, reach, half, cell_b, fits[1], share[1])
+        _arm_too_short(a, origin, reach)
+        or _arm_too_short(b, origin, reach)
+        or not local_fit(a, origin, reach, half, fits[0], share[0])
+        or not local_fit(b, origin, reach, half, fits[1], share[1])
     ):
-        result[0] = 2
+        result[REASON] = 2
         return result
     u, v = 0.0, 0.0  # from the origin
     tangents = np.zeros((2, 2))
     step = np.inf
-    for _ in range(10):
+    for _ in range(_ROUNDS):
         normals, heights = np.empty((2, 2)), np.empty(2)
         for i, fit in enumerate(fits):
             tu, tv = fit[T_U], fit[T_V]
@@ -247,26 +260,26 @@ def cross_segments(
             norm = math.hypot(1.0, slope)
             tangents[i, 0], tangents[i, 1] = (tu - slope * tv) / norm, (tv + slope * tu) / norm
         determinant = normals[0, 0] * normals[1, 1] - normals[0, 1] * normals[1, 0]
-        if abs(determinant) < 1e-3:
-            result[0] = 1
+        if abs(determinant) < _SINGULAR:
+            result[REASON] = 1
             return result
         du = -(heights[0] * normals[1, 1] - heights[1] * normals[0, 1]) / determinant
         dv = -(normals[0, 0] * heights[1] - normals[1, 0] * heights[0]) / determinant
         u, v, step = u + du, v + dv, math.hypot(du, dv)
-        if step < 1e-9 or math.hypot(u, v) > half:
+        if step < _SETTLED_PX or math.hypot(u, v) > half:
             break
     if abs(tangents[0, 0] * tangents[1, 1] - tangents[0, 1] * tangents[1, 0]) < math.sin(min_angle):
-        result[0] = 1
+        result[REASON] = 1
         return result
-    if step > 1e-6 or math.hypot(u, v) > 0.5 * half:
-        result[0] = 3
+    if step > _NOT_MET_PX or math.hypot(u, v) > 0.5 * half:
+        result[REASON] = 3
         return result
-    result[1], result[2] = origin[0] + u, origin[1] + v
-    result[3:5], result[5:7] = tangents[0], tangents[1]
+    result[UV], result[UV + 1] = origin[0] + u, origin[1] + v
+    result[TANGENTS : TANGENTS + 2], result[TANGENTS + 2 : TANGENTS + 4] = tangents[0], tangents[1]
     for i, fit in enumerate(fits):
         along_normal = 1 / math.hypot(1.0, fit[SLOPE])
-        result[7 + i] = fit[SIGMA] * along_normal
+        result[SIGMAS + i] = fit[SIGMA] * along_normal
         share[i] *= along_normal
-        if abs(fit[BEND]) * fit[REACH] ** 2 / 3 > 3 * fit[SIGMA]:
-            result[9] = 1.0
+        if abs(fit[BEND]) * fit[REACH] ** 2 / 3 > _SIGNIFICANT_BEND * fit[SIGMA]:
+            result[CURVED] = 1.0
     return result

@@ -1,4 +1,4 @@
-"""Where a line is, from all of it that is near: kriging with a curvature that is learned from the line itself.
+"""Position of a line from all of its bins nearby: kriging with a curvature learned from the line itself.
 
 Over a window of ± `reach` the line is y(x) in a frame laid along it. Place, direction and curvature at x = 0 are free,
 and on its way outwards the curvature is renewed at random, with standard deviation δ and correlation length ℓ: δ = 0
@@ -37,31 +37,34 @@ from core.model.arrays import Array
 X, Y, INFORMATION, SPREAD = 0, 1, 2, 3
 """Columns of a bin: its place in the frame, 1/σ² of y in px⁻², the variance in px² of its points along the line."""
 
-_FIRST, _FACTOR, _STEPS = 4.0, 3.0, 11
-"""The least δ·reach²/σ that is not 0, by what it grows and how often; σ of a straight line through the window."""
+# The grid of choices (δ, ℓ) and its prior. Held by tests/image/crossings/test_crossing_bound.py on lines of changing
+# curvature, which cross nearly as well as if one knew how it changes.
+_LEAST_CHANGE, _CHANGE_FACTOR, _STEPS = 4.0, 3.0, 11
+"""The least δ·reach²/σ that is not 0, by what it grows and how often; σ is that of a straight line in its middle."""
 _LENGTHS = (0.5, 0.12)
-"""ℓ/reach."""
-_CHANGES = 1 + len(_LENGTHS) * _STEPS
-_PRIOR_EVEN = 0.9
+"""Correlation lengths ℓ in reaches of the window."""
+_CHOICES = 1 + len(_LENGTHS) * _STEPS
+"""Number of choices (δ, ℓ); the first is the parabola."""
+_PRIOR_PARABOLA = 0.9
 """Probability that δ = 0 before the line is seen."""
-_BENT = 0.02
+_CURVATURE_SD = 0.02
 """Standard deviation in 1/px that a curvature has before the line is seen: free, unless the window is very short."""
-_LEARNED = 1.1
-"""Where the curvature changes the variance is raised by this: a window shows δ by a few bends only."""
-_HOPELESS = 15.0
-"""A log-likelihood so far below the best has no weight, nor have those of still larger δ."""
+_VARIANCE_FACTOR = 1.1
+"""Of the variance where the curvature changes: a window shows δ by a few bends only."""
+_NEGLIGIBLE = 15.0
+"""A log-likelihood so far below the best has no weight (e⁻¹⁵), nor have those of still larger δ."""
 
 
 @njit(cache=True, nogil=True)
 def krige(right: Array, left: Array, reach: float) -> Array:
-    """(6,): y, y', y'' at x = 0 and the variance of y; of the likeliest choice the number of (δ, ℓ) and the variance.
+    """Estimate a line at x = 0: (6,) y, y', y'', variance of y, number of the likeliest choice and its variance.
 
     `right` (N, 4) and `left` (M, 4) are the bins at x ≥ 0 and x < 0, each from 0 outwards.
     """
     sigma = straight_sigma(right, left)
-    kappa = _BENT * reach**2
-    score = np.full(_CHANGES, -np.inf)
-    found = np.zeros((_CHANGES, 4))
+    kappa = _CURVATURE_SD * reach**2
+    score = np.full(_CHOICES, -np.inf)
+    found = np.zeros((_CHOICES, 4))
     best = -np.inf
     for length in range(len(_LENGTHS)):
         for step in range(_STEPS + 1):
@@ -71,7 +74,7 @@ def krige(right: Array, left: Array, reach: float) -> Array:
             delta, correlation = _change(change, reach, sigma)
             ahead, behind = _side(right, reach, delta, correlation), _side(left, -reach, delta, correlation)
             score[change] = _solve(_joined(ahead, behind), kappa, found[change]) + _log_prior(change)
-            if score[change] < best - _HOPELESS and step > 1 and score[change] < score[change - 1]:
+            if score[change] < best - _NEGLIGIBLE and step > 1 and score[change] < score[change - 1]:
                 break
             best = max(best, score[change])
     weight = np.exp(score - best)
@@ -80,7 +83,7 @@ def krige(right: Array, left: Array, reach: float) -> Array:
     for i in range(3):
         result[i] = np.sum(weight * found[:, i]) / reach**i
     variance = weight * (found[:, 3] + (found[:, 0] - result[0]) ** 2)
-    result[3] = variance[0] + _LEARNED * variance[1:].sum()
+    result[3] = variance[0] + _VARIANCE_FACTOR * variance[1:].sum()
     result[4] = np.argmax(score)
     result[5] = found[int(result[4]), 3]
     return result
@@ -88,12 +91,12 @@ def krige(right: Array, left: Array, reach: float) -> Array:
 
 @njit(cache=True, nogil=True)
 def influence(right: Array, left: Array, reach: float, sigma: float, change: int) -> float:
-    """What y at x = 0 is with the choice `change` of `krige`, which is linear in the bins' y."""
+    """Compute y at x = 0 for the choice `change` of `krige`, which is linear in the bins' y."""
     delta, correlation = _change(change, reach, sigma)
     found = np.zeros(4)
     _solve(
         _joined(_side(right, reach, delta, correlation), _side(left, -reach, delta, correlation)),
-        _BENT * reach**2,
+        _CURVATURE_SD * reach**2,
         found,
     )
     return float(found[0])
@@ -101,20 +104,20 @@ def influence(right: Array, left: Array, reach: float, sigma: float, change: int
 
 @njit(cache=True, nogil=True)
 def log_odds_of_break(right: Array, left: Array, reach: float) -> float:
-    """How much likelier two lines are, ending at x = 0, than one: logarithm of the ratio, per px² of jump·kink·reach.
+    """Logarithm of how much likelier two lines are, ending at x = 0, than one; per px² of jump·kink·reach.
 
     At least three bins on each side. The standard deviation of the curvature at x = 0 is tried like δ here: two lines
     must not be the less likely for having two curvatures.
     """
     sigma = straight_sigma(right, left)
-    scores = np.full((3, _CHANGES, _STEPS), -np.inf)
+    scores = np.full((3, _CHOICES, _STEPS), -np.inf)
     found = np.zeros(4)
-    for change in range(_CHANGES):
+    for change in range(_CHOICES):
         delta, correlation = _change(change, reach, sigma)
         ahead, behind = _side(right, reach, delta, correlation), _side(left, -reach, delta, correlation)
         for which, side in enumerate((_joined(ahead, behind), ahead, behind)):
             for step in range(_STEPS):
-                kappa = _FIRST * _FACTOR**step * sigma
+                kappa = _LEAST_CHANGE * _CHANGE_FACTOR**step * sigma
                 scores[which, change, step] = _solve(side, kappa, found) + _log_prior(change) - math.log(_STEPS)
     whole, one, other = scores[0].max(), scores[1].max(), scores[2].max()
     odds = one + other - whole
@@ -134,12 +137,12 @@ def _change(change: int, reach: float, sigma: float) -> tuple[float, float]:
     if change == 0:
         return 0.0, reach
     step, length = (change - 1) % _STEPS, (change - 1) // _STEPS
-    return _FIRST * _FACTOR**step * sigma, _LENGTHS[length] * reach
+    return _LEAST_CHANGE * _CHANGE_FACTOR**step * sigma, _LENGTHS[length] * reach
 
 
 @njit(cache=True, nogil=True)
 def _log_prior(change: int) -> float:
-    return math.log(_PRIOR_EVEN if change == 0 else (1 - _PRIOR_EVEN) / (_CHANGES - 1))
+    return math.log(_PRIOR_PARABOLA if change == 0 else (1 - _PRIOR_PARABOLA) / (_CHOICES - 1))
 
 
 @njit(cache=True, nogil=True)
@@ -170,7 +173,7 @@ def _solve(side: Array, kappa: float, found: Array) -> float:
 
 @njit(cache=True, nogil=True)
 def _side(bins: Array, reach: float, delta: float, length: float) -> Array:
-    """What one side says about (y, y'·reach, y''·reach²) at x = 0; `reach` is negative on the left.
+    """Likelihood of (y, y'·reach, y''·reach²) at x = 0 from one side; `reach` is negative on the left.
 
     From bin to bin y'' is autoregressive and runs straight: x_k = F x_{k−1} + g w with F = [[1, d, d²(1/3 + ρ/6)],
     [0, 1, d(1 + ρ)/2], [0, 0, ρ]], g = (d²/6, d/2, 1) and w of variance δ²(1 − ρ²).

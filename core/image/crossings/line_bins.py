@@ -1,10 +1,11 @@
-"""Centrelines reduced to bins, as a local fit wants them: few, and each with an error of its own.
+"""Centrelines reduced to bins for a local fit: few, and each with an independent error.
 
 A bin is the weighted mean of the points within a stretch of the line that is as long as their noise is correlated, or
 eight pixels. Each bin's error is taken as independent with the variance that a mean over its length has; their own
 variance is a little smaller and their neighbours' errors a little alike, which comes to the same over a few bins.
 
-Bins tile cells of equal length, which start at the first point of each line: see `core.scan.crossings.CrossingTable`.
+Bins tile cells of equal length, which start at the first point of each line: see
+`core.scan.features.crossings.CrossingTable`.
 """
 
 from __future__ import annotations
@@ -20,8 +21,8 @@ from core.model.arrays import Array
 ARC, U, V, INFORMATION, SPREAD = 0, 1, 2, 3, 4
 """Columns of a bin: length along the line, place, 1/σ² across it in px⁻², variance of its points along it in px²."""
 
-_SHORTEST_PX = 8.0
-_WIDEST_GAP_PX = 3.0
+_SHORTEST_PX = 8.0  # length of a bin, at least: about the correlation length of narrow stripes; shorter ones cost time
+_LONGEST_SHARE_PX = 3.0  # of the line that a point beside a gap stands for on that side
 
 
 def bin_length(cell_px: float, correlation_px: float) -> float:
@@ -31,12 +32,12 @@ def bin_length(cell_px: float, correlation_px: float) -> float:
 
 @njit(cache=True, nogil=True)
 def binned(points: Array, arc: Array, length: float, correlation: float) -> Array:
-    """Bins (B, 5) of `length` px of one line: `points` (N, 3) u, v, 1/σ² and `arc` (N,); only those with a weight."""
+    """Reduce one line, `points` (N, 3) u, v, 1/σ² and `arc` (N,), to the bins (B, 5) of `length` px with a weight."""
     count = len(points)
     bins = np.zeros((int(arc[-1] / length) + 1, 5))
     for k in range(count):
-        before = min(arc[k] - arc[k - 1], _WIDEST_GAP_PX) if k > 0 else 0.0
-        after = min(arc[k + 1] - arc[k], _WIDEST_GAP_PX) if k + 1 < count else 0.0
+        before = min(arc[k] - arc[k - 1], _LONGEST_SHARE_PX) if k > 0 else 0.0
+        after = min(arc[k + 1] - arc[k], _LONGEST_SHARE_PX) if k + 1 < count else 0.0
         # a point stands for as much of the line as its share of the correlation length
         weight = points[k, 2] * min(1.0, 0.5 * (before + after) / max(correlation, 1e-9))
         row = bins[min(int(arc[k] / length), len(bins) - 1)]
@@ -60,7 +61,7 @@ def binned(points: Array, arc: Array, length: float, correlation: float) -> Arra
 
 @njit(cache=True, nogil=True)
 def in_frame(bins: Array, rows: NDArray[np.int64], frame: Array) -> Array:
-    """The bins `rows` as `core.image.kriging` wants them: x, y in the `frame` (u, v, t_u, t_v), 1/σ², spread."""
+    """Transform the bins `rows` for kriging: (N, 4) x, y in the `frame` (u, v, t_u, t_v), 1/σ², spread."""
     found = np.empty((len(rows), 4))
     for k, row in enumerate(rows):
         du, dv = bins[row, U] - frame[0], bins[row, V] - frame[1]

@@ -1,44 +1,65 @@
-"""The local fit of a centreline where another crosses it: its window, which ends at kinks and jumps, and its curve."""
+"""Local fit of a centreline where another crosses it, in a window that ends at kinks and jumps."""
 
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from core.image.kriging import INFORMATION, X, influence, krige, straight_sigma
-from core.image.line_bins import ARC, U, V, in_frame
+from core.image.crossings.kriging import INFORMATION, X, influence, krige, straight_sigma
+from core.image.crossings.line_bins import ARC, U, V, in_frame
 from core.model.arrays import Array
 
 T_U, T_V, PLACE, SLOPE, BEND, SIGMA, REACH = 0, 1, 2, 3, 4, 5, 6
 """Of a fit: unit tangent of its frame; y, y' and y''/2 at the origin; σ of y; how far its window reaches. In pixels."""
 FIT = 7
+"""Number of these figures."""
 
 _CHORD = 2
 """Bins on either side that say which way the frame lies."""
 _STEEPEST = 0.6
-"""A line that leaves its frame more steeply is no function of x any more: the window ends there."""
+"""Slope dy/dx, 31°: a line that leaves its frame more steeply is hardly a function of x; the window ends there."""
+
+
+class LineAt(NamedTuple):
+    """A centreline at one of its segments, ready for a local fit.
+
+    Parameters
+    ----------
+    points
+        (N, 3) u, v in px and 1/σ² in px⁻²; 0 where saturated.
+    segment
+        The first point of the segment.
+    bins, broken
+        (B, 5) and (B,) its bins, and which of them a kink or a jump is in: see `core.image.crossings.segments.Stack`.
+    arc
+        Length along the line up to the middle of the segment, in px.
+    correlation_px
+        Length over which the noise of its points counts as one.
+    first_cell
+        Number of the first cell that the fit can touch.
+    """
+
+    points: Array
+    segment: int
+    bins: Array
+    broken: NDArray[np.bool_]
+    arc: float
+    correlation_px: float
+    first_cell: int
 
 
 @njit(cache=True, nogil=True)
-def local_fit(
-    bins: Array,
-    broken: NDArray[np.bool_],
-    arc: float,
-    origin: Array,
-    reach: float,
-    cell: float,
-    first_cell: int,
-    fit: Array,
-    share: Array,
-) -> bool:
-    """Fit the line within ± `reach` px of the length `arc` along it, in a frame at `origin` (2,); False if none can be.
+def local_fit(line: LineAt, origin: Array, reach: float, cell: float, fit: Array, share: Array) -> bool:
+    """Fit a line within ± `reach` px of its segment, in a frame at `origin` (2,); False if it cannot be fitted.
 
-    The curve goes into `fit` (FIT,); into `share` (K,) what the errors of the cells from `first_cell` on do to its
-    place, in pixels for one standard deviation of the mean of a cell's bins.
+    The curve goes into `fit` (FIT,); into `share` (K,) what the errors of the cells of `cell` px do to its place, in
+    pixels for one standard deviation of the mean of a cell's bins.
     """
+    bins, broken, arc = line.bins, line.broken, line.arc
     count = len(bins)
     middle = min(max(int(np.searchsorted(bins[:, ARC], arc)), 1), count - 1) if count > 1 else 0
     if count < 2 or broken[middle if bins[middle, ARC] - arc < arc - bins[middle - 1, ARC] else middle - 1]:
@@ -61,7 +82,7 @@ def local_fit(
     found = krige(right, left, widest)
     fit[T_U], fit[T_V], fit[PLACE], fit[SLOPE], fit[BEND] = frame[2], frame[3], found[0], found[1], 0.5 * found[2]
     fit[SIGMA], fit[REACH] = math.sqrt(found[3]), widest
-    cells = np.floor(bins[rows, ARC] / cell).astype(np.int64) - first_cell
+    cells = np.floor(bins[rows, ARC] / cell).astype(np.int64) - line.first_cell
     ends = (split, split + len(right), split - len(left))
     _share(right, left, cells[ends[0] : ends[1]], cells[ends[2] : ends[0]][::-1].copy(), found, widest, share)
     return True
@@ -98,7 +119,7 @@ def _share(
     reach: float,
     share: Array,
 ) -> None:
-    """How far the error of each cell moves the place: its influence times the standard deviation of its mean.
+    """Compute how far the error of each cell moves the place: its influence times the σ of its mean.
 
     What the place owes to the choice and to the curvature is as common to neighbours as the noise: it is shared alike.
     """

@@ -1,4 +1,4 @@
-"""Centrelines made ready to be crossed with many others, and where their polylines cut each other.
+"""Centrelines prepared for crossing with many others, and the search for segments that cut each other.
 
 Runs of 16 segments share a bounding box; only segments of overlapping boxes are compared one by one.
 """
@@ -12,17 +12,16 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from core.image.breaks import breaks
-from core.image.centreline import Centreline
-from core.image.line_bins import bin_length, binned
-from core.image.pieces import arc_length
+from core.image.crossings.breaks import breaks
+from core.image.crossings.line_bins import bin_length, binned
+from core.image.stripes.centreline import Centreline
+from core.image.stripes.runs import arc_length
 from core.model.arrays import Array
 
-_CHUNK = 16
-_GROUP = 8  # boxes that share a larger one
+_SEGMENTS_PER_BOX, _BOXES_PER_GROUP = 16, 8  # chosen by speed
 
 CELL_REACH = 3
-"""A local fit reaches so many cells to either side, if the line goes on so far."""
+"""Cells to either side that a local fit reaches, if the line goes on so far."""
 CELLS = 2 * CELL_REACH + 1
 """Most cells that a local fit can touch."""
 
@@ -38,14 +37,14 @@ class StackedPiece(NamedTuple):
 
 
 class Stack:
-    """The centrelines of one picture, ready to be crossed with those of others.
+    """The centrelines of one picture, prepared for crossing with those of others.
 
     Parameters
     ----------
     lines
         The centrelines; piece i of them has the points starts[i] … starts[i + 1] and bins[i].
     cell_px
-        Length of a cell in pixels, see `core.image.line_bins`.
+        Length of a cell in pixels, see `core.image.crossings.line_bins`.
 
     Attributes
     ----------
@@ -87,7 +86,7 @@ class Stack:
         return after - 1 if after > 0 and along - arc[after - 1] < arc[after] - along else after
 
     def piece(self, i: int) -> StackedPiece:
-        """All that is known of piece i."""
+        """Piece i with its points, bins and breaks."""
         part = slice(self.starts[i], self.starts[i + 1])
         correlation = self.lines[i].correlation_px
         return StackedPiece(self.points[part], self.arc[part], self.bins[i], self.broken[i], correlation)
@@ -95,15 +94,15 @@ class Stack:
 
 @njit(cache=True, nogil=True)
 def _chunks(points: Array, starts: NDArray[np.int64]) -> Array:
-    """Bounding boxes of up to _CHUNK segments: (K, 7) piece, first, last point, u and v from, to."""
+    """Bounding boxes of up to _SEGMENTS_PER_BOX segments: (K, 7) piece, first, last point, u and v from, to."""
     count = 0
     for i in range(len(starts) - 1):
-        count += max(0, (starts[i + 1] - starts[i] - 2) // _CHUNK + 1)
+        count += max(0, (starts[i + 1] - starts[i] - 2) // _SEGMENTS_PER_BOX + 1)
     boxes = np.empty((count, 7))
     k = 0
     for i in range(len(starts) - 1):
-        for first in range(starts[i], starts[i + 1] - 1, _CHUNK):
-            last = min(first + _CHUNK, starts[i + 1] - 1)
+        for first in range(starts[i], starts[i + 1] - 1, _SEGMENTS_PER_BOX):
+            last = min(first + _SEGMENTS_PER_BOX, starts[i + 1] - 1)
             boxes[k, 0], boxes[k, 1], boxes[k, 2] = i, first, last
             boxes[k, 3], boxes[k, 5] = points[first : last + 1, 0].min(), points[first : last + 1, 0].max()
             boxes[k, 4], boxes[k, 6] = points[first : last + 1, 1].min(), points[first : last + 1, 1].max()
@@ -115,7 +114,7 @@ def _chunks(points: Array, starts: NDArray[np.int64]) -> Array:
 def meeting_segments(
     a: Array, starts_a: NDArray[np.int64], boxes_a: Array, b: Array, starts_b: NDArray[np.int64], boxes_b: Array
 ) -> NDArray[np.int64]:
-    """Segments that cut each other: (K, 4) piece and first point within it, of a and of b."""
+    """Find segments that cut each other: (K, 4) piece and first point within it, of a and of b."""
     found, count = np.empty((16, 4), dtype=np.int64), 0
     for p, q in _overlapping(boxes_a, boxes_b):
         for k in range(int(boxes_a[p, 1]), int(boxes_a[p, 2])):
@@ -136,9 +135,9 @@ def meeting_segments(
 @njit(cache=True, nogil=True)
 def _overlapping(a: Array, b: Array) -> NDArray[np.int64]:
     """Pairs (K, 2) of boxes that have something in common; boxes of `b` are passed over by the group."""
-    groups = np.empty((-(-len(b) // _GROUP), 7))
+    groups = np.empty((-(-len(b) // _BOXES_PER_GROUP), 7))
     for g in range(len(groups)):
-        part = b[g * _GROUP : (g + 1) * _GROUP]
+        part = b[g * _BOXES_PER_GROUP : (g + 1) * _BOXES_PER_GROUP]
         groups[g, 3], groups[g, 4] = part[:, 3].min(), part[:, 4].min()
         groups[g, 5], groups[g, 6] = part[:, 5].max(), part[:, 6].max()
     pairs, count = np.empty((64, 2), dtype=np.int64), 0
@@ -146,7 +145,7 @@ def _overlapping(a: Array, b: Array) -> NDArray[np.int64]:
         for g in range(len(groups)):
             if boxes_apart(a[p], groups[g]):
                 continue
-            for q in range(g * _GROUP, min((g + 1) * _GROUP, len(b))):
+            for q in range(g * _BOXES_PER_GROUP, min((g + 1) * _BOXES_PER_GROUP, len(b))):
                 if boxes_apart(a[p], b[q]):
                     continue
                 if count == len(pairs):

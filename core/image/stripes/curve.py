@@ -1,4 +1,4 @@
-"""The smooth curve a stripe follows: place, direction and curvature from a parabola around every point."""
+"""The smooth curve of a stripe: position, direction and curvature from a local parabola around every point."""
 
 from __future__ import annotations
 
@@ -7,17 +7,19 @@ import math
 import numpy as np
 from numba import njit
 
-from core.image.running import quantile_of_sizes
+from core.image.stripes.running_statistics import quantile_of_magnitudes
 from core.model.arrays import Array
 
-_ARM, _SHORTEST_ARM = 8.0, 3.0  # filter σ
-_SAMPLE = 4  # points: a bend changes as slowly as the window is long
-_LARGEST_ANGLE = 0.2  # rad from the middle of a parabola to its end: beyond, an arc is none
+# Windows of the local parabolas. Held by tests/image/stripes/likelihood/test_refinement.py (bent stripes, tightest
+# circles) on rendered arcs.
+_ARM, _SHORTEST_ARM = 8.0, 3.0  # filter σ: half length of a window, on straight and on bent stripes
+_LARGEST_ANGLE = 0.2  # rad from the middle of a window to its end: beyond, a parabola is no arc
+_BEND_SAMPLE = 4  # points: every so many tell the run's curvature, which changes as slowly as the window is long
 
 
 @njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract", "arcp"})
 def parabolas(run: Array, arc: Array, weight: Array, arm: float) -> Array:
-    """Parabolas u(s), v(s) over ± `arm` px of arc around every point of a run, (N, 5): u, v, n_u, n_v, curvature.
+    """Fit parabolas u(s), v(s) over ± `arm` px of arc around every point of a run: (N, 5) u, v, n_u, n_v, curvature.
 
     Parameters
     ----------
@@ -26,7 +28,7 @@ def parabolas(run: Array, arc: Array, weight: Array, arm: float) -> Array:
     arc
         (N,) length along the run.
     weight
-        (N,) what each point counts.
+        (N,) weight of each point.
     arm
         Half the length of a window; at the ends of the run it is not centred, but as long.
 
@@ -93,10 +95,10 @@ def _solve(m: Array, x: float, fit: Array) -> bool:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def guide(run: Array, arc: Array, weight: Array, filter_px: float) -> Array:
-    """The curve through a run (N, ≥ 2) as `parabolas` of ± 8 filter σ give it, of fewer where the run is bent."""
+def smooth_curve(run: Array, arc: Array, weight: Array, filter_px: float) -> Array:
+    """Fit the curve through a run (N, ≥ 2) by `parabolas` over ± 8 filter σ, shorter ones where the run is bent."""
     curve = parabolas(run, arc, weight, _ARM * filter_px)
-    bend = quantile_of_sizes(curve[::_SAMPLE, 4], 0.9)
+    bend = quantile_of_magnitudes(curve[::_BEND_SAMPLE, 4], 0.9)
     if bend * _ARM * filter_px > _LARGEST_ANGLE:
         curve = parabolas(run, arc, weight, max(_LARGEST_ANGLE / bend, _SHORTEST_ARM * filter_px))
     return curve

@@ -5,19 +5,20 @@ goes what measuring needs: points at any sub-pixel place, pieces that end at kin
 standard uncertainty.
 
 =================================  ==========================================================================
-what pulls a point                 what is done about it
+what biases a point                what is done about it
 =================================  ==========================================================================
-noise, speckle                     pixels are weighted by both (`core.image.influence`), the speckle measured on
-                                   the stripe itself (`core.image.speckle`): 1.04 of the Cramér–Rao bound
+noise, speckle                     pixels are weighted by both (`core.image.stripes.likelihood.influence`), the
+                                   speckle measured on the stripe itself (`core.image.stripes.speckle`): 1.04 of
+                                   the Cramér–Rao bound
 pixel phase                        the model is compared with each pixel where it is: below 0.001 px
-curvature, radius R                distances are measured from the stripe's own curve (`core.image.guide`): below
-                                   0.003 px on the whole for R ≥ 17 s, at each point for R > 40 s
+curvature, radius R                distances are measured from the stripe's own curve (`core.image.stripes.curve`):
+                                   below 0.003 px on the whole for R ≥ 17 s, at each point for R > 40 s
 background slope                   the weights do not see a slope: below 0.001 px for 0.1 grey/px
 end of a stripe, kink, jump        4 px (2.5 g) and 2 g are left out, but nothing where a stripe goes on beyond the
                                    picture's border; a piece never crosses them
 neighbour, crossing line           points nearer than 3.5·√(s² + g²) are left out, nearer than 8.1 s they stay
                                    Steger's, freed of the pull of curvature and background; behind a crossing a line
-                                   goes on as one (`core.image.joining`)
+                                   goes on as one (`core.image.stripes.joining`)
 border of the picture              points nearer than 4 g are never found; cuts that leave the picture are not used
 skewed section, halo               0.1 to 0.2 px for flanks that differ by 10 %, whatever the estimator, and twice
                                    that with the weights that speckle asks for; so where they disagree by more than
@@ -39,30 +40,34 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from core.image.centreline import Centreline
-from core.image.influence import REACH
-from core.image.joining import joined_at_crossings
-from core.image.likelihood import Refined
-from core.image.linking import Hysteresis, link
-from core.image.marks import IGNORED
-from core.image.neighbours import NEIGHBOUR, beside_another
-from core.image.noise import NoiseModel
-from core.image.pieces import arc_length, correlation_length, cut_ends, fully_lit
-from core.image.placing import Piece, place
-from core.image.precision import in_squares, noise_sigma, response_noise, roughness, saturated_points
-from core.image.profile import fit_profiles, profiles_along
-from core.image.seeds import Picture
-from core.image.splitting import split_at_breaks
-from core.image.stripe import StripeSettings
-from core.image.stripe_settings import choose_settings
+from core.image.stripes.centreline import Centreline
+from core.image.stripes.joining import joined_at_crossings
+from core.image.stripes.likelihood.influence import REACH
+from core.image.stripes.likelihood.refinement import Refined
+from core.image.stripes.neighbours import NEIGHBOUR_DISTANCE, distances_to_neighbours
+from core.image.stripes.noise import NoiseModel
+from core.image.stripes.positions import Piece, estimate_positions
+from core.image.stripes.precision import added_in_squares, noise_sigma, response_noise, roughness, saturated_points
+from core.image.stripes.profile import fit_profiles, profiles_along
+from core.image.stripes.runs import arc_length, correlation_length, cut_ends, fully_lit
+from core.image.stripes.settings import choose_settings
+from core.image.stripes.splitting import split_at_breaks
+from core.image.stripes.stripe import StripeSettings
+from core.image.stripes.tracing.linking import HOLD, Hysteresis, link
+from core.image.stripes.tracing.pixel_state import IGNORED
+from core.image.stripes.tracing.seeds import Picture
 from core.model.arrays import Array
 
 __all__ = ["StripeSettings", "choose_settings", "correlation_length_px", "extract_centrelines"]
 
+# Hysteresis. Holding on through dark grains saves the 6 to 15 % of points that a plain threshold loses at a speckle
+# contrast ≥ 0.5; the levels were chosen on speckled stripes: tests/image/stripes/test_extraction.py holds them.
 _HIGH, _LOW = 0.35, 0.12  # of the contrast: a run starts, a run goes on
 _HIGH_NOISE, _LOW_NOISE = 6.0, 3.0  # of the response's own noise, at least
-_OTHER_TAIL = 3.6  # stripe σ that a neighbour's light reaches
-_SHORTEST_PIECE = 7.0  # filter σ: two independent points
+_SATURATED_HOLD = 4.0  # visible widths that it goes on through saturated pixels
+
+_NEIGHBOUR_TAIL = 3.6  # stripe σ that a neighbour's light reaches: 0.15 % of its height is left there
+_SHORTEST_PIECE = 7.0  # filter σ: two independent points, at 2√π filter σ each
 
 
 def correlation_length_px(settings: StripeSettings) -> float:
@@ -78,7 +83,7 @@ def extract_centrelines(
     saturated: NDArray[np.bool_] | None = None,
     ignore: NDArray[np.bool_] | None = None,
 ) -> tuple[Centreline, ...]:
-    """The centrelines of all bright stripes in a picture, longest first; empty when there is none.
+    """Extract the centrelines of all bright stripes in a picture, longest first; none gives an empty tuple.
 
     Parameters
     ----------
@@ -107,12 +112,14 @@ def extract_centrelines(
         for piece in _smooth_pieces(picture, state, run, settings, noise)
         if len(piece.run) >= shortest
     ]
-    pieces, ways = joined_at_crossings(pieces, settings.filter_px)
-    pulled = NEIGHBOUR * float(np.hypot(settings.stripe_px, settings.filter_px))
-    blended = (REACH + _OTHER_TAIL) * settings.stripe_px
-    apart = beside_another([piece.run for piece in pieces], ways, 2 * settings.filter_px, max(pulled, blended))
+    pieces, bridges = joined_at_crossings(pieces, settings.filter_px)
+    pulled = NEIGHBOUR_DISTANCE * float(np.hypot(settings.stripe_px, settings.filter_px))
+    blended = (REACH + _NEIGHBOUR_TAIL) * settings.stripe_px
+    apart = distances_to_neighbours(
+        [piece.run for piece in pieces], bridges, 2 * settings.filter_px, max(pulled, blended)
+    )
     clear = [near > blended for near in apart]
-    placed = place(picture, state, pieces, clear, settings, noise)
+    placed = estimate_positions(picture, state, pieces, clear, settings, noise)
     correlation = max([line.correlation_px for line in placed], default=correlation_length_px(settings))
     excess = roughness([p.judged(line.run, line.sigma) for p, line in zip(pieces, placed, strict=True)], correlation)
     found = [
@@ -143,8 +150,8 @@ def _limits(settings: StripeSettings, noise: NoiseModel, knows_saturation: bool)
     return Hysteresis(
         high=max(_HIGH * settings.contrast, _HIGH_NOISE * scatter),
         low=max(_LOW * settings.contrast, _LOW_NOISE * scatter),
-        hold_px=3 * settings.filter_px,
-        saturated_hold_px=4 * settings.width_px if knows_saturation else 0.0,
+        hold_px=HOLD * settings.filter_px,
+        saturated_hold_px=_SATURATED_HOLD * settings.width_px if knows_saturation else 0.0,
         noise_grey=noise.read_grey,
     )
 
@@ -163,7 +170,7 @@ def _smooth_pieces(
     sigma = noise_sigma(whole.profiles, noise, g)
     (extra,) = roughness([whole.judged(run, sigma)], correlation_length_px(settings))
     pieces = []
-    for part in split_at_breaks(run, arc, whole.usable, g, in_squares(sigma, extra)):
+    for part in split_at_breaks(run, arc, whole.usable, g, added_in_squares(sigma, extra)):
         profiles = whole.profiles
         if part.stop - part.start < len(run):  # the running median must not reach across the break
             profiles = profiles_along(arc, part, fits, settings.stripe_px, g)
@@ -181,7 +188,7 @@ def _centreline(piece: Piece, line: Refined, extra: float, keep: NDArray[np.bool
         line.run[part, 2:4],
         piece.profiles.width[part],
         piece.profiles.height[part],
-        in_squares(line.sigma[part], extra),
+        added_in_squares(line.sigma[part], extra),
         piece.saturated[part],
         line.correlation_px,
     )

@@ -1,4 +1,4 @@
-"""How much the grey value of one pixel scatters: read noise and shot noise.
+"""Noise of a pixel's grey value: read noise and shot noise.
 
 variance(level) = read² + k·level, with k in grey levels per electron: the photon transfer line.
 
@@ -20,14 +20,23 @@ from numpy.typing import NDArray
 from core.model.arrays import Array
 
 _MASK = np.array([[1, -2, 1], [-2, 4, -2], [1, -2, 1]], dtype=np.float32) / 6
-_TILE = 16
-_ROUNDING = 1 / 12
-"""Variance of rounding to whole grey levels: no digital picture is better."""
+"""Immerkær's mask over its norm 6: white noise keeps its variance."""
+ROUNDING_VARIANCE = 1 / 12
+"""Variance in grey levels² of rounding to whole ones: no digital picture is better."""
+
+# Held by tests/image/stripes/test_extraction.py (noise is estimated) on pictures of known noise.
+_TILE = 16  # px: side of a tile
+_MOST_TILES = 4000  # tiles looked at, about; more take time and tell nothing new
+_LEAST_PER_LEVEL, _MOST_LEVELS = 20, 16  # tiles of one grey level; levels of the photon transfer line
+_QUIET_QUANTILE = 0.4  # of the variances at one level: texture can only add to them
+_LEAST_CONTRAST = 20.0  # times the noise between darkest and brightest level; with less no slope is fitted
+_LEAST_APART = 0.05  # share of that range between two levels that give a slope
+_BACKGROUND_PX = 15  # side of the mean that a difference of two pictures is freed of
 
 
 @dataclass(frozen=True, slots=True)
 class NoiseModel:
-    """Scatter of one pixel, in grey levels of the picture it is used for.
+    """Noise of one pixel, in grey levels of the picture it is used for.
 
     Parameters
     ----------
@@ -61,7 +70,7 @@ class NoiseModel:
 
 
 def estimate_noise(picture: NDArray[np.float32], ignore: NDArray[np.bool_] | None = None) -> NoiseModel:
-    """The noise of one picture (H, W), from its quiet tiles.
+    """Estimate the noise of one picture (H, W) from its quiet tiles.
 
     Texture can only add to what is measured, so the quieter half of the tiles of each grey level is believed.
     Where the picture has too few levels for a slope (a difference picture), the shot noise comes out as zero and
@@ -75,11 +84,14 @@ def estimate_noise(picture: NDArray[np.float32], ignore: NDArray[np.bool_] | Non
 def estimate_noise_of_pair(
     first: NDArray[np.float32], second: NDArray[np.float32], ignore: NDArray[np.bool_] | None = None
 ) -> NoiseModel:
-    """The noise of one of two pictures (H, W) of the same still scene, from their difference."""
+    """Estimate the noise of one of two pictures (H, W) of the same still scene from their difference.
+
+    Raises ValueError if their shapes differ.
+    """
     if first.shape != second.shape:
         raise ValueError(f"the pictures of a pair differ in size: {first.shape} and {second.shape}")
     difference = (first - second) / np.float32(np.sqrt(2))
-    residual = np.asarray(difference - cv2.blur(difference, (15, 15)), dtype=np.float32)
+    residual = np.asarray(difference - cv2.blur(difference, (_BACKGROUND_PX, _BACKGROUND_PX)), dtype=np.float32)
     level, variance = _tile_statistics((first + second) / np.float32(2), residual, ignore)
     return _photon_transfer(level, variance)
 
@@ -96,7 +108,7 @@ def _tile_statistics(
         whole = values[: rows * _TILE, : columns * _TILE].reshape(rows, _TILE, columns, _TILE)
         return whole.transpose(0, 2, 1, 3).reshape(rows * columns, _TILE * _TILE)
 
-    stride = max(1, rows * columns // 4000)
+    stride = max(1, rows * columns // _MOST_TILES)
     keep = np.ones(rows * columns, dtype=bool) if ignore is None else ~np.any(tiles(ignore), axis=1)
     keep &= np.arange(keep.size) % stride == 0
     level = np.asarray(tiles(picture)[keep], dtype=np.float64).mean(axis=1)
@@ -107,16 +119,16 @@ def _tile_statistics(
 def _photon_transfer(level: Array, variance: Array) -> NoiseModel:
     """The line variance = read² + k·level through the quieter half of the tiles at each level."""
     if level.size == 0:
-        return NoiseModel(float(np.sqrt(_ROUNDING)))
+        return NoiseModel(float(np.sqrt(ROUNDING_VARIANCE)))
     order = np.argsort(level)
-    groups = [g for g in np.array_split(order, min(16, max(1, level.size // 20))) if g.size]
+    groups = [g for g in np.array_split(order, min(_MOST_LEVELS, max(1, level.size // _LEAST_PER_LEVEL))) if g.size]
     levels = np.array([np.median(level[g]) for g in groups])
-    variances = np.array([np.quantile(variance[g], 0.4) for g in groups])
+    variances = np.array([np.quantile(variance[g], _QUIET_QUANTILE) for g in groups])
     slope = 0.0
-    if levels[-1] - levels[0] > 20 * np.sqrt(max(variances[0], _ROUNDING)):
+    if levels[-1] - levels[0] > _LEAST_CONTRAST * np.sqrt(max(variances[0], ROUNDING_VARIANCE)):
         # Theil–Sen: texture spoils some of the levels upwards
         i, j = np.triu_indices(len(levels), 1)
-        apart = levels[j] - levels[i] > 0.05 * (levels[-1] - levels[0])
+        apart = levels[j] - levels[i] > _LEAST_APART * (levels[-1] - levels[0])
         slope = max(0.0, float(np.median((variances[j] - variances[i])[apart] / (levels[j] - levels[i])[apart])))
     floor = np.median(variances - slope * np.maximum(levels, 0))
-    return NoiseModel(float(np.sqrt(max(float(floor), _ROUNDING))), slope)
+    return NoiseModel(float(np.sqrt(max(float(floor), ROUNDING_VARIANCE))), slope)

@@ -1,4 +1,4 @@
-"""Where the stripes of a picture lie: by the likelihood if it and Steger agree, by Steger if not."""
+"""Final positions of stripe points: by the likelihood where it and Steger agree, by Steger where not."""
 
 from __future__ import annotations
 
@@ -9,25 +9,31 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from core.image.guide import guide
-from core.image.likelihood import Refined, refine, residuals
-from core.image.noise import NoiseModel
-from core.image.pieces import arc_length, correlation_length
-from core.image.precision import FLOOR_PX, in_squares, noise_sigma, roughness
-from core.image.profile import Profiles, Sections, smooth_sections
-from core.image.seeds import Picture
-from core.image.speckle import Speckle, measure_speckle
-from core.image.stripe import StripeSettings
+from core.image.stripes.curve import smooth_curve
+from core.image.stripes.likelihood.refinement import Refined, StripeModel, refine, residuals
+from core.image.stripes.noise import NoiseModel
+from core.image.stripes.precision import FLOOR_PX, added_in_squares, noise_sigma, roughness
+from core.image.stripes.profile import Profiles, Sections, smooth_sections
+from core.image.stripes.runs import arc_length, correlation_length
+from core.image.stripes.speckle import Speckle, measure_speckle
+from core.image.stripes.stripe import PIXEL_VARIANCE, StripeSettings
+from core.image.stripes.tracing.seeds import Picture
 from core.model.arrays import Array, set_field
 
-_CUTS_FOR_SPECKLE = 3000  # more tell nothing new
-_LARGEST_PULL_PX = 0.03  # of Steger's points against the likelihood's
+_CUTS_FOR_SPECKLE = 3000  # cuts; more tell nothing new of the speckle
+_LARGEST_DISAGREEMENT_PX = 0.03
+"""Between Steger's points and the likelihood's, on the whole: beyond, the section is no Gaussian (a halo of 8 % shows
+at once) and all points stay Steger's. Held by tests/image/stripes/likelihood/test_refinement.py (no Gaussian)."""
 _UNUSABLE_WEIGHT = 0.02
+"""Of saturated points in the smooth curve, 1 for the others: enough to hold it where all are saturated. Set by rendered
+plates, where a curve without them swung up to 4 px astray; tests/image/test_rendered_lines.py holds it."""
+_SIGNIFICANT_SLOPE = 3.0  # standard uncertainties: smaller slopes of the background are not corrected for
+_LARGEST_SLOPE_PULL_PX = 0.5  # of such a correction: more is no pull on a line but another line
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Piece:
-    """Line points (N, ≥ 4) on one smooth surface, their cross-sections, and which are saturated (N,).
+    """A run of line points (N, ≥ 4) on one smooth surface, their cross-sections, and which are saturated (N,).
 
     `usable` (N,) are the points to judge the line by: those not saturated, or all where most of them are.
     """
@@ -43,18 +49,15 @@ class Piece:
 
     @property
     def weight(self) -> Array:
-        """What each point counts for the smooth curve through them, (N,).
-
-        Those that are not usable count for little: without any, a curve through the few left swings past the light.
-        """
+        """Weight of each point in the smooth curve through them, (N,)."""
         return np.where(self.usable, 1.0, _UNUSABLE_WEIGHT)
 
     def judged(self, run: Array, sigma: Array) -> tuple[Array, Array]:
-        """Those of the points `run`, and of their standard uncertainties, that are usable."""
+        """Select the usable ones of the points `run` and of their standard uncertainties."""
         return (run, sigma) if self.usable.all() else (run[self.usable], sigma[self.usable])
 
 
-def place(
+def estimate_positions(
     picture: Picture,
     state: NDArray[np.uint8],
     pieces: list[Piece],
@@ -62,29 +65,29 @@ def place(
     settings: StripeSettings,
     noise: NoiseModel,
 ) -> list[Refined]:
-    """The points of all pieces at their likeliest place.
+    """Estimate the final positions of the points of all pieces.
 
-    Steger's, freed of their biases, stay where the likelihood has no say: beside other light, and everywhere if it
-    looks for the stripes elsewhere than Steger. Both are right for a Gaussian; a skewed section pulls both, and the
-    flanks that a likelihood with speckle listens to pull more.
+    They are the likeliest ones. Steger's, corrected for their biases, stay beside other light, and everywhere if the
+    two disagree on the whole. Both are right for a Gaussian; a skewed section pulls both, and the flanks that a
+    likelihood with speckle listens to pull more.
     """
     g = settings.filter_px
     weights = [piece.weight for piece in pieces]
     curves: list[Array] = [
-        guide(piece.run, arc_length(piece.run), weight, g) for piece, weight in zip(pieces, weights, strict=True)
+        smooth_curve(piece.run, arc_length(piece.run), weight, g) for piece, weight in zip(pieces, weights, strict=True)
     ]
     sections = [smooth_sections(piece.profiles, g) for piece in pieces]
-    lines = [_stegers(piece, curve, settings, noise) for piece, curve in zip(pieces, curves, strict=True)]
+    lines = [_steger_line(piece, curve, settings, noise) for piece, curve in zip(pieces, curves, strict=True)]
     speckle = _speckle(picture, state, curves, sections, settings)
     refined = [
-        refine(picture, state, curve, weight, ok, section, noise, speckle, g)
+        refine(picture, state, StripeModel(curve, weight, ok, section), noise, speckle, g)
         for weight, curve, ok, section in zip(weights, curves, clear, sections, strict=True)
     ]
     differences = [
         _difference(line.run, better.run, better.sigma, piece.usable)
         for piece, line, better in zip(pieces, lines, refined, strict=True)
     ]
-    if _apart_px(differences, correlation_length(g)) > _LARGEST_PULL_PX:
+    if _disagreement_px(differences, correlation_length(g)) > _LARGEST_DISAGREEMENT_PX:
         return lines
     return [_joined(*three) for three in zip(pieces, lines, refined, strict=True)]
 
@@ -117,8 +120,8 @@ def _difference(run: Array, better: Array, sigma: Array, usable: NDArray[np.bool
     return number, mean, max(square / max(number, 1) - mean * mean, 0.0)
 
 
-def _apart_px(differences: list[tuple[int, float, float]], correlation: float) -> float:
-    """How far two kinds of lines usually are apart on the whole, beyond what their points' scatter explains."""
+def _disagreement_px(differences: list[tuple[int, float, float]], correlation: float) -> float:
+    """RMS in px of the mean distances between two estimates of each line, beyond what their scatter explains."""
     found = [(n, mean**2 - variance * correlation / n) for n, mean, variance in differences if n]
     number = sum(n for n, _ in found)
     return max(0.0, sum(n * square for n, square in found) / number) ** 0.5 if number else 0.0
@@ -127,32 +130,32 @@ def _apart_px(differences: list[tuple[int, float, float]], correlation: float) -
 def _joined(piece: Piece, line: Refined, better: Refined) -> Refined:
     """The better line, and the other one, as rough as it is, where that has no points."""
     there = np.isfinite(better.sigma)
-    sigma = in_squares(better.sigma, FLOOR_PX)
+    sigma = added_in_squares(better.sigma, FLOOR_PX)
     if there.all():
         return Refined(better.run, sigma, better.correlation_px)
     (extra,) = roughness([piece.judged(line.run, line.sigma)], line.correlation_px)
     run = np.where(there[:, None], better.run, line.run)
-    return Refined(run, np.where(there, sigma, in_squares(line.sigma, extra)), better.correlation_px)
+    return Refined(run, np.where(there, sigma, added_in_squares(line.sigma, extra)), better.correlation_px)
 
 
-def _stegers(piece: Piece, curve: Array, settings: StripeSettings, noise: NoiseModel) -> Refined:
+def _steger_line(piece: Piece, curve: Array, settings: StripeSettings, noise: NoiseModel) -> Refined:
     """Steger's points freed of the curvature's and the background's pull."""
     g, profiles = settings.filter_px, piece.profiles
     light = (profiles.height, profiles.width, profiles.slope, profiles.slope_sigma)
-    return Refined(_freed(piece.run, curve, light, g), noise_sigma(profiles, noise, g), correlation_length(g))
+    return Refined(_bias_corrected(piece.run, curve, light, g), noise_sigma(profiles, noise, g), correlation_length(g))
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _freed(points: Array, curve: Array, light: tuple[Array, Array, Array, Array], filter_px: float) -> Array:
+def _bias_corrected(points: Array, curve: Array, light: tuple[Array, Array, Array, Array], filter_px: float) -> Array:
     """`points` (N, ≥ 2) less the pulls of the `curve` (N, 5) and of the background's slope where it is significant."""
     height, width, slope, slope_sigma = light
     run, square = curve.copy(), filter_px * filter_px
     for k in range(len(run)):
-        shift = run[k, 4] * (square + 1 / 12) / 2
-        if height[k] > 0 and abs(slope[k]) > 3 * slope_sigma[k]:
+        shift = run[k, 4] * (square + PIXEL_VARIANCE) / 2
+        if height[k] > 0 and abs(slope[k]) > _SIGNIFICANT_SLOPE * slope_sigma[k]:
             both = width[k] * width[k] + square
             tilt = slope[k] * both * math.sqrt(both) / (height[k] * width[k])
-            shift += min(max(tilt, -0.5), 0.5)
+            shift += min(max(tilt, -_LARGEST_SLOPE_PULL_PX), _LARGEST_SLOPE_PULL_PX)
         run[k, 0] = points[k, 0] - shift * run[k, 2]
         run[k, 1] = points[k, 1] - shift * run[k, 3]
     return run

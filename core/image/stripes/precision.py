@@ -1,4 +1,4 @@
-"""How well a line point is known: by the law of its noise, and by the roughness of the line itself.
+"""Standard uncertainty of line points: from the law of their noise, and from the roughness of the line itself.
 
 The point's offset is t = −f'/f'' of the filtered picture. With pixels of variance σ² + k·I (read and shot noise),
 filter σ g, stripe σ s and height A over background B:
@@ -17,16 +17,24 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from core.image.marks import SATURATED, marks_within
-from core.image.noise import NoiseModel
-from core.image.profile import Profiles
-from core.image.ridge import ridge_response
+from core.image.stripes.noise import NoiseModel
+from core.image.stripes.profile import Profiles
+from core.image.stripes.tracing.pixel_state import SATURATED, bits_within
+from core.image.stripes.tracing.ridge import ridge_response
 from core.model.arrays import Array
 
 FLOOR_PX = 0.001
-"""What is left of all biases on a clean stripe."""
-_SATURATED_SHARE = 0.01
-_BLOCK = 8  # points
+"""Standard uncertainty in px left of all biases on a clean stripe; phase errors are below it
+(tests/image/stripes/likelihood/test_refinement.py, places within a pixel)."""
+_SATURATED_SHARE = 0.01  # of the filter's weight: with more on saturated pixels a point is flagged
+_SATURATED_REACH = 2.5  # filter σ looked at for them: the rest has 4 % of the weight
+_TESTED_TOGETHER = 8  # points whose pixels are tested at once for saturation; chosen by speed
+
+# Roughness of a line beyond the law of its noise. Held by tests/image/stripes/test_extraction.py (errors follow the
+# law, speckle, saturated all along) on stripes with and without speckle.
+_PRIOR_DIFFERENCES = 5.0  # independent differences that all lines' common roughness counts in each line
+_LONGEST_SPAN = 3.3  # lags: a third difference over more has a hole in it
+_OUTLIER = 25.0  # times the usual square of a difference: larger ones are cut down to it
 
 
 def response_noise(pixel_noise: float, stripe_px: float, filter_px: float) -> float:
@@ -35,7 +43,7 @@ def response_noise(pixel_noise: float, stripe_px: float, filter_px: float) -> fl
     return second / ridge_response(1.0, stripe_px, filter_px)
 
 
-def in_squares(sigma: Array, extra: float) -> Array:
+def added_in_squares(sigma: Array, extra: float) -> Array:
     """√(σ² + extra²) of each σ, (N,): a tenth of what `np.hypot` takes for numbers that cannot overflow."""
     return np.asarray(np.sqrt(sigma * sigma + extra * extra))
 
@@ -61,17 +69,17 @@ def _noise_sigma(height: Array, width: Array, background: Array, read: float, sh
 
 
 def roughness(lines: list[tuple[Array, Array]], correlation: float) -> list[float]:
-    """Scatter in px beyond the law of each line, given as points (N, ≥ 4) and sigma (N,).
+    """Measure the scatter in px of each line beyond the law, given as points (N, ≥ 4) and sigma (N,).
 
     Measured by third differences between points one correlation length apart, which see neither the line's place
-    and direction nor its curvature. Short lines lean on what all lines show.
+    and direction nor its curvature. Short lines take over some of what all lines show.
     """
     lag = max(1, round(correlation))
     sums = [_excess(points, sigma, lag, correlation) for points, sigma in lines]
     number = sum(n for _, n in sums)
     overall = sum(total for total, _ in sums) / number if number else 0.0
-    lean = 5.0  # independent differences
-    return [math.sqrt(max(0.0, (total + lean * overall) / (n + lean))) for total, n in sums]
+    prior = _PRIOR_DIFFERENCES
+    return [math.sqrt(max(0.0, (total + prior * overall) / (n + prior))) for total, n in sums]
 
 
 @njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract", "reassoc", "arcp", "nsz"})
@@ -81,7 +89,7 @@ def _excess(points: Array, sigma: Array, lag: int, correlation: float) -> tuple[
     observed, law = np.empty(count), np.empty(count)
     # a third difference of points with correlation ρ one lag apart has variance 20 − 30 ρ
     gain = 20 - 30 * math.exp(-((lag / correlation) ** 2) * math.pi)
-    number, longest = 0, (3.3 * lag) ** 2
+    number, longest = 0, (_LONGEST_SPAN * lag) ** 2
     for k in range(count):
         u0, v0, u3, v3 = points[k, 0], points[k, 1], points[k + 3 * lag, 0], points[k + 3 * lag, 1]
         if (u3 - u0) * (u3 - u0) + (v3 - v0) * (v3 - v0) >= longest:  # a hole within
@@ -98,21 +106,21 @@ def _excess(points: Array, sigma: Array, lag: int, correlation: float) -> tuple[
     total, counted, least = 0.0, 0.0, law[:number].min() + usual
     for k in range(number):
         weight = (least / (law[k] + usual)) ** 2  # where a line is faint its noise hides what is looked for
-        total += weight * (min(observed[k], 25 * usual) - law[k])
+        total += weight * (min(observed[k], _OUTLIER * usual) - law[k])
         counted += weight
     return total / lag, counted / lag
 
 
 @njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
 def saturated_points(state: NDArray[np.uint8], points: Array, filter_px: float) -> NDArray[np.bool_]:
-    """Which points (N, ≥ 2) have saturated pixels under more than 1 % of the filter's weight."""
-    reach = math.ceil(2.5 * filter_px)
+    """Flag the points (N, ≥ 2) with more than 1 % of the filter's weight on saturated pixels, (N,)."""
+    reach = math.ceil(_SATURATED_REACH * filter_px)
     saturated = np.zeros(len(points), dtype=np.bool_)
     limit = _SATURATED_SHARE * 2 * math.pi * filter_px * filter_px
-    for start in range(0, len(points), _BLOCK):
-        end = min(start + _BLOCK, len(points))
+    for start in range(0, len(points), _TESTED_TOGETHER):
+        end = min(start + _TESTED_TOGETHER, len(points))
         left, right, top, bottom = _around(state.shape, points[start:end], reach)
-        if marks_within(state, left, right, top, bottom) & SATURATED == 0:  # nearly always
+        if bits_within(state, left, right, top, bottom) & SATURATED == 0:  # nearly always
             continue
         for k in range(start, end):
             saturated[k] = _weight_of_saturated(state, points[k : k + 1], reach, filter_px) > limit

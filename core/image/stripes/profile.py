@@ -1,8 +1,8 @@
-"""The light's cross-section beside a line point: height, background and its slope, width freed of the filter.
+"""Cross-section of the light at a line point: height, background and its slope, width without the filter's.
 
 A Gaussian on a sloping background, I(x) = B + b·x + A·exp(−(x − t)²/2s²) with x across the stripe, is fitted to the
 picture's own pixels (not the filtered ones), gathered over a short stretch of the stripe. Saturated pixels are left
-out of the fit. What it gives serves for the width and for the correction of the asymmetric background.
+out of the fit. It gives the width, and the correction for an asymmetric background.
 
 References
 ----------
@@ -19,21 +19,29 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from core.image.pieces import arc_length
-from core.image.running import running_mean, running_median
-from core.image.section_fit import fit_sections
-from core.image.seeds import Picture
+from core.image.stripes.running_statistics import running_mean, running_median
+from core.image.stripes.runs import arc_length
+from core.image.stripes.section_fit import fit_sections
+from core.image.stripes.stripe import PIXEL_VARIANCE
+from core.image.stripes.tracing.seeds import Picture
 from core.model.arrays import Array
 
-_PIXEL_VARIANCE = 1 / 12
-"""What integrating over a pixel adds to the variance of a cross-section."""
-_STRIDE = 2.0  # filter σ from one fit to the next, so that each pixel is used once
-_SHORT_STRETCH, _LONG_STRETCH = 6.0, 20.0  # filter σ
+# Lengths along the stripe in filter σ. Held by tests/image/stripes/test_extraction.py (width and strength, sloping
+# background) on speckled stripes and on steps of the width.
+_STRIDE = 2.0  # from one fit to the next, so that each pixel is used once
+_SHORT_STRETCH = 6.0  # of the running median of height, background and width
+_LONG_STRETCH = 20.0  # of the mean of the slope, which moves the point itself, and of what the likelihood is given
+
+_LEAST_VARIANCE = 0.04  # px²: a light narrower than σ = 0.2 px cannot be told from a pixel
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Profiles:
-    """Cross-sections at every point of a run, (N,) each: grey levels, grey levels per pixel, pixels."""
+    """Cross-sections at every point of a run, (N,) each.
+
+    Height, background in grey levels; its slope across the stripe and the slope's standard uncertainty in grey levels
+    per px; width as Gaussian σ in px.
+    """
 
     height: Array
     background: Array
@@ -49,7 +57,11 @@ class Profiles:
 
 
 class Sections(NamedTuple):
-    """The model of a stripe's light at every point, (N,) each: height and σ as pixels blur them, background, slope."""
+    """Model of a stripe's light at every point, (N,) each.
+
+    Height in grey levels and σ in px, both as blurred by the pixel; background in grey levels; its slope in grey levels
+    per px.
+    """
 
     height: Array
     width: Array
@@ -58,14 +70,14 @@ class Sections(NamedTuple):
 
 
 class Fits(NamedTuple):
-    """What was fitted at some points of a run: which they are (K,); height, background, slope and width (K, 4)."""
+    """Cross-sections fitted at some points of a run: their numbers (K,); height, background, slope, width (K, 4)."""
 
     at: NDArray[np.int64]
     figures: Array
 
 
 def smooth_sections(profiles: Profiles, filter_px: float) -> Sections:
-    """Medians of the cross-sections along the stripe, over many grains of speckle, blurred by the pixel."""
+    """Smooth cross-sections along the stripe by medians over many grains of speckle, and blur them by the pixel."""
     stride = _stride(filter_px)
     at, length = _places(len(profiles.height), stride), _odd(_LONG_STRETCH * filter_px / stride)
     height, background, width = _smoothed(profiles.height, profiles.background, profiles.width, at, length)
@@ -75,13 +87,13 @@ def smooth_sections(profiles: Profiles, filter_px: float) -> Sections:
 def measure_profiles(
     picture: Picture, state: NDArray[np.uint8], run: Array, stripe_px: float, filter_px: float
 ) -> Profiles:
-    """Cross-sections along a `run` (N, ≥ 4): u, v, n_u, n_v."""
+    """Measure the cross-sections at every point of a `run` (N, ≥ 4): u, v, n_u, n_v."""
     fits = fit_profiles(picture, state, run, stripe_px, filter_px)
     return profiles_along(arc_length(run), slice(0, len(run)), fits, stripe_px, filter_px)
 
 
 def fit_profiles(picture: Picture, state: NDArray[np.uint8], run: Array, stripe_px: float, filter_px: float) -> Fits:
-    """Cross-sections at points of a `run` (N, ≥ 4) every two filter σ or so, each from the nearest pixels alone."""
+    """Fit cross-sections at points of a `run` (N, ≥ 4) two filter σ apart, each to the nearest pixels alone."""
     at = _places(len(run), _stride(filter_px))
     fits = fit_sections(picture, state, run[at, :4], stripe_px, _STRIDE / 2 * filter_px)
     good = fits[:, 0] > 0
@@ -89,9 +101,9 @@ def fit_profiles(picture: Picture, state: NDArray[np.uint8], run: Array, stripe_
 
 
 def profiles_along(arc: Array, part: slice, fits: Fits, stripe_px: float, filter_px: float) -> Profiles:
-    """Cross-sections at every point of a `part` of a run, from those fitted within that part.
+    """Interpolate cross-sections to every point of a `part` of a run from those fitted within that part.
 
-    They are freed of outliers by a running median and interpolated over the length `arc` (N,) along the run.
+    A running median removes outliers first; `arc` (N,) is the length along the run in px.
     """
     arc = arc[part]
     first, last = np.searchsorted(fits.at, (part.start, part.stop))
@@ -111,7 +123,7 @@ def _along(arc: Array, at: NDArray[np.int64], figures: Array, short: int, long: 
     width = running_median(figures[:, 3].copy(), short)
     # the slope moves the point itself, so it must be far less noisy than a point: average it over a long stretch
     smooth[2], smooth[3] = running_mean(figures[:, 2].copy(), long)
-    smooth[4] = np.sqrt(np.maximum(width**2 - _PIXEL_VARIANCE, 0.04))
+    smooth[4] = np.sqrt(np.maximum(width**2 - PIXEL_VARIANCE, _LEAST_VARIANCE))
     smooth[0] *= width / smooth[4]  # the pixel lowers what it widens
     return _interpolated(arc, arc[at], smooth)
 
@@ -123,7 +135,7 @@ def _smoothed(height: Array, background: Array, width: Array, at: NDArray[np.int
     smooth[0], smooth[1] = running_median(height[at], length), running_median(background[at], length)
     smooth[2] = running_median(width[at], length)
     found = _interpolated(np.arange(len(height)).astype(np.float64), at.astype(np.float64), smooth)
-    blurred = np.sqrt(found[2] ** 2 + _PIXEL_VARIANCE)
+    blurred = np.sqrt(found[2] ** 2 + PIXEL_VARIANCE)
     found[0] *= found[2] / blurred
     found[2] = blurred
     return found

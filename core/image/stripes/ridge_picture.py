@@ -1,6 +1,7 @@
-"""Steger's strength at every pixel of a picture: for looking at, and to see why a stripe was found or not.
+"""Steger's ridge strength at every pixel of a picture, for display: it shows why a stripe was found or not.
 
-Measuring looks only where stripes are (`core.image.ridge`); this is the same filter over the whole picture.
+Measuring looks only where stripes are (`core.image.stripes.tracing.ridge`); this is the same filter over the whole
+picture.
 
 References
 ----------
@@ -13,13 +14,13 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from core.image.ridge import kernel_radius, ridge_response
-from core.image.stripe import StripeSettings
+from core.image.stripes.stripe import StripeSettings
+from core.image.stripes.tracing.ridge import kernel_radius, ridge_response
 from core.model.arrays import Array
 
 
 def ridge_strength(picture: NDArray[np.float32], settings: StripeSettings) -> NDArray[np.float32]:
-    """How high a stripe of the width of `settings` would be that answers the filter as each pixel does.
+    """Compute the ridge strength of each pixel: the height of a stripe of this width with the same filter response.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Medians and means along a stripe, compiled: on a thousand points numpy takes longer to begin than to work."""
+"""Running medians and means along a stripe, compiled: on a thousand points NumPy takes longer to begin than to work."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import numpy as np
 from numba import njit
 
 from core.model.arrays import Array
+from core.model.robust import MAD_TO_SD
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -15,7 +16,7 @@ def median(values: Array) -> float:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def quantile_of_sizes(values: Array, share: float) -> float:
+def quantile_of_magnitudes(values: Array, share: float) -> float:
     """The size |value| that `share` of the `values` (N,) do not exceed."""
     k = min(int(share * len(values)), len(values) - 1)
     return float(np.partition(np.abs(values), k)[k])
@@ -52,7 +53,7 @@ def running_mean(values: Array, length: int) -> tuple[Array, Array]:
     """
     count, half = len(values), length // 2
     centre = np.median(values)
-    spread = 1.4826 * np.median(np.abs(values - centre)) + 1e-12
+    spread = MAD_TO_SD * np.median(np.abs(values - centre)) + 1e-12
     sums = np.zeros((count + 1, 2))
     for k in range(count):
         away = min(max(values[k] - centre, -4 * spread), 4 * spread)

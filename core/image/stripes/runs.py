@@ -1,4 +1,4 @@
-"""Runs of line points: their length, and their ends cut.
+"""Length of runs of line points, and the cutting of their ends.
 
 Everything here works on the order of the points along the stripe; the picture is not looked at again.
 """
@@ -10,18 +10,27 @@ import math
 import numpy as np
 from numba import njit
 
-from core.image.ridge import kernel_radius
+from core.image.stripes.tracing.ridge import kernel_radius
 from core.model.arrays import Array
 
+# Ends of a stripe: the filter sees only half of it there. Held by tests/image/stripes/test_extraction.py (ends are
+# trimmed) on stripes that end.
 END_TRIM_PX = 4.0
-"""Left out at the ends of a stripe, at least: the filter sees only half of it there."""
+"""Px left out at each end, at least."""
 _END_TRIM = 2.5  # the same in filter σ
-_FADE_REACH = 20.0  # filter σ from an end that a fading shadow is looked for
-_FADED = 0.8  # less than this share of what is further in
-_NARROWED = 0.9  # of the square of the width, averaged over some points
-_EVEN_REACH = 1.5  # filter σ
-_BORDER_PX = 3.0  # a run stops so near to where the filter would leave the picture, if that is why it stops
-_UNDIMMED = 0.9  # of the response further in
+_END_HEIGHT = 0.5  # an end is where the response falls to this share of what it is further in,
+_FURTHER_IN = (3.0, 9.0)  # which is its median so many filter σ from the end
+
+# Stripes that leave the picture: their ends are no ends. Held by the same tests (where the filter leaves the picture).
+_BORDER_PX = 3.0  # px from where the filter would leave the picture: a run that stops so near stops for that
+_UNDIMMED = 0.9  # of the response further in: with less the stripe itself ends there
+
+# An oblique shadow at an end. Held by the same tests (oblique shadow, fades) on shadows and on surfaces that turn away.
+_FADE_REACH, _FADE_SHARE = 20.0, 0.2  # filter σ from an end, and share of the run, within which a shadow is looked for
+_UNFADED = 2.5  # times that reach: up to there is what it is compared with
+_FADED = 0.8  # share of height · width² further in: with less it is a shadow or a surface that turns away;
+_NARROWED = 0.9  # share of width² further in: with less it is a shadow
+_MEAN_REACH = 1.5  # filter σ on either side over which width² is averaged
 
 
 @njit(cache=True, nogil=True)
@@ -35,12 +44,12 @@ def arc_length(run: Array) -> Array:
 
 
 def correlation_length(filter_px: float) -> float:
-    """Length along the stripe over which the noise of its points is one and the same, 2√π·g, in pixels."""
+    """Length along the stripe over which the noise of its points counts as one, 2√π·g, in pixels."""
     return 2 * math.sqrt(math.pi) * filter_px
 
 
 def cut_ends(run: Array, filter_px: float, shape: tuple[int, ...]) -> Array:
-    """Cut a run (N, 5) where its response falls to half at an end, and END_TRIM_PX more.
+    """Cut a run (N, 5) u, v, n_u, n_v, response where the response falls to half at an end, and END_TRIM_PX more.
 
     Where it only stops because the filter would leave the picture (`shape`), the stripe goes on: nothing is cut.
     """
@@ -79,14 +88,17 @@ def _leaves_picture(arc: Array, run: Array, filter_px: float, border: float, sha
 @njit(cache=True, nogil=True)
 def _usual_response(arc: Array, response: Array, filter_px: float) -> float:
     """The response a little way in from the start of a run; 0 for one that is too short."""
-    first, last = np.searchsorted(arc, 3 * filter_px), np.searchsorted(arc, 9 * filter_px, side="right")
+    first, last = (
+        np.searchsorted(arc, _FURTHER_IN[0] * filter_px),
+        np.searchsorted(arc, _FURTHER_IN[1] * filter_px, side="right"),
+    )
     return float(np.median(response[first:last])) if last > first else 0.0
 
 
 @njit(cache=True, nogil=True)
 def _real_end(arc: Array, response: Array, filter_px: float) -> float:
-    """Where the response first reaches half of what it is further in."""
-    half = 0.5 * _usual_response(arc, response, filter_px)
+    """Length in px at which the response first reaches half of what it is further in."""
+    half = _END_HEIGHT * _usual_response(arc, response, filter_px)
     if half == 0.0:
         return 0.0
     for k in range(len(arc)):
@@ -97,7 +109,7 @@ def _real_end(arc: Array, response: Array, filter_px: float) -> float:
 
 @njit(cache=True, nogil=True)
 def fully_lit(arc: Array, height: Array, width: Array, filter_px: float) -> tuple[int, int]:
-    """First and past-the-last point between a run's fading ends, from height and width (N,) of its cross-section.
+    """Find first and past-the-last point between shadows at a run's ends, from height and width (N,) of its section.
 
     An oblique shadow cuts the stripe on one side first and pulls the line to the other while its crest is still as
     bright as before. What gives it away is height · width², which speckle hardly changes: its grains make the stripe
@@ -113,8 +125,8 @@ def fully_lit(arc: Array, height: Array, width: Array, filter_px: float) -> tupl
 @njit(cache=True, nogil=True)
 def _fading(arc: Array, height: Array, square: Array, filter_px: float) -> int:
     """How many points at the start are in a shadow's edge: less light than the stretch behind them, and narrower."""
-    reach = min(_FADE_REACH * filter_px, 0.2 * arc[-1])
-    first, last = np.searchsorted(arc, reach), np.searchsorted(arc, 2.5 * reach, side="right")
+    reach = min(_FADE_REACH * filter_px, _FADE_SHARE * arc[-1])
+    first, last = np.searchsorted(arc, reach), np.searchsorted(arc, _UNFADED * reach, side="right")
     if last <= first:
         return 0
     enough = _FADED * np.median(height[first:last] * square[first:last])
@@ -122,7 +134,7 @@ def _fading(arc: Array, height: Array, square: Array, filter_px: float) -> int:
     while height[faded] * square[faded] < enough and arc[faded] < reach:
         faded += 1
     narrow = _NARROWED * np.median(square[first:last])
-    half = round(_EVEN_REACH * filter_px)
+    half = round(_MEAN_REACH * filter_px)
     for k in range(faded - 1, -1, -1):
         if np.mean(square[max(k - half, 0) : k + half + 1]) < narrow:
             return k + 1

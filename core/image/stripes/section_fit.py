@@ -1,4 +1,7 @@
-"""A Gaussian on a sloping background fitted to the pixels around places of a stripe; see `core.image.profile`."""
+"""Fit of a Gaussian on a sloping background to the pixels around points of a stripe; see `core.image.stripes.profile`.
+
+The exponential is worked out in plain multiplications, so that compiled loops over pixels do many at once.
+"""
 
 from __future__ import annotations
 
@@ -8,58 +11,71 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from core.image.bell import bell
-from core.image.marks import IGNORED, SATURATED
-from core.image.seeds import Picture
+from core.image.stripes.tracing.pixel_state import IGNORED, SATURATED
+from core.image.stripes.tracing.seeds import Picture
 from core.model.arrays import Array
 
 REACH = 3.2
 """Stripe σ looked at on either side; further out a neighbour that is still harmless would pass for a slope."""
-_BINS_PER_PX = 2
-_UNKNOWNS = 5
-_ROUNDS = 8
+_UNKNOWNS = 5  # background, slope, height, centre, width
+_BINS_PER_PX = 2  # across the stripe
+_BINS_MULTIPLE = 8  # the number of bins is one of it: processors work on 8 numbers at once
+_ALL_ROWS_UP_TO = 6.0
+"""Px along the stripe; of more, every second row tells enough: grains are as wide, and a hundred pixels are left."""
+
+
+# Gauss–Newton steps in σ of the stripe, or of the fit. Held by tests/image/test_rendered_lines.py and
+# tests/image/stripes/test_extraction.py (width and strength) on rendered plates.
+_ROUNDS = 8  # at most
 _SETTLED = 0.01  # stripe σ: after a step so small the next one would be nothing
-_LANES = 8  # there are as many bins as a multiple of what the processor multiplies at once
-_FEW_ROWS = 6.0  # of more, every second one tells enough: grains are as wide, and a hundred pixels are left
+_LARGEST_SHIFT = 0.5  # stripe σ that a step moves the centre at most
+_LARGEST_NARROWING, _LARGEST_WIDENING = 0.3, 0.5  # of the fitted σ that a step takes or adds at most
+_NARROWEST, _WIDEST, _FARTHEST = 0.3, 3.0, 1.0  # stripe σ: widths and centre of a fit that can be this stripe
+
+_FLANK = 0.25  # stripe σ from the middle where a flank begins
+_LEAST_ON_FLANK = 3  # bins seen on each flank: the top may be saturated
+_DAMPING = 1e-9  # relative to the diagonal: a fit without a unique answer stays solvable
+DARK = 16.0  # exponent from which on exp(−y) counts as 0: 1e-7
 
 
 @njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
 def fit_sections(picture: Picture, state: NDArray[np.uint8], places: Array, stripe_px: float, along_px: float) -> Array:
-    """Fitted height, background, slope, width (K, 4) at `places` (K, ≥ 4) u, v, n_u, n_v; height 0 where a fit failed.
+    """Fit cross-sections at `places` (K, ≥ 4) u, v, n_u, n_v: height, background, slope, width (K, 4).
 
-    Each rests on the pixels up to `along_px` away along the stripe and 3.2 σ `stripe_px` across it.
+    Each rests on the pixels up to `along_px` away along the stripe and 3.2 σ `stripe_px` across it; a height of 0 says
+    that a fit failed.
     """
     reach = REACH * stripe_px + 1.0
-    bins = _LANES * (2 * math.ceil(reach * _BINS_PER_PX) // _LANES + 1)
+    bins = _BINS_MULTIPLE * (2 * math.ceil(reach * _BINS_PER_PX) // _BINS_MULTIPLE + 1)
     section = np.empty((3, bins))
     work = np.empty((_UNKNOWNS + 1, _UNKNOWNS))
     x = np.zeros(_UNKNOWNS)  # background, slope, height, centre, width
     fits = np.zeros((len(places), 4))
-    warm = False
+    has_neighbour = False
     for k in range(len(places)):
-        _gather(picture, state, places[k], reach, along_px, section)
+        _average_across(picture, state, places[k], reach, along_px, section)
         low, high = _range(section, stripe_px)
         if high <= low:
             continue
         settled = False
-        if warm:  # the neighbour's answer is nearly this one's, and wrong if its own was: it must settle
+        if has_neighbour:  # the neighbour's answer is nearly this one's, and wrong if its own was: it must settle
             x[3] = 0.0
             settled = _fit(section, stripe_px, x, work)
         if not (settled and _is_likely(x, stripe_px)):
             x[0], x[1], x[2], x[3], x[4] = low, 0.0, high - low, 0.0, stripe_px
             settled = _fit(section, stripe_px, x, work)
-        warm = _is_likely(x, stripe_px)
-        if warm:
+        has_neighbour = _is_likely(x, stripe_px)
+        if has_neighbour:
             fits[k, 0], fits[k, 1], fits[k, 2], fits[k, 3] = x[2], x[0], x[1], x[4]
-        warm = warm and settled
+        has_neighbour = has_neighbour and settled
     return fits
 
 
 @njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
-def _gather(
+def _average_across(
     picture: Picture, state: NDArray[np.uint8], place: Array, reach: float, along_px: float, section: Array
 ) -> None:
-    """Pixels around a place, sorted by their distance across the stripe: number, mean distance, mean grey (3, K)."""
+    """Average the pixels around a place in bins across the stripe: number, mean distance, mean grey (3, K)."""
     height, width = picture.shape
     u, v, nu, nv = place[0], place[1], place[2], place[3]
     upright = abs(nu) > abs(nv)
@@ -68,7 +84,7 @@ def _gather(
     middle = section.shape[1] // 2
     section[:] = 0.0
     half = math.ceil(abs(nv) * reach + abs(nu) * along_px)
-    row, every = int(v + 0.5), 2 if 2 * along_px > _FEW_ROWS else 1
+    row, every = int(v + 0.5), 2 if 2 * along_px > _ALL_ROWS_UP_TO else 1
     for j in range(max(row - half, 0), min(row + half + 1, height), every):
         at, spread = u - nv * (j - v) / nu, reach / abs(nu)
         for i in range(max(math.ceil(at - spread), 0), min(math.floor(at + spread) + 1, width)):
@@ -95,9 +111,9 @@ def _range(section: Array, stripe_px: float) -> tuple[float, float]:
     for k in range(section.shape[1]):
         if section[0, k] > 0:
             low, high = min(low, section[2, k]), max(high, section[2, k])
-            left += section[1, k] < -0.25 * stripe_px
-            right += section[1, k] > 0.25 * stripe_px
-    if min(left, right) < 3 or left + right <= _UNKNOWNS:
+            left += section[1, k] < -_FLANK * stripe_px
+            right += section[1, k] > _FLANK * stripe_px
+    if min(left, right) < _LEAST_ON_FLANK or left + right <= _UNKNOWNS:
         return 0.0, 0.0
     return low, high
 
@@ -115,7 +131,7 @@ def _fit(section: Array, stripe_px: float, x: Array, work: Array) -> bool:
         for k in range(len(count)):
             w, t = count[k], distance[k]
             d = (t - centre) / width
-            b = bell(0.5 * d * d)
+            b = exp_negative(0.5 * d * d)
             p = height * b * d / width  # by the centre
             q = p * d  # by the width
             r = w * (grey[k] - back - slope * t - height * b)
@@ -130,8 +146,8 @@ def _fit(section: Array, stripe_px: float, x: Array, work: Array) -> bool:
         step[0], step[1], step[2], step[3], step[4] = r0, r1, r2, r3, r4
         if not _solve(normal, step):
             return False
-        step[3] = min(max(step[3], -0.5 * stripe_px), 0.5 * stripe_px)
-        step[4] = min(max(step[4], -0.3 * width), 0.5 * width)
+        step[3] = min(max(step[3], -_LARGEST_SHIFT * stripe_px), _LARGEST_SHIFT * stripe_px)
+        step[4] = min(max(step[4], -_LARGEST_NARROWING * width), _LARGEST_WIDENING * width)
         for a in range(_UNKNOWNS):
             x[a] += step[a]
         if abs(step[3]) + abs(step[4]) < _SETTLED * stripe_px:
@@ -142,14 +158,14 @@ def _fit(section: Array, stripe_px: float, x: Array, work: Array) -> bool:
 @njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
 def _is_likely(x: Array, stripe_px: float) -> bool:
     """Whether a fit `x` (5,) can be the section of a stripe of about this σ."""
-    return bool(x[2] > 0 and 0.3 * stripe_px < x[4] < 3 * stripe_px and abs(x[3]) < stripe_px)
+    return bool(x[2] > 0 and _NARROWEST * stripe_px < x[4] < _WIDEST * stripe_px and abs(x[3]) < _FARTHEST * stripe_px)
 
 
 @njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
 def _solve(normal: Array, x: Array) -> bool:
     """Solve by Cholesky from the lower triangle, lightly damped; `x` comes as the right side. False if singular."""
     for a in range(_UNKNOWNS):
-        normal[a, a] *= 1 + 1e-9
+        normal[a, a] *= 1 + _DAMPING
         for b in range(a + 1):
             total = normal[a, b]
             for c in range(b):
@@ -169,3 +185,15 @@ def _solve(normal: Array, x: Array) -> bool:
             x[a] -= normal[b, a] * x[b]
         x[a] /= normal[a, a]
     return True
+
+
+@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
+def exp_negative(y: float) -> float:
+    """exp(−y) for y ≥ 0, within 1e-7: Taylor's series of the sixteenth part, squared four times."""
+    t = min(y, DARK) * (1 / 16)
+    tail = 1 - t / 4 * (1 - t / 5 * (1 - t / 6 * (1 - t / 7)))
+    p = 1 - t * (1 - t / 2 * (1 - t / 3 * tail))
+    p *= p
+    p *= p
+    p *= p
+    return p * p

@@ -1,4 +1,4 @@
-"""How to choose width and contrast of the stripes from a picture."""
+"""Choice of the stripes' width and contrast from a picture."""
 
 from __future__ import annotations
 
@@ -7,30 +7,35 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from core.image.linking import Hysteresis, link
-from core.image.marks import IGNORED, SATURATED
-from core.image.noise import estimate_noise
-from core.image.pieces import cut_ends
-from core.image.precision import response_noise
-from core.image.profile import measure_profiles
-from core.image.seeds import coarse_crests
-from core.image.stripe import WIDTH_IN_SIGMA, StripeSettings, filter_for
+from core.image.stripes.noise import estimate_noise
+from core.image.stripes.precision import response_noise
+from core.image.stripes.profile import measure_profiles
+from core.image.stripes.runs import cut_ends
+from core.image.stripes.stripe import CONTRAST_QUANTILE, WIDTH_IN_SIGMA, StripeSettings, filter_for
+from core.image.stripes.tracing.linking import HOLD, Hysteresis, link
+from core.image.stripes.tracing.pixel_state import IGNORED, SATURATED
+from core.image.stripes.tracing.seeds import coarse_crests
 from core.model.arrays import Array
 
 _BLOCKS = (1, 2, 3, 4, 6, 9, 13)
-"""Stripe σ looked for at first, in pixels."""
-_ROUNDS = 4
+"""Stripe σ tried at first, in px; the rounds that follow correct a factor of two between them."""
+
+# Held by tests/image/stripes/test_extraction.py (settings are chosen) on rendered stripes of σ 0.9 to 5 px, of several
+# heights and noises.
+_ROUNDS = 4  # corrections of the width at most; mostly two
+_SETTLED = 0.05  # change of the width, as a share of it, below which it is taken
 _LONG = 12.0  # filter σ: shorter runs are no stripe
-_FAINTEST = 0.008  # of full scale
-_ABOVE_NOISE = 8.0
-_SHARE_OF_STRONGEST = 0.12
-_FAINT = 0.2  # quantile of the heights along all stripes that is taken as their contrast
+_STRONG_QUANTILE = 0.9  # of the heights along all stripes: what the next round's thresholds refer to
+_FAINTEST = 0.008  # of full scale: 2 grey levels of 8 bits
+_ABOVE_NOISE = 8.0  # times the noise of the response
+_SHARE_OF_STRONGEST = 0.12  # a run starts from this share of the strong stripes' height,
+_LOW_SHARE = 0.4  # and goes on down to this share of that
 
 
 def choose_settings(
     picture: NDArray[np.float32], full_scale: float, mask: NDArray[np.bool_] | None = None
 ) -> StripeSettings | None:
-    """Width and contrast of the stripes in a picture, or None when it shows no stripe.
+    """Choose width and contrast of the stripes in a picture; None when it shows no stripe.
 
     Parameters
     ----------
@@ -65,16 +70,20 @@ def choose_settings(
             return None
         faintest = max(faintest, _SHARE_OF_STRONGEST * height)
         sections = _sections(
-            picture, state, stripe_px, filter_px, Hysteresis(faintest, 0.4 * faintest, 3 * filter_px, 0.0, noise)
+            picture,
+            state,
+            stripe_px,
+            filter_px,
+            Hysteresis(faintest, _LOW_SHARE * faintest, HOLD * filter_px, 0.0, noise),
         )
         if sections.shape[1] < 2 * _LONG * filter_px:
             return None
         width = float(np.median(sections[1]))
-        settled = abs(width / stripe_px - 1) < 0.05
-        stripe_px, height = width, float(np.quantile(sections[0], 0.9))
+        settled = abs(width / stripe_px - 1) < _SETTLED
+        stripe_px, height = width, float(np.quantile(sections[0], _STRONG_QUANTILE))
         if settled:
             break
-    return StripeSettings(WIDTH_IN_SIGMA * stripe_px, float(np.quantile(sections[0], _FAINT)))
+    return StripeSettings(WIDTH_IN_SIGMA * stripe_px, float(np.quantile(sections[0], CONTRAST_QUANTILE)))
 
 
 def _first_guess(picture: NDArray[np.float32], noise: float) -> tuple[float, float]:

@@ -1,10 +1,13 @@
-"""A centreline averaged along itself, as far as it is smooth.
+"""Smoothing of a centreline along itself, as far as it is a parabola.
 
 The noise of a stripe's points falls with the root of the length they are averaged over, but a window must not span a
 bend. So for each point parabolas are fitted to windows that grow, and the largest window is taken whose answer still
 agrees with those of all smaller ones: the intersection of confidence intervals. On a flat face windows become long, at
 a bend they stay short, and on an arc they stay so short that it is not flattened. A window never leaves its unbroken
 run, and so never spans a depth edge.
+
+A parabola may not be fitted to a long arc: a circle of curvature κ departs from its parabola by κ³x⁴/8; fitted over
+± h, the parabola takes up all of that but 3/35 of its value at the ends, so in the middle it is off by 3 κ³h⁴/280.
 
 References
 ----------
@@ -22,28 +25,31 @@ from math import comb
 import numpy as np
 from numpy.typing import NDArray
 
-from core.image.centreline import Centreline
-from core.image.local_arc import BIAS_ALLOWED, arc_bias
-from core.image.pieces import arc_length
+from core.image.stripes.centreline import Centreline
+from core.image.stripes.runs import arc_length
 from core.model.arrays import Array
 
+# Held by tests/image/stripes/test_smoothing.py on straight lines, bends and arcs, and on arcs as a sphere shows them.
 WINDOWS = (9.0, 13.0, 19.0, 28.0, 41.0, 60.0, 88.0)
-"""Half lengths of the windows tried, in pixels."""
+"""Half lengths in px of the windows tried, each about 1.46 times the one before."""
+AGREEMENT = 1.0
+"""Half width of the confidence intervals in standard uncertainties."""
+BIAS_ALLOWED = 0.1
+"""Largest bias of a local fit, in its standard uncertainties."""
+FORESHORTENING = 6.0
+"""Factor of an arc's bias when it is seen at a slant: it departs from its parabola by 1/sin² of the angle between its
+plane and the line of sight more than its own curvature tells; 6 is right for 24°."""
+LOPSIDED_FACTOR = 5.0
+"""The same once more where a window is lopsided: a flattened arc is not as bent on one side as on the other."""
+SYMMETRIC_SHARE = 0.8
+"""Of its half length that a window has on both sides, or it is lopsided."""
 
-AGREE = 1.0
-"""Half width of the confidence intervals in standard deviations."""
-
-FORESHORTENED = 6.0
-"""An arc seen at a slant is flattened, and departs from its parabola by more than its own curvature tells: by 1/sin² of
-the angle between its plane and the line of sight, which is 24° here."""
-LOPSIDED = 5.0
-"""The same once more where a window has less than SYMMETRIC of its half length on one side: a flattened arc is not as
-bent on one side as on the other."""
-SYMMETRIC = 0.8
+_LEAST_POINTS = 7  # of a window
+_LEAST_SIDE = 0.3  # of its half length that a window must have on either side
 
 
 def smooth(centreline: Centreline, windows: tuple[float, ...] = WINDOWS) -> Centreline:
-    """The centreline moved across itself onto local parabolas, with the σ that leaves.
+    """Smooth a centreline: move its points along their normals onto local parabolas, and give them the σ of those.
 
     Normals, widths and strengths stay. `correlation_px` grows by as much as the variances fall, for a mean along the
     line gains nothing by it; saturated points have no weight but are moved like the others.
@@ -52,13 +58,13 @@ def smooth(centreline: Centreline, windows: tuple[float, ...] = WINDOWS) -> Cent
         return centreline
     arc = arc_length(centreline.uv)
     best = _Fits.at(centreline, arc, windows[0])
-    low, high = best.shift - AGREE * best.sigma, best.shift + AGREE * best.sigma
+    low, high = best.shift - AGREEMENT * best.sigma, best.shift + AGREEMENT * best.sigma
     growing = np.isfinite(best.shift)
     for window in windows[1:]:
         fits = _Fits.at(centreline, arc, window)
-        low = np.fmax(low, fits.shift - AGREE * fits.sigma)
-        high = np.fmin(high, fits.shift + AGREE * fits.sigma)
-        bias = FORESHORTENED * np.where(fits.lopsided, LOPSIDED, 1.0) * arc_bias(best.curvature, window)
+        low = np.fmax(low, fits.shift - AGREEMENT * fits.sigma)
+        high = np.fmin(high, fits.shift + AGREEMENT * fits.sigma)
+        bias = FORESHORTENING * np.where(fits.lopsided, LOPSIDED_FACTOR, 1.0) * arc_bias(best.curvature, window)
         straight = bias <= BIAS_ALLOWED * fits.sigma
         growing &= (low <= high) & np.isfinite(fits.shift) & straight
         best = best.replaced(fits, growing)
@@ -77,7 +83,7 @@ def smooth(centreline: Centreline, windows: tuple[float, ...] = WINDOWS) -> Cent
 
 @dataclass(frozen=True, eq=False, slots=True)
 class _Fits:
-    """For every point, how far (px, along its normal) the parabola through its window lies from it.
+    """For every point, the distance in px along its normal to the parabola through its window.
 
     With that its σ in px and the parabola's curvature in 1/px, (N,) each; NaN where a window holds too little. And
     whether the window reaches much further to one side than to the other.
@@ -95,7 +101,9 @@ class _Fits:
         last = np.searchsorted(arc, arc + half_length, side="right")
         spacing = (arc[last - 1] - arc[first]) / np.maximum(last - first - 1, 1)
         usable = (
-            (last - first >= 7) & (arc - arc[first] > 0.3 * half_length) & (arc[last - 1] - arc > 0.3 * half_length)
+            (last - first >= _LEAST_POINTS)
+            & (arc - arc[first] > _LEAST_SIDE * half_length)
+            & (arc[last - 1] - arc > _LEAST_SIDE * half_length)
         )
         weight = np.where(line.saturated, 0.0, 1 / line.sigma**2)
 
@@ -117,7 +125,7 @@ class _Fits:
         curvature = 2 * np.abs(np.einsum("ni,ni->n", coefficients[2], line.normal)) / half_length**2
         repeats = np.maximum(1.0, line.correlation_px / np.maximum(spacing, 1e-9))
         sigma = np.sqrt(repeats * inverse[:, 0, 0])
-        lopsided = np.minimum(arc - arc[first], arc[last - 1] - arc) < SYMMETRIC * half_length
+        lopsided = np.minimum(arc - arc[first], arc[last - 1] - arc) < SYMMETRIC_SHARE * half_length
         shift, sigma, curvature = (np.where(usable, values, np.nan) for values in (shift, sigma, curvature))
         return cls(shift, sigma, curvature, lopsided)
 
@@ -135,3 +143,8 @@ def _about(moments: Array, origin: Array) -> Array:
         for j in range(k + 1):
             moved[k] += comb(k, j) * (-origin.reshape(shape)) ** (k - j) * moments[j]
     return moved
+
+
+def arc_bias(curvature: Array, half_length: float) -> Array:
+    """Errors (N,) in pixels of parabolas fitted to ± `half_length` px of arcs of `curvature` (N,) in 1/px."""
+    return 3.0 / 280.0 * curvature**3 * half_length**4

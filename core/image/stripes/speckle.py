@@ -16,44 +16,47 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from core.image.running import running_median
+from core.image.stripes.running_statistics import running_median
 from core.model.arrays import Array
 
-_COARSEST = 3.0  # stripe σ
-_FEWEST_CUTS = 30
-_LEVEL_CUTS = 41
-_OUTLIER = 6.0  # median deviations, four standard ones
-_SAMPLE = 4  # every so many cuts tell the median
-_LAGS = 3  # pixels from one to the other: 0 to 2
-_SIGNIFICANT = 4.0
-_SMALLEST_GRAIN_PX = 0.8
-_LARGEST_CONTRAST = 1.0
+# Limits of what is measured. Held by tests/image/stripes/likelihood/test_refinement.py (speckle is measured, neither
+# noise nor a section) on speckle of known contrast and grain and on stripes without any.
+_SMALLEST_GRAIN_PX = 0.8  # finer grains are averaged within a pixel
+_COARSEST_GRAIN = 3.0  # stripe σ: coarser changes count as brightness
+_LARGEST_CONTRAST = 1.0  # of fully developed speckle (Goodman, Speckle Phenomena in Optics)
+_SIGNIFICANT = 4.0  # standard errors of white noise: less is no speckle
+_LEAST_CUTS = 30  # of a stripe that is asked
+_LEVEL_CUTS = 41  # cuts: length of the running median that brightness is levelled by
+_OUTLIER = 6.0  # median deviations, four standard ones: larger residuals are cut down
+_MEDIAN_SAMPLE = 4  # every so many cuts tell that median; saves time
+_LAGS = 3  # distances in px of the pixels multiplied: 0, 1 and 2
 
 
 class Speckle(NamedTuple):
-    """Contrast (standard deviation over mean) as pixels see it; 1/e half-width of the grains' correlation in px."""
+    """Speckle: contrast, standard deviation over mean as pixels see it; 1/e half-width in px of its correlation."""
 
     contrast: float
     grain_px: float
 
 
 NO_SPECKLE = Speckle(0.0, 0.0)
+"""What is returned where none is significant."""
 
 
 def measure_speckle(stripes: list[Array], width_px: float) -> Speckle:
-    """Speckle on stripes seen in cuts of neighbouring pixels.
+    """Measure the speckle on stripes from cuts of neighbouring pixels.
 
     Parameters
     ----------
     stripes
-        (2, K, W) for each stripe: residuals and model of K cuts in order, of W pixels; zeros where one is of no use.
+        (2, K, W) for each stripe: residuals and model of K cuts in order, of W pixels; zeros where one cannot be used.
     width_px
         σ of the stripes; speckle is not much coarser than they are wide.
     """
     sums = np.zeros((_LAGS, 2))
     square, number = 0.0, 0.0
     for seen, m in stripes:
-        if len(seen) < _FEWEST_CUTS:
+        if len(seen) < _LEAST_CUTS:
             continue
         r = _levelled(seen, m)
         sums += _products(r, m)
@@ -67,7 +70,7 @@ def measure_speckle(stripes: list[Array], width_px: float) -> Speckle:
         return NO_SPECKLE
     fall = math.log(share[1] / share[2]) if share[2] > 0 else math.inf
     grain = math.sqrt(3 / fall) if fall > 0 else math.inf
-    grain = min(max(grain, _SMALLEST_GRAIN_PX), _COARSEST * width_px)
+    grain = min(max(grain, _SMALLEST_GRAIN_PX), _COARSEST_GRAIN * width_px)
     contrast = math.sqrt(float(share[1])) * math.exp(0.5 / grain**2)
     return Speckle(min(contrast, _LARGEST_CONTRAST), grain)
 
@@ -105,7 +108,7 @@ def _levelled(r: Array, m: Array) -> Array:
     for c in range(cuts):
         for i in range(width):
             levelled[c, i] -= shape[i] / max(light[i], 1e-9) * m[c, i]
-    limit = _OUTLIER * _median_share(levelled[::_SAMPLE], m[::_SAMPLE])
+    limit = _OUTLIER * _median_share(levelled[::_MEDIAN_SAMPLE], m[::_MEDIAN_SAMPLE])
     for c in range(cuts):
         for i in range(width):
             levelled[c, i] = min(max(levelled[c, i], -limit * m[c, i]), limit * m[c, i])

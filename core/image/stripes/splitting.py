@@ -8,21 +8,27 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from core.image.pieces import correlation_length
+from core.image.stripes.runs import correlation_length
 from core.model.arrays import Array
 
-_BREAK_GAP = 2.0  # filter σ on either side of a kink that its rounding reaches
-_BREAK_ARM = 8.0  # filter σ looked at on either side
-_SIGNIFICANT = 6.0  # standard uncertainties
-_SMALLEST_JUMP = 0.3  # px
-_SMALLEST_KINK = 0.06  # rad
-_SUSPECT = 0.5  # of the misfit without a break that the smallest significant one would leave
+# What counts as a break of a smooth line; also used where lines are joined. Held by
+# tests/image/stripes/test_extraction.py (jump, kink, smooth curve): above speckle's roughness, below the smallest depth
+# edges and kinks.
+SIGNIFICANT = 6.0  # standard uncertainties
+SMALLEST_JUMP_PX = 0.3  # across the line
+SMALLEST_KINK = 0.06  # rad, 3.4°
+
+_BREAK_GAP = 2.0  # filter σ on either side of a kink that the filter rounds
+_BREAK_ARM = 8.0  # filter σ fitted on either side
+_LEAST_ARM = 0.75  # share of that length which a window must have: nearer to an end nothing is judged
+_LEAST_POINTS = 8  # of a fit with five unknowns
+_SUSPECT = 0.5  # of the misfit that the smallest significant break leaves: with less, no broken curve is fitted
 
 
 def split_at_breaks(
     run: Array, whole: Array, usable: NDArray[np.bool_], filter_px: float, sigma_px: Array
 ) -> list[slice]:
-    """Parts of a run (N, ≥ 4) between jumps sideways and kinks, leaving out what the filter rounds there.
+    """Split a run (N, ≥ 4) at sideways jumps and kinks, leaving out what the filter rounds there.
 
     At every point a curve y = a + b·x + c·x² with a jump and a kink at that point is fitted to both sides, up to 8
     filter σ away and leaving out the nearest 2. The run is broken where jump or kink is large and significant, given
@@ -54,7 +60,7 @@ def _stretches(flags: NDArray[np.bool_]) -> NDArray[np.int64]:
 def _break_scores(
     run: Array, arc: Array, sigma: Array, gap: float, arm: float, correlation: float
 ) -> tuple[Array, Array]:
-    """How far jump or kink exceed what is allowed (1 = the limit), and the misfit of the broken curve, (N,) each."""
+    """Jump or kink over the largest allowed (1 = the limit), and the misfit of the broken curve, (N,) each."""
     count = len(run)
     score = np.zeros(count)
     misfit = np.full(count, np.inf)
@@ -64,13 +70,13 @@ def _break_scores(
     smooth = _smooth_misfit(run, arc, gap, arm, stride)
     for i in range(0, count, stride):
         # a break that counts explains at least so much: where all is less, there is none
-        if smooth[i] < _SUSPECT * _SIGNIFICANT**2 * sigma[i] ** 2 * correlation:
+        if smooth[i] < _SUSPECT * SIGNIFICANT**2 * sigma[i] ** 2 * correlation:
             continue
         while arc[i] - arc[left] > arm:
             left += 1
         while right + 1 < count and arc[right + 1] - arc[i] <= arm:
             right += 1
-        if arc[i] - arc[left] < 0.75 * arm or arc[right] - arc[i] < 0.75 * arm:
+        if arc[i] - arc[left] < _LEAST_ARM * arm or arc[right] - arc[i] < _LEAST_ARM * arm:
             continue
         tu, tv = run[right, 0] - run[left, 0], run[right, 1] - run[left, 1]
         length = math.hypot(tu, tv)
@@ -91,14 +97,14 @@ def _break_scores(
                     normal[a, b] += row[a] * row[b]
             square += y * y
             used += 1
-        if used < 8:
+        if used < _LEAST_POINTS:
             continue
         inverse = np.linalg.inv(normal + 1e-9 * np.eye(5))
         solution = inverse @ rhs
         misfit[i] = (square - np.sum(solution * rhs)) / used
         scatter = sigma[i] * math.sqrt(correlation)
-        jump = max(_SIGNIFICANT * scatter * math.sqrt(inverse[3, 3]), _SMALLEST_JUMP)
-        kink = max(_SIGNIFICANT * scatter * math.sqrt(inverse[4, 4]), _SMALLEST_KINK)
+        jump = max(SIGNIFICANT * scatter * math.sqrt(inverse[3, 3]), SMALLEST_JUMP_PX)
+        kink = max(SIGNIFICANT * scatter * math.sqrt(inverse[4, 4]), SMALLEST_KINK)
         score[i : i + stride] = max(abs(solution[3]) / jump, abs(solution[4]) / kink)
         misfit[i : i + stride] = misfit[i]
     return score, misfit

@@ -1,4 +1,4 @@
-"""What a technician tells of a stripe: its width and contrast."""
+"""Width and contrast of the stripes to be found."""
 
 from __future__ import annotations
 
@@ -6,15 +6,21 @@ import math
 from dataclasses import dataclass
 
 WIDTH_IN_SIGMA = 4.0
-"""The visible width of a laser stripe, where it has fallen to 1/e² of its height, in σ."""
+"""Visible width of a laser stripe in its σ: the trade's 1/e² width of a Gaussian."""
 FILTER_IN_SIGMA = 1.4
-"""Filter over stripe σ: within 3 % of the Cramér–Rao bound under shot noise, and blunt to too small a width."""
-_SMALLEST_FILTER_PX = 1.2  # sampled Gaussian derivatives alias below
+"""Filter σ over stripe σ: within 3 % of the Cramér–Rao bound under shot noise from 1.3 to 1.5, and insensitive to a
+width stated too small (measured on rendered stripes)."""
+CONTRAST_QUANTILE = 0.2
+"""Quantile of the heights along all stripes that is taken as their contrast, rather faint:
+tests/image/stripes/test_extraction.py (settings are chosen) holds it."""
+PIXEL_VARIANCE = 1 / 12
+"""Variance in px² that integrating the light over a pixel adds to a cross-section."""
+_SMALLEST_FILTER_PX = 1.2  # filter σ; sampled Gaussian derivatives alias below
 
 
 @dataclass(frozen=True, slots=True)
 class StripeSettings:
-    """What a technician can say of a stripe by looking at it.
+    """Visible width and contrast of the stripes in a picture, as a technician can read them off.
 
     Parameters
     ----------
@@ -24,6 +30,11 @@ class StripeSettings:
     contrast
         Height of a stripe above its background, in grey levels of the picture, where it is rather faint. Stripes are
         found from about a third of it.
+
+    Raises
+    ------
+    ValueError
+        If either is not a positive number.
     """
 
     width_px: float

@@ -2,9 +2,9 @@
 
 from core.image.targets.detect import detect
 from core.image.targets.kinds import BlackSquare, Charuco, Checkerboard, CircleGrid, Target
-from core.image.targets.not_found import TargetNotFound
 from core.image.targets.pose import PoseEstimate, estimate_pose
 from core.image.targets.shift import camera_shift, picture_shift
+from core.image.targets.target_view import TargetNotFound
 
 __all__ = [
     "BlackSquare",

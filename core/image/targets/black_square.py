@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Literal
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import median_filter
 
-from core.image.target_view import TargetView
 from core.image.targets.dark_squares import DarkSquares, dark_squares, first_corner
-from core.image.targets.edges import PictureSpline, Profiles, profiles
+from core.image.targets.edges import Line, PictureSpline, Profiles, corner_covariance, fit_line, meet, profiles
 from core.image.targets.kinds import BlackSquare
-from core.image.targets.lines import Line, corner_covariance, fit_line, meet
-from core.image.targets.not_found import TargetNotFound
 from core.image.targets.picture import Picture, as_8bit, enlarged, reduced
+from core.image.targets.target_view import TargetNotFound, TargetView
+from core.messages import Field, Message
 from core.model import Camera
 from core.model.arrays import Array
+from core.model.robust import mad_sd
 
 SYSTEMATIC_PX = 0.005
 """What is left on perfect pictures, RMS per coordinate."""
@@ -22,13 +25,24 @@ SYSTEMATIC_PX = 0.005
 _END = 0.06
 """Share of an edge left out at either end, where the other edge's blur reaches it."""
 
-
-ASTRAY_PX = 0.4
-HOPELESS_PX = 3.0
+UNSUSPICIOUS_PX = 0.4
+LARGEST_SCATTER_PX = 3.0
 """Scatter of an edge's points about its line in pixels, not suspected up to here, and always from here on."""
 
 CLIPPED_SHARE = 0.5
 """Shift of a clipped edge (over-exposed plate, or black cut off at zero), as a share of the edge's blur σ."""
+
+Side = Literal["left", "right", "upper", "lower"]
+_EDGE_LOST: Mapping[Side, Message] = {
+    "left": Message("target.left_edge_lost", "the black square is there, but its left edge cannot be followed"),
+    "right": Message("target.right_edge_lost", "the black square is there, but its right edge cannot be followed"),
+    "upper": Message("target.upper_edge_lost", "the black square is there, but its upper edge cannot be followed"),
+    "lower": Message("target.lower_edge_lost", "the black square is there, but its lower edge cannot be followed"),
+}
+_SHOW_EDGE = Message(
+    "advice.show_edge", "check focus and exposure, and that neither a thing nor a laser line covers the edge"
+)
+_KIND = Field("plane_target.kind", whole=True)
 
 
 def detect_black_square(
@@ -49,7 +63,7 @@ def detect_black_square(
     small, factor = reduced(as_8bit(picture), 900)
     seen = dark_squares(small)
     _check_single(seen, name)
-    flat = _Flat(camera)
+    flat = _StraightEdges(camera)
     quad = enlarged(seen.whole[0], factor)
     near = min(4.0 * factor + 4, 0.1 * float(np.linalg.norm(quad[0] - quad[2])))
     spline = PictureSpline(picture, quad, 2 * near + 16)
@@ -58,12 +72,8 @@ def detect_black_square(
         undisturbed = _undisturbed([profile for _, _, profile in across])
         edges = [_edge(flat, *each, use) for each, use in zip(across, undisturbed, strict=True)]
         for k, edge in enumerate(edges):
-            if edge is None or _astray(edges, k):
-                raise TargetNotFound(
-                    f"the black square is there, but its {_side_name(quad, k)} edge cannot be followed",
-                    where=name,
-                    todo="check focus and exposure, and that neither a thing nor a laser line covers the edge",
-                )
+            if edge is None or _follows_something_else(edges, k):
+                raise TargetNotFound(_EDGE_LOST[_side(quad, k)], where=name, todo=_SHOW_EDGE)
         lines = [edge for edge in edges if edge is not None]
         quad = flat.to_pixels(np.array([meet(lines[k - 1], lines[k]) for k in range(4)]))
     clipped = max(_clipped_shift(picture, profile) for _, _, profile in across)
@@ -75,7 +85,7 @@ def detect_black_square(
     return TargetView(square.points, quad[order], sigma, name, covariance)
 
 
-class _Flat:
+class _StraightEdges:
     """Coordinates in which straight edges are straight: ray coordinates times the focal length, or pixels."""
 
     def __init__(self, camera: Camera | None) -> None:
@@ -91,7 +101,7 @@ class _Flat:
 
 
 def _across(
-    spline: PictureSpline, flat: _Flat, start: Array, end: Array, half_width: float
+    spline: PictureSpline, flat: _StraightEdges, start: Array, end: Array, half_width: float
 ) -> tuple[Array, Array, Profiles]:
     """Points (K, 2) along the edge from `start` to `end`, the outward normals there, and the profiles along them."""
     a, b = flat.of(np.array([start, end]))
@@ -103,16 +113,16 @@ def _across(
     return uv, outward, profiles(spline, uv, outward, half_width)
 
 
-def _edge(flat: _Flat, uv: Array, outward: Array, across: Profiles, use: NDArray[np.bool_]) -> Line | None:
+def _edge(flat: _StraightEdges, uv: Array, outward: Array, across: Profiles, use: NDArray[np.bool_]) -> Line | None:
     """The line, in flat coordinates, through the edge points that `use` selects."""
     points = flat.of(uv + across.offset[:, None] * outward)
     return fit_line(points, use & np.isfinite(points).all(axis=1), floor=0.01)
 
 
-def _astray(edges: list[Line | None], k: int) -> bool:
+def _follows_something_else(edges: list[Line | None], k: int) -> bool:
     """Whether edge `k`'s points scatter far more than the others': it follows something else, such as a stripe."""
     scatter = [np.inf if edge is None else edge.sigma for edge in edges]
-    return scatter[k] > min(HOPELESS_PX, max(ASTRAY_PX, 6 * float(np.median(scatter))))
+    return scatter[k] > min(LARGEST_SCATTER_PX, max(UNSUSPICIOUS_PX, 6 * float(np.median(scatter))))
 
 
 def _undisturbed(edges: list[Profiles]) -> list[NDArray[np.bool_]]:
@@ -132,7 +142,7 @@ def _undisturbed(edges: list[Profiles]) -> list[NDArray[np.bool_]]:
         with np.errstate(invalid="ignore"):
             rising = edge.valid & (edge.fall < 1.5 * usual_fall + 0.1 * (bright - dark))
             common = rising & (edge.dark < dark + slack) & (edge.bright < bright + slack)
-        steady = rising & _usual(edge.dark) & _usual(edge.bright)
+        steady = rising & _near_running_median(edge.dark) & _near_running_median(edge.bright)
         both = steady & common
         if both.sum() < 0.3 * len(both):
             both = common if common.sum() >= 0.3 * len(both) else steady
@@ -140,11 +150,11 @@ def _undisturbed(edges: list[Profiles]) -> list[NDArray[np.bool_]]:
     return chosen
 
 
-def _usual(level: Array) -> NDArray[np.bool_]:
+def _near_running_median(level: Array) -> NDArray[np.bool_]:
     """Where `level` (N,) stays near its own running median."""
     known = np.where(np.isfinite(level), level, np.nanmedian(level) if np.isfinite(level).any() else 0.0)
     away = known - median_filter(known, size=max(15, len(known) // 2), mode="nearest")
-    scale = max(1.4826 * float(np.median(np.abs(away - np.median(away)))), 0.5)
+    scale = max(mad_sd(away - np.median(away)), 0.5)
     usual: NDArray[np.bool_] = np.isfinite(level) & (np.abs(away) < 5 * scale)
     return usual
 
@@ -164,26 +174,30 @@ def _check_single(seen: DarkSquares, name: str) -> None:
     if not seen.whole:
         if seen.cut_off:
             raise TargetNotFound(
-                "only a part of the black square is in the picture",
+                Message("target.square_cut_off", "only a part of the black square is in the picture"),
                 where=name,
-                todo="move the target so that the whole square is seen, with light plate all round it",
+                todo=Message(
+                    "advice.show_whole_square",
+                    "move the target so that the whole square is seen, with light plate all round it",
+                ),
             )
         raise TargetNotFound(
-            "no black square on a light plate is seen in the picture",
+            Message("target.no_square", "no black square on a light plate is seen in the picture"),
             where=name,
-            todo="leave the picture out, or check plane_target.kind in rig.toml",
+            todo=Message("advice.leave_out_or_check_kind", "leave the picture out, or check {field}", field=_KIND),
         )
     sizes = [float(np.linalg.norm(quad[0] - quad[2]) * np.linalg.norm(quad[1] - quad[3])) for quad in seen.whole]
     alike = sum(size > 0.5 * sizes[0] for size in sizes)
     if alike > 1:
         raise TargetNotFound(
-            f"{alike} dark squares of like size are seen in the picture, not one",
+            Message("target.many_squares", "{n} dark squares of like size are seen in the picture, not one", n=alike),
             where=name,
-            todo="check plane_target.kind in rig.toml, or cover the others",
+            todo=Message("advice.check_kind_or_cover", "check {field}, or cover the others", field=_KIND),
         )
 
 
-def _side_name(quad: Array, k: int) -> str:
+def _side(quad: Array, k: int) -> Side:
+    """Which side of the picture edge `k` of a `quad` (4, 2) is on."""
     du, dv = (quad[k] + quad[(k + 1) % 4]) / 2 - quad.mean(axis=0)
     if abs(du) > abs(dv):
         return "right" if du > 0 else "left"

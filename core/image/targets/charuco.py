@@ -6,13 +6,13 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from core.image.target_view import TargetView
-from core.image.targets.corner_noise import corner_sigma
-from core.image.targets.grid import refined
-from core.image.targets.homography import homography_of, map_by
+from core.errors import InputError
+from core.image.targets.corners import corner_sigma, refined
 from core.image.targets.kinds import Charuco
-from core.image.targets.not_found import TargetNotFound
 from core.image.targets.picture import Picture, as_8bit, enlarged, noise_of, reduced, without_stripes
+from core.image.targets.pose import homography_of, map_by
+from core.image.targets.target_view import TargetNotFound, TargetView
+from core.messages import Field, Message
 from core.model.arrays import Array
 
 LEAST_CORNERS = 6
@@ -34,9 +34,11 @@ def detect_charuco(board: Charuco, picture: Picture, name: str = "") -> TargetVi
     ------
     TargetNotFound
         If fewer than six corners are seen, or all of them in one line.
+    InputError
+        If the board needs more markers than its dictionary has.
     """
     full = as_8bit(picture)
-    dictionary = cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, board.dictionary_id))
+    dictionary = dictionary_of(board)
     markers = 0
     for longest in (1300, 2600):
         small, factor = reduced(full, longest)
@@ -48,6 +50,31 @@ def detect_charuco(board: Charuco, picture: Picture, name: str = "") -> TargetVi
         if factor == 1:
             break
     raise _failure(board, markers, name)
+
+
+def dictionary_of(board: Charuco) -> cv2.aruco.Dictionary:
+    """The markers of `board`, as OpenCV has them.
+
+    Raises
+    ------
+    InputError
+        If the board needs more markers than its dictionary has.
+    """
+    dictionary = cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, board.dictionary_id))
+    needed, available = board.columns * board.rows // 2, len(dictionary.bytesList)
+    if needed > available:
+        raise InputError(
+            Message(
+                "target.few_markers",
+                "the board has {n} markers, but {dictionary} only {available}",
+                n=needed,
+                dictionary=board.dictionary_id,
+                available=available,
+            ),
+            where="dictionary",
+            todo=Message("target.advice_dictionary", "choose a dictionary with more markers, or fewer squares"),
+        )
+    return dictionary
 
 
 def _best_reading(
@@ -99,12 +126,25 @@ def _clear_of_markers(board: Charuco, xy: Array, corners: Array) -> float:
 def _failure(board: Charuco, markers: int, name: str) -> TargetNotFound:
     if markers == 0:
         return TargetNotFound(
-            f"no marker of {board.dictionary_id} is seen in the picture",
+            Message("target.no_marker", "no marker of {name} is seen in the picture", name=board.dictionary_id),
             where=name,
-            todo="check the dictionary in rig.toml, or leave the picture out",
+            todo=Message(
+                "advice.check_dictionary_or_leave_out",
+                "check the {field}, or leave the picture out",
+                field=Field("target.dictionary"),
+            ),
         )
     return TargetNotFound(
-        f"{markers} markers of the ChArUco board are seen, but fewer than {LEAST_CORNERS} of its corners",
+        Message(
+            "target.few_charuco_corners",
+            "{n} markers of the ChArUco board are seen, but fewer than {least} of its corners",
+            n=markers,
+            least=LEAST_CORNERS,
+        ),
         where=name,
-        todo="show more of the board, or check its columns, rows and dictionary in rig.toml",
+        todo=Message(
+            "advice.show_more_of_board",
+            "show more of the board, or check its {fields}",
+            fields=Field("target.columns, rows and dictionary"),
+        ),
     )

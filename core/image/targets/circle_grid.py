@@ -9,23 +9,25 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from core.image.target_view import TargetView
 from core.image.targets.ellipses import Ellipse, centre_shift, fit_dark_ellipse
-from core.image.targets.homography import homography_of, map_by
 from core.image.targets.kinds import CircleGrid
-from core.image.targets.not_found import TargetNotFound
 from core.image.targets.picture import Picture, as_8bit, enlarged, reduced, without_stripes
+from core.image.targets.pose import homography_of, map_by
+from core.image.targets.target_view import LEAVE_OUT_OR_RETAKE, TargetNotFound, TargetView
+from core.messages import Field, Message
 from core.model import Camera
 from core.model.arrays import Array
 
 SYSTEMATIC_PX = 0.005
 """What is left on perfect pictures, RMS per coordinate."""
 
-ASTRAY_PX = 0.03
+UNSUSPICIOUS_PX = 0.03
 """σ of a circle's centre up to which its outline is not suspected."""
 
 LEAST_SHARE = 0.8
 """Share of the circles whose outline must be seen."""
+
+_CIRCLES = Field("target.circles")
 
 MOST_SPOTS = 2
 """More round spots than this many grids' worth, and the picture shows a texture, not a target."""
@@ -144,9 +146,14 @@ def _check_complete(grid: CircleGrid, spots: _Spots, centres: Array, name: str) 
         alike = np.abs(np.log(spots.radius[index] / usual)) < 0.4
         if np.mean((distance < reach) & alike) > 0.75:
             raise TargetNotFound(
-                f"the target shows more than {grid.columns} × {grid.rows} circles",
+                Message(
+                    "target.more_circles",
+                    "the target shows more than {columns} × {rows} circles",
+                    columns=grid.columns,
+                    rows=grid.rows,
+                ),
                 where=name,
-                todo="check the number of circles in rig.toml",
+                todo=Message("advice.check_circles", "check the number of {field}", field=_CIRCLES),
             )
 
 
@@ -157,15 +164,21 @@ def _view(
     fitted = [fit_dark_ellipse(picture, *spot) for spot in zip(centres, radii, strict=True)]
     usual = float(np.median([ellipse.sigma for ellipse in fitted if ellipse is not None] or [0.0]))
     fitted = [
-        ellipse if ellipse is not None and ellipse.sigma < max(ASTRAY_PX, 5 * usual) else None for ellipse in fitted
+        ellipse if ellipse is not None and ellipse.sigma < max(UNSUSPICIOUS_PX, 5 * usual) else None
+        for ellipse in fitted
     ]
     followed = np.array([ellipse is not None for ellipse in fitted])
     ellipses = [ellipse for ellipse in fitted if ellipse is not None]
     if len(ellipses) < LEAST_SHARE * len(fitted):
         raise TargetNotFound(
-            f"the outlines of {len(fitted) - len(ellipses)} of the {len(fitted)} circles cannot be followed",
+            Message(
+                "target.outlines_lost",
+                "the outlines of {n} of the {all} circles cannot be followed",
+                n=len(fitted) - len(ellipses),
+                all=len(fitted),
+            ),
             where=name,
-            todo="check focus and exposure, and that nothing covers the circles",
+            todo=Message("advice.show_circles", "check focus and exposure, and that nothing covers the circles"),
         )
     points = grid.points[followed]
     uv = np.array([ellipse.centre for ellipse in ellipses])
@@ -196,10 +209,22 @@ def _failure(grid: CircleGrid, seen: int, name: str) -> TargetNotFound:
     wanted = grid.columns * grid.rows
     if seen < 0.3 * wanted or seen > MOST_SPOTS * wanted:
         return TargetNotFound(
-            "no grid of circles is seen in the picture", where=name, todo="leave the picture out or take it again"
+            Message("target.no_circle_grid", "no grid of circles is seen in the picture"),
+            where=name,
+            todo=LEAVE_OUT_OR_RETAKE,
         )
     return TargetNotFound(
-        f"{seen} round dark spots are seen, but no {grid.columns} × {grid.rows} grid of circles",
+        Message(
+            "target.spots_without_grid",
+            "{n} round dark spots are seen, but no {columns} × {rows} grid of circles",
+            n=seen,
+            columns=grid.columns,
+            rows=grid.rows,
+        ),
         where=name,
-        todo="show the whole target, and check the number of circles in rig.toml",
+        todo=Message(
+            "advice.show_whole_target",
+            "show the whole target, and check the number of {field}",
+            field=_CIRCLES,
+        ),
     )

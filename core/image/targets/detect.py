@@ -2,17 +2,25 @@
 
 from __future__ import annotations
 
-from core.image.target_view import TargetView
 from core.image.targets.black_square import detect_black_square
 from core.image.targets.charuco import detect_charuco
 from core.image.targets.checkerboard import detect_checkerboard
 from core.image.targets.circle_grid import detect_circle_grid
 from core.image.targets.kinds import BlackSquare, Charuco, Checkerboard, CircleGrid, Target
 from core.image.targets.picture import Picture, check_exposure
+from core.image.targets.target_view import TargetView
 from core.model import Camera
 
 
-def detect(target: Target, picture: Picture, name: str = "", camera: Camera | None = None) -> TargetView:
+def detect(
+    target: Target,
+    picture: Picture,
+    name: str = "",
+    camera: Camera | None = None,
+    *,
+    thorough: bool = True,
+    plane_only: bool = False,
+) -> TargetView:
     """Find `target` in `picture` to sub-pixel.
 
     Parameters
@@ -24,19 +32,24 @@ def detect(target: Target, picture: Picture, name: str = "", camera: Camera | No
     camera
         If given, the black square's edges are fitted as straight lines in undistorted rays and the circles' perspective
         is taken from the rays; without it, in pixels (good only while distortion bends an edge by less than the noise).
+    thorough
+        Whether to take a second or more over a checkerboard that is hard to find: not for live pictures.
+    plane_only
+        Whether the target's plane is enough: any part of a checkerboard will do then that has one pose before `camera`.
 
     Raises
     ------
     TargetNotFound
-        If the picture does not show the whole target (ChArUco: at least six corners, not all in one line); the
-        sentence tells no target at all, a target of another size, a part of one, and an empty picture from each other.
+        If the picture does not show the whole target (ChArUco: at least six corners, not all in one line; checkerboard:
+        a part whose corners are known by the ends it shows); the sentence tells no target at all, a target of another
+        size, a part of one, and an empty picture from each other.
     ValueError
         If the picture is not 2-D uint8 or uint16.
     """
     check_exposure(picture, name)
     match target:
         case Checkerboard():
-            return detect_checkerboard(target, picture, name)
+            return detect_checkerboard(target, picture, name, camera if plane_only else None, thorough=thorough)
         case Charuco():
             return detect_charuco(target, picture, name)
         case CircleGrid():

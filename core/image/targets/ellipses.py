@@ -9,6 +9,7 @@ import numpy as np
 from core.image.targets.edges import PictureSpline, profiles
 from core.image.targets.picture import Picture
 from core.model.arrays import Array
+from core.model.robust import mad_sd
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -59,7 +60,7 @@ def _fit_once(spline: PictureSpline, about: Ellipse, half_width: float) -> Ellip
             return None
         ellipse = fitted
         distance = _distances(ellipse, points)
-        scale = max(1.4826 * float(np.median(np.abs(distance[used]))), 0.02)
+        scale = max(mad_sd(distance[used]), 0.02)
         used = plain & (np.abs(distance) < 4 * scale)
     sigma = float(np.sqrt(np.mean(distance[used] ** 2) * 2 / used.sum()))
     return Ellipse(ellipse.centre, ellipse.shape, sigma)

@@ -6,12 +6,24 @@ away from the camera.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import cv2
 import numpy as np
 
 from core.model.arrays import Array
+
+USUAL: Mapping[str, tuple[int, int, float]] = {
+    "checkerboard": (17, 12, 10.0),
+    "charuco": (12, 9, 15.0),
+    "circle_grid": (13, 10, 14.0),
+    "black_square": (1, 1, 60.0),
+}
+"""Columns, rows and size in mm where none are given: those of the simulated rig; all fit A4."""
+
+USUAL_MARKER = 0.75
+"""Side of a marker over that of its square."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from core.image.targets.not_found import TargetNotFound
+from core.image.targets.target_view import TargetNotFound
+from core.messages import Message
 from core.model.arrays import Array
 
 Picture = NDArray[Any]
@@ -34,12 +35,24 @@ def check_exposure(picture: Picture, name: str) -> None:
     faint = _FAINTEST[picture.dtype]
     white = np.iinfo(picture.dtype).max
     if high <= faint:
-        raise TargetNotFound("the picture is all black", where=name, todo="expose longer, or check the lens cap")
+        raise TargetNotFound(
+            Message("picture.black", "the picture is all black"),
+            where=name,
+            todo=Message("advice.expose_longer", "expose longer, or check the lens cap"),
+        )
     if low >= white - faint:
-        raise TargetNotFound("the picture is all white", where=name, todo="expose shorter")
+        raise TargetNotFound(
+            Message("picture.white", "the picture is all white"),
+            where=name,
+            todo=Message("advice.expose_shorter", "expose shorter"),
+        )
     if high - low <= faint:
         raise TargetNotFound(
-            f"the picture is of one grey (levels {low:.0f} to {high:.0f})", where=name, todo="check light and focus"
+            Message(
+                "picture.one_grey", "the picture is of one grey (levels {low:.0f} to {high:.0f})", low=low, high=high
+            ),
+            where=name,
+            todo=Message("advice.check_light_and_focus", "check light and focus"),
         )
 
 
@@ -74,7 +87,15 @@ def reduced(picture: NDArray[np.uint8], longest: int) -> tuple[NDArray[np.uint8]
     return np.asarray(small, dtype=np.uint8), factor
 
 
-def enlarged(uv: Array, factor: int) -> Array:
+def resized(picture: NDArray[np.uint8], factor: float) -> tuple[NDArray[np.uint8], float]:
+    """The picture reduced by about `factor`, or enlarged if that is below one, and the factor."""
+    rows, columns = (max(1, round(side / factor)) for side in picture.shape)
+    way = cv2.INTER_AREA if factor > 1 else cv2.INTER_CUBIC
+    small = picture if factor == 1 else cv2.resize(picture, (columns, rows), interpolation=way)
+    return np.asarray(small, dtype=np.uint8), factor
+
+
+def enlarged(uv: Array, factor: float) -> Array:
     """Points `uv` (…, 2) of a reduced picture in pixels of the full one (pixel centres are whole numbers in both)."""
     return (np.asarray(uv, dtype=np.float64) + 0.5) * factor - 0.5
 

@@ -1,4 +1,4 @@
-"""Pose of a planar target from one view, with covariance and the two-fold ambiguity of planes."""
+"""Homography and pose of a planar target from one view, with covariance and the two-fold ambiguity of planes."""
 
 from __future__ import annotations
 
@@ -9,10 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from core.image.target_view import TargetView
-from core.image.targets.not_found import TargetNotFound
+from core.image.targets.target_view import TargetNotFound, TargetView
+from core.messages import Field, Message
 from core.model import Camera, Pose
 from core.model.arrays import Array, frozen_array, set_field
+from core.model.robust import tukey_weights
 
 ROBUST_FROM = 12
 """Points from which on outliers can be told and the residuals' size estimated."""
@@ -85,9 +86,13 @@ def estimate_pose(view: TargetView, camera: Camera) -> PoseEstimate:
     fits = [fit for start in _plane_poses(view, camera) if (fit := _refine(view, camera, start)) is not None]
     if not fits:
         raise TargetNotFound(
-            "no pose of the target before the camera explains its points",
+            Message("target.no_pose", "no pose of the target in front of the camera explains its points"),
             where=view.name,
-            todo="check the camera's calibration and the target's size in rig.toml",
+            todo=Message(
+                "advice.check_calibration_and_size",
+                "check the camera's calibration and the target's {field}",
+                field=Field("target.size"),
+            ),
         )
     scale = min(fit.scale for fit in fits)
     fits.sort(key=lambda fit: fit.misfit(scale))
@@ -177,7 +182,7 @@ def _judge(view: TargetView, camera: Camera, pose: Pose) -> _Fit:
     weight = np.ones(len(length))
     scale = max(1.0, float(np.median(length)) / 1.177)  # the median length of two normal components
     if len(length) >= ROBUST_FROM:
-        weight = np.clip(1 - (length / (CUT * scale)) ** 2, 0, None) ** 2
+        weight = tukey_weights(length, CUT * scale)
     return _Fit(pose, residuals, length, weight, scale)
 
 
@@ -231,3 +236,16 @@ def _vector_by_turn(vector: Array) -> Array:
     factor = 1 / 12 if angle < 1e-4 else 1 / angle**2 - (1 + np.cos(angle)) / (2 * angle * np.sin(angle))
     inverse: Array = np.eye(3) - cross / 2 + factor * cross @ cross
     return inverse
+
+
+def homography_of(xy: Array, uv: Array, *, robust: bool = False) -> Array | None:
+    """The homography (3, 3) that maps `xy` (N, 2) to `uv` (N, 2); None if they do not determine one."""
+    matrix = cv2.findHomography(xy, uv, cv2.LMEDS if robust else 0)[0]
+    return None if matrix is None else np.asarray(matrix, dtype=np.float64)
+
+
+def map_by(homography: Array, xy: Array) -> Array:
+    """Images (N, 2) of `xy` (N, 2)."""
+    ends = np.column_stack([xy, np.ones(len(xy))]) @ homography.T
+    mapped: Array = ends[:, :2] / ends[:, 2:]
+    return mapped

@@ -7,8 +7,8 @@ import numpy as np
 from scipy.ndimage import map_coordinates
 from scipy.spatial import cKDTree
 
-from core.image.target_view import TargetView
 from core.image.targets.picture import Picture
+from core.image.targets.target_view import TargetView
 from core.model.arrays import Array
 
 BLUR = 1.5

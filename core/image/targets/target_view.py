@@ -1,4 +1,4 @@
-"""What one picture shows of a calibration target."""
+"""What one picture shows of a calibration target: its points, or that it is not found."""
 
 from __future__ import annotations
 
@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from core.errors import InputError
+from core.messages import Message
 from core.model.arrays import Array, frozen_array, set_field
 
 
@@ -26,6 +28,9 @@ class TargetView:
     covariance
         (2N, 2N) of the stacked `uv` in square pixels, where the points share their errors (corners on common edges);
         None: independent, with `sigma`.
+    placed
+        False if the points are a part of a regular pattern that may as well be another part of it: they tell the
+        target's plane, but neither its origin nor its shape.
     """
 
     points: Array
@@ -33,6 +38,7 @@ class TargetView:
     sigma: Array
     name: str = ""
     covariance: Array | None = None
+    placed: bool = True
 
     def __post_init__(self) -> None:
         count = len(self.points)
@@ -49,3 +55,10 @@ class TargetView:
             scale = np.repeat(self.sigma, 2).reshape(-1, *(1,) * (stacked.ndim - 1))
             return np.asarray(stacked / scale, dtype=np.float64)
         return np.asarray(np.linalg.solve(np.linalg.cholesky(self.covariance), stacked), dtype=np.float64)
+
+
+class TargetNotFound(InputError):
+    """The picture does not show the whole target; the message tells what it shows instead."""
+
+
+LEAVE_OUT_OR_RETAKE = Message("advice.leave_out_or_retake", "leave the picture out or take it again")

@@ -3,31 +3,39 @@
 from __future__ import annotations
 
 from core.errors import InputError
-from core.inspect.elements import Element, angle, distance
-from core.inspect.feature_spec import FeatureSpec
 from core.inspect.features.measured import FeatureResult, Scene
+from core.inspect.fit.elements import Derived, Element, angle, distance
+from core.inspect.plan.feature_spec import FeatureSpec
+from core.messages import Message
 
 
 def measure_distance(spec: FeatureSpec, scene: Scene) -> FeatureResult:
     """Distance of two points, of a point from a plane or an axis, of a plane's middle from another plane."""
-    value, rows, rule = distance(*_elements(spec, scene))
-    return FeatureResult(spec, characteristics=(scene.characteristic(spec, "distance", value, rows, rule=rule),))
+    return _result(spec, scene, "distance", distance(*_elements(spec, scene)))
 
 
 def measure_angle(spec: FeatureSpec, scene: Scene) -> FeatureResult:
     """Angle of two planes, two axes, or an axis and a plane."""
     a, b = _elements(spec, scene)
     if "point" in (a.kind, b.kind):
-        raise InputError("a point has no direction, so there is no angle to it", todo="name planes or cylinders")
-    value, rows, rule = angle(a, b)
-    return FeatureResult(
-        spec, characteristics=(scene.characteristic(spec, "angle", value, rows, rule=rule, angle=True),)
-    )
+        raise InputError(
+            Message("feature.point_has_no_direction", "a point has no direction, so there is no angle to it"),
+            todo=Message("feature.advice_name_planes", "name planes or cylinders"),
+        )
+    return _result(spec, scene, "angle", angle(a, b))
+
+
+def _result(spec: FeatureSpec, scene: Scene, kind: str, found: Derived) -> FeatureResult:
+    row = scene.characteristic(spec, kind, found.value, found.budget, rule=found.rule)
+    return FeatureResult(spec, characteristics=(row,))
 
 
 def _elements(spec: FeatureSpec, scene: Scene) -> tuple[Element, Element]:
     a, b = (scene.found[name].element for name in spec.of)
     if a is None or b is None:
         missing = spec.of[0] if a is None else spec.of[1]
-        raise InputError(f"{missing} was not measured", todo=f"mend {missing} first")
+        raise InputError(
+            Message("feature.was_not_measured", "{name} was not measured", name=missing),
+            todo=Message("feature.advice_mend_first", "mend {name} first", name=missing),
+        )
     return a, b

@@ -6,22 +6,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.errors import InputError
-from core.inspect.alignment import best_fit
 from core.inspect.characteristic import Characteristic
-from core.inspect.deviation_map import DeviationMap
-from core.inspect.error_sources import GRAZING, Sources
-from core.inspect.feature_spec import Deviation, FeatureSpec
 from core.inspect.features.measured import FeatureResult, Scene
 from core.inspect.features.regions import points_in
-from core.inspect.plane_search import search_tolerance
-from core.inspect.point_errors import patches
+from core.inspect.fit.plane_search import search_tolerance
+from core.inspect.fit.surface_fit import u_of_quantiles
+from core.inspect.plan.alignment import best_fit
+from core.inspect.plan.feature_spec import Deviation, FeatureSpec
 from core.inspect.results import Contribution
-from core.inspect.spread import SAMPLING, u_of_quantiles
-from core.inspect.uncertainty import budget
+from core.inspect.shown.deviation_map import DeviationMap
+from core.inspect.uncertainty.budget import budget
+from core.inspect.uncertainty.causes import SAMPLING
+from core.inspect.uncertainty.error_sources import GRAZING, Sources
+from core.inspect.uncertainty.point_errors import patches
+from core.messages import Message
 from core.model import Pose
 from core.model.arrays import Array
-from core.scan.cloud import Cloud
-from core.scan.triangles import Nearest, Surroundings, Triangles
+from core.scan.surface.cloud import Cloud
+from core.scan.surface.triangles import Nearest, ProximityQuery, Triangles
 
 MOST_POINTS = 40_000
 """Points of the cloud that the figures rest on, spread evenly over it."""
@@ -30,6 +32,7 @@ TABLE = 1.2
 ALIKE = 0.5
 """Points whose surface faces more than 60° elsewhere than the nominal one are of another side."""
 FEWEST = 12
+"""Points: twice the six freedoms of an alignment."""
 LARGEST = 0.95
 """Share of the points whose deviations a profile deviation holds."""
 
@@ -37,21 +40,29 @@ LARGEST = 0.95
 def measure_deviation(spec: FeatureSpec, scene: Scene) -> FeatureResult:
     """Lay the nominal surface on the scan and compare; InputError if it does not fit or is not there."""
     if spec.deviation is None or spec.deviation.nominal not in scene.nominals:
-        raise InputError("its nominal surface was not read", todo="name an STL file in mm")
+        raise InputError(
+            Message("feature.nominal_not_read", "its nominal surface was not read"),
+            todo=Message("feature.advice_name_stl", "name an STL file in mm"),
+        )
     asked, nominal = spec.deviation, scene.nominals[spec.deviation.nominal]
     indices = points_in(spec.regions[0], spec.filters, scene)
     indices = indices[_above_table(scene.cloud.points[indices], nominal, scene)]
-    around = Surroundings(nominal)
-    pose = _pose(asked, around, indices, scene)
+    query = ProximityQuery(nominal)
+    pose = _pose(asked, query, indices, scene)
     step = max(1, len(indices) // MOST_POINTS)
     used = indices[::step]
     cloud = scene.cloud.select(used)
-    near = around.nearest(pose.inverse().apply(cloud.points), asked.reach_mm)
+    near = query.nearest(pose.inverse().apply(cloud.points), asked.reach_mm)
     kept = _facing(cloud.normals, near, pose) & (np.abs(near.distance) <= asked.reach_mm)
     if kept.sum() < FEWEST:
         raise InputError(
-            f"{kept.sum()} measured points lie within {asked.reach_mm:g} mm of the nominal surface",
-            todo="check the alignment, or allow a larger reach_mm",
+            Message(
+                "feature.few_points_near_nominal",
+                "{n} measured points lie within {reach_mm:g} mm of the nominal surface",
+                n=kept.sum(),
+                reach_mm=asked.reach_mm,
+            ),
+            todo=Message("feature.advice_alignment_or_reach", "check the alignment, or allow a larger reach_mm"),
         )
     used, cloud, deviation = used[kept], cloud.select(kept), near.distance[kept]
     normals = near.normal[kept] @ pose.rotation.T
@@ -62,23 +73,31 @@ def measure_deviation(spec: FeatureSpec, scene: Scene) -> FeatureResult:
         indices=used,
         residuals=deviation,
         part=np.zeros(len(used), dtype=np.int64),
-        deviations=_map(asked, scene, around, pose, (used, cloud, deviation, normals)),
+        deviations=_map(asked, scene, query, pose, (used, cloud, deviation, normals)),
     )
 
 
-def _pose(asked: Deviation, around: Surroundings, indices: NDArray[np.int64], scene: Scene) -> Pose:
+def _pose(asked: Deviation, query: ProximityQuery, indices: NDArray[np.int64], scene: Scene) -> Pose:
     """The nominal surface's coordinates into the camera frame."""
     if asked.align == "as measured":
         return Pose.identity()
     if asked.align == "frame":
         if scene.pose_camera_part is None:
-            raise InputError("there are no part coordinates to align it by", todo="give the plan a frame")
+            raise InputError(
+                Message("feature.no_part_coordinates_to_align", "there are no part coordinates to align it by"),
+                todo=Message("feature.advice_give_frame", "give the plan a frame"),
+            )
         return scene.pose_camera_part
     planes = scene.planes(0.0)
     up = -planes[0].normal if planes else np.array([0.0, 0.0, -1.0])
     if len(indices) < FEWEST:
-        raise InputError("nothing but a plane was scanned, so there is no part to lay the nominal surface on")
-    return best_fit(scene.cloud.points[indices], up, around, scene.progress).pose_camera_nominal
+        raise InputError(
+            Message(
+                "feature.only_a_plane_scanned",
+                "nothing but a plane was scanned, so there is no part to lay the nominal surface on",
+            )
+        )
+    return best_fit(scene.cloud.points[indices], up, query, scene.progress).pose_camera_nominal
 
 
 def _above_table(points: Array, nominal: Triangles, scene: Scene) -> NDArray[np.bool_]:
@@ -103,7 +122,7 @@ def _characteristics(
     """Profile deviation and mean deviation, with what the alignment cannot see taken out of their uncertainty."""
     one = np.zeros(len(cloud), dtype=np.int64)
     sources = Sources.of(cloud, normals, np.ones(len(cloud)), one, patches(cloud.uv, one), scene.errors)
-    calibrations = () if scene.errors.common is None else scene.errors.common.sources
+    calibrations = scene.errors.calibrations
     fitted = spec.deviation is not None and spec.deviation.align == "best fit"
     size = np.abs(deviation)
     largest = float(np.quantile(size, LARGEST))
@@ -124,12 +143,13 @@ def _characteristics(
     for name in ("profile", "mean") if fitted else ("profile",):  # what is common to the stripes the alignment takes
         own = [row for row in rows[name] if row.source in calibrations]
         rows[name] = (Contribution(SAMPLING, sampled[name]), *own)
-    rule = "twice the deviation from the nominal surface that 95 % of the points do not exceed"
+    profile = Message(
+        "feature.rule_profile", "twice the deviation from the nominal surface that 95 % of the points do not exceed"
+    )
+    mean = Message("feature.rule_mean_deviation", "mean deviation from the nominal surface")
     return (
-        scene.characteristic(spec, "profile", 2 * largest, rows["profile"], rule=rule),
-        scene.characteristic(
-            spec, "mean", float(np.mean(deviation)), rows["mean"], rule="mean deviation from the nominal surface"
-        ),
+        scene.characteristic(spec, "profile", 2 * largest, rows["profile"], rule=profile),
+        scene.characteristic(spec, "mean", float(np.mean(deviation)), rows["mean"], rule=mean),
     )
 
 
@@ -152,7 +172,7 @@ def _without_alignment(gain: Array, sources: Sources, cloud: Cloud, normals: Arr
 def _map(
     asked: Deviation,
     scene: Scene,
-    around: Surroundings,
+    query: ProximityQuery,
     pose: Pose,
     points: tuple[NDArray[np.int64], Cloud, Array, Array],
 ) -> DeviationMap:
@@ -162,8 +182,8 @@ def _map(
         sigma = cloud.sigma * _slant(cloud.points, normals)
         return DeviationMap(cloud.points, used, False, deviation, sigma, asked.tolerance_mm, pose)
     mesh = scene.mesh
-    mine = np.flatnonzero(mesh.measured & _above_table(mesh.vertices, around.surface, scene))
-    near = around.nearest(pose.inverse().apply(mesh.vertices[mine]), asked.reach_mm)
+    mine = np.flatnonzero(mesh.measured & _above_table(mesh.vertices, query.surface, scene))
+    near = query.nearest(pose.inverse().apply(mesh.vertices[mine]), asked.reach_mm)
     close = _facing(mesh.normals[mine], near, pose) & (np.abs(near.distance) <= asked.reach_mm)
     kept = mine[close]
     normals = near.normal[close] @ pose.rotation.T

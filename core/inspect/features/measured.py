@@ -9,23 +9,25 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.inspect.characteristic import Characteristic
-from core.inspect.coverage import student_factor
-from core.inspect.deviation_map import DeviationMap
-from core.inspect.elements import Element
-from core.inspect.feature_spec import FeatureSpec
-from core.inspect.plane_search import FoundPlane, find_planes
-from core.inspect.point_errors import PointErrors
+from core.inspect.fit.elements import Element
+from core.inspect.fit.plane_search import FoundPlane, find_planes
+from core.inspect.fit.shapes import Shape
+from core.inspect.plan.feature_spec import FeatureSpec
+from core.inspect.plan.kinds import kind_of
 from core.inspect.profile import Profile
 from core.inspect.results import Contribution, GaugeResult
-from core.inspect.shapes import Ball, Levels, Tube
-from core.inspect.uncertainty import combined
+from core.inspect.shown.deviation_map import DeviationMap
+from core.inspect.uncertainty.budget import combined
+from core.inspect.uncertainty.coverage import student_factor
+from core.inspect.uncertainty.point_errors import PointErrors
+from core.messages import Message
 from core.model import Pose
 from core.model.arrays import Array
 from core.progress import Progress, silent
-from core.scan.cloud import Cloud
-from core.scan.normals import with_normals
-from core.scan.surface import Mesh
-from core.scan.triangles import Triangles
+from core.scan.surface.cloud import Cloud
+from core.scan.surface.fused_surface import Mesh
+from core.scan.surface.normals import with_normals
+from core.scan.surface.triangles import Triangles
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -37,7 +39,7 @@ class FeatureResult:
     spec
         What was asked for.
     key
-        Names all it rests on: the same key, the same result.
+        Hash of all it rests on: the same key, the same result.
     characteristics
         Its rows for tables, exports and verdicts.
     indices
@@ -53,7 +55,7 @@ class FeatureResult:
     gauge, profile, deviations
         Of a thickness, a section, a deviation map.
     problem
-        Why it could not be measured: one whole sentence; then there are no characteristics.
+        Why it could not be measured; then there are no characteristics. None if it was.
     """
 
     spec: FeatureSpec
@@ -63,11 +65,11 @@ class FeatureResult:
     residuals: Array = field(default_factory=lambda: np.zeros(0))
     part: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     element: Element | None = None
-    shape: Levels | Ball | Tube | None = None
+    shape: Shape | None = None
     gauge: GaugeResult | None = None
     profile: Profile | None = None
     deviations: DeviationMap | None = None
-    problem: str = ""
+    problem: Message | None = None
 
 
 @dataclass(eq=False, slots=True)
@@ -109,13 +111,13 @@ class Scene:
     def planes(self, margin_mm: float) -> tuple[FoundPlane, ...]:
         """The plane faces of the cloud, found once."""
         if margin_mm not in self.found_planes:
-            self.know_normals()
+            self.ensure_normals()
             found = find_planes(self.cloud, margin_mm=margin_mm, progress=self.progress)
             self.found_planes[margin_mm] = tuple(found)
         return self.found_planes[margin_mm]
 
-    def know_normals(self) -> None:
-        """Normals of the cloud, estimated where the file had none."""
+    def ensure_normals(self) -> None:
+        """Estimate the cloud's normals where the file had none."""
         if len(self.cloud) >= 3 and not self.cloud.normals.any():
             self.cloud = with_normals(self.cloud, progress=self.progress)
 
@@ -127,8 +129,7 @@ class Scene:
         budget: tuple[Contribution, ...],
         *,
         result: str = "",
-        rule: str,
-        angle: bool = False,
+        rule: Message | None,
     ) -> Characteristic:
         """A row for `result` (its kind if nothing else is said) of a feature: "ball diameter"."""
         result = result or kind
@@ -137,7 +138,7 @@ class Scene:
             kind=kind,
             value=value,
             u=combined(budget),
-            quantity="angle" if angle else "length",
+            quantity=kind_of(spec).result(kind).quantity,
             k=student_factor(self.k, budget),
             limits=spec.limits_of(result),
             budget=budget,

@@ -6,22 +6,33 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.inspect.characteristic import Characteristic
-from core.inspect.elements import Element
-from core.inspect.feature_spec import FeatureSpec, InBox, InSphere
 from core.inspect.features.measured import FeatureResult, Scene
 from core.inspect.features.regions import face_in, points_in
-from core.inspect.plane_fit import fit_plane
-from core.inspect.shapes import Levels
-from core.inspect.surface_fit import SurfaceFit, fit_surface
+from core.inspect.fit.elements import Element
+from core.inspect.fit.plane_fit import fit_plane
+from core.inspect.fit.shapes import ParallelPlanes
+from core.inspect.fit.surface_fit import SurfaceFit, fit_surface
+from core.inspect.plan.feature_spec import FeatureSpec, InBox, InSphere
+from core.messages import Message
 
 
 def measure_plane(spec: FeatureSpec, scene: Scene) -> FeatureResult:
     """Fit a plane to the face of the region; InputError if there is none."""
     fit = _fitted(spec, scene, face_in(spec.regions[0], spec.filters, scene))
-    of = f"means over cells of {spec.filters.cell_mm:g} mm" if spec.filters.cell_mm else "points, their noise included"
-    rule = f"range that holds 95 % of the deviations from the plane: {of}"
+    rule = (
+        Message(
+            "feature.rule_flatness_of_cells",
+            "range that holds 95 % of the deviations from the plane: means over cells of {cell_mm:g} mm",
+            cell_mm=spec.filters.cell_mm,
+        )
+        if spec.filters.cell_mm
+        else Message(
+            "feature.rule_flatness",
+            "range that holds 95 % of the deviations from the plane: points, their noise included",
+        )
+    )
     flatness = scene.characteristic(spec, "flatness", fit.form.value, fit.form.budget, rule=rule)
-    return _result(spec, fit, (flatness,), Element.of_face(fit))
+    return _result(spec, fit, (flatness,), Element.of_plane(fit))
 
 
 def measure_point(spec: FeatureSpec, scene: Scene) -> FeatureResult:
@@ -30,23 +41,23 @@ def measure_point(spec: FeatureSpec, scene: Scene) -> FeatureResult:
     whole = isinstance(region, InSphere | InBox)
     indices = points_in(region, spec.filters, scene) if whole else face_in(region, spec.filters, scene)
     fit = _fitted(spec, scene, indices)
-    return _result(spec, fit, (), Element.of_face(fit, "point"))
+    return _result(spec, fit, (), Element.of_plane(fit, "point"))
 
 
-def _fitted(spec: FeatureSpec, scene: Scene, indices: NDArray[np.int64]) -> SurfaceFit[Levels]:
+def _fitted(spec: FeatureSpec, scene: Scene, indices: NDArray[np.int64]) -> SurfaceFit[ParallelPlanes]:
     points = scene.cloud.points[indices]
     centre = points.mean(axis=0)
     if len(points) >= 3:
         plane = fit_plane(points, scene.cloud.sigma[indices])
-        start = Levels.through(-plane.normal, centre - plane.normal * (plane.normal @ centre - plane.distance))
+        start = ParallelPlanes.through(-plane.normal, centre - plane.normal * (plane.normal @ centre - plane.distance))
     else:
-        start = Levels.through(-centre / np.linalg.norm(centre), centre)
+        start = ParallelPlanes.through(-centre / np.linalg.norm(centre), centre)
     filters = spec.filters
     return fit_surface(scene.cloud, indices, start, scene.errors, tukey=filters.outliers, cell_mm=filters.cell_mm)
 
 
 def _result(
-    spec: FeatureSpec, fit: SurfaceFit[Levels], characteristics: tuple[Characteristic, ...], element: Element
+    spec: FeatureSpec, fit: SurfaceFit[ParallelPlanes], characteristics: tuple[Characteristic, ...], element: Element
 ) -> FeatureResult:
     return FeatureResult(
         spec,

@@ -7,10 +7,11 @@ from numpy.typing import NDArray
 
 from core.errors import InputError
 from core.inspect.face_region import inside_polygon
-from core.inspect.faces import face_inside
-from core.inspect.feature_spec import Auto, Filters, InSphere, PointsOf, Polygon, Region
+from core.inspect.faces import DRAW_OVER_FACE, face_inside
 from core.inspect.features.measured import Scene
-from core.inspect.plane_search import FEWEST_POINTS
+from core.inspect.fit.plane_search import FEWEST_POINTS
+from core.inspect.plan.feature_spec import Auto, Filters, InSphere, PointsOf, Polygon, Region
+from core.messages import Message
 from core.model.arrays import Array
 
 Indices = NDArray[np.int64]
@@ -30,7 +31,8 @@ def points_in(region: Region, filters: Filters, scene: Scene) -> Indices:
     indices = np.flatnonzero(inside)
     if not len(indices):
         raise InputError(
-            "its region holds no measured point", todo="draw it over what the scan covers, or allow a larger σ"
+            Message("feature.region_is_empty", "its region holds no measured point"),
+            todo=Message("feature.advice_draw_over_scan", "draw it over what the scan covers, or allow a larger σ"),
         )
     return indices
 
@@ -47,8 +49,13 @@ def face_in(region: Region, filters: Filters, scene: Scene) -> Indices:
         planes = scene.planes(filters.margin_mm)
         if region.number > len(planes):
             raise InputError(
-                f"the scan shows {len(planes)} plane faces, so there is none of number {region.number}",
-                todo="draw a region on the face",
+                Message(
+                    "feature.no_face_of_number",
+                    "the scan shows {n} plane faces, so there is none of number {number}",
+                    n=len(planes),
+                    number=region.number,
+                ),
+                todo=Message("feature.advice_draw_on_face", "draw a region on the face"),
             )
         found = planes[region.number - 1].region.indices
         allowed = np.inf if filters.sigma_max_mm is None else filters.sigma_max_mm
@@ -56,14 +63,16 @@ def face_in(region: Region, filters: Filters, scene: Scene) -> Indices:
     indices = points_in(region, filters, scene)
     if isinstance(region, PointsOf):
         return indices
-    scene.know_normals()
+    scene.ensure_normals()
     inside = np.zeros(len(scene.cloud), dtype=np.bool_)
     inside[indices] = True
     face = face_inside(scene.cloud, inside, margin_mm=filters.margin_mm)
     if len(face) < FEWEST_POINTS:
         raise InputError(
-            f"its region holds {len(indices)} measured points but no plane face",
-            todo="draw it over a face that the scan covers",
+            Message(
+                "feature.region_holds_no_face", "its region holds {n} measured points but no plane face", n=len(indices)
+            ),
+            todo=DRAW_OVER_FACE,
         )
     return np.sort(face)
 

@@ -1,32 +1,71 @@
-"""What a round feature, a sphere or a cylinder, gives: diameter and form."""
+"""A sphere and a cylinder: diameter and form."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from core.inspect.elements import Element
-from core.inspect.feature_spec import FeatureSpec
+from core.errors import InputError
 from core.inspect.features.measured import FeatureResult, Scene
-from core.inspect.shapes import Ball, Tube
-from core.inspect.surface_fit import SurfaceFit
+from core.inspect.features.regions import points_in
+from core.inspect.fit.elements import Element
+from core.inspect.fit.round import find_cylinder, find_sphere, sphere_through, too_few_for_a_sphere, with_uneven_light
+from core.inspect.fit.shapes import Cylinder, Sphere
+from core.inspect.fit.surface_fit import FEWEST, SurfaceFit, fit_surface
+from core.inspect.plan.feature_spec import Auto, FeatureSpec, PointsOf
+from core.messages import Message
 
 
-def round_result(
+def measure_sphere(spec: FeatureSpec, scene: Scene) -> FeatureResult:
+    """Fit a sphere to the points of the region that lie on one; InputError if they do not."""
+    scene.ensure_normals()
+    region, cloud = spec.regions[0], scene.cloud
+    indices = points_in(region, spec.filters, scene)
+    if not isinstance(region, PointsOf):
+        part = cloud.select(indices)
+        indices = indices[find_sphere(part, on_table=isinstance(region, Auto), progress=scene.progress)]
+    if len(indices) < FEWEST:
+        raise InputError(
+            too_few_for_a_sphere(len(indices)),
+            todo=Message("feature.advice_larger_region", "draw a larger region on it"),
+        )
+    start = sphere_through(cloud.points[indices])
+    filters = spec.filters
+    fit = fit_surface(cloud, np.sort(indices), start, scene.errors, tukey=filters.outliers, cell_mm=filters.cell_mm)
+    fit = with_uneven_light(fit, cloud, scene.errors)
+    rule = Message("feature.rule_sphere", "diameter of the sphere of least squares, by the points' covariance")
+    form = Message("feature.rule_sphere_form", "range that holds 95 % of the deviations from the sphere")
+    return _result(spec, scene, fit, Element.of_sphere(fit), (rule, form))
+
+
+def measure_cylinder(spec: FeatureSpec, scene: Scene) -> FeatureResult:
+    """Fit a cylinder to the points of the region that lie on one; InputError if they do not."""
+    scene.ensure_normals()
+    region, cloud = spec.regions[0], scene.cloud
+    indices = points_in(region, spec.filters, scene)
+    on, start = find_cylinder(cloud.select(indices), on_table=isinstance(region, Auto), progress=scene.progress)
+    filters = spec.filters
+    fit = fit_surface(cloud, indices[on], start, scene.errors, tukey=filters.outliers, cell_mm=filters.cell_mm)
+    fit = with_uneven_light(fit, cloud, scene.errors)
+    rule = Message("feature.rule_cylinder", "diameter of the cylinder of least squares, by the points' covariance")
+    form = Message("feature.rule_cylinder_form", "range that holds 95 % of the deviations from the cylinder")
+    return _result(spec, scene, fit, Element.of_cylinder(fit), (rule, form))
+
+
+def _result(
     spec: FeatureSpec,
     scene: Scene,
-    fit: SurfaceFit[Ball] | SurfaceFit[Tube],
+    fit: SurfaceFit[Sphere] | SurfaceFit[Cylinder],
     element: Element,
+    rules: tuple[Message, Message],
 ) -> FeatureResult:
-    """The result of a fitted round surface."""
+    """`rules` of diameter and form."""
     twice_the_radius = np.append(np.zeros(fit.parameters - 1), 2.0)
     rows = fit.budget(twice_the_radius)
-    rule = f"diameter of the {spec.kind} of least squares, by the points' covariance"
-    form_rule = f"range that holds 95 % of the deviations from the {spec.kind}"
     return FeatureResult(
         spec,
         characteristics=(
-            scene.characteristic(spec, "diameter", 2 * fit.shape.radius, rows, rule=rule),
-            scene.characteristic(spec, "form", fit.form.value, fit.form.budget, rule=form_rule),
+            scene.characteristic(spec, "diameter", 2 * fit.shape.radius, rows, rule=rules[0]),
+            scene.characteristic(spec, "form", fit.form.value, fit.form.budget, rule=rules[1]),
         ),
         indices=fit.indices,
         residuals=fit.residuals,

@@ -9,18 +9,20 @@ from numpy.typing import NDArray
 
 from core.errors import InputError
 from core.inspect.characteristic import Characteristic
-from core.inspect.feature_spec import Cut, FeatureSpec, Pixel, Section
 from core.inspect.features.measured import FeatureResult, Scene
 from core.inspect.features.regions import points_in
+from core.inspect.fit.round import with_uneven_light
+from core.inspect.fit.shapes import Cylinder, ParallelPlanes
+from core.inspect.fit.surface_fit import fit_surface
+from core.inspect.plan.feature_spec import Cut, FeatureSpec, Pixel, Section
 from core.inspect.profile import Profile, averaged
-from core.inspect.shapes import Levels, Tube
-from core.inspect.surface_fit import fit_surface
-from core.inspect.uneven_light import with_uneven_light
+from core.messages import Message
 from core.model.arrays import Array
-from core.scan.cloud import Cloud
+from core.scan.surface.cloud import Cloud
 
 NEAREST = 0.05
-"""Share of the points, the nearest to a pixel, from which its ray is known; at least FEWEST."""
+"""Share of the points, the nearest to a pixel, from which its ray is known; at least FEWEST, as the fit has
+three unknowns and points on one stripe hardly differ."""
 FEWEST = 100
 
 
@@ -36,7 +38,10 @@ class _Plane:
 def measure_section(spec: FeatureSpec, scene: Scene) -> FeatureResult:
     """Lay out the profile and measure the cuts asked for."""
     if spec.section is None:
-        raise InputError("it does not say where to cut", todo="give a line in the picture, or a plane")
+        raise InputError(
+            Message("feature.section_without_place", "it does not say where to cut"),
+            todo=Message("feature.advice_give_line", "give a line in the picture, or a plane"),
+        )
     section = spec.section
     plane = _plane(section, scene)
     profile = _profile(spec, section, plane, scene)
@@ -58,7 +63,10 @@ def _plane(section: Section, scene: Scene) -> _Plane:
         normal, origin = rotation @ np.array(section.normal), rotation @ np.array(section.point_mm) + shift
         towards = np.cross(rotation[:, 2], normal)
     if np.linalg.norm(normal) < 1e-9 or np.linalg.norm(towards) < 1e-9:
-        raise InputError("its line or plane has no direction", todo="draw a line between two different places")
+        raise InputError(
+            Message("feature.section_without_direction", "its line or plane has no direction"),
+            todo=Message("feature.advice_draw_line", "draw a line between two different places"),
+        )
     normal = normal / np.linalg.norm(normal)
     planes = scene.planes(0.0)
     facing = -planes[0].normal if planes else np.array([0.0, 0.0, -1.0])
@@ -87,8 +95,13 @@ def _profile(spec: FeatureSpec, section: Section, plane: _Plane, scene: Scene) -
     indices = indices[np.abs(away @ np.cross(plane.along, plane.up)) <= section.half_width_mm]
     if len(indices) < 2:
         raise InputError(
-            f"{len(indices)} measured points lie within {section.half_width_mm:g} mm of its plane",
-            todo="cut where the scan covers the part, or take more points in",
+            Message(
+                "feature.few_points_near_section",
+                "{n} measured points lie within {half_width_mm:g} mm of its plane",
+                n=len(indices),
+                half_width_mm=section.half_width_mm,
+            ),
+            todo=Message("feature.advice_cut_elsewhere", "cut where the scan covers the part, or take more points in"),
         )
     away = cloud.points[indices] - plane.origin
     position, height = away @ plane.along, away @ plane.up
@@ -113,34 +126,42 @@ def _cut(spec: FeatureSpec, cut: Cut, profile: Profile, scene: Scene) -> Charact
     part = np.repeat(np.arange(len(chosen)), [len(one) for one in chosen])
     indices = profile.indices[np.concatenate(chosen)]
     if any(len(one) < 3 for one in chosen):
-        raise InputError(f"a stretch of {cut.name} holds too few points", todo="make it longer")
+        raise InputError(
+            Message("feature.stretch_too_short", "a stretch of {name} holds too few points", name=cut.name),
+            todo=Message("feature.advice_longer_stretch", "make it longer"),
+        )
     tukey = spec.filters.outliers
     if cut.kind == "radius":
         round_ = fit_surface(scene.cloud, indices, _circle(profile, chosen[0]), scene.errors, tukey=tukey)
         rows = with_uneven_light(round_, scene.cloud, scene.errors).budget(np.array([0.0, 0.0, 1.0]))
-        value, rule = round_.shape.radius, "radius of the circle of least squares in the section"
+        value = round_.shape.radius
+        rule = Message("feature.rule_radius", "radius of the circle of least squares in the section")
     else:
         points = scene.cloud.points
         centres = np.array([points[profile.indices[one]].mean(axis=0) for one in chosen])
-        start = Levels(profile.up, centres, profile.along[:, None])
+        start = ParallelPlanes(profile.up, centres, profile.along[:, None])
         lines = fit_surface(scene.cloud, indices, start, scene.errors, part=part, tukey=tukey)
         value, gradient, rule = _between(lines.shape, profile, cut)
         rows = lines.budget(gradient)
     return scene.characteristic(spec, cut.kind, value, rows, result=cut.name, rule=rule)
 
 
-def _between(lines: Levels, profile: Profile, cut: Cut) -> tuple[float, Array, str]:
+def _between(lines: ParallelPlanes, profile: Profile, cut: Cut) -> tuple[float, Array, Message]:
     """Height or distance of the second stretch from the first, and its gradient."""
     height, gradient = lines.height(1, 0)
     if cut.kind == "height":
-        return height, gradient, "distance of two parallel lines fitted jointly to two stretches of the section"
+        rule = Message(
+            "feature.rule_height", "distance of two parallel lines fitted jointly to two stretches of the section"
+        )
+        return height, gradient, rule
     aside = float((lines.centres[1] - lines.centres[0]) @ np.cross(profile.normal, lines.outward_normal))
     length = float(np.hypot(height, aside))
     of_heights = np.array([-1.0, 1.0, 0.0]) * height / max(length, 1e-9)
-    return length, of_heights, "distance of the middles of two stretches of the section"
+    middles = Message("feature.rule_middles", "distance of the middles of two stretches of the section")
+    return length, of_heights, middles
 
 
-def _circle(profile: Profile, chosen: NDArray[np.int64]) -> Tube:
+def _circle(profile: Profile, chosen: NDArray[np.int64]) -> Cylinder:
     """The circle through a stretch of the profile by least algebraic distance."""
     flat = np.column_stack([profile.position[chosen], profile.height[chosen]])
     middle = flat.mean(axis=0)
@@ -150,4 +171,4 @@ def _circle(profile: Profile, chosen: NDArray[np.int64]) -> Tube:
     at = middle + solved[:2]
     centre = profile.origin + at[0] * profile.along + at[1] * profile.up
     radius = float(np.sqrt(max(solved[2] + solved[:2] @ solved[:2], 1e-12)))
-    return Tube.along(centre, profile.normal, radius, turns=False)
+    return Cylinder.along(centre, profile.normal, radius, turns=False)

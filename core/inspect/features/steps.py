@@ -6,12 +6,13 @@ import numpy as np
 
 from core.errors import InputError
 from core.inspect.faces import PARALLEL, SMALLEST_MM2
-from core.inspect.feature_spec import Auto, FeatureSpec
 from core.inspect.features.measured import FeatureResult, Scene
 from core.inspect.features.regions import Indices, face_in
-from core.inspect.plane_search import search_tolerance
-from core.inspect.shapes import Levels
-from core.inspect.surface_fit import fit_surface
+from core.inspect.fit.plane_search import search_tolerance
+from core.inspect.fit.shapes import ParallelPlanes
+from core.inspect.fit.surface_fit import fit_surface
+from core.inspect.plan.feature_spec import Auto, FeatureSpec
+from core.messages import Message
 
 
 def measure_steps(spec: FeatureSpec, scene: Scene) -> FeatureResult:
@@ -25,7 +26,7 @@ def measure_steps(spec: FeatureSpec, scene: Scene) -> FeatureResult:
     centres = np.array([points[face].mean(axis=0) for face in faces])
     largest = max(faces, key=len)
     normal = np.linalg.svd(points[largest] - points[largest].mean(axis=0), full_matrices=False)[2][2]
-    start = Levels.through(normal if normal @ centres[0] < 0 else -normal, centres)
+    start = ParallelPlanes.through(normal if normal @ centres[0] < 0 else -normal, centres)
     fit = fit_surface(
         scene.cloud,
         indices,
@@ -39,7 +40,12 @@ def measure_steps(spec: FeatureSpec, scene: Scene) -> FeatureResult:
     for upper in range(1, len(faces)):
         lower = 0 if spec.over == "lowest" else upper - 1
         height, gradient = fit.shape.height(upper, lower)
-        rule = f"distance of level {upper + 1} from level {lower + 1}, parallel planes fitted jointly to all levels"
+        rule = Message(
+            "feature.rule_step",
+            "distance of level {upper} from level {lower}, parallel planes fitted jointly to all levels",
+            upper=upper + 1,
+            lower=lower + 1,
+        )
         rows.append(
             scene.characteristic(spec, "height", height, fit.budget(gradient), result=f"height {upper}", rule=rule)
         )
@@ -61,8 +67,8 @@ def _levels(spec: FeatureSpec, scene: Scene) -> list[Indices]:
         faces = [face_in(region, spec.filters, scene) for region in spec.regions]
     if len(faces) < 2:
         raise InputError(
-            f"{len(faces)} level was found, and a step has two",
-            todo="scan the other ones too, or draw a region on each",
+            Message("feature.too_few_levels", "{n} level was found, and a step has two", n=len(faces)),
+            todo=Message("feature.advice_scan_levels", "scan the other ones too, or draw a region on each"),
         )
     points = scene.cloud.points
     largest = points[max(faces, key=len)]

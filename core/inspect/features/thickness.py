@@ -8,16 +8,17 @@ import numpy as np
 
 from core.errors import InputError
 from core.inspect.faces import FacePair, find_faces
-from core.inspect.feature_spec import Auto, FeatureSpec
 from core.inspect.features.measured import FeatureResult, Scene
 from core.inspect.features.regions import face_in
 from core.inspect.gauge import measure_gauge
+from core.inspect.plan.feature_spec import Auto, FeatureSpec
 from core.inspect.results import GaugeResult
+from core.messages import Message
 
 
 def measure_thickness(spec: FeatureSpec, scene: Scene) -> FeatureResult:
     """Thickness between the faces of two regions (upper, lower), or between the two largest parallel faces."""
-    scene.know_normals()
+    scene.ensure_normals()
     gauge = measure_gauge(
         scene.cloud, errors=scene.errors, regions=_faces(spec, scene), k=scene.k, progress=scene.progress
     )
@@ -41,7 +42,10 @@ def _faces(spec: FeatureSpec, scene: Scene) -> FacePair | None:
     if len(spec.regions) == 2:
         return FacePair(*(face_in(region, filters, scene) for region in spec.regions))
     if not isinstance(spec.regions[0], Auto):
-        raise InputError("a thickness has two regions, the upper and the lower face", todo="give both, or none")
+        raise InputError(
+            Message("feature.thickness_regions", "a thickness has two regions, the upper and the lower face"),
+            todo=Message("feature.advice_both_regions", "give both, or none"),
+        )
     if filters.sigma_max_mm is None:
         return find_faces(cloud, margin_mm=filters.margin_mm, progress=scene.progress)
     kept = np.flatnonzero(cloud.sigma <= filters.sigma_max_mm)

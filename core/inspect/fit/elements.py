@@ -7,23 +7,25 @@ features of one scan has its true uncertainty: light planes and calibrations err
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 
+from core.inspect.fit.shapes import Cylinder, ParallelPlanes, Sphere
+from core.inspect.fit.surface_fit import SurfaceFit
 from core.inspect.results import Contribution
-from core.inspect.shapes import Ball, Levels, Tube
-from core.inspect.surface_fit import SurfaceFit
-from core.inspect.uncertainty import Effect, budget_of
+from core.inspect.uncertainty.budget import Effect, budget_of
+from core.messages import Message
 from core.model.arrays import Array
 from core.model.directions import square_to
 
 PARALLEL = 1e-9
+"""Sine of an angle, or a distance in mm, below which a direction is not known from it."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Element:
-    """One of them.
+    """A plane, an axis or a point, with how it follows the parameters of the surface fitted.
 
     Parameters
     ----------
@@ -46,7 +48,7 @@ class Element:
     effects: tuple[Effect, ...]
 
     @classmethod
-    def of_face(cls, fit: SurfaceFit[Levels], kind: Literal["plane", "point"] = "plane") -> Element:
+    def of_plane(cls, fit: SurfaceFit[ParallelPlanes], kind: Literal["plane", "point"] = "plane") -> Element:
         """The plane of one face, or the point amid it; along the face its place is taken as known."""
         levels = fit.shape
         gradient = levels.normal_gradient
@@ -55,21 +57,29 @@ class Element:
         return cls(kind, levels.centres[0], levels.outward_normal, along, gradient, fit.effects)
 
     @classmethod
-    def of_ball(cls, fit: SurfaceFit[Ball]) -> Element:
+    def of_sphere(cls, fit: SurfaceFit[Sphere]) -> Element:
         """A sphere's centre."""
         gradient = np.hstack([np.eye(3), np.zeros((3, 1))])
         away = fit.shape.centre / np.linalg.norm(fit.shape.centre)
         return cls("point", fit.shape.centre, -away, gradient, np.zeros((3, 4)), fit.effects)
 
     @classmethod
-    def of_tube(cls, fit: SurfaceFit[Tube]) -> Element:
+    def of_cylinder(cls, fit: SurfaceFit[Cylinder]) -> Element:
         """A cylinder's axis."""
         tube = fit.shape
         return cls("axis", tube.centre, tube.direction, tube.centre_gradient, tube.direction_gradient, fit.effects)
 
 
-def distance(a: Element, b: Element) -> tuple[float, tuple[Contribution, ...], str]:
-    """Distance in mm of the place of `a` from `b`, its budget, and in words what it is.
+class Derived(NamedTuple):
+    """A quantity of two elements: `value` in mm or rad, what its uncertainty is made of, and what exactly it is."""
+
+    value: float
+    budget: tuple[Contribution, ...]
+    rule: Message
+
+
+def distance(a: Element, b: Element) -> Derived:
+    """Distance in mm of the place of `a` from `b`.
 
     From a plane square to it, from an axis square to it, from a point straight. Of two of which one is a plane (else an
     axis), the distance is that of the other's place from it; of two planes, of the first one's middle from the second.
@@ -83,21 +93,25 @@ def distance(a: Element, b: Element) -> tuple[float, tuple[Contribution, ...], s
         length = float(between @ b.direction)
         sign = 1.0 if length >= 0 else -1.0
         length, towards, of_direction = abs(length), sign * b.direction, sign * between
-        rule = "distance square to the plane"
+        rule = Message("feature.rule_from_plane", "distance square to the plane")
     else:
         along = float(between @ b.direction) if b.kind == "axis" else 0.0
         across = between - along * b.direction if b.kind == "axis" else between
         length = float(np.linalg.norm(across))
         towards = across / length if length > PARALLEL else square_to(b.direction)[:, 0]
         of_direction = -along * towards
-        rule = "distance square to the axis" if b.kind == "axis" else "distance of two points"
+        rule = (
+            Message("feature.rule_from_axis", "distance square to the axis")
+            if b.kind == "axis"
+            else Message("feature.rule_two_points", "distance of two points")
+        )
     second = -towards @ b.position_gradient + of_direction @ b.direction_gradient
     rows = budget_of([(towards @ a.position_gradient, a.effects), (second, b.effects)])
-    return length, rows, rule
+    return Derived(length, rows, rule)
 
 
-def angle(a: Element, b: Element) -> tuple[float, tuple[Contribution, ...], str]:
-    """Angle in rad, 0 to π/2, of two planes, two axes, or an axis and a plane; its budget, and in words what it is."""
+def angle(a: Element, b: Element) -> Derived:
+    """Angle in rad, 0 to π/2, of two planes, two axes, or an axis and a plane."""
     first, second = a.direction, b.direction
     second = second if first @ second >= 0 else -second
     flip = 1.0 if second is b.direction else -1.0
@@ -110,5 +124,7 @@ def angle(a: Element, b: Element) -> tuple[float, tuple[Contribution, ...], str]
     rows = budget_of([(-turn_a @ a.direction_gradient, a.effects), (-flip * turn_b @ b.direction_gradient, b.effects)])
     value = float(np.arctan2(sine, cosine))
     if {a.kind, b.kind} == {"plane", "axis"}:
-        return np.pi / 2 - value, rows, "angle of an axis and a plane"
-    return value, rows, f"angle of two {'planes' if a.kind == 'plane' else 'axes'}, 0 to 90°"
+        return Derived(np.pi / 2 - value, rows, Message("feature.rule_axis_plane", "angle of an axis and a plane"))
+    if a.kind == "plane":
+        return Derived(value, rows, Message("feature.rule_two_planes", "angle of two planes, 0 to 90°"))
+    return Derived(value, rows, Message("feature.rule_two_axes", "angle of two axes, 0 to 90°"))

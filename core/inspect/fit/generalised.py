@@ -1,6 +1,7 @@
 """Least squares with the true covariance of the points: what they share is known, not averaged away.
 
-With the errors of `core.inspect.error_sources` everything but a stretch's own noise is common to many stretches and
+With the errors of `core.inspect.uncertainty.error_sources` everything but a stretch's own noise is common to many
+stretches and
 few in number, so the generalised least-squares estimate of β comes from one small system in which the common errors are
 unknowns with a prior (the same as inverting the full covariance, by Woodbury's identity).
 
@@ -21,15 +22,17 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 
-from core.inspect.error_sources import Sources
+from core.inspect.uncertainty.error_sources import Sources
 from core.model.arrays import Array
 
 TUKEY = 6.0
 """A stretch this many of its own standard deviations off has no weight left."""
 ROUNDS = 10
+"""Of weights and variance components, at most; it ends as soon as the form changes by less than a twentieth."""
 PRIOR_FREEDOM = 10.0
 """Belief in the stated noise, counted in stretches: few of them cannot overthrow it."""
 SMALLEST_FORM_MM, LARGEST_FORM_MM = 1e-4, 0.5
+"""Standard deviation of a patch: never zero, which could not grow again; above, it is no face that is fitted."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)

@@ -12,24 +12,33 @@ with normal n has the standard uncertainty σ_z |n·r|: weights are the inverse 
 A single light profile. Its points lie on one line on each face, so the scatter has one direction of size only, and the
 tilt about that line is not determined by the data. The normal is then the reference normal (the table's, known from
 elsewhere) turned as little as possible to stand on the lines; without a reference it is taken in the profile's own
-plane. `ParallelPlanes.tilt_determined` says which of the two happened.
+plane. `ParallelPlaneFit.tilt_determined` says which of the two happened.
+
+`fit_parallel_planes` says which points belong to the two faces, and about where these are; it weighs points as if they
+were independent. `fit_faces` fits the same model to the same points again with what they have in common: the fan's own
+points and the sweeps' know the thickness in different ways, and each counts for as much as it is worth.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from core.inspect.fit.generalised import Generalised, generalised_fit
+from core.inspect.uncertainty.error_sources import Sources
+from core.inspect.uncertainty.point_errors import PointErrors, patches
 from core.model.arrays import Array
+from core.model.directions import square_to
+from core.model.robust import huber_weights, mad_sd, tukey_weights
+from core.scan.surface.cloud import Cloud
+from core.scan.surface.triangulate import join
 
 LINE_LIKE = 0.03
 """Faces whose points spread across less than this share of their spread along are taken for lines."""
 INNER = 0.8
 """Spreads are judged by this share of the points, so that wrong points do not make a plane of a line."""
-HUBER = 1.345
-TUKEY = 4.685
 LARGEST_WEIGHT = 16.0
 """No point weighs more than this many times the median one: stated σ are not known better than to a factor 4."""
 
@@ -51,7 +60,7 @@ class PlaneFit:
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class ParallelPlanes:
+class ParallelPlaneFit:
     """Two parallel planes: normal·X = upper_distance and normal·X = lower_distance, in mm.
 
     The first index of every pair is the upper face, nearer to the camera. `normal` (3,) is unit and points away from
@@ -116,7 +125,7 @@ def fit_parallel_planes(
     lower_sigma: Array | None = None,
     *,
     reference_normal: Array | None = None,
-) -> ParallelPlanes:
+) -> ParallelPlaneFit:
     """Joint robust fit of two parallel planes: one common normal, two distances.
 
     Parameters
@@ -144,7 +153,7 @@ def fit_parallel_planes(
     residuals = solution.distances[face] - points @ solution.normal
     gains = _gains(points, face, weights, solution)
     split = len(upper)
-    return ParallelPlanes(
+    return ParallelPlaneFit(
         solution.normal,
         float(solution.distances[0]),
         float(solution.distances[1]),
@@ -171,12 +180,9 @@ def _robust(
         along = noise if sigma is None else noise * np.maximum(np.abs(points @ solution.normal / points[:, 2]), 0.1)
         base = _capped(along)
         residual = (points @ solution.normal - solution.distances[face]) * np.sqrt(base)
-        scale = 1.4826 * float(np.median(np.abs(residual)))
+        scale = mad_sd(residual)
         relative = np.abs(residual) / max(scale, 1e-9)
-        if step < 8:
-            robust = np.minimum(1.0, HUBER / np.maximum(relative, 1e-12))
-        else:
-            robust = np.clip(1 - (relative / TUKEY) ** 2, 0.0, None) ** 2
+        robust = huber_weights(relative) if step < 8 else tukey_weights(relative)
         previous, weights = solution, base * robust
         solution = _solve(points, weights, face, faces, reference, line_like)
         moved = np.abs(solution.distances - previous.distances).max()
@@ -241,3 +247,81 @@ def _gains(points: Array, face: NDArray[np.int64], weights: Array, solution: _So
     arms = (points - solution.centroids[face]) @ solution.axes
     tilt: Array = weights * (arms @ (lever / solution.spreads))
     return np.asarray(gains - tilt, dtype=np.float64)
+
+
+ITERATIONS = 2
+"""Of the generalised fit: the robust one is so near that the second changes the normal by its square only."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class FittedFaces:
+    """The fit and what its uncertainty is made of.
+
+    Parameters
+    ----------
+    planes
+        Normal, distances, residuals and gains of the generalised fit; weights are those of the robust one.
+    gains
+        (J,) ∂thickness/∂(misfit of each stretch of a stripe).
+    sources
+        Of these points' errors.
+    fit
+        The generalised fit of distances and tilt.
+    """
+
+    planes: ParallelPlaneFit
+    gains: Array
+    sources: Sources
+    fit: Generalised
+
+
+def fit_faces(upper: Cloud, lower: Cloud, planes: ParallelPlaneFit, errors: PointErrors) -> FittedFaces:
+    """Fit the two faces again, from the robust fit `planes` of their points.
+
+    Raises
+    ------
+    ValueError
+        If the covariance has no block for a sweep of the points.
+    """
+    points = np.vstack([upper.points, lower.points])
+    face = np.repeat([0, 1], [len(upper), len(lower)])
+    weights = np.concatenate(planes.weights)
+    used = np.flatnonzero(weights > 0)
+    normal, distances = planes.normal, np.array([planes.upper_distance, planes.lower_distance])
+    cloud = join([upper, lower]).select(used)
+    along = cloud.sigma * np.maximum(np.abs(points[used] @ normal / points[used, 2]), 0.1)
+    robust = np.minimum(weights[used] * along**2, 1.0)  # the stated σ is the errors' business
+    across = square_to(normal)
+    sources = Sources.of(cloud, normal, robust, face[used], patches(points[used] @ across, face[used]), errors)
+    axes = across if planes.tilt_determined else _along_the_lines(points[used], face[used], normal)
+    for _ in range(ITERATIONS):
+        # n·X_p − d = δd − (axes·X_p)·α + what is wrong with X_p along n, where n and d are still off by axes·α and δd.
+        design = np.column_stack([face[used] == 0, face[used] == 1, -(points[used] @ axes)]).astype(np.float64)
+        misfit = points[used] @ normal - distances[face[used]]
+        fit = generalised_fit(sources.mean(design), sources.mean(misfit), sources)
+        turned = normal + axes @ fit.estimate[2:]
+        length = float(np.linalg.norm(turned))
+        normal, distances = turned / length, (distances + fit.estimate[:2]) / length
+        axes = axes - np.outer(normal, normal @ axes)
+    of_stretches: Array = fit.gains[1] - fit.gains[0]
+    gains = np.zeros(len(points))
+    gains[used] = of_stretches[sources.stretch] * sources.share
+    residuals = distances[face] - points @ normal
+    split = len(upper)
+    refined = replace(
+        planes,
+        normal=normal,
+        upper_distance=float(distances[0]),
+        lower_distance=float(distances[1]),
+        residuals=(residuals[:split], residuals[split:]),
+        gains=(gains[:split], gains[split:]),
+    )
+    return FittedFaces(refined, of_stretches, sources, fit)
+
+
+def _along_the_lines(points: Array, face: NDArray[np.int64], normal: Array) -> Array:
+    """The direction (3, 1) of the one line that the points of each face lie on."""
+    centroids = np.array([points[face == number].mean(axis=0) for number in range(2)])
+    line = np.linalg.svd(points - centroids[face], full_matrices=False)[2][0]
+    line = line - normal * (normal @ line)
+    return np.asarray((line / np.linalg.norm(line))[:, None])

@@ -19,17 +19,25 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from core.inspect.face_region import Region
+from core.messages import Message
 from core.model.arrays import Array
 from core.progress import Progress, silent
-from core.scan.cloud import Cloud
-from core.scan.normals import pixel_angle, with_normals
+from core.scan.surface.cloud import Cloud
+from core.scan.surface.normals import pixel_angle, with_normals
+
+POINT_CLOUD = Message("surface.where_cloud", "point cloud")
+"""Where a search complains of."""
 
 SEARCH_POINTS = 8000
 """About as many points, spread evenly over the picture, are enough to find the planes."""
 HYPOTHESES = 300
+"""Triples of neighbouring points tried: a face with a tenth of the points is hit by 30 of them."""
 FINALISTS = 5
+"""The best hypotheses, each refined before the winner is chosen."""
 MOST_PLANES = 8
+"""Faces looked for: as many as features can name by number (`core.inspect.plan.kinds.MOST_FACES`)."""
 FEWEST_POINTS = 12
+"""Of a plane face: four times what a plane needs."""
 LIKE_NORMALS = np.cos(np.radians(30.0))
 """Points of a plane have local normals within 30° of its own: slices of a sphere or a mask do not."""
 

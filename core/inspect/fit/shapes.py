@@ -8,7 +8,7 @@ are in mm and rad about a place amid the points, so the parameters hardly hang t
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Protocol, Self
+from typing import Any, Protocol, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,9 +38,13 @@ class Shape(Protocol):
         """The surface after a `step` (p,)."""
         ...
 
+    def values(self) -> dict[str, Any]:
+        """Where it lies in the camera frame, in mm, by the names that result files use."""
+        ...
+
 
 @dataclass(frozen=True, eq=False, slots=True)
-class Levels:
+class ParallelPlanes:
     """Parallel faces: one outward unit normal `outward_normal` (3,), a point amid each of L faces `centres` (L, 3).
 
     Parameters: L heights along the normal at the centres, then a tilt about each of the `axes` (3, t), unit vectors
@@ -57,7 +61,7 @@ class Levels:
         set_field(self, "axes", frozen_array(self.axes, (3, None), "axes"))
 
     @classmethod
-    def through(cls, normal: Array, centres: Array) -> Levels:
+    def through(cls, normal: Array, centres: Array) -> ParallelPlanes:
         """Faces that may tilt both ways."""
         return cls(normal, np.atleast_2d(centres), square_to(normal))
 
@@ -77,12 +81,15 @@ class Levels:
         height = (part[:, None] == np.arange(len(self.centres))).astype(np.float64)
         return np.hstack([height, -(points - self.centres[part]) @ self.axes])
 
-    def moved(self, step: Array) -> Levels:
+    def moved(self, step: Array) -> ParallelPlanes:
         count = len(self.centres)
         centres = self.centres + step[:count, None] * self.outward_normal
         normal = self.outward_normal + self.axes @ step[count:]
         normal /= np.linalg.norm(normal)
-        return Levels(normal, centres, _turned(self.axes, normal))
+        return ParallelPlanes(normal, centres, _turned(self.axes, normal))
+
+    def values(self) -> dict[str, Any]:
+        return {"normal": self.outward_normal, "centres": self.centres}
 
     def height(self, upper: int, lower: int) -> tuple[float, Array]:
         """Distance in mm of two of the faces along the common normal, and its gradient (p,)."""
@@ -93,7 +100,7 @@ class Levels:
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class Ball:
+class Sphere:
     """A sphere. Parameters: the centre's three coordinates and the radius."""
 
     centre: Array
@@ -108,12 +115,15 @@ class Ball:
     def design(self, points: Array, part: Parts) -> Array:
         return np.column_stack([self.outward(points, part), np.ones(len(points))])
 
-    def moved(self, step: Array) -> Ball:
-        return Ball(self.centre + step[:3], self.radius + float(step[3]))
+    def moved(self, step: Array) -> Sphere:
+        return Sphere(self.centre + step[:3], self.radius + float(step[3]))
+
+    def values(self) -> dict[str, Any]:
+        return {"centre": self.centre, "radius_mm": self.radius}
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class Tube:
+class Cylinder:
     """A cylinder: `direction` (3,) unit, `centre` (3,) on its axis amid the points.
 
     Parameters: the axis moved along each of `axes` (3, 2), turned towards each of them (`turns`, else it keeps its
@@ -127,7 +137,7 @@ class Tube:
     turns: bool = True
 
     @classmethod
-    def along(cls, centre: Array, direction: Array, radius: float, *, turns: bool = True) -> Tube:
+    def along(cls, centre: Array, direction: Array, radius: float, *, turns: bool = True) -> Cylinder:
         """A cylinder with two axes square to its direction."""
         return cls(centre, direction, square_to(direction), radius, turns)
 
@@ -153,14 +163,17 @@ class Tube:
         columns = [aside, along[:, None] * aside] if self.turns else [aside]
         return np.column_stack([*columns, np.ones(len(points))])
 
-    def moved(self, step: Array) -> Tube:
+    def moved(self, step: Array) -> Cylinder:
         centre = self.centre + self.axes @ step[:2]
         radius = self.radius + float(step[-1])
         if not self.turns:
             return replace(self, centre=centre, radius=radius)
         direction = self.direction + self.axes @ step[2:4]
         direction /= np.linalg.norm(direction)
-        return Tube(centre, direction, _turned(self.axes, direction), radius)
+        return Cylinder(centre, direction, _turned(self.axes, direction), radius)
+
+    def values(self) -> dict[str, Any]:
+        return {"centre": self.centre, "direction": self.direction, "radius_mm": self.radius}
 
     def _across(self, points: Array) -> Array:
         away = points - self.centre

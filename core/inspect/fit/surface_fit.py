@@ -1,17 +1,26 @@
 """A surface fitted to points of a cloud: robustly at first, then with the true covariance of the points.
 
 The same for every shape. Tukey's biweight, with the stated σ across the surface, says which points belong to it, as if
-they were independent; the generalised fit of `core.inspect.generalised` to these points follows, and what acts on its
-parameters is kept cause by cause, so that whatever is derived from several surfaces has its true uncertainty.
+they were independent; the generalised fit of `core.inspect.fit.generalised` to these points follows, and what acts on
+its parameters is kept cause by cause, so that whatever is derived from several surfaces has its true uncertainty.
+
+The deviation of form of a surface is the range of its residuals that holds 95 % of them. Optical points are many and
+noisy: the range from the lowest to the highest grows without end with their number. Of single points it holds their
+noise as well; of the means over cells of the surface, all but the form has been filtered out. Its uncertainty: how much
+it depends on the stripes that happened to be scanned, by drawing them again (the bootstrap, whole stripes at a time,
+for their points err together); and what calibrations do to the highest less the lowest points after the fitted surface
+has taken its part.
 
 References
 ----------
 Holland, Welsch, Robust regression using iteratively reweighted least squares, Comm. Stat. A6 (1977),
 doi:10.1080/03610927708827533.
+Efron, Bootstrap methods: another look at the jackknife, Ann. Statist. 7 (1979), doi:10.1214/aos/1176344552.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
@@ -19,22 +28,29 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.errors import InputError
-from core.inspect.error_sources import GRAZING, Sources
-from core.inspect.generalised import generalised_fit
-from core.inspect.plane_fit import HUBER, LARGEST_WEIGHT, TUKEY
-from core.inspect.point_errors import PointErrors, patches
+from core.inspect.fit.generalised import generalised_fit
+from core.inspect.fit.plane_fit import LARGEST_WEIGHT
+from core.inspect.fit.shapes import Parts, Shape
 from core.inspect.results import Contribution
-from core.inspect.shapes import Parts, Shape
-from core.inspect.spread import Spread, spread
-from core.inspect.uncertainty import Effect, budget_of, effects
+from core.inspect.uncertainty.budget import Effect, budget_of, combined, effects
+from core.inspect.uncertainty.causes import SAMPLING
+from core.inspect.uncertainty.error_sources import GRAZING, Sources
+from core.inspect.uncertainty.point_errors import PointErrors, patches
+from core.messages import Message
 from core.model.arrays import Array
-from core.scan.cloud import Cloud
+from core.model.robust import TUKEY, huber_weights, mad_sd, tukey_weights
+from core.scan.surface.cloud import Cloud
 
 S = TypeVar("S", bound=Shape)
 
+MORE_SWEEPS = Message("feature.advice_more_sweeps", "scan it with more sweeps")
+
 FEWEST = 12
+"""Points on each face of a surface: more than twice the parameters of any shape here."""
 ROUNDS = 40
+"""Of robust weights, at most; it ends when no parameter moves by more than 1e-8 mm or rad."""
 HUBER_ROUNDS = 8
+"""First rounds, with Huber's weights: they have one solution, near which Tukey's then start."""
 STEPS = 3
 """Steps of the generalised fit; shapes are all but linear so near to their place."""
 
@@ -118,7 +134,7 @@ def fit_surface(
     shape, robust = _robust(points, sigma, start, part, tukey)
     kept = robust > 0
     if np.bincount(part[kept], minlength=int(part.max(initial=0)) + 1).min() < FEWEST:
-        raise InputError(f"{np.count_nonzero(kept)} points are too few for it", todo="scan it with more sweeps")
+        raise too_few(int(np.count_nonzero(kept)))
     used, mine, points = cloud.select(indices[kept]), part[kept], points[kept]
     patch = patches(used.uv, mine)
     sources = Sources.of(used, shape.outward(points, mine), robust[kept], mine, patch, errors)
@@ -128,19 +144,27 @@ def fit_surface(
             fit = generalised_fit(design, sources.mean(shape.misfit(points, mine)), sources)
             shape = shape.moved(fit.estimate)
     except np.linalg.LinAlgError as error:
-        raise InputError("its points do not fix it: they lie on one line", todo="scan it with more sweeps") from error
-    calibrations = () if errors.common is None else errors.common.sources
+        raise InputError(
+            Message("surface.points_on_a_line", "its points do not fix it: they lie on one line"),
+            todo=MORE_SWEEPS,
+        ) from error
+    calibrations = errors.calibrations
     acting = effects(fit.gains, sources, own=fit.own, form_mm=fit.form_mm, calibrations=calibrations)
     residuals = shape.misfit(points, mine)
     form = spread(used, residuals, sources, (design, fit.gains), calibrations, cell_mm)
     return SurfaceFit(shape, acting, indices[kept], mine, residuals, form)
 
 
+def too_few(count: int) -> InputError:
+    """The complaint that a surface cannot be fitted to so few points."""
+    return InputError(Message("surface.too_few_points", "{n} points are too few for it", n=count), todo=MORE_SWEEPS)
+
+
 def _robust(points: Array, sigma: Array, shape: S, part: Parts, tukey: float) -> tuple[S, Array]:
     """Iteratively reweighted Gauss–Newton: the shape, and robust weights (0 … 1), zero for points left out."""
     parameters = shape.design(points[:1], part[:1]).shape[1] if len(points) else 0
     if len(points) < max(FEWEST, parameters):
-        raise InputError(f"{len(points)} points are too few for it", todo="scan it with more sweeps")
+        raise too_few(len(points))
     robust = np.ones(len(points))
     for round_ in range(ROUNDS):
         outward = shape.outward(points, part)
@@ -149,11 +173,8 @@ def _robust(points: Array, sigma: Array, shape: S, part: Parts, tukey: float) ->
         base = np.minimum(base, LARGEST_WEIGHT * float(np.median(base)))
         misfit = shape.misfit(points, part)
         relative = np.abs(misfit) * np.sqrt(base)
-        relative /= max(1.4826 * float(np.median(relative)), 1e-9)
-        if round_ < HUBER_ROUNDS:
-            robust = np.minimum(1.0, HUBER / np.maximum(relative, 1e-12))
-        else:
-            robust = np.clip(1 - (relative / tukey) ** 2, 0.0, None) ** 2
+        relative /= max(mad_sd(relative), 1e-9)
+        robust = huber_weights(relative) if round_ < HUBER_ROUNDS else tukey_weights(relative, tukey)
         design = shape.design(points, part)
         scaled = design * (base * robust)[:, None]
         step = np.linalg.lstsq(scaled.T @ design, scaled.T @ misfit, rcond=None)[0]
@@ -161,3 +182,74 @@ def _robust(points: Array, sigma: Array, shape: S, part: Parts, tukey: float) ->
         if round_ > HUBER_ROUNDS and np.abs(step).max() < 1e-8:
             break
     return shape, robust
+
+
+TAIL = 0.025
+"""Share of the residuals beyond each end of the range."""
+NEAR = 0.02
+"""Share of the residuals about an end that stands for it."""
+DRAWS, MOST_DRAWN = 200, 50_000
+"""Drawings of the bootstrap, which give its standard deviation to 5 %, and residuals that take part in one."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Spread:
+    """A range in mm that holds 95 % of the residuals, its uncertainty, and of how many `samples` (points or cells)."""
+
+    value: float
+    budget: tuple[Contribution, ...]
+    samples: int
+
+    @property
+    def u(self) -> float:
+        """Standard uncertainty in mm."""
+        return combined(self.budget)
+
+
+def spread(
+    cloud: Cloud,
+    residuals: Array,
+    sources: Sources,
+    fit: tuple[Array, Array],
+    calibrations: Sequence[Message],
+    cell_mm: float = 0.0,
+) -> Spread:
+    """The spread of residuals (N,) of a cloud's points about a `fit` of stretches: design (J, p) and gains (p, J)."""
+    cell = _cells(cloud.points, cell_mm) if cell_mm > 0 else np.arange(len(residuals), dtype=np.int64)
+    share = 1.0 / np.bincount(cell)[cell]
+    values = np.asarray(np.bincount(cell, share * residuals), dtype=np.float64)
+    low, high = np.quantile(values, [TAIL, 1 - TAIL])
+    ranks = np.argsort(np.argsort(values)) / max(len(values) - 1, 1)
+    gain = np.zeros(len(sources.own))
+    for sign, end in ((1.0, 1 - TAIL), (-1.0, TAIL)):
+        weight = np.where((np.abs(ranks - end) <= NEAR / 2)[cell], share, 0.0)
+        np.add.at(gain, sources.stretch, sign * weight / max(float(weight.sum()), 1e-12))
+    design, gains = fit
+    gain = gain - gain @ design @ gains  # the fitted surface follows what is common as far as it can
+    acting = [one for one in effects(gain[None, :], sources, calibrations=calibrations) if one.source in calibrations]
+    group = np.arange(len(values)) if cell_mm > 0 else np.unique(cloud.sweep, return_inverse=True)[1]
+    sampling = Contribution(SAMPLING, u_of_quantiles(values, (TAIL, 1 - TAIL), (-1.0, 1.0), group))
+    return Spread(float(high - low), (sampling, *budget_of([(np.ones(1), acting)])), len(values))
+
+
+def u_of_quantiles(
+    values: Array, shares: Sequence[float], signs: Sequence[float], group: NDArray[np.int64], seed: int = 0
+) -> float:
+    """Standard uncertainty of Σ sign · quantile of `values` (N,), by drawing their groups (N,) again, with repeats."""
+    order = np.argsort(values, kind="stable")
+    order = order[:: max(1, len(order) // MOST_DRAWN)]
+    ranked, of = values[order], group[order]
+    rng, count = np.random.default_rng(seed), int(group.max()) + 1
+    found = np.empty(DRAWS)
+    for draw in range(DRAWS):
+        times = np.bincount(rng.integers(count, size=count), minlength=count)
+        below = np.cumsum(times[of])
+        at = np.searchsorted(below, np.array(shares) * below[-1])
+        found[draw] = np.dot(signs, ranked[np.minimum(at, len(ranked) - 1)])
+    return float(found.std(ddof=1))
+
+
+def _cells(points: Array, cell_mm: float) -> NDArray[np.int64]:
+    """Number, from 0, of the cube of side `cell_mm` each point lies in."""
+    place = np.floor((points - points.min(axis=0)) / cell_mm).astype(np.int64)
+    return np.asarray(np.unique(place, axis=0, return_inverse=True)[1], dtype=np.int64).ravel()

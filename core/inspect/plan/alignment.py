@@ -18,18 +18,22 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from core.errors import InputError
-from core.inspect.elements import Element
+from core.inspect.fit.elements import Element
+from core.messages import Message
 from core.model import Pose
 from core.model.arrays import Array
 from core.model.directions import square_to
+from core.model.robust import MAD_TO_SD, TUKEY, mad_sd, tukey_weights
 from core.progress import Progress, silent
-from core.scan.triangles import Surroundings, Triangles
+from core.scan.surface.triangles import ProximityQuery, Triangles
+
+FRAME = Message("feature.where_frame", "frame")
+NAME_OTHERS = Message("feature.advice_name_others", "name other features")
 
 TURNS = 12
 """Starts about the upward direction."""
 STAGES = ((150, 8, 12), (500, 20, 2), (2000, 40, 1))
 """Points, rounds, and how many of the poses go on to the next stage."""
-TUKEY = 4.685
 FREE = 1e-6
 """Directions known less well than the best one by this share of information count as not known at all."""
 FIRST_CUT, NARROWER = 0.04, 0.85
@@ -40,7 +44,7 @@ HELD = 0.02
 
 
 def three_two_one(primary: Element, secondary: Element, tertiary: Element | None) -> Pose:
-    """Part coordinates into the camera frame; see `core.inspect.inspection_plan.PartFrame`.
+    """Part coordinates into the camera frame; see `core.inspect.plan.inspection_plan.PartFrame`.
 
     Raises
     ------
@@ -50,14 +54,18 @@ def three_two_one(primary: Element, secondary: Element, tertiary: Element | None
     """
     if primary.kind != "plane" or secondary.kind == "point":
         raise InputError(
-            "part coordinates rest on a plane, and on a second plane or an axis",
-            where="frame",
-            todo="name other features",
+            Message("feature.frame_kinds", "part coordinates rest on a plane, and on a second plane or an axis"),
+            where=FRAME,
+            todo=NAME_OTHERS,
         )
     z = primary.direction
     x = secondary.direction - z * (z @ secondary.direction)
     if np.linalg.norm(x) < np.sin(np.radians(5.0)):
-        raise InputError("primary and secondary feature point in one direction", where="frame", todo="name others")
+        raise InputError(
+            Message("feature.frame_one_direction", "primary and secondary feature point in one direction"),
+            where=FRAME,
+            todo=NAME_OTHERS,
+        )
     x = x / np.linalg.norm(x)
     y = np.cross(z, x)
     on_secondary = secondary.direction if secondary.kind == "plane" else y
@@ -67,7 +75,11 @@ def three_two_one(primary: Element, secondary: Element, tertiary: Element | None
         third = tertiary.direction
     rows = np.array([z, on_secondary, third])
     if abs(np.linalg.det(rows)) < 0.05:
-        raise InputError("the tertiary plane fixes no third direction", where="frame", todo="name another one")
+        raise InputError(
+            Message("feature.frame_third_direction", "the tertiary plane fixes no third direction"),
+            where=FRAME,
+            todo=Message("feature.advice_name_another", "name another one"),
+        )
     asked = np.array([z @ primary.position, on_secondary @ secondary.position, third @ place])
     return Pose(np.column_stack([x, y, z]), np.linalg.solve(rows, asked))
 
@@ -80,7 +92,7 @@ class Aligned:
     left_mm: float
 
 
-def best_fit(points: Array, up: Array, around: Surroundings, progress: Progress = silent, *, seed: int = 0) -> Aligned:
+def best_fit(points: Array, up: Array, query: ProximityQuery, progress: Progress = silent, *, seed: int = 0) -> Aligned:
     """Lay a nominal surface on measured points.
 
     Parameters
@@ -89,7 +101,7 @@ def best_fit(points: Array, up: Array, around: Surroundings, progress: Progress 
         (N, 3) in mm, camera frame, of the part and as little else as can be.
     up
         (3,) unit: about the direction the camera sees the part from, or that of the table it stands on.
-    around
+    query
         The surface, made ready to be asked.
     progress
         Told how far it is.
@@ -103,7 +115,7 @@ def best_fit(points: Array, up: Array, around: Surroundings, progress: Progress 
     """
     rng = np.random.default_rng(seed)
     shuffled = points[rng.permutation(len(points))]
-    poses = _starts(shuffled[: STAGES[0][0]], up, around.surface)
+    poses = _starts(shuffled[: STAGES[0][0]], up, query.surface)
     done, total = 0, len(poses) + sum(kept for _, _, kept in STAGES)
     for count, rounds, kept in STAGES:
         sample = shuffled[:count]
@@ -111,16 +123,21 @@ def best_fit(points: Array, up: Array, around: Surroundings, progress: Progress 
         for start in poses:
             progress("alignment", done, total)
             done += 1
-            pose, _ = _fitted(sample, start, around, rounds)
-            tried.append((_left(sample, pose, around), len(tried), pose))
+            pose, _ = _fitted(sample, start, query, rounds)
+            tried.append((_left(sample, pose, query), len(tried), pose))
         poses = [pose for _, _, pose in sorted(tried, key=lambda one: one[:2])[:kept]]
-    pose, left = _fitted(sample, poses[0], around, rounds, exact=True)
+    pose, left = _fitted(sample, poses[0], query, rounds, exact=True)
     progress("alignment", total, total)
-    if left > HELD * around.size_mm:
+    if left > HELD * query.size_mm:
         raise InputError(
-            f"the nominal surface cannot be laid on the scan: half of the points stay {left:.2f} mm and more off",
-            where=f"alignment of {len(points)} points",
-            todo="check that it is the file of this part, in mm, or align by features",
+            Message(
+                "feature.nominal_does_not_fit",
+                "the nominal surface cannot be laid on the scan: half of the points stay {left_mm:.2f} mm and more off",
+                left_mm=left,
+            ),
+            todo=Message(
+                "feature.advice_check_nominal", "check that it is the file of this part, in mm, or align by features"
+            ),
         )
     return Aligned(pose.inverse(), left)
 
@@ -146,37 +163,39 @@ def _starts(points: Array, up: Array, nominal: Triangles) -> list[Pose]:
     return starts
 
 
-def _fitted(points: Array, pose: Pose, around: Surroundings, rounds: int, *, exact: bool = False) -> tuple[Pose, float]:
+def _fitted(
+    points: Array, pose: Pose, query: ProximityQuery, rounds: int, *, exact: bool = False
+) -> tuple[Pose, float]:
     """Iterated closest places: the pose into nominal coordinates, and the median of the distances left.
 
     `exact` is for a pose that is good already: nearest places without compromise, and no wide cut at first.
     """
-    scale, widest = np.inf, 0.0 if exact else FIRST_CUT * around.size_mm
+    scale, widest = np.inf, 0.0 if exact else FIRST_CUT * query.size_mm
     for round_ in range(rounds):
         moved = pose.apply(points)
-        near = around.nearest(moved, exact_within=0.0 if exact else -np.inf)
-        scale = max(1.4826 * float(np.median(np.abs(near.distance))), 1e-6)
+        near = query.nearest(moved, exact_within=0.0 if exact else -np.inf)
+        scale = max(mad_sd(near.distance), 1e-6)
         away = moved - near.foot
         length = np.linalg.norm(away, axis=1)
         direction = np.where(length[:, None] > 1e-6, away / np.maximum(length, 1e-6)[:, None], near.normal)
         cut = max(TUKEY * scale, widest * NARROWER**round_)
-        weight = np.clip(1 - (length / cut) ** 2, 0, None) ** 2
+        weight = tukey_weights(length, cut)
         middle = moved.mean(axis=0)
-        arms = (moved - middle) / around.size_mm
+        arms = (moved - middle) / query.size_mm
         design = np.hstack([direction, np.cross(arms, direction)])
         scaled = design * weight[:, None]
         # What the points do not fix, as a shift along the one face that was scanned, stays as it is.
         step = -np.linalg.pinv(scaled.T @ design, rcond=FREE, hermitian=True) @ (scaled.T @ length)
-        step[3:] /= around.size_mm
+        step[3:] /= query.size_mm
         turn = Rotation.from_rotvec(step[3:]).as_matrix()
         pose = Pose(turn, middle + step[:3] - turn @ middle) @ pose
         settled = np.abs(step[:3]).max() < 1e-5 and np.abs(step[3:]).max() < 1e-7
         if settled and cut <= TUKEY * scale:
             break
-    return pose, scale / 1.4826
+    return pose, scale / MAD_TO_SD
 
 
-def _left(points: Array, pose: Pose, around: Surroundings) -> float:
+def _left(points: Array, pose: Pose, query: ProximityQuery) -> float:
     """Mean distance in mm of the points, those farther than the first cut counted as if they lay there."""
-    away = np.abs(around.nearest(pose.apply(points), exact_within=-np.inf).distance)
-    return float(np.minimum(away, FIRST_CUT * around.size_mm).mean())
+    away = np.abs(query.nearest(pose.apply(points), exact_within=-np.inf).distance)
+    return float(np.minimum(away, FIRST_CUT * query.size_mm).mean())

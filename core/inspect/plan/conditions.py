@@ -4,6 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from core.messages import Message
+
+AT_REFERENCE = "feature.stated_at_20"
+"""Code of the note on a length that was put to 20 °C."""
+
 REFERENCE_C = 20.0
 """The temperature that lengths on drawings are meant at (ISO 1)."""
 
@@ -47,6 +52,6 @@ class Master:
     certified_mm: float
     u_certified_mm: float
     measured_mm: float
-    budget: tuple[tuple[str, float], ...]
+    budget: tuple[tuple[Message, float], ...]
     features: tuple[str, ...] = ()
     same_calibration: bool = True

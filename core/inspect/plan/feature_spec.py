@@ -6,40 +6,13 @@ and undone.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Literal, TypeAlias
 
 from core.inspect.characteristic import Limits
 
-Kind = Literal[
-    "plane", "sphere", "cylinder", "point", "thickness", "steps", "distance", "angle", "section", "deviation"
-]
 Pixel: TypeAlias = tuple[float, float]
 Place: TypeAlias = tuple[float, float, float]
-
-RESULTS: Mapping[Kind, tuple[str, ...]] = {
-    "plane": ("flatness",),
-    "sphere": ("diameter", "form"),
-    "cylinder": ("diameter", "form"),
-    "point": (),
-    "thickness": ("thickness",),
-    "steps": ("height",),
-    "distance": ("distance",),
-    "angle": ("angle",),
-    "section": (),
-    "deviation": ("profile", "mean"),
-}
-"""What each kind of feature gives: the names that limits are asked by. A section gives what its cuts are called."""
-
-ONE_SIDED = ("flatness", "form", "profile")
-"""Results that cannot be too small: of their tolerance only the upper limit counts."""
-
-DERIVED: Mapping[Kind, int] = {"distance": 2, "angle": 2}
-"""Kinds made from so many other features instead of points."""
-
-ELEMENTS: tuple[Kind, ...] = ("plane", "sphere", "cylinder", "point")
-"""Kinds that others can be derived from."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -175,7 +148,7 @@ class FeatureSpec:
     name
         As the technician calls it; unique in a plan.
     kind
-        What it is.
+        Its name among `core.inspect.plan.kinds`.
     regions
         Where its points are: one, or two (upper, lower) for a thickness, or one for each level of steps.
     of
@@ -183,8 +156,8 @@ class FeatureSpec:
     filters
         Which points are used.
     limits
-        What is asked of its results, by their names in `results`. Of steps the limits "height" go for each step, about
-        its own nominal height.
+        What is asked of its results, by their names (`core.inspect.plan.kinds.results_of`). Of steps the limits
+        "height" go for each step, about its own nominal height.
     nominal_heights
         Of the steps in mm, from the lowest up.
     over
@@ -194,7 +167,7 @@ class FeatureSpec:
     """
 
     name: str
-    kind: Kind
+    kind: str
     regions: tuple[Region, ...] = (Auto(),)
     of: tuple[str, ...] = ()
     filters: Filters = Filters()
@@ -203,11 +176,6 @@ class FeatureSpec:
     over: Literal["lowest", "previous"] = "lowest"
     section: Section | None = None
     deviation: Deviation | None = None
-
-    @property
-    def results(self) -> tuple[str, ...]:
-        """What it gives: the names that limits are asked by."""
-        return RESULTS[self.kind] if self.section is None else tuple(cut.name for cut in self.section.cuts)
 
     @property
     def needs(self) -> tuple[str, ...]:
@@ -224,9 +192,10 @@ class FeatureSpec:
     def limits_of(self, result: str) -> Limits | None:
         """What is asked of one of its results, as "diameter" or "height 2"; None: nothing."""
         asked = dict(self.limits)
-        if self.kind != "steps":
+        name, _, number = result.rpartition(" ")
+        if not self.nominal_heights or name not in asked or not number.isdigit():
             return asked.get(result)
-        limits, step = asked.get("height"), int(result.rpartition(" ")[2])
-        if limits is None or step > len(self.nominal_heights):
+        step = int(number)
+        if step > len(self.nominal_heights):
             return None
-        return replace(limits, nominal=self.nominal_heights[step - 1])
+        return replace(asked[name], nominal=self.nominal_heights[step - 1])

@@ -9,8 +9,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from core.errors import InputError
-from core.inspect.conditions import Master, Temperature
-from core.inspect.feature_spec import DERIVED, ELEMENTS, FeatureSpec
+from core.inspect.plan.conditions import Master, Temperature
+from core.inspect.plan.feature_spec import FeatureSpec
+from core.inspect.plan.kinds import kind_of, results_of
+from core.messages import Message
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,9 +84,13 @@ class InspectionPlan:
             ready = [feature for feature in left if set(self._needs(feature)) <= known]
             if not ready:
                 raise InputError(
-                    f"rests on itself by way of {', '.join(sorted(self._needs(left[0])))}",
+                    Message(
+                        "feature.rests_on_itself",
+                        "rests on itself by way of {names}",
+                        names=sorted(self._needs(left[0])),
+                    ),
                     where=f"feature {left[0].name}",
-                    todo="give one of them a region of its own",
+                    todo=Message("feature.advice_own_region", "give one of them a region of its own"),
                 )
             done += ready
             left = [feature for feature in left if feature not in ready]
@@ -99,27 +105,72 @@ def _check(spec: FeatureSpec, plan: InspectionPlan) -> None:
     """InputError if a feature cannot be measured whatever the scan."""
     where = f"feature {spec.name}" if spec.name else "feature"
     if not spec.name.strip():
-        raise InputError("it has no name", where=where, todo="give it one")
+        raise InputError(
+            Message("feature.no_name", "it has no name"),
+            where=where,
+            todo=Message("feature.advice_give_name", "give it one"),
+        )
     if plan.names.count(spec.name) > 1:
-        raise InputError("two features have this name", where=where, todo="rename one of them")
+        raise InputError(
+            Message("feature.name_twice", "two features have this name"),
+            where=where,
+            todo=Message("feature.advice_rename", "rename one of them"),
+        )
     for name in plan._needs(spec):
         if name not in plan.names:
             raise InputError(
-                f"there is no feature {name!r} for it to rest on", where=where, todo="name one of the plan"
+                Message("feature.rests_on_nothing", "there is no feature '{name}' for it to rest on", name=name),
+                where=where,
+                todo=Message("feature.advice_name_of_plan", "name one of the plan"),
             )
-    wanted = DERIVED.get(spec.kind, 0)
+    kind = kind_of(spec)
+    wanted = kind.made_of
     if len(spec.of) != wanted or len(set(spec.of)) != wanted:
-        raise InputError(f"{spec.kind} is made of {wanted} other features, not {len(spec.of)}", where=where)
+        raise InputError(
+            Message(
+                "feature.made_of_others",
+                "{kind} is made of {wanted} other features, not {n}",
+                kind=spec.kind,
+                wanted=wanted,
+                n=len(spec.of),
+            ),
+            where=where,
+        )
     for name in spec.of:
-        if plan.feature(name).kind not in ELEMENTS:
-            raise InputError(f"{name} is a {plan.feature(name).kind}, and no {spec.kind} is made of that", where=where)
+        if kind_of(plan.feature(name)).element is None:
+            raise InputError(
+                Message(
+                    "feature.not_made_of_that",
+                    "{name} is a {of_kind}, and no {kind} is made of that",
+                    name=name,
+                    of_kind=plan.feature(name).kind,
+                    kind=spec.kind,
+                ),
+                where=where,
+            )
     if not spec.regions and not wanted:
-        raise InputError("it has no region", where=where, todo="draw one, or leave regions out to have it found")
-    if (spec.kind == "section") != (spec.section is not None):
-        raise InputError("only a section has a section's settings, and it needs them", where=where)
-    if (spec.kind == "deviation") != (spec.deviation is not None):
-        raise InputError("only a deviation has a nominal surface, and it needs one", where=where)
+        raise InputError(
+            Message("feature.no_region", "it has no region"),
+            where=where,
+            todo=Message("feature.advice_draw_region", "draw one, or leave regions out to have it found"),
+        )
+    if (kind.settings == "section") != (spec.section is not None):
+        raise InputError(
+            Message("feature.section_settings", "only a section has a section's settings, and it needs them"),
+            where=where,
+        )
+    if (kind.settings == "deviation") != (spec.deviation is not None):
+        raise InputError(
+            Message("feature.deviation_settings", "only a deviation has a nominal surface, and it needs one"),
+            where=where,
+        )
     for result, _ in spec.limits:
-        if result not in spec.results:
-            known = ", ".join(spec.results) or "nothing that has limits"
-            raise InputError(f"it gives {known}, not {result}", where=where, todo="ask for what it gives")
+        results = results_of(spec)
+        if result not in results:
+            raise InputError(
+                Message("feature.gives_others", "it gives {known}, not {name}", known=tuple(results), name=result)
+                if results
+                else Message("feature.gives_nothing", "it gives nothing that has limits, not {name}", name=result),
+                where=where,
+                todo=Message("feature.advice_ask_for_results", "ask for what it gives"),
+            )

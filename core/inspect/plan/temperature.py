@@ -23,22 +23,28 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from core.inspect.characteristic import Characteristic
-from core.inspect.conditions import REFERENCE_C, Master, Temperature
+from core.inspect.plan.conditions import REFERENCE_C, Master, Temperature
+from core.inspect.plan.kinds import expanding
 from core.inspect.results import Contribution
-from core.inspect.uncertainty import CAMERA, FAN_CALIBRATION, SCALE, combined
-
-PART_TEMPERATURE = "temperature of the part"
-PART_EXPANSION = "expansion coefficient of the part"
-SCALE_TEMPERATURE = "temperature of the calibration target"
-SCALE_EXPANSION = "expansion coefficient of the calibration target"
-CERTIFICATE = "certificate of the master"
-MASTER_MEASURED = "measurement of the master"
-
-LENGTHS = ("thickness", "height", "diameter", "radius", "distance")
-"""Kinds of characteristics that expand with the part."""
+from core.inspect.uncertainty.budget import combined
+from core.inspect.uncertainty.causes import (
+    CALIBRATIONS,
+    CERTIFICATE,
+    MASTER_MEASURED,
+    PART_EXPANSION,
+    PART_TEMPERATURE,
+    SCALE_EXPANSION,
+    SCALE_TEMPERATURE,
+)
+from core.messages import Message
 
 ALIKE = 0.2
 """A master is of use to lengths that differ from its own by no more than this share of it."""
+
+
+def expands(characteristic: Characteristic) -> bool:
+    """Whether it is a length that grows with the part: no angle, and no deviation of form."""
+    return characteristic.kind in expanding() and characteristic.quantity == "length"
 
 
 def at_reference(length: Characteristic, temperature: Temperature) -> Characteristic:
@@ -53,12 +59,17 @@ def at_reference(length: Characteristic, temperature: Temperature) -> Characteri
     >>> round(cold.value, 6), [round(row.u_mm, 6) for row in cold.budget]
     (99.9885, [0.000575, 0.001])
     """
-    if length.kind not in LENGTHS or length.quantity != "length":
+    if not expands(length):
         return length
     rows = temperature_contributions(length.value, temperature)
     change = -length.value * temperature.alpha * (temperature.part_celsius - REFERENCE_C)
     change += length.value * temperature.scale_alpha * (temperature.scale_celsius - REFERENCE_C)
-    note = f"Stated at 20 °C: {change * 1000:+.2f} µm for a part at {temperature.part_celsius:g} °C."
+    note = Message(
+        "feature.stated_at_20",
+        "Stated at 20 °C: {change_um:+.2f} µm for a part at {part_celsius:g} °C.",
+        change_um=change * 1000,
+        part_celsius=temperature.part_celsius,
+    )
     return replace(
         length,
         value=length.value + change,
@@ -91,14 +102,24 @@ def compared(length: Characteristic, master: Master) -> Characteristic:
     difference stays; everything else of both measurements and the certificate adds up. A length that differs from the
     master's by more than a fifth is returned as it is, with a note.
     """
-    if length.kind not in LENGTHS or length.quantity != "length":
+    if not expands(length):
         return length
     if abs(length.value - master.measured_mm) > ALIKE * master.measured_mm:
-        note = f"Not compared with master {master.name}, whose length of {master.certified_mm:g} mm is too different."
+        note = Message(
+            "feature.master_too_different",
+            "Not compared with master {master}, whose length of {certified_mm:g} mm is too different.",
+            master=master.name,
+            certified_mm=master.certified_mm,
+        )
         return replace(length, notes=(*length.notes, note))
     correction = master.certified_mm - master.measured_mm
     rows = _difference(length.budget, master)
-    note = f"Compared with master {master.name}: {correction * 1000:+.2f} µm."
+    note = Message(
+        "feature.compared_with_master",
+        "Compared with master {master}: {correction_um:+.2f} µm.",
+        master=master.name,
+        correction_um=correction * 1000,
+    )
     return replace(
         length,
         value=length.value + correction,
@@ -112,14 +133,12 @@ def _difference(budget: Sequence[Contribution], master: Master) -> tuple[Contrib
     """The budget of a part's length less the master's."""
     of_master = dict(master.budget)
     rows = []
-    own = [u for source, u in master.budget if not (master.same_calibration and source in _CANCEL)]
+    cancelling = tuple(CALIBRATIONS.values()) if master.same_calibration else ()
+    own = [u for source, u in master.budget if source not in cancelling]
     for row in budget:
-        cancels = master.same_calibration and row.source in _CANCEL
+        cancels = row.source in cancelling
         rows.append(replace(row, u_mm=abs(row.u_mm - of_master.get(row.source, 0.0))) if cancels else row)
     measured = math.hypot(*own) if own else 0.0
     rows.append(Contribution(MASTER_MEASURED, measured, measured, value=master.measured_mm))
     rows.append(Contribution(CERTIFICATE, master.u_certified_mm, master.u_certified_mm, value=master.certified_mm))
     return tuple(rows)
-
-
-_CANCEL = (CAMERA, FAN_CALIBRATION, SCALE)

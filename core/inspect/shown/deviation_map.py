@@ -14,6 +14,7 @@ from core.model.arrays import Array
 MARKS = ("", "+", "++", "+++", "+!")
 """Of deviations outwards up to a quarter, a half, three quarters and all of the tolerance, and beyond it."""
 QUARTERS = (0.25, 0.5, 0.75, 1.0)
+"""Upper ends of the classes, as shares of the tolerance."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)

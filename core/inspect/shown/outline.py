@@ -8,19 +8,25 @@ from numpy.typing import ArrayLike, NDArray
 
 from core.errors import InputError
 from core.inspect.face_region import inside_polygon
-from core.inspect.plane_search import FEWEST_POINTS, FoundPlane, find_planes, points_on, search_tolerance
+from core.inspect.fit.plane_search import FEWEST_POINTS, FoundPlane, find_planes, points_on, search_tolerance
+from core.messages import Message
 from core.model.arrays import Array
-from core.scan.cloud import Cloud
+from core.scan.surface.cloud import Cloud
+
+REGION = Message("surface.where_region", "region")
 
 CELLS_ACROSS = 400
 """The points are laid out in about so many cells along their longer side."""
 SMALLEST_CELL_PX = 1.0
+"""Points are seen to about a pixel: smaller cells would have holes."""
 GAP_SHARE = 6.0
 """Gaps up to this many times the median distance of a place to the nearest point are closed: those between stripes."""
 SLACK = 0.008
 """Corners are left out as long as the outline stays this near to the points, as a share of their longer side."""
 MOST_CORNERS = 16
+"""As many as a person can drag."""
 MOST_FACES = 5
+"""Plane faces looked for among the chosen points."""
 SMALL_FACE = 0.2
 """Faces among the chosen points smaller than this share of the largest one are not meant."""
 WHOLE = 0.6
@@ -60,9 +66,9 @@ def face_outline(cloud: Cloud, chosen: NDArray[np.int64], face: str) -> Array:
     planes = [plane for plane in found if len(plane.region.indices) >= FEWEST_POINTS]
     if not planes:
         raise InputError(
-            f"there is no plane face among the {len(part)} chosen points",
-            where="region",
-            todo="draw round a larger part of one face",
+            Message("surface.no_face_chosen", "there is no plane face among the {n} chosen points", n=len(part)),
+            where=REGION,
+            todo=Message("surface.advice_draw_larger", "draw round a larger part of one face"),
         )
     return outline_px(part.uv[_meant(cloud, part, planes, nearest=face == "upper").region.indices])
 
@@ -103,7 +109,11 @@ def outline_px(uv: ArrayLike) -> Array:
     low, size = places.min(axis=0), np.ptp(places, axis=0)
     cell = max(SMALLEST_CELL_PX, float(size.max()) / CELLS_ACROSS)
     if len(places) < 3 or _on_one_line(places, cell):
-        raise InputError("the chosen points lie on one line", where="region", todo="draw round more of the face")
+        raise InputError(
+            Message("surface.chosen_on_a_line", "the chosen points lie on one line"),
+            where=REGION,
+            todo=Message("surface.advice_draw_more", "draw round more of the face"),
+        )
     covered, gap = _covered(np.floor((places - low) / cell).astype(np.int64))
     contour = _largest_contour(covered)
     slack = max(SLACK * float(size.max()) / cell, gap / 3)

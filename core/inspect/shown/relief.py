@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from core.inspect.inspection import Relief
+from core.inspect.shown.shown_scan import Relief
 from core.model.arrays import Array
 
 CELLS_ACROSS = 640
@@ -16,6 +16,7 @@ WIDEST_GAP = 6.0
 LAMP = np.array([-0.5, -0.6, -0.62]) / np.linalg.norm([0.5, 0.6, 0.62])
 """Direction to the lamp: the upper left, from the camera's side."""
 GROUND = 18
+"""Grey level where nothing was measured."""
 
 
 def relief(image_size: tuple[int, int], uv: Array, depth: Array, normals: Array) -> Relief:

@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.inspect.characteristic import Characteristic
+from core.inspect.conformity import Verdict
+from core.messages import Message
 from core.model.arrays import Array
 
 
@@ -88,7 +90,7 @@ class ShownFeature:
     places, uv
         (M, 3) in mm in the camera frame and (M, 2) in pixels: these points, or as many of them as can be drawn.
     problem
-        Why it could not be measured, or "".
+        Why it could not be measured; None if it was.
     profile
         Of a section.
     deviations
@@ -101,16 +103,16 @@ class ShownFeature:
     used: int
     places: NDArray[np.float32]
     uv: NDArray[np.float32]
-    problem: str = ""
+    problem: Message | None = None
     profile: ShownProfile | None = None
     deviations: ShownDeviations | None = None
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class ShownInspection:
-    """A plan measured on the scan of a project; `verdict` is the worst of all, "" where nothing is asked."""
+    """A plan measured on the scan of a project; `verdict` is the worst of all."""
 
     features: tuple[ShownFeature, ...]
-    verdict: str
-    notes: tuple[str, ...]
+    verdict: Verdict
+    notes: tuple[Message, ...]
     calibration_id: str

@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from core.inspect.results import GaugeResult
+from core.messages import Message
 from core.model.arrays import Array
 
 Values = NDArray[np.float32]
 
 HEIGHT, DEPTH = "height", "depth"
 NO_FACE, UPPER, LOWER = 0, 1, 2
+"""Numbers of `InspectionView.face`."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -102,7 +104,7 @@ class InspectionView:
     notes
         Sentences for the technician, of the measurement.
     problems
-        Why a result that is there is not shown: whole sentences.
+        Why a result that is there is not shown.
     calibration_id
         Names the calibrations the scan was measured with.
     """
@@ -126,8 +128,8 @@ class InspectionView:
     image_size: tuple[int, int]
     pictures: tuple[str, ...] = ()
     shown: str = ""
-    notes: tuple[str, ...] = ()
-    problems: tuple[str, ...] = field(default=())
+    notes: tuple[Message, ...] = ()
+    problems: tuple[Message, ...] = ()
     calibration_id: str = ""
 
     def __len__(self) -> int:

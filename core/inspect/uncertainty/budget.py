@@ -1,7 +1,8 @@
 """The uncertainty budget of a measured quantity q (a thickness, a radius), by the GUM.
 
 q follows the misfit of each stretch of a stripe with a gain G_j = ∂q/∂misfit_j. What makes the misfits wrong is in
-`core.inspect.error_sources.Sources`, cause by cause, with all that is common kept common; so each cause contributes::
+`core.inspect.uncertainty.error_sources.Sources`, cause by cause, with all that is common kept common; so each cause
+contributes::
 
     point noise                u² = Σ_j G_j² own_j²            over the stretches of the sweeps
     fan speckle                u² = ‖Σ_j G_j speckle_j‖²        by the fan's own points and through the network,
@@ -26,30 +27,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from core.inspect.error_sources import Sources
 from core.inspect.results import Contribution
+from core.inspect.uncertainty.causes import FAN_SPECKLE, FORM, POINT_NOISE, SWEEP_PLANES
+from core.inspect.uncertainty.error_sources import Sources
+from core.messages import Message
 from core.model.arrays import Array
-from core.scan.common_errors import CAMERA, FAN_CALIBRATION, SCALE
-
-__all__ = [
-    "CAMERA",
-    "FAN_CALIBRATION",
-    "FAN_SPECKLE",
-    "FORM",
-    "POINT_NOISE",
-    "SCALE",
-    "SWEEP_PLANES",
-    "Effect",
-    "budget",
-    "budget_of",
-    "combined",
-    "effects",
-]
-
-POINT_NOISE = "centreline noise of the sweeps' points"
-SWEEP_PLANES = "light planes of the sweeps (network)"
-FAN_SPECKLE = "centreline noise of the fan's points (speckle)"
-FORM = "form of the faces beyond the stated noise"
 
 UNKNOWNS = 4
 """Of a fit: two parallel planes, or a sphere. The form's size is found from as many patches less."""
@@ -79,7 +61,7 @@ class Effect:
         Degrees of freedom of all this.
     """
 
-    source: str
+    source: Message
     factor: Array
     shared: bool
     point_mm: float
@@ -87,7 +69,12 @@ class Effect:
 
 
 def budget(
-    gains: Array, sources: Sources, *, own: Array | None = None, form_mm: float = 0.0, calibrations: Sequence[str] = ()
+    gains: Array,
+    sources: Sources,
+    *,
+    own: Array | None = None,
+    form_mm: float = 0.0,
+    calibrations: Sequence[Message] = (),
 ) -> tuple[Contribution, ...]:
     """What each cause contributes to q.
 
@@ -109,7 +96,12 @@ def budget(
 
 
 def effects(
-    gains: Array, sources: Sources, *, own: Array | None = None, form_mm: float = 0.0, calibrations: Sequence[str] = ()
+    gains: Array,
+    sources: Sources,
+    *,
+    own: Array | None = None,
+    form_mm: float = 0.0,
+    calibrations: Sequence[Message] = (),
 ) -> tuple[Effect, ...]:
     """What each cause does to p quantities that follow the stretches' misfits with `gains` (p, J); else as `budget`."""
     own = sources.own if own is None else own
@@ -157,14 +149,14 @@ def budget_of(parts: Sequence[tuple[Array, Sequence[Effect]]]) -> tuple[Contribu
     return tuple(rows)
 
 
-def _noise(source: str, gains: Array, own: Array) -> Effect:
+def _noise(source: Message, gains: Array, own: Array) -> Effect:
     """Of noise independent between stretches: any root of its covariance does."""
     scaled = gains * own
     values, vectors = np.linalg.eigh(scaled @ scaled.T)
     return Effect(source, vectors * np.sqrt(np.maximum(values, 0.0)), shared=False, point_mm=float(np.median(own)))
 
 
-def _effect(source: str, gains: Array, acting: Array, *, shared: bool) -> Effect:
+def _effect(source: Message, gains: Array, acting: Array, *, shared: bool) -> Effect:
     """Of n independent unit causes, `acting` (J, n) on the stretches."""
     typical = float(np.median(np.sqrt((acting**2).sum(axis=1))))
     return Effect(source, gains @ acting, shared, typical)

@@ -66,7 +66,8 @@ def student_factor(k: float, contributions: Iterable[Contribution]) -> float:
 
     Examples
     --------
-    >>> student_factor(2.0, [Contribution("known", 0.1)]), student_factor(2.0, [Contribution("guessed", 0.1, dof=10)])
+    >>> from core.inspect.uncertainty.causes import CAMERA
+    >>> student_factor(2.0, [Contribution(CAMERA, 0.1)]), student_factor(2.0, [Contribution(CAMERA, 0.1, dof=10)])
     (2.0, 2.28)
     """
     dof = effective_dof(contributions)

@@ -21,10 +21,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from core.inspect.point_errors import PointErrors
+from core.inspect.uncertainty.point_errors import PointErrors
 from core.model.arrays import Array
-from core.scan.cloud import Cloud
-from core.scan.fan_speckle import FanSpeckle
+from core.scan.network.fan_speckle import FanSpeckle
+from core.scan.surface.cloud import Cloud
 
 GRAZING = 0.35
 """|cos| of incidence below which own noise across the surface falls no further where light planes are not known: the

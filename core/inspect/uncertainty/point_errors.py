@@ -4,7 +4,7 @@ Every point lies on the known ray r of its pixel, so noise can only move its dep
 
 - *own noise* of the centreline, one and the same over a stretch of a stripe, independent beyond: σ_p;
 - *sweep planes*: δz_p = −z_p² r_p·δπ_i for all points of sweep i, with the network's covariance of all π;
-- *the fan's speckle*, which its own points and the sweeps' planes have in common (`core.scan.fan_speckle`);
+- *the fan's speckle*, which its own points and the sweeps' planes have in common (`core.scan.network.fan_speckle`);
 - *common errors* of camera and fan: each calibration one standard deviation off moves all points at once.
 """
 
@@ -16,12 +16,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from core.image.centreline import Centreline
+from core.calibrate.deviations import Source
+from core.image.stripes.centreline import Centreline
+from core.inspect.uncertainty.causes import CALIBRATIONS
+from core.messages import Message
 from core.model.arrays import Array
-from core.scan.cloud import Cloud
 from core.scan.common_errors import CommonErrors
-from core.scan.fan_speckle import FanSpeckle
-from core.scan.features import ScanFeatures
+from core.scan.features.extraction import ScanFeatures
+from core.scan.network.fan_speckle import FanSpeckle
+from core.scan.surface.cloud import Cloud
 
 PATCHES = 6
 """Patches of a face along each of its sides, for its form."""
@@ -68,6 +71,15 @@ class PointErrors:
         lengths = _correlation_px(swept), _correlation_px(features.fan)
         width = float(np.median(np.concatenate([piece.width for piece in swept]))) if swept else 0.0
         return cls(sweep_covariance, common, *lengths, speckle, width)
+
+    @property
+    def calibrations(self) -> tuple[Message, ...]:
+        """(K,) which calibration each of the common errors comes from; none where they are not known."""
+        return () if self.common is None else tuple(CALIBRATIONS[source] for source in self.common.sources)
+
+    def knows(self, source: Source) -> bool:
+        """Whether the errors of that calibration are among them."""
+        return self.common is not None and source in self.common.sources
 
     @property
     def sweeps(self) -> int:

@@ -5,15 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from core.acquire.source import Frame, Lasers
-from core.calibrate.capture import CaptureJudge
+from core.calibrate.camera.capture import TAKEN, CaptureJudge
 from core.errors import InputError
 from core.image.sharpness import edge_blur_px
-from core.image.target_view import TargetView
 from core.image.targets import Target, detect
-from core.live.commands import Auto, Capture, Command, Discard
-from core.live.events import CameraDetail
+from core.image.targets.target_view import TargetView
+from core.messages import Message
 from core.model import Camera
-from core.pipeline.live_desk import Desk, as_sentence
+from core.pipeline.live.commands import Auto, Capture, Command, Discard
+from core.pipeline.live.desk import Desk, as_sentence
+from core.pipeline.live.events import CameraDetail
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -23,13 +24,13 @@ class Look:
     frame: Frame
     view: TargetView | None
     blur_px: float = float("nan")
-    why_not: str = ""
+    why_not: Message | None = None
 
 
 def look_for_target(frame: Frame, target: Target, camera: Camera | None) -> Look:
     """Find `target` in a frame."""
     try:
-        view = detect(target, frame.picture, "", camera)
+        view = detect(target, frame.picture, "", camera, thorough=False)
     except InputError as error:
         return Look(frame, None, why_not=as_sentence(error.what))
     return Look(frame, view, edge_blur_px(frame.picture, view.uv))
@@ -45,8 +46,8 @@ class LiveCamera:
         self._auto, self._capture = desk.request.auto, False
         self._judge: CaptureJudge | None = None
         self._look: Look | None = None
-        self._sentence = ""
-        self._missing: tuple[str, ...] = ()
+        self._sentence: Message | None = None
+        self._missing: tuple[Message, ...] = ()
         self._number = 0
 
     def begin(self) -> None:
@@ -72,9 +73,9 @@ class LiveCamera:
         if look.view is not None and (self._capture or (verdict.take and self._auto)):
             self._take(look.frame, look.view, self._judge)
         elif self._capture:
-            self._desk.notice(f"Nothing was taken. {look.why_not}")
+            self._desk.notice(nothing_taken(verdict.sentence if look.why_not is None else look.why_not))
         elif verdict.take:
-            self._sentence = "Press Capture to take this view."
+            self._sentence = Message("live.press_capture_view", "Press Capture to take this view.")
         self._capture = False
         return look.frame
 
@@ -117,8 +118,13 @@ class LiveCamera:
         self._desk.write(name, frame.picture)
         self._desk.recorded += 1
         judge.taken(named(view, name), frame.time_s)
-        self._sentence, self._missing = "Taken.", judge.missing()
+        self._sentence, self._missing = TAKEN, judge.missing()
         self._desk.took(name, frame.picture)
+
+
+def nothing_taken(why: Message) -> Message:
+    """What to tell somebody who pressed Capture in vain."""
+    return Message("live.nothing_taken", "Nothing was taken. {why}", why=why)
 
 
 def named(view: TargetView, name: str) -> TargetView:

@@ -8,14 +8,15 @@ from collections.abc import Sequence
 import numpy as np
 
 from core.errors import InputError
-from core.files.calibration_store import read_stored_poses
-from core.image.centreline import Centreline
-from core.live.commands import LiveRequest
-from core.live.events import LiveChecks
-from core.pipeline.live_desk import Desk
-from core.pipeline.live_exposure import ExposureAdviser
-from core.pipeline.live_preview import ScanPreviewer
-from core.scan.preflight import Check, Preflight
+from core.files.project.calibration_store import read_stored_poses
+from core.image.stripes.centreline import Centreline
+from core.messages import Message
+from core.pipeline.live.commands import LiveRequest
+from core.pipeline.live.desk import Desk
+from core.pipeline.live.events import LiveChecks
+from core.pipeline.live.exposure import ExposureAdviser
+from core.pipeline.live.preview import ScanPreviewer
+from core.scan.preview.preflight import Check, Preflight
 
 CHECK_EVERY_S = 1.0
 """How often it is looked whether the reference still holds, while nothing is recorded."""
@@ -40,9 +41,9 @@ class ScanChecks:
     def begin(self, image_size: tuple[int, int]) -> None:
         """The first picture is there, of (width, height)."""
         self._image_size = image_size
-        self._tell(None, "")
+        self._tell(None, None)
 
-    def reference(self, departed: str = "") -> None:
+    def reference(self, departed: Message | None = None) -> None:
         """There is a reference; the latest picture suits it, or why not."""
         self._looked_s = time.monotonic()
         self._tell(self._previewer.fan_lines, departed)
@@ -58,7 +59,7 @@ class ScanChecks:
         """The source has been told other settings."""
         self._adviser.forget()
 
-    def _tell(self, fan_lines: tuple[tuple[Centreline, ...], ...] | None, departed: str) -> None:
+    def _tell(self, fan_lines: tuple[tuple[Centreline, ...], ...] | None, departed: Message | None) -> None:
         request = self._desk.request
         checks = Preflight(
             lines=request.rig.lines,

@@ -6,10 +6,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from core.acquire.source import Lasers, SourceChoice, SourceSettings, Step
-from core.files.options import Options
-from core.files.recorder import Ending
-from core.files.rig import Rig
-from core.image.target_view import TargetView
+from core.files.recording.options import Options
+from core.files.recording.recorder import Ending
+from core.files.recording.rig import Rig
+from core.image.targets.target_view import TargetView
 from core.model import Camera, Fan
 
 

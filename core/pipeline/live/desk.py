@@ -8,9 +8,10 @@ from typing import Any, Protocol
 
 from core.acquire.source import Capabilities, Frame, FrameSource, Lasers, Picture
 from core.files.pictures import write_picture
-from core.live.commands import Command, LiveRequest
-from core.live.events import Detail, LiveAnswered, LiveAsk, LiveEvent, LiveNotice, LiveTaken
-from core.pipeline.live_display import Display
+from core.messages import Message
+from core.pipeline.live.commands import Command, LiveRequest
+from core.pipeline.live.display import Display
+from core.pipeline.live.events import Detail, LiveAnswered, LiveAsk, LiveEvent, LiveNotice, LiveTaken
 
 THUMBNAIL_PX = 240
 DISCARDED = "discarded"
@@ -99,14 +100,14 @@ class Desk:
         self.lasers = Lasers(fan=False, hand=False)
         self.settings, self.capabilities = request.settings, Capabilities()
         self._asking = False
-        self._told = ""
+        self._told: Message | None = None
 
     def switch(self, lasers: Lasers) -> bool:
         """Want the lasers like this from now on; True if the source switches them itself."""
         self.lasers = lasers
         return self.source.lasers(lasers)
 
-    def ask(self, sentence: str, button: str, answer: Command) -> None:
+    def ask(self, sentence: Message, button: str, answer: Command) -> None:
         """Ask a person to do something."""
         self._asking = True
         self.emit(LiveAsk(sentence, button, answer))
@@ -117,7 +118,7 @@ class Desk:
             self._asking = False
             self.emit(LiveAnswered())
 
-    def notice(self, sentence: str) -> None:
+    def notice(self, sentence: Message) -> None:
         """Tell a sentence, but not the same one twice in a row."""
         if sentence != self._told:
             self._told = sentence
@@ -129,7 +130,7 @@ class Desk:
 
     def took(self, name: str, picture: Picture) -> None:
         """A view, pose or reference is on the disk."""
-        self._told = ""
+        self._told = None
         self.emit(LiveTaken(name, Display(THUMBNAIL_PX).reduced(picture)[0]))
 
     def put_aside(self, *names: str) -> bool:
@@ -143,6 +144,6 @@ class Desk:
         return bool(there)
 
 
-def as_sentence(what: str) -> str:
-    """The words of an InputError as a sentence of their own."""
-    return f"{what[:1].upper()}{what[1:]}."
+def as_sentence(what: Message) -> Message:
+    """What an InputError says, as a sentence of its own."""
+    return Message("live.reason", "{reason:capital}.", reason=what)

@@ -10,12 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.acquire.source import Capabilities, SourceSettings
-from core.image.centreline import Centreline
-from core.live.commands import Command
+from core.image.stripes.centreline import Centreline
+from core.messages import Message
 from core.model.arrays import Array
-from core.scan.frame_preview import FramePreview
-from core.scan.preflight import Check
-from core.scan.preview_cloud import PreviewCloud
+from core.pipeline.live.commands import Command
+from core.scan.preview.preflight import Check
+from core.scan.preview.shown import FramePreview, PreviewCloud
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -42,9 +42,9 @@ class CameraDetail:
 
     index: int
     uv: Array | None
-    sentence: str
+    sentence: Message | None
     cells: NDArray[np.bool_]
-    missing: tuple[str, ...]
+    missing: tuple[Message, ...]
     views: int
     auto: bool
 
@@ -61,9 +61,9 @@ class PlanesDetail:
     uv: Array | None
     stripes: tuple[Array, ...]
     line: tuple[int, ...]
-    sentence: str
+    sentence: Message | None
     cells: NDArray[np.bool_]
-    missing: tuple[str, ...]
+    missing: tuple[Message, ...]
     poses: int
     auto: bool
 
@@ -158,12 +158,12 @@ class LiveTaken:
 
 @dataclass(frozen=True, slots=True)
 class LiveAsk:
-    """A person must do something and then press a button of this name, which sends `answer`.
+    """A person must do something and then press a button of this name (a label), which sends `answer`.
 
     It stands until LiveAnswered, or until another one takes its place.
     """
 
-    sentence: str
+    sentence: Message
     button: str
     answer: Command
 
@@ -177,18 +177,18 @@ class LiveAnswered:
 class LiveNotice:
     """A sentence to show; nothing stops for it."""
 
-    sentence: str
+    sentence: Message
 
 
 @dataclass(frozen=True, slots=True)
 class LiveAdvice:
-    """How to expose the stripes better; "" and None where all is well.
+    """How to expose the stripes better; nothing where all is well.
 
     `settings` is what to tell the source; None if a person must find out, because what is set now is not known.
     """
 
-    sentence: str
-    settings: SourceSettings | None
+    sentence: Message | None = None
+    settings: SourceSettings | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -202,7 +202,7 @@ class LiveChecks:
 class LiveUnplugged:
     """The source is gone; it is looked for every second. What is recorded is kept."""
 
-    sentence: str
+    sentence: Message
 
 
 @dataclass(frozen=True, slots=True)
@@ -219,12 +219,12 @@ class LiveSaving:
 
 @dataclass(frozen=True, slots=True)
 class LiveEnded:
-    """It is over: where the pictures are, how many, how many were lost; `error` is a sentence if it ended by itself."""
+    """It is over: where the pictures are, how many, how many were lost; `error` says why if it ended by itself."""
 
     folder: Path
     recorded: int
     dropped: int
-    error: str = ""
+    error: Message | None = None
 
 
 LiveEvent = (

@@ -8,9 +8,10 @@ from collections.abc import Sequence
 from statistics import median
 
 from core.acquire.source import Capabilities, SourceSettings
-from core.image.centreline import Centreline
 from core.image.exposure import Exposure, stripe_exposure
-from core.live.events import LiveAdvice
+from core.image.stripes.centreline import Centreline
+from core.messages import Message
+from core.pipeline.live.events import LiveAdvice
 
 LOOKED_AT = 9
 """Advice rests on so many pictures: one that shines or one in shadow does not count."""
@@ -21,7 +22,7 @@ class ExposureAdviser:
 
     def __init__(self) -> None:
         self._seen: deque[Exposure] = deque(maxlen=LOOKED_AT)
-        self._told = LiveAdvice("", None)
+        self._told = LiveAdvice()
 
     def forget(self) -> None:
         """The source was told other settings: what was seen before does not count."""
@@ -55,23 +56,35 @@ class ExposureAdviser:
 def advised(exposure: Exposure, told: SourceSettings, can: Capabilities) -> LiveAdvice:
     """One sentence and the settings it speaks of, exposure time before gain; neither where all is well."""
     if exposure.is_good:
-        return LiveAdvice("", None)
-    why = (
-        f"{exposure.saturated:.0%} of the stripe are overexposed"
-        if exposure.saturated and exposure.factor < 1
-        else f"The stripe is {'bright' if exposure.factor < 1 else 'faint'}, at {exposure.level:.0%} of white"
-    )
+        return LiveAdvice()
+    why = _why(exposure)
     settings = _settings(exposure.factor, told, can)
     if settings is None:
-        more, less = "open the aperture or bring more light", "close the aperture or take less light"
-        by_hand = f"{'expose longer, or ' + more if exposure.factor > 1 else 'expose shorter, or ' + less}"
-        return LiveAdvice(f"{why}: {by_hand}.", None)
+        by_hand = (
+            Message("live.expose_longer", "expose longer, or open the aperture or bring more light")
+            if exposure.factor > 1
+            else Message("live.expose_shorter", "expose shorter, or close the aperture or take less light")
+        )
+        return LiveAdvice(_advice(why, by_hand))
     parts = []
     if settings.exposure_ms is not None:
-        parts.append(f"set the exposure time to {settings.exposure_ms:g} ms")
+        time = Message("live.set_exposure", "set the exposure time to {time_ms:g} ms", time_ms=settings.exposure_ms)
+        parts.append(time)
     if settings.gain_db is not None:
-        parts.append(f"set the gain to {settings.gain_db:g} dB")
-    return LiveAdvice(f"{why}: {' and '.join(parts)}.", settings)
+        parts.append(Message("live.set_gain", "set the gain to {gain_db:g} dB", gain_db=settings.gain_db))
+    return LiveAdvice(_advice(why, *parts), settings)
+
+
+def _why(exposure: Exposure) -> Message:
+    if exposure.saturated and exposure.factor < 1:
+        return Message("live.overexposed", "{share:.0%} of the stripe are overexposed", share=exposure.saturated)
+    if exposure.factor < 1:
+        return Message("live.stripe_bright", "The stripe is bright, at {share:.0%} of white", share=exposure.level)
+    return Message("live.stripe_faint", "The stripe is faint, at {share:.0%} of white", share=exposure.level)
+
+
+def _advice(why: Message, *todo: Message) -> Message:
+    return Message("live.exposure_advice", "{why}: {todo:and}.", why=why, todo=todo)
 
 
 def _typical(seen: Sequence[Exposure]) -> Exposure:

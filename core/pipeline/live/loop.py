@@ -9,10 +9,11 @@ from collections.abc import Callable
 from core.acquire.settings import TITLES
 from core.acquire.source import Ended, Frame, FrameSource, Unplugged
 from core.errors import InputError
-from core.live.commands import Command, Configure, Stop, Switch
-from core.live.events import LiveBack, LiveNotice, LiveStarted, LiveUnplugged, LiveView
-from core.pipeline.live_desk import Desk, LiveStep
-from core.pipeline.live_display import Display, Reduced
+from core.messages import Message
+from core.pipeline.live.commands import Command, Configure, Stop, Switch
+from core.pipeline.live.desk import Desk, LiveStep
+from core.pipeline.live.display import Display, Reduced
+from core.pipeline.live.events import LiveBack, LiveNotice, LiveStarted, LiveUnplugged, LiveView
 
 RETRY_S = 1.0
 """How often a source that was unplugged is looked for."""
@@ -59,8 +60,8 @@ class LiveLoop:
         """Frames lost since the first picture was recorded, by the source and by the disk."""
         return self._dropped_before + self._dropped_now - self._unmissed + self._desk.lost
 
-    def run(self) -> str:
-        """Until the end; the sentence of what ended it too early, or ""."""
+    def run(self) -> Message | None:
+        """Until the end; what ended it too early, or None."""
         try:
             self._open()
             self._source.prepare(self._desk.request.step)
@@ -70,8 +71,8 @@ class LiveLoop:
         except Ended:
             return self._look_at_last()
         except InputError as problem:
-            return str(problem)
-        return ""
+            return problem.message
+        return None
 
     def _turn(self) -> None:
         """One turn: commands, a frame, what was found, a picture for the window."""
@@ -86,7 +87,7 @@ class LiveLoop:
             self._show()
             self._step.rest()
         except Unplugged as gone:
-            self._wait_for_source(str(gone))
+            self._wait_for_source(gone.message)
 
     def _open(self) -> None:
         """Open the source, and tell it what it can be told."""
@@ -95,7 +96,12 @@ class LiveLoop:
         desk.capabilities = self._source.capabilities
         told = desk.settings.only(desk.capabilities.names)
         if left := [TITLES[name][0] for name in desk.settings.told if name not in told.told]:
-            desk.notice(f"{self._source.name} has no {' and no '.join(left)} to set: what it has is used.")
+            desk.notice(
+                Message(
+                    "live.settings_not_there", "{source} has no {settings:and} to set: what it has is used.",
+                    source=self._source.name, settings=left,
+                )
+            )  # fmt: skip
         self._source.configure(told)
 
     def _read(self) -> Frame | None:
@@ -108,7 +114,7 @@ class LiveLoop:
             self._damaged += 1
             if self._damaged >= MOST_DAMAGED:
                 raise
-            self._desk.notice(str(damage))
+            self._desk.notice(damage.message)
             return None
         if frame is not None:
             self._damaged = 0
@@ -145,10 +151,12 @@ class LiveLoop:
                     except Unplugged:
                         raise
                     except InputError as error:
-                        self._desk.emit(LiveNotice(str(error)))
+                        self._desk.emit(LiveNotice(error.message))
                 case Switch(lasers):
                     if not self._desk.switch(lasers):
-                        self._desk.notice("This source cannot switch the lasers: do it by hand.")
+                        self._desk.notice(
+                            Message("live.lasers_by_hand", "This source cannot switch the lasers: do it by hand.")
+                        )
                 case _:
                     self._step.tell(command)
 
@@ -175,7 +183,7 @@ class LiveLoop:
             return 0.0
         return (len(self._times) - 1) / max(self._times[-1] - self._times[0], 1e-6)
 
-    def _wait_for_source(self, sentence: str) -> None:
+    def _wait_for_source(self, sentence: Message) -> None:
         """The source is gone: look for it until it is back, or until told to stop."""
         self._desk.emit(LiveUnplugged(sentence))
         self._source.close()
@@ -203,7 +211,7 @@ class LiveLoop:
             self._desk.emit(LiveBack())
             return
 
-    def _look_at_last(self) -> str:
+    def _look_at_last(self) -> Message | None:
         """The source has ended: wait for the frame that is being looked at, and show it if the window is ready."""
         deadline = time.monotonic() + LAST_LOOK_S
         try:
@@ -211,6 +219,6 @@ class LiveLoop:
                 self._fresh = self._step.poll() or self._fresh
                 time.sleep(WORKING_LISTEN_S)
         except InputError as problem:
-            return str(problem)
+            return problem.message
         self._show()
-        return ""
+        return None

@@ -8,16 +8,18 @@ from typing import Literal
 import numpy as np
 
 from core.acquire.source import Frame, Lasers, Picture
-from core.calibrate.capture import CaptureJudge, moved_px
-from core.calibrate.missing import PLANE_POSES
-from core.image.target_view import TargetView
-from core.live.commands import Auto, Capture, Command, Configure, Discard
-from core.live.events import PlanesDetail
+from core.calibrate.camera.capture import HOLD_STILL, TAKEN, CaptureJudge, moved_px
+from core.calibrate.camera.missing import PLANE_POSES
+from core.calibrate.fan.plane_pose import TARGET_MOVED
+from core.image.targets.target_view import TargetView
+from core.messages import Message, label
 from core.model.arrays import Array
-from core.pipeline.live_camera import named
-from core.pipeline.live_desk import Desk, as_sentence
-from core.pipeline.live_exposure import ExposureAdviser
-from core.pipeline.live_pose import MeasuredPair, PoseLook, look_at_pose, measure_pair, settings_of
+from core.pipeline.live.camera import named, nothing_taken
+from core.pipeline.live.commands import Auto, Capture, Command, Configure, Discard
+from core.pipeline.live.desk import Desk, as_sentence
+from core.pipeline.live.events import PlanesDetail
+from core.pipeline.live.exposure import ExposureAdviser
+from core.pipeline.live.pose import MeasuredPair, PoseLook, look_at_pose, measure_pair, settings_of
 
 MOST_TRIES = 5
 """So many pictures with the fan off are tried: the first may still have been exposed with the fan on."""
@@ -25,7 +27,7 @@ MOST_TRIES = 5
 _ANOTHER_POSE_PX = 10.0
 """A target that has moved so far since it was refused may be tried again."""
 
-_NO_LIGHT = "The fan's light is not seen on the target."
+_NO_LIGHT = Message("live.no_fan_light", "The fan's light is not seen on the target.")
 
 _FAN_ON, _FAN_OFF = Lasers(fan=True, hand=False), Lasers(fan=False, hand=False)
 
@@ -55,10 +57,10 @@ class LivePlanes:
         self._look: PoseLook | None = None
         self._stage: Stage = "looking"
         self._pending: _Pending | None = None
-        self._refused: tuple[TargetView, str] | None = None
+        self._refused: tuple[TargetView, Message] | None = None
         self._seen_at: Array | None = None
-        self._sentence = ""
-        self._missing: tuple[str, ...] = ()
+        self._sentence: Message | None = None
+        self._missing: tuple[Message, ...] = ()
         self._number = 0
         self._adviser = ExposureAdviser()
 
@@ -67,7 +69,9 @@ class LivePlanes:
         self._desk.answered()
         self._pending, self._stage = None, "looking"
         if not self._desk.switch(_FAN_ON):
-            self._desk.notice("Switch the three-line laser on, and the hand-held laser off.")
+            self._desk.notice(
+                Message("live.fan_on_hand_off", "Switch the three-line laser on, and the hand-held laser off.")
+            )
 
     def frame(self, frame: Frame) -> None:
         """Look at the pose, or take the picture with the fan off."""
@@ -135,19 +139,20 @@ class LivePlanes:
     def _judged(self, look: PoseLook, judge: CaptureJudge) -> None:
         view, pose = look.pose.view, look.pose
         self._advise(look)
-        verdict = judge.judge(view, look.blur_px, look.frame.time_s, "" if view else as_sentence(pose.reason))
+        why_not = None if pose.reason is None else as_sentence(pose.reason)
+        verdict = judge.judge(view, look.blur_px, look.frame.time_s, why_not)
         self._look, self._sentence = look, verdict.sentence
         self._seen_at = None if view is None else view.uv
         if pose.centrelines and self._settings is None:
             self._settings = settings_of(pose)
-        doubt = "" if view is None or not verdict.take else self._doubt(look, view)
+        doubt = None if view is None or not verdict.take else self._doubt(look, view)
         self._sentence = doubt or self._sentence
         if view is not None and pose.centrelines and (self._capture or (verdict.take and self._auto and not doubt)):
             self._begin_pair(look.frame, view)
         elif self._capture:
-            self._desk.notice(f"Nothing was taken. {_NO_LIGHT if view is not None else self._sentence}")
+            self._desk.notice(nothing_taken(_NO_LIGHT if view is not None else self._sentence))
         elif verdict.take and not doubt:
-            self._sentence = "Press Capture to take this pose."
+            self._sentence = Message("live.press_capture_pose", "Press Capture to take this pose.")
         self._capture = False
 
     def _advise(self, look: PoseLook) -> None:
@@ -157,20 +162,24 @@ class LivePlanes:
         if advice is not None:
             desk.emit(advice)
 
-    def _doubt(self, look: PoseLook, view: TargetView) -> str:
-        """Why a good view of the target is not taken by itself, or ""."""
+    def _doubt(self, look: PoseLook, view: TargetView) -> Message | None:
+        """Why a good view of the target is not taken by itself; None if it is."""
         if not look.pose.centrelines:
             return _NO_LIGHT
         if self._camera is not None and len(look.stripes) > self._lines:
-            return f"More stripes are seen than the fan's {self._lines}: is it on? Press Capture to take the pose."
+            return Message(
+                "live.more_stripes_than_lines",
+                "More stripes are seen than the fan's {n}: is it on? Press Capture to take the pose.",
+                n=self._lines,
+            )
         if self._refused is not None and moved_px(self._refused[0], view) < _ANOTHER_POSE_PX:
             return self._refused[1]
-        return ""
+        return None
 
     def _begin_pair(self, frame: Frame, view: TargetView) -> None:
         """The picture with the fan on is taken; now the one with the fan off, if there is to be one."""
         self._pending = _Pending(frame, view)
-        self._sentence = "Hold still."
+        self._sentence = HOLD_STILL
         if not self._desk.request.pairs:
             self._measure(self._pending, None)
             return
@@ -178,9 +187,11 @@ class LivePlanes:
             self._stage = "second picture"
             return
         self._stage = "asking"
-        self._desk.ask(
-            "Leave the target as it is, switch the three-line laser off, then press Continue.", "Continue", Capture()
+        leave = Message(
+            "live.leave_target_fan_off",
+            "Leave the target as it is, switch the three-line laser off, then press Continue.",
         )
+        self._desk.ask(leave, label("Continue"), Capture())
 
     def _measure(self, pending: _Pending, off: Picture | None) -> None:
         name, on = self._name(), pending.on.picture
@@ -190,13 +201,14 @@ class LivePlanes:
         """Keep the pose, try another picture, or say why it is of no use."""
         reason, off = pair.features.reason, pair.off
         still_on = off is not None and pair.features.view is not None and not pair.features.centrelines
-        if reason and still_on and "moved" not in reason and pending.tries < MOST_TRIES:
+        if reason and still_on and reason.code != TARGET_MOVED and pending.tries < MOST_TRIES:
             self._pending = _Pending(pending.on, pending.view, pending.tries + 1)
             return
         name = self._name()
         if reason:
-            self._refused = (pending.view, f"The pose was not taken: {reason}.")
-            self._desk.notice(self._refused[1])
+            why = Message("live.pose_not_taken", "The pose was not taken: {reason}.", reason=reason)
+            self._refused = (pending.view, why)
+            self._desk.notice(why)
         else:
             self._desk.write(name, pending.on.picture)
             if off is not None:
@@ -204,11 +216,16 @@ class LivePlanes:
             self._number += 1
             self._desk.recorded += 1
             judge.taken(named(pending.view, name), pending.on.time_s)
-            self._sentence, self._missing = "Taken.", judge.missing()
+            self._sentence, self._missing = TAKEN, judge.missing()
             self._desk.took(name, pending.on.picture)
         self._pending, self._stage = None, "looking"
         if off is not None and not self._desk.switch(_FAN_ON):
-            self._desk.notice("Switch the three-line laser on again, and hold the target another way.")
+            self._desk.notice(
+                Message(
+                    "live.fan_on_another_pose",
+                    "Switch the three-line laser on again, and hold the target another way.",
+                )
+            )
 
     def _name(self) -> str:
         return f"pose{self._number:02d}"

@@ -5,11 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from core.acquire.source import Frame, Picture
-from core.files.options import Options
-from core.image.centreline import Centreline
-from core.image.stripe import StripeSettings
+from core.files.recording.options import Options
+from core.image.stripes.centreline import Centreline
+from core.image.stripes.stripe import StripeSettings
+from core.messages import Message
 from core.model import Camera, Fan
-from core.scan.features import (
+from core.scan.features.extraction import (
     NO_STRIPE,
     FeatureOptions,
     FrameFeatures,
@@ -18,9 +19,8 @@ from core.scan.features import (
     choose_sweep_stripe,
     read_reference,
 )
-from core.scan.frame_preview import FramePreview, empty_preview
-from core.scan.preview import Preview
-from core.scan.preview_cloud import PreviewCloud
+from core.scan.preview.frames import Preview
+from core.scan.preview.shown import FramePreview, PreviewCloud, empty_preview
 
 SETTINGS_FROM = 3
 """The stripe's width and contrast are looked for anew in so many frames that show it, and then kept."""
@@ -38,14 +38,14 @@ class PreviewedFrame:
 class PreviewFailed:
     """The preview has come to its end, and why; the recording goes on."""
 
-    sentence: str
+    sentence: Message
 
 
 @dataclass(frozen=True, slots=True)
 class Departed:
-    """Why a picture without the hand-held laser does not suit the reference, or ""."""
+    """Why a picture without the hand-held laser does not suit the reference; None if it does."""
 
-    reason: str
+    reason: Message | None
 
 
 class ScanPreviewer:
@@ -78,9 +78,9 @@ class ScanPreviewer:
     def departed(self, picture: Picture) -> Departed:
         """Whether a picture still suits the reference."""
         if self._reference is None:
-            return Departed("")
+            return Departed(None)
         reason = FrameReader(self._reference, None)((0, ("", picture))).reason
-        return Departed("" if reason == NO_STRIPE else reason)
+        return Departed(None if reason == NO_STRIPE else reason)
 
     def fan_cloud(self) -> PreviewCloud:
         """The fan's own points."""
@@ -130,8 +130,13 @@ class ScanPreviewer:
     def _fail(self, error: Exception) -> PreviewFailed:
         self._failed = True
         return PreviewFailed(
-            f"The preview has stopped because of an error in it ({type(error).__name__}: {error}). "
-            "The frames are recorded all the same."
+            Message(
+                "live.preview_failed",
+                "The preview has stopped because of an error in it ({kind}: {reason}). "
+                "The frames are recorded all the same.",
+                kind=type(error).__name__,
+                reason=str(error),
+            )
         )
 
     def _shown(self, reference: ReferenceFeatures, index: int, name: str, picture: Picture) -> FramePreview:
@@ -147,7 +152,7 @@ class ScanPreviewer:
             stripe = sorted(self._seen, key=lambda seen: seen.contrast)[len(self._seen) // 2]
         features = FrameReader(reference, stripe or reference.stripe)((index, (name, picture)))
         learning = self._options.stripe is None and len(self._seen) < SETTINGS_FROM
-        if learning and features.reason in ("", NO_STRIPE):  # moved, dark: nothing to be learned of the stripe
+        if learning and features.reason in (None, NO_STRIPE):  # moved, dark: nothing to be learned of the stripe
             self._to_learn_from = picture
         return features
 

@@ -11,16 +11,16 @@ import numpy as np
 
 from core.acquire.source import Frame, Lasers, Picture
 from core.errors import InputError
-from core.live.commands import Command, Configure, Pause, Resume, TakeReference
-from core.live.events import LiveSaving, ScanDetail, ScanStage
-from core.pipeline.live_checks import ScanChecks
-from core.pipeline.live_desk import Desk
-from core.pipeline.live_preview import Departed, PreviewedFrame, PreviewFailed, ScanPreviewer
-from core.pipeline.live_warm_up import get_ready_for_live
-from core.scan.coverage_map import CoverageMap
-from core.scan.features import LOST, MOVED
-from core.scan.frame_preview import FramePreview, cloud_of
-from core.scan.preview_cloud import PreviewCloud
+from core.messages import Message, label
+from core.pipeline.live.checks import ScanChecks
+from core.pipeline.live.commands import Command, Configure, Pause, Resume, TakeReference
+from core.pipeline.live.desk import Desk
+from core.pipeline.live.events import LiveSaving, ScanDetail, ScanStage
+from core.pipeline.live.preview import Departed, PreviewedFrame, PreviewFailed, ScanPreviewer
+from core.pipeline.live.warm_up import get_ready_for_live
+from core.scan.features.extraction import LOST, MOVED
+from core.scan.preview.shown import FramePreview, PreviewCloud, cloud_of
+from core.scan.surface.coverage_map import CoverageMap
 
 REFERENCE = "reference"
 
@@ -37,15 +37,15 @@ STUCK_S = 2.0
 """A disk that has not taken a frame for so long when all is to be saved is given one last try."""
 
 _SLOWER = {
-    ".png": "Record PGM, which takes less time, or choose a lower frame rate.",
-    ".pgm": "Choose a lower frame rate.",
+    ".png": Message("live.record_pgm", "Record PGM, which takes less time, or choose a lower frame rate."),
+    ".pgm": Message("live.lower_rate", "Choose a lower frame rate."),
 }
 
 _FAN_ALONE, _BOTH = Lasers(fan=True, hand=False), Lasers(fan=True, hand=True)
 
 
 class FrameStore(Protocol):
-    """Writes frames without keeping anybody waiting (core.files.recorder.Recorder)."""
+    """Writes frames without keeping anybody waiting (core.files.recording.recorder.Recorder)."""
 
     @property
     def written(self) -> int:
@@ -121,7 +121,7 @@ class LiveScan:
         try:
             result = self._desk.worker.take()
         except InputError as error:  # the reference shows no fan
-            self._refused(str(error))
+            self._refused(error.message)
             return None
         match result:
             case PreviewFailed(sentence):
@@ -169,7 +169,12 @@ class LiveScan:
                 self._desk.answered()
                 self._forced, self._looking, self._before = self._looking, True, None
             case TakeReference():
-                self._desk.notice("The reference is taken already: stop, and start another recording for a new one.")
+                self._desk.notice(
+                    Message(
+                        "live.reference_there",
+                        "The reference is taken already: stop, and start another recording for a new one.",
+                    )
+                )
             case Resume() if self._stage in ("ready", "paused"):
                 self._desk.answered()
                 self._stage = "scanning"
@@ -196,24 +201,28 @@ class LiveScan:
         except InputError as error:  # the disk is full: what waits for it is kept and tried again
             self._desk.lost += 1
             self._stage = "paused"
-            self._desk.ask(f"Recording is paused. {error} Then press Continue.", "Continue", Resume())
+            paused = Message("live.paused", "Recording is paused. {reason} Then press Continue.", reason=error.message)
+            self._desk.ask(paused, label("Continue"), Resume())
             return
         if not taken:
             self._desk.lost += 1
             self._desk.notice(
-                f"The disk is too slow for all frames: some are lost. {_SLOWER[self._desk.request.ending]}"
-            )
+                Message(
+                    "live.disk_too_slow", "The disk is too slow for all frames: some are lost. {todo}",
+                    todo=_SLOWER[self._desk.request.ending],
+                )
+            )  # fmt: skip
             return
         self._desk.worker.start(self._previewer.look, self._number, name, frame)
         self._number += 1
         self._desk.recorded += 1
 
     def _ask_for_reference(self) -> None:
-        self._desk.ask(
+        fan_alone = Message(
+            "live.take_reference",
             "Switch the three-line laser on and the hand-held laser off, then take the reference.",
-            "Take the reference",
-            TakeReference(),
         )
+        self._desk.ask(fan_alone, label("Take the reference"), TakeReference())
 
     def _try_reference(self, picture: Picture) -> None:
         """Take a picture that is like the one before: nothing moves, no laser is swept over it."""
@@ -224,7 +233,10 @@ class LiveScan:
             return
         if not self._forced and before is not None and not _alike(before, picture):
             self._desk.notice(
-                "Something moves in the picture: keep object and camera at rest, the hand-held laser off."
+                Message(
+                    "live.something_moves",
+                    "Something moves in the picture: keep object and camera at rest, the hand-held laser off.",
+                )
             )
             return
         self._desk.worker.start(self._previewer.read_reference, picture)
@@ -244,11 +256,12 @@ class LiveScan:
             return
         self._stage = "ready"
         self._desk.lasers = _BOTH
-        self._desk.ask(
-            "Switch the hand-held laser on, press Start, and sweep it slowly over the object.", "Start", Resume()
+        sweep = Message(
+            "live.start_sweeping", "Switch the hand-held laser on, press Start, and sweep it slowly over the object."
         )
+        self._desk.ask(sweep, label("Start"), Resume())
 
-    def _refused(self, sentence: str) -> None:
+    def _refused(self, sentence: Message) -> None:
         self._desk.notice(sentence)
         self._forced = False
         if not self._self_switching:
@@ -260,8 +273,11 @@ class LiveScan:
         self._moved = self._moved + 1 if preview.reason in (MOVED, LOST) else 0
         if self._moved == MOVED_FRAMES:
             self._desk.notice(
-                f"{preview.reason[:1].upper()}{preview.reason[1:]}. These frames give no points: stop, and scan again."
-            )
+                Message(
+                    "live.frames_moved", "{reason:capital}. These frames give no points: stop, and scan again.",
+                    reason=preview.reason,
+                )
+            )  # fmt: skip
         self._preview = preview
         if self._coverage is not None:
             for piece in preview.centrelines:

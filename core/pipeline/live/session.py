@@ -11,69 +11,22 @@ from collections.abc import Callable
 
 from core.errors import InputError
 from core.files.atomic import make_folder
-from core.files.recorder import Recorder
-from core.live.commands import (
-    Auto,
-    Capture,
+from core.files.recording.recorder import Recorder
+from core.messages import Message
+from core.pipeline.live.camera import LiveCamera
+from core.pipeline.live.commands import (
     Command,
-    Configure,
-    Discard,
     LiveRequest,
-    Pause,
-    Resume,
-    Stop,
-    Switch,
-    TakeReference,
 )
-from core.live.events import (
-    LiveAdvice,
-    LiveAnswered,
-    LiveAsk,
-    LiveBack,
-    LiveChecks,
+from core.pipeline.live.desk import Desk, LiveStep
+from core.pipeline.live.events import (
     LiveEnded,
     LiveEvent,
-    LiveNotice,
-    LiveSaving,
-    LiveStarted,
-    LiveTaken,
-    LiveUnplugged,
-    LiveView,
 )
-from core.pipeline.live_camera import LiveCamera
-from core.pipeline.live_desk import Desk, LiveStep
-from core.pipeline.live_loop import LiveLoop
-from core.pipeline.live_planes import LivePlanes
-from core.pipeline.live_scan import LiveScan
-from core.pipeline.sources import make_source
-
-__all__ = [
-    "Auto",
-    "Capture",
-    "Command",
-    "Configure",
-    "Discard",
-    "LiveAdvice",
-    "LiveAnswered",
-    "LiveAsk",
-    "LiveBack",
-    "LiveChecks",
-    "LiveEnded",
-    "LiveEvent",
-    "LiveNotice",
-    "LiveRequest",
-    "LiveSaving",
-    "LiveStarted",
-    "LiveTaken",
-    "LiveUnplugged",
-    "LiveView",
-    "Pause",
-    "Resume",
-    "Stop",
-    "Switch",
-    "TakeReference",
-    "run_live",
-]
+from core.pipeline.live.loop import LiveLoop
+from core.pipeline.live.planes import LivePlanes
+from core.pipeline.live.scan import LiveScan
+from core.pipeline.live.sources import make_source
 
 
 def run_live(
@@ -101,14 +54,18 @@ def run_live(
     try:
         folder = make_folder(request.folder)
         if any(folder.iterdir()):
-            raise InputError("there is something in the folder already", where=folder, todo="name a new one")
+            raise InputError(
+                Message("live.folder_not_empty", "there is something in the folder already"),
+                where=folder,
+                todo=Message("advice.name_new_folder", "name a new one"),
+            )
         source = make_source(request.source, request.rig)
     except InputError as refused:
-        return LiveEnded(request.folder, 0, 0, str(refused))
+        return LiveEnded(request.folder, 0, 0, refused.message)
     desk = Desk(request, source, emit)
     step = _step(desk)
     loop = LiveLoop(desk, step, commands, ready)
-    error = ""
+    error = None
     try:
         error = loop.run()
     finally:
@@ -120,13 +77,13 @@ def run_live(
     return LiveEnded(request.folder, desk.recorded, loop.dropped, error)
 
 
-def _finished(step: LiveStep) -> str:
-    """Have everything on the disk; the sentence of what could not be written, or ""."""
+def _finished(step: LiveStep) -> Message | None:
+    """Have everything on the disk; what could not be written, or None."""
     try:
         step.finish()
     except InputError as problem:
-        return str(problem)
-    return ""
+        return problem.message
+    return None
 
 
 def _step(desk: Desk) -> LiveStep:

@@ -1,20 +1,28 @@
-"""Getting a process ready to look at a live scan: what is compiled is loaded, and what is not is compiled.
+"""Getting compiled functions ready before they are waited for.
 
-Compiled functions are kept on the disk, but every process loads them anew: without this a scan's reference and its
-first looks would take a second. So a tiny scan is previewed beforehand, in every way a real one is.
+`stages` compiles what a measurement needs and keeps it on the disk: about a minute after an installation or an update,
+else a moment. Every process loads it anew: without `get_ready_for_live` a live scan's reference and its first frames
+would take a second, so a tiny scan is previewed beforehand, in every way a real one is.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cache
 
 import numpy as np
 
 from core.acquire.source import Frame, Picture
-from core.files.options import Options
+from core.files.recording.options import Options
 from core.model import Camera, Fan, LightPlane
 from core.model.arrays import Array
-from core.pipeline.live_preview import ScanPreviewer
+from core.pipeline.live.preview import ScanPreviewer
+from core.scan.features.extraction import extract_features
+from core.scan.features.reference import FeatureOptions
+from core.scan.surface.cloud import Cloud
+from core.scan.surface.fusion import fuse
+from core.scan.surface.mesh import build_mesh
+from core.scan.surface.normals import with_normals
 
 Levels = type[np.uint8] | type[np.uint16]
 
@@ -63,3 +71,37 @@ def _stripe(pi: Array, rays: Array, inverse_depth: Array) -> Array:
     """The light (h, w) of the plane `pi` on a surface."""
     off_px = FOCAL_PX * (rays @ pi - inverse_depth) / np.hypot(pi[0], pi[1])
     return np.asarray(np.exp(-0.5 * (off_px / 2.0) ** 2))
+
+
+_FAN_PX = (70.0, 84.0, 170.0)
+_SWEEPS_PX = (90.0, 150.0, 210.0)
+
+
+def stages() -> tuple[Callable[[], None], ...]:
+    """What there is to be compiled, each part by itself; none takes much longer than half a minute."""
+    return lambda: _stripes(np.uint8), lambda: _stripes(np.uint16), _surface
+
+
+def _stripes(levels: Levels) -> None:
+    """Three level lines of a fan, two of them close together, and three upright sweeps: found, refined, crossed."""
+    reference = _picture(levels, rows=_FAN_PX)
+    frames = [(f"{number}", _picture(levels, rows=_FAN_PX, column=place)) for number, place in enumerate(_SWEEPS_PX)]
+    extract_features(reference, frames, len(frames), FeatureOptions(camera=CAMERA))
+
+
+def _picture(levels: Levels, rows: tuple[float, ...], column: float | None = None) -> Picture:
+    v, u = np.mgrid[: SIZE[1], : SIZE[0]]
+    light = sum(np.exp(-0.5 * ((v - row - 0.02 * u) / 2.0) ** 2) for row in rows)
+    if column is not None:
+        light = light + np.exp(-0.5 * ((u - column - 0.1 * v) / 2.0) ** 2)
+    return exposed(levels, light)
+
+
+def _surface() -> None:
+    """A level patch of points, fused, with normals and triangles."""
+    u, v = (axis.ravel().astype(np.float64) for axis in np.meshgrid(np.arange(40, 200, 2), np.arange(40, 160, 2)))
+    uv, count = np.column_stack([u, v]), u.size
+    points = 500.0 * np.column_stack([(u - 160) / 400, (v - 120) / 400, np.ones(count)])
+    level, none = np.full(count, 0.02), np.zeros(count, dtype=np.int64)
+    cloud = with_normals(Cloud(points, uv, level, level, none, none, np.zeros((count, 3))))
+    build_mesh(with_normals(fuse(cloud, SIZE)))

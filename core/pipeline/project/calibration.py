@@ -6,20 +6,21 @@ import hashlib
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from core.calibrate.pose_features import PoseFeatures
+from core.calibrate.camera.views import SeenViews
+from core.calibrate.fan.pose_features import PoseFeatures
 from core.calibrate.results import CameraCalibration, FanCalibration
-from core.calibrate.seen_views import SeenViews
 from core.errors import InputError
-from core.files.calibration_store import keep_camera, keep_fan, read_stored_camera
-from core.files.fan_file import fan_id
-from core.files.pictures import read_bytes
-from core.files.project_data import Project
-from core.files.recording_set import RecordingSet
+from core.files.project.calibration_store import keep_camera, keep_fan, read_stored_camera
+from core.files.project.data import Project
+from core.files.reading import read_bytes
+from core.files.recording.recording_set import RecordingSet
+from core.files.results.fan_file import fan_id
+from core.messages import Message
 from core.model import Camera
-from core.pipeline.camera_step import see_views, solve_camera
-from core.pipeline.found_features import keep_poses, keep_views, kept_poses, kept_views
-from core.pipeline.planes_step import measure_poses, planes_settings, solve_planes
-from core.pipeline.project_workspace import project_set
+from core.pipeline.project.workspace import project_set
+from core.pipeline.steps.camera_step import see_views, solve_camera
+from core.pipeline.steps.kept_features import keep_poses, keep_views, kept_poses, kept_views
+from core.pipeline.steps.planes_step import measure_poses, planes_settings, solve_planes
 from core.progress import Progress, silent
 
 
@@ -30,7 +31,10 @@ def accepted_camera(folder: Path, project: Project) -> Camera:
 
 def _accepted(folder: Path, project: Project) -> CameraCalibration:
     if not project.accepted.camera:
-        raise InputError("no calibration of the camera is accepted yet", todo="calibrate it, and accept the result")
+        raise InputError(
+            Message("project.no_camera_accepted", "no calibration of the camera is accepted yet"),
+            todo=Message("advice.calibrate_and_accept", "calibrate it, and accept the result"),
+        )
     return read_stored_camera(folder, project.accepted.camera)
 
 
@@ -116,9 +120,12 @@ def accept_fan(
     """
     if fan_id(solve_poses(folder, project, poses, progress).fan) != fan_id(calibration.fan):
         raise InputError(
-            "this is not what the poses give with the accepted camera and the settings as they are",
+            Message(
+                "project.fan_not_of_poses",
+                "this is not what the poses give with the accepted camera and the settings as they are",
+            ),
             where="laser planes",
-            todo="solve the laser planes again, then accept them",
+            todo=Message("advice.solve_laser_planes_again", "solve the laser planes again, then accept them"),
         )
     found = project_set(folder, project)
     names = {pose.name for pose in poses}

@@ -8,14 +8,14 @@ from pathlib import Path
 
 import numpy as np
 
-from core.calibrate.camera_changes import CameraChanges, camera_changes
+from core.calibrate.camera.changes import CameraChanges, camera_changes
+from core.calibrate.camera.views import RecalledCamera, seen_again
 from core.calibrate.results import CameraCalibration
-from core.calibrate.seen_views import RecalledCamera, seen_again
-from core.files.calibration_store import read_stored, read_stored_camera
-from core.files.pictures import read_bytes
-from core.files.project_data import Project
-from core.files.project_folder import source_folder
-from core.files.set_listing import pictures_in
+from core.files.project.calibration_store import read_stored, read_stored_camera
+from core.files.project.data import Project
+from core.files.project.folder import source_folder
+from core.files.reading import read_bytes
+from core.files.recording.set_listing import pictures_in
 from core.image.targets import Target
 from core.progress import Progress, silent
 

@@ -9,25 +9,25 @@ from pathlib import Path
 import numpy as np
 
 from core.errors import InputError
-from core.files.options import Options
-from core.files.pictures import Picture
-from core.files.recording_set import RecordingSet
+from core.files.recording.options import Options
+from core.files.recording.recording_set import RecordingSet
 from core.image.display import in_8_bit, white_level
-from core.image.ridge_picture import ridge_strength
-from core.image.stripe import StripeSettings
+from core.image.stripes.ridge_picture import ridge_strength
+from core.image.stripes.stripe import StripeSettings
+from core.messages import Message
 from core.model import Camera, Fan
-from core.pipeline.scan_step import feature_options, reference_picture, taken_frames
-from core.progress import Progress, Told, silent
-from core.scan.fan_lines import UNASSIGNED, FanLines, possible_fan_lines
-from core.scan.features import (
+from core.pipeline.steps.scan_step import feature_options, reference_picture, taken_frames
+from core.progress import Progress, StepProgress, silent
+from core.scan.features.extraction import (
     LOOK_AHEAD,
     FrameReader,
     ReferenceFeatures,
     choose_sweep_stripe,
     read_reference,
 )
-from core.scan.preview import Preview, PreviewOptions
-from core.scan.stages import FrameStages, SettledScan
+from core.scan.preview.frames import Preview, PreviewOptions
+from core.scan.preview.shown import FrameStages, SettledScan
+from core.scan.sweeps.fan_lines import UNASSIGNED, FanLines, possible_fan_lines
 
 STRIPE_AT = 160.0
 """Difference and ridge strength are shown so that a rather faint stripe has this grey level."""
@@ -68,15 +68,21 @@ def frame_stages(
     options = options or Options()
     path = found.path_of(name)
     if path not in found.frames:
-        raise InputError("there is no such frame in the recording", where=name)
+        raise InputError(Message("project.no_such_frame", "there is no such frame in the recording"), where=name)
     index = found.frames.index(path)
     common = _common(_Recording.of(found, options, settled, progress))
     picture = found.read(path)
     base = common.reference.base
     if picture.shape != base.shape:
         raise InputError(
-            f"the picture has {picture.shape[1]} × {picture.shape[0]} pixels, but the reference has "
-            f"{base.shape[1]} × {base.shape[0]}",
+            Message(
+                "project.picture_size_of_reference",
+                "the picture has {shape2} × {shape} pixels, but the reference has {shape22} × {shape3}",
+                shape2=picture.shape[1],
+                shape=picture.shape[0],
+                shape22=base.shape[1],
+                shape3=base.shape[0],
+            ),
             where=path,
         )
     reader = FrameReader(common.reference, common.stripe)
@@ -139,9 +145,9 @@ class _Recording:
 @lru_cache(maxsize=2)
 def _common(recording: _Recording) -> _Common:
     found, options, settled = recording.found, recording.options, recording.settled
-    told = Told(recording.progress)
+    told = StepProgress(recording.progress)
     told("reference", 0, 2)
-    picture, _ = reference_picture(found, None, options, told.again)
+    picture, _ = reference_picture(found, None, options, told.within_step)
     looking = feature_options(options)
     if settled and options.stripe is None:
         looking = feature_options(Options(stripe=settled.fan_stripe))
@@ -149,8 +155,9 @@ def _common(recording: _Recording) -> _Common:
     told("reference", 1, 2)
     stripe = options.stripe or (settled.sweep_stripe if settled else None)
     if stripe is None:
-        ahead: list[tuple[str, Picture | str]] = list(found.stream(recording.taken[:LOOK_AHEAD]))
-        stripe = choose_sweep_stripe(ahead, reference, told.again)
+        stream = found.stream(recording.taken[:LOOK_AHEAD])
+        ahead = [(name, picture) for name, picture in stream if not isinstance(picture, str)]
+        stripe = choose_sweep_stripe(ahead, reference, told.within_step)
     told("reference", 2, 2)
     return _Common(reference, stripe, white_level(picture))
 

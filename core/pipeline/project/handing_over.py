@@ -8,33 +8,21 @@ from pathlib import Path
 
 from core.calibrate.results import CameraCalibration
 from core.files.atomic import make_folder, write_bytes
-from core.files.camera_file import write_camera
 from core.files.exchange.opencv_calibration import read_opencv
 from core.files.exchange.ros_camera_info import read_camera_info
-from core.files.pictures import read_bytes
-from core.files.project_data import Project, ReportChoices
-from core.files.project_folder import results_folder, stored_source
-from core.files.project_rescue import can_be_saved
-from core.files.report_template import read_report_template
-from core.pipeline.export_kinds import Results, export_kind, write_export
-from core.pipeline.project_report import project_content, report_bytes
-from core.pipeline.report_step import results_content
-from core.pipeline.workspace import FILES
+from core.files.project.data import Project, ReportChoices
+from core.files.project.folder import can_be_saved, results_folder, stored_source
+from core.files.project.report_template import read_report_template
+from core.files.reading import read_bytes
+from core.files.results.camera_file import write_camera
+from core.pipeline.project.report import project_content, report_bytes
+from core.pipeline.steps.export_kinds import Results, export_kind, write_export
+from core.pipeline.steps.report_step import results_content
+from core.pipeline.steps.workspace import FILES
 from core.progress import Progress, silent
 from core.report.content import ReportContent
-from core.report.page_pictures import Pages, page_pictures
-from core.report.template import LANGUAGES, PAPERS, ReportTemplate
-
-__all__ = [
-    "LANGUAGES",
-    "PAPERS",
-    "choose_template",
-    "export",
-    "export_results",
-    "import_camera",
-    "preview_report",
-    "with_template",
-]
+from core.report.layout.page_pictures import Pages, page_pictures
+from core.report.template import ReportTemplate
 
 
 def preview_report(folder: Path, project: Project, width_px: int, progress: Progress = silent) -> Pages:

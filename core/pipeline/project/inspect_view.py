@@ -10,28 +10,29 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.errors import InputError
-from core.files.ply import read_cloud
-from core.files.project_data import Project
-from core.files.project_folder import results_folder
-from core.files.project_results import ProjectResults
+from core.files.project.data import Project
+from core.files.project.folder import results_folder
+from core.files.project.results import ProjectResults
+from core.files.results.ply import read_cloud
 from core.inspect.face_region import on_face
-from core.inspect.inspection import DEPTH, HEIGHT, LOWER, NO_FACE, UPPER, InspectionView, ShownMesh
-from core.inspect.outline import face_outline, outline_px
-from core.inspect.relief import relief
 from core.inspect.results import Face, GaugeResult
+from core.inspect.shown.outline import face_outline, outline_px
+from core.inspect.shown.relief import relief
+from core.inspect.shown.shown_scan import DEPTH, HEIGHT, LOWER, NO_FACE, UPPER, InspectionView, ShownMesh
+from core.messages import Message, label
 from core.model.arrays import Array
-from core.pipeline.project_results import load_results
-from core.pipeline.project_workspace import project_set
-from core.pipeline.workspace import FILES
+from core.pipeline.project.results import load_results
+from core.pipeline.project.workspace import project_set
+from core.pipeline.steps.workspace import FILES
 from core.progress import Progress, silent
-from core.scan.cloud import Cloud
-from core.scan.frame_record import FrameRecord
-from core.scan.surface import Mesh
+from core.scan.features.frames import FrameRecord
+from core.scan.surface.cloud import Cloud
+from core.scan.surface.fused_surface import Mesh
 
 SAMPLE = 2500
 """So many of the points used are shown on the picture."""
 
-_STEP = "preparing what is shown"
+_STEP = label("preparing what is shown")
 
 
 def inspection_view(folder: Path, project: Project, progress: Progress = silent) -> InspectionView:
@@ -52,9 +53,12 @@ def inspection_view(folder: Path, project: Project, progress: Progress = silent)
     results = load_results(folder, progress)
     cloud, camera = results.cloud, results.camera
     if cloud is None or camera is None or not len(cloud):
-        why = f" ({'; '.join(results.problems)})" if results.problems else ""
         raise InputError(
-            f"there is no scan among the results{why}", where=results_folder(folder), todo="scan the part first"
+            Message("project.no_usable_scan", "there is no scan among the results ({why:;})", why=results.problems)
+            if results.problems
+            else Message("project.no_scan", "there is no scan among the results"),
+            where=results_folder(folder),
+            todo=Message("advice.scan_part_first", "scan the part first"),
         )
     progress(_STEP, 0, 3)
     order = np.argsort(cloud.sigma, kind="stable")
@@ -116,7 +120,11 @@ def outline_selected(folder: Path, numbers: NDArray[np.int32], face: str, progre
     path = results_folder(folder) / FILES["cloud"]
     cloud = read_cloud(path).cloud
     if len(numbers) and int(numbers.max()) >= len(cloud):
-        raise InputError("this scan has been replaced by another one", where=path, todo="draw the region again")
+        raise InputError(
+            Message("project.scan_replaced", "this scan has been replaced by another one"),
+            where=path,
+            todo=Message("advice.draw_region_again", "draw the region again"),
+        )
     chosen = numbers.astype(np.int64)
     outline = face_outline(cloud, chosen, face) if face else outline_px(cloud.uv[chosen])
     progress("outline", 1, 1)

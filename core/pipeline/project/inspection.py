@@ -9,20 +9,20 @@ from typing import TypeAlias
 import numpy as np
 
 from core.errors import InputError
-from core.files.inspection_file import NAME, write_inspection
-from core.files.inspection_plan_translation import plan_tables
-from core.files.project_data import Project
-from core.files.project_folder import results_folder
-from core.files.shown_file import read_shown, write_shown
-from core.inspect.deviation_map import QUARTERS, DeviationMap, bounds, mark
+from core.files.plan.translation import plan_tables
+from core.files.project.data import Project
+from core.files.project.folder import results_folder
+from core.files.results.inspection_file import NAME, write_inspection
+from core.files.results.shown_file import read_shown, write_shown
 from core.inspect.evaluate import Inspection
 from core.inspect.features.measured import FeatureResult
 from core.inspect.profile import Profile
-from core.inspect.shown_features import ShownClass, ShownDeviations, ShownFeature, ShownInspection, ShownProfile
-from core.pipeline.gauge_complaints import in_a_project
-from core.pipeline.inspect_step import InspectedScan, inspect, open_scan
+from core.inspect.shown.deviation_map import QUARTERS, DeviationMap, bounds, mark
+from core.inspect.shown.shown_features import ShownClass, ShownDeviations, ShownFeature, ShownInspection, ShownProfile
+from core.pipeline.steps.gauge_step import in_a_project
+from core.pipeline.steps.inspect_step import InspectedScan, inspect, open_scan
 from core.progress import Progress, silent
-from core.scan.cloud import Cloud
+from core.scan.surface.cloud import Cloud
 
 MOST_DRAWN = 20_000
 """So many of the points that a feature used are drawn."""

@@ -9,32 +9,32 @@ from pathlib import Path
 
 import numpy as np
 
-from core.calibrate.pose_features import PoseFeatures
-from core.calibrate.pose_stages import PoseStages
+from core.calibrate.fan.pose_features import PoseFeatures
+from core.calibrate.fan.pose_stages import PoseStages
 from core.calibrate.results import FanCalibration
 from core.errors import InputError
-from core.files.calibration_store import read_stored_fan, read_stored_poses
-from core.files.pictures import read_bytes
-from core.files.project_data import Project
-from core.files.project_folder import results_folder
-from core.files.project_results import ProjectResults
-from core.files.run_file import read_run
-from core.files.scan_file import read_scan
+from core.files.project.calibration_store import read_stored_fan, read_stored_poses
+from core.files.project.data import Project
+from core.files.project.folder import results_folder
+from core.files.project.results import ProjectResults
+from core.files.reading import read_bytes
+from core.files.results.run_file import read_run
+from core.files.results.scan_file import read_scan
+from core.messages import Message
 from core.model import Camera, Fan
 from core.model.arrays import Array
-from core.pipeline.frame_stages import frame_stages
-from core.pipeline.pose_stages import pose_stages
-from core.pipeline.project_calibration import accepted_camera, solve_poses
-from core.pipeline.project_results import load_results
-from core.pipeline.project_workspace import project_set
-from core.pipeline.scan_step import left_out_sentences
-from core.pipeline.workspace import FILES
+from core.pipeline.project.calibration import accepted_camera, solve_poses
+from core.pipeline.project.frame_stages import frame_stages
+from core.pipeline.project.pose_stages import pose_stages
+from core.pipeline.project.results import load_results
+from core.pipeline.project.workspace import project_set
+from core.pipeline.steps.workspace import FILES
 from core.progress import Progress, silent
-from core.scan.cloud import Cloud
-from core.scan.coverage_map import CoverageMap
-from core.scan.features import ScanFeatures
-from core.scan.scan_look import ScanLook, reasons_counted
-from core.scan.stages import FrameStages, SettledScan
+from core.scan.features.extraction import ScanFeatures
+from core.scan.features.frames import WITHOUT_POINTS
+from core.scan.preview.shown import FrameStages, SettledScan, ShownScan, reasons_counted
+from core.scan.surface.cloud import Cloud
+from core.scan.surface.coverage_map import CoverageMap
 
 
 def show_frame(folder: Path, project: Project, name: str, progress: Progress = silent) -> FrameStages:
@@ -63,14 +63,13 @@ def accepted_calibration(
     return camera, fan
 
 
-def show_scan(folder: Path, progress: Progress = silent) -> ScanLook:
+def show_scan(folder: Path, progress: Progress = silent) -> ShownScan:
     """The scan among the results of the project in `folder`; without points if there is none that can be read."""
     results = load_results(folder, progress)
     cloud = _NO_POINTS if results.cloud is None else results.cloud
     features = None if results.cloud is None else read_scan(results.files["scan"]).features
     half, most = np.quantile(cloud.sigma, (0.5, 0.95)) if len(cloud) else (np.nan, np.nan)
-    counted_already = left_out_sentences(results.frames)
-    return ScanLook(
+    return ShownScan(
         points=cloud.points.astype(np.float32),
         sigma=cloud.sigma.astype(np.float32),
         uv=cloud.uv.astype(np.float32),
@@ -83,7 +82,7 @@ def show_scan(folder: Path, progress: Progress = silent) -> ScanLook:
         left_out=reasons_counted(results.frames),
         share=0.0 if features is None else _covered(features, cloud.uv),
         stripe=None if features is None else features.sweep_stripe,
-        notes=tuple(note for note in _scan_notes(results) if note not in counted_already),
+        notes=tuple(note for note in _scan_notes(results) if note.code not in WITHOUT_POINTS),
         problems=results.problems,
     )
 
@@ -114,7 +113,10 @@ def recall_poses(
         If no fan is accepted, it is damaged, or the settings of now do not determine a fan.
     """
     if not project.accepted.fan:
-        raise InputError("no calibration of the laser planes is accepted yet", todo="calibrate them first")
+        raise InputError(
+            Message("project.no_fan_accepted", "no calibration of the laser planes is accepted yet"),
+            todo=Message("advice.calibrate_first", "calibrate them first"),
+        )
     poses = read_stored_poses(folder, project.accepted.fan)
     return poses, solve_poses(folder, project, poses, progress)
 
@@ -154,7 +156,7 @@ def _covered(features: ScanFeatures, uv: Array) -> float:
     return coverage.share
 
 
-def _scan_notes(results: ProjectResults) -> tuple[str, ...]:
+def _scan_notes(results: ProjectResults) -> tuple[Message, ...]:
     """What the measurement of the scan says, without what was said of the calibrations."""
     if results.cloud is None or "run" not in results.files:
         return ()

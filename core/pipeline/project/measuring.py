@@ -3,27 +3,29 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+import shutil
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
 from core.errors import InputError
-from core.files.calibration_store import StoredCalibration, put_in_place, read_stored
+from core.files.atomic import cannot_write, make_folder
 from core.files.json_text import to_json
-from core.files.project_data import Project
-from core.files.project_folder import results_folder
-from core.files.project_results import ScanSummary
-from core.files.recording_set import RecordingSet, require_scan
-from core.files.run_file import write_run
+from core.files.project.calibration_store import StoredCalibration, put_in_place, read_stored
+from core.files.project.data import Project
+from core.files.project.folder import results_folder
+from core.files.project.results import ScanSummary
+from core.files.recording.recording_set import RecordingSet, require_scan
+from core.files.results.run_file import write_run
 from core.inspect.results import GaugeResult
-from core.pipeline.gauge_complaints import in_a_project
-from core.pipeline.gauge_step import gauge_if_possible, gauge_step
-from core.pipeline.project_workspace import part_name, project_set, project_workspace
-from core.pipeline.scan_step import scan_step
-from core.pipeline.staging import staged
-from core.pipeline.workspace import FILES, Workspace
+from core.pipeline.project.workspace import part_name, project_set, project_workspace
+from core.pipeline.steps.camera_step import solved_for_skew
+from core.pipeline.steps.gauge_step import gauge_if_possible, gauge_step, in_a_project
+from core.pipeline.steps.scan_step import scan_step
+from core.pipeline.steps.workspace import FILES, Workspace
 from core.progress import Progress, silent
-from core.scan.frame_preview import FramePreview
+from core.scan.preview.shown import FramePreview
 
 _OF_A_SCAN = tuple(name for key, name in FILES.items() if key != "report")
 """What a new scan replaces. The report stays: it is whole in itself, and says what it is of."""
@@ -106,6 +108,7 @@ def _earlier(found: RecordingSet, results: Path, project: Project) -> Path | Non
 def _record_calibrations(work: Workspace, folder: Path, project: Project) -> None:
     """Write into run.json how the calibrations came about, as if they had been made with the scan."""
     calibration, record = work.calibration(), work.record()
+    solved = {"camera": {"skew": solved_for_skew(calibration.camera)}}
     steps = (
         ("camera", read_stored(folder, "camera", project.accepted.camera), calibration.camera.notes),
         ("planes", read_stored(folder, "fan", project.accepted.fan), calibration.fan.notes),
@@ -115,9 +118,52 @@ def _record_calibrations(work: Workspace, folder: Path, project: Project) -> Non
         about = about or StoredCalibration("camera", "", record.measured_at, 0, 0)
         record = replace(
             record,
-            settings={**record.settings, step: about.settings},
+            settings={**record.settings, step: {**about.settings, **solved.get(step, {})}},
             notes={**record.notes, step: (*about.notes, *notes)},
             inputs={**record.inputs, **about.inputs},
             made_at={**record.made_at, **made_at},
         )
     write_run(work.path("run"), record)
+
+
+BESIDE = ".new"
+"""The folder among the results in which new ones are made."""
+
+
+@contextmanager
+def staged(results: Path, names: Sequence[str]) -> Iterator[Path]:
+    """A folder to make new results in; if all goes well, they take the place of the old ones.
+
+    Parameters
+    ----------
+    results
+        Where the results belong; made if it is not there.
+    names
+        The files that belong together: old ones go even where there is no new one. All of them go before the first
+        new one comes, so that whoever pulls the plug finds old ones or new ones, perhaps not all, but never both.
+
+    Raises
+    ------
+    InputError
+        If nothing can be written there.
+    """
+    make_folder(results)
+    beside = results / BESIDE
+    shutil.rmtree(beside, ignore_errors=True)  # of a run that was killed
+    make_folder(beside)
+    try:
+        yield beside
+        _replace(results, beside, names)
+    finally:
+        shutil.rmtree(beside, ignore_errors=True)
+
+
+def _replace(results: Path, beside: Path, names: Sequence[str]) -> None:
+    try:
+        for name in names:
+            (results / name).unlink(missing_ok=True)
+        for name in names:
+            if (beside / name).exists():
+                (beside / name).replace(results / name)
+    except OSError as error:
+        raise cannot_write(results, error) from error

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from core.calibrate.pose_features import PoseFeatures
-from core.calibrate.pose_stages import PoseStages
-from core.calibrate.pose_stripes import numbered_stripes
+from core.calibrate.fan.pose_features import PoseFeatures
+from core.calibrate.fan.pose_stages import PoseStages, numbered_stripes
 from core.errors import InputError
-from core.files.recording_set import RecordingSet
+from core.files.recording.recording_set import RecordingSet
 from core.image.display import in_8_bit, white_level
+from core.messages import Message
 from core.model import Camera, Fan
 from core.progress import Progress, silent
 
@@ -31,7 +31,9 @@ def pose_stages(
     progress("pose", 0, 1)
     pair = next((pair for pair in found.planes if pair.name == pose.name), None)
     if pair is None:
-        raise InputError("there is no such pose in the set", where=f"planes/{pose.name}")
+        raise InputError(
+            Message("project.no_such_pose", "there is no such pose in the set"), where=f"planes/{pose.name}"
+        )
     picture = found.read(pair.on)
     corners = np.zeros((0, 2)) if pose.view is None else pose.view.uv
     stripes = numbered_stripes(pose, camera, fan)

@@ -5,19 +5,17 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-from core.files.project_data import Project
-from core.files.project_folder import results_folder
-from core.files.report_template import read_report_template
-from core.files.study_file import study_path
-from core.pipeline.project_workspace import part_name, project_set, project_workspace
-from core.pipeline.report_step import report_content, report_step
-from core.pipeline.reported_inspection import with_studies
-from core.pipeline.workspace import Workspace
+from core.files.project.data import Project
+from core.files.project.folder import results_folder
+from core.files.project.report_template import read_report_template
+from core.files.study.study_file import study_path
+from core.pipeline.project.workspace import part_name, project_set, project_workspace
+from core.pipeline.steps.report_step import report_content, report_step, with_studies
+from core.pipeline.steps.workspace import Workspace
 from core.progress import Progress, silent
 from core.report.content import RepeatLine, ReportContent
 from core.report.pdf import build_report
-from core.report.section_names import SECTIONS
-from core.report.template import ReportTemplate
+from core.report.template import SECTIONS, ReportTemplate
 
 
 def make_report(folder: Path, project: Project, progress: Progress = silent) -> Path:

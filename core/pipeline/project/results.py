@@ -8,17 +8,18 @@ from typing import TypeVar
 
 from core.calibrate.results import CameraCalibration
 from core.errors import InputError
-from core.files.camera_file import read_camera
-from core.files.fan_file import read_fan
-from core.files.gauge_file import read_gauge
-from core.files.ply import CloudFile, read_cloud, read_mesh
-from core.files.project_folder import results_folder
-from core.files.project_results import ProjectResults
-from core.files.run_file import RunRecord, read_run
-from core.files.scan_file import ScanFile, read_scan
-from core.pipeline.workspace import FILES, Calibration, check_calibration
+from core.files.project.folder import results_folder
+from core.files.project.results import ProjectResults
+from core.files.results.camera_file import read_camera
+from core.files.results.fan_file import read_fan
+from core.files.results.gauge_file import read_gauge
+from core.files.results.ply import CloudFile, read_cloud, read_mesh
+from core.files.results.run_file import RunRecord, read_run
+from core.files.results.scan_file import ScanFile, read_scan
+from core.messages import Message
+from core.pipeline.steps.workspace import FILES, Calibration, check_calibration
 from core.progress import Progress, silent
-from core.scan.stages import SettledScan
+from core.scan.preview.shown import SettledScan
 
 T = TypeVar("T")
 
@@ -61,7 +62,7 @@ class _Reader:
     def __init__(self, results: Path, progress: Progress) -> None:
         paths = {name: results / file for name, file in FILES.items()}
         self.there = {name: path for name, path in paths.items() if path.exists()}
-        self.problems: list[str] = []
+        self.problems: list[Message] = []
         self._progress, self._done = progress, 0
 
     def read(self, name: str, read: Callable[[Path], T]) -> T | None:
@@ -73,13 +74,17 @@ class _Reader:
         try:
             return read(self.there[name])
         except InputError as error:
-            self.problems.append(str(error))
+            self.problems.append(error.message)
             return None
 
 
 def _calibration(path: Path, camera: CameraCalibration | None) -> Calibration:
     if camera is None:
-        raise InputError("the camera it rests on is not there", where=path, todo="measure the scan again")
+        raise InputError(
+            Message("project.camera_missing", "the camera it rests on is not there"),
+            where=path,
+            todo=Message("advice.measure_scan_again", "measure the scan again"),
+        )
     fan = read_fan(path, camera.camera)
     return Calibration(fan.camera_used(camera), fan)
 
@@ -98,7 +103,11 @@ def _scan(path: Path, calibration: Calibration | None) -> ScanFile:
 
 def _check(path: Path, calibration_id: str, calibration: Calibration | None) -> None:
     if calibration is None:
-        raise InputError("the calibrations it rests on are not there", where=path, todo="measure the scan again")
+        raise InputError(
+            Message("project.calibrations_missing", "the calibrations it rests on are not there"),
+            where=path,
+            todo=Message("advice.measure_scan_again", "measure the scan again"),
+        )
     check_calibration(path, calibration_id, calibration)
 
 
@@ -106,5 +115,5 @@ def _settled(scan: ScanFile) -> SettledScan:
     return SettledScan(scan.features.sweep_stripe, scan.features.fan_stripe, scan.fan_line)
 
 
-def _notes(record: RunRecord | None) -> tuple[str, ...]:
+def _notes(record: RunRecord | None) -> tuple[Message, ...]:
     return record.all_notes if record else ()

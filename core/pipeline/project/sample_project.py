@@ -7,11 +7,12 @@ from dataclasses import replace
 from pathlib import Path
 
 from core.errors import InputError
-from core.files.atomic import cannot_write, make_folder
-from core.files.leftovers import remove_leftovers
-from core.files.project import Accepted, Done, Project, ProjectFile, project_from_set, write_project
-from core.files.project_keys import finished
-from core.pipeline.project_calibration import (
+from core.files.atomic import cannot_write, make_folder, remove_leftovers
+from core.files.project.data import Accepted, Done, Project, ProjectFile
+from core.files.project.folder import project_from_set, write_project
+from core.files.project.keys import finished
+from core.messages import Message, label
+from core.pipeline.project.calibration import (
     accept_camera,
     accept_fan,
     find_poses,
@@ -19,8 +20,8 @@ from core.pipeline.project_calibration import (
     solve_poses,
     solve_views,
 )
-from core.pipeline.project_measuring import measure_scan
-from core.pipeline.project_report import make_report
+from core.pipeline.project.measuring import measure_scan
+from core.pipeline.project.report import make_report
 from core.progress import Progress, silent
 from core.simulate.sample import sample_folder, sample_set
 
@@ -36,7 +37,11 @@ def sample_project(folder: Path, progress: Progress = silent) -> Path:
         If there is something in the folder already, or nothing can be written there.
     """
     if folder.exists():
-        raise InputError("there is something already", where=folder, todo="choose another name")
+        raise InputError(
+            Message("project.folder_not_empty", "there is something already"),
+            where=folder,
+            todo=Message("advice.choose_another_name", "choose another name"),
+        )
     for place in (folder, sample_folder()):
         remove_leftovers(place)
     pictures = sample_set(progress)
@@ -96,6 +101,6 @@ def _described(project: Project) -> Project:
         laboratory="Simulated rig",
         air_celsius=20.0,
         part_celsius=20.0,
-        notes="Every picture of this project is rendered: camera, lasers, speckle and noise are simulated.",
+        notes=label("Every picture of this project is rendered: camera, lasers, speckle and noise are simulated."),
     )
     return replace(project, info=info)

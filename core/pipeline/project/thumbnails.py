@@ -12,7 +12,7 @@ from core.acquire.folder import read_ahead
 from core.acquire.grey import Channel
 from core.errors import InputError
 from core.files.pictures import read_picture
-from core.pipeline.live_display import Display
+from core.pipeline.live.display import Display
 from core.progress import Progress, silent
 
 Thumbnail = NDArray[np.uint8]

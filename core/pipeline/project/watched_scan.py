@@ -6,15 +6,15 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
-from core.files.project_data import Project
-from core.files.project_results import ScanSummary
-from core.image.centreline import Centreline
-from core.live.events import ScanDetail
-from core.pipeline.project_calibration import accepted_camera
-from core.pipeline.project_measuring import measure_scan
+from core.files.project.data import Project
+from core.files.project.results import ScanSummary
+from core.image.stripes.centreline import Centreline
+from core.pipeline.live.events import ScanDetail
+from core.pipeline.project.calibration import accepted_camera
+from core.pipeline.project.measuring import measure_scan
 from core.progress import Progress, silent
-from core.scan.coverage_map import CoverageMap
-from core.scan.frame_preview import FramePreview, cloud_of
+from core.scan.preview.shown import FramePreview, cloud_of
+from core.scan.surface.coverage_map import CoverageMap
 
 Watch = Callable[[ScanDetail], None]
 

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from core.files.project_data import Project
-from core.files.project_folder import results_folder, source_folder
-from core.files.recording_set import RecordingSet, gather_set
-from core.pipeline.workspace import Workspace
+from core.files.project.data import Project
+from core.files.project.folder import results_folder, source_folder
+from core.files.recording.recording_set import RecordingSet, gather_set
+from core.pipeline.steps.workspace import Workspace
 
 
 def project_set(folder: Path, project: Project) -> RecordingSet:

@@ -10,15 +10,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.errors import InputError
-from core.files.ply import read_cloud
-from core.inspect.plane_search import find_planes
-from core.inspect.sphere import find_sphere
-from core.pipeline.workspace import FILES
+from core.files.results.ply import read_cloud
+from core.inspect.fit.plane_search import find_planes
+from core.inspect.fit.round import find_sphere
+from core.messages import Command, Message, plain
+from core.pipeline.steps.workspace import FILES
 from core.progress import Progress, silent
-from core.scan.cloud import Cloud
-from core.scan.normals import with_normals
-from core.study.acceptance import Reading
-from core.study.acceptance_points import ProbedSphere, probed_flatness, probed_sphere
+from core.scan.surface.cloud import Cloud
+from core.scan.surface.normals import with_normals
+from core.study.acceptance import ProbedSphere, Reading, probed_flatness, probed_sphere
 
 Artefact: TypeAlias = Literal["sphere", "bar", "plane"]
 NEARLY = 0.1
@@ -55,18 +55,29 @@ def read_positions(
         path = folder / FILES["cloud"]
         if not path.is_file():
             raise InputError(
-                f"there is no {FILES['cloud']} in it", where=folder, todo="measure first: trisect run SET --out DIR"
+                Message("study.no_result_files", "there is no {files} in it", files=FILES["cloud"]),
+                where=folder,
+                todo=Message(
+                    "advice.measure_first",
+                    "measure first{command}",
+                    command=Command("trisect run SET --out DIR"),
+                ),
             )
         try:
             found += _readings(read_cloud(path).cloud, folder.name, artefact, calibrated_mm, u_mm, diameter_mm)
         except (InputError, ValueError) as error:
-            raise InputError(f"no {artefact} was found: {_of(error)}", where=path) from error
+            raise InputError(
+                Message(
+                    "study.artefact_not_found", "no {artefact} was found: {why}", artefact=artefact, why=_why(error)
+                ),
+                where=path,
+            ) from error
     progress("positions", len(folders), len(folders))
     return tuple(found)
 
 
-def _of(error: Exception) -> str:
-    return error.what if isinstance(error, InputError) else str(error)
+def _why(error: InputError | ValueError) -> Message:
+    return error.what if isinstance(error, InputError) else plain(str(error))
 
 
 def _readings(

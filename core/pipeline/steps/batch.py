@@ -11,14 +11,15 @@ from pathlib import Path
 
 from core.errors import Cancelled, InputError
 from core.files.atomic import cannot_write, make_folder
-from core.pipeline.options import Options
-from core.pipeline.run import RunResult, run
+from core.files.recording.options import Options
+from core.messages import Message, label
+from core.pipeline.steps.run import RunResult, run
 from core.progress import Progress, silent
 
 STOP = ".stop"
 """This file in the batch's folder stops all sets that are being measured, on whatever machine that sees it."""
 
-STEP = "measuring sets"
+STEP = label("measuring sets")
 _LOOK_EVERY_S = 0.5
 _LET_END_S = 30.0
 
@@ -38,7 +39,7 @@ class SetResult:
     seconds
         Time taken.
     error
-        One sentence if it could not be measured, else "".
+        Why it could not be measured; None if it could.
     """
 
     folder: Path
@@ -50,7 +51,7 @@ class SetResult:
     frames: int = 0
     frames_used: int = 0
     seconds: float = 0.0
-    error: str = ""
+    error: Message | None = None
 
 
 def run_batch(
@@ -100,7 +101,7 @@ def measure_set(folder: Path, out: Path, options: Options, stop: Path) -> SetRes
     try:
         measured = run(folder, out, options, _stopped_by(stop))
     except InputError as error:
-        return SetResult(folder, out, seconds=time.perf_counter() - began, error=str(error))
+        return SetResult(folder, out, seconds=time.perf_counter() - began, error=error.message)
     except Cancelled:
         raise
     except Exception as error:  # noqa: BLE001  (a fault in one set must not cost the others)
@@ -126,16 +127,25 @@ def _measured(folder: Path, out: Path, measured: RunResult, seconds: float) -> S
 def _places(sets: Sequence[Path], out: Path) -> list[tuple[Path, Path]]:
     """Each set with the folder of its results."""
     if not sets:
-        raise InputError("there is no recording set to be measured", where="batch", todo="name one folder or more")
+        raise InputError(
+            Message("set.none_to_measure", "there is no recording set to be measured"),
+            where="batch",
+            todo=Message("advice.name_folder_or_more", "name one folder or more"),
+        )
     whole = [folder.resolve() for folder in sets]
     names = [folder.name for folder in whole]
     for number, name in enumerate(names):
         if name in names[:number]:
             first = whole[names.index(name)]
             raise InputError(
-                f"{first} has the same name, and both would write their results to {out / name}",
+                Message(
+                    "set.same_name",
+                    "{first} has the same name, and both would write their results to {out}",
+                    first=first,
+                    out=out / name,
+                ),
                 where=whole[number],
-                todo="rename one of them, or measure them in two batches",
+                todo=Message("advice.rename_or_two_batches", "rename one of them, or measure them in two batches"),
             )
     return [(folder, out / folder.name) for folder in whole]
 
@@ -164,11 +174,21 @@ def _result(future: Future[SetResult], folder: Path, out: Path) -> SetResult:
     try:
         return future.result()
     except Exception as error:  # noqa: BLE001  (the process was killed, the cluster's worker is gone)
-        return SetResult(folder, out, error=f"{folder}: whoever measured it has ended ({_fault(error)})")
+        return SetResult(
+            folder,
+            out,
+            error=Message(
+                "set.worker_ended",
+                "{folder}: whoever measured it has ended ({fault})",
+                folder=folder,
+                fault=_fault(error),
+            ),
+        )
 
 
-def _fault(error: Exception) -> str:
-    return f"an error in the program: {type(error).__name__}: {error}"
+def _fault(error: Exception) -> Message:
+    kind, reason = type(error).__name__, str(error)
+    return Message("set.fault", "an error in the program: {kind}: {reason}", kind=kind, reason=reason)
 
 
 def _remove(stop: Path) -> None:

@@ -7,22 +7,22 @@ from dataclasses import replace
 import numpy as np
 
 from core.calibrate.board_shape import BoardTolerance
-from core.calibrate.camera import calibrate_camera
+from core.calibrate.camera.calibration import calibrate_camera
+from core.calibrate.camera.skew import SKEW
+from core.calibrate.camera.views import SeenView, SeenViews
 from core.calibrate.results import CameraCalibration, ViewQuality
-from core.calibrate.seen_views import SeenView, SeenViews
 from core.errors import InputError
-from core.files.camera_file import read_camera, write_camera
 from core.files.pictures import Picture
-from core.files.recording_set import RecordingSet, require_camera
-from core.image.target_view import TargetView
+from core.files.recording.options import Options
+from core.files.recording.recording_set import RecordingSet, require_camera
+from core.files.results.camera_file import read_camera, write_camera
 from core.image.targets import detect
+from core.image.targets.target_view import TargetView
+from core.messages import Field, Message, plain
 from core.model import Pose
-from core.pipeline.options import Options
-from core.pipeline.workspace import Workspace
+from core.pipeline.steps.workspace import Workspace
 from core.progress import Progress, silent
 from core.threads import ordered_map
-
-__all__ = ["FEWEST_VIEWS", "SeenView", "SeenViews", "camera_step", "see_views", "solve_camera"]
 
 FEWEST_VIEWS = 3
 
@@ -39,9 +39,15 @@ def camera_step(work: Workspace, options: Options | None = None, progress: Progr
     with work.step("camera") as log:
         log.settings.update(options.camera_settings)
         calibration = solve_camera(see_views(work.found, progress), options, progress, work.found.rig.camera_board)
+        log.settings["skew"] = solved_for_skew(calibration)
         log.notes.extend(calibration.notes)
         write_camera(work.path("camera"), calibration)
     return read_camera(work.path("camera"))
+
+
+def solved_for_skew(calibration: CameraCalibration) -> bool:
+    """Whether the skew was solved for, asked for or by itself."""
+    return bool(calibration.covariance[SKEW, SKEW] > 0)
 
 
 def see_views(found: RecordingSet, progress: Progress = silent) -> SeenViews:
@@ -57,7 +63,7 @@ def see_views(found: RecordingSet, progress: Progress = silent) -> SeenViews:
     def look(item: tuple[str, Picture | str]) -> SeenView:
         name, picture = item
         if isinstance(picture, str):
-            return SeenView(name, reason=picture)
+            return SeenView(name, reason=plain(picture))
         size = (picture.shape[1], picture.shape[0])
         try:
             return SeenView(name, detect(found.rig.camera_target, picture, name), size=size)
@@ -95,22 +101,41 @@ def solve_camera(
     left = sum(view.name not in options.excluded for view in found)
     if left < min(FEWEST_VIEWS, len(found)):
         raise InputError(
-            f"only {left} of {len(found)} views are not left out by hand, but {FEWEST_VIEWS} are needed",
+            Message(
+                "camera.too_many_left_out",
+                "only {n} of {all} views are not left out by hand, but {least} are needed",
+                n=left,
+                all=len(found),
+                least=FEWEST_VIEWS,
+            ),
             where="camera",
-            todo="take some of them in again, or record more",
+            todo=Message("advice.take_in_again", "take some of them in again, or record more"),
         )
     return _with_lost(calibrate_camera(found, size, options.camera, progress, options.excluded, tolerance), seen)
 
 
 def _too_few(seen: SeenViews) -> InputError:
-    lost, number = seen.lost, len(seen.found)
-    hits = f"only {number}" if number else "none"
-    why = f" ({lost[0].name}: {lost[0].reason})" if lost else ""
-    return InputError(
-        f"the camera target was found in {hits} of {len(seen.views)} pictures{why}, but {FEWEST_VIEWS} are needed",
-        where=seen.where,
-        todo="check [camera_target] in rig.toml, or record more views" if lost else "record ten or more views",
+    lost, found = seen.lost, len(seen.found)
+    hits = Message("camera.only", "only {n}", n=found) if found else Message("camera.none", "none")
+    numbers = {"hits": hits, "all": len(seen.views), "least": FEWEST_VIEWS}
+    if not lost:
+        what = Message(
+            "camera.few_found",
+            "the camera target was found in {hits} of {all} pictures, but {least} are needed",
+            **numbers,
+        )
+        return InputError(what, where=seen.where, todo=Message("advice.record_ten_views", "record ten or more views"))
+    what = Message(
+        "camera.few_found_why",
+        "the camera target was found in {hits} of {all} pictures ({name}: {reason}), but {least} are needed",
+        name=lost[0].name,
+        reason=lost[0].reason,
+        **numbers,
     )
+    todo = Message(
+        "advice.check_target_or_record", "check {field}, or record more views", field=Field("[camera_target]")
+    )
+    return InputError(what, where=seen.where, todo=todo)
 
 
 def _with_lost(calibration: CameraCalibration, seen: SeenViews) -> CameraCalibration:
@@ -120,7 +145,14 @@ def _with_lost(calibration: CameraCalibration, seen: SeenViews) -> CameraCalibra
         return calibration
     solved = iter(calibration.views)
     views = tuple(next(solved) if one.view is not None else _lost(one) for one in seen.views)
-    note = f"{len(lost)} of {len(seen.views)} views show no usable target, the first {lost[0].name}: {lost[0].reason}."
+    note = Message(
+        "camera.views_without_target",
+        "{n} of {all} views show no usable target, the first {name}: {reason}.",
+        n=len(lost),
+        all=len(seen.views),
+        name=lost[0].name,
+        reason=lost[0].reason,
+    )
     return replace(calibration, views=views, notes=(*calibration.notes, note))
 
 

@@ -12,9 +12,12 @@ from contextlib import contextmanager
 from typing import Any
 
 from core.errors import InputError
+from core.messages import Message
 
 PROCESSES, THREADS, DASK = "processes", "threads", "dask://"
-INSTALL = "A cluster needs Dask's distributed: install it with pip install 'trisect[cluster]'."
+INSTALL = Message(
+    "options.install_cluster", "A cluster needs Dask's distributed: install it with pip install 'trisect[cluster]'"
+)
 CONNECT_S = 10.0
 
 _BLAS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
@@ -37,7 +40,11 @@ def executor_of(text: str, workers: int | None = None) -> Iterator[Executor]:
         If it is none of them, or the cluster does not answer.
     """
     if workers is not None and workers < 1:
-        raise InputError(f"{workers} workers cannot measure anything", where="--workers", todo="give 1 or more")
+        raise InputError(
+            Message("options.no_workers", "{workers} workers cannot measure anything", workers=workers),
+            where="--workers",
+            todo=Message("advice.give_one_or_more", "give 1 or more"),
+        )
     count = workers or os.cpu_count() or 1
     if text == THREADS:
         with ThreadPoolExecutor(count) as threads:
@@ -50,11 +57,25 @@ def executor_of(text: str, workers: int | None = None) -> Iterator[Executor]:
             yield pool
     elif text.startswith(DASK):
         if workers is not None:
-            raise InputError("a cluster has workers of its own", where="--workers", todo="leave it out")
+            raise InputError(
+                Message("options.workers_of_cluster", "a cluster has workers of its own"),
+                where="--workers",
+                todo=Message("advice.leave_option_out", "leave it out"),
+            )
         with _cluster(text.removeprefix(DASK)) as cluster:
             yield cluster
     else:
-        raise InputError(f"{text!r} is none of {PROCESSES}, {THREADS} and {DASK}HOST:PORT", where="--executor")
+        raise InputError(
+            Message(
+                "options.no_such_executor",
+                "{text!r} is none of {processes}, {threads} and {dask}HOST:PORT",
+                text=text,
+                processes=PROCESSES,
+                threads=THREADS,
+                dask=DASK,
+            ),
+            where="--executor",
+        )
 
 
 @contextmanager
@@ -62,12 +83,14 @@ def _cluster(address: str) -> Iterator[Executor]:
     try:
         distributed: Any = importlib.import_module("distributed")
     except ImportError as missing:
-        raise InputError(INSTALL.removesuffix(".")) from missing
+        raise InputError(INSTALL) from missing
     try:
         client = distributed.Client(f"tcp://{address}", timeout=CONNECT_S)
     except (OSError, ValueError, TimeoutError) as problem:
-        todo = "see that its scheduler runs and the address is right"
-        raise InputError("the cluster does not answer", where=f"{DASK}{address}", todo=todo) from problem
+        todo = Message("advice.check_scheduler", "see that its scheduler runs and the address is right")
+        raise InputError(
+            Message("options.no_cluster", "the cluster does not answer"), where=f"{DASK}{address}", todo=todo
+        ) from problem
     with client, client.get_executor(pure=False) as executor:
         yield executor
 

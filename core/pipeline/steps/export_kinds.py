@@ -10,8 +10,6 @@ from pathlib import Path
 from core.calibrate.results import CameraCalibration
 from core.errors import InputError
 from core.files.atomic import write_bytes
-from core.files.camera_file import read_camera
-from core.files.csv_file import write_points_csv
 from core.files.exchange.dfq import write_dfq
 from core.files.exchange.e57 import write_e57
 from core.files.exchange.opencv_calibration import write_opencv
@@ -20,13 +18,15 @@ from core.files.exchange.result_csv import write_result_csv
 from core.files.exchange.result_json import write_result_json
 from core.files.exchange.ros_camera_info import write_camera_info
 from core.files.exchange.xlsx import write_xlsx
-from core.files.export_list import EXPORTS, ExportKind
-from core.files.mesh_export import write_3mf, write_obj
-from core.files.pictures import read_bytes
-from core.files.ply import read_cloud, read_mesh
-from core.files.run_file import read_run
-from core.files.stl import write_stl
-from core.pipeline.workspace import FILES
+from core.files.reading import read_bytes
+from core.files.results.camera_file import read_camera
+from core.files.results.cloud_csv import write_points_csv
+from core.files.results.export_list import EXPORTS, ExportKind
+from core.files.results.mesh_export import write_3mf, write_obj, write_stl
+from core.files.results.ply import read_cloud, read_mesh
+from core.files.results.run_file import read_run
+from core.messages import Message
+from core.pipeline.steps.workspace import FILES
 from core.progress import Progress, silent
 from core.report.content import ReportContent
 
@@ -70,7 +70,11 @@ def _copy(name: str) -> Write:
     def copy(results: Results, path: Path, progress: Progress = silent) -> None:
         source = results.folder / FILES[name]
         if not source.exists():
-            raise InputError("is not there", where=source, todo="do the step that makes it first")
+            raise InputError(
+                Message("export.result_missing", "is not there"),
+                where=source,
+                todo=Message("advice.do_step_first", "do the step that makes it first"),
+            )
         if source.resolve() != path.resolve():
             write_bytes(path, read_bytes(source))
 
@@ -130,13 +134,17 @@ WRITERS: Mapping[str, Write] = {
     "opencv-json": _opencv,
     "ros": _ros,
 }
-"""What writes each kind of `core.files.export_list.EXPORTS`, by its name."""
+"""What writes each kind of `core.files.results.export_list.EXPORTS`, by its name."""
 
 
 def export_kind(name: str) -> ExportKind:
     """The kind of that name; InputError that names all kinds if there is none."""
     if name not in EXPORTS:
-        raise InputError(f'there is no format "{name}"', where="--format", todo=f"choose among {', '.join(EXPORTS)}")
+        raise InputError(
+            Message("export.no_such_format", 'there is no format "{name}"', name=name),
+            where="--format",
+            todo=Message("advice.choose_among", "choose among {choices}", choices=tuple(EXPORTS)),
+        )
     return EXPORTS[name]
 
 

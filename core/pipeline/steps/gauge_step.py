@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from core.errors import InputError
-from core.files.gauge_file import read_gauge, write_gauge
-from core.files.ply import read_cloud
-from core.files.rig import GaugeSpec
-from core.files.scan_file import ScanFile, read_scan
+from core.files.recording.rig import GaugeSpec
+from core.files.results.gauge_file import read_gauge, write_gauge
+from core.files.results.ply import read_cloud
+from core.files.results.scan_file import ScanFile, read_scan
 from core.inspect.gauge import measure_gauge
-from core.inspect.point_errors import PointErrors
 from core.inspect.results import GaugeResult
+from core.inspect.uncertainty.point_errors import PointErrors
+from core.messages import Message, as_json
 from core.model.arrays import Array
-from core.pipeline.workspace import Workspace, check_calibration
+from core.pipeline.steps.workspace import Workspace, check_calibration
 from core.progress import Progress, silent
 
 
@@ -38,7 +39,8 @@ def gauge_step(work: Workspace, progress: Progress = silent) -> GaugeResult:
             tolerance_mm=spec.tolerance_mm,
             progress=progress,
         )
-        log.settings.update({"nominal_mm": spec.nominal_mm, "tolerance_mm": spec.tolerance_mm, "rule": gauge.rule})
+        rule = None if gauge.rule is None else as_json(gauge.rule)
+        log.settings.update({"nominal_mm": spec.nominal_mm, "tolerance_mm": spec.tolerance_mm, "rule": rule})
         log.notes.extend(gauge.notes)
         work.clear(("gauge", "faces"))  # two files: better none than one of each measurement
         write_gauge(work.path("gauge"), gauge, calibration.id)
@@ -50,18 +52,38 @@ def point_errors(scan: ScanFile) -> PointErrors:
     return PointErrors.of_scan(scan.features, scan.covariance, scan.common, scan.speckle)
 
 
-def gauge_if_possible(work: Workspace, progress: Progress = silent) -> tuple[GaugeResult | None, str]:
-    """As `gauge_step`, but a part without two parallel faces is no error: then a sentence says why."""
+def gauge_if_possible(work: Workspace, progress: Progress = silent) -> tuple[GaugeResult | None, Message | None]:
+    """As `gauge_step`, but a part without two parallel faces is no error: then a message says why."""
     try:
-        return gauge_step(work, progress), ""
+        return gauge_step(work, progress), None
     except InputError as error:
-        sentence = f"No thickness was measured: {error}"
+        why = Message("gauge.none_measured", "No thickness was measured: {reason}", reason=error.message)
         with work.step("gauge") as log:
-            log.notes.append(sentence)
-        return None, sentence
+            log.notes.append(why)
+        return None, why
 
 
 def _regions(spec: GaugeSpec) -> tuple[Array, Array] | None:
     if spec.upper_polygon_px is None or spec.lower_polygon_px is None:
         return None
     return spec.upper_polygon_px, spec.lower_polygon_px
+
+
+_REGIONS = {
+    "upper": Message("gauge.upper_region", "region of the upper face"),
+    "lower": Message("gauge.lower_region", "region of the lower face"),
+}
+_ADVICE = {
+    "gauge.advice_exchange_faces": Message("gauge.advice_exchange_regions", "exchange the two regions"),
+    "gauge.advice_outline_faces": Message(
+        "gauge.advice_draw_regions", "scan both faces, or draw a region on each of them"
+    ),
+}
+
+
+def in_a_project(error: InputError) -> InputError:
+    """The same complaint in the words of a project, where nobody edits rig.toml; others are returned as they are."""
+    where, todo = error.where, error.todo
+    if isinstance(where, Message) and where.code == "gauge.where_region":
+        where = _REGIONS[where.values["face"]]
+    return InputError(error.what, where=where, todo=_ADVICE.get(todo.code, todo))

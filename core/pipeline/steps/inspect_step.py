@@ -7,20 +7,21 @@ from pathlib import Path
 
 from core.errors import InputError
 from core.files.atomic import make_folder
-from core.files.inspection_file import NAME, write_inspection
-from core.files.inspection_plan_translation import plan_tables
-from core.files.nominal_surface import read_nominals
-from core.files.ply import read_cloud, read_mesh
-from core.files.recording_set import RIG
-from core.files.scan_file import read_scan
+from core.files.plan.translation import plan_tables
+from core.files.recording.recording_set import RIG
+from core.files.results.inspection_file import NAME, write_inspection
+from core.files.results.nominal_surface import read_nominals
+from core.files.results.ply import read_cloud, read_mesh
+from core.files.results.scan_file import read_scan
 from core.inspect.evaluate import Inspection, evaluate
-from core.inspect.inspection_plan import InspectionPlan
-from core.inspect.point_errors import PointErrors
-from core.pipeline.gauge_step import point_errors
-from core.pipeline.workspace import FILES
+from core.inspect.plan.inspection_plan import InspectionPlan
+from core.inspect.uncertainty.point_errors import PointErrors
+from core.messages import Command, Message
+from core.pipeline.steps.gauge_step import point_errors
+from core.pipeline.steps.workspace import FILES
 from core.progress import Progress, silent
-from core.scan.cloud import Cloud
-from core.scan.surface import Mesh
+from core.scan.surface.cloud import Cloud
+from core.scan.surface.fused_surface import Mesh
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -122,7 +123,17 @@ def inspect_step(
     scan = open_scan(source, out)
     inspection = inspect(scan, plan, nominals, progress)
     if plan.features and not inspection.characteristics and inspection.problems:
-        raise InputError(f"nothing could be measured: {inspection.problems[0].rstrip('.')}", where=source)
+        first = inspection.problems[0].values
+        raise InputError(
+            Message(
+                "inspection.nothing_measured",
+                "nothing could be measured: {where}: {what}",
+                where=first["where"],
+                what=first["what"],
+            ),
+            where=source,
+            todo=first.get("todo", ""),
+        )
     folder = out or scan.folder
     if folder is None:
         return inspection, None
@@ -136,8 +147,14 @@ def _results_of(source: Path, results: Path | None) -> Path:
     if (source / FILES["cloud"]).is_file():
         return source
     if results is None:
-        what = "a recording set has no results in it" if (source / RIG).is_file() else f"there is no {FILES['cloud']}"
-        raise InputError(what, where=source, todo="name the folder of its results with --out")
+        what = (
+            Message("inspection.recording_set_without_results", "a recording set has no results in it")
+            if (source / RIG).is_file()
+            else Message("inspection.no_results_folder", "there is no {files}", files=FILES["cloud"])
+        )
+        raise InputError(
+            what, where=source, todo=Message("advice.name_results_folder", "name the folder of its results with --out")
+        )
     return results
 
 
@@ -145,9 +162,19 @@ def _of_results(folder: Path) -> InspectedScan:
     cloud, scan = read_cloud(folder / FILES["cloud"]), read_scan(folder / FILES["scan"])
     if cloud.calibration_id and scan.calibration_id and cloud.calibration_id != scan.calibration_id:
         raise InputError(
-            f"was measured with calibration {cloud.calibration_id}, but {FILES['scan']} with {scan.calibration_id}",
+            Message(
+                "inspection.other_calibration",
+                "was measured with calibration {calibration_id}, but {files} with {calibration_id2}",
+                calibration_id=cloud.calibration_id,
+                files=FILES["scan"],
+                calibration_id2=scan.calibration_id,
+            ),
             where=folder / FILES["cloud"],
-            todo="measure the scan again: trisect scan SET --out DIR",
+            todo=Message(
+                "advice.scan_again",
+                "measure the scan again{command}",
+                command=Command("trisect scan SET --out DIR"),
+            ),
         )
     mesh = folder / FILES["mesh"]
     return InspectedScan(

@@ -12,19 +12,28 @@ from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import asdict
 from functools import cache
-from importlib.resources import files
 from pathlib import Path
+from typing import Any
 
+import core
+from core.calibrate.camera.views import SeenViews
+from core.calibrate.fan.pose_features import PoseFeatures
 from core.errors import InputError
-from core.files.pictures import read_bytes
-from core.files.recording_set import RecordingSet
-from core.files.scan_file import read_scan
+from core.files.atomic import make_folder
+from core.files.project.calibration_store import FOLDER
+from core.files.project.data import Project
+from core.files.reading import read_bytes
+from core.files.recording.features_file import read_poses, read_views, write_poses, write_views
+from core.files.recording.options import Options
+from core.files.recording.recording_set import RecordingSet
+from core.files.recording.rig import rig_tables
+from core.files.results.scan_file import read_scan
 from core.model import Camera
-from core.pipeline.options import Options
 from core.progress import Progress, silent, steps
-from core.scan.features import ScanFeatures
+from core.scan.features.extraction import ScanFeatures
 
-_SEES = ("acquire", "image", "scan")
+_CORE = Path(core.__file__).parent
+_SCAN_ROOMS = ("acquire", "image", "scan")
 """The rooms that read a scan's pictures and make features of them."""
 
 
@@ -54,7 +63,7 @@ def features_key(found: RecordingSet, options: Options, camera: Camera) -> str:
     """
     pictures = [(found.name_of(path), found.hashes.get(found.name_of(path), "")) for path in _pictures(found, options)]
     rests_on = {
-        "program": program_text(_SEES),
+        "program": program_text(_SCAN_ROOMS),
         "channel": found.rig.channel,
         "camera": [camera.matrix.tolist(), camera.distortion.tolist()],
         "stripe": asdict(options.stripe) if options.stripe else None,
@@ -82,7 +91,71 @@ def program_text(rooms: tuple[str, ...]) -> str:
     """The text of some rooms of core, as a hash."""
     digest = hashlib.sha256()
     for room in rooms:
-        sources = [source for source in files("core").joinpath(room).iterdir() if source.name.endswith(".py")]
-        for source in sorted(sources, key=lambda source: source.name):
+        for source in sorted(_CORE.joinpath(room).rglob("*.py")):
             digest.update(source.read_bytes())
     return digest.hexdigest()
+
+
+_CALIBRATION_ROOMS = ("acquire", "calibrate", "image", "model")
+"""The rooms that read the pictures for a calibration and make features of them."""
+
+
+def keep_views(project_folder: Path, project: Project, found: RecordingSet, seen: SeenViews) -> None:
+    """Keep what the pictures of the camera's target showed; in a folder that cannot be written to, it is not kept."""
+    with suppress(InputError):
+        make_folder(project_folder / FOLDER)
+        write_views(_path(project_folder, "camera"), _views_key(project, found), seen)
+
+
+def kept_views(project_folder: Path, project: Project, found: RecordingSet, progress: Progress) -> SeenViews | None:
+    """What was kept, if it is of these very pictures and this target."""
+    take_hashes(found, found.camera, progress)
+    try:
+        return read_views(_path(project_folder, "camera"), _views_key(project, found))
+    except InputError:
+        return None  # damaged: the pictures are still there
+
+
+def keep_poses(project_folder: Path, project: Project, found: RecordingSet, poses: Sequence[PoseFeatures]) -> None:
+    """Keep what the pictures of the plate showed; in a folder that cannot be written to, it is not kept."""
+    with suppress(InputError):
+        make_folder(project_folder / FOLDER)
+        write_poses(_path(project_folder, "planes"), _poses_key(project, found), poses)
+
+
+def kept_poses(
+    project_folder: Path, project: Project, found: RecordingSet, progress: Progress
+) -> tuple[PoseFeatures, ...]:
+    """What was kept, if it is of these very pictures, this plate and this camera; else nothing."""
+    take_hashes(found, _pose_pictures(found), progress)
+    try:
+        return read_poses(_path(project_folder, "planes"), _poses_key(project, found))
+    except InputError:
+        return ()
+
+
+def _path(project_folder: Path, step: str) -> Path:
+    return project_folder / FOLDER / f"{step}-found.npz"
+
+
+def _views_key(project: Project, found: RecordingSet) -> str:
+    return _key(project, "camera_target", found, found.camera)
+
+
+def _poses_key(project: Project, found: RecordingSet) -> str:
+    return _key(project, "plane_target", found, _pose_pictures(found), project.accepted.camera)
+
+
+def _pose_pictures(found: RecordingSet) -> list[Path]:
+    return [path for pair in found.planes for path in (pair.on, pair.off) if path is not None]
+
+
+def _key(project: Project, target: str, found: RecordingSet, pictures: Sequence[Path], camera: str = "") -> str:
+    rests_on: dict[str, Any] = {
+        "program": program_text(_CALIBRATION_ROOMS),
+        "target": rig_tables(project.rig)[target],
+        "channel": project.rig.channel,
+        "camera": camera,
+        "pictures": [(found.name_of(path), found.hashes.get(found.name_of(path), "")) for path in pictures],
+    }
+    return hashlib.sha256(json.dumps(rests_on, default=str).encode()).hexdigest()[:16]

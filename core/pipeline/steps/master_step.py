@@ -5,11 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 
 from core.errors import InputError
-from core.files.project_folder import is_project, read_project, results_folder
-from core.files.study_results import characteristics_in
-from core.inspect.conditions import Master
-from core.inspect.temperature import LENGTHS
-from core.pipeline.workspace import read_calibration
+from core.files.project.folder import is_project, read_project, results_folder
+from core.files.study.results import characteristics_in
+from core.inspect.plan.conditions import Master
+from core.inspect.plan.temperature import expands
+from core.inspect.uncertainty.causes import MASTER_MEASURED
+from core.messages import Message
+from core.pipeline.steps.workspace import read_calibration
 from core.progress import Progress, silent
 
 
@@ -36,10 +38,12 @@ def measured_master(
     """
     progress("results", 0, 1)
     results = results_folder(folder) if is_project(folder) else folder
-    lengths = [one for one in characteristics_in(results) if one.kind in LENGTHS and one.quantity == "length"]
+    lengths = [one for one in characteristics_in(results) if expands(one)]
     if not lengths:
         raise InputError(
-            "no length was measured in it", where=folder, todo="choose the project in which the master was measured"
+            Message("inspection.no_length_measured", "no length was measured in it"),
+            where=folder,
+            todo=Message("advice.choose_masters_project", "choose the project in which the master was measured"),
         )
     certified = lengths[0].value if certified_mm is None else certified_mm
     row = min(lengths, key=lambda one: abs(one.value - certified))
@@ -49,4 +53,4 @@ def measured_master(
         name = " ".join(part for part in (info.part or info.name, info.serial) if part) or name
     same = project is None or read_calibration(results).id == read_calibration(results_folder(project)).id
     budget = tuple((one.source, one.u_mm) for one in row.budget)
-    return Master(name, certified, 0.0, row.value, budget or (("measurement", row.u),), (), same)
+    return Master(name, certified, 0.0, row.value, budget or ((MASTER_MEASURED, row.u),), (), same)

@@ -10,14 +10,14 @@ import numpy as np
 
 from core.errors import InputError
 from core.files.atomic import make_folder
-from core.files.mesh_export import write_3mf, write_obj
-from core.files.ply import read_mesh, write_mesh
-from core.files.stl import write_stl
-from core.pipeline.workspace import FILES
+from core.files.results.mesh_export import write_3mf, write_obj, write_stl
+from core.files.results.ply import read_mesh, write_mesh
+from core.messages import Message
+from core.pipeline.steps.workspace import FILES
 from core.progress import Progress, silent
-from core.scan.decimation import Decimated, decimate, decimate_to
-from core.scan.mesh_holes import fill_holes
-from core.scan.surface import Mesh
+from core.scan.surface.decimation import Decimated, decimate, decimate_to
+from core.scan.surface.fused_surface import Mesh
+from core.scan.surface.mesh_holes import fill_holes
 
 _WRITE: Mapping[str, Callable[[Path, Mesh], None]] = {
     "ply": lambda path, mesh: write_mesh(path, mesh, ""),
@@ -46,9 +46,17 @@ def prepared_mesh(mesh: Mesh, options: MeshOptions, progress: Progress = silent)
         If options contradict each other or make no sense.
     """
     if options.triangles and options.error_mm:
-        raise InputError("a number of triangles and an error are two wishes", where="decimation", todo="give one")
+        raise InputError(
+            Message("surface.two_wishes", "a number of triangles and an error are two wishes"),
+            where="decimation",
+            todo=Message("advice.give_one", "give one"),
+        )
     if min(options.fill_mm, options.error_mm, options.triangles) < 0 or not np.isfinite(options.fill_mm):
-        raise InputError("lengths and numbers of triangles are not negative", where="mesh", todo="give one above 0")
+        raise InputError(
+            Message("surface.negative_wish", "lengths and numbers of triangles are not negative"),
+            where="mesh",
+            todo=Message("advice.give_one_above_zero", "give one above 0"),
+        )
     if options.fill_mm:
         mesh = fill_holes(mesh, options.fill_mm, progress)
     if options.triangles:
@@ -71,7 +79,9 @@ def mesh_step(
     for name in formats:
         if name not in _WRITE:
             raise InputError(
-                f'there is no format "{name}"', where="--format", todo=f"choose among {', '.join(FORMATS)}"
+                Message("export.no_such_format", 'there is no format "{name}"', name=name),
+                where="--format",
+                todo=Message("advice.choose_among", "choose among {choices}", choices=tuple(FORMATS)),
             )
     made = prepared_mesh(read_mesh(results / FILES["mesh"]), options, progress)
     folder = make_folder(to)

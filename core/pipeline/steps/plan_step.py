@@ -12,13 +12,14 @@ import numpy as np
 from core import __version__
 from core.files.atomic import make_folder, write_bytes, write_text
 from core.files.json_text import rounded, to_json
+from core.messages import Message, as_json
 from core.plan.bounds import Bound, bounds_of
 from core.plan.changes import Effect, advice, compare
 from core.plan.design import Design
 from core.plan.from_rig import read_design
 from core.plan.predict import Planner, Prediction
 from core.progress import Progress, silent
-from core.report.plan_map import plan_map_png
+from core.report.plots.plan_map import plan_map_png
 
 PLAN_FILE, MAP_FILE = "plan.json", "sigma.png"
 
@@ -33,7 +34,7 @@ class PlanResult:
     design: Design
     predictions: tuple[Prediction, ...]
     effects: tuple[Effect, ...]
-    advice: str
+    advice: Message | None
     bounds: tuple[Bound, ...] = ()
 
     @property
@@ -75,7 +76,7 @@ def plan(
     base = max(predictions, key=lambda prediction: prediction.height_mm)
     effects = compare(planner, design, base, progress=progress) if changes else ()
     limits = bounds_of(design, progress=progress) if bounds else ()
-    return PlanResult(design, predictions, effects, advice(effects) if changes else "", limits)
+    return PlanResult(design, predictions, effects, advice(effects) if changes else None, limits)
 
 
 def write_plan(result: PlanResult, folder: Path) -> Mapping[str, Path]:
@@ -89,8 +90,10 @@ def write_plan(result: PlanResult, folder: Path) -> Mapping[str, Path]:
     make_folder(folder)
     files = {"plan": folder / PLAN_FILE, "sigma": folder / MAP_FILE}
     shown = result.largest
-    title = f"Standard uncertainty of depth, block of {shown.height_mm:g} mm"
-    picture = plan_map_png(shown.sigma.own, shown.sigma.common, result.design.pixels, title)
+    title = Message(
+        "plan.map_title", "Standard uncertainty of depth, block of {height_mm:g} mm", height_mm=shown.height_mm
+    )
+    picture = plan_map_png(shown.sigma.own, shown.sigma.common, result.design.pixels, str(title))
     write_bytes(files["sigma"], picture)
     write_text(files["plan"], to_json({**plan_values(result), "sigma_map": _sigma_map(shown)}))
     return files
@@ -102,12 +105,26 @@ def plan_values(result: PlanResult) -> dict[str, Any]:
         "version": __version__,
         "design": {name: value for name, value in asdict(result.design).items() if not name.endswith("_target")},
         "thickness": [_prediction(prediction) for prediction in result.predictions],
-        "advice": result.advice,
+        "advice": None if result.advice is None else as_json(result.advice),
         "changes": [
-            {"change": effect.change, "to": effect.to, "U_mm": effect.U_mm, "reason": effect.reason}
+            {
+                "change": as_json(effect.change),
+                "to": as_json(effect.to),
+                "U_mm": effect.U_mm,
+                "reason": None if effect.reason is None else as_json(effect.reason),
+            }
             for effect in result.effects
         ],
-        "bounds": [asdict(bound) for bound in result.bounds],
+        "bounds": [_bound(bound) for bound in result.bounds],
+    }
+
+
+def _bound(bound: Bound) -> dict[str, Any]:
+    return {
+        "quantity": as_json(bound.quantity),
+        "unit": bound.unit,
+        "without": bound.without,
+        "with_speckle": bound.with_speckle,
     }
 
 
@@ -117,7 +134,7 @@ def _prediction(prediction: Prediction) -> dict[str, Any]:
         "u_mm": prediction.u_mm,
         "U_mm": prediction.U_mm,
         "k": prediction.k,
-        "budget": [{"source": row.source, "u_mm": row.u_mm} for row in prediction.budget],
+        "budget": [{"source": as_json(row.source), "u_mm": row.u_mm} for row in prediction.budget],
         "sigma_own_mm": float(np.nanmedian(prediction.sigma.own)),
         "sigma_common_mm": float(np.nanmedian(prediction.sigma.common)),
         "sweeps_used": prediction.sweeps_used,

@@ -4,20 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from core.calibrate.fan import FanOptions, fit_fan
-from core.calibrate.fan_verdict import Constrained
-from core.calibrate.plane_pose import PoseFeatures, measure_plane_pose
+from core.calibrate.fan.calibration import FanOptions, fit_fan
+from core.calibrate.fan.plane_pose import measure_plane_pose
+from core.calibrate.fan.pose_features import PoseFeatures
+from core.calibrate.fan.verdict import Constrained
 from core.calibrate.results import FanCalibration
 from core.errors import InputError
-from core.files.camera_file import read_camera
-from core.files.fan_file import fan_id, read_fan, write_fan
-from core.files.poses_file import write_poses
-from core.files.recording_set import PlanePair, RecordingSet, require_planes
-from core.files.rig import Rig
+from core.files.recording.features_file import write_poses
+from core.files.recording.options import Options
+from core.files.recording.recording_set import RecordingSet, require_planes
+from core.files.recording.rig import Rig
+from core.files.recording.set_listing import PlanePair
+from core.files.results.camera_file import read_camera
+from core.files.results.fan_file import fan_id, read_fan, write_fan
+from core.image.stripes.stripe import StripeSettings
+from core.messages import Command, Message, plain
 from core.model import Camera
 from core.model.arrays import Array
-from core.pipeline.options import Options
-from core.pipeline.workspace import Workspace, check_size
+from core.pipeline.steps.workspace import Workspace, check_size
 from core.progress import Progress, silent
 from core.threads import ordered_map
 
@@ -39,8 +43,9 @@ def planes_step(work: Workspace, options: Options | None = None, progress: Progr
     camera = given.camera
     with work.step("planes") as log:
         log.settings.update(planes_settings(work.found.rig, options))
-        poses = measure_poses(work.found, camera, progress)
+        poses = measure_poses(work.found, camera, progress, options.plane_stripe)
         calibration = solve_planes(poses, camera, work.found.rig, options, progress, given.covariance)
+        _check_agreement(calibration, options)
         log.notes.extend(note for pose in poses for note in pose.notes)
         log.notes.extend(calibration.notes)
         write_fan(work.path("planes"), calibration, camera)
@@ -48,8 +53,24 @@ def planes_step(work: Workspace, options: Options | None = None, progress: Progr
     return read_fan(work.path("planes"), camera)
 
 
-def measure_poses(found: RecordingSet, camera: Camera, progress: Progress = silent) -> tuple[PoseFeatures, ...]:
-    """Target and stripes of every pose, a few poses at a time.
+def _check_agreement(calibration: FanCalibration, options: Options) -> None:
+    """InputError if a minority of the poses stands for all and nobody has decided that it may."""
+    if calibration.minority is not None and not options.accept_few_poses:
+        raise InputError(
+            calibration.minority,
+            where="planes",
+            todo=Message(
+                "advice.few_poses_agree",
+                "look at the poses left out, the target's size and the camera; or decide to use these planes{command}",
+                command=Command("--accept-few-poses"),
+            ),
+        )
+
+
+def measure_poses(
+    found: RecordingSet, camera: Camera, progress: Progress = silent, stripe: StripeSettings | None = None
+) -> tuple[PoseFeatures, ...]:
+    """Target and stripes of every pose, a few poses at a time; stripes of this width and contrast if they are given.
 
     Raises
     ------
@@ -63,13 +84,12 @@ def measure_poses(found: RecordingSet, camera: Camera, progress: Progress = sile
             on = found.read(pair.on)
             off = found.read(pair.off) if pair.off is not None else None
         except InputError as error:
-            return PoseFeatures(pair.name, None, (), str(error).rstrip("."))
+            return PoseFeatures(pair.name, None, (), plain(str(error).rstrip(".")))
         check_size(pair.on, on, camera)
         if off is not None and off.dtype != on.dtype:
-            return PoseFeatures(
-                pair.name, None, (), "the pictures with the fan on and off differ in depth (8 or 16 bit)"
-            )
-        return measure_plane_pose(pair.name, on, off, found.rig.plane_target, camera)
+            reason = Message("fan.depths_differ", "the pictures with the fan on and off differ in depth (8 or 16 bit)")
+            return PoseFeatures(pair.name, None, (), reason)
+        return measure_plane_pose(pair.name, on, off, found.rig.plane_target, camera, stripe)
 
     features: list[PoseFeatures] = []
     total = len(found.planes)
@@ -118,6 +138,8 @@ def planes_settings(rig: Rig, options: Options) -> dict[str, object]:
         told["scale_sd"] = fan.scale_sd
     if fan.flatness_mm is not None:
         told["flatness_mm"] = fan.flatness_mm
+    if options.plane_stripe is not None:
+        told["stripe"] = {"width_px": options.plane_stripe.width_px, "contrast": options.plane_stripe.contrast}
     if options.adjust_camera:
         told["camera"] = "adjusted"
     return {**told, **options.excluded_settings("planes")}

@@ -4,41 +4,54 @@ from __future__ import annotations
 
 import hashlib
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from scipy.spatial import cKDTree
 
 from core import __version__
 from core.errors import InputError
+from core.files.arrays_file import read_arrays
 from core.files.atomic import write_bytes
-from core.files.camera_file import camera_id
-from core.files.fan_file import fan_id
-from core.files.gauge_file import read_gauge
-from core.files.pictures import read_bytes
-from core.files.ply import read_cloud, read_mesh
-from core.files.recording_set import RIG, RecordingSet
-from core.files.rig import Rig, rig_to_toml
-from core.files.run_file import RunRecord, read_run
-from core.files.scan_file import ScanFile, read_scan
-from core.image.centreline import Centreline
+from core.files.reading import read_bytes, read_json
+from core.files.recording.recording_set import RIG, RecordingSet
+from core.files.recording.rig import Rig, rig_to_toml
+from core.files.results.camera_file import camera_id
+from core.files.results.fan_file import fan_id
+from core.files.results.gauge_file import read_gauge
+from core.files.results.inspection_file import NAME, InspectionFile, read_inspection
+from core.files.results.ply import read_cloud, read_mesh
+from core.files.results.run_file import RunRecord, read_run
+from core.files.results.scan_file import ScanFile, read_scan
+from core.files.study.study_file import NAME as STUDY
+from core.files.study.study_file import read_study, study_values
 from core.image.display import in_8_bit
+from core.image.stripes.centreline import Centreline
+from core.inspect.plan.feature_spec import Deviation
+from core.messages import Command, Message, label
+from core.model import Camera
 from core.model.arrays import Array
-from core.pipeline.reported_inspection import with_inspection
-from core.pipeline.workspace import FILES, Calibration, Workspace, check_calibration, read_calibration
+from core.pipeline.steps.workspace import FILES, Calibration, Workspace, check_calibration, read_calibration
 from core.progress import Progress, silent
-from core.report.content import CalibrationMark, Overlay, ReportContent
-from core.report.language import Words
+from core.report.content import CalibrationMark, Deviations, Overlay, ReportContent
 from core.report.pdf import build_report
-from core.report.wording import target_in_words
-from core.scan.cloud import Cloud
+from core.report.wording import Words, target_in_words
+from core.scan.method import Method
+from core.scan.surface.cloud import Cloud
 
-METHOD_IN_WORDS = {
-    "network": "all sweeps adjusted together as one network, tied to the fan and to each other by their crossings",
-    "three-crossings": "each sweep located from its own crossings with the fan (Sun et al. 2023, section 4)",
+METHOD_IN_WORDS: dict[str, str] = {
+    Method.NETWORK: label(
+        "all sweeps adjusted together as one network, tied to the fan and to each other by their crossings"
+    ),
+    Method.THREE_CROSSINGS: label(
+        "each sweep located from its own crossings with the fan (Sun et al. 2023, section 4)"
+    ),
 }
+METHODS = (label("network"), label("three-crossings"))
+"""As the settings name them."""
 RIG_ID = 12
 """Hex digits of a rig's hash that name it."""
 
@@ -72,7 +85,7 @@ def report_content(work: Workspace, progress: Progress = silent, said: Said | No
         overlay=_overlay(work.found, read_scan(work.path("scan")), content.cloud),
     )
     content = said(content) if said else content
-    return replace(content, rig=_rig_in_words(rig, content.camera.camera.image_size, Words(content.language)))
+    return replace(content, rig=_rig_in_words(rig, content.camera.camera.image_size, Words.of(content.language)))
 
 
 def results_content(out: Path, part: str = "", record: RunRecord | None = None) -> ReportContent:
@@ -124,33 +137,35 @@ def _marks(out: Path, record: RunRecord, calibration: Calibration) -> tuple[Cali
 
 def _rig_in_words(rig: Rig, image_size: tuple[int, int], words: Words) -> Mapping[str, str]:
     size = {"width": image_size[0], "height": image_size[1]}
-    picture = "{width} × {height} px, {channel} channel" if rig.channel else "{width} × {height} px"
     angle = words.general(math.degrees(rig.angle))
     said = {
-        "Picture": words.known(picture).format(**size, channel=rig.channel),
-        "Camera target": target_in_words(rig.camera_target, words),
-        "Plane target": target_in_words(rig.plane_target, words),
-        "Fixed laser": words("{n} lines, {angle}° apart", n=rig.lines, angle=angle)
+        label("Picture"): words("{width} × {height} px, {channel} channel", **size, channel=rig.channel)
+        if rig.channel
+        else words("{width} × {height} px", **size),
+        label("Camera target"): target_in_words(rig.camera_target, words),
+        label("Plane target"): target_in_words(rig.plane_target, words),
+        label("Fixed laser"): words("{n} lines, {angle}° apart", n=rig.lines, angle=angle)
         if rig.lines > 1
         else words("1 line"),
     }
     if rig.gauge and rig.gauge.nominal_mm is not None and rig.gauge.tolerance_mm is not None:
         nominal, tolerance = words.general(rig.gauge.nominal_mm), words.general(rig.gauge.tolerance_mm)
-        said["Nominal"] = f"{nominal} mm ± {tolerance} mm"
+        said[label("Nominal")] = f"{nominal} mm ± {tolerance} mm"
     return said
 
 
-def _settings_in_words(record: RunRecord) -> Mapping[str, str]:
-    words: dict[str, str] = {}
+def _settings_in_words(record: RunRecord) -> Mapping[str, Message | str]:
+    words: dict[str, Message | str] = {}
     scan, camera = record.settings.get("scan", {}), record.settings.get("camera", {})
     if "method" in scan:
-        words["Method"] = str(scan["method"])
+        words[label("Method")] = str(scan["method"])
     if "sigma_cut_mm" in scan:
-        words["Points kept"] = f"σ up to {scan['sigma_cut_mm']:g} mm"
+        limit = scan["sigma_cut_mm"]
+        words[label("Points kept")] = Message("report.points_kept", "σ up to {limit_mm:g} mm", limit_mm=limit)
     if camera:
         fixed = {"γ"} - ({"γ"} if camera.get("skew") else set()) | set(camera.get("fixed", ()))
         free = [name for name in ("α", "β", "γ", "u0", "v0", "k1", "k2", "p1", "p2") if name not in fixed]
-        words["Free camera parameters"] = ", ".join(free + (["k3"] if camera.get("k3") else []))
+        words[label("Free camera parameters")] = ", ".join(free + (["k3"] if camera.get("k3") else []))
     return words
 
 
@@ -187,3 +202,81 @@ def _sigmas(sweep: tuple[Centreline, ...], points: Cloud) -> tuple[Array, ...]:
         distance, nearest = tree.query(line.uv)
         sigmas.append(np.where(distance < _SAME_POINT_PX, points.sigma[nearest], np.nan))
     return tuple(sigmas)
+
+
+_AGAIN = Message(
+    "advice.inspect_scan_again",
+    "inspect the scan again{command}",
+    command=Command("trisect inspect SET --plan plan.toml --out DIR"),
+)
+
+
+def with_inspection(content: ReportContent, out: Path) -> ReportContent:
+    """The content with every characteristic of inspection.json in `out`, if there is one.
+
+    Raises
+    ------
+    InputError
+        If it is damaged, or of another scan than the one reported.
+    """
+    path = out / NAME
+    if not path.exists():
+        return content
+    file = read_inspection(path)
+    calibration = "-".join(mark.id for mark in content.calibrations)
+    if file.calibration_id and file.calibration_id != calibration:
+        raise InputError(
+            Message(
+                "report.of_other_calibration",
+                "is of a scan with calibration {calibration_id}, but this one has {calibration}",
+                calibration_id=file.calibration_id,
+                calibration=calibration,
+            ),
+            where=path,
+            todo=_AGAIN,
+        )
+    beyond = [name for name, indices in file.points.items() if len(indices) and indices.max() >= len(content.cloud)]
+    if beyond:
+        raise InputError(
+            Message("file.points_beyond_cloud", "{name} names points that the cloud does not have", name=beyond[0]),
+            where=path,
+            todo=_AGAIN,
+        )
+    return replace(
+        content,
+        inspected=file.characteristics,
+        points={name: indices for name, indices in file.points.items() if len(indices)},
+        deviations=_deviations(path, file, content.camera.camera),
+        notes=tuple(dict.fromkeys((*content.notes, *file.notes, *file.problems))),
+    )
+
+
+def with_studies(content: ReportContent, paths: Sequence[Path]) -> ReportContent:
+    """The content with the studies in `paths`, each a study.json or its folder; InputError if one cannot be read."""
+    read = tuple(study_values(read_study(path / STUDY if path.is_dir() else path)) for path in paths)
+    return replace(content, studies=(*content.studies, *read)) if read else content
+
+
+def _deviations(path: Path, file: InspectionFile, camera: Camera) -> tuple[Deviations, ...]:
+    """The comparisons with nominal surfaces, as the camera sees them."""
+    arrays_path = path.with_suffix(".npz")
+    compared = [(number, name) for number, (name, kind) in enumerate(file.kinds.items()) if kind == "deviation"]
+    if not compared or not arrays_path.exists():
+        return ()
+    arrays, plan = read_arrays(arrays_path, (), todo=_AGAIN), read_json(path).get("plan")
+    shown = []
+    for number, name in compared:
+        table = arrays.get(f"deviation_{number}", np.zeros((0, 4)))
+        if len(table):
+            uv = camera.project(table[:, :3])
+            shown.append(Deviations(name, uv, table[:, 3], _tolerance(plan, name)))
+    return tuple(shown)
+
+
+def _tolerance(plan: Any, name: str) -> float:
+    """The tolerance a plan states for the comparison of this name, or the usual one."""
+    features: Sequence[Any] = plan.get("feature", ()) if isinstance(plan, Mapping) else ()
+    for one in features:
+        if isinstance(one, Mapping) and one.get("name") == name and "deviation" in one:
+            return float(one["deviation"]["tolerance_mm"])
+    return Deviation("").tolerance_mm

@@ -6,15 +6,16 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from core.calibrate.results import CameraCalibration, FanCalibration
-from core.files.recording_set import open_set, require_camera, require_planes, require_scan
+from core.files.recording.options import Options
+from core.files.recording.recording_set import open_set, require_camera, require_planes, require_scan
 from core.inspect.results import GaugeResult
-from core.pipeline.camera_step import camera_step
-from core.pipeline.gauge_step import gauge_if_possible, gauge_step
-from core.pipeline.options import Options
-from core.pipeline.planes_step import planes_step
-from core.pipeline.report_step import report_step
-from core.pipeline.scan_step import scan_step
-from core.pipeline.workspace import Workspace
+from core.messages import Message
+from core.pipeline.steps.camera_step import camera_step
+from core.pipeline.steps.gauge_step import gauge_if_possible, gauge_step
+from core.pipeline.steps.planes_step import planes_step
+from core.pipeline.steps.report_step import report_step
+from core.pipeline.steps.scan_step import scan_step
+from core.pipeline.steps.workspace import Workspace
 from core.progress import Progress, silent
 from core.scan.results import FrameRecord
 
@@ -24,7 +25,7 @@ class RunResult:
     """What a whole run measured, and where its files are.
 
     `gauge` is None where no thickness was asked for and the part has no two parallel faces. `files` holds what was
-    written, by the names in `core.pipeline.workspace.FILES`.
+    written, by the names in `core.pipeline.steps.workspace.FILES`.
     """
 
     camera: CameraCalibration
@@ -33,7 +34,7 @@ class RunResult:
     points: int
     triangles: int
     gauge: GaugeResult | None
-    notes: tuple[str, ...]
+    notes: tuple[Message, ...]
     files: dict[str, Path]
 
 

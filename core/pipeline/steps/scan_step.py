@@ -12,18 +12,20 @@ from core.calibrate.deviations import calibration_deviations
 from core.calibrate.results import LEFT_OUT
 from core.errors import InputError
 from core.files.pictures import Picture
-from core.files.ply import write_cloud, write_mesh
-from core.files.recording_log import lost_frames, read_log
-from core.files.recording_set import RecordingSet, require_scan
-from core.files.scan_file import ScanFile, write_scan
+from core.files.recording.options import Options
+from core.files.recording.recording_log import lost_frames, read_log
+from core.files.recording.recording_set import RecordingSet, require_scan
+from core.files.results.ply import write_cloud, write_mesh
+from core.files.results.scan_file import ScanFile, write_scan
+from core.messages import Message, from_json, plain, plural_message
 from core.model import Camera
-from core.pipeline.kept_features import features_key, kept_features
-from core.pipeline.options import Options
-from core.pipeline.workspace import Calibration, Workspace, check_size
+from core.pipeline.steps.kept_features import features_key, kept_features
+from core.pipeline.steps.workspace import Calibration, Workspace, check_size
 from core.progress import Progress, silent, steps
+from core.scan.bend_correction import reconstruct_twice
 from core.scan.calibration_check import check_calibration
 from core.scan.common_errors import solve_common
-from core.scan.features import (
+from core.scan.features.extraction import (
     FeatureOptions,
     Frame,
     FrameFeatures,
@@ -31,17 +33,18 @@ from core.scan.features import (
     extract_features,
     read_reference,
 )
-from core.scan.frame_preview import FramePreview
-from core.scan.fusion import fuse
-from core.scan.mesh import build_mesh
-from core.scan.network import SILENCED
-from core.scan.normals import with_normals
-from core.scan.preview import Preview
+from core.scan.features.frames import left_out_notes
+from core.scan.features.reference import quantile_reference, sample_indices
+from core.scan.method import Method
+from core.scan.network.adjustment import SILENCED
+from core.scan.preview.frames import Preview
+from core.scan.preview.shown import FramePreview
 from core.scan.reconstruct import ReconstructOptions
-from core.scan.reference import quantile_reference, sample_indices
 from core.scan.results import FrameRecord, ScanResult
-from core.scan.surface import Mesh
-from core.scan.uneven_sections import reconstruct_twice
+from core.scan.surface.fused_surface import Mesh
+from core.scan.surface.fusion import fuse
+from core.scan.surface.mesh import build_mesh
+from core.scan.surface.normals import with_normals
 from core.stage_times import StageTimes, stage
 
 FEWEST_FOR_QUANTILE = 3
@@ -96,11 +99,11 @@ def scan_step(
         common = solve_common(even, scan, camera, fan, deviations, options.method, progress)
         cloud = replace(scan.cloud, sigma_common=common.sigma(scan.cloud))
         scan = replace(scan, cloud=with_normals(cloud, progress=progress))
-        if options.method == "network":
+        if options.method == Method.NETWORK:
             check = check_calibration(even, scan, camera, fan, deviations)
             scan = replace(scan, notes=scan.notes + check.notes)
         log.frames.extend(scan.frames)
-        log.notes.extend(left_out_sentences(scan.frames))
+        log.notes.extend(left_out_notes(scan.frames))
         log.notes.extend(scan.notes)
         log.notes.extend(_lost(found))
         surface = with_normals(fuse(scan.cloud, camera.image_size, progress=progress), progress=progress)
@@ -111,16 +114,21 @@ def scan_step(
     return Measured(scan, mesh)
 
 
-def _lost(found: RecordingSet) -> tuple[str, ...]:
-    """A sentence if frames were lost while a live scan was recorded."""
+def _lost(found: RecordingSet) -> tuple[Message, ...]:
+    """A note if frames were lost while a live scan was recorded."""
     try:
         lost = lost_frames(read_log(found.frames[0].parent))
     except InputError as error:
-        return (str(error),)
+        return (plain(str(error)),)
     if not lost:
         return ()
     return (
-        f"{lost} frame{'s were' if lost > 1 else ' was'} lost while recording: camera, computer or disk were too slow.",
+        plural_message(
+            "scan.frames_lost",
+            "{n} frame was lost while recording: camera, computer or disk were too slow.",
+            "{n} frames were lost while recording: camera, computer or disk were too slow.",
+            n=lost,
+        ),
     )
 
 
@@ -175,14 +183,20 @@ def stream_frames(found: RecordingSet, options: Options, times: StageTimes | Non
     pictures = found.stream(taken_frames(found, options), times)
     for path in found.frames:
         name = found.name_of(path)
-        yield (name, LEFT_OUT) if name in options.excluded else next(pictures)
+        if name in options.excluded:
+            yield name, LEFT_OUT
+            continue
+        _, picture = next(pictures)
+        yield name, from_json(picture) if isinstance(picture, str) else picture
 
 
 def _require_frames(found: RecordingSet, options: Options) -> None:
     """InputError if all frames are left out by hand."""
     if not taken_frames(found, options):
         raise InputError(
-            f"all {len(found.frames)} frames are left out by hand", where="scan", todo="take some of them in again"
+            Message("scan.all_frames_left_out", "all {frames} frames are left out by hand", frames=len(found.frames)),
+            where="scan",
+            todo=Message("advice.take_some_in", "take some of them in again"),
         )
 
 
@@ -193,7 +207,7 @@ def taken_frames(found: RecordingSet, options: Options) -> list[Path]:
 
 def reference_picture(
     found: RecordingSet, camera: Camera | None, options: Options, progress: Progress = silent
-) -> tuple[Picture, list[str]]:
+) -> tuple[Picture, list[Message]]:
     """The picture with the fan alone, taken or made from the frames, and a note on how it was made.
 
     Raises
@@ -212,27 +226,22 @@ def reference_picture(
     pictures = [picture for _, picture in stream if not isinstance(picture, str)]
     if len(pictures) < FEWEST_FOR_QUANTILE:
         raise InputError(
-            f"there is no reference.png, and {len(pictures)} readable frames are too few to make one from",
+            Message(
+                "scan.too_few_frames_for_reference",
+                "there is no reference.png, and {pictures} readable frames are too few to make one from",
+                pictures=len(pictures),
+            ),
             where=found.where("scan"),
-            todo="record reference.png with the fan alone, or more frames",
+            todo=Message("advice.record_reference", "record reference.png with the fan alone, or more frames"),
         )
     if camera is not None:
         check_size(sample[0], pictures[0], camera)
-    note = f"There is no scan/reference.png: the darkest third of {len(pictures)} frames stands for it, pixel by pixel."
+    note = Message(
+        "scan.no_reference",
+        "There is no scan/reference.png: the darkest third of {n} frames stands for it, pixel by pixel.",
+        n=len(pictures),
+    )
     return quantile_reference(pictures), [note]
-
-
-def left_out_sentences(frames: tuple[FrameRecord, ...]) -> list[str]:
-    """One sentence for every reason why frames gave no points."""
-    reasons: dict[str, list[str]] = {}
-    for frame in frames:
-        if not frame.used:
-            reasons.setdefault(frame.reason, []).append(frame.name)
-    return [
-        f"{len(names)} of {len(frames)} frames gave no points ({reason}): {', '.join(names[:3])}"
-        + (" and others." if len(names) > 3 else ".")
-        for reason, names in reasons.items()
-    ]
 
 
 def _file(features: ScanFeatures, scan: ScanResult, calibration_id: str, key: str) -> ScanFile:

@@ -10,15 +10,15 @@ from typing import Literal, cast
 from core.errors import InputError
 from core.files.atomic import write_bytes, write_text
 from core.files.json_text import to_json
-from core.files.pictures import read_bytes
-from core.files.project_data import KeptStudy
-from core.files.project_folder import is_project, read_project, results_folder
-from core.files.study_file import Study, study_path, study_values, write_study
-from core.files.study_input import THICKNESS, crossed_of, readings_of
-from core.files.study_reader import read_study
-from core.files.study_results import measured_in
-from core.files.study_table import read_table, table_of
-from core.pipeline.acceptance_step import Artefact, read_positions
+from core.files.project.data import KeptStudy
+from core.files.project.folder import is_project, read_project, results_folder
+from core.files.reading import read_bytes, read_text
+from core.files.study.input import THICKNESS, crossed_of, readings_of
+from core.files.study.results import measured_in
+from core.files.study.study_file import Study, read_study, study_path, study_values, write_study
+from core.files.study.table import table_of
+from core.messages import Message
+from core.pipeline.steps.acceptance_step import Artefact, read_positions
 from core.progress import Progress, silent
 from core.study.acceptance import AcceptanceCheck, Quantity, acceptance_check
 from core.study.grr import GrrStudy, grr_study
@@ -46,7 +46,7 @@ def keep_study(
     kind
         "grr" or "acceptance".
     text
-        The table as CSV with a head line; see `core.files.study_input`.
+        The table as CSV with a head line; see `core.files.study.input`.
     base
         The folder that names of results in the table are seen from.
     limits
@@ -103,15 +103,19 @@ def export_study(folder: Path, id_: str, path: Path) -> Path:
     source = study_path(folder, id_)
     source = source.with_name(TABLE) if path.suffix.lower() == ".csv" else source
     if not source.exists():
-        raise InputError("is not there any more", where=source, todo="make the study again")
+        raise InputError(
+            Message("study.gone", "is not there any more"),
+            where=source,
+            todo=Message("advice.make_study_anew", "make the study again"),
+        )
     write_bytes(path, read_bytes(source))
     return path
 
 
 def read_study_table(path: Path) -> str:
     """The text of a table, once it is known to be one; InputError if it is none."""
-    read_table(path)
-    return path.read_text(encoding="utf-8-sig")
+    table_of(text := read_text(path), path)
+    return text
 
 
 def project_rows(
@@ -140,13 +144,21 @@ def project_rows(
         If it is no project, nothing was measured in it, or the artefact is not in its cloud.
     """
     if not is_project(folder):
-        raise InputError("this is no project", where=folder, todo="choose the folder of a project")
+        raise InputError(
+            Message("study.no_project", "this is no project"),
+            where=folder,
+            todo=Message("advice.choose_project", "choose the folder of a project"),
+        )
     project = read_project(folder).project
     if kind == "grr":
         info = project.info
         part, operator = info.serial or info.part or info.name, info.operator
         if not operator:
-            raise InputError("the project names no operator", where=folder, todo="enter one on its Project page")
+            raise InputError(
+                Message("study.no_operator", "the project names no operator"),
+                where=folder,
+                todo=Message("advice.enter_operator", "enter one on its Project page"),
+            )
         values = [one.thickness_mm for one in project.repeats]
         values = values or [measured_in(results_folder(folder), THICKNESS).value]
         rows: list[Sequence[object]] = [(part, operator, value) for value in values]

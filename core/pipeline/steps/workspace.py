@@ -14,11 +14,13 @@ from typing import Any
 from core.calibrate.results import CameraCalibration, FanCalibration
 from core.errors import InputError
 from core.files.atomic import cannot_write, make_folder
-from core.files.camera_file import camera_id, read_camera
-from core.files.fan_file import fan_id, read_fan
-from core.files.pictures import Picture, read_bytes
-from core.files.recording_set import RecordingSet
-from core.files.run_file import RunRecord, read_run, write_run
+from core.files.pictures import Picture
+from core.files.reading import read_bytes
+from core.files.recording.recording_set import RecordingSet
+from core.files.results.camera_file import camera_id, read_camera
+from core.files.results.fan_file import fan_id, read_fan
+from core.files.results.run_file import RunRecord, read_run, write_run
+from core.messages import Command, Message
 from core.model import Camera
 from core.scan.results import FrameRecord
 
@@ -57,7 +59,7 @@ class StepLog:
     """What a step leaves for run.json besides its results."""
 
     settings: dict[str, Any] = field(default_factory=dict)
-    notes: list[str] = field(default_factory=list)
+    notes: list[Message | str] = field(default_factory=list)
     frames: list[FrameRecord] = field(default_factory=list)
 
 
@@ -74,7 +76,9 @@ class Workspace:
         """Make the folder if need be; InputError if nothing can be written there."""
         if found.contains(out):
             raise InputError(
-                "the results cannot go into the recording set itself", where=out, todo="choose another --out"
+                Message("project.results_within_set", "the results cannot go into the recording set itself"),
+                where=out,
+                todo=Message("advice.results_into_set", "choose another --out"),
             )
         return cls(found, make_folder(out), part)
 
@@ -145,9 +149,18 @@ def check_calibration(path: Path, found_id: str, calibration: Calibration) -> No
     """InputError if a result was measured with another calibration than the one beside it."""
     if found_id and found_id != calibration.id:
         raise InputError(
-            f"was measured with calibration {found_id}, but camera.json and planes.json are {calibration.id}",
+            Message(
+                "project.result_of_other_calibration",
+                "was measured with calibration {found_id}, but camera.json and planes.json are {id}",
+                found_id=found_id,
+                id=calibration.id,
+            ),
             where=path,
-            todo="measure the scan again: trisect scan SET --out DIR",
+            todo=Message(
+                "advice.scan_again",
+                "measure the scan again{command}",
+                command=Command("trisect scan SET --out DIR"),
+            ),
         )
 
 
@@ -157,9 +170,15 @@ def check_size(path: Path, picture: Picture, camera: Camera) -> None:
     if (width, height) != camera.image_size:
         wanted = " × ".join(map(str, camera.image_size))
         raise InputError(
-            f"the picture has {width} × {height} pixels, but camera.json was calibrated at {wanted}",
+            Message(
+                "project.picture_size_of_camera",
+                "the picture has {width} × {height} pixels, but camera.json was calibrated at {wanted}",
+                width=width,
+                height=height,
+                wanted=wanted,
+            ),
             where=path,
-            todo="calibrate the camera with pictures of this size",
+            todo=Message("advice.calibrate_with_this_size", "calibrate the camera with pictures of this size"),
         )
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from xml.sax.saxutils import escape
@@ -18,7 +19,9 @@ from reportlab.pdfbase import pdfmetrics
 from reportlab.pdfbase.ttfonts import TTFont
 from reportlab.platypus import Paragraph
 
-from core.report.foreign_fonts import east_asian_font, embedded_font, is_east_asian
+from core.messages import Message
+from core.report.layout.foreign_fonts import east_asian_font, embedded_font, is_east_asian
+from core.report.wording import Words
 
 ACCENT, INK, MUTED, HAIRLINE, TINT = "#14586E", "#1D2327", "#5C6870", "#CBD3D7", "#EFF4F6"
 """The accent, text, secondary text, thin rules, and the ground of the result box; hex, for plots as well."""
@@ -29,11 +32,15 @@ MOST_CHARACTERS = 900
 TEXT_WIDTH = 170 * mm
 """On every paper, centred: so tables and pictures are the same on all of them."""
 
-NOT_EMBEDDED = (
+NOT_EMBEDDED = Message(
+    "report.fonts_not_embedded",
     "No font of this computer has some of the East Asian characters in this report: the program that shows it has to "
-    "bring them."
+    "bring them.",
 )
-NO_FONT = "No font of this computer has some of the characters in this report: they are printed by their code points."
+NO_FONT = Message(
+    "report.no_font",
+    "No font of this computer has some of the characters in this report: they are printed by their code points.",
+)
 
 MOST_REMARKS = 6000
 """Longest remarks of an operator, in characters."""
@@ -82,12 +89,9 @@ def markup(text: str) -> str:
     """`text` as markup of a Paragraph, nothing lost whatever its script.
 
     Characters the report's own fonts lack are set in a font of this computer, else in an East Asian one that the
-    reader's program brings, and else printed by their code point, [U+1F600]: `font_note` says so. Only what is longer
-    than MOST_CHARACTERS is shortened, and says so.
+    reader's program brings, and else printed by their code point, [U+1F600]: `font_note` says so.
     """
     covered, parts, last = _covered(), [], ""
-    if len(text) > MOST_CHARACTERS:
-        text = f"{text[:MOST_CHARACTERS]}… (shortened from {len(text)} characters; all of it is in run.json)"
     for character in re.sub(r"[ \t\r\n\f\v]+", " ", text):
         font = "" if ord(character) in covered else _foreign(character, text)
         shown = escape(character) if font or ord(character) in covered else f"[U+{ord(character):04X}]"
@@ -103,12 +107,12 @@ def _foreign(character: str, text: str) -> str:
     return embedded_font(character)[0] or (east_asian_font(text) if is_east_asian(character) else "")
 
 
-def font_note(texts: Iterable[str]) -> str:
-    """What a reader must know of characters in `texts`: that some are not embedded, or have no font at all; or ""."""
+def font_note(texts: Iterable[str]) -> Message | None:
+    """What a reader must know of characters in `texts`: that some are not embedded, or have no font at all."""
     foreign = {character for text in texts for character in text if not has_character(character)}
     lacking = {character for character in foreign if not embedded_font(character)[0]}
     if not lacking:
-        return ""
+        return None
     return NOT_EMBEDDED if all(is_east_asian(character) for character in lacking) else NO_FONT
 
 
@@ -151,26 +155,61 @@ def styles_of(accent: str) -> Mapping[str, ParagraphStyle]:
     }
 
 
-STYLES = styles_of(ACCENT)
-"""Those of a report without a template."""
+@dataclass(frozen=True, slots=True)
+class Look:
+    """How one report looks and speaks.
 
+    Parameters
+    ----------
+    words
+        Its fixed words.
+    accent
+        The colour of headings, marks and lines, as "#RRGGBB".
+    """
 
-def text(words: str, style: str = "body") -> Paragraph:
-    """A paragraph of plain `words`: whatever they hold is printed, never taken for markup."""
-    return Paragraph(markup(words), STYLES[style])
+    words: Words
+    accent: str
 
+    @property
+    def accent_color(self) -> HexColor:
+        """The accent."""
+        return color(self.accent)
 
-def lines_of(words: str) -> list[Paragraph]:
-    """Plain `words` that may be long and may have line ends; an empty line is a gap."""
-    if len(words) > MOST_REMARKS:
-        words = f"{words[:MOST_REMARKS]}…\n(shortened from {len(words)} characters)"
-    lines = [line.strip() for line in words.strip().splitlines()]
-    pieces = [
-        line[start : start + MOST_CHARACTERS] for line in lines for start in range(0, len(line) or 1, MOST_CHARACTERS)
-    ]
-    return [Paragraph(markup(piece) or "\u00a0", STYLES["small"]) for piece in pieces]
+    def style(self, name: str) -> ParagraphStyle:
+        """A type style by its name."""
+        return styles_of(self.accent)[name]
 
+    def text(self, plain: str, style: str = "body") -> Paragraph:
+        """A paragraph of plain words: whatever they hold is printed, never taken for markup."""
+        return Paragraph(self.markup(plain), self.style(style))
 
-def bullets(sentences: tuple[str, ...]) -> list[Paragraph]:
-    """Each sentence behind a small bullet."""
-    return [Paragraph(markup(sentence), STYLES["bullet"], bulletText="•") for sentence in sentences]
+    def markup(self, plain: str) -> str:
+        """Plain words as markup of a Paragraph; what is longer than MOST_CHARACTERS is shortened, and says so."""
+        if len(plain) > MOST_CHARACTERS:
+            said = self.words("(shortened from {n} characters; all of it is in run.json)", n=len(plain))
+            plain = f"{plain[:MOST_CHARACTERS]}… {said}"
+        return markup(plain)
+
+    def lines(self, plain: str) -> list[Paragraph]:
+        """Plain words that may be long and may have line ends; an empty line is a gap."""
+        if len(plain) > MOST_REMARKS:
+            said = self.words("(shortened from {n} characters)", n=len(plain))
+            plain = f"{plain[:MOST_REMARKS]}…\n{said}"
+        pieces = [
+            line[start : start + MOST_CHARACTERS]
+            for line in (one.strip() for one in plain.strip().splitlines())
+            for start in range(0, len(line) or 1, MOST_CHARACTERS)
+        ]
+        return [Paragraph(markup(piece) or "\u00a0", self.style("small")) for piece in pieces]
+
+    def say(self, english: str, style: str = "body", /, **values: object) -> Paragraph:
+        """A paragraph of fixed words in the report's language."""
+        return self.text(self.words(english, **values), style)
+
+    def link(self, plain: str, key: str, style: str = "body") -> Paragraph:
+        """A paragraph of plain words that leads to the section or row called `key`."""
+        return Paragraph(f'<a href="#{key}" color="{self.accent}">{self.markup(plain)}</a>', self.style(style))
+
+    def bullets(self, sentences: tuple[str, ...]) -> list[Paragraph]:
+        """Each sentence behind a small bullet."""
+        return [Paragraph(self.markup(sentence), self.style("bullet"), bulletText="•") for sentence in sentences]

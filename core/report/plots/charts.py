@@ -6,35 +6,42 @@ blindness and grey printing; lines differ in form.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import cv2
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
+from matplotlib.patheffects import withStroke
 from numpy.typing import NDArray
 
 from core.inspect.results import Face, GaugeResult
+from core.inspect.shown.deviation_map import classes_of, mark
 from core.model import LightPlane
 from core.model.arrays import Array
 from core.progress import Progress, silent
-from core.report.figures import (
+from core.report.content import Deviations
+from core.report.layout.style import HAIRLINE, INK, MUTED, Look
+from core.report.plots.figures import (
     DPI,
     MM_PER_INCH,
     NO_DATA,
     add_color_bar,
     color_scale,
+    drawable,
+    families,
     mixed,
     new_figure,
     paint_map,
     plot_style,
     round_up,
 )
-from core.report.look import Look
-from core.report.style import HAIRLINE, INK, MUTED
-from core.report.surface_view import Ground, SurfacePicture, surface_picture, viewer_axes
-from core.scan.cloud import Cloud
-from core.scan.surface import Mesh
+from core.report.plots.surface_view import Ground, SurfacePicture, surface_picture, viewer_axes
+from core.report.wording import points_counted
+from core.scan.surface.cloud import Cloud
+from core.scan.surface.fused_surface import Mesh
 
 DEPTH_MAP, SIGMA_MAP, SIGN_MAP = "cividis", "viridis", "PuOr_r"
 
@@ -156,12 +163,12 @@ def _spread_panel(look: Look, axes: Axes, gauge: GaugeResult, limit: float) -> N
     """How the residuals of both faces spread: density over the residual, told apart by line form."""
     edges = np.linspace(-limit, limit, 61)
     for face, name, form, tone in (
-        (gauge.upper, "upper", "-", INK),
-        (gauge.lower, "lower", (0, (3, 1.2)), "#8A6D00"),
+        (gauge.upper, look.words("upper"), "-", INK),
+        (gauge.lower, look.words("lower"), (0, (3, 1.2)), "#8A6D00"),
     ):
         if len(face.residuals):
             density = np.histogram(np.clip(face.residuals, -limit, limit), edges)[0] / len(face.residuals)
-            axes.stairs(100 * density, edges, color=tone, lw=0.9, ls=form, label=look.words(name), baseline=None)
+            axes.stairs(100 * density, edges, color=tone, lw=0.9, ls=form, label=name, baseline=None)
     axes.axvline(0, color=HAIRLINE, lw=0.6, zorder=0)
     axes.set_xlim(-limit, limit)
     axes.set_ylim(bottom=0)
@@ -178,12 +185,12 @@ def cloud_figure(look: Look, cloud: Cloud, image_size: tuple[int, int], width_mm
     with plot_style():
         figure = new_figure(width_mm, height_mm)
         panels = (
-            ("Depth z from the camera", cloud.points[:, 2], DEPTH_MAP, 11.0),
-            ("Standard uncertainty σ of depth", cloud.sigma, SIGMA_MAP, 98.0),
+            (look.words("Depth z from the camera"), cloud.points[:, 2], DEPTH_MAP, 11.0),
+            (look.words("Standard uncertainty σ of depth"), cloud.sigma, SIGMA_MAP, 98.0),
         )
         for title, values, name, left in panels:
             axes = figure.add_axes((left / width_mm, 12 / height_mm, 56 / width_mm, 1 - 18 / height_mm))
-            axes.set_title(look.words(title))
+            axes.set_title(title)
             axes.set_facecolor(NO_DATA)
             axes.set_xlabel("u, px", labelpad=1)
             axes.set_ylabel("v, px", labelpad=0)
@@ -199,3 +206,104 @@ def cloud_figure(look: Look, cloud: Cloud, image_size: tuple[int, int], width_mm
             axes.set_aspect("equal")
             axes.set_anchor("W")
     return figure
+
+
+COLORS = ("#14586E", "#E06C00", "#6A3D9A", "#8A6D00", "#B2182B", "#3B7A3B", "#1B9E9E", "#737373")
+MARKS = ("s", "o", "^", "D", "v", "P", "X", "*")
+"""Told apart by form as well as by colour, in the legend."""
+
+MOST_DRAWN = 4000
+"""Points drawn of each: more would only cover each other."""
+
+
+def points_figure(
+    look: Look,
+    cloud: Cloud,
+    points: Mapping[str, NDArray[np.int64]],
+    image_size: tuple[int, int],
+    width_mm: float,
+    height_mm: float,
+) -> Figure:
+    """The pixels of all points in grey, those of each of `points` (indices into the cloud) in a colour of its own."""
+    with plot_style():
+        figure = new_figure(width_mm, height_mm)
+        columns, rows = image_size
+        foot, left, legend = 9.0, 11.0, 52.0
+        scale = min((width_mm - left - legend) / columns, (height_mm - foot - 1) / rows)
+        box = (left / width_mm, foot / height_mm, columns * scale / width_mm, rows * scale / height_mm)
+        axes = figure.add_axes(box)
+        every = max(1, len(cloud) // (2 * MOST_DRAWN))
+        axes.plot(*cloud.uv[::every].T, ".", ms=1.2, color=HAIRLINE, zorder=1)
+        largest_first = sorted(points.items(), key=lambda item: -len(item[1]))
+        for number, (name, indices) in enumerate(largest_first):
+            drawn = cloud.uv[indices[:: max(1, len(indices) // MOST_DRAWN)]]
+            mark, color = MARKS[number % len(MARKS)], COLORS[number % len(COLORS)]
+            # what lies below another keeps a rim
+            axes.plot(*drawn.T, ".", ms=max(3.2 - 0.8 * number, 1.2), color=color, zorder=2)
+            count = look.words(points_counted(len(indices)))
+            axes.plot([], [], mark, ms=4, color=color, label=f"{_short(drawable(name))}\n{count}")
+        axes.set(xlim=(-0.5, columns - 0.5), ylim=(rows - 0.5, -0.5))
+        axes.set_xlabel("u, px", labelpad=1)
+        axes.set_ylabel("v, px", labelpad=0)
+        axes.set_aspect("equal")
+        axes.legend(loc="upper left", bbox_to_anchor=(1.02, 1.02), frameon=False, handletextpad=0.6,
+                    prop={"family": families("".join(points)), "size": 6.5})  # fmt: skip
+    return figure
+
+
+def _short(name: str) -> str:
+    """A name that fits beside the picture."""
+    return name if len(name) <= 34 else f"{name[:33]}…"
+
+
+MARKS_ACROSS = 14
+"""Marks over the width of the picture."""
+
+
+def deviation_figure(look: Look, one: Deviations, width_mm: float, height_mm: float) -> Figure:
+    """Mean deviation per cell where the camera sees it, with a mark for its class, and how the deviations spread."""
+    with plot_style():
+        figure = new_figure(width_mm, height_mm)
+        axes = figure.add_axes((11 / width_mm, 10 / height_mm, 96 / width_mm, 1 - 12 / height_mm))
+        axes.set_facecolor(NO_DATA)
+        colors = color_scale(SIGN_MAP, -one.tolerance_mm, one.tolerance_mm)
+        seen = one.uv * (1, -1)  # upwards in the plot as in the picture
+        paint_map(axes, seen, one.deviation, colors)
+        _marks(axes, seen, one)
+        axes.set_aspect("equal")
+        axes.set_xticks([])
+        axes.set_yticks([])
+        bar = (112 / width_mm, 10 / height_mm, 3 / width_mm, 1 - 20 / height_mm)
+        add_color_bar(figure, bar, colors, "mm", "both")
+        spread = figure.add_axes((138 / width_mm, 10 / height_mm, (width_mm - 140) / width_mm, 1 - 16 / height_mm))
+        _histogram(look, spread, one)
+    return figure
+
+
+def _marks(axes: Axes, seen: Array, one: Deviations) -> None:
+    """The class of the mean deviation of each coarse cell, as a sign in its middle."""
+    low, high = seen.min(axis=0), seen.max(axis=0)
+    cell = max(float(np.max(high - low)) / MARKS_ACROSS, 1e-9)
+    place = np.floor((seen - low) / cell).astype(int)
+    for column, row in np.unique(place, axis=0):
+        inside = (place[:, 0] == column) & (place[:, 1] == row)
+        sign = mark(int(classes_of(np.array([one.deviation[inside].mean()]), one.tolerance_mm)[0]))
+        if sign:
+            u, v = seen[inside].mean(axis=0)
+            halo = [withStroke(linewidth=1.5, foreground="white")]
+            axes.text(float(u), float(v), sign, ha="center", va="center", fontsize=6, color=INK, path_effects=halo)
+
+
+def _histogram(look: Look, axes: Axes, one: Deviations) -> None:
+    widest = 1.5 * one.tolerance_mm
+    edges = np.linspace(-widest, widest, 41)
+    counts = np.histogram(np.clip(one.deviation, -widest, widest), edges)[0]
+    axes.stairs(100 * counts / max(len(one.deviation), 1), edges, color=look.accent, lw=0.9, baseline=None)
+    for limit in (-one.tolerance_mm, one.tolerance_mm):
+        axes.axvline(limit, color=INK, lw=0.6, ls=":")
+    axes.axvline(0, color=HAIRLINE, lw=0.6, zorder=0)
+    axes.set_xlim(-widest, widest)
+    axes.set_ylim(bottom=0)
+    axes.set_xlabel(look.words("deviation, mm"), labelpad=1)
+    axes.set_ylabel(look.words("points, %"), labelpad=1)
+    axes.spines[["top", "right"]].set_visible(False)

@@ -20,8 +20,8 @@ from matplotlib.ticker import Formatter, ScalarFormatter
 from numpy.typing import NDArray
 
 from core.model.arrays import Array
-from core.report.foreign_fonts import embedded_font
-from core.report.style import INK, MUTED, has_character
+from core.report.layout.foreign_fonts import embedded_font
+from core.report.layout.style import INK, MUTED, has_character
 
 DPI = 200
 """Pixels per inch of every picture on paper."""

@@ -14,11 +14,10 @@ from matplotlib.lines import Line2D
 from matplotlib.patheffects import withStroke
 from numpy.typing import NDArray
 
-from core.image.centreline import Centreline
+from core.image.stripes.centreline import Centreline
 from core.report.content import Overlay
-from core.report.figures import DPI, MM_PER_INCH, add_color_bar, color_scale, new_figure, plot_style, round_up
-from core.report.look import Look
-from core.report.style import INK
+from core.report.layout.style import INK, Look
+from core.report.plots.figures import DPI, MM_PER_INCH, add_color_bar, color_scale, new_figure, plot_style, round_up
 
 FAN_COLOR, SWEEP_MAP, UNKNOWN = "#E06C00", "viridis", "#737373"
 

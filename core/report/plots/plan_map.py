@@ -8,12 +8,13 @@ import numpy as np
 from matplotlib.colors import Normalize
 from matplotlib.image import imsave
 
+from core.messages import label
 from core.model.arrays import Array
-from core.report.figures import NO_DATA, add_color_bar, color_scale, new_figure, pixels, plot_style
-from core.report.plots import SIGMA_MAP
+from core.report.plots.charts import SIGMA_MAP
+from core.report.plots.figures import NO_DATA, add_color_bar, color_scale, new_figure, pixels, plot_style
 
-WIDTH_MM, HEIGHT_MM = 184.0, 56.0
-_PANEL_MM, _GAP_MM = 46.0, 9.0
+WIDTH_MM, HEIGHT_MM = 184.0, 56.0  # on paper
+_PANEL_MM, _GAP_MM = 46.0, 9.0  # a panel's side, and between two
 
 
 def plan_map_png(own: Array, common: Array, image_size: tuple[int, int], title: str) -> bytes:
@@ -25,7 +26,7 @@ def plan_map_png(own: Array, common: Array, image_size: tuple[int, int], title: 
         figure = new_figure(WIDTH_MM, HEIGHT_MM)
         figure.suptitle(title, x=11 / WIDTH_MM, ha="left", fontsize=8)
         for panel, (name, values) in enumerate(
-            (("of each point", own), ("common to the scan", common), ("both together", total))
+            ((label("of each point"), own), (label("common to the scan"), common), (label("both together"), total))
         ):
             left = (11 + panel * (_PANEL_MM + _GAP_MM)) / WIDTH_MM
             axes = figure.add_axes((left, 9 / HEIGHT_MM, _PANEL_MM / WIDTH_MM, 1 - 21 / HEIGHT_MM))

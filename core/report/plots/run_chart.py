@@ -9,15 +9,16 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
+from core.messages import label
 from core.report.content import RepeatLine
-from core.report.figures import DPI, MM_PER_INCH, mixed, new_figure, plot_style
-from core.report.look import Look
-from core.report.style import MUTED
+from core.report.layout.style import MUTED, Look
+from core.report.plots.figures import DPI, MM_PER_INCH, mixed, new_figure, plot_style
 from core.study.repeats import histogram
 
 LEFT_MM, WORDS_MM, HISTOGRAM_MM = 15.0, 34.0, 22.0
 """Room for the axis, for the words beside the lines, and for the histogram."""
 FEWEST_FOR_HISTOGRAM = 5
+"""Values: fewer make no shape."""
 FORMS = ("--", ":", ":", "-.")
 """Of the lines after the first: told apart without colour."""
 
@@ -32,13 +33,13 @@ def repeats_figure(
 ) -> Figure:
     """Thickness of each of `repeats` with ±U over its number, their mean, the nominal value and its tolerance."""
     values = [repeat.thickness_mm for repeat in repeats]
-    lines = {"mean": float(np.mean(values))}
+    lines = {label("mean"): float(np.mean(values))}
     if nominal_mm is not None:
         lines["nominal"] = nominal_mm
         if tolerance_mm is not None:
-            lines |= {"upper limit": nominal_mm + tolerance_mm, "lower limit": nominal_mm - tolerance_mm}
+            lines |= {label("upper limit"): nominal_mm + tolerance_mm, label("lower limit"): nominal_mm - tolerance_mm}
     U = [repeat.U_mm for repeat in repeats]
-    return run_chart_figure(look, values, U, lines, "thickness, mm", width_mm, height_mm)
+    return run_chart_figure(look, values, U, lines, look.words("thickness, mm"), width_mm, height_mm)
 
 
 def run_chart_figure(
@@ -46,7 +47,7 @@ def run_chart_figure(
     values: Sequence[float],
     U: Sequence[float],
     lines: Mapping[str, float],
-    label: str,
+    quantity: str,
     width_mm: float,
     height_mm: float,
 ) -> Figure:
@@ -67,7 +68,7 @@ def run_chart_figure(
         )
         axes.set_xlim(0.5, len(values) + 0.5)
         axes.set_xlabel(look.words("number of the scan"), labelpad=1)
-        axes.set_ylabel(label if label not in ("thickness, mm",) else look.words(label), labelpad=2)
+        axes.set_ylabel(quantity, labelpad=2)
         axes.ticklabel_format(axis="y", useOffset=False)
         axes.xaxis.set_major_locator(MaxNLocator(integer=True))
         axes.yaxis.set_major_locator(MaxNLocator(5))

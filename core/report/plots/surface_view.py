@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 from core.model import LightPlane
 from core.model.arrays import Array
 from core.progress import Progress, silent
-from core.scan.cloud import Cloud
-from core.scan.surface import Mesh
+from core.scan.surface.cloud import Cloud
+from core.scan.surface.fused_surface import Mesh
 
 AZIMUTH, ELEVATION = np.radians(-32.0), np.radians(42.0)
 """From where the viewer looks, about the up direction and above the ground."""

@@ -8,16 +8,20 @@ from reportlab.lib.units import mm
 from reportlab.platypus import Flowable, Table, TableStyle
 
 from core.inspect.characteristic import Characteristic
-from core.inspect.coverage import effective_dof
-from core.report.look import Look
-from core.report.style import MUTED, TEXT_WIDTH, color
-from core.report.tables import ShareBar, heads, plain_table, ruled_table
+from core.inspect.uncertainty.coverage import effective_dof
+from core.messages import label
+from core.report.layout.blocks import ShareBar, heads, plain_table, ruled_table
+from core.report.layout.style import MUTED, TEXT_WIDTH, Look, color
 from core.report.wording import decimals_of, shown_unit
 
 WIDTHS = [size * mm for size in (20, 19, 17, 17, 16, 11, 20)]
 """Value, distribution, u of input, sensitivity, contribution, degrees of freedom, share; the rest is the source's."""
 
+DISTRIBUTIONS = (label("normal"), label("rectangular"), label("triangular"), label("arcsine"), label("t"))
+"""Of an input, as a budget names them."""
+
 BAR = 9 * mm
+"""Length of the bar of a whole share."""
 
 SMALL = 1e-3
 """Below it a power of ten says more than zeros."""
@@ -82,9 +86,9 @@ def _closed(look: Look, one: Characteristic, rows: list[list[Flowable]], decimal
             "number_strong",
         ),
     )
-    for label, value, style, number in last:
+    for name, value, style, number in last:
         blanks = [look.text("", "small") for _ in range(4)]
-        rows.append([look.text(label, style), *blanks, look.text(value, number), look.text(""), look.text("")])
+        rows.append([look.text(name, style), *blanks, look.text(value, number), look.text(""), look.text("")])
     table = ruled_table(rows, [TEXT_WIDTH - sum(WIDTHS), *WIDTHS])
     line = -len(last) - 1
     spans = [("SPAN", (0, row), (4, row)) for row in range(-len(last), 0)]

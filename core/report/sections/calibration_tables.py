@@ -8,15 +8,16 @@ from reportlab.lib.units import mm
 from reportlab.platypus import Flowable, Table
 
 from core.calibrate.results import CAMERA_PARAMETERS, CameraCalibration, FanCalibration
+from core.messages import label, plural_message
 from core.report.content import CalibrationMark, ReportContent
-from core.report.look import Look
-from core.report.tables import heads, ruled_table
+from core.report.layout.blocks import heads, ruled_table
+from core.report.layout.style import Look
 from core.report.wording import decimals_of
 
 SYMBOLS = {"alpha": "α", "beta": "β", "gamma": "γ ({skew})", "u0": "u₀", "v0": "v₀"}
 UNITS = {"alpha": "px", "beta": "px", "gamma": "px", "u0": "px", "v0": "px"}
 
-KINDS = {"camera": "Camera", "fan": "Fixed laser (fan)"}
+KINDS = {"camera": label("Camera"), "fan": label("Fixed laser (fan)")}
 
 HOURS_A_DAY = 24
 
@@ -47,9 +48,9 @@ def age_words(look: Look, mark: CalibrationMark, content: ReportContent) -> str:
     hours = int(age.total_seconds() // 3600)
     if hours < 1:
         return look.words("under 1 hour")
-    return (
-        look.words.count(hours // HOURS_A_DAY, "day") if hours >= 2 * HOURS_A_DAY else look.words.count(hours, "hour")
-    )
+    if hours >= 2 * HOURS_A_DAY:
+        return look.words(plural_message("report.days", "{n:,} day", "{n:,} days", n=hours // HOURS_A_DAY))
+    return look.words(plural_message("report.hours", "{n:,} hour", "{n:,} hours", n=hours))
 
 
 def camera_table(look: Look, calibration: CameraCalibration, width: float) -> Table:
@@ -81,8 +82,13 @@ def camera_facts(look: Look, calibration: CameraCalibration) -> dict[str, str]:
     used, apart = sum(view.used for view in calibration.views), calibration.cross_validation_mm
     if not calibration.views:
         return {words("Views"): words("calibrated by another program")}
+    views = plural_message("report.views", "{n:,} view", "{n:,} views", n=len(calibration.views))
     return {
-        words("Views"): words("{n} of {all} used", n=used, all=words.count(len(calibration.views), "view")),
+        words("Views"): words(
+            "{n} of {all} used",
+            n=used,
+            all=words(views),
+        ),
         words("Corner error"): words(
             "mean {mean} px, rms {rms} px",
             mean=words.fixed(calibration.mean_px, 3),
@@ -102,11 +108,12 @@ def camera_facts(look: Look, calibration: CameraCalibration) -> dict[str, str]:
 def fan_table(look: Look, calibration: FanCalibration, width: float) -> Table:
     """The fan's planes: normal, distance from the camera, fit, and the angle to the next one."""
     fixed = look.words.fixed
-    names = ("Line", "normal (x, y, z)", "d, mm", "rms, mm", "to the next, ° (free fit)")
-    rows: list[list[Flowable]] = [heads(look, *names, numbers=(2, 3, 4))]
+    rows: list[list[Flowable]] = [
+        heads(look, "Line", "normal (x, y, z)", "d, mm", "rms, mm", "to the next, ° (free fit)", numbers=(2, 3, 4))
+    ]
     for index, plane in enumerate(calibration.fan.planes):
-        normal = "; ".join(fixed(float(value), 4) for value in plane.normal)
-        normal = normal if look.words.language == "de" else normal.replace(";", ",")
+        between = ", " if look.words.language.decimal != "," else "; "
+        normal = between.join(fixed(float(value), 4) for value in plane.normal)
         angle = ""
         if index < len(calibration.angles):
             angles = (math.degrees(calibration.angles[index]), math.degrees(calibration.free_angles[index]))
@@ -123,7 +130,7 @@ def fan_facts(look: Look, calibration: FanCalibration) -> dict[str, str]:
     """How good the fan's calibration is."""
     words = look.words
     used = sum(pose.used for pose in calibration.poses)
-    poses = words.count(len(calibration.poses), "pose")
+    poses = words(plural_message("report.poses", "{n:,} pose", "{n:,} poses", n=len(calibration.poses)))
     facts = {words("Poses"): words("{n} of {all} of the plane target used", n=used, all=poses)}
     if calibration.constraint_suits is not None:
         gap = words.fixed(calibration.pencil_gap_mm, 3)

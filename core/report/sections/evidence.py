@@ -2,17 +2,29 @@
 
 from __future__ import annotations
 
-from reportlab.lib.units import mm
-from reportlab.platypus import Flowable, HRFlowable, KeepTogether, Paragraph, Spacer
+from collections.abc import Mapping
 
-from core.report.calibration_tables import camera_facts, camera_table, fan_facts, fan_table, marks_table
-from core.report.content import ReportContent
-from core.report.input_tables import SHORT_HASH, hash_table, left_out_of_calibration, left_out_table
-from core.report.language import grouped
-from core.report.layout import Limits, section
-from core.report.look import Look
-from core.report.style import HAIRLINE, TEXT_WIDTH, color, lines_of, markup
-from core.report.tables import GAP, more_line, pairs_table, side_by_side
+from reportlab.lib.units import mm
+from reportlab.pdfbase.pdfmetrics import stringWidth
+from reportlab.platypus import Flowable, HRFlowable, KeepTogether, Paragraph, Spacer, TableStyle
+
+from core.messages import Message, plural_message
+from core.report.content import NO_REASON, LeftOut, ReportContent
+from core.report.layout.blocks import (
+    GAP,
+    Cell,
+    Limits,
+    heads,
+    more_line,
+    pairs_table,
+    plain_table,
+    ruled_table,
+    section,
+    side_by_side,
+)
+from core.report.layout.style import HAIRLINE, MONO, MUTED, SANS, TEXT_WIDTH, Look, color, markup
+from core.report.sections.calibration_tables import camera_facts, camera_table, fan_facts, fan_table, marks_table
+from core.report.wording import grouped
 
 
 def calibrations(look: Look, content: ReportContent, limits: Limits) -> list[Flowable]:
@@ -48,7 +60,7 @@ def pictures_used(look: Look, content: ReportContent, limits: Limits) -> list[Fl
     if not content.frames:
         said = words("No frame was given")
     else:
-        frames = words.count(len(content.frames), "frame")
+        frames = words(plural_message("report.frames", "{n:,} frame", "{n:,} frames", n=len(content.frames)))
         said = words("{n} of {all} used", n=grouped(len(used)), all=frames)
     if used:
         said += words(", {first} to {last}", first=used[0], last=used[-1])
@@ -72,7 +84,7 @@ def warnings(look: Look, content: ReportContent, limits: Limits) -> list[Flowabl
 
 def remarks(look: Look, content: ReportContent) -> list[Flowable]:
     """The operator's own words."""
-    lines = lines_of(content.remarks) if content.remarks.strip() else []
+    lines = look.lines(content.remarks) if content.remarks.strip() else []
     return [section(look, "remarks", "Remarks of the operator", list(lines[:3])), *lines[3:]] if lines else []
 
 
@@ -99,16 +111,16 @@ def inputs(look: Look, content: ReportContent, limits: Limits) -> list[Flowable]
     if not content.hashes:
         return [section(look, "inputs", "Inputs", [look.say("No hashes of the inputs were given.", "small")])]
     listed = "inputs" not in content.hidden
+    counted = look.words(plural_message("report.inputs", "{n:,} input", "{n:,} inputs", n=len(content.hashes)))
     if listed:
         note = look.words(
             "SHA-256 of {inputs}, its first {n} characters; all of them in full are in run.json. Over all inputs "
             "together:",
-            inputs=look.words.count(len(content.hashes), "input"),
+            inputs=counted,
             n=SHORT_HASH,
         )
     else:
-        inputs_said = look.words.count(len(content.hashes), "input")
-        note = look.words("SHA-256 over all {inputs}; those of each are in run.json:", inputs=inputs_said)
+        note = look.words("SHA-256 over all {inputs}; those of each are in run.json:", inputs=counted)
     digest = Paragraph(markup(content.inputs_digest), look.style("mono"))
     body: list[Flowable] = [look.text(note, "small"), digest]
     if not listed:
@@ -127,3 +139,79 @@ def end(look: Look, content: ReportContent) -> list[Flowable]:
         return [mark]
     words = look.words("Left out of this report by choice: {sections}.", sections="; ".join(left_out))
     return [KeepTogether([Spacer(0, 3 * mm), look.text(words, "small"), mark])]
+
+
+SHORT_HASH = 10
+"""Characters printed of an input's SHA-256; the whole of it is in run.json."""
+
+
+def left_out_table(look: Look, left_out: list[LeftOut], width: float, most: int, most_names: int) -> list[Flowable]:
+    """Reasons, how often, and which: at most `most` reasons, and of each at most `most_names` names."""
+    if not left_out:
+        return []
+    rows: list[list[Flowable]] = [heads(look, "Left out because", "how many", "which", numbers=(1,))]
+    for reason, names in left_out[:most]:
+        which = ", ".join(names[:most_names])
+        if len(names) > most_names:
+            which += look.words(" and {n} more", n=grouped(len(names) - most_names))
+        rows.append(
+            [
+                look.text(look.words.known(reason), "small"),
+                look.text(grouped(len(names)), "number"),
+                look.text(which, "small"),
+            ]
+        )
+    table = ruled_table(rows, [0.4 * width, 0.12 * width, 0.48 * width])
+    table.setStyle(TableStyle([("LEFTPADDING", (2, 0), (2, -1), 6)]))
+    return [table, *more_line(look, len(left_out) - most)]
+
+
+def left_out_of_calibration(content: ReportContent) -> list[LeftOut]:
+    """Views and poses the calibrations did without, by reason."""
+    reasons: dict[Message | str, list[str]] = {}
+    for view in content.camera.views:
+        if not view.used:
+            reasons.setdefault(view.reason or NO_REASON, []).append(view.view.name or "view without a name")
+    for pose in content.fan.poses:
+        if not pose.used:
+            reasons.setdefault(pose.reason or NO_REASON, []).append(pose.name)
+    return sorted((LeftOut(*item) for item in reasons.items()), key=lambda one: -len(one.names))
+
+
+def hash_table(look: Look, hashes: Mapping[str, str], width: float, most: int) -> list[Flowable]:
+    """Every input by folder, with the beginning of its SHA-256; at most `most` of them.
+
+    As many columns as the longest name leaves room for.
+    """
+    shown = sorted(hashes, key=lambda path: ("/" in path, path))[:most]
+    folders: dict[str, list[str]] = {}
+    for path in shown:
+        folders.setdefault(path.rpartition("/")[0], []).append(path)
+    longest = max((stringWidth(path.rpartition("/")[2], SANS, 6) for path in shown), default=0.0)
+    room = longest + stringWidth("0" * (SHORT_HASH + 2), MONO, 5.6) + 6
+    columns = int(min(max(width // room, 1), 6))
+    rows: list[list[Cell]] = []
+    head_rows = []
+    for folder, paths in folders.items():
+        if folder:
+            head_rows.append(len(rows))
+            rows.append([look.text(f"{folder}/", "hash_folder"), *[""] * (columns - 1)])
+        depth = -(-len(paths) // columns)
+        cells = [_hash_cell(look, path, hashes[path]) for path in paths]
+        rows += [[*cells[row::depth], *[""] * (columns - len(cells[row::depth]))] for row in range(depth)]
+    parts: list[Flowable] = []
+    if rows:
+        table = plain_table(rows, [width / columns] * columns)
+        style: list[tuple[object, ...]] = [(side, (0, 0), (-1, -1), 0.3) for side in ("TOPPADDING", "BOTTOMPADDING")]
+        style += [("FONTSIZE", (0, 0), (-1, -1), 1), ("LEADING", (0, 0), (-1, -1), 1)]  # of the empty cells
+        style += [("SPAN", (0, row), (-1, row)) for row in head_rows]
+        style += [("TOPPADDING", (0, row), (-1, row), 2) for row in head_rows]
+        table.setStyle(TableStyle(style))
+        parts.append(table)
+    return [*parts, *more_line(look, len(hashes) - most)]
+
+
+def _hash_cell(look: Look, path: str, digest: str) -> Paragraph:
+    name = markup(path.rpartition("/")[2])
+    code = f'<font name="{MONO}" size="5.6" color="{MUTED}">{markup(digest[:SHORT_HASH])}</font>'
+    return Paragraph(f"{name} {code}", look.style("hash"))

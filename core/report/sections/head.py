@@ -8,19 +8,19 @@ from reportlab.lib.units import mm
 from reportlab.lib.utils import ImageReader
 from reportlab.platypus import Flowable, HRFlowable, Image
 
-from core.report.calibration_tables import age_words
+from core.messages import label
 from core.report.content import ReportContent
-from core.report.look import Look
-from core.report.style import TEXT_WIDTH
-from core.report.tables import GAP, pairs_table, plain_table, side_by_side
+from core.report.layout.blocks import GAP, pairs_table, plain_table, side_by_side
+from core.report.layout.style import TEXT_WIDTH, Look
+from core.report.sections.calibration_tables import age_words
 from core.report.wording import temperatures_line
 
-TITLE = "Measurement report"
+TITLE = label("Measurement report")
 
 LOGO = (46 * mm, 16 * mm)
 """Largest width and height of a logo."""
 
-LABEL = 27 * mm
+LABEL = 27 * mm  # width of the column of names
 SHORT = 12
 """Characters of a hash that name it on page one; the whole of it is further on."""
 
@@ -41,7 +41,7 @@ def head(look: Look, content: ReportContent) -> list[Flowable]:
     )
     rule = HRFlowable(width="100%", thickness=1.4, color=look.accent_color, spaceBefore=0, spaceAfter=4)
     columns = [
-        pairs_table(look, {look.words(label): value for label, value in pairs.items() if value}, column, LABEL)
+        pairs_table(look, {label: value for label, value in pairs.items() if value}, column, LABEL)
         for pairs in (_job(look, content), _evidence(look, content))
     ]
     return [top, rule, side_by_side([columns[0]], [columns[1]], TEXT_WIDTH)]
@@ -49,33 +49,33 @@ def head(look: Look, content: ReportContent) -> list[Flowable]:
 
 def _job(look: Look, content: ReportContent) -> dict[str, str]:
     """What was measured, for whom, by whom, under which conditions."""
+    words = look.words
     return {
-        "Part": content.part or look.words("not named"),
-        "Serial number": content.serial,
-        "Customer": content.customer,
-        "Laboratory": content.laboratory if content.template.name else "",
-        "Operator": content.operator,
-        "Temperatures": temperatures_line(
+        words("Part"): content.part or look.words("not named"),
+        words("Serial number"): content.serial,
+        words("Customer"): content.customer,
+        words("Laboratory"): content.laboratory if content.template.name else "",
+        words("Operator"): content.operator,
+        words("Temperatures"): temperatures_line(
             content.air_celsius, content.part_celsius, look.words, corrected=content.at_reference
         ),
-        "Sweeps located by": look.words.known(content.method),
+        words("Sweeps located by"): look.words.known(content.method),
     }
 
 
 def _evidence(look: Look, content: ReportContent) -> dict[str, str]:
     """What names the report and all it rests on."""
-    marks = {
-        mark.of: f"{mark.id}, {look.words('age')} {age_words(look, mark, content)}" for mark in content.calibrations
-    }
+    words = look.words
+    marks = {mark.of: f"{mark.id}, {words('age')} {age_words(look, mark, content)}" for mark in content.calibrations}
     return {
-        "Report": content.report_id,
-        "Date and time": f"{content.timestamp:%Y-%m-%d %H:%M:%S %Z}".strip(),
-        "Rig": content.rig_id,
-        "Camera calibration": marks.get("camera", ""),
-        "Fan calibration": marks.get("fan", ""),
-        "Software": f"Trisect {content.version}",
-        "Settings, SHA-256": f"{content.settings_digest[:SHORT]}…",
-        "Inputs, SHA-256": f"{content.inputs_digest[:SHORT]}…" if content.hashes else "",
+        words("Report"): content.report_id,
+        words("Date and time"): f"{content.timestamp:%Y-%m-%d %H:%M:%S %Z}".strip(),
+        words("Rig"): content.rig_id,
+        words("Camera calibration"): marks.get("camera", ""),
+        words("Fan calibration"): marks.get("fan", ""),
+        words("Software"): f"Trisect {content.version}",
+        words("Settings, SHA-256"): f"{content.settings_digest[:SHORT]}…",
+        words("Inputs, SHA-256"): f"{content.inputs_digest[:SHORT]}…" if content.hashes else "",
     }
 
 

@@ -5,17 +5,18 @@ from __future__ import annotations
 from reportlab.lib.units import mm
 from reportlab.platypus import Flowable
 
+from core.messages import label, plural_message
 from core.report.content import RepeatLine, ReportContent
-from core.report.look import Look
-from core.report.tables import heads, more_line, ruled_table
+from core.report.layout.blocks import heads, more_line, ruled_table
+from core.report.layout.style import Look
 from core.report.wording import decimals_of
 from core.study.repeats import RepeatStatistics
 
 WIDTHS = [shares * mm for shares in (7, 45, 29, 21, 17, 9, 18, 24)]
 """Number, scan, time, thickness, U, k, error, calibration."""
 
-COLUMNS = ("", "Scan", "measured at", "thickness, mm", "U, mm", "k", "error, mm", "calibration")
 NUMERIC = (3, 4, 5, 6)
+"""Columns of numbers, to the right."""
 
 
 def repeats_head(look: Look, content: ReportContent) -> list[Flowable]:
@@ -24,7 +25,9 @@ def repeats_head(look: Look, content: ReportContent) -> list[Flowable]:
     if statistics is None:
         return []
     nominal = content.nominal_mm
-    said = words("{scans} of the part", scans=words.count(statistics.n, "scan"))
+    said = words(
+        "{scans} of the part", scans=words(plural_message("report.scans", "{n:,} scan", "{n:,} scans", n=statistics.n))
+    )
     if nominal is not None:
         said += words("; errors are measured − nominal value, {nominal} mm.", nominal=words.general(nominal))
     else:
@@ -39,28 +42,35 @@ def repeats_head(look: Look, content: ReportContent) -> list[Flowable]:
 
 def _statistics_table(look: Look, statistics: RepeatStatistics, width: float) -> Flowable:
     decimals = max(decimals_of(statistics.std_mm), 3)
-    values: dict[str, float | None] = {
-        "mean, mm": statistics.mean_mm,
-        "mean error, mm": statistics.error_mm,
-        "RMSE, mm": statistics.rmse_mm,
-        "standard deviation, mm": statistics.std_mm,
-        "largest error, mm": statistics.largest_error_mm,
-    }
-    known = {name: value for name, value in values.items() if value is not None}
-    shown = [look.words.fixed(value, decimals, signed=name.startswith("mean error")) for name, value in known.items()]
-    rows = [heads(look, *known, numbers=range(len(known))), [look.text(value, "number_strong") for value in shown]]
+    words = look.words
+    values = (
+        (words("mean, mm"), statistics.mean_mm, False),
+        (words("mean error, mm"), statistics.error_mm, True),
+        (words("RMSE, mm"), statistics.rmse_mm, False),
+        (words("standard deviation, mm"), statistics.std_mm, False),
+        (words("largest error, mm"), statistics.largest_error_mm, False),
+    )
+    known = {name: words.fixed(value, decimals, signed=signed) for name, value, signed in values if value is not None}
+    rows = [
+        [look.text(name, "head_number") for name in known],
+        [look.text(value, "number_strong") for value in known.values()],
+    ]
     return ruled_table(rows, [width / len(known)] * len(known))
 
 
 def repeats_table(look: Look, content: ReportContent, most: int) -> list[Flowable]:
     """Every repeat in a row, at most `most` of them."""
-    rows: list[list[Flowable]] = [heads(look, *COLUMNS, numbers=NUMERIC)]
+    rows: list[list[Flowable]] = [
+        heads(
+            look, "", "Scan", "measured at", "thickness, mm", "U, mm", "k", "error, mm", "calibration", numbers=NUMERIC
+        )
+    ]
     for number, repeat in enumerate(content.repeats[:most], start=1):
         cells = (f"{number}", *_cells(look, repeat, content.nominal_mm))
         rows.append([look.text(cell, "number" if place in NUMERIC else "small") for place, cell in enumerate(cells)])
     table = ruled_table(rows, WIDTHS)
     table.setStyle([("LEFTPADDING", (7, 0), (7, -1), 4)])
-    return [table, *more_line(look, len(content.repeats) - most, "the project")]
+    return [table, *more_line(look, len(content.repeats) - most, label("the project"))]
 
 
 def _cells(look: Look, repeat: RepeatLine, nominal_mm: float | None) -> tuple[str, ...]:

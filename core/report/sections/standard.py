@@ -7,24 +7,30 @@ from collections.abc import Callable, Mapping
 
 from reportlab.lib.units import mm
 from reportlab.lib.utils import ImageReader
-from reportlab.platypus import Flowable, KeepTogether, Spacer
+from reportlab.platypus import Flowable, KeepTogether, Spacer, TableStyle
 
 from core.inspect.results import GaugeResult
-from core.report import evidence
-from core.report.budget import budget_table
+from core.messages import label, plural_message
 from core.report.content import ReportContent
-from core.report.head import head
-from core.report.language import grouped
-from core.report.layout import Bookmark, Heading, Limits, Picture, section
-from core.report.look import Look
-from core.report.repeats import repeats_head, repeats_table
-from core.report.result_box import result_box
-from core.report.result_table import budget_key, result_table
-from core.report.signatures import signatures
-from core.report.studies import studies
-from core.report.style import TEXT_WIDTH
-from core.report.tables import heads, more_line, ruled_table
-from core.report.wording import limits_of_cloud, limits_of_inspection, limits_of_thickness, shown_name
+from core.report.layout.blocks import (
+    Bookmark,
+    Heading,
+    Limits,
+    Picture,
+    heads,
+    more_line,
+    plain_table,
+    ruled_table,
+    section,
+)
+from core.report.layout.style import MUTED, TEXT_WIDTH, Look, color
+from core.report.sections import evidence
+from core.report.sections.budget import budget_table
+from core.report.sections.head import head
+from core.report.sections.repeats import repeats_head, repeats_table
+from core.report.sections.result import budget_key, result_box, result_table
+from core.report.sections.studies import studies
+from core.report.wording import grouped, limits_of_cloud, limits_of_inspection, limits_of_thickness, shown_name
 
 Pictures = Mapping[str, ImageReader]
 
@@ -97,12 +103,16 @@ def _surface(look: Look, content: ReportContent, pictures: Pictures, limits: Lim
         what = words("Mesh of {n} triangles", n=grouped(drawn))
     else:
         what = words("Cloud of {n} points", n=grouped(len(content.cloud)))
-    above = "height above the lower face" if content.gauge else "height above the farthest points, towards the camera"
+    above = (
+        words("height above the lower face")
+        if content.gauge
+        else words("height above the farthest points, towards the camera")
+    )
     caption = words(
         "{what}, in parallel projection, shaded; colour: {height}. Dimensions are those of the measured area. Blank: "
         "not measured.",
         what=what,
-        height=words(above),
+        height=above,
     )
     body = [Picture(pictures["surface"], limits.picture_scale), look.text(caption, "caption")]
     return [section(look, "surface", "Measured surface", body)]
@@ -112,11 +122,12 @@ def _frame(look: Look, content: ReportContent, pictures: Pictures, limits: Limit
     overlay = content.overlay
     if overlay is None or "frame" not in pictures:
         return []
+    crossings = plural_message("report.crossings", "{n:,} crossing", "{n:,} crossings", n=len(overlay.crossings))
     caption = look.words(
         "Frame {name}, brightened, with {crossings} of the hand-moved line and the fan. σ is the standard uncertainty "
         "of the depth of the points on the hand-moved line.",
         name=overlay.name,
-        crossings=look.words.count(len(overlay.crossings), "crossing"),
+        crossings=look.words(crossings),
     )
     body = [Picture(pictures["frame"], limits.picture_scale), look.text(caption, "caption")]
     return [section(look, "frame", "One frame of the scan", body)]
@@ -150,21 +161,24 @@ def _maps(look: Look, content: ReportContent, pictures: Pictures, limits: Limits
 
 
 def _faces(look: Look, gauge: GaugeResult) -> Flowable:
-    names = (
-        "Face",
-        "points",
-        "rms of the residuals, mm",
-        "flatness (95 % of the points), mm",
-        "angle between the faces, fitted freely",
-    )
     fixed = look.words.fixed
-    rows: list[list[Flowable]] = [heads(look, *names, numbers=(1, 2, 3, 4))]
+    rows: list[list[Flowable]] = [
+        heads(
+            look,
+            "Face",
+            "points",
+            "rms of the residuals, mm",
+            "flatness (95 % of the points), mm",
+            "angle between the faces, fitted freely",
+            numbers=(1, 2, 3, 4),
+        )
+    ]
     for name, face, angle in (
-        ("Upper", gauge.upper, f"{fixed(math.degrees(gauge.parallelism), 3)}°"),
-        ("Lower", gauge.lower, ""),
+        (look.words("Upper"), gauge.upper, f"{fixed(math.degrees(gauge.parallelism), 3)}°"),
+        (look.words("Lower"), gauge.lower, ""),
     ):
         numbers = (grouped(len(face.indices)), fixed(face.rms_mm, 3), fixed(face.flatness_mm, 3), angle)
-        rows.append([look.say(name, "small"), *(look.text(number, "number") for number in numbers)])
+        rows.append([look.text(name, "small"), *(look.text(number, "number") for number in numbers)])
     return ruled_table(rows, [TEXT_WIDTH * share for share in (0.1, 0.12, 0.22, 0.28, 0.28)])
 
 
@@ -182,7 +196,7 @@ def _deviations(look: Look, content: ReportContent, pictures: Pictures, limits: 
             Picture(pictures[f"deviation-{number}"], limits.picture_scale),
             look.text(caption, "caption"),
         ]
-        title = "Deviation from the nominal surface"
+        title = label("Deviation from the nominal surface")
         parts.append(KeepTogether(body) if place else section(look, "deviation", title, body))
     return parts
 
@@ -213,3 +227,29 @@ def _repeats(look: Look, content: ReportContent, pictures: Pictures, limits: Lim
         first += [Spacer(0, 2 * mm), Picture(pictures["repeats"], limits.picture_scale), caption]
     head_part = section(look, "repeats", "Repeated scans", first)
     return [head_part, Spacer(0, 2 * mm), *repeats_table(look, content, limits.repeats)]
+
+
+A_ROW = 3
+"""Signatures beside each other."""
+
+ROOM = 14 * mm
+"""Above a line, for the hand."""
+
+
+def signatures(look: Look, content: ReportContent) -> list[Flowable]:
+    """A line for everyone who signs: those of the template, or else the operator."""
+    names = content.template.signatures or (content.operator,)
+    own = [look.text(content.template.text, "small")] if content.template.text else []
+    lines: list[Flowable] = []
+    for start in range(0, len(names), A_ROW):
+        row = names[start : start + A_ROW]
+        cells = [[look.text(name, "small_strong"), look.say("Date, signature", "label")] for name in row]
+        columns: list[list[Flowable]] = []
+        for cell in cells:
+            columns += [cell, []]
+        width, gap = (TEXT_WIDTH - (A_ROW - 1) * 8 * mm) / A_ROW, 8 * mm
+        table = plain_table([columns[:-1]], ([width, gap] * len(row))[:-1])
+        above = [("LINEABOVE", (2 * place, 0), (2 * place, 0), 0.5, color(MUTED)) for place in range(len(row))]
+        table.setStyle(TableStyle(above))
+        lines += [Spacer(0, ROOM), table]
+    return [section(look, "signatures", "Signatures", [*own, *lines])]

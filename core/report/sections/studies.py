@@ -10,20 +10,30 @@ from reportlab.lib.units import mm
 from reportlab.lib.utils import ImageReader
 from reportlab.platypus import Flowable, KeepTogether, Spacer
 
+from core.messages import from_json, label
 from core.report.content import ReportContent
-from core.report.layout import Heading, Limits, Picture, section
-from core.report.look import Look
-from core.report.style import TEXT_WIDTH
-from core.report.tables import heads, plain_table, ruled_table
+from core.report.layout.blocks import Heading, Limits, Picture, heads, plain_table, ruled_table, section
+from core.report.layout.style import TEXT_WIDTH, Look
 from core.report.wording import decimals_of
 
 TITLES = {
-    "repeats": "Repeats of {name}",
-    "type1": "Type-1 gauge study",
-    "grr": "Gauge R&R (ANOVA)",
-    "acceptance": "Acceptance check after the pattern of VDI/VDE 2634-2",
+    "repeats": label("Repeats of {name}"),
+    "type1": label("Type-1 gauge study"),
+    "grr": label("Gauge R&R (ANOVA)"),
+    "acceptance": label("Acceptance check after the pattern of VDI/VDE 2634-2"),
 }
 """Heading of each kind of study."""
+
+VERDICTS = (
+    label("conforming"), label("not conforming"), label("not proven"), label("capable"), label("not capable"),
+    label("acceptable"), label("acceptable with reservations"), label("not acceptable"),
+)  # fmt: skip
+"""As study.json has them."""
+SOURCES = (
+    label("gauge R&R"), label("repeatability"), label("reproducibility"), label("operators"), label("interaction"),
+    label("parts"), label("total"),
+)  # fmt: skip
+"""Of variation, as study.json has them."""
 
 Study = Mapping[str, Any]
 
@@ -39,7 +49,7 @@ def studies(look: Look, content: ReportContent, pictures: Mapping[str, ImageRead
         ]
         if f"study-{number}" in pictures:
             body += [Spacer(0, 2 * mm), Picture(pictures[f"study-{number}"], limits.picture_scale)]
-        body += [*look.bullets(tuple(look.words.known(note) for note in study["notes"])), Spacer(0, 2 * mm)]
+        body += [*look.bullets(tuple(look.words.known(from_json(note)) for note in study["notes"])), Spacer(0, 2 * mm)]
         parts.append(KeepTogether(body) if number else section(look, "studies", "Studies", body))
     return parts
 
@@ -55,12 +65,15 @@ def study_lines(study: Study) -> dict[str, float]:
     """The lines of a run chart by what they are called; only those that are known."""
     if study["kind"] == "repeats":
         run = study["run_chart"] or {}
-        lines = {"mean": study["mean"], "nominal": study["nominal"]}
-        lines |= {"upper control limit": run.get("upper"), "lower control limit": run.get("lower")}
+        lines = {label("mean"): study["mean"], label("nominal"): study["nominal"]}
+        lines |= {label("upper control limit"): run.get("upper"), label("lower control limit"): run.get("lower")}
     else:
         tenth = 0.1 * study["tolerance_width"]
-        lines = {"mean": study["mean"], "reference": study["reference"]}
-        lines |= {"reference + 0.1 T": study["reference"] + tenth, "reference − 0.1 T": study["reference"] - tenth}
+        lines = {label("mean"): study["mean"], label("reference"): study["reference"]}
+        lines |= {
+            label("reference + 0.1 T"): study["reference"] + tenth,
+            label("reference − 0.1 T"): study["reference"] - tenth,
+        }
     return {name: value for name, value in lines.items() if value is not None}
 
 
@@ -70,7 +83,7 @@ def _named(look: Look, study: Study) -> dict[str, str]:
 
 def _parts(look: Look, study: Study) -> list[Flowable]:
     """Figures and tables of one study."""
-    verdict = {"verdict": look.words.known(study["verdict"])} if study["verdict"] else {}
+    verdict = {look.words("verdict"): look.words.known(study["verdict"])} if study["verdict"] else {}
     match study["kind"]:
         case "repeats":
             return [_figures(look, _repeats(look, study) | verdict)]
@@ -83,37 +96,54 @@ def _parts(look: Look, study: Study) -> list[Flowable]:
 
 
 def _repeats(look: Look, study: Study) -> dict[str, str]:
-    spread, unit = study["std"], study["unit"]
+    spread, unit, words = study["std"], study["unit"], look.words
     decimals = max(decimals_of(spread or math.nan), 3)
     budget = study["budget_of_mean"]
-    lengths = {"mean": study["mean"], "error": study["error"], "RMSE": study["rmse"], "s (n − 1)": spread,
-               "largest error": study["largest_error"], "U of the mean": budget["U"]}  # fmt: skip
-    return {"n": f"{study['n']}"} | _lengths(look, lengths, decimals, unit)
+    lengths = {
+        words("mean"): study["mean"],
+        words("error"): study["error"],
+        words("RMSE"): study["rmse"],
+        words("s (n − 1)"): spread,
+        words("largest error"): study["largest_error"],
+        words("U of the mean"): budget["U"],
+    }
+    return {words("n"): f"{study['n']}"} | _lengths(look, lengths, decimals, unit)
 
 
 def _type1(look: Look, study: Study) -> dict[str, str]:
     decimals, unit, words = max(decimals_of(study["s"] or math.nan), 3), study["unit"], look.words
-    keys = {"reference": "reference", "T": "tolerance_width", "mean": "mean", "s (n − 1)": "s", "bias": "bias"}
-    lengths = {name: study[key] for name, key in keys.items()}
-    ratios = {name: _ratio(look, study[key]) for name, key in (("Cg", "cg"), ("Cgk", "cgk"))}
-    t_test = {"p": "" if study["p"] is None else words.general(float(f"{study['p']:.2g}"))}
-    return {"n": f"{study['n']}"} | _lengths(look, lengths, decimals, unit) | ratios | t_test
+    lengths = {
+        words("reference"): study["reference"],
+        words("T"): study["tolerance_width"],
+        words("mean"): study["mean"],
+        words("s (n − 1)"): study["s"],
+        words("bias"): study["bias"],
+    }
+    ratios = {words("Cg"): _ratio(look, study["cg"]), words("Cgk"): _ratio(look, study["cgk"])}
+    t_test = {words("p"): "" if study["p"] is None else words.general(float(f"{study['p']:.2g}"))}
+    return {words("n"): f"{study['n']}"} | _lengths(look, lengths, decimals, unit) | ratios | t_test
 
 
 def _grr(look: Look, study: Study) -> dict[str, str]:
     words = look.words
-    shares = {"%GRR of the total": study["grr_of_total"]["value"], "%GRR of T": study["grr_of_tolerance"]["value"]}
+    shares = {
+        words("%GRR of the total"): study["grr_of_total"]["value"],
+        words("%GRR of T"): study["grr_of_tolerance"]["value"],
+    }
     shown = {name: f"{words.fixed(100 * value, 1)} %" for name, value in shares.items() if value is not None}
     categories = study["ndc"]["categories"]
-    return shown | {"ndc": "∞" if categories is None else f"{categories}"}
+    return shown | {words("ndc"): "∞" if categories is None else f"{categories}"}
 
 
 def _components(look: Look, study: Study) -> Flowable:
     words = look.words
-    shares = ("share of σ², %", "of the total, %", "of T, %")
     sigma = look.text(f"σ, {study['unit']}", "head_number")
     rows: list[list[Flowable]] = [
-        [look.say("Source of variation", "head"), sigma, *(look.say(name, "head_number") for name in shares)]
+        [
+            look.say("Source of variation", "head"),
+            sigma,
+            *heads(look, "share of σ², %", "of the total, %", "of T, %", numbers=(0, 1, 2)),
+        ]
     ]
     for one in study["components"]:
         percent = (one["contribution"], one["of_total"], one["of_tolerance"])
@@ -133,11 +163,12 @@ def _ratio(look: Look, value: float) -> str:
 
 def _quantities(look: Look, study: Study) -> Flowable:
     words = look.words
-    names = ("Quantity", "positions", "largest error, mm", "at", "limit, mm", "decision")
-    rows: list[list[Flowable]] = [heads(look, *names, numbers=(1, 2, 4))]
+    rows: list[list[Flowable]] = [
+        heads(look, "Quantity", "positions", "largest error, mm", "at", "limit, mm", "decision", numbers=(1, 2, 4))
+    ]
     rows += [
         [
-            look.text(words.known(one["title"]), "small"),
+            look.text(words.known(from_json(one["title"])), "small"),
             look.text(f"{len(one['readings'])}", "number"),
             look.text(words.fixed(one["largest_error"], 4, signed=True), "number"),
             look.text(one["worst_position"], "small"),
@@ -162,6 +193,6 @@ def _figures(look: Look, figures: Mapping[str, str]) -> Flowable:
     for start in range(0, len(names), 6):
         shown = names[start : start + 6]
         padding = [look.text("")] * (6 - len(shown))
-        rows.append([*(look.say(name, "label") for name in shown), *padding])
+        rows.append([*(look.text(name, "label") for name in shown), *padding])
         rows.append([*(look.text(figures[name], "small_strong") for name in shown), *padding])
     return plain_table(rows, [TEXT_WIDTH / 6] * 6)

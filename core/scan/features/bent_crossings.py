@@ -1,9 +1,11 @@
 """Crossings on a surface that bends, where the averaged centrelines themselves meet.
 
-Crossings are found by local fits over long windows (`core.image.crossing`), stiff enough to be of use on flat faces. On
+Crossings are found by local fits over long windows (`core.image.crossings.crossing`), stiff enough to be of use on
+flat faces. On
 a bent surface such a fit cuts the corner: by less than its standard uncertainty, which counts that, but by the same on
 all stripes, and a ball of 50 mm comes out 0.02 mm too small (half resolution). Centrelines averaged along themselves
-(`core.image.smoothing`) are held to a tenth of their own uncertainty there; where they meet is off by a tenth of that.
+(`core.image.stripes.smoothing`) are held to a tenth of their own uncertainty there; where they meet is off by a tenth
+of that.
 """
 
 from __future__ import annotations
@@ -15,11 +17,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from core.image.centreline import Centreline
+from core.image.stripes.centreline import Centreline
 from core.model.arrays import Array
-from core.scan.crossings import CrossingTable, Index
+from core.scan.features.crossings import CrossingTable, Index
 
 ROUNDS = 4
+"""Steps of Newton towards the place where two polylines meet; each starts within a px of it."""
 FARTHEST = 4.0
 """Crossings that would move by more than so many standard uncertainties are left: lines that hardly meet."""
 
@@ -62,7 +65,7 @@ class _End:
         return sigma
 
 
-def met_again(table: CrossingTable, lines: Mapping[Name, BentLine]) -> CrossingTable:
+def crossed_again(table: CrossingTable, lines: Mapping[Name, BentLine]) -> CrossingTable:
     """The crossings of which both ends lie on a bend of `lines` where these meet, as sure as they are; others stay."""
     bent = np.flatnonzero(_on_bend(table, "a", lines) & _on_bend(table, "b", lines))
     mine = table.select(bent)

@@ -17,13 +17,14 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from core.image.centreline import Centreline
-from core.image.crossing import MEETING, cross_segments
-from core.image.segments import CELL_REACH, CELLS, Stack, boxes_apart, segment_apart, segments_cut
-from core.image.shading import shading_sigma
+from core.image.crossings.crossing import MEETING, REASON, SIGMAS, TANGENTS, UV, cross_segments
+from core.image.crossings.local_fit import LineAt
+from core.image.crossings.segments import CELL_REACH, CELLS, Stack, boxes_apart, segment_apart, segments_cut
+from core.image.stripes.centreline import Centreline
+from core.image.stripes.shading import shading_sigma
 from core.model.arrays import Array
 from core.progress import Progress, silent
-from core.scan.crossings import CrossingTable, CrossingWindow, Index
+from core.scan.features.crossings import CrossingTable, CrossingWindow, Index
 
 _AT_ONCE = 500
 """So many meetings are fitted before it is told how far the search is: some 20 ms."""
@@ -134,7 +135,8 @@ def _meeting_runs(
 
 @dataclass(frozen=True, eq=False, slots=True)
 class _Fits:
-    """The crossing (M, 10) at each meeting, see `core.image.crossing.cross_segments`, and what its table wants beside.
+    """The crossing (M, 10) at each meeting, see `core.image.crossings.crossing.cross_segments`, and what its table
+    wants beside.
 
     `along` (M, 2) where on each centreline, `cell` (M, 2) the first cell of its fit, `share` (M, 2, K).
     """
@@ -200,22 +202,31 @@ class _Pieces(NamedTuple):
 @njit(cache=True, nogil=True)
 def _fit(piece: Index, point: Index, pieces: _Pieces, cell_px: float, min_angle: float, into: _Into) -> None:
     """Fit the centrelines at some meetings, see `Meetings`, and put what comes out `into` arrays."""
-    points, arc, starts, bins, broken, bin_starts, correlation = pieces
+    arc = pieces.arc
     rows, along, cell, share = into
     for n in range(len(piece)):
         for end in range(2):
             k = point[n, end]
             along[n, end] = 0.5 * (arc[k] + arc[k + 1])
             cell[n, end] = max(0, math.floor(along[n, end] / cell_px) - CELL_REACH)
-        i, j = piece[n, 0], piece[n, 1]
-        of_i, of_j = slice(bin_starts[i], bin_starts[i + 1]), slice(bin_starts[j], bin_starts[j + 1])
-        rows[n] = cross_segments(
-            points[starts[i] : starts[i + 1]], point[n, 0] - starts[i], bins[of_i], broken[of_i],
-            along[n, 0], correlation[i], cell[n, 0],
-            points[starts[j] : starts[j + 1]], point[n, 1] - starts[j], bins[of_j], broken[of_j],
-            along[n, 1], correlation[j], cell[n, 1],
-            cell_px, min_angle, share[n],
-        )  # fmt: skip
+        a = _line_at(pieces, piece[n, 0], point[n, 0], along[n, 0], cell[n, 0])
+        b = _line_at(pieces, piece[n, 1], point[n, 1], along[n, 1], cell[n, 1])
+        rows[n] = cross_segments(a, b, cell_px, min_angle, share[n])
+
+
+@njit(cache=True, nogil=True)
+def _line_at(pieces: _Pieces, i: int, point: int, along: float, cell: int) -> LineAt:
+    """Piece `i` at the segment from a `point` among those of all pieces, `along` px from the piece's first point."""
+    start, end, bins = pieces.starts[i], pieces.starts[i + 1], slice(pieces.bin_starts[i], pieces.bin_starts[i + 1])
+    return LineAt(
+        pieces.points[start:end],
+        point - start,
+        pieces.bins[bins],
+        pieces.broken[bins],
+        along,
+        pieces.correlation[i],
+        cell,
+    )
 
 
 def _table(lines: Stack, picture: Index, met: Meetings, fits: _Fits, window: CrossingWindow) -> CrossingTable:
@@ -229,25 +240,25 @@ def _table(lines: Stack, picture: Index, met: Meetings, fits: _Fits, window: Cro
         piece, k, along = met.piece[keep, end], met.point[keep, end], fits.along[keep, end]
         nearest = np.where(along - lines.arc[k] < lines.arc[k + 1] - along, k, k + 1)
         named |= {
-            f"tangent_{name}": ends[:, 3 + 2 * end : 5 + 2 * end],
-            f"sigma_{name}": np.hypot(ends[:, 7 + end], shading[nearest]),
+            f"tangent_{name}": ends[:, TANGENTS + 2 * end : TANGENTS + 2 * end + 2],
+            f"sigma_{name}": np.hypot(ends[:, SIGMAS + end], shading[nearest]),
             name: met.picture[keep, end] - 1,
             f"piece_{name}": piece - first[piece],
             f"along_{name}": along,
             f"cell_{name}": fits.cell[keep, end],
             f"share_{name}": fits.share[keep, end],
         }
-    return CrossingTable(uv=ends[:, 1:3], half_length_px=window.half_length_px, **named)
+    return CrossingTable(uv=ends[:, UV : UV + 2], half_length_px=window.half_length_px, **named)
 
 
 def _met_once(met: Meetings, rows: Array, half_length_px: float) -> Index:
     """The meetings that are crossings; of one that two rough lines meet at more than once, the first."""
-    crossed = np.flatnonzero(rows[:, 0] == 0)
+    crossed = np.flatnonzero(rows[:, REASON] == 0)
     kept: dict[tuple[int, int], list[int]] = {}
     keep = []
     for n, i, j in zip(crossed.tolist(), *met.piece[crossed].T.tolist(), strict=True):
         before = kept.setdefault((i, j), [])
-        if not any(np.hypot(*(rows[one, 1:3] - rows[n, 1:3])) < half_length_px / 2 for one in before):
+        if not any(np.hypot(*(rows[one, UV : UV + 2] - rows[n, UV : UV + 2])) < half_length_px / 2 for one in before):
             before.append(n)
             keep.append(n)
     return np.array(keep, dtype=np.int64)

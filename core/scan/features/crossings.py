@@ -8,10 +8,10 @@ from dataclasses import dataclass, field, fields, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from core.image.centreline import Centreline
-from core.image.crossing import Crossing, cross_centrelines
-from core.image.segments import CELLS, Stack
-from core.image.shading import shading_sigma
+from core.image.crossings.crossing import HALF_LENGTH_PX, LEAST_ANGLE, Crossing, cross_centrelines
+from core.image.crossings.segments import CELLS, Stack
+from core.image.stripes.centreline import Centreline
+from core.image.stripes.shading import shading_sigma
 from core.model.arrays import Array, set_field
 
 Index = NDArray[np.int64]
@@ -115,8 +115,8 @@ class CrossingTable:
 class CrossingWindow:
     """How crossings are fitted: a third of how far a local fit reaches in px, smallest angle (rad) accepted."""
 
-    half_length_px: float = 40.0
-    min_angle: float = float(np.deg2rad(15.0))
+    half_length_px: float = HALF_LENGTH_PX
+    min_angle: float = LEAST_ANGLE
 
 
 @dataclass(frozen=True, eq=False, slots=True)

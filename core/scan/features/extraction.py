@@ -9,24 +9,26 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain
 
+import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from core.calibrate.results import LEFT_OUT
 from core.errors import InputError
-from core.image.centreline import Centreline
-from core.image.shading import shading_sigma
-from core.image.smoothing import smooth
-from core.image.stripe import StripeSettings
-from core.image.stripe_settings import choose_settings
-from core.progress import Progress, Told, silent, steps
-from core.scan.crossing_search import all_crossings
-from core.scan.crossings import CrossingTable
-from core.scan.feature_notes import notes_on
-from core.scan.frame_reader import LOST, MOVED, NO_STRIPE, Frame, FrameFeatures, FrameReader
-from core.scan.reference import Picture
-from core.scan.reference_features import FeatureOptions, ReferenceFeatures, read_reference
-from core.scan.straightening import bent_back, straightened
-from core.stage_times import StageTimes
+from core.image.stripes.centreline import Centreline
+from core.image.stripes.extraction import extract_centrelines
+from core.image.stripes.settings import choose_settings
+from core.image.stripes.shading import shading_sigma
+from core.image.stripes.smoothing import smooth
+from core.image.stripes.stripe import StripeSettings
+from core.messages import Message
+from core.progress import Progress, StepProgress, silent, steps
+from core.scan.features.crossing_search import all_crossings
+from core.scan.features.crossings import CrossingTable
+from core.scan.features.frames import LOST, MOVED, NO_STRIPE, FrameFeatures, notes_on
+from core.scan.features.reference import FeatureOptions, Picture, ReferenceFeatures, check_reference, read_reference
+from core.scan.features.straightening import bent_back, straightened
+from core.stage_times import StageTimes, stage
 from core.threads import ordered_map
 
 __all__ = [
@@ -46,6 +48,9 @@ __all__ = [
     "read_reference",
 ]
 
+Frame = tuple[str, Picture | Message]
+"""A frame's name and its picture, or why it could not be read."""
+
 LOOK_AHEAD = 8
 """How many frames are looked at for the stripe's width and contrast when they are not given."""
 
@@ -60,7 +65,7 @@ class ScanFeatures:
     crossings: CrossingTable
     sweep_stripe: StripeSettings | None
     fan_stripe: StripeSettings
-    notes: tuple[str, ...] = ()
+    notes: tuple[Message, ...] = ()
 
 
 def extract_features(
@@ -93,17 +98,17 @@ def extract_features(
         If the reference shows no fan line, or no frame shows a sweep.
     """
     options = options or FeatureOptions()
-    progress = told = Told(progress)
+    progress = told = StepProgress(progress)
     progress("frames", 0, total)
     seen = reference if isinstance(reference, ReferenceFeatures) else read_reference(reference, options)
     stream = iter(frames)
     ahead = _look_ahead(stream)
     progress("frames", 0, total)
-    sweep_stripe = options.sweep_stripe or choose_sweep_stripe(ahead, seen, told.again)
+    sweep_stripe = options.sweep_stripe or choose_sweep_stripe(ahead, seen, told.within_step)
     reader = FrameReader(seen, sweep_stripe, options.move_limit_px, times)
     found: list[FrameFeatures] = []
     numbered = enumerate(chain(ahead, stream))
-    for features in ordered_map(reader, numbered, idle=lambda: told.again("frames", 0, total)):
+    for features in ordered_map(reader, numbered, idle=lambda: told.within_step("frames", 0, total)):
         progress("frames", len(found), total)
         found.append(features)
         if watch is not None:
@@ -157,7 +162,7 @@ def _look_ahead(frames: Iterator[Frame]) -> list[Frame]:
     wanted = LOOK_AHEAD
     for name, picture in frames:
         ahead.append((name, picture))
-        wanted -= not isinstance(picture, str) or picture != LEFT_OUT
+        wanted -= not isinstance(picture, Message) or picture != LEFT_OUT
         if not wanted:
             break
     return ahead
@@ -169,7 +174,7 @@ def choose_sweep_stripe(
     """The median width and contrast of the sweep's stripe in `frames`; None when none of them shows a stripe."""
     seen = []
     for _, picture in steps(frames, progress, "stripe", len(frames)):
-        if not isinstance(picture, str) and picture.shape == reference.base.shape:
+        if not isinstance(picture, Message) and picture.shape == reference.base.shape:
             difference = reference.difference(picture).astype(np.float32, copy=False)
             settings = choose_settings(difference, reference.full_scale)
             if settings is not None:
@@ -186,10 +191,84 @@ def choose_sweep_stripe(
 def _require_sweeps(frames: list[FrameFeatures]) -> None:
     if any(frame.centrelines for frame in frames):
         return
-    reasons = [frame.reason for frame in frames]
-    common = max(sorted(set(reasons)), key=reasons.count) if reasons else "there are no frames"
+    reasons = [frame.reason for frame in frames if frame.reason is not None]
+    none = Message("scan.no_frames", "there are no frames")
     raise InputError(
-        f"none of the {len(frames)} frames shows a usable sweep; the most common reason: {common}",
+        Message(
+            "scan.no_sweep",
+            "none of the {n} frames shows a usable sweep; the most common reason: {reason}",
+            n=len(frames),
+            reason=max(sorted(set(reasons), key=str), key=reasons.count) if reasons else none,
+        ),
         where="scan",
-        todo="record the scan again with the hand-held laser on and object and camera at rest",
+        todo=Message(
+            "scan.advice_record_again",
+            "record the scan again with the hand-held laser on and object and camera at rest",
+        ),
+    )
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class FrameReader:
+    """A frame and its number to features, against one reference; called from several threads."""
+
+    reference: ReferenceFeatures
+    stripe: StripeSettings | None
+    move_limit_px: float = FeatureOptions().move_limit_px
+    times: StageTimes | None = None
+
+    def __call__(self, item: tuple[int, Frame]) -> FrameFeatures:
+        index, (name, picture) = item
+        if isinstance(picture, Message):
+            return FrameFeatures(index, name, (), picture)
+        base, full_scale, fan = self.reference.base, self.reference.full_scale, self.reference.fan
+        if picture.shape != base.shape:
+            return FrameFeatures(index, name, (), _sizes_differ(picture, base))
+        if nothing := _shows_nothing(picture, full_scale):
+            return FrameFeatures(index, name, (), nothing)
+        with stage(self.times, "difference"):
+            difference = self.reference.difference(picture)
+            check = check_reference(difference, fan)
+            light = self.reference.light_change(check.light)
+        if check.lost:
+            return FrameFeatures(index, name, (), LOST, check.shift_px, light)
+        if check.shift_px > self.move_limit_px:
+            return FrameFeatures(index, name, (), MOVED, check.shift_px, light)
+        if self.stripe is None:
+            return FrameFeatures(index, name, (), NO_STRIPE, check.shift_px, light)
+        with stage(self.times, "extraction"):
+            saturated = saturated_pixels(picture)
+            pieces = extract_centrelines(difference, self.stripe, noise=self.reference.noise, saturated=saturated)
+        reason = None if pieces else NO_STRIPE
+        return FrameFeatures(index, name, pieces, reason, check.shift_px, light)
+
+
+def saturated_pixels(picture: Picture) -> NDArray[np.bool_]:
+    """True (H, W) where a picture holds its largest possible value."""
+    highest = np.iinfo(picture.dtype).max
+    _, found = cv2.threshold(picture, highest - 1, 1, cv2.THRESH_BINARY)
+    return np.asarray(found, dtype=np.uint8).view(np.bool_)
+
+
+def _shows_nothing(picture: Picture, full_scale: float) -> Message | None:
+    """Why a picture without any contrast is of no use; None if it has some."""
+    sample = picture[::61, ::67]
+    if sample.max() <= 0.01 * full_scale or sample.min() >= 0.99 * full_scale:
+        sample = picture[::4, ::4]
+    if sample.max() <= 0.01 * full_scale:
+        return Message("scan.frame_black", "the picture is all black")
+    if sample.min() >= 0.99 * full_scale:
+        return Message("scan.frame_white", "the picture is all white")
+    return None
+
+
+def _sizes_differ(picture: Picture, base: Picture) -> Message:
+    (height, width), (base_height, base_width) = picture.shape, base.shape
+    return Message(
+        "scan.frame_size",
+        "its size {width} × {height} differs from the reference's {base_width} × {base_height}",
+        width=width,
+        height=height,
+        base_width=base_width,
+        base_height=base_height,
     )

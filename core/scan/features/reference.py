@@ -1,4 +1,4 @@
-"""The reference: what the camera sees without the hand-held laser, and whether that still holds.
+"""The reference: what the camera sees without the hand-held laser, as features, and whether that still holds.
 
 The fan and the object stand still during a scan, so the sweep's stripe is the frame minus the reference. When there is
 no reference picture, the per-pixel low quantile over a sample of the scan is one: a sweep covers a pixel in few frames.
@@ -7,16 +7,24 @@ no reference picture, the per-pixel low quantile over a sample of the scan is on
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import cv2
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from core.image.centreline import Centreline
-from core.image.running import median
+from core.errors import InputError
+from core.image.stripes.centreline import Centreline
+from core.image.stripes.extraction import extract_centrelines
+from core.image.stripes.noise import NoiseModel, estimate_noise
+from core.image.stripes.running_statistics import median
+from core.image.stripes.settings import choose_settings
+from core.image.stripes.stripe import StripeSettings
+from core.messages import Message
+from core.model import Camera
 from core.model.arrays import Array
+from core.scan.features.crossings import CrossingWindow
 
 SAMPLE = 15
 """At most this many frames, spread over the scan, make a quantile reference: memory does not grow with the scan."""
@@ -118,3 +126,86 @@ def _sample(picture: NDArray[np.int16] | NDArray[np.float32], uv: Array) -> Arra
         below = (1 - a) * picture[j + 1, i] + a * picture[j + 1, i + 1]
         values[k] = (1 - b) * above + b * below
     return values
+
+
+LIGHT_SHARE, LIGHT_FLOOR = 0.2, 0.02
+"""A change of the background counts as one of the room's light from this share of it, and of the full scale, on."""
+
+
+@dataclass(frozen=True, slots=True)
+class FeatureOptions:
+    """How pictures become features; None means chosen from the pictures.
+
+    A frame in which a stretch of the fan has moved by more than `move_limit_px` since the reference is left out. With
+    a `camera`, centrelines are crossed as they would be without its distortion.
+    """
+
+    sweep_stripe: StripeSettings | None = None
+    fan_stripe: StripeSettings | None = None
+    window: CrossingWindow = field(default_factory=CrossingWindow)
+    move_limit_px: float = 0.3
+    camera: Camera | None = None
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class ReferenceFeatures:
+    """What the picture with the fan alone shows, and what frames are compared with.
+
+    `base` (H, W) is the picture as it came, `full_scale` its largest possible grey level, `noise` that of a frame minus
+    the picture; `fan` the fan's centrelines, `stripe` how they were looked for.
+    """
+
+    base: Picture
+    full_scale: float
+    noise: NoiseModel
+    fan: tuple[Centreline, ...]
+    stripe: StripeSettings
+
+    @property
+    def image_size(self) -> tuple[int, int]:
+        """(width, height) in pixels."""
+        height, width = self.base.shape
+        return width, height
+
+    def difference(self, picture: Picture) -> NDArray[np.int16] | NDArray[np.float32]:
+        """A frame minus the picture, both (H, W)."""
+        return picture_difference(picture, self.base)
+
+    def light_change(self, grey: float) -> float:
+        """A change of the background by `grey` levels as a share of it; 0 where stripes do not feel it."""
+        background = max(float(np.median(self.base[::16, ::16])), 1.0)
+        if abs(grey) < max(LIGHT_SHARE * background, LIGHT_FLOOR * self.full_scale):
+            return 0.0
+        return grey / background
+
+
+def read_reference(picture: Picture, options: FeatureOptions | None = None) -> ReferenceFeatures:
+    """The fan's centrelines in the picture with the fan alone.
+
+    Raises
+    ------
+    InputError
+        If it shows no fan line.
+    """
+    options = options or FeatureOptions()
+    full_scale = float(np.iinfo(picture.dtype).max)
+    base = picture.astype(np.float32)
+    noise = estimate_noise(base)
+    stripe, fan = _fan_centrelines(base, full_scale, noise, options)
+    return ReferenceFeatures(picture, full_scale, noise.of_difference(float(np.median(base))), fan, stripe)
+
+
+def _fan_centrelines(
+    base: NDArray[np.float32], full_scale: float, noise: NoiseModel, options: FeatureOptions
+) -> tuple[StripeSettings, tuple[Centreline, ...]]:
+    settings = options.fan_stripe or choose_settings(base, full_scale)
+    fan = () if settings is None else extract_centrelines(base, settings, noise=noise, saturated=base >= full_scale)
+    if settings is None or not fan:
+        raise InputError(
+            Message("scan.no_fan_line", "shows no line of the fan, so nothing can be measured"),
+            where="scan reference",
+            todo=Message(
+                "scan.advice_light_the_fan", "switch the three-line laser on, expose longer, or darken the room"
+            ),
+        )
+    return settings, fan

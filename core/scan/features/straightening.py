@@ -12,10 +12,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from core.image.centreline import Centreline
+from core.image.stripes.centreline import Centreline
 from core.model import Camera
 from core.model.arrays import Array
-from core.scan.crossings import CrossingTable
+from core.scan.features.crossings import CrossingTable
 
 
 def straightened(pieces: Sequence[Centreline], camera: Camera) -> tuple[Centreline, ...]:

@@ -4,8 +4,8 @@ In inverse depth every crossing is linear in the unknown planes π_1 … π_S: w
 another sweep π_i·r = π_j·r. Sweep–sweep crossings alone leave scale and a plane free, π → s π + c; the fan, where it
 meets relief, gives the metric.
 
-The equations and what they know of their noise are in `core.scan.adjustment`. Here is how they are solved in spite of
-wrong crossings. Weights depend on how much the two planes differ. If they are taken from a solution that has collapsed
+The equations and the model of their noise are in `core.scan.network.equations`; here they are solved in spite of wrong
+crossings. Weights depend on how much the two planes differ. If they are taken from a solution that has collapsed
 onto the table (which satisfies every crossing on the table), they run away to it. So the first solution uses weights of
 the rig's geometry alone, later ones are floored by it, outliers are rejected only at the end, and not where that would
 silence the fan.
@@ -19,39 +19,40 @@ import numpy as np
 
 from core.model import Fan
 from core.model.arrays import Array
+from core.model.robust import huber_weights, mad_sd, tukey_weights
 from core.progress import Progress, silent, steps
-from core.scan.adjustment import GRADIENT_FLOOR, Adjustment, Solution
-from core.scan.crossings import CrossingTable, Index
-from core.scan.geometry import CrossingRays
-from core.scan.line_errors import LineErrors
+from core.scan.features.crossings import CrossingTable, Index
+from core.scan.network.equations import GRADIENT_FLOOR, Adjustment, Solution
+from core.scan.network.geometry import CrossingRays
+from core.scan.network.line_errors import LineErrors
 
+# Residuals in standard deviations. The limits are wider than those of full efficiency (1.345 and 4.685,
+# `core.model.robust`), so that crossings of a still-wrong solution are not rejected. Held by tests/scan/network/
+# test_adjustment.py and, against collapse, test_adjustment_traps.py.
+HUBER_AT = 2.0
+"""From which on a crossing loses weight before anything is rejected."""
 REJECT_AT = 5.0
-"""Residual in standard deviations at which a crossing has no weight left (Tukey's biweight)."""
+"""At which a crossing has no weight left (Tukey's biweight)."""
+_SETTLED = 0.02
+"""Change from one round to the next below which residuals will change no more."""
+ROUNDS = 12
+"""Rounds of reweighting at most: half of them by Huber, half by Tukey, unless they settle sooner."""
 
-HUBER = 2.0
-"""Residual in standard deviations from which on a crossing loses weight before anything is rejected."""
-
+# Shares, held by the same tests.
+SILENCED = 0.05
+"""Weight below which a crossing counts as left out."""
 MOST_FAN_REJECTED = 0.25
 """If more of the fan's crossings than this would be silenced, the adjustment is not robust but wrong: none is."""
-
-SILENCED = 0.05
-"""A crossing with less weight than this counts as left out."""
-
 COLLAPSED = 0.5
 """All planes have fallen together if more of the crossings than this are between planes that hardly differ."""
 
-ROUNDS = 12
-
-_SETTLED = 0.02
-"""Residuals that change by less than this, in standard deviations, from one round to the next will change no more."""
-
-_OF_NORMAL = (1 - 6 / REJECT_AT**2 + 15 / REJECT_AT**4) / (1 - 2 / REJECT_AT**2 + 3 / REJECT_AT**4)
-"""What Tukey's weights w leave of the squares of normal residuals r: mean of w·r² over mean of w."""
+_TUKEY_OF_NORMAL = (1 - 6 / REJECT_AT**2 + 15 / REJECT_AT**4) / (1 - 2 / REJECT_AT**2 + 3 / REJECT_AT**4)
+"""Mean of w·r² over mean of w for Tukey's weights w and normal residuals r, by their moments 1, 3, 15."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Network:
-    """The adjusted sweeps.
+    """Result of the adjustment: the sweeps' light planes.
 
     Parameters
     ----------
@@ -70,7 +71,7 @@ class Network:
     collapsed
         True if the sweeps' planes have fallen together: crossings that say nothing but that the world is flat.
     fan_cells
-        (F, 2) centreline and cell along it of each of the fan's cells, see `core.scan.line_errors`.
+        (F, 2) centreline and cell along it of each of the fan's cells, see `core.scan.network.line_errors`.
     fan_covariance
         (3S, F) of the errors of the stacked π with those of the cells, of which each has unit variance.
     line_cells
@@ -114,7 +115,7 @@ def solve_network(
     if _share_silenced(crossings, solution.weights) > MOST_FAN_REJECTED:
         solution, silenced = _adjust(equations, progress, redescend=False), True
     covariance, expected = equations.covariance(solution)
-    scale = float(np.sqrt(solution.misfit / max(expected * (1.0 if silenced else _OF_NORMAL), 1.0)))
+    scale = float(np.sqrt(solution.misfit / max(expected * (1.0 if silenced else _TUKEY_OF_NORMAL), 1.0)))
     return Network(
         solution.pis,
         covariance * max(1.0, scale) ** 2,
@@ -137,23 +138,14 @@ def _adjust(equations: Adjustment, progress: Progress, *, redescend: bool) -> So
     for step in steps(range(ROUNDS), progress, "adjustment", ROUNDS):
         if settled > redescend:
             continue
-        size = np.abs(solution.residuals) / max(1.0, _robust_scale(solution.residuals))
+        size = np.abs(solution.residuals) / max(1.0, mad_sd(solution.residuals))
         if redescend and (settled or step >= ROUNDS // 2):
-            weights = np.clip(1 - (size / REJECT_AT) ** 2, 0, None) ** 2
+            weights = tukey_weights(size, REJECT_AT)
         else:
-            weights = huber_weights(size)
+            weights = huber_weights(size, HUBER_AT)
         before, solution = solution, equations.improve(solution, weights)
         settled += bool(np.abs(solution.residuals - before.residuals).max() < _SETTLED)
     return solution
-
-
-def huber_weights(residuals: Array) -> Array:
-    """Weights (M,) that let a residual in standard deviations pull no harder than one of HUBER."""
-    return np.asarray(np.minimum(1.0, HUBER / np.maximum(np.abs(residuals), 1e-9)))
-
-
-def _robust_scale(residuals: Array) -> float:
-    return float(1.4826 * np.median(np.abs(residuals)))
 
 
 def _share_silenced(crossings: CrossingTable, weights: Array) -> float:

@@ -1,7 +1,7 @@
-"""How well the fan fixes what sweeps among themselves can not know: scale and place.
+"""Datum of a scan: how well the fan fixes what sweeps among themselves cannot know, scale and place.
 
 Crossings between sweeps leave π → s π + c free, four numbers that only the fan fixes, and the scale only where it
-meets relief. Of their covariance two things matter to who measures. With w = 1/z, a change s·w + c·r of the inverse
+meets relief. Two figures of their covariance matter for measuring. With w = 1/z, a change s·w + c·r of the inverse
 depth moves the surface at depth z on ray r by −(s·z + z² c·r), and stretches small heights there by −(s + 2 z c·r).
 
 The four numbers of an error δπ of all sweeps are those that come nearest to it where the sweeps are crossed: the
@@ -17,27 +17,37 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
+from core.messages import Message
 from core.model import Camera
 from core.model.arrays import Array
-from core.scan.crossings import CrossingTable
-from core.scan.main_plane import main_plane
+from core.scan.features.crossings import CrossingTable
 
 WEAK_MM = 0.03
-"""The scale is weak if it alone makes a height as large as the relief this uncertain: as much as all else together."""
+"""Standard uncertainty in mm of a height as large as the relief at which the scale alone is called weak: as much as
+all other sources together make. Held by tests/scan/network/test_datum.py."""
 
 LEAST_RELIEF_MM = 5.0
-"""On a flat scene the scale is judged by what it would do to a part of this height."""
+"""Height in mm by which the scale is judged on a flat scene: that of a low part."""
 
 UNKNOWN = 0.1
 """Relative σ of the scale from which on it counts as not fixed at all."""
 
 _RIDGE = 1e-13
+"""Added to the normal matrix relative to its trace: a direction that the crossings do not fix stays solvable."""
+
+MAIN_PLANE_MM = 1.0
+"""Depth in mm within which a point lies on the main plane: above the noise of points, below the height of parts."""
+_TRIALS = 100
+"""Planes tried through three random points: if it holds 40 % of them, all of these miss it once in a thousand scans."""
+_RELIEF_QUANTILES = [0.025, 0.975]
+"""Of the depths about the main plane: their range is the relief, wrong points aside."""
 
 
 @dataclass(frozen=True, slots=True)
 class Datum:
-    """How strongly scale and place of a scan are fixed, without the uncertainty of camera and fan.
+    """Strength with which scale and place of a scan are fixed, without the uncertainty of camera and fan.
 
     `scale` is the relative standard uncertainty of heights, `depth_mm` that of the depth in the middle of the scene;
     `relief_mm` how much relief the sweeps saw.
@@ -49,34 +59,43 @@ class Datum:
 
     @property
     def height_mm(self) -> float:
-        """What the scale's uncertainty does to a height as large as the relief."""
+        """Standard uncertainty in mm of a height as large as the relief, from the scale alone."""
         return self.scale * max(self.relief_mm, LEAST_RELIEF_MM)
 
     @property
     def weak(self) -> bool:
-        """Whether that is too much."""
+        """Whether that exceeds WEAK_MM."""
         return self.height_mm > WEAK_MM
 
     @property
-    def sentence(self) -> str:
-        """For the technician, with advice if it is weak."""
-        advice = "put a step beside the part, or let the fan meet more relief"
+    def note(self) -> Message:
+        """Note for the technician, with advice if the scale is weak."""
+        advice = Message("scan.advice_relief", "put a step beside the part, or let the fan meet more relief")
+        percent = 100 * self.scale
         if self.scale > UNKNOWN:
-            return (
-                f"The fan meets no relief, so nothing fixes the scale of heights; {advice}. Its own points and flat "
-                "faces are right all the same."
+            return Message(
+                "scan.scale_unknown",
+                "The fan meets no relief, so nothing fixes the scale of heights; {advice}. Its own points and flat "
+                "faces are right all the same.",
+                advice=advice,
             )
-        share = f"{100 * self.scale:.2g} %"
         if not self.weak:
-            return f"The relief under the fan fixes the scale to {share}."
-        return (
-            f"The relief under the fan fixes the scale only to {share}: {self.height_mm:.2g} mm on a height of "
-            f"{max(self.relief_mm, LEAST_RELIEF_MM):.0f} mm; {advice}."
+            return Message(
+                "scan.scale_fixed", "The relief under the fan fixes the scale to {percent:.2g} %.", percent=percent
+            )
+        return Message(
+            "scan.scale_weak",
+            "The relief under the fan fixes the scale only to {percent:.2g} %: {error_mm:.2g} mm on a height of "
+            "{height_mm:.0f} mm; {advice}.",
+            percent=percent,
+            error_mm=self.height_mm,
+            height_mm=max(self.relief_mm, LEAST_RELIEF_MM),
+            advice=advice,
         )
 
 
 def datum_of(pis: Array, covariance: Array, crossings: CrossingTable, camera: Camera) -> Datum:
-    """The datum of sweeps `pis` (S, 3) with their `covariance` (3S, 3S).
+    """Compute the datum of sweeps `pis` (S, 3) with their `covariance` (3S, 3S).
 
     `crossings` are numbered by sweep.
     """
@@ -108,5 +127,25 @@ def datum_of(pis: Array, covariance: Array, crossings: CrossingTable, camera: Ca
 def _relief(rays: Array, inverse_depths: Array) -> float:
     """Range in mm of 95 % of the depths about the plane that most lie on."""
     plane, _ = main_plane(rays, inverse_depths)
-    low, high = np.quantile(1 / inverse_depths - 1 / np.maximum(rays @ plane, 1e-6), [0.025, 0.975])
+    low, high = np.quantile(1 / inverse_depths - 1 / np.maximum(rays @ plane, 1e-6), _RELIEF_QUANTILES)
     return float(high - low)
+
+
+def main_plane(
+    rays: Array, inverse_depths: Array, tolerance_mm: float = MAIN_PLANE_MM
+) -> tuple[Array, NDArray[np.bool_]]:
+    """Find the plane π (3,) that holds most points at `inverse_depths` (M,) on `rays` (M, 3), and the points on it.
+
+    The best of many through three of the points, then fitted to all within `tolerance_mm` of depth.
+    """
+    rng = np.random.default_rng(0)
+    tolerance = tolerance_mm * inverse_depths**2
+    best = np.zeros(len(rays), dtype=np.bool_)
+    for _ in range(_TRIALS):
+        chosen = rng.choice(len(rays), 3, replace=False)
+        plane = np.linalg.lstsq(rays[chosen], inverse_depths[chosen], rcond=None)[0]
+        near = np.abs(rays @ plane - inverse_depths) < tolerance
+        if np.count_nonzero(near) > np.count_nonzero(best):
+            best = near
+    pi = np.asarray(np.linalg.lstsq(rays[best], inverse_depths[best], rcond=None)[0], dtype=np.float64)
+    return pi, np.abs(rays @ pi - inverse_depths) < tolerance

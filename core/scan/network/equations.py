@@ -1,9 +1,9 @@
-"""The network's equations: one round of the adjustment, and the covariance of its answer.
+"""Equations of the network: one round of the adjustment, and the covariance of its solution.
 
 A crossing says (π_a − π_b)·r = gain_a·ε_a + gain_b·ε_b with ε the errors of the two centrelines across themselves:
 
-- those of the fan come from one picture and meet every sweep again, so their cells z (`core.scan.line_errors`) are
-  unknowns with the prior N(0, 1);
+- those of the fan come from one picture and meet every sweep again, so their cells z
+  (`core.scan.network.line_errors`) are unknowns with the prior N(0, 1);
 - those of a sweep are met by few crossings each. Taken as independent they cost 1–3 % of σ in the answer (measured
   against generalised least squares on scans of 60 sweeps), so weights do not know of them, but the covariance does::
 
@@ -27,16 +27,20 @@ from scipy.sparse import csr_array, diags_array, hstack
 
 from core.model import Fan
 from core.model.arrays import Array
-from core.scan.crossings import CrossingTable, Index
-from core.scan.geometry import CrossingRays, floored, inverse_depth_gradient, noise_gains
-from core.scan.line_errors import LineErrors
-from core.scan.sweep_plane import PRIOR_SD
+from core.scan.features.crossings import CrossingTable, Index
+from core.scan.network.geometry import CrossingRays, floored, inverse_depth_gradient, noise_gains
+from core.scan.network.line_errors import LineErrors
+from core.scan.network.sweep_plane import PRIOR_SD
 
 GRADIENT_FLOOR = 0.1
-"""Smallest ‖D‖ believed, as a share of the fan's own, which no solution can change."""
+"""Smallest ‖D‖ taken, as a share of the fan's own, which no solution can change: weights cannot run away to planes that
+have fallen together. Held by tests/scan/network/test_adjustment_traps.py."""
 
 RIDGE = 1e-13
-"""Added to the diagonal of the equations relative to it: what keeps a direction that nothing determines solvable."""
+"""Added to the diagonal of the equations relative to it: a direction that nothing determines stays solvable."""
+
+MOST_OFFSET = 3.0
+"""Standard deviations by which a crossing's ray is moved at most: an outlier must not move its own ray far."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -91,13 +95,13 @@ class Adjustment:
     errors: LineErrors
 
     def start(self) -> Solution:
-        """Without a solution every difference of planes counts as long as the typical one and lies across the fan."""
+        """Solve for the first time: every difference of planes counts as the typical one and lies across the fan."""
         count = len(self.crossings)
         gains = np.full((count, 2), self.typical_gradient)
         return self._solve(np.ones(count), gains, self.geometry.rays, np.zeros(count))
 
     def improve(self, before: Solution, weights: Array) -> Solution:
-        """One round of the Gauss–Helmert model: gains from `before`, equations taken at the adjusted crossings.
+        """Solve one round of the Gauss–Helmert model: gains from `before`, equations taken at the adjusted crossings.
 
         Taken at the observed crossings they would pull all planes together, because noise in the rays costs less the
         less the planes differ.
@@ -160,7 +164,7 @@ class Adjustment:
         return float(typical * np.sqrt(np.abs(np.linalg.det(self.geometry.jacobians)).mean()))
 
     def _noise_of_rays(self, before: Solution, gains: Array, difference: Array) -> Array:
-        """How far the noise found in the last round has moved each crossing's ray, (M, 3)."""
+        """Shift (M, 3) of each crossing's ray by the noise estimated in the last round."""
         table, errors = self.crossings, self.errors
         gain_a, gain_b = gains.T
         of_fan = errors.fan @ before.cells
@@ -216,6 +220,6 @@ class Adjustment:
 
 
 def _within(offsets: Array, variances: Array) -> Array:
-    """Offsets no larger than three of their standard deviations: an outlier must not move its own ray far."""
-    limit = 3 * np.sqrt(variances)
+    """Clip offsets (M,) to MOST_OFFSET standard deviations."""
+    limit = MOST_OFFSET * np.sqrt(variances)
     return np.clip(offsets, -limit, limit)

@@ -1,9 +1,10 @@
-"""What the fan's own points and the light planes of the sweeps are both wrong by: the fan's static speckle.
+"""Error common to the fan's own points and the light planes of the sweeps: the fan's static speckle.
 
 The fan stands still, so one picture of its speckle is in every crossing with it and in its own points. The network
-calls the errors of the fan's centrelines z, standard normal, one for each cell of 40 px (`core.scan.line_errors`). What
-it says of the sweeps is then correlated with z, and the fan's own points hang on the same z by how they were averaged
-along their line (`core.image.smoothing`): a parabola over a window, linear in the line's errors.
+calls the errors of the fan's centrelines z, standard normal, one for each cell of 40 px
+(`core.scan.network.line_errors`). What it says of the sweeps is then correlated with z, and the fan's own points depend
+on the same z by how they were averaged along their line (`core.image.stripes.smoothing`): a parabola over a window,
+linear in the line's errors.
 """
 
 from __future__ import annotations
@@ -15,22 +16,26 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from core.image.centreline import Centreline
-from core.image.pieces import arc_length
+from core.image.stripes.centreline import Centreline
+from core.image.stripes.runs import arc_length
 from core.model import Camera, LightPlane
 from core.model.arrays import Array, frozen_array, set_field
-from core.scan.crossings import Index
-from core.scan.straightening import straightened
+from core.scan.features.crossings import Index
+from core.scan.features.straightening import straightened
 
 SAME_PX = 0.05
-"""Two points of the fan this near to each other in the picture are one."""
+"""Two points of the fan this near to each other in the picture are one: points are a pixel apart."""
 
 _WINDOW_OF_MEAN = 9 / 8
-"""Half the window of a parabola over the length of a mean that is as sure in the middle."""
-_END = 0.3
-"""No smoothing window reaches so far beyond an end of the line, as a share of its half, that less than this is left."""
-_SHORTEST = 2.5
+"""Half the window of a parabola over the length of a mean that is as sure: its variance in the middle is 9/4 of a
+mean's."""
+_END_SHARE = 0.3
+"""Share of its half length that a smoothing window keeps at an end of the line, as in
+`core.image.stripes.smoothing`."""
+_SHORTEST_PX = 2.5
 """Half length in px of the shortest window: five points."""
+_SINGULAR = 1e-6
+"""Determinant of the moments relative to their size below which a window holds too few points for a parabola."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -68,7 +73,7 @@ class FanSpeckle:
             set_field(self, name, index)
 
     def places(self, uv: Array) -> Index:
-        """Which of the fan's points (M,) those at pixels `uv` (M, 2) are, −1 where none of them."""
+        """Find which of the fan's points (M,) those at pixels `uv` (M, 2) are; −1 for none."""
         if not len(self.uv) or not len(uv):
             return np.full(len(uv), -1, dtype=np.int64)
         distance, place = cKDTree(self.uv).query(uv)
@@ -83,7 +88,7 @@ def fan_speckle(
     cells: Index,
     covariance: Array,
 ) -> FanSpeckle:
-    """How the fan's points hang on the network's cells.
+    """Compute how the network's cells move the fan's points.
 
     Parameters
     ----------
@@ -96,7 +101,7 @@ def fan_speckle(
     cell_px
         Length of a cell.
     cells, covariance
-        (F', 2) and (3S, F') as of `core.scan.network.Network`.
+        (F', 2) and (3S, F') as of `core.scan.network.adjustment.Network`.
     """
     parts: list[tuple[Array, Index, Index, Array]] = []
     column = {}
@@ -138,7 +143,7 @@ def _shares(arc: Array, cell: Index, sigma: Array, half: float) -> tuple[Index, 
     """
     count = len(arc)
     room = np.minimum(arc - arc[0], arc[-1] - arc)
-    half_at = np.clip(room / _END, min(_SHORTEST, half), half)
+    half_at = np.clip(room / _END_SHARE, min(_SHORTEST_PX, half), half)
     spacing = max(arc[-1] / max(count - 1, 1), 1e-9)
     reach = int(np.ceil(half / spacing)) + 1
     at = np.arange(count)[:, None] + np.arange(-reach, reach + 1)
@@ -160,7 +165,7 @@ def _at_middle(t: Array, inside: NDArray[np.bool_]) -> Array:
     """Weights (N, W) of values at `t` (N, W) in the parabola's value at t = 0; of the mean where there are too few."""
     moments = np.stack([(inside * t**power).sum(axis=1) for power in range(5)])
     matrix = moments[np.add.outer(np.arange(3), np.arange(3))].transpose(2, 0, 1)
-    few = np.linalg.det(matrix) < 1e-6 * moments[0] ** 3
+    few = np.linalg.det(matrix) < _SINGULAR * moments[0] ** 3
     matrix[few] = np.eye(3)
     coefficients = np.linalg.inv(matrix)[:, 0, :]
     weight = inside * np.einsum("nk,knw->nw", coefficients, np.stack([t**0, t, t**2]))

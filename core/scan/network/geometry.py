@@ -1,4 +1,4 @@
-"""What a crossing says about two light planes: inverse depths that must agree, and how well.
+"""Geometry of a crossing of two light planes: their inverse depths must agree there, and with what uncertainty.
 
 At a crossing with ray r the two planes meet the surface at one depth, π_a·r = π_b·r. A centreline that is off by
 ε across itself moves the crossing along the other's tangent; with D = ∂(π_a − π_b)·r/∂(u, v), unit tangents t_a, t_b
@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from core.model import Camera
 from core.model.arrays import Array
-from core.scan.crossings import CrossingTable
+from core.scan.features.crossings import CrossingTable
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -48,7 +48,7 @@ def inverse_depth_gradient(pi_difference: Array, jacobians: Array) -> Array:
 
 
 def noise_gains(crossings: CrossingTable, gradient: Array) -> tuple[Array, Array]:
-    """How an offset of a's and of b's centreline across itself moves (π_a − π_b)·r, (M,) each in 1/(mm px).
+    """Derivatives of (π_a − π_b)·r by an offset of a's and of b's centreline across itself, (M,) each in 1/(mm px).
 
     The sign follows the normals n = (t_v, −t_u).
     """
@@ -60,7 +60,7 @@ def noise_gains(crossings: CrossingTable, gradient: Array) -> tuple[Array, Array
 
 
 def floored(gradient: Array, floor: float) -> Array:
-    """`gradient` with vectors shorter than `floor` lengthened to it.
+    """Lengthen the vectors of `gradient` (M, 2) that are shorter than `floor` to it.
 
     Near a solution in which all planes fall together the gradient vanishes and weights run away; the rig's own
     geometry, not the current solution, sets how small it can be.

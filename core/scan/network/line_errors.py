@@ -1,8 +1,9 @@
-"""How the errors of the crossings on one centreline hang together.
+"""Correlated errors of the crossings on one centreline.
 
 A crossing's place on a line is a fit to a stretch of it, so crossings closer together than that share their error, and
 a hundred crossings on one stretch are no better than a few. What is common to them are the errors of the line's cells,
-see `core.scan.crossings.CrossingTable`: standard normal numbers z, of which each crossing takes up some shares.
+see `core.scan.features.crossings.CrossingTable`: standard normal numbers z, of which each crossing takes up some
+shares.
 """
 
 from __future__ import annotations
@@ -14,13 +15,14 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from core.model.arrays import Array
-from core.scan.crossings import CrossingTable, Index
+from core.scan.features.crossings import CrossingTable, Index
 
 SIGMA_FLOOR_PX = 0.01
-"""No centreline is known better than this: what a filter's phase error leaves."""
+"""Standard uncertainty in px of a centreline at least: the phase error of a plain filter at its worst (a stripe of σ
+1.5 px), so that no crossing outweighs all others."""
 
-_MOST_CELLS = 1_000_000
-_MOST_PIECES = 10_000
+_MOST_CELLS, _MOST_PIECES = 1_000_000, 10_000
+"""Factors by which frame, piece and cell are packed into one integer: larger than any of them can be."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -28,7 +30,7 @@ class LineErrors:
     """Errors of the centrelines at M crossings, in pixels: shares of the cells' z, and an independent rest.
 
     Once in the network's equations they count along the normal (t_v, −t_u) of a line with the tangent t, that of
-    `core.image.centreline.Centreline`; as all are symmetric about 0, the sign of z is there for the taking.
+    `core.image.stripes.centreline.Centreline`; as all are symmetric about 0, the sign of z is there for the taking.
 
     Parameters
     ----------
@@ -58,7 +60,7 @@ class LineErrors:
 
     @classmethod
     def of(cls, crossings: CrossingTable) -> LineErrors:
-        """What the table says, or, where it says nothing, means over windows of twice its `half_length_px`."""
+        """Take the errors from the table, or, where it has none, means over windows of twice its `half_length_px`."""
         ends = (
             _End.known(
                 crossings.a,

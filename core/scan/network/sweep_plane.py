@@ -1,4 +1,4 @@
-"""The light plane of one frame from its crossings with the fan: the paper's method, and the live answer.
+"""Light plane of one frame from its crossings with the fan: the paper's method.
 
 Each crossing at ray r with fan plane k says π·r = π_k·r. The paper (§4, step 3) takes three of these; here all of them
 enter by weighted least squares and one bad one is found by leaving each out in turn. Crossings that are collinear in
@@ -17,11 +17,13 @@ from core.model.arrays import Array
 PRIOR_SD = 0.05
 """Standard deviation in 1/mm of a weak prior on π about 0: planes within 20 mm of the camera's centre. It keeps the
 equations solvable; a direction that only the prior holds comes out with a useless, and so harmless, σ."""
+LEFT_OUT_AT = 5.0
+"""Standard deviations from the plane of the others at which the worst crossing is left out, as in the network."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class SweepPlane:
-    """The plane of one sweep.
+    """The light plane of one sweep.
 
     `pi` (3,) in 1/mm with `covariance` (3, 3); `used` (M,) which crossings it rests on; `condition` is the ratio of the
     largest to the smallest singular value of the used rays: how near to collinear the crossings are.
@@ -33,8 +35,8 @@ class SweepPlane:
     condition: float
 
 
-def solve_sweep_plane(rays: Array, inverse_depths: Array, sigmas: Array, limit: float = 5.0) -> SweepPlane:
-    """The plane through crossings at `rays` (M, 3) of known `inverse_depths` (M,) with `sigmas` (M,), in 1/mm.
+def solve_sweep_plane(rays: Array, inverse_depths: Array, sigmas: Array, limit: float = LEFT_OUT_AT) -> SweepPlane:
+    """Fit the plane through crossings at `rays` (M, 3) of known `inverse_depths` (M,) with `sigmas` (M,), in 1/mm.
 
     With four or more crossings the one whose residual from the plane of the others is largest is left out if it exceeds
     `limit` standard deviations.

@@ -1,8 +1,8 @@
-"""What is shown while a scan runs: each frame's crossings, its light plane, and points good enough to look at.
+"""Preview of a running scan: each frame's crossings, its light plane, and points good enough to be shown.
 
 The network over all frames is the result; this is only the preview. Each sweep is located as it comes
-(`core.scan.tracking`), the numbers of the fan's lines are settled on the way, and the cloud shown so far is renewed
-when more is known, a little after each frame: no frame waits for it.
+(`core.scan.sweeps.tracking`), the numbers of the fan's lines are settled on the way, and the cloud shown so far is
+renewed when more is known, a little after each frame: no frame waits for it.
 """
 
 from __future__ import annotations
@@ -14,32 +14,36 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from core.image.centreline import Centreline
+from core.image.stripes.centreline import Centreline
+from core.messages import Message
 from core.model import Camera, Fan
 from core.model.arrays import Array
-from core.scan.crossing_marks import CrossingMarks, mark_crossings
-from core.scan.crossings import CrossingWindow
-from core.scan.fan_lines import UNASSIGNED, FanLines
-from core.scan.features import FrameFeatures, ReferenceFeatures
-from core.scan.frame_preview import FramePreview, cloud_of, empty_preview
-from core.scan.hints import HandState, HintLimits, hints_for
-from core.scan.movement import movement_px
-from core.scan.preview_cloud import PreviewCloud, StripeRays
-from core.scan.sweep_plane import plane_condition
-from core.scan.tracking import SweepTracker, TrackedSweep
+from core.scan.features.crossings import CrossingWindow
+from core.scan.features.extraction import FrameFeatures, ReferenceFeatures
+from core.scan.features.frames import FEW_CROSSINGS
+from core.scan.network.sweep_plane import plane_condition
+from core.scan.preview.crossing_marks import CrossingMarks, mark_crossings
+from core.scan.preview.hints import HandState, HintLimits, hints_for
+from core.scan.preview.shown import FramePreview, PreviewCloud, cloud_of, empty_preview
+from core.scan.reconstruct import FARTHEST_SHARE, NEAREST_SHARE
+from core.scan.surface.triangulate import LEAST_INVERSE_DEPTH
+from core.scan.sweeps.fan_lines import UNASSIGNED, FanLines
+from core.scan.sweeps.tracking import SweepTracker, TrackedSweep, movement_px
 
+# Chosen so that renewing the cloud never keeps a frame waiting; tests/scan/preview/test_frames.py holds that.
 RENEWED_AT_ONCE = 128
-"""So many sweeps are renewed in one go, if they lie where they lay before,"""
+"""Sweeps renewed in one go if they lie where they lay before,"""
 RELOCATION = 8
-"""but so many times fewer if they must be located anew."""
+"""and what a sweep counts for that must be located again: about so many times the work."""
 
 
 @dataclass(frozen=True, slots=True)
 class PreviewOptions:
-    """How a preview is made.
+    """Options of a preview.
 
-    Points up to `sigma_cut_mm` are shown, every `thin`-th of a stripe; of a long scan fewer, of all its frames alike,
-    so that the sweeps' stripes have no more than `most_points`.
+    Points up to `sigma_cut_mm` are shown (twenty times the result's cut: a frame alone is less sure), every `thin`-th
+    of a stripe; of a long scan fewer, of all its frames alike, so that the sweeps' stripes have no more than
+    `most_points`, which a window can draw while a scan runs.
     """
 
     sigma_cut_mm: float = 1.0
@@ -49,11 +53,67 @@ class PreviewOptions:
     hints: HintLimits = field(default_factory=HintLimits)
 
 
-class Preview:
-    """Turns the features of a scan's frames, one after another, into what is shown of them.
+@dataclass(frozen=True, eq=False, slots=True)
+class StripeRays:
+    """The points of one frame's stripe: `rays` (N, 3), and their σ across the stripe as vectors (N, 2) in x, y."""
 
-    Built once per scan from the features of its reference picture (:func:`core.scan.features.read_reference`). Not to
-    be called from two threads at once.
+    frame: int
+    uv: Array
+    rays: Array
+    across: Array
+    intensity: Array
+    usable: NDArray[np.bool_]
+
+    @classmethod
+    def of(cls, frame: int, pieces: Sequence[Centreline], camera: Camera) -> StripeRays:
+        """The points of `pieces`, in their order."""
+        uv = np.concatenate([np.zeros((0, 2)), *(piece.uv for piece in pieces)])
+        normal = np.concatenate([np.zeros((0, 2)), *(piece.normal for piece in pieces)])
+        sigma = np.concatenate([np.zeros(0), *(piece.sigma for piece in pieces)])
+        strength = np.concatenate([np.zeros(0), *(piece.strength for piece in pieces)])
+        saturated = np.concatenate([np.zeros(0, np.bool_), *(piece.saturated for piece in pieces)])
+        rays = camera.rays(uv)
+        across = np.einsum("nij,nj->ni", camera.ray_jacobian(rays), normal) * sigma[:, None]
+        return cls(frame, uv, rays, across, strength, ~saturated & np.isfinite(rays).all(axis=1))
+
+    def thinned(self, step: int = 2) -> StripeRays:
+        """Every `step`-th point; copied, so that the others' memory is free."""
+        return StripeRays(
+            self.frame,
+            self.uv[::step].copy(),
+            self.rays[::step].copy(),
+            self.across[::step].copy(),
+            self.intensity[::step].copy(),
+            self.usable[::step].copy(),
+        )
+
+    def __len__(self) -> int:
+        return len(self.rays)
+
+    def depth(self, pi: Array, covariance: Array) -> tuple[Array, Array]:
+        """Depth (N,) in mm on the plane `pi` (3,) with `covariance` (3, 3), and its σ; NaN where there is none."""
+        inverse = self.rays @ pi
+        inverse = np.where(self.usable & (inverse > LEAST_INVERSE_DEPTH), inverse, np.nan)
+        variance = np.einsum("ni,ij,nj->n", self.rays, covariance, self.rays, optimize=True)
+        variance = variance + (self.across @ pi[:2]) ** 2
+        return 1 / inverse, np.sqrt(np.maximum(variance, 0)) / inverse**2
+
+    def cloud(self, depth: Array, sigma: Array, keep: NDArray[np.bool_]) -> PreviewCloud:
+        """The points that `keep` (N,) selects, at `depth` (N,)."""
+        return PreviewCloud(
+            (self.rays[keep] * depth[keep, None]).astype(np.float32),
+            sigma[keep].astype(np.float32),
+            self.intensity[keep].astype(np.float32),
+            self.uv[keep].astype(np.float32),
+            np.full(np.count_nonzero(keep), self.frame, np.int32),
+        )
+
+
+class Preview:
+    """Makes the preview of a scan from the features of its frames, one after another.
+
+    Built once per scan from the features of its reference picture
+    (:func:`core.scan.features.extraction.read_reference`). Not to be called from two threads at once.
     """
 
     def __init__(
@@ -93,11 +153,11 @@ class Preview:
 
     @property
     def has_more(self) -> bool:
-        """Whether there is something to do that can wait until a frame is shown."""
+        """Whether there is work that can wait until a frame is shown."""
         return self._coming is not None or self._thinned or self._tracker.is_due
 
     def go_on(self) -> None:
-        """Do some of what can wait.
+        """Do a part of the work that can wait.
 
         Called again and again it adjusts the anchors when that is due, and then makes the cloud anew by them,
         RENEWED_AT_ONCE sweeps at a time. The next frame brings the cloud once it is complete.
@@ -114,10 +174,10 @@ class Preview:
             self._whole, self._coming = PreviewCloud.joined(self._coming), None
 
     def __call__(self, features: FrameFeatures) -> FramePreview:
-        """What `features` show; frames in the order of time."""
+        """Make the preview of one frame from its `features`; frames come in the order of time."""
         if not features.centrelines:
             self._before, self._speed_before = (), float("nan")
-            return self._with_news(empty_preview(features.index, features.name, features.reason))
+            return self._with_updates(empty_preview(features.index, features.name, features.reason))
         sweep = self._tracker.add(features.index, features.centrelines)
         thin = tuple(piece.select(slice(None, None, self._options.thin)) for piece in features.centrelines)
         stripe = StripeRays.of(features.index, thin, self._camera)
@@ -146,9 +206,9 @@ class Preview:
             np.asarray(points.intensity, dtype=np.float64),
             np.asarray(points.uv, dtype=np.float64),
             self._hints(stripe, lines_met, sigma, lasting),
-            "" if len(points) else _why_no_points(marks, located=plane is not None),
+            None if len(points) else _why_no_points(marks, located=plane is not None),
         )
-        return self._with_news(preview)
+        return self._with_updates(preview)
 
     def _keep(self, stripe: StripeRays) -> None:
         """Keep the points of a frame as dense as those before, and every second of all when they become too many."""
@@ -173,7 +233,7 @@ class Preview:
             self._limits = _depth_limits(self._coming)
 
     def _points_of(self, frame: int) -> PreviewCloud:
-        """The points of one sweep that are worth showing, by what is known now."""
+        """The points of one sweep within the cut, by what is known now."""
         plane = self._tracker.located_anew(frame).plane
         if plane is None:
             return PreviewCloud.joined([])
@@ -181,7 +241,7 @@ class Preview:
         depth, sigma = stripe.depth(plane.pi, plane.covariance)
         return stripe.cloud(depth, sigma, self._worth_showing(depth, sigma))
 
-    def _with_news(self, preview: FramePreview) -> FramePreview:
+    def _with_updates(self, preview: FramePreview) -> FramePreview:
         """The preview with the whole cloud and the fan's lines, if they are new."""
         line = self._tracker.lines.line
         whole, self._whole = self._whole, None
@@ -201,7 +261,7 @@ class Preview:
         condition = plane_condition(sweep.geometry.rays[rows]) if sweep.plane is None else sweep.plane.condition
         return len(np.unique(line)), condition
 
-    def _hints(self, stripe: StripeRays, lines_met: int, sigma: Array, speed: float) -> tuple[str, ...]:
+    def _hints(self, stripe: StripeRays, lines_met: int, sigma: Array, speed: float) -> tuple[Message, ...]:
         known = sigma[np.isfinite(sigma)]
         state = HandState(
             lines_met,
@@ -230,14 +290,14 @@ class Preview:
 
 
 def _depth_limits(fan: Sequence[PreviewCloud]) -> tuple[float, float]:
-    """Depths in mm not wildly away from where the fan sees the object: what is beyond is a reflection."""
+    """Nearest and farthest depth in mm of points that are shown, as `core.scan.reconstruct` cuts them."""
     depth = PreviewCloud.joined(fan).points[:, 2]
-    return (0.6 * float(depth.min()), 1.5 * float(depth.max())) if len(depth) else (0.0, np.inf)
+    return (NEAREST_SHARE * float(depth.min()), FARTHEST_SHARE * float(depth.max())) if len(depth) else (0.0, np.inf)
 
 
-def _why_no_points(marks: CrossingMarks, *, located: bool) -> str:
+def _why_no_points(marks: CrossingMarks, *, located: bool) -> Message:
     if located:
-        return "its light plane is too uncertain for any point to be shown"
+        return Message("scan.preview_uncertain", "its light plane is too uncertain for any point to be shown")
     if not len(marks.uv):
-        return "its stripe crosses no line of the fan"
-    return "fewer than three crossings with the fan"
+        return Message("scan.preview_without_crossing", "its stripe crosses no line of the fan")
+    return FEW_CROSSINGS

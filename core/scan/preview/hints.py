@@ -1,15 +1,18 @@
-"""What to tell the hand that moves the laser, one short sentence each."""
+"""Hints for the hand that moves the laser, one short sentence each."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
+from core.messages import Message
+
 MOST_HINTS = 2
+"""Hints shown at a time: a hand can follow no more."""
 
 
 @dataclass(frozen=True, slots=True)
 class HintLimits:
-    """When a hint is given.
+    """Limits beyond which a hint is given; chosen with the simulated scan (tests/scan/preview/test_frames.py).
 
     `sigma_mm`: a frame whose points are this uncertain (median) needs better crossings. `speed_share`: movement from
     frame to frame over the picture's width. `faint` of the largest grey level: a stripe lower than this. `saturated`:
@@ -24,7 +27,7 @@ class HintLimits:
 
 @dataclass(frozen=True, slots=True)
 class HandState:
-    """How the hand-held laser does in one frame.
+    """State of the hand-held laser in one frame, as far as hints need it.
 
     `lines_met` of the fan's `lines` are crossed; `sigma_mm` is the median over the frame's points, NaN when the sweep
     is not located; `speed_px` since the frame before, NaN if not known; `width_px` the picture's; `strength` and
@@ -41,18 +44,24 @@ class HandState:
     saturated: float
 
 
-def hints_for(state: HandState, limits: HintLimits) -> tuple[str, ...]:
-    """At most two sentences, the more urgent first; none when all is well."""
-    hints: list[str] = []
+def hints_for(state: HandState, limits: HintLimits) -> tuple[Message, ...]:
+    """Choose at most MOST_HINTS hints, the more urgent first; none when all is well."""
+    hints: list[Message] = []
     if state.strength < limits.faint * state.full_scale:
-        hints.append("Brighter: the stripe is faint.")
+        hints.append(Message("scan.hint_brighter", "Brighter: the stripe is faint."))
     elif state.saturated > limits.saturated:
-        hints.append("Darker: the stripe is overexposed.")
+        hints.append(Message("scan.hint_darker", "Darker: the stripe is overexposed."))
     if state.speed_px > limits.speed_share * state.width_px:
-        hints.append(f"Slower: the stripe moves {state.speed_px:.0f} px from frame to frame.")
+        hints.append(
+            Message(
+                "scan.hint_slower",
+                "Slower: the stripe moves {speed_px:.0f} px from frame to frame.",
+                speed_px=state.speed_px,
+            )
+        )
     if not state.sigma_mm <= limits.sigma_mm:
         if state.lines_met < min(3, state.lines):
-            hints.append("Cross more of the fan.")
+            hints.append(Message("scan.hint_cross_more", "Cross more of the fan."))
         else:
-            hints.append("Tilt the laser more.")
+            hints.append(Message("scan.hint_tilt", "Tilt the laser more."))
     return tuple(hints[:MOST_HINTS])

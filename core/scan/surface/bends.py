@@ -1,7 +1,7 @@
-"""How a scanned surface bends: a quadric fitted to what lies around each of its nodes.
+"""Curvature of a scanned surface, by quadrics fitted around each of its nodes.
 
-The nodes are the cloud's points averaged over squares of the picture (`core.scan.fusion`). Around each, the others
-within a few squares are laid over its tangent plane, and with ξ, η in that plane and h above it
+The nodes are the cloud's points averaged over squares of the picture (`core.scan.surface.fusion`). Around each, the
+others within a few squares are laid over its tangent plane, and with ξ, η in that plane and h above it
 
     h = h₀ + p ξ + q η + (a ξ² + 2 b ξη + c η²)/2
 
@@ -20,32 +20,43 @@ from scipy.spatial import cKDTree
 
 from core.model.arrays import Array
 from core.model.directions import square_to
-from core.scan.cloud import Cloud
-from core.scan.fusion import fuse
-from core.scan.normals import pixel_angle
+from core.model.robust import MAD_TO_SD, TUKEY, tukey_weights
+from core.scan.surface.cloud import Cloud
+from core.scan.surface.fusion import fuse
+from core.scan.surface.normals import pixel_angle
 
+# Nodes and their neighbours. Held by tests/scan/surface/test_bends.py on a ball, a cylinder and a flat face.
 NODES_ACROSS = 320
 """Squares along the picture's width."""
 REACH = 8.0
-"""Neighbours are looked for within so many squares, as long as they are on a face that the camera looks at straight."""
-NEIGHBOURS = 64
-FEWEST = 20
+"""Squares within which neighbours are looked for, as long as they are on a face that the camera looks at straight."""
+MOST_NEIGHBOURS, LEAST_NEIGHBOURS = 64, 20
+"""Nodes that a quadric is fitted to; it has six unknowns."""
 CORRELATED = 4.0
 """Nodes that share one error: light planes, and stripes averaged along themselves, are wrong over several."""
-SURE = 2.0
-"""A bend smaller than this many standard uncertainties is none."""
-STRONGEST = 2.0
-"""Times the reach: what bends more is an edge, or a ball no larger than what it is fitted to."""
+
+# The fit of a quadric and what is believed of it; held by the same tests.
 ROUNDS = 4
+"""Rounds of reweighting a fit."""
 TURNS = 2
-TUKEY = 4.685
+"""Times that a fit is repeated over the plane that the one before gives."""
 LEAST_COSINE = 0.2
+"""Depth noise counts along the normal as if the surface were seen no flatter than this, 78°."""
+LEAST_SIGMA_SHARE = 0.2
+"""Of the nodes' median σ that each has at least: none outweighs all others."""
+MOST_SLOPE = 5.0
+"""Of the surface over the plane of the fit: with more the fit has not found the surface."""
+SIGNIFICANT = 2.0
+"""Standard uncertainties below which a bend is none."""
+LARGEST_BEND = 2.0
+"""Curvature times reach: what bends more is an edge, or a ball no larger than what it is fitted to."""
 OFF_SURFACE_MM = 0.5
+"""Distance in mm from a node's quadric beyond which a point is on another surface."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Bends:
-    """Nodes of a surface, its unit normals towards the camera (M, 3) and how they turn with the place.
+    """Nodes of a surface (M, 3) in mm with their unit normals towards the camera (M, 3) and curvature.
 
     `curvature` (M, 3, 3) in 1/mm: the normal changes by K·δX over δX, so K is positive where the surface is convex;
     all zero where no bend is sure, and less than was fitted where it is hardly. `known` (M,) where there is a normal.
@@ -58,11 +69,11 @@ class Bends:
 
     @property
     def flat(self) -> bool:
-        """Whether no bend is sure anywhere."""
+        """Whether no bend is significant anywhere."""
         return not self.curvature.any()
 
     def at(self, points: Array) -> tuple[Array, Array]:
-        """Unit normals (N, 3) and curvature (N, 3, 3) at `points` (N, 3), zeros where no node is near."""
+        """Interpolate unit normals (N, 3) and curvature (N, 3, 3) at `points` (N, 3); zeros where no node is near."""
         normals, curvature = np.zeros((len(points), 3)), np.zeros((len(points), 3, 3))
         nodes = np.flatnonzero(self.known)
         if not len(nodes) or not len(points):
@@ -78,15 +89,15 @@ class Bends:
 
 
 def bends_of(cloud: Cloud, image_size: tuple[int, int]) -> Bends:
-    """The bends of the surface that a cloud shows in pictures of `image_size` (width, height)."""
+    """Measure normals and curvature of the surface that a cloud shows in pictures of `image_size` (width, height)."""
     cell_px = image_size[0] / NODES_ACROSS
     nodes = fuse(cloud, image_size, cell_px)
-    points, sigma = nodes.points, np.maximum(nodes.sigma, 0.2 * float(np.median(nodes.sigma)))
+    points, sigma = nodes.points, np.maximum(nodes.sigma, LEAST_SIGMA_SHARE * float(np.median(nodes.sigma)))
     count = len(points)
-    if count <= FEWEST or not np.ptp(nodes.uv, axis=0).any():
+    if count <= LEAST_NEIGHBOURS or not np.ptp(nodes.uv, axis=0).any():
         return Bends(points, np.zeros((count, 3)), np.zeros((count, 3, 3)), np.zeros(count, dtype=np.bool_))
     reach = REACH * cell_px * pixel_angle(points, nodes.uv) * float(np.median(points[:, 2]))
-    distance, near = cKDTree(points).query(points, min(NEIGHBOURS, count), distance_upper_bound=reach)
+    distance, near = cKDTree(points).query(points, min(MOST_NEIGHBOURS, count), distance_upper_bound=reach)
     inside = np.isfinite(distance)
     near = np.where(inside, near, 0)
     away = np.where(inside[..., None], points[near] - points[:, None, :], 0.0)
@@ -95,8 +106,8 @@ def bends_of(cloud: Cloud, image_size: tuple[int, int]) -> Bends:
     for _ in range(TURNS):
         fit = _Quadrics.over(fit.normal, away, taper, sigma[near], points)
     size = np.sqrt((fit.curvature**2).sum(axis=(1, 2)))
-    known = (inside.sum(axis=1) >= FEWEST) & fit.sound & (size * reach < STRONGEST)
-    sure = np.where(known, np.maximum(1 - (SURE * fit.sigma / np.maximum(size, 1e-12)) ** 2, 0.0), 0.0)
+    known = (inside.sum(axis=1) >= LEAST_NEIGHBOURS) & fit.sound & (size * reach < LARGEST_BEND)
+    sure = np.where(known, np.maximum(1 - (SIGNIFICANT * fit.sigma / np.maximum(size, 1e-12)) ** 2, 0.0), 0.0)
     return Bends(points, fit.normal, fit.curvature * sure[:, None, None], known)
 
 
@@ -129,15 +140,19 @@ class _Quadrics:
             inverse = np.linalg.inv(matrix)
             solved = np.einsum("mij,mj->mi", inverse, np.einsum("mki,mk->mi", weighted, height))
             off = np.where(taper > 0, (height - np.einsum("mki,mi->mk", design, solved)) / noise, np.nan)
-            spread = np.maximum(1.4826 * np.nan_to_num(_median(np.abs(off)), nan=1.0), 1.0)
-            robust = np.clip(1 - (np.nan_to_num(off) / (TUKEY * spread[:, None])) ** 2, 0.0, None) ** 2
+            spread = np.maximum(MAD_TO_SD * np.nan_to_num(_median(np.abs(off)), nan=1.0), 1.0)
+            robust = tukey_weights(np.nan_to_num(off), TUKEY * spread[:, None])
         p, q, a, b, c = (solved[:, k] / scale**power for k, power in zip(range(1, 6), (1, 1, 2, 2, 2), strict=True))
         normal = axis - p[:, None] * first - q[:, None] * second
         normal /= np.linalg.norm(normal, axis=1)[:, None]
         form = a, b, c
         curvature = -_tensor(first, second, form)
         own = np.sqrt(CORRELATED * np.maximum(inverse[:, 3, 3] + 2 * inverse[:, 4, 4] + inverse[:, 5, 5], 0)) / scale**2
-        sound = (np.hypot(p, q) < 5) & np.isfinite(own) & ((robust * (taper > 0)).sum(axis=1) > FEWEST / 2)
+        sound = (
+            (np.hypot(p, q) < MOST_SLOPE)
+            & np.isfinite(own)
+            & ((robust * (taper > 0)).sum(axis=1) > LEAST_NEIGHBOURS / 2)
+        )
         return cls(normal, curvature, own * spread, sound)
 
 

@@ -1,4 +1,4 @@
-"""How much of the picture a scan has covered with points, cell by cell."""
+"""Coverage of the picture with measured points, cell by cell."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 Pixels = NDArray[np.float64] | NDArray[np.float32]
 
 CELLS_ACROSS = 96
+"""Cells along the picture's width: as fine as a hand can aim, coarse enough to fill between stripes."""
 
 
 class CoverageMap:

@@ -1,4 +1,4 @@
-"""A mesh of fewer triangles, with the error that this makes: stated, not promised.
+"""Decimation of a mesh, with the error that it makes measured and stated.
 
 Edges are collapsed in the order of their quadric error. That measure says nothing of millimetres, so afterwards every
 vertex of the old mesh is held against the new one.
@@ -22,25 +22,34 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from core.errors import InputError
+from core.messages import Message
 from core.model.arrays import Array
 from core.progress import Progress, silent
-from core.scan.mesh import vertex_normals
-from core.scan.mesh_holes import border
-from core.scan.surface import Mesh
-from core.scan.triangles import AT_ONCE, Surroundings, Triangles
+from core.scan.surface.fused_surface import Mesh
+from core.scan.surface.mesh import vertex_normals
+from core.scan.surface.mesh_holes import border
+from core.scan.surface.triangles import AT_ONCE, ProximityQuery, Triangles
 
-FEWEST = 4
+LEAST_TRIANGLES = 4
+"""Triangles of the smallest body, a tetrahedron."""
 ON_EDGE_MM = 1e-4
+"""Distance in mm of a foot point that lies on a border edge: rounding of float32 coordinates at 500 mm."""
+
+# The search for a number of triangles. Chosen by the time a try takes: tests/scan/surface/test_mesh_holes.py holds
+# them.
 TRIES = 6
-CLOSE = 0.03
-"""A number of triangles so near to what was asked for, as a share, is taken without trying again."""
-ROUNDS = 7
-"""Halvings of the number of triangles looked for when an error is given."""
+"""Tries to meet a number of triangles."""
+CLOSE_ENOUGH = 0.03
+"""Share of the number asked for within which it is met."""
+LARGEST_CORRECTION = 2.0
+"""Factor by which a try changes the number at most."""
+HALVINGS = 7
+"""Of the (logarithmic) range of numbers searched when an error is given: a hundred-and-twenty-eighth of it is left."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Decimated:
-    """A decimated mesh and how far the vertices of the whole one lie from it.
+    """A decimated mesh and the distances of the vertices of the whole one from it.
 
     Parameters
     ----------
@@ -59,15 +68,19 @@ class Decimated:
 
 
 def decimate(mesh: Mesh, triangles: int, progress: Progress = silent) -> Decimated:
-    """A mesh of about so many triangles (or as it is, if it has no more).
+    """Decimate a mesh to about so many triangles; one that has no more stays as it is.
 
     Raises
     ------
     InputError
         If fewer than 4 triangles are asked for.
     """
-    if triangles < FEWEST:
-        raise InputError(f"{triangles} triangles are no surface", where="decimation", todo=f"ask for {FEWEST} or more")
+    if triangles < LEAST_TRIANGLES:
+        raise InputError(
+            Message("surface.few_triangles", "{n} triangles are no surface", n=triangles),
+            where="decimation",
+            todo=Message("surface.advice_more_triangles", "ask for {least} or more", least=LEAST_TRIANGLES),
+        )
     progress("decimation", 0, 2)
     fewer = mesh if triangles >= len(mesh.triangles) else _of_about(mesh, triangles)
     progress("decimation", 1, 2)
@@ -77,7 +90,7 @@ def decimate(mesh: Mesh, triangles: int, progress: Progress = silent) -> Decimat
 
 
 def decimate_to(mesh: Mesh, largest_mm: float, progress: Progress = silent) -> Decimated:
-    """The mesh of fewest triangles found from which no vertex of the whole one lies farther than `largest_mm`.
+    """Decimate a mesh as far as no vertex of the whole one lies farther than `largest_mm` from it.
 
     Raises
     ------
@@ -85,11 +98,17 @@ def decimate_to(mesh: Mesh, largest_mm: float, progress: Progress = silent) -> D
         If the error is not above 0.
     """
     if not largest_mm > 0:
-        raise InputError(f"an error of {largest_mm:g} mm leaves every triangle", where="decimation", todo="allow more")
+        raise InputError(
+            Message(
+                "surface.no_error_allowed", "an error of {error_mm:g} mm leaves every triangle", error_mm=largest_mm
+            ),
+            where="decimation",
+            todo=Message("surface.advice_allow_more", "allow more"),
+        )
     best, walled = Decimated(mesh, 0.0, 0.0, 0.0), _walled(mesh)
-    low, high = np.log(FEWEST), np.log(max(len(walled.triangles), FEWEST + 1))
-    for round_ in range(ROUNDS):
-        progress("decimation", round_, ROUNDS)
+    low, high = np.log(LEAST_TRIANGLES), np.log(max(len(walled.triangles), LEAST_TRIANGLES + 1))
+    for round_ in range(HALVINGS):
+        progress("decimation", round_, HALVINGS)
         middle = (low + high) / 2
         fewer = _collapsed(mesh, walled, int(np.exp(middle)))
         tried = _stated(mesh, fewer) if len(fewer.triangles) else None
@@ -97,7 +116,7 @@ def decimate_to(mesh: Mesh, largest_mm: float, progress: Progress = silent) -> D
             best, high = tried, middle
         else:
             low = middle
-    progress("decimation", ROUNDS, ROUNDS)
+    progress("decimation", HALVINGS, HALVINGS)
     return best
 
 
@@ -135,9 +154,9 @@ def _of_about(mesh: Mesh, triangles: int) -> Mesh:
         found = len(fewer.triangles)
         if found and abs(found - triangles) < abs(len(best.triangles) - triangles):
             best = fewer
-        if abs(found - triangles) <= CLOSE * triangles:
+        if abs(found - triangles) <= CLOSE_ENOUGH * triangles:
             break
-        total *= float(np.clip(triangles / max(found, 1), 0.5, 2.0))
+        total *= float(np.clip(triangles / max(found, 1), 1 / LARGEST_CORRECTION, LARGEST_CORRECTION))
     return best
 
 
@@ -172,7 +191,7 @@ def _stated(mesh: Mesh, fewer: Mesh) -> Decimated:
     if fewer is mesh:
         return Decimated(mesh, 0.0, 0.0, 0.0)
     used = np.unique(mesh.triangles)
-    near = Surroundings(Triangles(fewer.vertices[fewer.triangles])).nearest(mesh.vertices[used])
+    near = ProximityQuery(Triangles(fewer.vertices[fewer.triangles])).nearest(mesh.vertices[used])
     away = np.abs(near.distance)
     worst = np.argsort(-away)[: max(1, len(away) // 20)]
     beside = np.zeros(len(away), dtype=np.bool_)

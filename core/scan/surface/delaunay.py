@@ -1,4 +1,4 @@
-"""Delaunay's triangulation of points in a plane, compiled: about ten times as fast as by a convex hull in 3D.
+"""Delaunay triangulation of points in a plane, compiled: about ten times as fast as by a convex hull in 3D.
 
 The points come by their distance from one in the middle, so that each new one lies outside the convex hull of those
 before. It is joined to the hull's edges that it sees, and edges are flipped until no circle round a triangle holds
@@ -26,11 +26,13 @@ from core.model.arrays import Array
 Index = NDArray[np.int64]
 
 _BITS = 24
-"""Coordinates take so many: products of two differences and their sums then stay below 2⁵¹."""
+"""Bits of a coordinate: products of two differences and their sums then stay below 2⁵¹."""
 _DOUBT = 1e-15
-"""Where sums of products in floating point are less than this share of their terms their sign may be wrong."""
+"""Where sums of products in floating point are less than this share of their terms their sign may be wrong: about five
+units of rounding."""
 _LIMB = 26
-_MASK = (1 << _LIMB) - 1
+"""Bits of a limb: products of up to 102 bits are summed in limbs."""
+_LIMB_MASK = (1 << _LIMB) - 1  # its bits
 
 
 class _Edges(NamedTuple):
@@ -54,7 +56,7 @@ class _Hull(NamedTuple):
 
 
 def delaunay(uv: Array) -> Index:
-    """Triangles (T, 3) over points `uv` (N, 2), each anticlockwise; none when the points do not span a plane.
+    """Triangulate points `uv` (N, 2): (T, 3) indices, each anticlockwise; none when the points do not span a plane.
 
     Points that fall together with another on the lattice are left out. The same points give the same triangles; where
     four or more lie on a circle, any one of those there can be.
@@ -241,8 +243,8 @@ def _in_circle(xy: Index, a: int, b: int, c: int, d: int) -> bool:
     high, middle, low = 0, 0, 0
     for lift, area in ((lift_a, area_a), (lift_b, area_b), (lift_c, area_c)):
         high += (lift >> _LIMB) * (area >> _LIMB)
-        middle += (lift >> _LIMB) * (area & _MASK) + (lift & _MASK) * (area >> _LIMB)
-        low += (lift & _MASK) * (area & _MASK)
+        middle += (lift >> _LIMB) * (area & _LIMB_MASK) + (lift & _LIMB_MASK) * (area >> _LIMB)
+        low += (lift & _LIMB_MASK) * (area & _LIMB_MASK)
     middle += low >> _LIMB
     high += middle >> _LIMB
-    return bool(high > 0 or (high == 0 and ((middle & _MASK) > 0 or (low & _MASK) > 0)))
+    return bool(high > 0 or (high == 0 and ((middle & _LIMB_MASK) > 0 or (low & _LIMB_MASK) > 0)))

@@ -12,7 +12,7 @@ from core.model.arrays import Array, frozen_array, set_field
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Surface:
-    """What a scan saw, one fused point for each cell of the picture's grid that light fell on.
+    """Fused surface of a scan: one point for each cell of the picture's grid that light fell on.
 
     Cells are squares of `cell_px` pixels; cell (row, column) holds the pixels whose centres lie in it. Cells between
     two stripes are empty: only the M occupied ones are stored.
@@ -102,7 +102,7 @@ def grid_shape(image_size: tuple[int, int], cell_px: float) -> tuple[int, int]:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Mesh:
-    """Triangles, normals towards the camera.
+    """Triangle mesh of the surface.
 
     Parameters
     ----------

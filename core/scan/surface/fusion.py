@@ -1,4 +1,12 @@
-"""The points of a cloud sorted into cells, and each cell's points fused; see `core.scan.fusion`."""
+"""Fusion of a scan's points in the grid of the picture.
+
+The points of one cell are averaged with weights 1/σ², but
+
+- only points of one surface: where depths fall into layers further apart than noise and the steepest slope explain
+  (a depth edge, a wrong point), the layer with most points stays, the nearer one when two have as many;
+- the points of one sweep in one cell share the error of its light plane and most of its centreline's noise: they count
+  as one observation with their mean weight, so a cell's σ falls with the number of sweeps, not of points.
+"""
 
 from __future__ import annotations
 
@@ -8,14 +16,94 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from core.errors import InputError
+from core.messages import Message
 from core.model.arrays import Array
+from core.progress import Progress, silent
+from core.scan.surface.cloud import Cloud
+from core.scan.surface.fused_surface import Surface, grid_shape
+from core.scan.surface.normals import ANGLE_SAMPLE, STEEPEST, pixel_angle, with_normals
+
+__all__ = ["CELLS_ACROSS", "fuse", "with_normals"]
+
+CELLS_ACROSS = 960
+"""Cells along the picture's width when no size is asked for: about the width of a stripe."""
+LARGEST_GAP = 4.0
+"""Standard uncertainties (and what slope allows) between neighbouring depths of one layer at most:
+tests/scan/surface/test_fusion.py holds it."""
+
+
+def fuse(
+    cloud: Cloud, image_size: tuple[int, int], cell_px: float | None = None, progress: Progress = silent
+) -> Surface:
+    """Fuse a cloud in the picture's grid.
+
+    Parameters
+    ----------
+    cloud
+        Points of a scan.
+    image_size
+        (width, height) of the picture in pixels.
+    cell_px
+        Side of a cell in pixels; None: the picture's width / 960, at least 1.
+    progress
+        Told how far it is.
+
+    Returns
+    -------
+    Surface
+        Without normals; see `with_normals`. Its σ holds what differs between sweeps; what is common to all of them
+        (camera, fan) is not in it, nor are correlations between the sweeps.
+
+    Raises
+    ------
+    InputError
+        If the cloud holds no point with finite depth and positive σ.
+    """
+    cell = max(1.0, image_size[0] / CELLS_ACROSS) if cell_px is None else float(cell_px)
+    shape = grid_shape(image_size, cell)
+    progress("fusion", 0, 2)
+    cell_of = cells_of(cloud.points, cloud.uv, cloud.sigma, shape, cell)
+    usable = np.flatnonzero(cell_of >= 0)
+    if not len(usable):
+        raise InputError(
+            Message("surface.no_depth", "the cloud holds no point with a depth, so there is no surface to fuse"),
+            todo=Message(
+                "surface.advice_check_frames", "check the stripes and crossings found in the frames of the scan"
+            ),
+        )
+    sample = usable[:: max(1, len(usable) // ANGLE_SAMPLE)].copy()
+    del usable  # a cloud may fill a good part of the memory: nothing is kept longer than it is of use
+    uv = cloud.uv[sample]
+    angle = pixel_angle(cloud.points[sample], uv) if np.ptp(uv, axis=0).any() else 0.0
+    slope = STEEPEST * cell * angle / 2  # neighbours in depth lie about half a cell apart at most
+    progress("fusion", 1, 2)
+    order, starts = sorted_by_cell(cell_of, shape[0] * shape[1])
+    cells = np.flatnonzero(np.diff(starts))
+    measured = Measured(cloud.points, cloud.uv, cloud.intensity, cloud.sigma, cloud.sweep)
+    fused = fuse_cells(order, starts, cells, measured, LARGEST_GAP, slope)
+    del cell_of, order
+    progress("fusion", 2, 2)
+    return Surface(
+        image_size=image_size,
+        cell_px=cell,
+        cells=cells,
+        points=fused.means[:, :3],
+        uv=fused.means[:, 3:5],
+        sigma=1 / np.sqrt(fused.weight),
+        intensity=fused.means[:, 5],
+        count=fused.number,
+        normals=np.zeros((len(cells), 3)),
+        member=fused.member,
+    )
+
 
 Index = NDArray[np.int64]
 
 
 @njit(cache=True, nogil=True)
 def cells_of(points: Array, uv: Array, sigma: Array, shape: tuple[int, int], cell_px: float) -> Index:
-    """Number (N,) of the cell of each point in a grid of `shape` (rows, columns); −1 for what cannot be fused.
+    """Find the cell (N,) of each point in a grid of `shape` (rows, columns); −1 for what cannot be fused.
 
     Positions `uv` (N, 2) on the rim belong to the outermost cells. A point needs a depth and a σ above 0.
     """
@@ -31,7 +119,7 @@ def cells_of(points: Array, uv: Array, sigma: Array, shape: tuple[int, int], cel
 
 @njit(cache=True, nogil=True)
 def sorted_by_cell(cell_of: Index, cells: int) -> tuple[Index, Index]:
-    """Points by their cell, those of −1 left out, and where in that order each of the `cells` begins and ends."""
+    """Sort points by their cell, those of −1 left out; also where in that order each of the `cells` begins and ends."""
     starts = np.zeros(cells + 1, dtype=np.int64)
     for cell in cell_of:
         if cell >= 0:
@@ -48,7 +136,7 @@ def sorted_by_cell(cell_of: Index, cells: int) -> tuple[Index, Index]:
 
 
 class Measured(NamedTuple):
-    """Of all N points, as in a cloud."""
+    """The N points of a cloud."""
 
     points: Array
     uv: Array
@@ -57,10 +145,21 @@ class Measured(NamedTuple):
     sweep: Index
 
 
+class FusedCells(NamedTuple):
+    """The fused points of M cells.
+
+    `means` (M, 6) weighted means of x, y, z, u, v and intensity; `weight` (M,) their sums of weights in 1/mm²; `number`
+    (M,) of points; `member` (N,) for each of all N points the cell it is part of, as an index into the M, or −1.
+    """
+
+    means: Array
+    weight: Array
+    number: Index
+    member: Index
+
+
 @njit(cache=True, nogil=True)
-def fuse_cells(
-    order: Index, starts: Index, cells: Index, measured: Measured, gap: float, slope: float
-) -> tuple[Array, Array, Index, Index]:
+def fuse_cells(order: Index, starts: Index, cells: Index, measured: Measured, gap: float, slope: float) -> FusedCells:
     """Fuse the points of each of the occupied `cells` (M,).
 
     Parameters
@@ -71,11 +170,6 @@ def fuse_cells(
         The N points.
     gap, slope
         Depths of one layer leave no gap larger than `gap` standard uncertainties plus `slope` times the depth.
-
-    Returns
-    -------
-    Weighted means of x, y, z, u, v and intensity (M, 6), sums of weights (M,), number of points (M,), and for each
-    of the N points the cell it is part of, as an index into `cells`, or −1.
     """
     points, uv, intensity, sigma, sweep = measured
     means, total = np.zeros((len(cells), 6)), np.zeros(len(cells))
@@ -103,7 +197,7 @@ def fuse_cells(
             of_sweep[sweep[i] - first_sweep] = 0
         count[m] = len(layer)
         means[m] /= total[m]
-    return means, total, count, member
+    return FusedCells(means, total, count, member)
 
 
 @njit(cache=True, nogil=True)

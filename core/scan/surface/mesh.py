@@ -1,4 +1,4 @@
-"""Triangles over a fused surface: Delaunay in the picture, cut where the surface is not continuous.
+"""Mesh over a fused surface: Delaunay triangulation in the picture, cut where the surface is not continuous.
 
 Between stripes the grid is empty, so neighbours are found by Delaunay's triangulation of the pixel positions. A
 triangle is left out when one of its edges
@@ -18,22 +18,30 @@ from numba import njit
 from numpy.typing import NDArray
 
 from core.errors import InputError
+from core.messages import Message
 from core.model.arrays import Array
 from core.progress import Progress, silent
-from core.scan.delaunay import delaunay
-from core.scan.normals import pixel_angle
-from core.scan.surface import Mesh, Surface
+from core.scan.surface.delaunay import delaunay
+from core.scan.surface.fused_surface import Mesh, Surface
+from core.scan.surface.normals import pixel_angle
 
+# What is one continuous surface. Held by tests/scan/surface/test_mesh.py on steps and on noise.
 JUMP_SIGMAS = 5.0
-"""A depth difference below this many standard uncertainties is no jump."""
+"""Standard uncertainties below which a depth difference is no jump."""
+STEEPEST_EDGE = np.radians(80.0)
+"""rad between an edge and the picture's plane above which it is a depth jump: 2° more than a surface that is seen."""
+LARGEST_KINK = np.radians(50.0)
+"""rad above which an edge that leaves the tangent planes of both its ends is a depth jump."""
+LONGEST_EDGE = 3.0
+"""Times the longest edge of nine triangles in ten: longer edges span what was not seen."""
 
 
 def build_mesh(
     surface: Surface,
     *,
     max_edge_px: float | None = None,
-    steepest: float = np.radians(80.0),
-    largest_kink: float = np.radians(50.0),
+    steepest: float = STEEPEST_EDGE,
+    largest_kink: float = LARGEST_KINK,
     progress: Progress = silent,
 ) -> Mesh:
     """Triangulate a fused surface.
@@ -41,7 +49,7 @@ def build_mesh(
     Parameters
     ----------
     surface
-        With normals (`core.scan.normals.with_normals`) steps between parallel faces are cut too.
+        With normals (`core.scan.surface.normals.with_normals`) steps between parallel faces are cut too.
     max_edge_px
         Longest edge in the picture; None: three times the longest edge of nine triangles in ten.
     steepest
@@ -69,8 +77,12 @@ def build_mesh(
         triangles = _continuous(surface, triangles, max_edge_px, steepest, largest_kink)
     if not len(triangles):
         raise InputError(
-            f"the {len(surface)} fused points leave no triangle between them, so there is no mesh",
-            todo="scan with more sweeps or allow longer edges",
+            Message(
+                "surface.no_triangle",
+                "the {n} fused points leave no triangle between them, so there is no mesh",
+                n=len(surface),
+            ),
+            todo=Message("surface.advice_more_sweeps", "scan with more sweeps or allow longer edges"),
         )
     progress("mesh", 2, 3)
     mesh = _compact(surface, _canonical(triangles))
@@ -82,7 +94,9 @@ def _continuous(
     surface: Surface, triangles: NDArray[np.int64], max_edge_px: float | None, steepest: float, largest_kink: float
 ) -> NDArray[np.int64]:
     """The triangles that lie on one continuous surface, turned so that the camera sees their front."""
-    limit = 3 * float(np.quantile(_longest(surface.uv, triangles), 0.9)) if max_edge_px is None else max_edge_px
+    limit = (
+        LONGEST_EDGE * float(np.quantile(_longest(surface.uv, triangles), 0.9)) if max_edge_px is None else max_edge_px
+    )
     known = (surface.normals != 0).any(axis=1)
     facing = np.where(known[:, None], surface.normals, [0.0, 0.0, -1.0])  # unknown: as if it faced the camera
     steep = pixel_angle(surface.points, surface.uv) * np.tan(steepest)
@@ -179,7 +193,7 @@ def _compact(surface: Surface, triangles: NDArray[np.int64]) -> Mesh:
 
 
 def vertex_normals(vertices: Array, triangles: NDArray[np.int64]) -> Array:
-    """Unit sum (V, 3) of the area-weighted normals of each vertex's triangles."""
+    """Compute vertex normals (V, 3): the unit sum of the area-weighted normals of each vertex's triangles."""
     a, b, c = (vertices[triangles[:, corner]] for corner in range(3))
     area = np.cross(b - a, c - a)
     summed = np.zeros_like(vertices)

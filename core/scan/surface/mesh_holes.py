@@ -1,8 +1,8 @@
 """Holes of a mesh, filled on request and marked: a filled triangle is shown, and never measured on.
 
 A hole is a ring of edges with one triangle each, inside the surface as the camera sees it; the outermost ring is the
-edge of what was scanned. Its rim is cut into triangles ear by ear, flat, with no new vertices: nothing is invented but
-what a straight line says. A rim that is no continuous surface, as round a shadow behind a step, is left open.
+edge of what was scanned. Its rim is cut into triangles ear by ear, flat, with no new vertices: no place is invented. A
+rim that is no continuous surface, as round a shadow behind a step, is left open.
 """
 
 from __future__ import annotations
@@ -14,20 +14,23 @@ from numpy.typing import NDArray
 
 from core.model.arrays import Array
 from core.progress import Progress, silent
-from core.scan.surface import Mesh
+from core.scan.surface.fused_surface import Mesh
 
-UNEVEN = 0.25
-"""A rim that leaves its plane by more than this share of the hole's span (and its noise) is no continuous surface."""
+# Rims that are filled: those of one continuous surface. tests/scan/surface/test_mesh_holes.py holds them.
+LARGEST_UNEVENNESS = 0.25
+"""Share of the hole's span by which a rim may leave its plane,"""
 NOISE_SIGMAS = 5.0
-LIKE_NORMALS = np.cos(np.radians(50.0))
-"""Nor is one whose plane is turned further than this against the surface at more than a tenth of the rim."""
+"""or standard uncertainties of its vertices, whichever is more."""
+LARGEST_TURN = np.radians(50.0)
+"""rad that a rim's plane may be turned against the surface at nine tenths of the rim, as a kink in the mesh."""
 MOST_EDGES = 2000
+"""Edges of a rim: longer ones are not filled, for cutting ears takes time with the square of their number."""
 
 Ring = NDArray[np.int64]
 
 
 def fill_holes(mesh: Mesh, largest_mm: float, progress: Progress = silent) -> Mesh:
-    """The mesh with its holes of a span up to `largest_mm` filled, `filled` True for the new triangles.
+    """Fill the holes of a mesh up to a span of `largest_mm`; `filled` is True for the new triangles.
 
     Parameters
     ----------
@@ -59,7 +62,7 @@ def fill_holes(mesh: Mesh, largest_mm: float, progress: Progress = silent) -> Me
 
 
 def holes(mesh: Mesh) -> list[Ring]:
-    """The rings of vertices round the holes of a mesh, each so that a triangle in it runs as the others do."""
+    """Find the rings of vertices round the holes of a mesh, each so that a triangle in it runs as the others do."""
     flat = mesh.vertices[:, :2] / mesh.vertices[:, 2:]
     outside = _signed_area(flat[mesh.triangles]).sum()  # triangles all run one way round in the picture
     rings = [ring for ring in _rings(mesh.triangles) if 3 <= len(ring) <= MOST_EDGES and len(set(ring)) == len(ring)]
@@ -67,7 +70,7 @@ def holes(mesh: Mesh) -> list[Ring]:
 
 
 def border(triangles: NDArray[np.int64]) -> NDArray[np.int64]:
-    """The edges (E, 2) that have no triangle on their other side, run as their triangles run."""
+    """Find the edges (E, 2) that have no triangle on their other side, in the direction of their triangles."""
     a, b = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
     count = int(triangles.max(initial=0)) + 1
     one_sided = ~np.isin(a * count + b, b * count + a)
@@ -118,10 +121,10 @@ def _continuous(mesh: Mesh, ring: Ring) -> bool:
     rim = mesh.vertices[ring]
     centred = rim - rim.mean(axis=0)
     normal = np.linalg.svd(centred, full_matrices=False)[2][2]
-    if np.quantile(np.abs(mesh.normals[ring] @ normal), 0.1) < LIKE_NORMALS:
+    if np.quantile(np.abs(mesh.normals[ring] @ normal), 0.1) < np.cos(LARGEST_TURN):
         return False
     off = np.abs(centred @ normal)
-    return bool(off.max() <= max(UNEVEN * _span(rim), NOISE_SIGMAS * float(np.median(mesh.sigma[ring]))))
+    return bool(off.max() <= max(LARGEST_UNEVENNESS * _span(rim), NOISE_SIGMAS * float(np.median(mesh.sigma[ring]))))
 
 
 def _ears(ring: Ring, flat: Array) -> list[NDArray[np.int64]]:

@@ -16,33 +16,49 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from core.model.arrays import Array
+from core.model.robust import TUKEY
 from core.progress import Progress, silent
-from core.scan.cloud import Cloud
-from core.scan.surface import Surface
+from core.scan.surface.cloud import Cloud
+from core.scan.surface.fused_surface import Surface
 
 Points = TypeVar("Points", Cloud, Surface)
 
+# Held by tests/scan/surface/test_fusion.py (normals) on tilted planes, beside a step and against wrong points.
 STEEPEST = np.tan(np.radians(78.0))
 """Steepest slope dz/dx of one surface; light along a steeper one is not extracted."""
-NEIGHBOURS = 80
-"""Most neighbours one fit takes; more cost time and add nothing to a normal."""
-WORST_TILT = 0.15
-"""Largest standard uncertainty of a normal's direction (rad) that still counts as determined."""
-ENOUGH = 100_000
-"""Points that tell the angle of a pixel as well as all of them."""
+MOST_NEIGHBOURS, LEAST_NEIGHBOURS = 80, 6
+"""Neighbours that one fit takes: more cost time and add nothing to a normal, fewer do not determine it."""
 CORRELATED = 8.0
 """Neighbours that share one error: points along one stripe are not independent."""
+WORST_TILT = 0.15
+"""Standard uncertainty of a normal's direction in rad up to which it counts as determined."""
+LEAST_SIGMA_SHARE = 0.2
+"""Of the points' median σ that each has at least: none outweighs all others."""
+LEAST_WIDTH_SHARE = 0.2
+"""Of the radius: neighbours whose standard deviation across is less lie along one stripe."""
+LAYER_SIGMAS = 4.0
+"""Standard uncertainties (and what slope allows) within which a neighbour in depth is on the same surface."""
+ANGLE_SAMPLE = 100_000
+"""Points that tell the angle of a pixel as well as all of them."""
+
+# The radius within which neighbours are taken, in px.
+SMALLEST_RADIUS_PX, LARGEST_RADIUS_PX, RADIUS_STEP = 4.0, 40.0, 1.35
+"""From and up to which it grows, and by which factor."""
+WIDE_SHARE, MOST_POINTS = 0.3, 0.8
+"""It is enough where neighbours spread by this share of it across their stripe, for this share of the points,"""
+RADIUS_SAMPLE = 300
+"""of so many of them."""
 
 
 def pixel_angle(points: Array, uv: Array) -> float:
-    """Ray coordinate per pixel, about 1/focal length in pixels, of `points` (N, 3) seen at `uv` (N, 2).
+    """Measure the ray coordinate per pixel, about 1/focal length in pixels, of `points` (N, 3) seen at `uv` (N, 2).
 
     Raises
     ------
     ValueError
         If all points were seen at one pixel.
     """
-    thin = slice(None, None, max(1, len(points) // ENOUGH))
+    thin = slice(None, None, max(1, len(points) // ANGLE_SAMPLE))
     points, uv = points[thin], uv[thin]
     rays = points[:, :2] / points[:, 2:]
     spread = float(np.var(uv, axis=0).sum())
@@ -52,7 +68,7 @@ def pixel_angle(points: Array, uv: Array) -> float:
 
 
 def with_normals(points: Points, radius_px: float | None = None, progress: Progress = silent) -> Points:
-    """The same cloud or surface with a unit normal towards the camera for each point.
+    """Estimate a unit normal towards the camera for each point of a cloud or surface.
 
     Parameters
     ----------
@@ -71,7 +87,7 @@ def with_normals(points: Points, radius_px: float | None = None, progress: Progr
         direction's standard uncertainty above 0.15 rad.
     """
     normals = np.zeros((len(points), 3))
-    if len(points) >= 6 and np.var(points.uv, axis=0).sum() > 0:
+    if len(points) >= LEAST_NEIGHBOURS and np.var(points.uv, axis=0).sum() > 0:
         progress("normals", 0, 2)
         radius = reach(points.uv) if radius_px is None else float(radius_px)
         progress("normals", 1, 2)
@@ -81,16 +97,16 @@ def with_normals(points: Points, radius_px: float | None = None, progress: Progr
 
 
 def reach(uv: Array) -> float:
-    """Radius in pixels at which most points of `uv` (N, 2) have neighbours on both sides of their own stripe."""
-    sample = np.linspace(0, len(uv) - 1, min(len(uv), 300)).astype(np.int64)
+    """Find the radius in px at which most points of `uv` (N, 2) have neighbours on both sides of their own stripe."""
+    sample = np.linspace(0, len(uv) - 1, min(len(uv), RADIUS_SAMPLE)).astype(np.int64)
     tree = cKDTree(uv)
-    radius = 4.0
-    while radius < 40.0:
+    radius = SMALLEST_RADIUS_PX
+    while radius < LARGEST_RADIUS_PX:
         around = tree.query_ball_point(uv[sample], radius)
         across = np.array([_narrow_spread(uv[np.asarray(near)]) for near in around])
-        if np.mean(across > 0.3 * radius) > 0.8:
+        if np.mean(across > WIDE_SHARE * radius) > MOST_POINTS:
             break
-        radius *= 1.35
+        radius *= RADIUS_STEP
     return radius
 
 
@@ -108,8 +124,8 @@ def _estimate(xyz: Array, uv: Array, sigma: Array, radius: float) -> Array:
     order = np.argsort(bucket, kind="stable")
     starts = np.searchsorted(bucket[order], np.arange(rows * columns + 1))
     normals = np.empty((len(xyz), 3))
-    floor = 0.2 * float(np.median(sigma)) + 1e-9
-    points = _Sorted(
+    floor = LEAST_SIGMA_SHARE * float(np.median(sigma)) + 1e-9
+    points = _PointGrid(
         np.ascontiguousarray(xyz[order]),
         np.ascontiguousarray(uv[order]),
         np.maximum(sigma[order], floor),
@@ -124,7 +140,7 @@ def _estimate(xyz: Array, uv: Array, sigma: Array, radius: float) -> Array:
     return normals
 
 
-class _Sorted(NamedTuple):
+class _PointGrid(NamedTuple):
     """N points sorted into square buckets of side `radius` px, `columns` × `rows` of them.
 
     `bucket` (N,) of each point; `starts` where in the points each bucket begins, and ends at the next one's begin;
@@ -143,15 +159,15 @@ class _Sorted(NamedTuple):
 
 
 @njit(cache=True, nogil=True)
-def _fit_all(points: _Sorted) -> Array:
+def _fit_all(points: _PointGrid) -> Array:
     """A robust plane in inverse depth around each point; see the module's docstring."""
     xyz, sigma, radius, angle = points.xyz, points.sigma, points.radius, points.angle
     normals = np.zeros((len(xyz), 3))
-    near = np.empty(4 * NEIGHBOURS, dtype=np.int64)
-    weights = np.empty(4 * NEIGHBOURS)
+    near = np.empty(4 * MOST_NEIGHBOURS, dtype=np.int64)
+    weights = np.empty(4 * MOST_NEIGHBOURS)
     for i in range(len(xyz)):
-        count = _gather(i, points, near)
-        if count < 6:
+        count = _neighbours(i, points, near)
+        if count < LEAST_NEIGHBOURS:
             continue
         for k in range(count):
             weights[k] = 1.0
@@ -160,10 +176,10 @@ def _fit_all(points: _Sorted) -> Array:
         narrow = 0.0
         for _ in range(3):
             a, b, c, narrow = _inverse_depth_plane(i, points, near, weights, count)
-            if narrow < (0.2 * radius) ** 2:
+            if narrow < (LEAST_WIDTH_SHARE * radius) ** 2:
                 break
             scale = _reweight(i, points, near, weights, count, (a, b, c))
-        if narrow < (0.2 * radius) ** 2:
+        if narrow < (LEAST_WIDTH_SHARE * radius) ** 2:
             continue
         # 1/z = a + b du + c dv  →  π over the ray coordinates, of which one pixel is `angle`.
         x, y, z = xyz[i, 0], xyz[i, 1], xyz[i, 2]
@@ -178,8 +194,8 @@ def _fit_all(points: _Sorted) -> Array:
 
 
 @njit(cache=True, nogil=True)
-def _gather(i: int, points: _Sorted, near: NDArray[np.int64]) -> int:
-    """Neighbours of point i on its own surface into `near`, evenly thinned to about NEIGHBOURS; how many."""
+def _neighbours(i: int, points: _PointGrid, near: NDArray[np.int64]) -> int:
+    """Neighbours of point i on its own surface into `near`, evenly thinned to about MOST_NEIGHBOURS; how many."""
     xyz, uv, sigma, starts = points.xyz, points.uv, points.sigma, points.starts
     columns, rows = points.columns, points.rows
     row, column = points.bucket[i] // columns, points.bucket[i] % columns
@@ -187,7 +203,7 @@ def _gather(i: int, points: _Sorted, near: NDArray[np.int64]) -> int:
     candidates = 0
     for r in range(max(row - 1, 0), min(row + 1, rows - 1) + 1):
         candidates += starts[r * columns + right + 1] - starts[r * columns + left]
-    stride = max(1, candidates // (3 * NEIGHBOURS))  # the disc covers a third of the nine buckets
+    stride = max(1, candidates // (3 * MOST_NEIGHBOURS))  # the disc covers a third of the nine buckets
     count = 0
     for r in range(max(row - 1, 0), min(row + 1, rows - 1) + 1):
         for j in range(starts[r * columns + left], starts[r * columns + right + 1], stride):
@@ -196,7 +212,7 @@ def _gather(i: int, points: _Sorted, near: NDArray[np.int64]) -> int:
             if apart > points.radius:
                 continue
             noise = np.sqrt(sigma[i] ** 2 + sigma[j] ** 2)
-            if abs(xyz[j, 2] - xyz[i, 2]) > 4 * noise + STEEPEST * apart * points.angle * xyz[i, 2]:
+            if abs(xyz[j, 2] - xyz[i, 2]) > LAYER_SIGMAS * noise + STEEPEST * apart * points.angle * xyz[i, 2]:
                 continue
             if count < len(near):
                 near[count] = j
@@ -206,7 +222,7 @@ def _gather(i: int, points: _Sorted, near: NDArray[np.int64]) -> int:
 
 @njit(cache=True, nogil=True)
 def _inverse_depth_plane(
-    i: int, points: _Sorted, near: NDArray[np.int64], weights: Array, count: int
+    i: int, points: _PointGrid, near: NDArray[np.int64], weights: Array, count: int
 ) -> tuple[float, float, float, float]:
     """Weighted fit 1/z = a + b du + c dv about point i, and the variance (px²) of the neighbours across."""
     xyz, uv, sigma = points.xyz, points.uv, points.sigma
@@ -243,7 +259,7 @@ def _inverse_depth_plane(
 
 @njit(cache=True, nogil=True)
 def _reweight(
-    i: int, points: _Sorted, near: NDArray[np.int64], weights: Array, count: int, plane: tuple[float, float, float]
+    i: int, points: _PointGrid, near: NDArray[np.int64], weights: Array, count: int, plane: tuple[float, float, float]
 ) -> float:
     """Tukey's weights from the residuals in units of σ; returns the residuals' scale, at least 1."""
     xyz, uv, sigma = points.xyz, points.uv, points.sigma
@@ -259,6 +275,6 @@ def _reweight(
     for k in range(count):
         j = near[k]
         predicted = a + b * (uv[j, 0] - uv[i, 0]) + c * (uv[j, 1] - uv[i, 1])
-        e = (1 / xyz[j, 2] - predicted) * xyz[j, 2] ** 2 / (4.685 * scale * sigma[j])
+        e = (1 / xyz[j, 2] - predicted) * xyz[j, 2] ** 2 / (TUKEY * scale * sigma[j])
         weights[k] = (1 - e * e) ** 2 if abs(e) < 1 else 0.0
     return scale

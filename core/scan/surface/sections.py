@@ -1,4 +1,4 @@
-"""Stripes of light on a surface that bends: how wide their light is, where it comes from, and how far it lies beside.
+"""Sections of stripes on a curved surface: width and direction of the light, and its offset from the light plane.
 
 Light has a width. On a bent surface a sheet of σ w falls on one side of its middle plane more steeply and more squarely
 than on the other, and the picture of its section, still a Gaussian to the eye, lies beside the plane's own curve: on a
@@ -9,9 +9,9 @@ g = ∂ln(n·l)/∂x how squareness changes, and c the curvature of the curve, t
     t = s² (g − 3κ/2) + b² c/2
 
 (to first order: exp(gx)·exp(−d²/2w²) ≈ exp(−x²/2s²)·(1 + gx − κx³/2s²), blurred). Nothing in the section itself tells
-it. But where the surface and its bend are known (`core.scan.bends`), so is t, but for three things that the stripes
-tell: w and b by how their width changes with the slant, S² = w²/d'² + b², and where the light comes from by how its
-brightness changes along the stripe, as n·l would. All of t goes with the bend: without one nothing is off.
+it. But where the surface and its bend are known (`core.scan.surface.bends`), so is t, but for three things that the
+stripes tell: w and b by how their width changes with the slant, S² = w²/d'² + b², and where the light comes from by how
+its brightness changes along the stripe, as n·l would. All of t goes with the bend: without one nothing is off.
 
 How near this comes to the truth is measured in tests/accuracy/sphere_bound.py.
 """
@@ -25,27 +25,38 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import nnls
 
-from core.image.centreline import Centreline
+from core.image.stripes.centreline import Centreline
 from core.model import Camera
 from core.model.arrays import Array
-from core.scan.bends import Bends
+from core.scan.surface.bends import Bends
+from core.scan.surface.triangulate import LEAST_INVERSE_DEPTH
 
-LARGEST = 0.25
+# The law and where it is trusted. Held by tests/scan/test_bend_correction.py and tests/accuracy/sphere_bound.py on
+# balls.
+LARGEST_SHIFT = 0.25
 """t/s beyond which the law, the first term of a series, is no longer trusted."""
 LEAST_COSINE = 0.15
-"""n·l is taken to be at least this: light that grazes is hardly found."""
-UNEVEN = 0.15
-"""Brightness may change by so much, in its logarithm, for other reasons than the angle of incidence."""
-USUAL_ANGLE = 0.7
-"""rad; the light comes from within about this of the surface's normal, if brightness does not tell."""
-BLUR_PRIOR_PX = 1.0
-PRIOR_SHARE = 0.01
-"""The lens's blur, until widths tell it, and what that counts beside them."""
+"""Of the angle of view and of incidence, 81°: light that grazes is hardly extracted."""
+POINT_STEP = 5
+"""Points: every so many-th is used, for neighbours along a stripe share their error."""
+
+# The width of the light; held by the same tests.
+BLUR_PRIOR_PX, PRIOR_SHARE = 1.0, 0.01
+"""The lens's blur as σ in px, until widths tell it, and what that counts beside them."""
 LIGHT_ROUNDS = 6
+"""Rounds of trimming and weighting when widths are fitted."""
 TRIMMED = 3.0
 """Widths this many times further from the law than half of them are left out."""
+
+# The direction of the light, by brightness; held by the same tests.
+UNEVENNESS = 0.15
+"""Standard deviation of the logarithm of brightness for other reasons than the angle of incidence."""
+LARGEST_MISFIT = 9.0
+"""Square of its deviation in these, 3²: a larger one counts as this."""
+USUAL_ANGLE = 0.7
+"""rad, standard deviation: the light comes from about so near to the surface's normal, if brightness does not tell."""
 ANGLES = np.linspace(-1.3, 1.3, 53)
-EVERY = 5
+"""rad; directions of the light that are tried, 3° apart, up to grazing."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -74,10 +85,10 @@ class Stripe:
     ) -> Stripe:
         rays = camera.rays(line.uv)
         inverse = rays @ pi
-        points = rays / np.where(inverse > 1e-5, inverse, np.inf)[:, None]
+        points = rays / np.where(inverse > LEAST_INVERSE_DEPTH, inverse, np.inf)[:, None]
         normal, curvature = bends.at(points)
         facing = (normal * rays).sum(axis=1)
-        known = (inverse > 1e-5) & (facing < -LEAST_COSINE)
+        known = (inverse > LEAST_INVERSE_DEPTH) & (facing < -LEAST_COSINE)
         facing = np.where(known, facing, -1.0)
         plane = pi / np.linalg.norm(pi)
         jacobian = camera.ray_jacobian(rays)
@@ -98,27 +109,27 @@ class Stripe:
 
     @property
     def bent(self) -> NDArray[np.bool_]:
-        """Where (N,) the surface bends for sure."""
+        """Mask (N,) of the points where the surface bends significantly."""
         return self.known & self.tilt.any(axis=1)
 
     def offsets(self, light_mm: float, blur_px: float, toward: Array) -> Array:
-        """How far (N,) in px along its normal the light lies from the light plane's own curve."""
+        """Compute the offset (N,) in px along its normal of the light from the light plane's own curve."""
         own = np.minimum(light_mm / np.abs(self.slope), self.line.width)  # no light is wider than its blurred section
         squarely = np.maximum(self.normal @ toward, LEAST_COSINE)
         off = own**2 * (self.tilt @ toward / squarely - 1.5 * self.bend) + 0.5 * blur_px**2 * self.arc
-        return np.where(self.known, np.clip(off, -LARGEST * own, LARGEST * own), 0.0)
+        return np.where(self.known, np.clip(off, -LARGEST_SHIFT * own, LARGEST_SHIFT * own), 0.0)
 
     def brightness(self, light_mm: float, blur_px: float) -> Array:
-        """Logarithm (N,) of the light that falls on the surface: the section's height freed of the blur."""
+        """Logarithm (N,) of the light that falls on the surface: the section's height without the blur."""
         own = np.maximum((light_mm / self.slope) ** 2, 1e-6)
         return np.asarray(np.log(np.maximum(self.line.strength, 1e-3)) + 0.5 * np.log1p(blur_px**2 / own))
 
 
-def light_of(stripes: Sequence[Stripe]) -> tuple[float, float, float]:
-    """σ in mm of the fan's light and of the sweeps', and the lens's blur in px: S² = w²/d'² + b² for all sections."""
+def estimate_light(stripes: Sequence[Stripe]) -> tuple[float, float, float]:
+    """Estimate σ in mm of the fan's light and of the sweeps', and the lens's blur in px, from S² = w²/d'² + b²."""
     rows, squares = [np.zeros((0, 3))], [np.zeros(0)]
     for stripe in stripes:
-        keep = np.flatnonzero(stripe.known & ~stripe.line.saturated)[::EVERY]
+        keep = np.flatnonzero(stripe.known & ~stripe.line.saturated)[::POINT_STEP]
         of_fan = float(stripe.frame < 0)
         gain = 1 / stripe.slope[keep] ** 2
         rows.append(np.column_stack([of_fan * gain, (1 - of_fan) * gain, np.ones(len(keep))]))
@@ -126,7 +137,7 @@ def light_of(stripes: Sequence[Stripe]) -> tuple[float, float, float]:
     design, square = np.concatenate(rows), np.concatenate(squares)
     if not len(square):
         return 0.0, 0.0, 0.0
-    solved = np.array([*(_usual((square - BLUR_PRIOR_PX**2), design[:, k]) for k in range(2)), BLUR_PRIOR_PX**2])
+    solved = np.array([*(_median_ratio((square - BLUR_PRIOR_PX**2), design[:, k]) for k in range(2)), BLUR_PRIOR_PX**2])
     for _ in range(LIGHT_ROUNDS):
         model = np.maximum(design @ solved, 1e-3)
         off = np.abs(square / model - 1)
@@ -139,15 +150,15 @@ def light_of(stripes: Sequence[Stripe]) -> tuple[float, float, float]:
     return fan_light, sweep_light, blur
 
 
-def _usual(square: Array, gain: Array) -> float:
+def _median_ratio(square: Array, gain: Array) -> float:
     """Median of `square` over `gain` where there is any."""
     some = gain > 0
     return max(float(np.median(square[some] / gain[some])), 0.0) if some.any() else 0.0
 
 
 def toward_light(stripes: Sequence[Stripe], light_mm: float, blur_px: float) -> Array:
-    """(3,) towards the light in one sheet's plane, by the brightness along its stripes (of each by itself)."""
-    parts = [(stripe, np.flatnonzero(stripe.known)[::EVERY]) for stripe in stripes]
+    """Find the direction (3,) towards the light in one sheet's plane by the brightness along each of its stripes."""
+    parts = [(stripe, np.flatnonzero(stripe.known)[::POINT_STEP]) for stripe in stripes]
     parts = [(stripe, at) for stripe, at in parts if len(at)]
     if not parts:
         return np.zeros(3)
@@ -162,7 +173,7 @@ def toward_light(stripes: Sequence[Stripe], light_mm: float, blur_px: float) -> 
     for stripe, at in parts:
         squarely = np.log(np.maximum(stripe.normal[at] @ directions.T, 0.05))
         off = stripe.brightness(light_mm, blur_px)[at][:, None] - squarely
-        off = (off - np.median(off, axis=0)) / UNEVEN
-        each = EVERY / max(stripe.line.correlation_px, EVERY)
-        cost += each * np.minimum(off**2, 9.0).sum(axis=0)
+        off = (off - np.median(off, axis=0)) / UNEVENNESS
+        each = POINT_STEP / max(stripe.line.correlation_px, POINT_STEP)
+        cost += each * np.minimum(off**2, LARGEST_MISFIT).sum(axis=0)
     return np.asarray(directions[np.argmin(cost)])

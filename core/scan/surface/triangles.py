@@ -1,4 +1,4 @@
-"""A nominal surface: triangles, and the signed distance of points from them."""
+"""Surface of triangles, such as a nominal one, and the signed distance of points from it."""
 
 from __future__ import annotations
 
@@ -10,12 +10,13 @@ from scipy.spatial import cKDTree
 
 from core.model.arrays import Array, frozen_array, set_field
 
-CANDIDATES = 8
-"""Triangles tried first for each point; more where that may not be enough."""
-FINEST = 400_000
-"""A surface is cut into no more pieces than about this many."""
+# Chosen by time and memory at the same distances: tests/scan/surface/test_triangles.py holds them.
+CANDIDATES, MORE_CANDIDATES = 8, 4
+"""Triangles tried first for each point, and the factor of more where that may not be enough."""
+MOST_PIECES = 400_000
+"""Pieces that a surface is cut into at most, about."""
 AT_ONCE = 200_000
-"""So many pairs of a point and a triangle are compared at once: about 100 MB."""
+"""Pairs of a point and a triangle that are compared at once: about 100 MB."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -45,7 +46,7 @@ class Triangles:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Nearest:
-    """Of N points: the nearest place on the surface (N, 3), its outward normal (N, 3), and the signed distance (N,)."""
+    """Nearest places of N points: on the surface (N, 3) in mm, outward normal (N, 3), signed distance (N,) in mm."""
 
     foot: Array
     normal: Array
@@ -53,7 +54,7 @@ class Nearest:
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class _Class:
+class _SizeClass:
     """Pieces of about one size: a tree of their middles, the triangles they are of, how far corners are at most."""
 
     tree: cKDTree
@@ -70,8 +71,8 @@ class _Best:
     which: NDArray[np.int64]
 
 
-class Surroundings:
-    """Triangles made ready to be asked for the nearest of them.
+class ProximityQuery:
+    """Query of the nearest place on a surface of triangles.
 
     `surface` are the triangles themselves. They are kept in classes of about one size, each with a tree of its own: the
     reach of a few large triangles must not make every small one a candidate.
@@ -87,10 +88,10 @@ class Surroundings:
         self._classes = []
         for one in np.unique(size):
             mine = np.flatnonzero(size == one)
-            self._classes.append(_Class(cKDTree(centres[mine]), of[mine], float(radius[mine].max())))
+            self._classes.append(_SizeClass(cKDTree(centres[mine]), of[mine], float(radius[mine].max())))
 
     def nearest(self, points: Array, exact_within: float = np.inf) -> Nearest:
-        """The nearest place of the surface to each point (N, 3); exact for those no farther than `exact_within` mm.
+        """Find the nearest place on the surface for each point (N, 3); exact for those within `exact_within` mm.
 
         A piece whose middle is farther than the best distance found plus its class's reach cannot be nearer. Beyond
         `exact_within` (−inf: at all) it is the nearest place of pieces nearest by their middles, at most their reach
@@ -98,11 +99,11 @@ class Surroundings:
         """
         best = _Best(np.full(len(points), np.inf), np.zeros_like(points), np.zeros(len(points), dtype=np.int64))
         for kind in self._classes:
-            self._look(points, kind, exact_within, best)
+            self._search(points, kind, exact_within, best)
         return self._signed(points, best.foot, best.which)
 
-    def _look(self, points: Array, kind: _Class, exact_within: float, best: _Best) -> None:
-        """Look among the pieces of one class for nearer ones than were found."""
+    def _search(self, points: Array, kind: _SizeClass, exact_within: float, best: _Best) -> None:
+        """Search the pieces of one class for nearer ones than were found."""
         left, count = np.arange(len(points)), min(CANDIDATES, kind.tree.n)
         while len(left):
             unsure = np.zeros(len(left), dtype=np.bool_)
@@ -112,9 +113,9 @@ class Surroundings:
                 away = best.distance[left[part]]
                 unsure[part] = (farthest < away + kind.reach) & (away <= exact_within + kind.reach)
             left = left[unsure & (count < kind.tree.n)]
-            count = min(4 * count, kind.tree.n)
+            count = min(MORE_CANDIDATES * count, kind.tree.n)
 
-    def _compare(self, points: Array, which: NDArray[np.int64], count: int, kind: _Class, best: _Best) -> Array:
+    def _compare(self, points: Array, which: NDArray[np.int64], count: int, kind: _SizeClass, best: _Best) -> Array:
         """Compare some points with the `count` nearest pieces; how far the middle of the last of them is."""
         found = kind.tree.query(points[which], k=[*range(1, count + 1)])
         far, pieces = np.asarray(found[0], dtype=np.float64), np.asarray(found[1], dtype=np.int64)
@@ -144,7 +145,7 @@ def _cut(corners: Array) -> tuple[Array, NDArray[np.int64]]:
     while True:
         edges = np.linalg.norm(corners - np.roll(corners, -1, axis=1), axis=2)  # edge i: corner i to i + 1
         long = edges.max(axis=1) > longest
-        if not long.any() or len(corners) > FINEST:
+        if not long.any() or len(corners) > MOST_PIECES:
             return corners, of
         first = edges[long].argmax(axis=1)
         rolled = np.take_along_axis(corners[long], ((first[:, None] + np.arange(3)) % 3)[:, :, None], axis=1)

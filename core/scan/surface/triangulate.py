@@ -1,4 +1,4 @@
-"""From centrelines and light planes to points with their σ."""
+"""Triangulation: from centrelines and light planes to points with their σ."""
 
 from __future__ import annotations
 
@@ -6,22 +6,24 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from core.image.centreline import Centreline
-from core.image.pieces import arc_length
+from core.image.stripes.centreline import Centreline
+from core.image.stripes.runs import arc_length
 from core.model import Camera
 from core.model.arrays import Array
-from core.scan.cloud import Cloud
+from core.scan.surface.cloud import Cloud
 
-LEAST_LEFT = 0.2
-"""No plane undoes more of a point's variance than leaves this share."""
+LEAST_VARIANCE_SHARE = 0.2
+"""Of a point's variance that is left at least, however much the plane undoes of it: the covariance is an estimate."""
+LEAST_INVERSE_DEPTH = 1e-5
+"""In 1/mm, 100 m: what is farther lies behind the camera or is no measurement."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class OwnLine:
-    """What a light plane owes to the centreline it is triangulated with, for crossings on that line fixed it.
+    """Covariance of a light plane with the centreline it is triangulated with, for crossings on that line fixed it.
 
     `covariance` (C, 3) in 1/mm of π̂ − π with the errors z of the line's cells of `cell_px`, from its beginning on; see
-    `core.scan.network.Network.line_covariance`.
+    `core.scan.network.adjustment.Network.line_covariance`.
     """
 
     covariance: Array
@@ -49,7 +51,7 @@ def triangulate(
     sweep: int,
     own: OwnLine | None = None,
 ) -> Cloud:
-    """Points of one centreline on the light plane `pi` (3,), with `covariance` (3, 3).
+    """Triangulate one centreline on the light plane `pi` (3,), with `covariance` (3, 3).
 
     With r the ray and n the centreline's normal, in inverse depth w = π·r: var(w) = rᵀ Σ r + (∂w/∂(u,v)·n)² σ² + 2 c,
     and σ_z = z² σ_w. The plane goes where its crossings are, so it follows the line's noise and undoes some of it: c,
@@ -61,8 +63,8 @@ def triangulate(
     variance = np.einsum("ni,ij,nj->n", rays, covariance, rays) + (slope * centreline.sigma) ** 2
     if own is not None and len(own.covariance):
         common = own.with_noise(centreline, rays, slope, camera.focal)
-        variance = np.maximum(variance + 2 * common, LEAST_LEFT * variance)
-    keep = (inverse_depth > 1e-5) & ~centreline.saturated & np.isfinite(inverse_depth)
+        variance = np.maximum(variance + 2 * common, LEAST_VARIANCE_SHARE * variance)
+    keep = (inverse_depth > LEAST_INVERSE_DEPTH) & ~centreline.saturated & np.isfinite(inverse_depth)
     centreline, rays, inverse_depth = centreline.select(keep), rays[keep], inverse_depth[keep]
     variance = variance[keep]
     depth = 1 / inverse_depth
@@ -79,7 +81,7 @@ def triangulate(
 
 
 def join(clouds: list[Cloud]) -> Cloud:
-    """All points of `clouds`, in order."""
+    """Concatenate the points of `clouds`, in order."""
     if not clouds:
         empty, index = np.zeros(0), np.zeros(0, dtype=np.int64)
         return Cloud(np.zeros((0, 3)), np.zeros((0, 2)), empty, empty, index, index, np.zeros((0, 3)))

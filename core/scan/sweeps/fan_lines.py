@@ -1,4 +1,4 @@
-"""Which stretch of light belongs to which fan line, on an object whose shape is not yet known.
+"""Numbering of the fan's centrelines on an object whose shape is not yet known.
 
 A fan line seen on unknown relief could, by depth alone, be any of the lines: half a block's height moves it as far as
 the next line is away. But across the fan the lines keep their order, as long as the camera sees them all by one side of
@@ -20,18 +20,24 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from core.image.centreline import Centreline
+from core.image.stripes.centreline import Centreline
+from core.messages import Message
 from core.model import Camera, Fan
 from core.model.arrays import Array
 
 UNASSIGNED = -1
+"""The line of a centreline whose line is not known."""
 
+# Held by tests/scan/sweeps/test_fan_lines.py on rendered parts and a reflection.
 LEAST_OVERLAP = 0.1
 """Two centrelines lie side by side if they do so over this share of the shorter one: at a depth edge the light before
 and behind it overlaps a little."""
-
 WIDEST_FAN = float(np.deg2rad(45.0))
-"""Half the opening of a line laser, at most."""
+"""rad: half the opening of a line laser, at most."""
+_APERTURES = 7
+"""Places of the laser on the pencil's axis that are tried over that opening."""
+_CLEARLY_NEARER = 0.5
+"""A line is taken by the sweeps if its misfit is below this share of the next one's."""
 
 Order = NDArray[np.bool_]
 Counts = NDArray[np.int64]
@@ -39,23 +45,23 @@ Counts = NDArray[np.int64]
 
 @dataclass(frozen=True, slots=True)
 class FanLines:
-    """The fan line (from 0) of each centreline, UNASSIGNED where none fits, with the reason.
+    """The fan line (from 0) of each centreline; UNASSIGNED where none fits, and then the reason.
 
     `choices` holds the lines that the order alone would allow; a number is sure where there is but one.
     """
 
     line: tuple[int, ...]
-    reason: tuple[str, ...]
+    reason: tuple[Message | None, ...]
     choices: tuple[tuple[int, ...], ...]
 
     @classmethod
     def settled_as(cls, line: Sequence[int]) -> FanLines:
         """Numbers settled earlier."""
-        return cls(tuple(line), ("",) * len(line), tuple((k,) for k in line))
+        return cls(tuple(line), (None,) * len(line), tuple((k,) for k in line))
 
     @property
     def settled(self) -> int:
-        """How many centrelines the order alone has given a number."""
+        """Number of centrelines that the order alone has numbered."""
         return sum(k != UNASSIGNED and len(c) == 1 for k, c in zip(self.line, self.choices, strict=True))
 
     @property
@@ -66,9 +72,9 @@ class FanLines:
 
 
 def possible_fan_lines(pieces: Sequence[Centreline], camera: Camera, fan: Fan) -> tuple[FanLines, ...]:
-    """Number the fan's centrelines, 0 … N − 1: every numbering that some place of the laser allows, likeliest first."""
+    """Number the fan's centrelines 0 … N − 1 in every way that some place of the laser allows, likeliest first."""
     if fan.lines == 1:
-        return (FanLines((0,) * len(pieces), ("",) * len(pieces), ((0,),) * len(pieces)),)
+        return (FanLines((0,) * len(pieces), (None,) * len(pieces), ((0,),) * len(pieces)),)
     rays = [camera.rays(piece.uv) for piece in pieces]
     lengths = np.array([len(piece) for piece in pieces])
     frame = _fan_frame(fan)
@@ -108,7 +114,7 @@ def _apertures(fan: Fan, middle: Array) -> Array:
     scene = fan.planes[fan.lines // 2].points(middle[None])[0]
     foot = on_axis + ((scene - on_axis) @ axis) * axis
     reach = np.linalg.norm(scene - foot) * np.tan(WIDEST_FAN)
-    return np.asarray(foot + np.linspace(-reach, reach, 7)[:, None] * axis)
+    return np.asarray(foot + np.linspace(-reach, reach, _APERTURES)[:, None] * axis)
 
 
 def _profile(rays: Array, frame: Array, aperture: Array, middle: Array) -> Array:
@@ -174,12 +180,14 @@ def _choose(
     """Fix the pieces that have one choice; then, longest first, the others by the depth nearest to those fixed."""
     count = len(rays)
     line = np.full(count, UNASSIGNED)
-    reason = [""] * count
+    reason: list[Message | None] = [None] * count
     depth = np.array([[np.median(r @ plane.pi) for plane in fan.planes] for r in rays])  # inverse depth, 1/mm
     centre = np.array([np.median(r, axis=0) for r in rays])
     for i in range(count):
         if not kept[i]:
-            reason[i] = f"more than {fan.lines} stripes side by side: taken for a reflection"
+            reason[i] = Message(
+                "scan.fan_light_crowded", "more than {n} stripes side by side: taken for a reflection", n=fan.lines
+            )
         elif lowest[i] == highest[i]:
             line[i] = lowest[i]
     waiting = [i for i in range(count) if kept[i] and line[i] == UNASSIGNED]
@@ -192,7 +200,7 @@ def _choose(
             and not any(line[j] != UNASSIGNED and before[i, j] and line[j] <= k for j in range(count))
         ]
         if not options:
-            reason[i] = "no fan line fits between its neighbours"
+            reason[i] = Message("scan.fan_light_fits_no_line", "no fan line fits between its neighbours")
             continue
         fixed = np.flatnonzero(line != UNASSIGNED)
         if len(fixed):
@@ -208,7 +216,7 @@ def _choose(
 
 
 def settle_by_sweeps(lines: FanLines, piece: Counts, rays: Array, inverse_depths: Array, fan: Fan) -> FanLines:
-    """Let the sweeps decide where the order across the fan left a choice.
+    """Decide by the sweeps where the order across the fan left a choice.
 
     `piece` (M,), `rays` (M, 3): crossings with the fan; `inverse_depths` (M,) what the sweeps' planes, solved without
     the unsure centrelines, say there. The line that comes nearest is taken if it is twice as near as any other.
@@ -220,8 +228,9 @@ def settle_by_sweeps(lines: FanLines, piece: Counts, rays: Array, inverse_depths
             continue
         misfit = np.array([np.median(np.abs(rays[rows] @ fan.planes[k].pi - inverse_depths[rows])) for k in choices])
         best, second = np.argsort(misfit, kind="stable")[:2]
-        if misfit[best] < 0.5 * misfit[second]:
+        if misfit[best] < _CLEARLY_NEARER * misfit[second]:
             line[i] = choices[best]
         else:
-            line[i], reason[i] = UNASSIGNED, "it could be more than one of the fan's lines"
+            line[i] = UNASSIGNED
+            reason[i] = Message("scan.fan_light_ambiguous", "it could be more than one of the fan's lines")
     return replace(lines, line=tuple(line), reason=tuple(reason))

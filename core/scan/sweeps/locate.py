@@ -1,4 +1,4 @@
-"""Where the sweeps are: numbers for the fan's stretches and light planes for the frames, from crossings alone."""
+"""Location of the sweeps: numbers of the fan's centrelines and light planes of the frames, from crossings alone."""
 
 from __future__ import annotations
 
@@ -10,18 +10,21 @@ from numpy.typing import NDArray
 from scipy.linalg import block_diag
 
 from core.errors import InputError
-from core.image.centreline import Centreline
+from core.image.stripes.centreline import Centreline
+from core.messages import Message
 from core.model import Camera, Fan
 from core.model.arrays import Array
 from core.progress import Progress, silent, steps
-from core.scan.crossings import CrossingTable
-from core.scan.fan_lines import UNASSIGNED, FanLines, possible_fan_lines, settle_by_sweeps
-from core.scan.geometry import CrossingRays, inverse_depth_gradient, noise_gains
-from core.scan.network import solve_network
-from core.scan.sweep_plane import solve_sweep_plane
+from core.scan.features.crossings import CrossingTable
+from core.scan.network.adjustment import solve_network
+from core.scan.network.geometry import CrossingRays, inverse_depth_gradient, noise_gains
+from core.scan.network.sweep_plane import solve_sweep_plane
+from core.scan.sweeps.fan_lines import UNASSIGNED, FanLines, possible_fan_lines, settle_by_sweeps
 
-FOR_NUMBERS = 60
-"""Sweeps by which the fan's lines are numbered: a longer scan says no more of that."""
+NUMBERING_SWEEPS = 60
+"""Sweeps by which the fan's lines are numbered: more say no more of that and cost time."""
+LEAST_SIGMA_SHARE = 0.1
+"""Of the median σ of a frame's crossings that each of them has at least: none outweighs all others."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -29,7 +32,7 @@ class LocatedSweeps:
     """Solved planes: `frames` (S,) and, per crossing, the weight it had.
 
     `fan_cells` (F, 2), `fan_covariance` (3S, F), `line_cells` (Q, 3) and `line_covariance` (Q, 3) as of
-    `core.scan.network.Network`; F = Q = 0 where not known.
+    `core.scan.network.adjustment.Network`; F = Q = 0 where not known.
     """
 
     frames: NDArray[np.int64]
@@ -37,7 +40,7 @@ class LocatedSweeps:
     covariance: Array
     weights: Array
     scale: float
-    notes: tuple[str, ...]
+    notes: tuple[Message, ...]
     fan_cells: NDArray[np.int64] = field(default_factory=lambda: np.zeros((0, 2), dtype=np.int64))
     fan_covariance: Array = field(default_factory=lambda: np.zeros((0, 0)))
     line_cells: NDArray[np.int64] = field(default_factory=lambda: np.zeros((0, 3), dtype=np.int64))
@@ -47,14 +50,14 @@ class LocatedSweeps:
 def number_fan_lines(
     pieces: Sequence[Centreline], crossings: CrossingTable, camera: Camera, fan: Fan, progress: Progress = silent
 ) -> FanLines:
-    """The numbering of the fan's centrelines that the sweeps agree with best."""
+    """Find the numbering of the fan's centrelines that the sweeps agree with best."""
     return choose_numbering(possible_fan_lines(pieces, camera, fan), crossings, camera, fan, progress)
 
 
 def choose_numbering(
     numberings: Sequence[FanLines], crossings: CrossingTable, camera: Camera, fan: Fan, progress: Progress = silent
 ) -> FanLines:
-    """That of the `numberings` that the sweeps agree with best, unsure stretches settled by them."""
+    """Choose the one of the `numberings` that the sweeps agree with best, unsure centrelines settled by them."""
     if len(numberings) == 1 and numberings[0].settled == len(numberings[0].line):
         return numberings[0]
     crossings = _of_some_sweeps(crossings)
@@ -63,11 +66,11 @@ def choose_numbering(
 
 
 def _of_some_sweeps(crossings: CrossingTable) -> CrossingTable:
-    """The crossings with the fan and with each other of FOR_NUMBERS sweeps spread over the scan: they tell all."""
+    """The crossings with the fan and with each other of NUMBERING_SWEEPS sweeps spread over the scan: they tell all."""
     frames = np.unique(crossings.a[crossings.with_fan])
-    if len(frames) <= FOR_NUMBERS:
+    if len(frames) <= NUMBERING_SWEEPS:
         return crossings
-    some = frames[np.linspace(0, len(frames) - 1, FOR_NUMBERS).round().astype(np.int64)]
+    some = frames[np.linspace(0, len(frames) - 1, NUMBERING_SWEEPS).round().astype(np.int64)]
     return crossings.select(np.isin(crossings.a, some) & (crossings.with_fan | np.isin(crossings.b, some)))
 
 
@@ -99,7 +102,7 @@ def _disagreement(lines: FanLines, all_of_them: CrossingTable, camera: Camera, f
 
 
 def numbered(crossings: CrossingTable, lines: FanLines) -> tuple[CrossingTable, NDArray[np.int64]]:
-    """Crossings whose fan stretch has a number, and that number (−1 for crossings between sweeps)."""
+    """Select crossings whose fan centreline has a number, and give that number (−1 for crossings between sweeps)."""
     numbers = np.array([*lines.line, UNASSIGNED], dtype=np.int64)
     line = np.where(crossings.with_fan, numbers[np.where(crossings.with_fan, crossings.piece_b, -1)], -1)
     keep = ~crossings.with_fan | (line != UNASSIGNED)
@@ -109,7 +112,7 @@ def numbered(crossings: CrossingTable, lines: FanLines) -> tuple[CrossingTable, 
 def locate_together(
     crossings: CrossingTable, line: NDArray[np.int64], camera: Camera, fan: Fan, progress: Progress = silent
 ) -> LocatedSweeps:
-    """All sweeps in one adjustment; `line` (M,) is the fan line of each crossing, −1 between sweeps.
+    """Locate all sweeps in one adjustment; `line` (M,) is the fan line of each crossing, −1 between sweeps.
 
     Raises
     ------
@@ -119,16 +122,22 @@ def locate_together(
     frames = np.unique(np.concatenate([crossings.a, crossings.b[~crossings.with_fan]]))
     renumbered = crossings.renumber(np.searchsorted(frames, np.arange(frames[-1] + 1)))
     network = solve_network(renumbered, CrossingRays.of(crossings, camera), line, fan, len(frames), progress)
-    notes: tuple[str, ...] = ()
+    notes: tuple[Message, ...] = ()
     if network.fan_silenced:
         notes = (
-            "Many crossings with the fan disagree with the sweeps; none was left out: check the fan's calibration, "
-            "and that object and camera stood still.",
+            Message(
+                "scan.fan_disagrees",
+                "Many crossings with the fan disagree with the sweeps; none was left out: check the fan's calibration, "
+                "and that object and camera stood still.",
+            ),
         )
     if network.collapsed:
         notes += (
-            "The sweeps' light planes have fallen together into one: no depth can be trusted. Move and tilt the "
-            "hand-held laser more between frames, and cross the fan on object and table.",
+            Message(
+                "scan.collapsed",
+                "The sweeps' light planes have fallen together into one: no depth can be trusted. Move and tilt the "
+                "hand-held laser more between frames, and cross the fan on object and table.",
+            ),
         )
     return LocatedSweeps(
         frames,
@@ -150,14 +159,14 @@ def sweeping_frames(crossings: CrossingTable) -> NDArray[np.int64]:
 
 
 def by_sweep(crossings: CrossingTable, frames: NDArray[np.int64]) -> CrossingTable:
-    """The crossings with each of these `frames` (S,), in order, called by its place among them."""
+    """Renumber the crossings by the place of each frame among `frames` (S,), which are in order."""
     return crossings.renumber(np.searchsorted(frames, np.arange(frames[-1] + 1)))
 
 
 def locate_each(
     crossings: CrossingTable, line: NDArray[np.int64], camera: Camera, fan: Fan, progress: Progress = silent
 ) -> LocatedSweeps:
-    """Every frame on its own, from its crossings with the fan: the paper's §4.
+    """Locate every frame on its own from its crossings with the fan: Sun et al. 2023, §4.
 
     Raises
     ------
@@ -178,15 +187,20 @@ def locate_each(
         gradient = inverse_depth_gradient(fan_pis, geometry.jacobians[rows])
         gain_a, gain_b = noise_gains(crossings.select(rows), gradient)
         sigmas = np.hypot(gain_a * crossings.sigma_a[rows], gain_b * crossings.sigma_b[rows])
-        plane = solve_sweep_plane(geometry.rays[rows], inverse_depths, np.maximum(sigmas, 0.1 * np.median(sigmas)))
+        plane = solve_sweep_plane(
+            geometry.rays[rows], inverse_depths, np.maximum(sigmas, LEAST_SIGMA_SHARE * np.median(sigmas))
+        )
         frames.append(frame)
         pis.append(plane.pi)
         covariances.append(plane.covariance)
         weights[rows] = plane.used
     if not frames:
         raise InputError(
-            "no frame has three crossings with the fan",
+            Message("scan.no_frame_located", "no frame has three crossings with the fan"),
             where="scan",
-            todo="cross all of the fan's lines with each sweep, or use the network method",
+            todo=Message(
+                "scan.advice_cross_all_lines",
+                "cross all of the fan's lines with each sweep, or use the network method",
+            ),
         )
     return LocatedSweeps(np.array(frames), np.array(pis), block_diag(*covariances), weights, 1.0, ())

@@ -1,12 +1,12 @@
-"""One more sweep, tied to the fan and to sweeps that are located already.
+"""Location of one more sweep by the fan and by sweeps that are located already.
 
 The equations are the network's, π·r = π_b·r at each crossing, but only the new sweep's π is unknown. The planes of the
 others are known with a joint covariance Σ, which makes the crossings' right-hand sides correlated::
 
     cov(observed) = R Σ Rᵀ + diag(σ²)        R: the rays, each in the columns of its own sweep
 
-With the fan alone this is the paper's method (`core.scan.sweep_plane`); where the fan leaves a direction of π free, as
-on a flat face, the other sweeps fix it.
+With the fan alone this is the paper's method (`core.scan.network.sweep_plane`); where the fan leaves a direction of π
+free, as on a flat face, the other sweeps fix it.
 """
 
 from __future__ import annotations
@@ -17,17 +17,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.model.arrays import Array
-from core.scan.adjustment import GRADIENT_FLOOR
-from core.scan.crossings import CrossingTable
-from core.scan.geometry import CrossingRays, floored, inverse_depth_gradient, noise_gains
-from core.scan.line_errors import SIGMA_FLOOR_PX
-from core.scan.network import REJECT_AT
-from core.scan.sweep_plane import PRIOR_SD, plane_condition
+from core.model.robust import huber_weights, tukey_weights
+from core.scan.features.crossings import CrossingTable
+from core.scan.network.adjustment import HUBER_AT, REJECT_AT
+from core.scan.network.equations import GRADIENT_FLOOR
+from core.scan.network.geometry import CrossingRays, floored, inverse_depth_gradient, noise_gains
+from core.scan.network.line_errors import SIGMA_FLOOR_PX
+from core.scan.network.sweep_plane import PRIOR_SD, plane_condition
 
 ROUNDS = 5
-_REJECT_FROM = 3  # the round from which on outliers lose all their weight
-_HUBER = 2.0
+"""Of reweighting: by Huber first, by Tukey from _REJECT_FROM on; tests/scan/sweeps/test_one_sweep.py holds them."""
+_REJECT_FROM = 3
+"""Round from which on outliers lose all their weight."""
 _LEAST_WEIGHT = 1e-4
+"""Weight that a crossing keeps at least, so that its variance stays finite."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -58,7 +61,7 @@ class OneSweep:
 
 
 def locate_one(crossings: CrossingTable, geometry: CrossingRays, known: KnownPlanes) -> OneSweep:
-    """The plane of the sweep that all `crossings` have as their a.
+    """Locate the sweep that all `crossings` have as their a.
 
     Raises
     ------
@@ -81,7 +84,7 @@ def locate_one(crossings: CrossingTable, geometry: CrossingRays, known: KnownPla
 def judge_plane(
     pi: Array, covariance: Array, crossings: CrossingTable, geometry: CrossingRays, known: KnownPlanes
 ) -> OneSweep:
-    """A plane found otherwise, by the network, with how it agrees with the sweep's `crossings`."""
+    """Judge a plane that the network has given by the sweep's `crossings`: their weights and residuals."""
     equations = _Equations(crossings, geometry, known)
     residuals = equations.residuals(pi, equations.variances(pi))
     weights = _weights(residuals, reject=True)
@@ -137,7 +140,6 @@ def _shared(rays: Array, known: KnownPlanes) -> Array:
 
 def _weights(residuals: Array, *, reject: bool) -> Array:
     """Huber's weights first, Tukey's from when the plane is about right."""
-    size = np.abs(residuals)
     if reject:
-        return np.asarray(np.clip(1 - (size / REJECT_AT) ** 2, 0, None) ** 2)
-    return np.asarray(np.minimum(1.0, _HUBER / np.maximum(size, 1e-9)))
+        return tukey_weights(residuals, REJECT_AT)
+    return huber_weights(residuals, HUBER_AT)

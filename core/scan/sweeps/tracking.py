@@ -1,7 +1,7 @@
-"""Sweeps located while they come: each by the fan and by a few sweeps before it, the anchors.
+"""Location of sweeps while they come, each by the fan and by a few sweeps before it, the anchors.
 
-The anchors are spread over the sweeps so far and adjusted together as a small network, anew each time there are a
-third more sweeps. Every other sweep is located by its crossings with the fan and with them (`core.scan.one_sweep`). So
+The anchors are spread over the sweeps so far and adjusted together as a small network, anew each time there are a third
+more sweeps. Every other sweep is located by its crossings with the fan and with them (`core.scan.sweeps.one_sweep`). So
 the work for a frame does not grow with the length of the scan. When the anchors have been adjusted, all sweeps before
 can be located anew, also by the anchors that came after them: one at a time, by whoever has the time for it.
 """
@@ -14,11 +14,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from core.image.centreline import Centreline
-from core.image.crossing import search_crossings
+from core.image.crossings.crossing import search_crossings
+from core.image.stripes.centreline import Centreline
 from core.model import Camera, Fan
 from core.model.arrays import Array
-from core.scan.crossings import (
+from core.scan.features.crossings import (
     CrossingTable,
     CrossingWindow,
     Meeting,
@@ -28,22 +28,29 @@ from core.scan.crossings import (
     meetings_at,
     shaded,
 )
-from core.scan.fan_lines import UNASSIGNED, FanLines, possible_fan_lines
-from core.scan.geometry import CrossingRays
-from core.scan.locate import LocatedSweeps, choose_numbering, locate_together, numbered
-from core.scan.movement import movement_px
-from core.scan.one_sweep import KnownPlanes, OneSweep, judge_plane, locate_one
+from core.scan.network.geometry import CrossingRays
+from core.scan.sweeps.fan_lines import UNASSIGNED, FanLines, possible_fan_lines
+from core.scan.sweeps.locate import LocatedSweeps, choose_numbering, locate_together, numbered
+from core.scan.sweeps.one_sweep import KnownPlanes, OneSweep, judge_plane, locate_one
 
+# Chosen so that a preview is nearly as good as the network and a frame's work does not grow with the scan:
+# tests/scan/preview/test_frames.py holds them.
 FIRST_ADJUSTMENT = 4
+"""Sweeps from which on the anchors are adjusted together: with fewer the fan alone says as much."""
 GROWTH = 4 / 3
 """The anchors are adjusted again when there are so many times as many sweeps as the last time."""
-
-MOST_RENEWED = 1500
-"""With more sweeps than this those before are not located anew: by then they are known well, and crossings fill the
-memory."""
-
+MOST_ANCHORS = 40
+"""Anchors at most: a frame is crossed with all of them."""
+ANCHOR_STRIDE_PX = 6.0
+"""Movement of the stripe from one anchor to the next, in px, until there are too many; then it is doubled."""
 SURE_AFTER = 3
 """A numbering of the fan's lines that has been chosen so often in a row is kept."""
+MOST_RENEWED = 1500
+"""With more sweeps than this those before are not located again: by then they are known well, and crossings fill the
+memory."""
+
+MOVEMENT_SAMPLES = 60
+"""Points of a stripe by which its movement from frame to frame is judged."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -80,8 +87,8 @@ class SweepTracker:
         camera: Camera,
         fan: Fan,
         window: CrossingWindow,
-        most_anchors: int = 40,
-        stride_px: float = 6.0,
+        most_anchors: int = MOST_ANCHORS,
+        stride_px: float = ANCHOR_STRIDE_PX,
         lines: FanLines | None = None,
     ) -> None:
         self._fixed = shaded(fan_pieces, window)
@@ -220,3 +227,18 @@ class SweepTracker:
             covariance = self._adjusted.covariance
         used = np.flatnonzero((line != UNASSIGNED) | (sweep >= 0))
         return KnownPlanes(pis[used], sweep[used], covariance), used
+
+
+def movement_px(now: Sequence[Centreline], before: Sequence[Centreline]) -> float:
+    """Median distance in pixels, across the stripe, of the centrelines `now` from those `before`; NaN without any."""
+    if not now or not before:
+        return float("nan")
+    uv = np.concatenate([piece.uv for piece in now])
+    normal = np.concatenate([piece.normal for piece in now])
+    others = np.concatenate([piece.uv for piece in before])
+    few, some = max(1, len(uv) // MOVEMENT_SAMPLES), max(1, len(others) // (4 * MOVEMENT_SAMPLES))
+    uv, normal, others = uv[::few], normal[::few], others[::some]
+    apart = others[None, :, :] - uv[:, None, :]
+    across = np.abs(np.einsum("nmi,ni->nm", apart, normal))
+    nearest = np.argmin(np.sum(apart**2, axis=2), axis=1)
+    return float(np.median(across[np.arange(len(uv)), nearest]))

@@ -1,4 +1,4 @@
-"""When a simulated camera exposes, and which exposures it misses."""
+"""Exposure times of a simulated camera that runs at a fixed rate, and the exposures it misses."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from collections.abc import Callable
 from math import floor
 
 RATE_HZ = 12.0
+"""Frames a second: near the 14 of the paper's camera."""
 
 
 class ExposureTimer:
@@ -28,14 +29,14 @@ class ExposureTimer:
         self._forgiven = True
 
     def start(self) -> None:
-        """Begin anew: the next exposure is number 0, at 0 s."""
+        """Restart: the next exposure is number 0, at 0 s."""
         self._origin = self._clock()
         self._base_number, self._base_s = 0, 0.0
         self._last = self._delivered = -1
         self._forgiven = True
 
     def set_rate(self, rate_hz: float) -> None:
-        """Go on at another rate; 0: in a time of its own."""
+        """Change the rate in Hz; 0: frames in a time of their own."""
         self.skip()
         now = self.now()
         self._base_number, self._base_s = self._last + 1, now
@@ -47,11 +48,11 @@ class ExposureTimer:
         return self._clock() - self._origin if self._paced else self.time_of(self._delivered + 1)
 
     def time_of(self, number: int) -> float:
-        """When exposure `number` is made, in s since the start."""
+        """Time of exposure `number`, in s since the start."""
         return self._base_s + (number - self._base_number) / self._rate
 
     def wait_s(self) -> float:
-        """How long it is to the next exposure; 0 or less if it is due."""
+        """Time in s to the next exposure; 0 or less if it is due."""
         return self.time_of(self._last + 1) - self.now() if self._paced else 0.0
 
     def expose(self) -> tuple[int, int]:

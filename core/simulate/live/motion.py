@@ -1,4 +1,4 @@
-"""Hands in real time: a plate that is held still now and then, and a laser swept to and fro without end."""
+"""Motions in real time: a plate that is held still now and then, and a laser swept to and fro without end."""
 
 from __future__ import annotations
 
@@ -11,21 +11,20 @@ from scipy.spatial.transform import Rotation, Slerp
 
 from core.model import Pose
 from core.model.arrays import Array
-from core.simulate.laser import Sheet
 from core.simulate.rig import Rig
+from core.simulate.scene.laser import Sheet
 from core.simulate.sweep import HandCourse, SweepRange, hand_course
 
+# The hand that sweeps. Chosen to look like a hand's and to scan in a minute:
+# tests/simulate/live holds them.
 PASS_S = 2.0
-"""Time of one pass of the laser over the object: about 80 mm a second."""
-
+"""Time in s of one pass of the laser over the object: about 80 mm/s."""
 TURN_S, CROSSING_S = 0.4, 1.3
-"""Time to turn back at the end of a pass, and to take the laser round to the other side of the camera."""
-
+"""Time in s to turn back at the end of a pass, and to take the laser round to the other side of the camera."""
 LIFT_MM = 90.0
 """How far up in the picture the stripe is meanwhile: half way round it is parallel to the fan's lines."""
-
-PASSES = 32
-KNOTS = 12
+PASSES, KNOTS = 32, 12
+"""Passes before the motion repeats, and positions of the hand that make a pass."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -102,7 +101,7 @@ class HandPath:
 
 
 def _with_turns(course: HandCourse, held: Array) -> tuple[Array, Array]:
-    """When (M,) the hand is where (M, 7), with the ways from pass to pass put in; the last is the first again."""
+    """Times (M,) in s and positions (M, 7) of the hand with the turns between passes; the last is the first again."""
     times, rows = [0.0], [held[0]]
     for k in range(len(held)):
         after = (k + 1) % len(held)

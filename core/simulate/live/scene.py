@@ -1,4 +1,4 @@
-"""What the simulated rig's camera sees at any time: a plate moved by hand, or a still object being swept.
+"""Scene of the simulated rig in real time: a plate moved by hand, or a still object being swept.
 
 Everything is a function of time, and chance of the number of the frame, so the same times give the same pictures.
 One rig, one seed for all steps: calibrations made from these pictures are right for these scans.
@@ -13,30 +13,33 @@ import numpy as np
 from core.acquire.source import Lasers, Step
 from core.errors import InputError
 from core.image.targets import Target
+from core.messages import Message
 from core.model import Camera, Fan, Pose
 from core.model.arrays import Array
-from core.simulate.boards import printed
 from core.simulate.calibration import CAMERA_GREY, PLANE_GREY, PLATES
-from core.simulate.image import NoiseTile, Picture, Sensor, blurred, generator
-from core.simulate.motion import HandPath, PlateMotion
-from core.simulate.patterns import Pattern, draw_pattern
+from core.simulate.live.motion import HandPath, PlateMotion
 from core.simulate.poses import camera_poses, plane_poses
-from core.simulate.rays import Map, ray_map
 from core.simulate.recording import scan_of, scenario_rig
 from core.simulate.rig import Rig
 from core.simulate.scan import ScanStage
 from core.simulate.scenario import Scenario
-from core.simulate.stage import aim_of, build_scene
+from core.simulate.scene.boards import printed
+from core.simulate.scene.image import NoiseTile, Picture, Sensor, blurred, generator
+from core.simulate.scene.patterns import Pattern, draw_pattern
+from core.simulate.scene.rays import Map, ray_map
+from core.simulate.scene.stage import aim_of, build_scene
+from core.simulate.scene.targets import fan_centres, fan_light, room_shade, speckled
 from core.simulate.sweep import sweep_range
-from core.simulate.targets import fan_centres, fan_light, room_shade, speckled
 
 CAMERA_RESTS, CAMERA_REST_S, CAMERA_MOVE_S = 16, 1.2, 1.3
 PLANE_RESTS, PLANE_REST_S, PLANE_MOVE_S = 10, 2.5, 1.3
+"""Poses at which a plate is held still, and the times in s of a rest and of a move: more poses than a calibration asks
+for, rests long enough for a view to be taken (for two pictures of the plane target, fan on and off)."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class LiveTruth:
-    """What really is before the camera; `thickness_mm` is None where the object has no two parallel faces."""
+    """True camera, fan and thickness; `thickness_mm` is None where the object has no two parallel faces."""
 
     camera: Camera
     fan: Fan
@@ -45,16 +48,16 @@ class LiveTruth:
 
 @dataclass(frozen=True, slots=True)
 class Moment:
-    """When a picture is exposed.
+    """Instant at which a picture is exposed, and what is before the camera then.
 
     Parameters
     ----------
     step, lasers
-        What is before the camera, and what lights it.
+        The step, which says what is before the camera, and the lasers that are on.
     time_s
         Since the step began.
     sweep_s
-        How long the hand-held laser has been moved so far.
+        Time for which the hand-held laser has been moved so far.
     number
         Of the exposure; its noise and speckle follow from it.
     """
@@ -67,7 +70,7 @@ class Moment:
 
 
 class LiveScene:
-    """The pictures of the simulated rig.
+    """Renders the pictures of the simulated rig.
 
     Parameters
     ----------
@@ -102,8 +105,8 @@ class LiveScene:
         self._view: _PlateView | None = None
         self._sensor = Sensor(self.rig.optics, scenario.bits, scenario.noise)
 
-    def warm_up(self, step: Step) -> None:
-        """Compute what all pictures of a step share, so that each comes quickly."""
+    def precompute(self, step: Step) -> None:
+        """Compute what all pictures of a step share, so that each is rendered quickly."""
         width, height = self.rig.camera.image_size
         if self._rays is None:
             self._rays = ray_map(self.rig.camera)
@@ -114,8 +117,8 @@ class LiveScene:
             self._stage = scan_of(self._scenario, self.rig)[0]
 
     def picture(self, moment: Moment, exposure: float = 1.0, gain: float = 1.0) -> Picture:
-        """The picture (height, width) exposed at `moment`; `exposure` and `gain` are factors on the usual ones."""
-        self.warm_up(moment.step)
+        """Render the picture (height, width) of `moment`; `exposure` and `gain` are factors on the usual ones."""
+        self.precompute(moment.step)
         rng = generator(self._scenario.seed, f"live {moment.step}", moment.number)
         light = self._scan_light(moment, rng) if moment.step == "scan" else self._plate_light(moment, rng)
         return replace(self._sensor, exposure=exposure, gain=gain).expose(light, rng)
@@ -145,7 +148,9 @@ class LiveScene:
         try:
             poses = camera_poses(self.rig.camera, outline, CAMERA_RESTS, self._generator("live camera poses"))
         except ValueError as error:
-            raise InputError("the camera target is too large for the simulated rig's picture") from error
+            raise InputError(
+                Message("simulate.target_too_large", "the camera target is too large for the simulated rig's picture")
+            ) from error
         return PlateMotion(poses, outline.mean(axis=0), CAMERA_REST_S, CAMERA_MOVE_S)
 
     def _plane_motion(self) -> PlateMotion:

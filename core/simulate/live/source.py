@@ -13,18 +13,19 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from core.acquire.source import Capabilities, Frame, Lasers, SourceSettings, Step
-from core.simulate.exposure_timer import ExposureTimer
-from core.simulate.live_scene import LiveScene, LiveTruth, Moment
+from core.simulate.live.exposure_timer import ExposureTimer
+from core.simulate.live.scene import LiveScene, LiveTruth, Moment
 
 EXPOSURE_MS = 8.0
-"""Exposure time of the pictures as the twin makes them; another one makes them brighter or darker."""
+"""Exposure time of the pictures as the twin renders them; another one makes them brighter or darker in proportion."""
 
 CAPABILITIES = Capabilities(exposure_ms=(0.01, 1000.0), gain_db=(-40.0, 80.0), rate_hz=(0.0, 10_000.0))
+"""Wider than any camera's: the twin has no limits of its own."""
 
 
 @dataclass(frozen=True, slots=True)
 class _State:
-    """What is before the camera and what lights it, and since when, in s."""
+    """Step and lasers that are on, and since when, in s."""
 
     step: Step
     lasers: Lasers
@@ -51,9 +52,9 @@ class SimulatedSource:
     Parameters
     ----------
     scene
-        What its camera sees.
+        Renders its pictures.
     name
-        What a person calls it.
+        Its name on screen.
     clock
         Time in s that only runs forward.
     """
@@ -80,7 +81,7 @@ class SimulatedSource:
 
     @property
     def truth(self) -> LiveTruth:
-        """What really is before the camera."""
+        """True camera, fan and thickness."""
         return self._scene.truth
 
     def open(self) -> None:
@@ -144,7 +145,7 @@ class SimulatedSource:
         self._waiting = None
 
     def _ordered(self) -> None:
-        """Whatever was exposed before an order does not show it: forget it."""
+        """Drop frames that were exposed before an order, for they do not show it."""
         self._orders += 1
         self._waiting = None
         self._timer.skip()
@@ -152,12 +153,12 @@ class SimulatedSource:
 
     def _expose(self) -> None:
         try:
-            warm: set[Step] = set()
+            rendered: set[Step] = set()
             while (task := self._next_exposure()) is not None:
                 orders, moment, lost, exposure, gain = task
                 picture = self._scene.picture(moment, exposure, gain)
-                if moment.step not in warm:  # the first one takes long, and is no measure of the machine
-                    warm.add(moment.step)
+                if moment.step not in rendered:  # the first one takes long, and is no measure of the machine
+                    rendered.add(moment.step)
                     with self._changed:
                         self._timer.skip()
                     continue
@@ -173,7 +174,7 @@ class SimulatedSource:
                 self._changed.notify_all()
 
     def _next_exposure(self) -> tuple[int, Moment, int, float, float] | None:
-        """Wait for the next instant at which a frame is wanted; None when it is time to stop."""
+        """Wait for the next instant at which a frame is due; None when it is time to stop."""
         with self._changed:
             while not self._stopping:
                 if self._waiting is not None:

@@ -1,4 +1,4 @@
-"""The printed plates of the calibration targets as patterns, each in its target's own frame."""
+"""Printed plates of the calibration targets as patterns, each in its target's own frame."""
 
 from __future__ import annotations
 
@@ -7,17 +7,20 @@ import numpy as np
 from scipy.spatial.distance import cdist
 
 from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid, Target
+from core.image.targets.charuco import dictionary_of
 from core.model.arrays import Array
-from core.simulate.patterns import Pattern
+from core.simulate.scene.patterns import Pattern
 
-WHITE = 0.8
-BLACK = 0.06
+WHITE, BLACK = 0.8, 0.06
+"""Albedo of paper and of printer's ink."""
 MARGIN_MM = 10.0
+"""White rim round a pattern, which detectors need."""
 SQUARE_PLATE_MM = 160.0
+"""Side of the plate that carries the black square: long stripes beside it."""
 
 
 def printed(target: Target) -> Pattern:
-    """The plate that carries `target`, in the target's frame."""
+    """Make the plate that carries `target`, in the target's frame."""
     if isinstance(target, Checkerboard):
         return _checkerboard(target)
     if isinstance(target, Charuco):
@@ -37,7 +40,7 @@ def _checkerboard(board: Checkerboard) -> Pattern:
 
 def _charuco(board: Charuco) -> Pattern:
     """As OpenCV prints it since 4.6: the first square black, markers numbered row by row in the white ones."""
-    dictionary = cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, board.dictionary_id))
+    dictionary = dictionary_of(board)
     bits = dictionary.markerSize + 2
     square = board.square_mm
     within = (square - board.marker_mm) / 2 + board.marker_mm * np.arange(bits + 1) / bits

@@ -1,4 +1,4 @@
-"""From light to a picture: lens blur, shot noise, read noise, saturation, whole grey levels.
+"""Pictures from light: lens blur, shot noise, read noise, saturation, whole grey levels.
 
 Light is counted in 8-bit grey levels throughout; 16-bit pictures are the same times 257.
 """
@@ -14,23 +14,25 @@ from numba import njit
 from numpy.typing import NDArray
 from scipy.special import erf
 
-from core.simulate.rays import Map
 from core.simulate.rig import Optics
+from core.simulate.scene.rays import Map
 
 Picture = NDArray[np.uint8] | NDArray[np.uint16]
 
 NOISE_PLACES = 256
-"""How many rows down, and columns to the right, a noise tile can be moved."""
+"""Rows down, and columns to the right, that a noise tile can be moved: 65,536 places, four ways round each."""
+BLUR_REACH = 4.5
+"""Half width of the lens's blur in its σ: 7e-6 of the light is beyond."""
 
 
 def generator(seed: int, kind: str, index: int = 0) -> np.random.Generator:
-    """The random numbers of one picture: the same in whatever order, and on however many threads, it is rendered."""
+    """Make the random numbers of one picture: the same in whatever order and on however many threads it is rendered."""
     return np.random.default_rng([seed, zlib.crc32(kind.encode()), index])
 
 
 def blurred(light: Map, sigma_px: float) -> Map:
-    """`light` as pixels see it through a lens of Gaussian blur `sigma_px`: each integrates over its own area."""
-    reach = int(np.ceil(4.5 * sigma_px + 0.5))
+    """Blur `light` (H, W) by a lens of Gaussian σ `sigma_px` and by the area of a pixel."""
+    reach = int(np.ceil(BLUR_REACH * sigma_px + 0.5))
     edges = np.arange(-reach, reach + 2) - 0.5
     kernel = np.diff(erf(edges / (sigma_px * np.sqrt(2)))) if sigma_px > 0 else np.ones(1)
     kernel = (kernel / kernel.sum()).astype(np.float32)
@@ -62,7 +64,7 @@ class NoiseTile:
 
 @dataclass(frozen=True, slots=True)
 class Sensor:
-    """What turns light into whole grey levels.
+    """Sensor that turns light into whole grey levels.
 
     Parameters
     ----------
@@ -86,7 +88,7 @@ class Sensor:
     gain: float = 1.0
 
     def expose(self, light: Map, rng: np.random.Generator) -> Picture:
-        """A picture of `light` (height, width), saturated where it is too bright."""
+        """Expose a picture of `light` (height, width), saturated where it is too bright."""
         picture: Picture = np.empty(light.shape, np.uint16 if self.bits == 16 else np.uint8)
         figures = (
             self.exposure * self.gain,

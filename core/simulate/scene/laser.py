@@ -18,12 +18,15 @@ from numpy.typing import NDArray
 
 from core.model import LightPlane
 from core.model.arrays import Array, frozen_array, set_field
-from core.simulate.rays import Map
 from core.simulate.rig import Beam, Rig
-from core.simulate.scene import TILE, Scene, SurfaceMaps
-from core.simulate.shadow import ShadowCaster
+from core.simulate.scene.rays import Map
+from core.simulate.scene.scene import TILE, Scene, SurfaceMaps
+from core.simulate.scene.shadow import ShadowCaster
 
 REACH_SIGMAS = 4.5
+"""σ from the sheet's middle beyond which light is left out: 4e-5 of the crest."""
+FARTHEST_FROM_FOCUS_MM = 400.0
+"""Distance from its focus at which a sheet is rendered at most; its width there is looked at."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -45,18 +48,18 @@ class Sheet:
 
 
 def fan_sheets(rig: Rig, aim: Array) -> tuple[Sheet, ...]:
-    """The sheets of the rig's fan, line 1 … N, their middles turned towards the point `aim` (3,) in mm."""
+    """Make the sheets of the rig's fan, line 1 … N, their middles turned towards the point `aim` (3,) in mm."""
     return tuple(Sheet(plane, rig.fan_emitter, aim - rig.fan_emitter, rig.fan_beam) for plane in rig.fan.planes)
 
 
 def laser_light(sheet: Sheet, scene: Scene, maps: SurfaceMaps, out: Map | None = None) -> Map:
-    """Light of one sheet that each pixel's surface point sends back, (height, width) in 8-bit grey levels.
+    """Render the light of one sheet that each pixel's surface point sends back, (height, width) in 8-bit grey levels.
 
     Added to `out` when it is given. Neither lens nor speckle are in it yet.
     """
     light = np.zeros(maps.albedo.shape, np.float32) if out is None else out
     beam = sheet.beam
-    widest = beam.sigma_mm * np.hypot(1, max(1.0, 400.0 / beam.rayleigh_mm))
+    widest = beam.sigma_mm * np.hypot(1, max(1.0, FARTHEST_FROM_FOCUS_MM / beam.rayleigh_mm))
     v, u = _near(maps, sheet.plane, REACH_SIGMAS * widest)
     points = maps.points[v, u].astype(np.float64)
     towards = points - sheet.emitter

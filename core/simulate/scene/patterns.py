@@ -1,4 +1,4 @@
-"""Flat printed patterns as the camera sees them, with exact shares in every pixel an edge cuts.
+"""Flat printed patterns drawn into the picture, with exact shares in every pixel an edge cuts.
 
 A pattern is a grid of cells between straight edges along x and along y, plus round dots. The share of a pixel on one
 side of an edge is that of a half-plane cutting a unit square: exact for one edge, so edges and corners are unbiased at
@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 
 from core.model import Pose
 from core.model.arrays import Array, frozen_array, set_field
-from core.simulate.rays import Map
+from core.simulate.scene.rays import Map
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -60,7 +60,7 @@ class Pattern:
 
 
 def draw_pattern(pattern: Pattern, pose_cam_target: Pose, rays: Map) -> tuple[Map, Map]:
-    """What each pixel sees of a plate: points (h, w, 3) in mm in the camera frame, and albedo (h, w).
+    """Draw a plate as each pixel sees it: points (h, w, 3) in mm in the camera frame, and albedo (h, w).
 
     Where the plate is not seen, points are 0 and the albedo is the background's.
     """

@@ -1,4 +1,4 @@
-"""Triangles as the camera sees them: a z-buffer with exact ray–triangle intersection at every pixel centre.
+"""Rasteriser of triangles: a z-buffer with exact ray–triangle intersection at every pixel centre.
 
 In undistorted ray coordinates (x, y) = (X/Z, Y/Z) a triangle stays a triangle and 1/Z is linear over it, so inside-test
 and depth are exact whatever the lens distorts; distortion only matters for the box of pixels that is looked at.
@@ -12,9 +12,13 @@ from numpy.typing import NDArray
 
 from core.model import Camera
 from core.model.arrays import Array
-from core.simulate.rays import Map
+from core.simulate.scene.rays import Map
 
 NEAREST_MM = 1.0
+"""Depth nearer than which nothing is drawn."""
+MARGIN_PX, MARGIN_SHARE = 2.0, 0.02
+"""Px, and share of a triangle's extent, around its box that are looked at: a distorted edge bends out of the box of its
+ends."""
 
 
 def draw_triangles(triangles: Array, camera: Camera, rays: Map, depth: Map, face: NDArray[np.int32]) -> None:
@@ -28,7 +32,7 @@ def draw_triangles(triangles: Array, camera: Camera, rays: Map, depth: Map, face
         return
     corners = camera.project(triangles[visible].reshape(-1, 3)).reshape(-1, 3, 2)
     low, high = corners.min(axis=1), corners.max(axis=1)
-    margin = 2.0 + 0.02 * (high - low)  # a distorted edge bends out of the box of its ends
+    margin = MARGIN_PX + MARGIN_SHARE * (high - low)
     size = np.array(camera.image_size)
     first = np.clip(np.floor(low - margin), 0, size).astype(np.int64)
     last = np.clip(np.ceil(high + margin) + 1, 0, size).astype(np.int64)

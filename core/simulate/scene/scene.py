@@ -1,4 +1,4 @@
-"""What lies in front of the camera: a table, triangle meshes and spheres, and the maps of what each pixel sees."""
+"""Scene in front of the camera, a table, triangle meshes and spheres, and maps of what each pixel sees."""
 
 from __future__ import annotations
 
@@ -10,13 +10,15 @@ from numpy.typing import NDArray
 
 from core.model import Camera, Pose
 from core.model.arrays import Array, frozen_array, set_field
-from core.simulate.raster import draw_triangles
-from core.simulate.rays import Map, ray_map
+from core.simulate.scene.raster import draw_triangles
+from core.simulate.scene.rays import Map, ray_map
 
-TABLE_ALBEDO = 0.55
-OBJECT_ALBEDO = 0.7
+TABLE_ALBEDO, OBJECT_ALBEDO = 0.55, 0.7
+"""Of a grey table and of a light, matt part."""
 FARTHEST_MM = 5000.0
+"""Depth beyond which nothing is seen."""
 TILE = 16
+"""Side in px of the squares whose extent in space is known, see `SurfaceMaps`; chosen by speed."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -60,7 +62,7 @@ class Sphere:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Scene:
-    """Things on a table, all in the camera frame.
+    """Table and objects on it, all in the camera frame.
 
     `pose_cam_table` maps table coordinates (origin on the table, z up out of it, towards the camera) into the camera
     frame; None means there is no table.
@@ -73,7 +75,7 @@ class Scene:
 
     @classmethod
     def on_table(cls, pose_cam_table: Pose, *things: Mesh | Sphere, table_albedo: float = TABLE_ALBEDO) -> Scene:
-        """A scene of things given in table coordinates."""
+        """Make a scene of objects given in table coordinates."""
         moved = [thing.moved(pose_cam_table) for thing in things]
         meshes = tuple(thing for thing in moved if isinstance(thing, Mesh))
         spheres = tuple(thing for thing in moved if isinstance(thing, Sphere))
@@ -89,7 +91,7 @@ class Scene:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class SurfaceMaps:
-    """What each pixel sees, float32: point (h, w, 3) in mm, unit normal (h, w, 3) to the outside, albedo (h, w).
+    """What each pixel sees, float32: point (h, w, 3) in mm, outward unit normal (h, w, 3), albedo (h, w).
 
     A pixel that sees nothing has depth 0 and albedo 0. `table` is True where the table is seen. `tiles` is filled in:
     smallest and largest coordinates (2, rows, columns, 3) in mm within each tile of TILE × TILE pixels, so that what is
@@ -112,9 +114,9 @@ class SurfaceMaps:
 
 
 def surface_maps(scene: Scene, camera: Camera, rays: Map | None = None) -> SurfaceMaps:
-    """Point, normal and albedo seen by each pixel centre of `camera`, along its exact distorted ray.
+    """Compute point, normal and albedo seen by each pixel centre of `camera`, along its exact distorted ray.
 
-    `rays` is :func:`core.simulate.rays.ray_map` of the camera, computed here when it is not given.
+    `rays` is :func:`core.simulate.scene.rays.ray_map` of the camera, computed here when it is not given.
     """
     rays = ray_map(camera) if rays is None else rays
     shape = rays.shape[:2]

@@ -14,14 +14,16 @@ from numpy.typing import NDArray
 
 from core.model import LightPlane
 from core.model.arrays import Array
-from core.simulate.scene import Scene
+from core.simulate.scene.scene import Scene
 
 SECTORS = 4096
-CLEARANCE_MM = 0.02  # a surface does not shade itself by the rounding of its own points
+"""Sectors all round the emitter: 0.09° each, so that one holds few triangles."""
+CLEARANCE_MM = 0.02
+"""Mm before a point at which a shadow ray ends: a surface does not shade itself by the rounding of its own points."""
 
 
 class ShadowCaster(NamedTuple):
-    """What can shade points near one sheet: triangles by sector (compressed rows), and spheres.
+    """Occluders that can shade points near one sheet: triangles by sector (compressed rows), and spheres.
 
     `frame` holds two unit vectors (2, 3) in the sheet; polar angles are counted from the first, all round.
     """
@@ -47,7 +49,7 @@ class ShadowCaster(NamedTuple):
         return cls(np.array(emitter), frame, triangles, start, members, centres, radii)
 
     def sees(self, points: Array) -> NDArray[np.bool_]:
-        """True for each of `points` (N, 3) in mm that the emitter sees."""
+        """Find which of `points` (N, 3) in mm the emitter sees: (N,) True there."""
         visible: NDArray[np.bool_] = _sees(points, self)
         return visible
 
@@ -96,7 +98,7 @@ def _sees(points, caster):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True)
 def _hits_triangle(triangle, origin, ray, limit):  # type: ignore[no-untyped-def]
-    """Möller–Trumbore: does origin + t ray, 0 < t < limit, meet the triangle?"""
+    """Whether origin + t ray, 0 < t < limit, meets the triangle (Möller–Trumbore)."""
     ax, ay, az = triangle[0]
     e1x, e1y, e1z = triangle[1, 0] - ax, triangle[1, 1] - ay, triangle[1, 2] - az
     e2x, e2y, e2z = triangle[2, 0] - ax, triangle[2, 1] - ay, triangle[2, 2] - az
@@ -118,7 +120,7 @@ def _hits_triangle(triangle, origin, ray, limit):  # type: ignore[no-untyped-def
 
 @njit(cache=True, nogil=True)
 def _hits_sphere(to_centre, radius, ray, limit):  # type: ignore[no-untyped-def]
-    """Does the ray enter the sphere at 0 < t < limit?"""
+    """Whether the ray enters the sphere at 0 < t < limit."""
     a = np.dot(ray, ray)
     b = np.dot(ray, to_centre)
     root = b * b - a * (np.dot(to_centre, to_centre) - radius * radius)

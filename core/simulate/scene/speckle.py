@@ -10,9 +10,12 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from core.simulate.rays import Map
+from core.simulate.scene.rays import Map
 
+LEAST_LIGHT = 0.02
+"""Grey levels below which laser light gets no speckle: far below what a picture resolves."""
 TILE = 1024
+"""Side in px of the tile of speckle: a million places, eight ways round, so that pictures hardly repeat."""
 
 
 class Speckle:

@@ -9,16 +9,22 @@ from scipy.spatial.transform import Rotation
 
 from core.model import Pose
 from core.model.arrays import Array
-from core.simulate.mask import face_mask
-from core.simulate.objects import cylinder, gauge_block, step_block, stl, turned
 from core.simulate.scenario import Scenario
-from core.simulate.scene import Mesh, Scene, Sphere
+from core.simulate.scene.objects import cylinder, face_mask, gauge_block, step_block, stl, turned
+from core.simulate.scene.scene import Mesh, Scene, Sphere
 
+# Where the object is. Chosen so that the paper's fan falls on it.
 WORK_POINT = np.array([0.0, 54.0, 510.0])
-"""Where the fan's middle line passes before the camera, in mm: things are put under it."""
-
+"""Point (3,) in mm on the fan's middle line before the camera: objects are put under it."""
 TABLE_DEPTH_MM = 560.0
 TABLE_TILT_DEG = (3.0, -2.0, 5.0)
+"""Depth of the table in mm, and how it is tilted and turned about x, y and z: no table is quite straight."""
+STEP_HEIGHTS_MM = (40.0, 50.0, 60.0, 70.0)
+"""Of the step block."""
+NARROW_BLOCK_MM, NARROW_BLOCK_BACK_MM = (50.0, 30.0), 8.0
+"""Base of the narrow block, and how far it stands back so that the fan meets it."""
+SPHERE_BACK_MM = 3.0
+"""How far a sphere stands back: the outer fan lines are equally far from its rims."""
 
 
 def table_pose() -> Pose:
@@ -29,7 +35,7 @@ def table_pose() -> Pose:
 
 
 def build_scene(scenario: Scenario) -> tuple[Scene, dict[str, object]]:
-    """The scene, and the true figures of the object in it (mm, camera frame where a place is given)."""
+    """Build the scene of a scenario, and the true figures of the object (mm, camera frame where a place is given)."""
     pose = table_pose()
     thing = _thing(scenario)
     things = () if thing is None else (thing,)
@@ -49,22 +55,18 @@ def build_scene(scenario: Scenario) -> tuple[Scene, dict[str, object]]:
     return scene, figures
 
 
-STEP_HEIGHTS_MM = (40.0, 50.0, 60.0, 70.0)
-
-
 def _thing(scenario: Scenario) -> Mesh | Sphere | None:
     """The object in table coordinates, turned on its base and put in its place."""
     yaw, place = np.radians(scenario.yaw_deg), np.array([scenario.right_mm, scenario.away_mm])
     if scenario.object == "block":
         return turned(gauge_block(scenario.height_mm), yaw, place)
     if scenario.object == "narrow-block":
-        return turned(gauge_block(scenario.height_mm, (50.0, 30.0)), yaw, place + [0.0, 8.0])
+        return turned(gauge_block(scenario.height_mm, NARROW_BLOCK_MM), yaw, place + [0.0, NARROW_BLOCK_BACK_MM])
     if scenario.object == "steps":
         return turned(step_block(STEP_HEIGHTS_MM), yaw, place)
     if scenario.object == "sphere":
         radius = scenario.height_mm / 2
-        # 3 mm: the outer fan lines equally far from its rims
-        return Sphere(np.array([*(place + [0.0, 3.0]), radius]), radius)
+        return Sphere(np.array([*(place + [0.0, SPHERE_BACK_MM]), radius]), radius)
     if scenario.object == "cylinder":
         return turned(cylinder(scenario.height_mm), yaw, place)
     if scenario.object == "mask":
@@ -75,7 +77,7 @@ def _thing(scenario: Scenario) -> Mesh | Sphere | None:
 
 
 def aim_of(scene: Scene) -> Array:
-    """Where the hand points (3,) in mm: over the middle of what stands on the table, near its top."""
+    """Find the point (3,) in mm at which the hand aims: the middle of the box around what stands on the table."""
     if scene.meshes:
         corners = np.concatenate([mesh.triangles.reshape(-1, 3) for mesh in scene.meshes])
         return np.asarray((corners.min(axis=0) + corners.max(axis=0)) / 2)

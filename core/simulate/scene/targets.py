@@ -1,4 +1,4 @@
-"""Pictures of calibration plates: lit by the room, and with the fan on them."""
+"""Pictures of calibration plates, lit by the room and with the fan on them."""
 
 from __future__ import annotations
 
@@ -9,13 +9,19 @@ import numpy as np
 
 from core.model import Pose
 from core.model.arrays import Array
-from core.simulate.image import Picture, Sensor, blurred, generator
-from core.simulate.laser import fan_sheets, laser_light
-from core.simulate.patterns import Pattern, draw_pattern
-from core.simulate.rays import Map
+from core.simulate.poses import GOLDEN_SHARE
 from core.simulate.rig import Rig
-from core.simulate.scene import Scene, SurfaceMaps
-from core.simulate.speckle import Speckle
+from core.simulate.scene.image import Picture, Sensor, blurred, generator
+from core.simulate.scene.laser import fan_sheets, laser_light
+from core.simulate.scene.patterns import Pattern, draw_pattern
+from core.simulate.scene.rays import Map
+from core.simulate.scene.scene import Scene, SurfaceMaps
+from core.simulate.scene.speckle import LEAST_LIGHT, Speckle
+
+DIFFUSE_SHARE, FRONT_SHARE = 0.35, 0.65
+"""Of the room's light on a plate: from all sides, and with the cosine of its tilt."""
+NEAREST_MM, FARTHEST_MM = 430.0, 620.0
+"""Depths of the plane target: those of the objects, and some more on both sides."""
 
 
 def room_light(pattern: Pattern, pose: Pose, rays: Map, grey: float) -> tuple[Map, Map]:
@@ -26,28 +32,30 @@ def room_light(pattern: Pattern, pose: Pose, rays: Map, grey: float) -> tuple[Ma
 
 def room_shade(pose: Pose, grey: float) -> np.float32:
     """Grey level of a white plate in the room's light, `grey` if it faces the camera."""
-    return np.float32(grey * (0.35 + 0.65 * abs(pose.rotation[2, 2])))
+    return np.float32(grey * (DIFFUSE_SHARE + FRONT_SHARE * abs(pose.rotation[2, 2])))
 
 
-class Studio(NamedTuple):
-    """What takes the pictures: the rig, the rays of its camera's pixels (h, w, 2), and the sensor."""
+class RenderContext(NamedTuple):
+    """What rendering needs: the rig, the rays of its camera's pixels (h, w, 2), and the sensor."""
 
     rig: Rig
     rays: Map
     sensor: Sensor
 
 
-def camera_picture(studio: Studio, pattern: Pattern, pose: Pose, grey: float, rng: np.random.Generator) -> Picture:
+def camera_picture(
+    context: RenderContext, pattern: Pattern, pose: Pose, grey: float, rng: np.random.Generator
+) -> Picture:
     """One view of a target with the lasers off; `grey` is the level of a white plate that faces the camera."""
-    light = blurred(room_light(pattern, pose, studio.rays, grey)[1], studio.rig.blur_px)
-    return studio.sensor.expose(light, rng)
+    light = blurred(room_light(pattern, pose, context.rays, grey)[1], context.rig.blur_px)
+    return context.sensor.expose(light, rng)
 
 
 def plane_pictures(
-    studio: Studio, pattern: Pattern, pose: Pose, grey: float, seed: int, index: int
+    context: RenderContext, pattern: Pattern, pose: Pose, grey: float, seed: int, index: int
 ) -> tuple[Picture, Picture]:
     """The two pictures of pose `index` of the plane target: with the fan on, and off."""
-    rig, rays, sensor = studio
+    rig, rays, sensor = context
     points, light = room_light(pattern, pose, rays, grey)
     light = blurred(light, rig.blur_px)
     albedo = draw_pattern(replace(pattern, background=0.0), pose, rays)[1]
@@ -71,13 +79,13 @@ def speckled(light: Map, rig: Rig, rng: np.random.Generator) -> Map:
     if rig.optics.speckle_contrast <= 0:
         return light
     speckle = Speckle(rig.optics.speckle_contrast, rig.grain_px, rng)
-    rows, columns = np.nonzero(light > 0.02)
+    rows, columns = np.nonzero(light > LEAST_LIGHT)
     light[rows, columns] *= speckle.at(rows, columns, rng)
     return light
 
 
-def fan_centres(rig: Rig, poses: int, nearest_mm: float = 430.0, farthest_mm: float = 620.0) -> list[Array]:
-    """Points (3,) on the fan's middle line, depths from near to far in mixed order."""
-    depths = nearest_mm + (farthest_mm - nearest_mm) * ((np.arange(poses) * 0.618034 + 0.3) % 1)
+def fan_centres(rig: Rig, poses: int, nearest_mm: float = NEAREST_MM, farthest_mm: float = FARTHEST_MM) -> list[Array]:
+    """Choose points (3,) in mm on the fan's middle line, depths from near to far in mixed order."""
+    depths = nearest_mm + (farthest_mm - nearest_mm) * ((np.arange(poses) * GOLDEN_SHARE + 0.3) % 1)
     middle = rig.fan.planes[rig.fan.lines // 2].pi
     return [np.array([0.0, (1 - middle[2] * z) / middle[1], z]) for z in depths]

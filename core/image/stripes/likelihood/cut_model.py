@@ -1,4 +1,7 @@
-"""The model of the light along one cut of a stripe, and when a pixel shows other light; see `core.image.likelihood`."""
+"""Model of the light along one cut of a stripe, and when a pixel shows other light.
+
+See `core.image.stripes.likelihood.refinement`.
+"""
 
 from __future__ import annotations
 
@@ -11,23 +14,24 @@ from numpy.typing import NDArray
 
 from core.model.arrays import Array
 
+# Held by tests/image/stripes/likelihood/test_refinement.py (other light) on stripes beside other light.
 TAIL = 2.5
-"""Stripe σ from the middle where the tails begin."""
-_OTHER_LIGHT = 0.15  # in the tails, more than this share of the height is no light of this stripe
-_SIGNIFICANT = 6.0  # nor is what noise does not explain
+"""Stripe σ from the middle where the tails begin: 4 % of the height is left there."""
+_OTHER_LIGHT = 0.15  # of the height: a residual in the tails beyond this
+_SIGNIFICANT = 6.0  # and beyond so many standard deviations of the noise is other light
 
 
 class Light(NamedTuple):
-    """The light of a stripe along a run of N points, and how its pixels are weighed.
+    """The light of a stripe along a run of N points, and the weights of its pixels.
 
     Parameters
     ----------
     sections
-        (N, 4) the columns of `core.image.profile.Sections`.
+        (N, 4) the columns of `core.image.stripes.profile.Sections`.
     kind
         (N,) which of the weights suits each point.
     weights
-        (K, DEGREE + 1) ψ as `core.image.influence` gives it.
+        (K, DEGREE + 1) ψ as `core.image.stripes.likelihood.influence` gives it.
     noise
         The variance of a dark pixel, and what each grey level adds to it.
     """
@@ -39,7 +43,7 @@ class Light(NamedTuple):
 
 
 class CutModel(NamedTuple):
-    """What is expected along a cut: grey values of the section, and where its curve lies.
+    """Model along one cut: grey values of the section, and the curve it lies on.
 
     `across` is the normal's component along the cut, `bend` the curve's; `fade` and `widening` are the shares by which
     height and width change from one pixel's foot on the curve to the next. Of a pixel in the tails a squared residual
@@ -60,7 +64,7 @@ class CutModel(NamedTuple):
 
 @njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
 def cut_model(run: Array, light: Light, near: int, upright: bool) -> CutModel:
-    """The model of the cut at point `near` of a `run` (N, 5) of this `light`."""
+    """Make the model of the cut at point `near` of a `run` (N, 5) of this `light`."""
     model, noise = light.sections, light.noise
     height, width, background = model[near, 0], model[near, 1], model[near, 2]
     across, slip = (run[near, 2], -run[near, 3]) if upright else (run[near, 3], run[near, 2])

@@ -1,4 +1,4 @@
-"""How much each pixel of a cross-section should say about the stripe's place, under shot noise and speckle.
+"""Optimal weight of each pixel of a cross-section for the stripe's place, under shot noise and speckle.
 
 With the section m(x) = A·exp(−x²/2s²), x across the stripe, its derivative with the place d = m·x/s², and the noise
 
@@ -25,27 +25,29 @@ import numpy as np
 from numba import njit
 from numpy.polynomial import chebyshev
 
-from core.image.noise import NoiseModel
-from core.image.speckle import Speckle
+from core.image.stripes.noise import NoiseModel
+from core.image.stripes.speckle import Speckle
 from core.model.arrays import Array
 
 REACH = 4.5
-"""Stripe σ looked at on either side: beyond are 1 to 2 % of what can be known."""
+"""Stripe σ looked at on either side: beyond are 1 to 2 % of the information (computed by this module)."""
 DEGREE = 10
-_NODES = 36
-_STEP = 1.08
-"""Sections alike within this factor in height or width share one weight."""
+"""Of the polynomials in x²: the least that loses 0.1 % of the information, see above."""
+_NODES = 36  # of the integrals over half a section: 8 to a stripe σ
+_CLASS_STEP = 1.08
+"""Factor of height, width and noise within which sections share one weight; costs nothing noticeable and is what the
+cache lives on."""
 
 
 class Influence(NamedTuple):
-    """The weight as `weight_at` wants it, (DEGREE + 1,), and the share of speckle in the variance."""
+    """The weight as `weight_at` takes it, (DEGREE + 1,), and the share of speckle in the variance."""
 
     weight: Array
     speckle_share: float
 
 
 def influence(height: float, background: float, width_px: float, noise: NoiseModel, speckle: Speckle) -> Influence:
-    """The weight for a section of this height and background in grey levels and this σ in px.
+    """Compute the weight for a section of this height and background in grey levels and this σ in px.
 
     All figures are rounded to steps of 8 %, which costs nothing noticeable, so that few different ones are computed.
     """
@@ -55,7 +57,7 @@ def influence(height: float, background: float, width_px: float, noise: NoiseMod
 def influences(
     heights: tuple[float, ...], background: float, width_px: float, noise: NoiseModel, speckle: Speckle
 ) -> tuple[Array, Array]:
-    """Weights (K, DEGREE + 1) for sections that differ in their height alone, and the shares of speckle (K,)."""
+    """Compute weights (K, DEGREE + 1) and shares of speckle (K,) for sections that differ in their height alone."""
     return _stacked(heights, _figures(background, width_px, noise, speckle))
 
 
@@ -83,7 +85,7 @@ def _stacked(heights: tuple[float, ...], figures: tuple[float, ...]) -> tuple[Ar
 
 
 def _coarse(value: float) -> float:
-    return _STEP ** round(math.log(value) / math.log(_STEP)) if value > 0 else 0.0
+    return _CLASS_STEP ** round(math.log(value) / math.log(_CLASS_STEP)) if value > 0 else 0.0
 
 
 @lru_cache(maxsize=4096)

@@ -1,4 +1,4 @@
-"""What the pixels of each cut say about the stripe's place; see `core.image.likelihood`.
+"""Scores of cuts: what their pixels say about the stripe's place; see `core.image.stripes.likelihood.refinement`.
 
 Sixteen cuts are worked out at once: their pixels are copied to one array, a cut a column of it, and then looked at in
 single precision in a loop over the cuts, which compilers turn into a few instructions for all of them.
@@ -13,31 +13,34 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from core.image.cut_model import TAIL, Light, cut_model
-from core.image.influence import DEGREE, REACH
-from core.image.marks import IGNORED, SATURATED
-from core.image.seeds import Picture
+from core.image.stripes.likelihood.cut_model import TAIL, Light, cut_model
+from core.image.stripes.likelihood.influence import DEGREE, REACH
+from core.image.stripes.section_fit import DARK
+from core.image.stripes.tracing.pixel_state import IGNORED, SATURATED
+from core.image.stripes.tracing.seeds import Picture
 from core.model.arrays import Array
 
 Float32 = NDArray[np.float32]
 F = np.float32
 
-_LANES = 16
-_TOGETHER = 8  # cuts that have their first pixel in the same column (row)
+_CUTS_AT_ONCE = 16  # numbers of single precision in one instruction of today's widest processors
+_TOGETHER = 8  # cuts that have their first pixel in the same column (row), so that they are read together
 _START, _ACROSS, _BEND, _FADE, _WIDENING, _HEIGHT, _INVERSE, _BACKGROUND, _SLOPE, _OTHER, _PER_LIGHT = range(11)
-_FIGURES = 11
-_HALF, _ONE, _EIGHTH, _SIXTEENTH, _NEXT = F(0.5), F(1), F(0.125), F(0.0625), F(0.0390625)
-_FAR = F(0.5 * REACH**2)  # of half the squared distance in σ
-_IN_TAIL = F(0.5 * TAIL**2)
-_TO_TAU = F(4 / REACH**2)
-_DARK = F(16)
+"""Rows of `_Block.figures`."""
+_FIGURES = 11  # number of these rows
+_HALF, _ONE, _EIGHTH, _SIXTEENTH = F(0.5), F(1), F(0.125), F(0.0625)  # in single precision
+_NEXT_TERM = F(0.0390625)  # 5/128, of the series of 1 − √(1 − x)
+_END = F(0.5 * REACH**2)  # exponent x²/2s² at the end of the weights
+_IN_TAIL = F(0.5 * TAIL**2)  # the same where the tails begin
+_TO_TAU = F(4 / REACH**2)  # from that exponent to τ + 1 of `influence`
+_DARK = F(DARK)  # in single precision
 
 
 class _Block(NamedTuple):
-    """Up to _LANES cuts, and where they are worked out.
+    """Up to _CUTS_AT_ONCE cuts, and where they are worked out.
 
-    `cut` and `first` (_LANES,) are their numbers and first pixels, `grey` and `seen` (P, _LANES) their pixels and
-    whether these can be used, 1 or 0, `figures` (_FIGURES, _LANES) what is expected of them.
+    `cut` and `first` (_CUTS_AT_ONCE,) are their numbers and first pixels, `grey` and `seen` (P, _CUTS_AT_ONCE) their
+    pixels and whether these can be used, 1 or 0, `figures` (_FIGURES, _CUTS_AT_ONCE) what is expected of them.
     """
 
     cut: NDArray[np.int64]
@@ -56,24 +59,24 @@ def score_cuts(
     clear: NDArray[np.bool_],
     light: Light,
 ) -> Array:
-    """Σ ψ·(I − model) and Σ ψ·d of each cut of a `run` (N, 5), (K, 2); zeros where it cannot be used."""
+    """Compute Σ ψ·(I − model) and Σ ψ·d of each cut of a `run` (N, 5): (K, 2), zeros where it cannot be used."""
     model, sums, longest = light.sections, np.zeros((len(cuts), 2)), max(picture.shape)
     block = _Block(
-        np.empty(_LANES, dtype=np.int64),
-        np.empty(_LANES, dtype=np.int64),
-        np.empty((longest, _LANES), dtype=np.float32),
-        np.ones((longest, _LANES), dtype=np.float32),
-        np.empty((_FIGURES, _LANES), dtype=np.float32),
+        np.empty(_CUTS_AT_ONCE, dtype=np.int64),
+        np.empty(_CUTS_AT_ONCE, dtype=np.int64),
+        np.empty((longest, _CUTS_AT_ONCE), dtype=np.float32),
+        np.ones((longest, _CUTS_AT_ONCE), dtype=np.float32),
+        np.empty((_FIGURES, _CUTS_AT_ONCE), dtype=np.float32),
     )
-    results, single = np.empty((7, _LANES), dtype=np.float32), light.weights.astype(np.float32)
+    results, single = np.empty((7, _CUTS_AT_ONCE), dtype=np.float32), light.weights.astype(np.float32)
     usable = _usable(picture.shape, run, cuts, clear, model)
     begin = 0
     while begin < len(usable):
         upright, end = cuts[usable[begin], 4] > 0, begin
-        while end < min(begin + _LANES, len(usable)) and (cuts[usable[end], 4] > 0) == upright:
+        while end < min(begin + _CUTS_AT_ONCE, len(usable)) and (cuts[usable[end], 4] > 0) == upright:
             end += 1
         backwards = cuts[usable[end - 1], 1] < cuts[usable[begin], 1]
-        for lane in range(_LANES):  # the last cut fills a block up
+        for lane in range(_CUTS_AT_ONCE):  # the last cut fills a block up
             block.cut[lane] = usable[max(end - 1 - lane, begin) if backwards else min(begin + lane, end - 1)]
         pixels = _prepare(picture.shape, run, cuts, light, block)
         marked = _read(picture, state, cuts, pixels, block)
@@ -110,7 +113,7 @@ def _usable(
 def _prepare(shape: tuple[int, int], run: Array, cuts: Array, light: Light, block: _Block) -> int:
     """Fill in the figures of the cuts of a block and their first pixels; how many pixels each has."""
     upright, figures, pixels = cuts[block.cut[0], 4] > 0, block.figures, 0
-    for begin in range(0, _LANES, _TOGETHER):
+    for begin in range(0, _CUTS_AT_ONCE, _TOGETHER):
         first, last = 1e9, -1e9
         for lane in range(begin, begin + _TOGETHER):
             cut = cuts[block.cut[lane]]
@@ -125,7 +128,7 @@ def _prepare(shape: tuple[int, int], run: Array, cuts: Array, light: Light, bloc
         pixels = max(pixels, int(last - first) + 1)
         block.first[begin : begin + _TOGETHER] = int(first)
     length = shape[1] if upright else shape[0]
-    for lane in range(_LANES):
+    for lane in range(_CUTS_AT_ONCE):
         block.first[lane] = min(block.first[lane], length - pixels)
         figures[_START, lane] = block.first[lane] - cuts[block.cut[lane], 2]
     return pixels
@@ -135,7 +138,7 @@ def _prepare(shape: tuple[int, int], run: Array, cuts: Array, light: Light, bloc
 def _read(picture: Picture, state: NDArray[np.uint8], cuts: Array, pixels: int, block: _Block) -> bool:
     """Copy the pixels of a block; whether one of them is saturated or to be ignored."""
     bits, upright, grey = 0, cuts[block.cut[0], 4] > 0, block.grey
-    for begin in range(0, _LANES, _TOGETHER):
+    for begin in range(0, _CUTS_AT_ONCE, _TOGETHER):
         first, line = block.first[begin], int(cuts[block.cut[begin], 1])
         if not upright and int(cuts[block.cut[begin + _TOGETHER - 1], 1]) - line == _TOGETHER - 1:  # as nearly always
             for i in range(pixels):
@@ -157,7 +160,7 @@ def _read(picture: Picture, state: NDArray[np.uint8], cuts: Array, pixels: int, 
                 bits |= marks[i]
     if bits & (SATURATED | IGNORED) == 0:
         return False
-    for lane in range(_LANES):
+    for lane in range(_CUTS_AT_ONCE):
         first, line = block.first[lane], int(cuts[block.cut[lane], 1])
         for i in range(pixels):
             mark = state[line, first + i] if upright else state[first + i, line]
@@ -169,9 +172,9 @@ def _read(picture: Picture, state: NDArray[np.uint8], cuts: Array, pixels: int, 
 def _work_out(grey: Float32, seen: Float32, figures: Float32, weight: Float32, results: Float32) -> None:
     """Into `results` (7, lanes) the sums over the pixels of each cut that `_score` asks for.
 
-    What is left of a pixel, times ψ and times the bell; ψ times x times the bell; ψ times the bell; bell² times x;
-    bell²; and how many pixels near enough cannot be used: those not `seen`, and those that show other light. The bell
-    is that of `core.image.bell`, ψ/x that of `core.image.influence.weight_at`.
+    With r what the model leaves of a pixel and e = exp(−x²/2s²): Σ r·ψ, Σ x·e·ψ, Σ e·ψ, Σ r·e, Σ x·e², Σ e², and how
+    many pixels near enough cannot be used: those not `seen`, and those that show other light. The exponential is that
+    of `core.image.stripes.section_fit`, ψ/x that of `core.image.stripes.likelihood.influence.weight_at`.
     """
     w0, w1, w2, w3, w4, w5 = weight[0], weight[1], weight[2], weight[3], weight[4], weight[5]
     w6, w7, w8, w9, w10 = weight[6], weight[7], weight[8], weight[9], weight[DEGREE]
@@ -184,7 +187,7 @@ def _work_out(grey: Float32, seen: Float32, figures: Float32, weight: Float32, r
             bend = figures[_BEND, k]
             power = along * (figures[_ACROSS, k] - bend * along)  # of the pixel, to the circle of that bend
             turn = bend * power
-            x = power * (_HALF + turn * (_EIGHTH + turn * (_SIXTEENTH + turn * _NEXT)))
+            x = power * (_HALF + turn * (_EIGHTH + turn * (_SIXTEENTH + turn * _NEXT_TERM)))
             y = x * x * figures[_INVERSE, k]
             t = min(y * (_ONE - figures[_WIDENING, k] * along), _DARK) * _SIXTEENTH
             tail = _ONE - t * F(1 / 4) * (_ONE - t * F(1 / 5) * (_ONE - t * F(1 / 6) * (_ONE - t * F(1 / 7))))
@@ -195,8 +198,8 @@ def _work_out(grey: Float32, seen: Float32, figures: Float32, weight: Float32, r
             light *= light * (_ONE + figures[_FADE, k] * along)
             left = row[k] - (figures[_BACKGROUND, k] + figures[_SLOPE, k] * x + figures[_HEIGHT, k] * light)
             strange = (left * left > figures[_OTHER, k] + figures[_PER_LIGHT, k] * light) & (y > _IN_TAIL)
-            used = F(0) if strange | (y > _FAR) else use[k]
-            lost[k] += F(0) if y > _FAR else _ONE - used
+            used = F(0) if strange | (y > _END) else use[k]
+            lost[k] += F(0) if y > _END else _ONE - used
             tau = y * _TO_TAU - _ONE
             psi = w4 + tau * (w5 + tau * (w6 + tau * (w7 + tau * (w8 + tau * (w9 + tau * w10)))))
             psi = used * x * (w0 + tau * (w1 + tau * (w2 + tau * (w3 + tau * psi))))

@@ -1,4 +1,4 @@
-"""Points between the points of a run."""
+"""Interpolation between the points of a run that was traced in steps of more than a pixel."""
 
 from __future__ import annotations
 
@@ -9,25 +9,25 @@ from numba import njit
 
 from core.model.arrays import Array
 
-_PER_FILTER = 1.1  # points to a filter σ
-_HOLE = 0.6  # px more than usual from one point to the next: what lies between is not known
+_FILTER_PER_STEP = 1.1  # filter σ to a step, at least: a point between then errs by less than 0.001 px (measured)
+_HOLE_PX = 0.6  # more than usual from one point to the next: what lies between is not known
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def points_apart(filter_px: float) -> int:
-    """How many px points of a line may be apart and tell all that a filter of σ `filter_px` leaves of it."""
-    return max(1, int(filter_px / _PER_FILTER))
+def tracing_step(filter_px: float) -> int:
+    """Largest distance in px, a whole number, of points that tell all a filter of σ `filter_px` leaves of a line."""
+    return max(1, int(filter_px / _FILTER_PER_STEP))
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def filled(run: Array, stride: int) -> Array:
-    """A run (N, 5) u, v, n_u, n_v, response traced `stride` px apart, with points a pixel apart between its points.
+def with_points_between(run: Array, stride: int) -> Array:
+    """Interpolate a run (N, 5) u, v, n_u, n_v, response traced `stride` px apart to points one pixel apart.
 
     They lie on the cubic through the two neighbours on either side, or on Hermite's along the normals where a
     neighbour is missing. What a filter of σ g leaves of noise is as smooth as g, so that for g > 1.1 `stride` a point
     between differs from one that was looked for by less than 0.001 px.
     """
-    count, hole = len(run), stride + _HOLE
+    count, hole = len(run), stride + _HOLE_PX
     out, weights = np.empty((stride * count, 5)), cubic_weights(stride)
     number, before, chord = 0, math.inf, _chord(run, 0)
     for k in range(count):

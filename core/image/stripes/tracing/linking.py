@@ -1,9 +1,13 @@
-"""Linking: from a coarse look at the whole picture to ordered runs of line points.
+"""Linking: from coarse seeds in the whole picture to ordered runs of line points.
 
 Steger links the line points of a filtered picture, strongest first, each to the neighbour that lies ahead on its
 tangent. Here the points are only computed where the tangent leads, so the filter runs over the stripe and not over
 the picture. Hysteresis: a run starts above a high and continues above a low threshold; it holds on through dark
 speckle grains, and longer through saturated pixels, straight ahead.
+
+Which places have been traced already is kept in lists of points, one list for each cell of the picture. A map with a
+mark at every pixel near a line would be as large as the picture; touching its memory alone took longer than half of
+all tracing.
 
 References
 ----------
@@ -14,23 +18,65 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from core.image.filling import filled, points_apart
-from core.image.marks import IGNORED, SATURATED
-from core.image.passed import Passed, nothing_passed, put_down, room_for, was_passed
-from core.image.ridge import LANES, Detector, kernel_radius, kernel_table, ridge_at, ridge_response
-from core.image.seeds import Picture, seeds
+from core.image.stripes.tracing.interpolation import tracing_step, with_points_between
+from core.image.stripes.tracing.pixel_state import IGNORED, SATURATED
+from core.image.stripes.tracing.ridge import (
+    COLUMNS_AT_ONCE,
+    Detector,
+    kernel_radius,
+    kernel_table,
+    ridge_at,
+    ridge_response,
+)
+from core.image.stripes.tracing.seeds import Picture, seeds
 from core.model.arrays import Array
 
+# Chosen for speed at the same points: tests/image/stripes/test_extraction.py and tests/image/test_rendered_lines.py
+# hold them.
 _MARK_EVERY = 2  # points: discs much larger than that leave no gap between them
 _LONGEST_STEP = 2  # px: longer ones lose short, saturated pieces of photographed stripes at their ends
 _NEAR_ENOUGH = 0.08  # filter σ from the crest: seen from there, Taylor's step errs by less than 0.0005 px
-_LARGEST_TURN = math.cos(math.radians(30))  # from one point to the next
+_LARGEST_TURN = math.cos(math.radians(30))  # cosine, from one point to the next: a kink or another line
+
+
+HOLD = 3.0
+"""Filter σ that a run goes on without response, over dark grains: tests/image/stripes/test_extraction.py (deep speckle)
+holds it."""
+
+
+class PointGrid(NamedTuple):
+    """Points sorted into cells of the picture, as lists linked from each cell's last point; counted from 1 on.
+
+    `last` (rows, columns) is the last point of each cell, `before` (N,) the point before each one in its cell.
+    """
+
+    last: NDArray[np.int32]
+    before: NDArray[np.int32]
+
+
+class _Limits(NamedTuple):
+    """When a run starts and goes on: thresholds are second derivatives across the line, lengths in px."""
+
+    filter_px: float
+    high: float
+    low: float
+    hold_px: float
+    saturated_hold_px: float
+    step_px: float
+
+
+class _Traced(NamedTuple):
+    """The points (N, 5) of the runs traced so far, where they are, and how near to them in px no other may come."""
+
+    points: Array
+    grid: PointGrid
+    reach: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,8 +96,9 @@ class Hysteresis:
 def link(
     picture: Picture, state: NDArray[np.uint8], stripe_px: float, filter_px: float, limits: Hysteresis
 ) -> list[Array]:
-    """Runs of line points, each (N, 5): u, v, n_u, n_v, response; one px apart along the tangent (−n_v, n_u).
+    """Trace all stripes as runs of line points, each (N, 5): u, v, n_u, n_v, response.
 
+    Points are one px apart along the tangent (−n_v, n_u).
     The response is the second derivative across the stripe with its sign reversed. `state` (H, W) holds the bits
     SATURATED and IGNORED.
     """
@@ -59,21 +106,23 @@ def link(
     if min(picture.shape) <= 2 * radius + 3:
         return []
     unit = ridge_response(1.0, stripe_px, filter_px)
-    stride = min(points_apart(filter_px), _LONGEST_STEP)
+    stride = min(tracing_step(filter_px), _LONGEST_STEP)
     flat: Any = np.ascontiguousarray(picture).reshape(-1)  # float32 or int16
-    if picture.shape[1] < LANES:
-        flat = np.append(flat, np.zeros(LANES, flat.dtype))
+    if picture.shape[1] < COLUMNS_AT_ONCE:
+        flat = np.append(flat, np.zeros(COLUMNS_AT_ONCE, flat.dtype))
     points, ends = _trace_all(
         flat,
         state,
         seeds(picture, stripe_px, filter_px, limits.high, limits.noise_grey),
         kernel_table(filter_px),
-        (filter_px, unit * limits.high, unit * limits.low, limits.hold_px, limits.saturated_hold_px, float(stride)),
+        _Limits(
+            filter_px, unit * limits.high, unit * limits.low, limits.hold_px, limits.saturated_hold_px, float(stride)
+        ),
         radius,
         math.ceil(2 * stripe_px + 1),
     )
     runs = np.split(points, ends[:-1]) if len(ends) else []
-    return [filled(run, stride) for run in runs] if stride > 1 else runs
+    return [with_points_between(run, stride) for run in runs] if stride > 1 else runs
 
 
 @njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
@@ -82,17 +131,20 @@ def _trace_all(
     state: NDArray[np.uint8],
     starts: Array,
     kernels: NDArray[np.float32],
-    limits: tuple[float, float, float, float, float, float],
+    limits: _Limits,
     radius: int,
     reach: int,
 ) -> tuple[Array, NDArray[np.int64]]:
-    """Trace both ways from every seed that no run has passed yet; all points and where each run ends."""
+    """Trace both ways from every seed that no run has come near yet; all points and where each run ends."""
     height, width = state.shape
-    high, stride = limits[1], limits[5]
+    high, stride = limits.high, limits.step_px
     ahead = np.empty((4 * (height + width), 5))
     behind = np.empty_like(ahead)
-    points, passed = np.empty((16384, 5)), nothing_passed((height, width), reach, 16384)
-    ends, detector = np.empty(64, dtype=np.int64), Detector(radius, kernels, np.empty(3 * LANES, dtype=np.float32))
+    points, grid = np.empty((16384, 5)), empty_point_grid((height, width), reach, 16384)
+    ends, detector = (
+        np.empty(64, dtype=np.int64),
+        Detector(radius, kernels, np.empty(3 * COLUMNS_AT_ONCE, dtype=np.float32)),
+    )
     count, runs = 0, 0
     for k in range(len(starts)):
         u, v = starts[k, 0], starts[k, 1]
@@ -102,7 +154,7 @@ def _trace_all(
             if not _inside(u, v, width, height, radius):
                 found = False
                 break
-            if state[int(v + 0.5), int(u + 0.5)] & IGNORED or was_passed(passed, points, u, v, reach):
+            if state[int(v + 0.5), int(u + 0.5)] & IGNORED or is_near_point(grid, points, u, v, reach):
                 found = False
                 break
             across, nu, nv, offset = ridge_at(picture, width, u, v, detector)
@@ -118,7 +170,7 @@ def _trace_all(
                 break
         if not found:
             continue
-        so_far = (points, passed, reach)
+        so_far = _Traced(points, grid, reach)
         backwards = _follow(picture, state, so_far, (u, v, -nu, -nv), limits, detector, behind)
         last = max(backwards - 1, 0)
         closed = backwards > 20 and math.hypot(behind[last, 0] - u, behind[last, 1] - v) < 1.5 * stride
@@ -127,7 +179,7 @@ def _trace_all(
         if len(points) < count + needed:
             more = np.empty((2 * (count + needed), 5))
             more[:count] = points[:count]
-            points, passed = more, room_for(passed, len(more))
+            points, grid = more, enlarged_point_grid(grid, len(more))
         run = points[count : count + needed]
         for i in range(backwards):
             for a in range(5):
@@ -136,7 +188,7 @@ def _trace_all(
         run[backwards, 4] = response
         run[backwards + 1 :] = ahead[:forwards]
         for i in range(0, needed + _MARK_EVERY - 1, _MARK_EVERY):
-            put_down(passed, points, count + min(i, needed - 1), reach)
+            add_point(grid, points, count + min(i, needed - 1), reach)
         count += needed
         if runs == len(ends):
             ends = np.concatenate((ends, np.empty_like(ends)))
@@ -155,18 +207,18 @@ def _inside(u: float, v: float, width: int, height: int, radius: int) -> bool:
 def _follow(
     picture: Picture,
     state: NDArray[np.uint8],
-    so_far: tuple[Array, Passed, int],
+    so_far: _Traced,
     start: tuple[float, float, float, float],
-    limits: tuple[float, float, float, float, float, float],
+    limits: _Limits,
     detector: Detector,
     out: Array,
 ) -> int:
     """Points ahead of `start` (u, v, n_u, n_v) along its tangent, written to `out`; their number.
 
-    `so_far` are the points of other runs, where they are (see `core.image.passed`), and how near to them none may come.
+    `so_far` are the points of the other runs.
     """
     height, width = state.shape
-    points, passed, reach = so_far
+    points, grid, reach = so_far
     filter_px, _, low, hold, saturated_hold, stride = limits
     u, v = start[0], start[1]
     tu, tv = -start[3], start[2]
@@ -177,7 +229,7 @@ def _follow(
         if not _inside(u, v, width, height, detector.radius):
             break
         here = state[int(v + 0.5), int(u + 0.5)]
-        if here & IGNORED or was_passed(passed, points, u, v, reach):
+        if here & IGNORED or is_near_point(grid, points, u, v, reach):
             break
         across, nu, nv, offset = ridge_at(picture, width, u, v, detector)
         far = max(0.5, 0.25 * stride) + 0.05 * (missed + blind)  # straight ahead drifts off while nothing is seen
@@ -218,3 +270,51 @@ def _follow(
         if missed > hold or blind > saturated_hold:
             break
     return count
+
+
+@njit(cache=True, nogil=True)
+def empty_point_grid(shape: tuple[int, int], reach: int, count: int) -> PointGrid:
+    """No points yet: for a picture of (height, width) px, `count` points and distances up to `reach` px."""
+    cell = _cell(reach)
+    return PointGrid(np.zeros((shape[0] // cell + 1, shape[1] // cell + 1), np.int32), np.empty(count, np.int32))
+
+
+@njit(cache=True, nogil=True)
+def enlarged_point_grid(grid: PointGrid, count: int) -> PointGrid:
+    """The same points, with room for `count`."""
+    before = np.empty(count, np.int32)
+    before[: len(grid.before)] = grid.before
+    return PointGrid(grid.last, before)
+
+
+@njit(cache=True, nogil=True)
+def add_point(grid: PointGrid, points: Array, number: int, reach: int) -> None:
+    """Add the point of this `number` among the `points` (N, ≥ 2)."""
+    last, before = grid
+    cell = _cell(reach)
+    row, column = int(points[number, 1] + 0.5) // cell, int(points[number, 0] + 0.5) // cell
+    before[number] = last[row, column]
+    last[row, column] = number + 1
+
+
+@njit(cache=True, nogil=True)
+def is_near_point(grid: PointGrid, points: Array, u: float, v: float, reach: int) -> bool:
+    """Whether the pixel of (u, v) is within `reach` px of the pixel of a point in the grid."""
+    last, before = grid
+    cell, column, row = _cell(reach), int(u + 0.5), int(v + 0.5)
+    rows, columns = last.shape
+    for j in range(max(row - reach, 0) // cell, min((row + reach) // cell, rows - 1) + 1):
+        for i in range(max(column - reach, 0) // cell, min((column + reach) // cell, columns - 1) + 1):
+            number = last[j, i]
+            while number > 0:
+                du, dv = int(points[number - 1, 0] + 0.5) - column, int(points[number - 1, 1] + 0.5) - row
+                if du * du + dv * dv <= reach * reach:
+                    return True
+                number = before[number - 1]
+    return False
+
+
+@njit(cache=True, nogil=True)
+def _cell(reach: int) -> int:
+    """Side of a cell in px: whatever is within `reach` of a place lies in four of them at most."""
+    return 2 * reach + 1

@@ -22,13 +22,13 @@ from numpy.typing import NDArray
 KERNEL_REACH = 4.0
 """Half width of the kernels in filter σ; cut earlier, the pixels that enter and leave shift the point by 0.001 px."""
 PHASES = 32
-"""Sets of kernels to a pixel."""
-LANES = 32
+"""Sets of kernels to a pixel: their spacing, 1/32 px, is accounted for, see `ridge_at`."""
+COLUMNS_AT_ONCE = 32
 """Kernels are as long as a multiple of it, for loops of so many rounds are turned into a few instructions."""
 
 
 class Detector(NamedTuple):
-    """`kernel_radius` and `kernel_table` of a filter, and (3 · LANES,) numbers to work in."""
+    """`kernel_radius` and `kernel_table` of a filter, and (3 · COLUMNS_AT_ONCE,) numbers to work in."""
 
     radius: int
     kernels: NDArray[np.float32]
@@ -47,8 +47,9 @@ def ridge_response(amplitude: float, stripe_px: float, filter_px: float) -> floa
 
 @lru_cache(maxsize=32)
 def kernel_table(filter_px: float) -> NDArray[np.float32]:
-    """Gaussian and its first two derivatives (PHASES + 1, 3, ≥ 2·radius + 1) at −½ … ½ px beside a pixel's centre.
+    """Make the kernels (PHASES + 1, 3, ≥ 2·radius + 1): a Gaussian and its first two derivatives.
 
+    They are for points −½ … ½ px beside a pixel's centre.
     Behind the kernels' 2·radius + 1 weights there are zeros.
     """
     radius = kernel_radius(filter_px)
@@ -56,7 +57,7 @@ def kernel_table(filter_px: float) -> NDArray[np.float32]:
     x = np.arange(-radius, radius + 1) - shift
     weight = np.exp(-0.5 * (x / filter_px) ** 2)
     weight /= weight.sum(axis=1, keepdims=True)
-    table = np.zeros((PHASES + 1, 3, -(-x.shape[1] // LANES) * LANES), dtype=np.float32)
+    table = np.zeros((PHASES + 1, 3, -(-x.shape[1] // COLUMNS_AT_ONCE) * COLUMNS_AT_ONCE), dtype=np.float32)
     slope, bend = x / filter_px**2 * weight, (x**2 / filter_px**2 - 1) / filter_px**2 * weight
     for k, kernel in enumerate((weight, slope, bend)):
         if k:  # blind to a constant background in spite of the cut tails
@@ -74,13 +75,13 @@ def ridge_at(
     v: float,
     detector: Detector,
 ) -> tuple[float, float, float, float]:
-    """Line point seen from (u, v), which must be the detector's radius + 1 px inside the picture.
+    """Find the line point nearest to (u, v), which must be the detector's radius + 1 px inside the picture.
 
     Parameters
     ----------
     picture, width
-        The picture's rows one after another, (≥ H·W,), and the length of a row. Where a row is shorter than LANES, so
-        many numbers must follow.
+        The picture's rows one after another, (≥ H·W,), and the length of a row. Where a row is shorter than
+        COLUMNS_AT_ONCE, so many numbers must follow.
 
     Returns
     -------
@@ -95,14 +96,14 @@ def ridge_at(
     first, block = (row - radius) * width + column - radius, 0
     while True:  # once, but for the widest filters: compilers do not see that of a for
         _filter_columns(picture, first + block, width, 2 * radius + 1, kernels[phase_v], columns)
-        for i in range(LANES):
-            smooth, slope, bend = columns[i], columns[LANES + i], columns[2 * LANES + i]
+        for i in range(COLUMNS_AT_ONCE):
+            smooth, slope, bend = columns[i], columns[COLUMNS_AT_ONCE + i], columns[2 * COLUMNS_AT_ONCE + i]
             ru += sloping[block + i] * smooth
             ruu += bending[block + i] * smooth
             rv += smoothing[block + i] * slope
             ruv += sloping[block + i] * slope
             rvv += smoothing[block + i] * bend
-        block += LANES
+        block += COLUMNS_AT_ONCE
         if block >= len(smoothing):
             break
     half_difference = 0.5 * (ruu - rvv)
@@ -128,7 +129,7 @@ def _filter_columns(
     kernel: NDArray[np.float32],
     columns: NDArray[np.float32],
 ) -> None:
-    """A `kernel` (3, ≥ `rows`) along LANES columns from the pixel `first` on: smoothed, slope, bend, into `columns`.
+    """Filter columns from the pixel `first` on by a `kernel` (3, ≥ `rows`): smoothed, slope, bend, into `columns`.
 
     Four rows at once, and columns counted without a sign, which could not count from the array's end: so the compiler
     makes of each row two instructions.
@@ -142,17 +143,17 @@ def _filter_columns(
         b0, b1, b2, b3 = bending[j], bending[j + 1], bending[j + 2], bending[j + 3]
         p0 = np.uintp(first + j * width)
         p1, p2, p3 = p0 + step, p0 + step + step, p0 + step + step + step
-        for i in range(LANES):
+        for i in range(COLUMNS_AT_ONCE):
             k = np.uintp(i)
             g0, g1 = np.float32(picture[p0 + k]), np.float32(picture[p1 + k])
             g2, g3 = np.float32(picture[p2 + k]), np.float32(picture[p3 + k])
             columns[i] += s0 * g0 + s1 * g1 + s2 * g2 + s3 * g3
-            columns[LANES + i] += d0 * g0 + d1 * g1 + d2 * g2 + d3 * g3
-            columns[2 * LANES + i] += b0 * g0 + b1 * g1 + b2 * g2 + b3 * g3
+            columns[COLUMNS_AT_ONCE + i] += d0 * g0 + d1 * g1 + d2 * g2 + d3 * g3
+            columns[2 * COLUMNS_AT_ONCE + i] += b0 * g0 + b1 * g1 + b2 * g2 + b3 * g3
     for j in range(rows - rows % 4, rows):
         s0, d0, b0, p0 = smoothing[j], sloping[j], bending[j], np.uintp(first + j * width)
-        for i in range(LANES):
+        for i in range(COLUMNS_AT_ONCE):
             grey = np.float32(picture[p0 + np.uintp(i)])
             columns[i] += s0 * grey
-            columns[LANES + i] += d0 * grey
-            columns[2 * LANES + i] += b0 * grey
+            columns[COLUMNS_AT_ONCE + i] += d0 * grey
+            columns[2 * COLUMNS_AT_ONCE + i] += b0 * grey

@@ -1,8 +1,8 @@
-"""Where to look for stripes: a coarse look at a picture.
+"""Seeds: places where a stripe may be, from a coarse search of a picture.
 
 A stripe that stands out of the noise pixel by pixel shows in a few rows and columns, so only those are read
 (`sparse_crests`): the cost is that of a tenth of the picture. A fainter one shows in the picture averaged over blocks
-(`coarse_crests`), which reads all of it. Neither says more than that a closer look is worth while.
+(`coarse_crests`), which reads all of it. Neither says more than that a place is worth tracing from.
 """
 
 from __future__ import annotations
@@ -14,22 +14,27 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from core.image.ridge import ridge_response
+from core.image.stripes.tracing.ridge import ridge_response
 from core.model.arrays import Array
 
 Picture = NDArray[np.float32] | NDArray[np.int16]
 
-_COARSE_BLUR = 1.0  # blocks
-_COARSE_SHARE = 0.55  # a crest between two blocks keeps at least this share of its response
-_BOX, _STEP, _APART = 1.5, 1.5, 3.5  # stripe σ: mean over, rows apart, the background beside a stripe
-_EVERY = 7.0  # filter σ: the shortest run that counts, 12 of them with its ends, crosses such rows or columns
-_SPARSE_SHARE = 0.4  # a stripe between two rows, blurred by the box, keeps at least this share of its height
+# The coarse search, which reads the whole picture.
+_COARSE_BLUR = 1.0  # blocks: σ of the blur
+_COARSE_SHARE = 0.55  # of its response that a crest between two blocks keeps at least
+
+# The sparse search, which reads a few rows and columns. Chosen for speed with no stripe lost: tests/image/stripes/
+# test_extraction.py and the recall of `make bench` hold them.
+_BOX, _ROW_STEP, _BACKGROUND_DISTANCE = 1.5, 1.5, 3.5  # stripe σ: width of the mean, step of rows, background beside it
+_SPACING = 7.0  # filter σ between rows (columns): the shortest run that counts, 12 of them with its ends, crosses one
+_SPARSE_SHARE = 0.4  # of its height that a stripe between two rows, blurred by the box, keeps at least
 _SPARSE_NOISE = 5.0  # times the noise of a second difference of single pixels' means
-_SEGMENT = 32
+
+_SEGMENT = 32  # numbers whose largest is looked for at once; chosen by speed
 
 
 def seeds(picture: Picture, stripe_px: float, filter_px: float, high: float, noise_grey: float) -> Array:
-    """Places (K, 2) in pixels worth a closer look, strongest first.
+    """Find places (K, 2) u, v in pixels where a stripe may be, strongest first.
 
     Stripes of σ `stripe_px` and at least `high` grey levels are among them; `noise_grey` is the scatter of a pixel.
     """
@@ -46,10 +51,10 @@ def seeds(picture: Picture, stripe_px: float, filter_px: float, high: float, noi
 
 
 def sparse_crests(picture: Picture, stripe_px: float, filter_px: float, threshold: float) -> Array:
-    """Crests higher than `threshold` grey levels on a few rows and columns: (K, 3) u, v in pixels, height."""
-    box, apart = max(1, round(_BOX * stripe_px)), math.ceil(_APART * stripe_px)
-    every = max(box, int(_EVERY * filter_px))
-    step = max(1, round(_STEP * stripe_px))
+    """Find crests above `threshold` grey levels on a few rows and columns: (K, 3) u, v in pixels, height."""
+    box, apart = max(1, round(_BOX * stripe_px)), math.ceil(_BACKGROUND_DISTANCE * stripe_px)
+    every = max(box, int(_SPACING * filter_px))
+    step = max(1, round(_ROW_STEP * stripe_px))
     limit = np.float32(2 * box * threshold)
     upright = _maxima(_crest_of_rows(picture, every, box, apart), limit)
     flat = _maxima(_crest_of_columns(picture, every, box, step, math.ceil(apart / step)), limit)
@@ -63,7 +68,7 @@ def sparse_crests(picture: Picture, stripe_px: float, filter_px: float, threshol
 
 
 def coarse_crests(picture: Picture, block: int, threshold: float) -> Array:
-    """Crests of the picture averaged over blocks of `block` px and blurred by one: (K, 3) column, row, response."""
+    """Find crests of the picture averaged over blocks of `block` px and blurred: (K, 3) column, row, response."""
     height, width = (size // block for size in picture.shape)
     whole = picture[: height * block, : width * block].astype(np.float32, copy=False)
     blocks = np.asarray(cv2.resize(whole, (width, height), interpolation=cv2.INTER_AREA), dtype=np.float32)

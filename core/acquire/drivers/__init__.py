@@ -1,0 +1,1 @@
+"""Cameras of each maker and standard behind one interface."""

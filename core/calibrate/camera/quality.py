@@ -1,0 +1,206 @@
+"""Quality of a camera calibration: fit of its views, agreement of two halves, and notes for the technician."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.calibrate.board_shape import BoardShape
+from core.calibrate.camera.bundle import NO_PARAMETERS, Bundle, Observed, refine, refine_robustly
+from core.calibrate.camera.covariance import Widening
+from core.calibrate.camera.coverage import disagreement_mm, empty_regions, tilt
+from core.calibrate.camera.screening import Verdict, screen
+from core.calibrate.camera.zhang import pose_from_homography
+from core.calibrate.results import CameraCalibration, ViewQuality
+from core.image.targets.target_view import TargetView
+from core.messages import Message, plural_message
+from core.model import Camera, Pose
+from core.model.arrays import Array
+
+# When a note is made; tests/calibrate/camera/test_calibration.py (coverage, few views, hardly tilted) holds some.
+_ENOUGH_VIEWS = 8
+"""Views below which more are advised."""
+_ENOUGH_TILT_RANGE = np.deg2rad(25.0)
+"""rad between two views: below, the focal length stays uncertain."""
+_WORSE_VIEW = 3.0
+"""Times the usual RMS of the views."""
+_MUCH_WIDER = 1.5
+"""Factor on the standard deviations for errors that corners share, unless chance alone may make more,"""
+_CHANCE_SDS = 3.0
+"""which is so many of its standard deviations."""
+_BOWED_MM = 0.05
+"""Departure from flat that is worth a note."""
+_LEAST_HALVED = 6
+"""Views at least that are compared in two halves: three for each camera."""
+
+
+def fitted_view(view: TargetView, camera: Camera, pose: Pose, verdict: Verdict, board: BoardShape) -> ViewQuality:
+    """Compute how `view` of a `board` fits `camera` at `pose`."""
+    errors = view.uv - camera.project_pose(pose, board.shaped(view.points))
+    rms, mean = rms_and_mean(errors[verdict.counted])
+    return ViewQuality(view, pose, errors, rms, mean, tilt(pose), verdict.used, verdict.reason, verdict.counted)
+
+
+def unfitted_view(view: TargetView, reason: Message) -> ViewQuality:
+    """Make the quality of a view without a pose."""
+    nowhere, none = np.full(view.uv.shape, np.nan), np.zeros(len(view.uv), dtype=np.bool_)
+    return ViewQuality(view, Pose.identity(), nowhere, np.nan, np.nan, np.nan, False, reason, none)
+
+
+def view_without_part(view: TargetView, camera: Camera, reason: Message, board: BoardShape) -> ViewQuality:
+    """Compute how a view that had no part in calibrating `camera` fits it at its best pose.
+
+    A view that does not even look like the target has no pose; why is added to the `reason`.
+    """
+    homography = screen(view)
+    if isinstance(homography, Message):
+        return unfitted_view(view, Message("camera.two_reasons", "{reasons:;}", reasons=(reason, homography)))
+    alone = Bundle(camera, (pose_from_homography(camera.matrix, homography),))
+    seen = Observed(board.shaped(view.points), view.uv, (float(np.median(view.sigma)) / view.sigma) ** 2)
+    (pose,) = refine_robustly(alone, [seen], NO_PARAMETERS).poses
+    return fitted_view(view, camera, pose, Verdict(False, np.ones(len(view.uv), dtype=np.bool_), reason), board)
+
+
+def view_qualities(
+    views: Sequence[TargetView],
+    reasons: Mapping[int, Message],
+    camera: Camera,
+    fits: Mapping[int, tuple[Pose, Verdict]],
+    board: BoardShape,
+) -> tuple[ViewQuality, ...]:
+    """Qualities of all `views`: those of index in `fits` with pose and verdict, the others with their reason."""
+    return tuple(
+        fitted_view(view, camera, *fits[index], board) if index in fits else unfitted_view(view, reasons[index])
+        for index, view in enumerate(views)
+    )
+
+
+def rms_and_mean(errors: Array) -> tuple[float, float]:
+    """Root mean square and mean of the lengths of residual vectors (N, 2)."""
+    lengths = np.linalg.norm(errors, axis=1)
+    return float(np.sqrt(np.mean(lengths**2))), float(lengths.mean())
+
+
+def cross_validation_mm(solved: Bundle, counted: Sequence[Observed], free: NDArray[np.intp]) -> float:
+    """Compute the RMS distance in mm between what cameras solved from odd and from even views see in the work volume.
+
+    The volume is what the corners' part of the picture sees between the nearest and the farthest corner. With half
+    the views each, the two differ by about twice the standard uncertainty of the camera from all. NaN with fewer
+    than six views.
+    """
+    if len(counted) < _LEAST_HALVED:
+        return float("nan")
+    cameras = [refine(Bundle(solved.camera, solved.poses[half::2]), counted[half::2], free).camera for half in (0, 1)]
+    uv = np.concatenate([view.uv for view in counted])
+    depths = np.concatenate([p.apply(view.points)[:, 2] for p, view in zip(solved.poses, counted, strict=True)])
+    return disagreement_mm(cameras[0], cameras[1], uv, (float(depths.min()), float(depths.max())))
+
+
+def notes_on(calibration: CameraCalibration, widening: Widening) -> tuple[Message, ...]:
+    """Make notes on views and corners left out, missing coverage, small tilt, few views and correlated residuals."""
+    used = [quality for quality in calibration.views if quality.used]
+    notes = [
+        Message("camera.view_left_out", "{view} is left out: {reason}.", view=_name(quality), reason=quality.reason)
+        for quality in calibration.views
+        if quality.reason is not None
+    ]
+    notes += [
+        plural_message(
+            "camera.misfound_corners",
+            "One misfound corner of {view} is left out.",
+            "{n} misfound corners of {view} are left out.",
+            n=int(np.sum(~quality.counted)),
+            view=_name(quality),
+        )
+        for quality in used
+        if not quality.counted.all()
+    ]
+    notes += _worse_views(used)
+    if len(used) < _ENOUGH_VIEWS:
+        notes.append(
+            Message(
+                "camera.few_views",
+                "Only {n} views are used: take at least {least}, better 10 to 15.",
+                n=len(used),
+                least=_ENOUGH_VIEWS,
+            )
+        )
+    uv = np.concatenate([quality.view.uv[quality.counted] for quality in used])
+    empty = empty_regions(uv, calibration.camera.image_size)
+    if empty:
+        notes.append(
+            Message(
+                "camera.empty_regions",
+                "There is no corner in the {places:and} of the picture: take a view that reaches there.",
+                places=tuple(empty),
+            )
+        )
+    if calibration.tilt_range < _ENOUGH_TILT_RANGE:
+        notes.append(
+            Message(
+                "camera.small_tilts",
+                "The views are tilted by at most {tilt:.0f}° against each other: tilt the target by about 30° in "
+                "different directions, or the focal length stays uncertain.",
+                tilt=np.rad2deg(calibration.tilt_range),
+            )
+        )
+    if np.isnan(calibration.cross_validation_mm):
+        notes.append(
+            Message(
+                "camera.too_few_to_compare",
+                "With fewer than six views two halves of them cannot be checked against each other.",
+            )
+        )
+    shape = calibration.board
+    if shape.surely_bowed and shape.departure_mm > _BOWED_MM:
+        notes.append(
+            Message(
+                "camera.bowed_target",
+                "The target is bowed by {bow:.2f} mm from its lowest to its highest place, which is taken into "
+                "account: better fix it to something flat.",
+                bow=shape.departure_mm,
+            )
+        )
+    limit = max(_MUCH_WIDER, 1 + _CHANCE_SDS * widening.chance)
+    if widening.within_views > limit:
+        notes.append(
+            Message(
+                "camera.corners_err_together",
+                "Corners of one view err together (a target that is not flat, blur, or a detector's bias): the "
+                "standard deviations are {times:.1f} times those of independent corners.",
+                times=widening.within_views,
+            )
+        )
+    if widening.across_views > limit:
+        notes.append(
+            Message(
+                "camera.corners_err_alike",
+                "Corners of the target err alike in every view (a print that is not true): the standard deviations are "
+                "{times:.1f} times those of independent corners.",
+                times=widening.across_views,
+            )
+        )
+    return tuple(notes)
+
+
+def _worse_views(used: list[ViewQuality]) -> list[Message]:
+    typical = float(np.median([quality.rms_px for quality in used]))
+    return [
+        Message(
+            "camera.worse_view",
+            "{view} fits {times:.0f} times worse than most views ({rms:.2f} px against {usual:.2f} px): look at its "
+            "corners, and take it again or leave it out.",
+            view=_name(quality),
+            times=quality.rms_px / typical,
+            rms=quality.rms_px,
+            usual=typical,
+        )
+        for quality in used
+        if quality.rms_px > _WORSE_VIEW * typical
+    ]
+
+
+def _name(quality: ViewQuality) -> str | Message:
+    return quality.view.name or Message("camera.nameless_view", "A view without a name")

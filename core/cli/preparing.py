@@ -1,0 +1,167 @@
+"""What is done before anything is measured: targets are printed, a rig is foretold."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+from core.cli import output
+from core.cli.measuring import Shown
+from core.errors import InputError
+from core.files.atomic import write_bytes
+from core.files.recording.rig import read_rig, require_tables
+from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid, Target
+from core.image.targets.kinds import USUAL, USUAL_MARKER
+from core.messages import Message
+from core.pipeline.steps.plan_step import PlanResult, plan, plan_values, write_plan
+from core.plan.bounds import Bound
+from core.plan.predict import Prediction
+from core.progress import Progress
+from core.report.target_sheet import PAPER_MM, SheetPaper, sheet_layout, target_sheet
+from core.report.wording import grouped, target_in_words
+
+
+def target_of_words(
+    kind: str,
+    columns: int | None,
+    rows: int | None,
+    size_mm: float | None,
+    marker_mm: float | None,
+    dictionary: str,
+    *,
+    asymmetric: bool,
+) -> Target:
+    """The target of these words; what is None is USUAL."""
+    if kind not in USUAL:
+        raise InputError(
+            Message("target.no_kind", "{kind!r} is no kind of target", kind=kind),
+            where="KIND",
+            todo=Message("advice.choose_kind", "choose one of {usual}", usual=tuple(USUAL)),
+        )
+    usual = (4, 11, 12.0) if kind == "circle_grid" and asymmetric else USUAL[kind]
+    across, down, size = (
+        given if given is not None else default for given, default in zip((columns, rows, size_mm), usual, strict=True)
+    )
+    across, down = int(across), int(down)
+    try:
+        if kind == "checkerboard":
+            return Checkerboard(across, down, size)
+        if kind == "charuco":
+            return Charuco(across, down, size, USUAL_MARKER * size if marker_mm is None else marker_mm, dictionary)
+        if kind == "circle_grid":
+            return CircleGrid(across, down, size, asymmetric)
+        return BlackSquare(size)
+    except ValueError as error:
+        raise InputError(str(error), where=kind) from error
+
+
+def target_of_rig(path: Path, which: str) -> Target:
+    """The camera's or the planes' target of rig.toml, or of the recording set that holds it."""
+    file = path / "rig.toml" if path.is_dir() else path
+    rig = read_rig(file)
+    require_tables(rig, file, "camera_target" if which == "camera" else "plane_target")
+    return rig.camera_target if which == "camera" else rig.plane_target
+
+
+def one_choice(kind: str, rig: Path | None) -> None:
+    """InputError unless exactly one of both says what to print."""
+    if bool(kind) == (rig is not None):
+        what = (
+            Message("target.kind_and_rig", "both a kind of target and a rig are given")
+            if kind
+            else Message("target.none_given", "nothing says which target to print")
+        )
+        raise InputError(
+            what,
+            where="KIND, --rig",
+            todo=Message("advice.give_kind_or_rig", "give one of {usual}, or --rig FILE", usual=tuple(USUAL)),
+        )
+
+
+def write_sheet(target: Target, paper: str, title: str, out: Path) -> None:
+    """Write the sheet as a PDF."""
+    write_bytes(out, target_sheet(target, _paper(paper), title=title))
+
+
+def show_sheet(target: Target, paper: str, out: Path, *, as_json: bool) -> None:
+    """Say what was written, and what to do at the printer."""
+    name = _paper(paper)
+    layout = sheet_layout(target, name)
+    sheet = f"{name}, {layout.width_mm:g} × {layout.height_mm:g} mm"
+    if as_json:
+        output.print_json({"target": target_in_words(target), "paper": name, "file": str(out)})
+        return
+    output.print_rows(
+        [("target", target_in_words(target)), ("paper", sheet), ("written", str(out))],
+        ["print at 100 %, without fitting to the page, then measure both rulers: each must be 100.0 mm long"],
+    )
+
+
+def _paper(name: str) -> SheetPaper:
+    for paper in PAPER_MM:
+        if paper.lower() == name.lower():
+            return paper
+    raise InputError(
+        Message("target.no_paper_known_here", "{name!r} is no paper known here", name=name),
+        where="--paper",
+        todo=Message("advice.choose_paper", "choose one of {paper_mm}", paper_mm=tuple(PAPER_MM)),
+    )
+
+
+def run_plan(
+    rig: Path,
+    out: Path | None,
+    *,
+    scans: int,
+    changes: bool,
+    sigma_cut: float,
+    bounds: bool = False,
+    progress: Progress,
+) -> Shown:
+    """Predict, write what is asked for, and return what to say."""
+    if scans < 1:
+        raise InputError(
+            Message("design.too_few_scans", "{scans} scans cannot be drawn", scans=scans),
+            where="--scans",
+            todo=Message("advice.give_one_or_more", "give 1 or more"),
+        )
+    if not sigma_cut > 0:
+        raise InputError(
+            Message("design.cut_too_small", "{sigma_cut:g} mm cuts every point", sigma_cut=sigma_cut),
+            where="--sigma-cut",
+            todo=Message("advice.give_length_above_zero", "give a length above 0"),
+        )
+    result = plan(rig, scans=scans, changes=changes, sigma_cut_mm=sigma_cut, bounds=bounds, progress=progress)
+    files: Mapping[str, Path] = {} if out is None else write_plan(result, out)
+    return Shown(_rows(result), plan_values(result), files=files)
+
+
+def _rows(result: PlanResult) -> output.Rows:
+    rows: output.Rows = []
+    for prediction in result.predictions:
+        rows.append((f"block {prediction.height_mm:g} mm", f"U = {prediction.U_mm:.3f} mm (k = {prediction.k:g})"))
+    shown = result.largest
+    rows += [("u from", _budget(shown)), ("σ of a depth", _sigma(shown))]
+    rows.append(("sweeps", f"{shown.sweeps_used} of {result.design.sweeps} give {grouped(shown.points)} points"))
+    for effect in result.effects:
+        value = f"U {effect.U_mm:.3f} mm ({effect.share - 1:+.0%})" if effect.U_mm is not None else str(effect.reason)
+        rows.append(("change", f"{effect.change} ({effect.to}): {value}"))
+    rows += [("advice", str(result.advice))] if result.advice else []
+    return rows + [("no program below", _bound(bound)) for bound in result.bounds]
+
+
+def _bound(bound: Bound) -> str:
+    without = "" if bound.without == bound.with_speckle else f", {bound.without:.2g} {bound.unit} without speckle"
+    return f"{bound.quantity}: u {bound.with_speckle:.2g} {bound.unit}{without}"
+
+
+def _budget(prediction: Prediction) -> str:
+    largest = sorted(prediction.budget, key=lambda row: -row.u_mm)
+    return ", ".join(f"{row.source} {row.u_mm:.3f} mm" for row in largest if row.u_mm >= 0.1 * prediction.u_mm)
+
+
+def _sigma(prediction: Prediction) -> str:
+    own, common = (float(np.nanmedian(part)) for part in (prediction.sigma.own, prediction.sigma.common))
+    return f"{own:.3f} mm of each point, {common:.3f} mm common to the scan (medians over the picture)"

@@ -1,0 +1,172 @@
+"""What is done with results: inspection, surface, report, files for other programs, cameras of others."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import cast
+
+from rich.table import Table
+
+from core.cli import output
+from core.cli.measuring import Shown, exit_code
+from core.cli.options import ExitCode
+from core.errors import InputError
+from core.files.plan.plan_file import read_plan
+from core.files.project.report_template import read_report_template, section_set
+from core.files.recording.recording_set import open_set
+from core.files.results.export_list import EXPORTS
+from core.files.results.inspection_file import inspection_values
+from core.inspect.characteristic import Characteristic
+from core.inspect.evaluate import Inspection
+from core.messages import Message
+from core.pipeline.project.handing_over import export_results, import_camera, with_template
+from core.pipeline.steps.inspect_step import inspect_step
+from core.pipeline.steps.mesh_step import MeshOptions, mesh_step
+from core.pipeline.steps.report_step import report_step, with_studies
+from core.pipeline.steps.workspace import Workspace
+from core.progress import Progress
+from core.report.content import ReportContent
+from core.report.template import LANGUAGES, PAPERS, Paper
+from core.report.wording import decimals_of, fixed, grouped
+
+_COLUMNS = ("characteristic", "measured", "U", "nominal", "limits", "deviation", "verdict")
+
+
+def run_inspect(source: Path, plan: Path, out: Path | None, progress: Progress) -> tuple[Inspection, Path | None]:
+    """Inspect; nominal surfaces lie beside the plan."""
+    return inspect_step(source, read_plan(plan), plan.parent, out, progress)
+
+
+def inspection_exit_code(inspection: Inspection) -> ExitCode:
+    """Of the verdict, or "not proven" where something could not be measured."""
+    return ExitCode.NOT_PROVEN if inspection.problems else exit_code(inspection.verdict)
+
+
+def show_inspection(inspection: Inspection, written: Path | None, *, as_json: bool) -> None:
+    """Print it, for people or for machines."""
+    files = {} if written is None else {"inspection": written}
+    if as_json:
+        output.print_json({**inspection_values(inspection), "files": output.files_json(files)})
+        return
+    table = Table(box=None, padding=(0, 2, 0, 0), header_style="dim")
+    for name in _COLUMNS:
+        table.add_column(name, justify="left" if name in ("characteristic", "verdict") else "right", overflow="fold")
+    for row in inspection.characteristics:
+        table.add_row(*_cells(row))
+    output.console().print(table)
+    output.print_rows([], (*inspection.problems, *inspection.notes), files)
+
+
+def _cells(row: Characteristic) -> tuple[str, ...]:
+    """One line of the table; an angle in degrees."""
+    scale, unit = (math.degrees(1.0), "°") if row.quantity == "angle" else (1.0, " mm")
+    decimals = decimals_of(row.U * scale)
+
+    def text(value: float, *, signed: bool = False) -> str:
+        return fixed(value * scale, decimals, signed=signed) + unit
+
+    if row.limits is None or row.deviation is None:
+        return row.name, text(row.value), text(row.U), "", "", "", ""
+    lower, upper = row.limits.lower, row.limits.upper
+    sides = [f"{value * scale:+g}".replace("-", "−") if math.isfinite(value) else "–" for value in (lower, upper)]
+    limits = f"± {upper * scale:g}{unit}" if lower == -upper else f"{' … '.join(sides)}{unit}"
+    nominal = f"{row.limits.nominal * scale:g}{unit}"
+    return row.name, text(row.value), text(row.U), nominal, limits, text(row.deviation, signed=True), row.verdict
+
+
+def run_mesh(results: Path, formats: Sequence[str], options: MeshOptions, to: Path | None, progress: Progress) -> Shown:
+    """Prepare, write, and return what to say; formats may be joined by commas."""
+    names = [name.strip() for one in formats for name in one.split(",") if name.strip()]
+    made, written = mesh_step(results, names, options, to or results, progress)
+    filled = int(made.mesh.filled.sum())
+    rows = [("triangles", grouped(len(made.mesh.triangles)))]
+    if options.fill_mm:
+        rows.append(("of them filled", f"{grouped(filled)}, marked where the format can"))
+    if options.triangles or options.error_mm:
+        rows.append(("error", f"{made.largest_mm:.3f} mm at most, {made.most_mm:.3f} mm for 95 % of the vertices"))
+        rows.append(("outer edge", f"moved by up to {made.edge_mm:.3f} mm"))
+    values = {
+        "triangles": len(made.mesh.triangles),
+        "filled": filled,
+        "largest_error_mm": made.largest_mm,
+        "error_95_mm": made.most_mm,
+        "edge_error_mm": made.edge_mm,
+    }
+    return Shown(rows, values, files=written)
+
+
+@dataclass(frozen=True, slots=True)
+class ReportOptions:
+    """What the command line says of a report; nothing: as the template has it, or as usual."""
+
+    part: str = ""
+    template: Path | None = None
+    language: str = ""
+    paper: str = ""
+    without: Sequence[str] = ()
+    serial: str = ""
+    customer: str = ""
+    operator: str = ""
+    studies: Sequence[Path] = ()
+
+    def said(self, content: ReportContent) -> ReportContent:
+        """The content with all of it. InputError if a choice is not one, or the template cannot be read."""
+        language, paper = _one_of(self.language, LANGUAGES, "--language"), _one_of(self.paper, PAPERS, "--paper")
+        if self.template is not None:
+            content = with_template(content, read_report_template(self.template))
+        content = with_studies(content, self.studies)
+        return replace(
+            content,
+            part=self.part or content.part,
+            serial=self.serial,
+            customer=self.customer,
+            operator=self.operator,
+            hidden=content.hidden | section_set(list(self.without), where="--without"),
+            language=language or content.language,
+            paper=cast(Paper, paper or content.paper),
+        )
+
+
+def run_report(folder: Path, out: Path, chosen: ReportOptions, progress: Progress) -> Shown:
+    """Report step."""
+    work = Workspace.open(open_set(folder), out, chosen.part)
+    report_step(work, progress, chosen.said)
+    notes = tuple(work.record().notes.get("report", ()))
+    return Shown([], {}, notes, {"report": work.path("report")})
+
+
+def run_export(out: Path, formats: Sequence[str], to: Path | None, chosen: ReportOptions, progress: Progress) -> Shown:
+    """Results in the formats of others; InputError if there is no such format, or nothing to write from."""
+    kinds = [name.strip() for names in formats for name in names.split(",") if name.strip()]
+    if not kinds:
+        raise InputError(
+            Message("export.no_format_given", "no format is given"),
+            where="--format",
+            todo=Message("advice.choose_among", "choose among {choices}", choices=tuple(EXPORTS)),
+        )
+    files = export_results(out, kinds, to, chosen.said, progress)
+    return Shown([(EXPORTS[name].title, path.name) for name, path in files.items()], {}, (), files)
+
+
+def run_import(file: Path, out: Path) -> Shown:
+    """A camera of another program as camera.json."""
+    calibration = import_camera(file, out)
+    camera = calibration.camera
+    rows = [("picture", " × ".join(map(str, camera.image_size)) + " px"), ("focal length", f"{camera.focal:.2f} px")]
+    values = output.camera_json(calibration)
+    return Shown(rows, values, tuple(map(str, calibration.notes)), {"camera": out / "camera.json"})
+
+
+def _one_of(chosen: str, known: Sequence[str], where: str) -> str:
+    """One of `known`, in any case of letters; nothing stays nothing."""
+    by_lower = {one.lower(): one for one in known}
+    if chosen and chosen.lower() not in by_lower:
+        raise InputError(
+            Message("export.no_such_choice", 'there is no "{chosen}"', chosen=chosen),
+            where=where,
+            todo=Message("advice.choose_among", "choose among {choices}", choices=tuple(known)),
+        )
+    return by_lower.get(chosen.lower(), "")

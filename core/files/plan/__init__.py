@@ -1,0 +1,1 @@
+"""plan.toml: what is to be inspected, and the master it is compared with."""

@@ -1,0 +1,1 @@
+"""A project's folder: project.json, its pictures, its calibrations and its results."""

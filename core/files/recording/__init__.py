@@ -1,0 +1,1 @@
+"""Recording sets: rig.toml, pictures, and what was found in them."""

@@ -1,0 +1,153 @@
+"""What the pictures of a target showed, as arrays: camera and fan can be solved again without the pictures."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.calibrate.camera.views import SeenView, SeenViews
+from core.calibrate.fan.pose_features import PoseFeatures
+from core.files.arrays_file import (
+    Arrays,
+    pack_centrelines,
+    pack_messages,
+    pack_texts,
+    read_arrays,
+    unpack_centrelines,
+    unpack_messages,
+    unpacking,
+    write_arrays,
+)
+from core.image.targets.target_view import TargetView
+from core.messages import Command, Message, as_text, from_text
+
+_TODO = Message("advice.calibrate_camera_again", "calibrate the camera again")
+
+
+def write_views(path: Path, key: str, seen: SeenViews) -> None:
+    """Write what was seen, under the `key` of what it rests on; InputError if it cannot be written."""
+    arrays: dict[str, NDArray[Any]] = {
+        "key": np.array(key),
+        "where": np.array(seen.where),
+        "names": pack_texts([one.name for one in seen.views]),
+        "reasons": pack_messages([one.reason for one in seen.views]),
+        "sizes": np.array([one.size or (0, 0) for one in seen.views], dtype=np.int64).reshape(-1, 2),
+        **pack_views([one.view for one in seen.views]),
+    }
+    write_arrays(path, arrays)
+
+
+def read_views(path: Path, key: str) -> SeenViews | None:
+    """Read what was seen; None if it is not there, or rests on something else than `key`.
+
+    Raises
+    ------
+    InputError
+        If it is damaged or its arrays do not fit together.
+    """
+    if not path.exists():
+        return None
+    arrays = read_arrays(path, ("key", "names"), todo=_TODO)
+    if str(arrays["key"]) != key:
+        return None
+    with unpacking(path, todo=_TODO):
+        names = arrays["names"].tolist()
+        reasons = unpack_messages(arrays["reasons"])
+        columns = zip(names, unpack_views(names, arrays), reasons, arrays["sizes"], strict=True)
+        views = tuple(
+            SeenView(name, view, reason, (int(size[0]), int(size[1])) if size.any() else None)
+            for name, view, reason, size in columns
+        )
+        return SeenViews(views, str(arrays["where"]))
+
+
+_PLANES_TODO = Message(
+    "advice.calibrate_fan_first", "calibrate the fan first{command}", command=Command("trisect planes SET --out DIR")
+)
+
+
+def write_poses(path: Path, fan_id: str, poses: Sequence[PoseFeatures]) -> None:
+    """Write planes.npz with the id of the fan that was fitted to `poses`; InputError if it cannot be written."""
+    arrays: dict[str, NDArray[Any]] = {
+        "fan_id": np.array(fan_id),
+        "names": pack_texts([pose.name for pose in poses]),
+        "reasons": pack_messages([pose.reason for pose in poses]),
+        "notes": pack_texts(["\n".join(map(as_text, pose.notes)) for pose in poses]),
+        **pack_views([pose.view for pose in poses]),
+        **pack_centrelines("stripe", [pose.centrelines for pose in poses]),
+    }
+    write_arrays(path, arrays)
+
+
+def read_poses(path: Path, fan_id: str) -> tuple[PoseFeatures, ...]:
+    """Read planes.npz; nothing if it is not there or belongs to another fan than `fan_id`.
+
+    Raises
+    ------
+    InputError
+        If it is damaged or its arrays do not fit together.
+    """
+    if not path.exists():
+        return ()
+    arrays = read_arrays(path, ("fan_id", "names"), todo=_PLANES_TODO)
+    if str(arrays["fan_id"]) != fan_id:
+        return ()
+    with unpacking(path, todo=_PLANES_TODO):
+        return _unpacked(arrays)
+
+
+def _unpacked(arrays: Arrays) -> tuple[PoseFeatures, ...]:
+    names = arrays["names"].tolist()
+    notes = arrays["notes"].tolist() if "notes" in arrays else [""] * len(names)  # files of earlier versions
+    columns = zip(
+        names,
+        unpack_views(names, arrays),
+        unpack_centrelines("stripe", arrays),
+        unpack_messages(arrays["reasons"]),
+        (tuple(note for line in said.splitlines() if (note := from_text(line))) for said in notes),
+        strict=True,
+    )
+    return tuple(PoseFeatures(*pose) for pose in columns)
+
+
+_NO_VIEW = -1
+
+
+def pack_views(views: Sequence[TargetView | None]) -> dict[str, NDArray[Any]]:
+    """Arrays that hold views end to end, with how many points each has; a target that was not found has none."""
+    found = [view for view in views if view is not None]
+    squares = [view.covariance.ravel() for view in found if view.covariance is not None]
+    return {
+        "view_lengths": np.array([_NO_VIEW if view is None else len(view.uv) for view in views], np.int64),
+        "view_points": np.concatenate([np.zeros((0, 3)), *(view.points for view in found)]),
+        "view_uv": np.concatenate([np.zeros((0, 2)), *(view.uv for view in found)]),
+        "view_sigma": np.concatenate([np.zeros(0), *(view.sigma for view in found)]),
+        "view_shares_errors": np.array([view is not None and view.covariance is not None for view in views]),
+        "view_covariance": np.concatenate([np.zeros(0), *squares]),
+    }
+
+
+def unpack_views(names: Sequence[str], arrays: Arrays) -> tuple[TargetView | None, ...]:
+    """The views that `pack_views` packed, under `names`; KeyError or ValueError if the arrays do not fit together."""
+    lengths = arrays["view_lengths"].tolist()
+    sharing = arrays.get("view_shares_errors", np.zeros(len(lengths), dtype=np.bool_)).tolist()  # earlier versions
+    views: list[TargetView | None] = []
+    first = square = 0
+    for name, length, shares in zip(names, lengths, sharing, strict=True):
+        if length == _NO_VIEW:
+            views.append(None)
+            continue
+        part = slice(first, first + length)
+        points, uv, sigma = (arrays[f"view_{column}"][part] for column in ("points", "uv", "sigma"))
+        covariance = None
+        if shares:
+            size = 2 * length
+            covariance = arrays["view_covariance"][square : square + size**2].reshape(size, size)
+            square += size**2
+        views.append(TargetView(points, uv, sigma, name, covariance))
+        first += length
+    return tuple(views)

@@ -1,0 +1,407 @@
+"""rig.toml: the targets, the laser and the gauge of a recording set, read and written."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Annotated, Any, Literal, TypeAlias
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+from core.acquire.grey import Channel
+from core.calibrate.board_shape import BoardTolerance
+from core.errors import InputError
+from core.files.complaints import Clash, checked
+from core.files.reading import read_toml
+from core.files.toml_text import toml_text
+from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid, Target
+from core.messages import Message, label
+from core.model.arrays import Array, frozen_array, set_field
+
+WRITE_ONE = Message("advice.write_as_in_readme", "write one as the README shows")
+_MISSING = Message("rig.missing", "the file is missing; it says what the targets and the laser are")
+
+# The description of a field ends the sentence "… is <value>, not <description>".
+_Count = Annotated[int, Field(ge=3, le=500)]
+_Length = Annotated[float, Field(gt=0, le=5000, allow_inf_nan=False)]
+_A_LENGTH = label("a length in mm above 0 and at most 5000")
+_TWO_COUNTS = label("two whole numbers from 3 to 500, [columns, rows]")
+_Vertex = Annotated[list[Annotated[float, Field(allow_inf_nan=False)]], Field(min_length=2, max_length=2)]
+_Polygon = Annotated[list[_Vertex], Field(min_length=3)]
+_A_POLYGON = label("a list of three or more [u, v] in pixels")
+
+
+class Table(BaseModel):
+    """A table of a file a person writes: unknown keys are misspelt ones."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
+
+
+class _Printed(Table):
+    """What any target may say of how it was made."""
+
+    scale_sd: float = Field(
+        0.0, ge=0, le=0.1, allow_inf_nan=False, description="a standard uncertainty as a share of the size, 0 to 0.1"
+    )
+    flatness_mm: float | None = Field(None, ge=0, le=100, allow_inf_nan=False, description="a length in mm, 0 to 100")
+
+
+class _Checkerboard(_Printed):
+    kind: Literal["checkerboard"]
+    inner_corners: list[_Count] = Field(min_length=2, max_length=2, description=_TWO_COUNTS)
+    square_mm: _Length = Field(description=_A_LENGTH)
+
+    def target(self) -> Target:
+        columns, rows = self.inner_corners
+        return Checkerboard(columns, rows, self.square_mm)
+
+
+class _Charuco(_Printed):
+    kind: Literal["charuco"]
+    squares: list[_Count] = Field(min_length=2, max_length=2, description=_TWO_COUNTS)
+    square_mm: _Length = Field(description=_A_LENGTH)
+    marker_mm: _Length = Field(description="a length in mm above 0 and at most 5000, smaller than square_mm")
+    dictionary: str = Field(
+        "DICT_4X4_50", pattern=r"^DICT_(4X4|5X5|6X6|7X7)_(50|100|250|1000)$", description='one like "DICT_4X4_50"'
+    )
+
+    @model_validator(mode="after")
+    def _marker_inside_square(self) -> _Charuco:
+        if self.marker_mm >= self.square_mm:
+            raise Clash(
+                "marker_mm",
+                Message(
+                    "rig.marker_too_large",
+                    "is {marker_mm:g}, not smaller than square_mm = {square_mm:g}",
+                    marker_mm=self.marker_mm,
+                    square_mm=self.square_mm,
+                ),
+            )
+        return self
+
+    def target(self) -> Target:
+        columns, rows = self.squares
+        return Charuco(columns, rows, self.square_mm, self.marker_mm, self.dictionary)
+
+
+class _CircleGrid(_Printed):
+    kind: Literal["circle_grid"]
+    circles: list[_Count] = Field(min_length=2, max_length=2, description=_TWO_COUNTS)
+    pitch_mm: _Length = Field(description=_A_LENGTH)
+    asymmetric: bool = Field(False, description="true or false")
+
+    def target(self) -> Target:
+        columns, rows = self.circles
+        return CircleGrid(columns, rows, self.pitch_mm, self.asymmetric)
+
+
+class _BlackSquare(_Printed):
+    kind: Literal["black_square"]
+    side_mm: _Length = Field(description=_A_LENGTH)
+
+    def target(self) -> Target:
+        return BlackSquare(self.side_mm)
+
+
+_CameraTarget: TypeAlias = Annotated[_Checkerboard | _Charuco | _CircleGrid, Field(discriminator="kind")]
+TargetTable: TypeAlias = Annotated[_Checkerboard | _Charuco | _CircleGrid | _BlackSquare, Field(discriminator="kind")]
+
+
+class _LaserFan(Table):
+    lines: int = Field(ge=1, le=20, description="a whole number from 1 to 20")
+    angle_deg: float | None = Field(
+        None, gt=0, le=45, allow_inf_nan=False, description="an angle between neighbouring lines above 0 and at most 45"
+    )
+
+    @model_validator(mode="after")
+    def _angle_of_a_pencil(self) -> _LaserFan:
+        if self.lines > 1 and self.angle_deg is None:
+            raise Clash(
+                "angle_deg",
+                Message(
+                    "rig.angle_missing",
+                    "is missing; a fan of several lines needs the angle between neighbouring lines",
+                ),
+            )
+        return self
+
+
+class GaugeTable(Table):
+    """[gauge]."""
+
+    nominal_mm: _Length | None = Field(None, description=_A_LENGTH)
+    tolerance_mm: _Length | None = Field(None, description=_A_LENGTH)
+    upper_polygon_px: _Polygon | None = Field(None, description=_A_POLYGON)
+    lower_polygon_px: _Polygon | None = Field(None, description=_A_POLYGON)
+
+    @model_validator(mode="after")
+    def _pairs(self) -> GaugeTable:
+        for one, other in (("nominal_mm", "tolerance_mm"), ("upper_polygon_px", "lower_polygon_px")):
+            missing = [name for name in (one, other) if getattr(self, name) is None]
+            if len(missing) == 1:
+                raise Clash(
+                    missing[0],
+                    Message(
+                        "rig.go_together",
+                        "is missing; {value} and {other} go together, give both or neither",
+                        value=one,
+                        other=other,
+                    ),
+                )
+        return self
+
+
+_Above = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+_A_NUMBER = label("a number above 0")
+_NOT_NEGATIVE = label("a number not below 0")
+_Count1 = Annotated[int, Field(ge=1)]
+_A_COUNT = label("a whole number above 0")
+
+
+class PlanTable(Table):
+    """[plan]: what `trisect plan` wants to know of a rig that is not built yet; other commands pass it by."""
+
+    pixels: list[_Count1] | None = Field(
+        None, min_length=2, max_length=2, description="two whole numbers, [width, height] of the pictures"
+    )
+    pixel_um: _Above | None = Field(None, description="the side of a pixel in µm, above 0")
+    focal_mm: _Above | None = Field(None, description="a focal length in mm above 0")
+    focal_px: _Above | None = Field(None, description="a focal length in pixels above 0")
+    distance_mm: _Length | None = Field(None, description=_A_LENGTH)
+    baseline_mm: _Length | None = Field(None, description=_A_LENGTH)
+    hand_baseline_mm: _Length | None = Field(None, description=_A_LENGTH)
+    heights_mm: list[_Length] | None = Field(None, min_length=1, max_length=20, description="a list of lengths in mm")
+    block_mm: list[_Length] | None = Field(
+        None, min_length=2, max_length=2, description="two lengths in mm, [along, across] of the blocks"
+    )
+    views: _Count1 | None = Field(None, description=_A_COUNT)
+    poses: _Count1 | None = Field(None, description=_A_COUNT)
+    sweeps: _Count1 | None = Field(None, description=_A_COUNT)
+    speckle: float | None = Field(None, ge=0, allow_inf_nan=False, description="a contrast not below 0")
+    stripe_grey: _Above | None = Field(None, description=_A_NUMBER)
+    stripe_sigma_mm: _Length | None = Field(None, description=_A_LENGTH)
+    electrons_per_grey: _Above | None = Field(None, description=_A_NUMBER)
+    read_noise_grey: float | None = Field(None, ge=0, allow_inf_nan=False, description=_NOT_NEGATIVE)
+    ambient_grey: float | None = Field(None, ge=0, allow_inf_nan=False, description=_NOT_NEGATIVE)
+
+    @model_validator(mode="after")
+    def _one_focal_length(self) -> PlanTable:
+        if self.focal_mm is not None and self.focal_px is not None:
+            raise Clash(
+                "focal_px",
+                Message("rig.focal_length_too_many", "is one focal length too many; give focal_mm or focal_px"),
+            )
+        return self
+
+
+class RigTables(Table):
+    """What rig.toml holds, and project.json under "rig"; a step that wants a table that is not there complains."""
+
+    camera_target: _CameraTarget | None = Field(None, description="a table [camera_target] with kind and sizes")
+    plane_target: TargetTable | None = Field(None, description="a table [plane_target] with kind and sizes")
+    laser_fan: _LaserFan | None = Field(None, description="a table [laser_fan] with lines and angle_deg")
+    gauge: GaugeTable | None = Field(None, description="a table [gauge]")
+    channel: Literal["red", "green", "blue"] | None = Field(None, description='"red", "green" or "blue"')
+    plan: PlanTable | None = Field(None, description="a table [plan]")
+
+
+STEP_TABLES = ("camera_target", "plane_target", "laser_fan")
+"""The tables that one step or another cannot do without."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class GaugeSpec:
+    """What is to be measured: nominal value and tolerance in mm, faces as (N, 2) polygons in pixels."""
+
+    nominal_mm: float | None = None
+    tolerance_mm: float | None = None
+    upper_polygon_px: Array | None = None
+    lower_polygon_px: Array | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("upper_polygon_px", "lower_polygon_px"):
+            polygon = getattr(self, name)
+            if polygon is not None:
+                set_field(self, name, frozen_array(polygon, (None, 2), name))
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, GaugeSpec):
+            return NotImplemented
+        return self._values() == other._values()
+
+    def __hash__(self) -> int:
+        return hash(self._values())
+
+    def _values(self) -> tuple[object, ...]:
+        polygons = (self.upper_polygon_px, self.lower_polygon_px)
+        corners = [None if polygon is None else tuple(map(tuple, polygon.tolist())) for polygon in polygons]
+        return self.nominal_mm, self.tolerance_mm, *corners
+
+
+@dataclass(frozen=True, slots=True)
+class Rig:
+    """What rig.toml says. `angle` between neighbouring lines is in rad (0 with one line).
+
+    `camera_board` and `plane_board` say how true the two targets are. `unstated` are the tables that rig.toml does not
+    have: what they would say is as in the paper's rig, and no step may rest on it (:func:`require_tables`).
+    """
+
+    camera_target: Target
+    plane_target: Target
+    lines: int
+    angle: float
+    gauge: GaugeSpec | None = None
+    channel: Channel | None = None
+    camera_board: BoardTolerance = field(default_factory=BoardTolerance)
+    plane_board: BoardTolerance = field(default_factory=BoardTolerance)
+    unstated: frozenset[str] = frozenset()
+
+
+def default_rig() -> Rig:
+    """The rig of the paper: its checkerboard, its black square, three laser lines 5° apart; nothing to be measured."""
+    return Rig(Checkerboard(17, 12, 10.0), BlackSquare(60.0), lines=3, angle=math.radians(5.0))
+
+
+def require_tables(rig: Rig, path: Path, *names: str) -> None:
+    """InputError if one of the tables of these `names` is not in the rig.toml at `path`."""
+    for name in names:
+        if name in rig.unstated:
+            wanted = RigTables.model_fields[name].description
+            raise InputError(
+                Message("file.field_missing", "{field} is missing; it must be {wanted}", field=name, wanted=wanted),
+                where=path,
+            )
+
+
+def read_rig(path: Path) -> Rig:
+    """Read and check rig.toml. A table that is not there is not missed yet: each step wants its own only.
+
+    Raises
+    ------
+    InputError
+        If it is missing, is no TOML, has an unknown key, lacks one in a table that is there, or a value has the wrong
+        type or is absurd. The sentence names the file, the field and what is allowed.
+    """
+    return rig_of(read_rig_tables(path), path)
+
+
+def read_rig_tables(path: Path) -> RigTables:
+    """Read and check rig.toml as `read_rig` does; its tables as they are, those not there None."""
+    return checked(RigTables, _toml(path), path)
+
+
+def _toml(path: Path) -> dict[str, Any]:
+    return read_toml(path, missing=_MISSING, todo=WRITE_ONE)
+
+
+def rig_of(tables: RigTables, path: Path, within: str = "") -> Rig:
+    """The rig that checked `tables` describe; `path`, and the field `within` it, are for complaints."""
+    rig = default_rig()
+    stated: dict[str, Any] = {}
+    if tables.camera_target is not None:
+        stated["camera_target"] = _target(path, f"{within}camera_target", tables.camera_target)
+        stated["camera_board"] = _tolerance(tables.camera_target)
+    if tables.plane_target is not None:
+        stated["plane_target"] = _target(path, f"{within}plane_target", tables.plane_target)
+        stated["plane_board"] = _tolerance(tables.plane_target)
+    if tables.laser_fan is not None:
+        stated |= {"lines": tables.laser_fan.lines, "angle": math.radians(tables.laser_fan.angle_deg or 0.0)}
+    unstated = frozenset(name for name in STEP_TABLES if getattr(tables, name) is None)
+    return replace(
+        rig, gauge=_gauge(tables.gauge) if tables.gauge else None, channel=tables.channel, unstated=unstated, **stated
+    )
+
+
+def rig_tables(rig: Rig) -> dict[str, Any]:
+    """The tables of `rig` as rig.toml has them, without those that are not there; `RigTables` checks them."""
+    tables = {
+        "channel": rig.channel,
+        "camera_target": _target_table(rig.camera_target) | _tolerance_table(rig.camera_board),
+        "plane_target": _target_table(rig.plane_target) | _tolerance_table(rig.plane_board),
+        "laser_fan": _present({"lines": rig.lines, "angle_deg": _in_degrees(rig.angle) if rig.angle else None}),
+        "gauge": None if rig.gauge is None else _gauge_table(rig.gauge),
+    }
+    return {name: table for name, table in _present(tables).items() if name not in rig.unstated}
+
+
+def rig_to_toml(rig: Rig) -> str:
+    """The text of a rig.toml that :func:`read_rig` reads as the same rig."""
+    return toml_text(rig_tables(rig))
+
+
+def _target(path: Path, name: str, table: TargetTable) -> Target:
+    try:
+        return table.target()
+    except ValueError as error:  # what only the target itself can judge, as a dictionary of markers
+        raise InputError(
+            Message("rig.target_wrong", "{name}: {reason}", name=name, reason=str(error)), where=path
+        ) from error
+
+
+def _tolerance(table: TargetTable) -> BoardTolerance:
+    return BoardTolerance(table.flatness_mm, table.scale_sd)
+
+
+def _tolerance_table(tolerance: BoardTolerance) -> dict[str, Any]:
+    return _present({"flatness_mm": tolerance.flatness_mm, "scale_sd": tolerance.scale_sd or None})
+
+
+def _target_table(target: Target) -> dict[str, Any]:
+    if isinstance(target, Checkerboard):
+        return {
+            "kind": "checkerboard",
+            "inner_corners": [target.columns, target.rows],
+            "square_mm": float(target.square_mm),
+        }
+    if isinstance(target, Charuco):
+        return {
+            "kind": "charuco",
+            "squares": [target.columns, target.rows],
+            "square_mm": float(target.square_mm),
+            "marker_mm": float(target.marker_mm),
+            "dictionary": target.dictionary_id,
+        }
+    if isinstance(target, CircleGrid):
+        return {
+            "kind": "circle_grid",
+            "circles": [target.columns, target.rows],
+            "pitch_mm": float(target.pitch_mm),
+            "asymmetric": target.asymmetric,
+        }
+    return {"kind": "black_square", "side_mm": float(target.side_mm)}
+
+
+def _gauge(table: GaugeTable) -> GaugeSpec:
+    def array(polygon: list[list[float]] | None) -> Array | None:
+        return None if polygon is None else np.array(polygon, dtype=np.float64)
+
+    upper, lower = array(table.upper_polygon_px), array(table.lower_polygon_px)
+    return GaugeSpec(table.nominal_mm, table.tolerance_mm, upper, lower)
+
+
+def _gauge_table(gauge: GaugeSpec) -> dict[str, Any]:
+    polygons = {"upper_polygon_px": gauge.upper_polygon_px, "lower_polygon_px": gauge.lower_polygon_px}
+    return _present(
+        {
+            "nominal_mm": gauge.nominal_mm,
+            "tolerance_mm": gauge.tolerance_mm,
+            **{name: None if polygon is None else polygon.tolist() for name, polygon in polygons.items()},
+        }
+    )
+
+
+def _present(table: Mapping[str, Any]) -> dict[str, Any]:
+    return {key: value for key, value in table.items() if value is not None}
+
+
+def _in_degrees(angle: float) -> float:
+    """The shortest number of degrees that is `angle` in rad to the last bit, if there is one."""
+    degrees = math.degrees(angle)
+    near = (degrees, math.nextafter(degrees, 0), math.nextafter(degrees, math.inf))
+    exact = [
+        value for value in (*(round(degrees, digits) for digits in range(16)), *near) if math.radians(value) == angle
+    ]
+    return exact[0] if exact else degrees

@@ -1,0 +1,1 @@
+"""Studies of the measurement: their tables, study.json."""

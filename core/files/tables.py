@@ -1,0 +1,98 @@
+"""Kinds of values that the tables of several files have in common, checked by pydantic."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from datetime import datetime
+from typing import Annotated, Any
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, PlainValidator, WrapValidator
+
+from core.inspect.results import Contribution
+from core.inspect.uncertainty.causes import known_cause
+from core.messages import Message, as_json, from_json, label
+
+
+def _aware(value: object) -> object:
+    if not isinstance(value, str):
+        return value
+    time = datetime.fromisoformat(value)
+    if time.tzinfo is None:
+        raise ValueError("no time zone")
+    return time
+
+
+A_TIME = label("a date and time with its zone, as in 2025-01-31T12:00:00+00:00")
+Time = Annotated[datetime, BeforeValidator(_aware), Field(description=A_TIME)]
+
+
+Finite = Annotated[float, Field(allow_inf_nan=False)]
+OrNan = Annotated[Finite, WrapValidator(lambda value, check: math.nan if value is None else check(value))]
+"""A number, NaN where the file has none: null, or nothing at all."""
+OrInfinite = Annotated[Finite, WrapValidator(lambda value, check: math.inf if value is None else check(value))]
+"""A number, infinity where the file has none."""
+Row3 = Annotated[list[Finite], Field(min_length=3, max_length=3)]
+Row2 = Annotated[list[Finite], Field(min_length=2, max_length=2)]
+
+
+def _message(kept: object) -> Message:
+    if isinstance(kept, (str, Mapping)):
+        try:
+            return from_json(kept)
+        except (KeyError, TypeError, AttributeError):
+            pass
+    raise ValueError("is neither a text nor a message with code, text and values")
+
+
+KeptMessage = Annotated[Message, PlainValidator(_message)]
+"""A message in a file: as `core.messages.as_json` writes it, or the bare sentence of an older file."""
+OptionalMessage = Annotated[Message | None, PlainValidator(lambda kept: _message(kept) if kept else None)]
+"""The same, or nothing: null, or '' in older files."""
+
+
+KeptCause = Annotated[Message, PlainValidator(lambda kept: known_cause(_message(kept)))]
+"""What a row of a budget comes from; older files have the English words."""
+
+
+def kept(message: Message | None) -> dict[str, Any] | str | None:
+    """A message as a file keeps it: a text alone if it has no code, null for none."""
+    if message is None:
+        return None
+    return as_json(message) if message.code else str(message)
+
+
+class ResultFile(BaseModel):
+    """A file of results: keys may be added by others, and are then ignored."""
+
+    model_config = ConfigDict(extra="ignore", strict=True, frozen=True)
+
+
+class BudgetRow(ResultFile):
+    """All of a row but its contribution, which each file calls by a key of its own."""
+
+    source: KeptCause
+    point_mm: Finite | None = None
+    distribution: str = "normal"
+    dof: Finite | None = Field(default=None, ge=1, description="a number of at least 1, or null for infinitely many")
+    value: Finite | None = None
+    unit: str = "mm"
+
+    def contributing(self, u: float) -> Contribution:
+        """The row, if it contributes `u`."""
+        dof = math.inf if self.dof is None else self.dof
+        return Contribution(self.source, u, self.point_mm, self.distribution, dof, self.value, self.unit)
+
+
+def row_tables(row: Contribution, key: str) -> dict[str, Any]:
+    """A row as it is written, its contribution under `key`; infinitely many degrees of freedom become null."""
+    return {
+        "source": kept(row.source),
+        key: row.u_mm,
+        "point_mm": row.point_mm,
+        "distribution": row.distribution,
+        "dof": row.dof,
+        "value": row.value,
+        "unit": row.unit,
+        "sensitivity": row.sensitivity,
+    }

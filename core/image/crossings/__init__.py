@@ -1,0 +1,1 @@
+"""Crossings: where two centrelines meet, with covariance."""

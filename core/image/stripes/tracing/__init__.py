@@ -1,0 +1,1 @@
+"""Stripes found: seeds, ridge points, runs of them."""

@@ -1,0 +1,1 @@
+"""Surfaces fitted to points: planes, spheres, cylinders."""

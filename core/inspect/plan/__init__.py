@@ -1,0 +1,1 @@
+"""What is to be inspected: features, part coordinates, conditions."""

@@ -1,0 +1,152 @@
+"""What the program knows of a kind of feature besides how it is fitted: the entries of `core.inspect.plan.kinds`.
+
+All of it is data that takes no time to import: the window builds its menu, form and list from it, the files check
+plans by it, and `FeatureKind.measure` loads the fit only when something is measured.
+"""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Literal, TypeAlias
+
+from core.inspect.characteristic import Quantity
+
+ElementKind: TypeAlias = Literal["plane", "axis", "point"]
+"""What other features can be measured from: see `core.inspect.fit.elements`."""
+
+Automatic: TypeAlias = Literal["searched", "numbered", "all points"]
+"""What an automatic region is: the surface of this kind that explains most points, the n-th largest plane face, or the
+whole scan."""
+
+
+@dataclass(frozen=True, slots=True)
+class ResultKind:
+    """A characteristic that a kind of feature gives.
+
+    Parameters
+    ----------
+    name
+        What limits are asked by, and `Characteristic.kind`.
+    quantity
+        "length" in mm or "angle" in rad.
+    one_sided
+        Whether it cannot be too small, as a deviation of form: of a tolerance only the upper limit counts.
+    expands
+        Whether it grows with the part's temperature, and can be compared with a master.
+    numbered
+        Whether there are several, "height 1", "height 2", …, each with its own of the feature's nominal heights.
+    """
+
+    name: str
+    quantity: Quantity = "length"
+    one_sided: bool = False
+    expands: bool = False
+    numbered: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class NumberField:
+    """A number in the form; `key` is the name of the setting."""
+
+    key: str
+    label: str
+    help: str
+    unit: str
+    minimum: float
+    maximum: float
+    decimals: int
+    step: float
+
+
+@dataclass(frozen=True, slots=True)
+class ChoiceField:
+    """One of several in the form: `choices` are (value, label)."""
+
+    key: str
+    label: str
+    help: str
+    choices: tuple[tuple[str, str], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class TextField:
+    """A line of text in the form."""
+
+    key: str
+    label: str
+    help: str
+    placeholder: str = ""
+
+
+FormField: TypeAlias = NumberField | ChoiceField | TextField
+
+
+@dataclass(frozen=True, slots=True)
+class FeatureKind:
+    """One kind of feature. Texts are English labels that the window translates.
+
+    Parameters
+    ----------
+    name
+        In plan.toml and inspection.json.
+    fit
+        Where it is measured, as "module:function"; the function is a `core.inspect.features.measured.Measure`.
+    title, help
+        In menus: what it is called, what it measures.
+    icon
+        Name of its Material Design icon.
+    results
+        What it gives. Of a section what its cuts can be; the cuts have names of their own.
+    element
+        What other features can be measured from it as; None: as nothing.
+    made_of
+        Of how many other features it is made instead of points.
+    automatic
+        What its region is where none is drawn.
+    most_regions
+        How many regions it can have.
+    region_titles
+        What these are called; empty: by their number.
+    settings
+        The field of `FeatureSpec` with its own settings, which it needs; "": it has none.
+    fields
+        Of its own settings in the form.
+    nominal_file
+        Whether it is compared with a nominal surface, for which a file is asked when it is added.
+    plotted
+        Whether it has a plot of its own.
+    """
+
+    name: str
+    fit: str
+    title: str
+    help: str
+    icon: str
+    results: tuple[ResultKind, ...] = ()
+    element: ElementKind | None = None
+    made_of: int = 0
+    automatic: Automatic = "searched"
+    most_regions: int = 1
+    region_titles: tuple[str, ...] = ()
+    settings: Literal["", "section", "deviation"] = ""
+    fields: tuple[FormField, ...] = ()
+    nominal_file: bool = False
+    plotted: bool = False
+
+    @property
+    def measure(self) -> Callable[..., Any]:
+        """The function that measures it."""
+        module, _, function = self.fit.partition(":")
+        found: Callable[..., Any] = getattr(importlib.import_module(module), function)
+        return found
+
+    @property
+    def expands(self) -> bool:
+        """Whether one of its results grows with the part's temperature."""
+        return any(result.expands for result in self.results)
+
+    def result(self, name: str) -> ResultKind:
+        """Its result called so; KeyError if it gives none."""
+        return {result.name: result for result in self.results}[name]

@@ -1,0 +1,215 @@
+"""The kinds of features there are. A new kind is an entry here, its fit in `core.inspect.features`, and its test."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from core.inspect.plan.feature_kind import ChoiceField, FeatureKind, NumberField, ResultKind, TextField
+from core.inspect.plan.feature_spec import FeatureSpec
+from core.messages import label
+
+MOST_FACES = 8
+"""Plane faces found by their number, and levels of steps: `core.inspect.fit.plane_search` looks for as many."""
+WIDEST_MM = 5000.0
+"""Lengths in forms go up to here: no rig sees farther."""
+
+_DIAMETER = ResultKind("diameter", expands=True)
+_FORM = ResultKind("form", one_sided=True)
+_HEIGHT = ResultKind("height", expands=True)
+_DISTANCE = ResultKind("distance", expands=True)
+
+KINDS: tuple[FeatureKind, ...] = (
+    FeatureKind(
+        "plane",
+        "core.inspect.features.plane:measure_plane",
+        label("Plane, flatness"),
+        label("A plane fitted to a face: its flatness, and what other features are measured from"),
+        "mdi6.square-outline",
+        results=(ResultKind("flatness", one_sided=True),),
+        element="plane",
+        automatic="numbered",
+    ),
+    FeatureKind(
+        "sphere",
+        "core.inspect.features.round:measure_sphere",
+        label("Sphere, diameter"),
+        label("A sphere fitted robustly: its diameter and form"),
+        "mdi6.sphere",
+        results=(_DIAMETER, _FORM),
+        element="point",
+    ),
+    FeatureKind(
+        "cylinder",
+        "core.inspect.features.round:measure_cylinder",
+        label("Cylinder, diameter"),
+        label("A cylinder fitted robustly: its diameter and form"),
+        "mdi6.cylinder",
+        results=(_DIAMETER, _FORM),
+        element="axis",
+    ),
+    FeatureKind(
+        "point",
+        "core.inspect.features.plane:measure_point",
+        label("Point"),
+        label("The middle of a small region, on the surface: something to measure distances from"),
+        "mdi6.crosshairs",
+        element="point",
+        automatic="numbered",
+    ),
+    FeatureKind(
+        "thickness",
+        "core.inspect.features.thickness:measure_thickness",
+        label("Thickness of two faces"),
+        label("The distance of two parallel faces, as the thickness above, with regions of its own"),
+        "mdi6.ruler-square",
+        results=(ResultKind("thickness", expands=True),),
+        automatic="numbered",
+        most_regions=2,
+        region_titles=(label("Upper face"), label("Lower face")),
+    ),
+    FeatureKind(
+        "steps",
+        "core.inspect.features.steps:measure_steps",
+        label("Step heights"),
+        label("The heights of many parallel faces over the lowest or the previous one"),
+        "mdi6.stairs",
+        results=(ResultKind("height", expands=True, numbered=True),),
+        automatic="numbered",
+        most_regions=MOST_FACES,
+        fields=(
+            ChoiceField(
+                "over",
+                label("Heights over"),
+                label("From which level each height is measured."),
+                (("lowest", label("the lowest")), ("previous", label("the previous"))),
+            ),
+            TextField(
+                "nominal_heights",
+                label("Nominal heights in mm"),
+                label("From the lowest up, with semicolons; empty: no verdict."),
+                "10; 20; 30",
+            ),
+        ),
+    ),
+    FeatureKind(
+        "distance",
+        "core.inspect.features.derived:measure_distance",
+        label("Distance of two features"),
+        label("Point to point, or point to plane, of two features that are in the list"),
+        "mdi6.arrow-expand-horizontal",
+        results=(_DISTANCE,),
+        made_of=2,
+    ),
+    FeatureKind(
+        "angle",
+        "core.inspect.features.derived:measure_angle",
+        label("Angle of two features"),
+        label("Between the planes or axes of two features that are in the list"),
+        "mdi6.angle-acute",
+        results=(ResultKind("angle", "angle"),),
+        made_of=2,
+    ),
+    FeatureKind(
+        "section",
+        "core.inspect.features.section:measure_section",
+        label("Cross-section"),
+        label("A profile across the surface, with heights, distances and radii measured in it"),
+        "mdi6.chart-line-variant",
+        results=(_HEIGHT, _DISTANCE, ResultKind("radius", expands=True)),
+        automatic="all points",
+        settings="section",
+        fields=(
+            NumberField(
+                "half_width_mm",
+                label("Half width"),
+                label("Points so near to the cut are taken for points in it."),
+                "mm",
+                0.01,
+                WIDEST_MM,
+                2,
+                0.1,
+            ),
+            NumberField(
+                "step_mm",
+                label("Profile in steps of"),
+                label("The profile drawn is averaged over so much."),
+                "mm",
+                0.01,
+                WIDEST_MM,
+                2,
+                0.1,
+            ),
+        ),
+        plotted=True,
+    ),
+    FeatureKind(
+        "deviation",
+        "core.inspect.features.deviation:measure_deviation",
+        label("Deviation from a nominal surface"),
+        label("How far the surface lies off a nominal one from an STL file in mm"),
+        "mdi6.compare",
+        results=(ResultKind("profile", one_sided=True), ResultKind("mean")),
+        automatic="all points",
+        settings="deviation",
+        fields=(
+            TextField(
+                "nominal", label("Nominal surface"), label("STL file in mm, in the project's folder or elsewhere.")
+            ),
+            ChoiceField(
+                "align",
+                label("Aligned by"),
+                label("How the nominal surface is laid on the scan."),
+                (
+                    ("best fit", label("best fit")),
+                    ("frame", label("part coordinates")),
+                    ("as measured", label("as measured")),
+                ),
+            ),
+            NumberField(
+                "tolerance_mm",
+                label("Colours up to ±"),
+                label("Marks + ++ +++ are its quarters, ! lies beyond."),
+                "mm",
+                0.0001,
+                WIDEST_MM,
+                4,
+                0.01,
+            ),
+            NumberField(
+                "reach_mm",
+                label("Part within"),
+                label("Points farther off belong to a table or a clamp."),
+                "mm",
+                0.01,
+                WIDEST_MM,
+                2,
+                0.5,
+            ),
+        ),
+        nominal_file=True,
+        plotted=True,
+    ),
+)
+
+
+def kind_of(spec: FeatureSpec) -> FeatureKind:
+    """The kind of a feature; KeyError if there is none of its kind's name."""
+    return kind_named(spec.kind)
+
+
+def kind_named(name: str) -> FeatureKind:
+    """The kind called so; KeyError if there is none."""
+    return {kind.name: kind for kind in KINDS}[name]
+
+
+def results_of(spec: FeatureSpec) -> Mapping[str, ResultKind]:
+    """What a feature gives, by the names that limits are asked by: of a section those of its cuts."""
+    kind = kind_of(spec)
+    if kind.settings == "section" and spec.section is not None:
+        return {cut.name: kind.result(cut.kind) for cut in spec.section.cuts}
+    return {result.name: result for result in kind.results}
+
+
+def expanding() -> frozenset[str]:
+    """Names of the characteristics that grow with the part's temperature."""
+    return frozenset(result.name for kind in KINDS for result in kind.results if result.expands)

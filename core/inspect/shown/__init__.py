@@ -1,0 +1,1 @@
+"""What a window shows of a scan and of its features. Light to import."""

@@ -1,0 +1,1 @@
+"""What errs in measured points, and the expanded uncertainty that follows."""

@@ -1,0 +1,53 @@
+"""What makes a measured value uncertain, as the rows of uncertainty budgets name it: every cause the program knows."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from core.messages import Message, plain
+
+POINT_NOISE = Message("inspection.cause_point_noise", "centreline noise of the sweeps' points")
+SWEEP_PLANES = Message("inspection.cause_sweep_planes", "light planes of the sweeps (network)")
+FAN_SPECKLE = Message("inspection.cause_fan_speckle", "centreline noise of the fan's points (speckle)")
+FORM = Message("inspection.cause_form", "form of the faces beyond the stated noise")
+UNEVEN_LIGHT = Message("inspection.cause_uneven_light", "light that lies unevenly on the curved surface")
+SAMPLING = Message("inspection.cause_sampling", "which stripes were scanned (range of 95 %)")
+
+CAMERA = Message("inspection.cause_camera", "camera calibration")
+FAN_CALIBRATION = Message("inspection.cause_fan", "fan calibration")
+SCALE = Message("inspection.cause_scale", "scale of the targets")
+
+PART_TEMPERATURE = Message("inspection.cause_part_temperature", "temperature of the part")
+PART_EXPANSION = Message("inspection.cause_part_expansion", "expansion coefficient of the part")
+SCALE_TEMPERATURE = Message("inspection.cause_target_temperature", "temperature of the calibration target")
+SCALE_EXPANSION = Message("inspection.cause_target_expansion", "expansion coefficient of the calibration target")
+
+CERTIFICATE = Message("inspection.cause_certificate", "certificate of the master")
+MASTER_MEASURED = Message("inspection.cause_master_measured", "measurement of the master")
+
+OBSERVED = Message("study.cause_observed", "repeatability of the scans, above their stated noise")
+REPEATABILITY = Message("study.cause_repeatability", "repeatability of the scans")
+STATED = Message("study.cause_stated", "uncertainty stated by each scan, as if common to all")
+GIVEN = Message("study.cause_given", "common to all scans, as given")
+
+CALIBRATIONS: Mapping[str, Message] = {"camera": CAMERA, "fan": FAN_CALIBRATION, "scale": SCALE}
+"""By the sources of `core.calibrate.deviations`: what errs in all points of a scan at once."""
+
+_ALL = [one for one in list(globals().values()) if isinstance(one, Message)]
+_KNOWN = {str(one): one for one in _ALL} | {one.code: one for one in _ALL}
+
+
+def known_cause(kept: Message) -> Message:
+    """The cause that a file names by its code, or by its English words as older files do; others as they are."""
+    return _KNOWN.get(kept.code or str(kept), kept)
+
+
+def cause_named(text: str) -> Message:
+    """The cause that is called so in English, as in plans, which people write; else the text as it is.
+
+    Examples
+    --------
+    >>> cause_named("camera calibration").code, cause_named("my own reason").code
+    ('inspection.cause_camera', '')
+    """
+    return known_cause(plain(text))

@@ -1,0 +1,294 @@
+"""What is told to people: a code that programs can rely on, the values in its places, and the text made of both.
+
+Algorithms make a `Message` and nothing else; a `Language` turns it into text at the edge: window, command line, report,
+``--json``. No logic looks at a text; it looks at the code. The English text stands in the call, where gettext's tools
+find it (`Message:1c,2`); other languages stand in ``resources/translations``, by the code.
+
+Places are those of `str.format`: ``{rms_px:.3f} px``. A number is a value, never written into the text, so that each
+language writes it in its own way. A sequence takes how it is joined as its format: ``{names}`` gives 'a, b, c',
+``{names:and}`` 'a, b and c', ``{reasons:;}`` 'a; b'. A message that begins a sentence takes ``{reason:capital}``.
+"""
+
+from __future__ import annotations
+
+import json
+import string
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import PurePath
+from types import MappingProxyType
+from typing import Any
+
+MINUS, NO_BREAK_SPACE = "\N{MINUS SIGN}", "\N{NO-BREAK SPACE}"
+
+
+@dataclass(frozen=True, slots=True)
+class Field:
+    """A field of a file that people write, as a value: 'inner_corners in rig.toml'. A window names its own."""
+
+    key: str
+    """Dotted: ``camera_target.inner_corners``."""
+    file: str = "rig.toml"
+    whole: bool = False
+    """Whether the file's name of it is the whole key: 'plane_target.kind in rig.toml'."""
+
+
+@dataclass(frozen=True, slots=True)
+class Command:
+    """What to type on the command line, as a value: ': trisect scan SET --out DIR'. In a window it is nothing."""
+
+    text: str
+
+
+class Message:
+    """One thing to tell.
+
+    Parameters
+    ----------
+    code
+        Names the message for good, ``room.what``: ``camera.few_views``. Unique in the program.
+    text
+        The English text with {places}.
+    values
+        What stands in the places: names, whole and real numbers (with the unit at the end of their names: `rms_px`),
+        paths, `Field`, `Command`, fixed words (`label`), other messages, and sequences of these.
+
+    Notes
+    -----
+    `str(message)` is the English text. A message that was read from a file has that file's text, and is put into
+    another language by its code and values.
+    """
+
+    __slots__ = ("code", "many", "text", "values")
+    code: str
+    text: str
+    many: str
+    values: Mapping[str, Any]
+
+    def __init__(self, code: str, text: str, /, **values: Any) -> None:
+        self._set(code, text, "", values)
+
+    def _set(self, code: str, text: str, many: str, values: Mapping[str, Any]) -> None:
+        object.__setattr__(self, "code", code)
+        object.__setattr__(self, "text", text)
+        object.__setattr__(self, "many", many)
+        object.__setattr__(self, "values", MappingProxyType({name: _frozen(value) for name, value in values.items()}))
+
+    def __setattr__(self, name: str, value: object) -> None:
+        raise AttributeError(f"a message cannot be changed: {name}")
+
+    def __str__(self) -> str:
+        return ENGLISH(self)
+
+    def __repr__(self) -> str:
+        return f"Message({self.code!r}, {str(self)!r})"
+
+    def __eq__(self, other: object) -> bool:
+        """Whether both tell the same; one read from a file has no places left in its English text."""
+        return isinstance(other, Message) and self._parts() == other._parts()
+
+    def __hash__(self) -> int:
+        return hash((self.code, str(self)))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _restored, (self.code, self.text, self.many, dict(self.values))
+
+    def with_values(self, **values: Any) -> Message:
+        """The same message with some other values."""
+        return _restored(self.code, self.text, self.many, {**self.values, **values})
+
+    def _parts(self) -> tuple[Any, ...]:
+        return self.code, str(self), dict(self.values)
+
+
+def plural_message(code: str, one: str, many: str, /, *, n: int, **values: Any) -> Message:
+    """A message about `n` things: `one` for a single one, `many` for any other number; {n} may stand in both."""
+    return _restored(code, one, many, {"n": n, **values})
+
+
+def plain(text: str) -> Message:
+    """A text that is no message of this program's: somebody's words, another program's, an older file's."""
+    return Message("", text.replace("{", "{{").replace("}", "}}"))
+
+
+class Label(str):
+    """Fixed words, put into the reader's language where they stand in a message; a text like any other elsewhere."""
+
+    __slots__ = ()
+
+
+def label(english: str, /) -> str:
+    """Fixed words: marks them for the catalogues where they do not stand in the call that tells them."""
+    return Label(english)
+
+
+def _restored(code: str, text: str, many: str, values: Mapping[str, Any]) -> Message:
+    message = Message.__new__(Message)
+    message._set(code, text, many, values)
+    return message
+
+
+def _frozen(value: Any) -> Any:
+    """A value as a message keeps it: nothing that could be changed, nothing that only one library knows."""
+    if isinstance(value, PurePath):
+        return str(value)
+    if isinstance(value, Sequence) and not isinstance(value, str):
+        return tuple(_frozen(one) for one in value)
+    return value.item() if hasattr(value, "item") else value
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Language:
+    """How messages are told to one reader.
+
+    Parameters
+    ----------
+    name
+        ``en``, ``de``.
+    messages
+        By code: the text, or one text for each plural form.
+    labels
+        By the English text: fixed words that have no code.
+    plural_form
+        Which of the plural forms a number takes.
+    decimal
+        The decimal sign.
+    conjunction
+        How the last of several is joined to those before it: '{0} and {1}'.
+    fields
+        What this reader calls the field of a file, by its key; others are called as in the file.
+    commands
+        Whether this reader types commands.
+    """
+
+    name: str = "en"
+    messages: Mapping[str, str | tuple[str, ...]] = field(default_factory=dict)
+    labels: Mapping[str, str] = field(default_factory=dict)
+    plural_form: Any = None
+    decimal: str = "."
+    conjunction: str = "{0} and {1}"
+    fields: Mapping[str, str] = field(default_factory=dict)
+    commands: bool = True
+
+    def __call__(self, message: Message) -> str:
+        """The text of a message, its places filled."""
+        return _Formatter(self).vformat(self._text(message), (), message.values)
+
+    def label(self, english: str, /, **values: Any) -> str:
+        """Fixed words in this language; in English where they are not known in it."""
+        text = self._label(english)
+        return _Formatter(self).vformat(text, (), values) if values else text
+
+    def number(self, value: float, spec: str = "") -> str:
+        """A number by a format of Python's: its decimal sign here, a true minus sign, no-break spaces for ','."""
+        return format(value, spec).translate(str.maketrans("-.,", f"{MINUS}{self.decimal}{NO_BREAK_SPACE}"))
+
+    def joined(self, texts: Sequence[str], how: str = "") -> str:
+        """Several texts in a row: see the module."""
+        if how == "and" and len(texts) > 1:
+            return self.conjunction.format(", ".join(texts[:-1]), texts[-1])
+        return ("; " if how == ";" else ", ").join(texts)
+
+    def _label(self, english: str) -> str:
+        return self.labels.get(english, english)
+
+    def _text(self, message: Message) -> str:
+        known = self.messages.get(message.code) if message.code else None
+        n = message.values.get("n")
+        if isinstance(known, tuple):
+            return known[int(self.plural_form(n)) if self.plural_form else int(n != 1)]
+        if known is not None:
+            return known
+        return message.many if message.many and n != 1 else message.text
+
+
+class _Formatter(string.Formatter):
+    """`str.format` with the values of messages."""
+
+    def __init__(self, language: Language) -> None:
+        self._language = language
+
+    def format_field(self, value: Any, format_spec: str) -> str:
+        language = self._language
+        if isinstance(value, Message):
+            text = language(value)
+            return text[:1].upper() + text[1:] if format_spec == "capital" else text
+        if isinstance(value, Field):
+            known = language.fields.get(value.key)
+            name = value.key if value.whole else value.key.rpartition(".")[2]
+            return known if known is not None else f"{name} in {value.file}"
+        if isinstance(value, Command):
+            return f": {value.text}" if language.commands else ""
+        if isinstance(value, Label):
+            return language.label(value)
+        if isinstance(value, tuple):
+            return language.joined([self.format_field(one, "") for one in value], format_spec)
+        if isinstance(value, (int, float)) and not isinstance(value, bool):
+            return language.number(value, format_spec)
+        return format(value, format_spec)
+
+
+ENGLISH = Language()
+"""English as the command line says it."""
+
+
+def as_json(message: Message) -> dict[str, Any]:
+    """A message as files keep it: code, English text and values; `from_json` reads it."""
+    return {
+        "code": message.code,
+        "text": str(message),
+        "values": {name: _json(v) for name, v in message.values.items()},
+    }
+
+
+def from_json(kept: Mapping[str, Any] | str) -> Message:
+    """A message that a file kept; a bare text of an older file is told as it is.
+
+    Raises
+    ------
+    KeyError, TypeError
+        If it is not what `as_json` wrote.
+    """
+    if isinstance(kept, str):
+        return plain(kept)
+    values = {str(name): _value(value) for name, value in kept["values"].items()}
+    text = str(kept["text"]).replace("{", "{{").replace("}", "}}")
+    return _restored(str(kept["code"]), text, "", values)
+
+
+def as_text(message: Message | None) -> str:
+    """A message as one text, for files that hold nothing but texts; '' for none. `from_text` reads it."""
+    return "" if message is None else json.dumps(as_json(message), ensure_ascii=False)
+
+
+def from_text(kept: str) -> Message | None:
+    """A message that a file kept as a text; a sentence of an older file is told as it is; None for ''."""
+    if not kept:
+        return None
+    return from_json(json.loads(kept) if kept.startswith('{"code": ') else kept)
+
+
+def _json(value: Any) -> Any:
+    if isinstance(value, Message):
+        return as_json(value)
+    if isinstance(value, Field):
+        return {"field": value.key, "file": value.file, "whole": value.whole}
+    if isinstance(value, Command):
+        return {"command": value.text}
+    if isinstance(value, Label):
+        return {"label": str(value)}
+    if isinstance(value, tuple):
+        return [_json(one) for one in value]
+    return value
+
+
+def _value(kept: Any) -> Any:
+    if isinstance(kept, list):
+        return tuple(_value(one) for one in kept)
+    if isinstance(kept, Mapping):
+        if "field" in kept:
+            return Field(str(kept["field"]), str(kept["file"]), bool(kept.get("whole")))
+        if "label" in kept:
+            return Label(kept["label"])
+        return Command(str(kept["command"])) if "command" in kept else from_json(kept)
+    return kept

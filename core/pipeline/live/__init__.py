@@ -1,0 +1,1 @@
+"""A live camera: frames to a recording, to calibrations and to a preview."""

@@ -1,0 +1,1 @@
+"""What the window asks for: calibrations, measurements and reports of a project."""

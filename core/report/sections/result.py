@@ -1,0 +1,295 @@
+"""The result on page one: the box with the decision, the bar of the tolerance, and the table of all characteristics."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection
+
+import numpy as np
+from reportlab.lib.units import mm
+from reportlab.pdfbase.pdfmetrics import stringWidth
+from reportlab.platypus import Flowable, Paragraph, Spacer, Table, TableStyle
+
+from core.inspect.characteristic import Characteristic
+from core.inspect.conformity import WORST_FIRST, Verdict
+from core.messages import plural_message
+from core.report.content import ReportContent
+from core.report.layout.blocks import heads, plain_table, ruled_table
+from core.report.layout.style import BOLD, HAIRLINE, INK, MUTED, SANS, TEXT_WIDTH, TINT, Look, color, markup
+from core.report.wording import (
+    VERDICTS,
+    decimals_of,
+    decision_sentence,
+    grouped,
+    points_counted,
+    shown_name,
+    shown_unit,
+    tolerance_words,
+    uncertainty_sentence,
+    value_line,
+)
+
+PADDING = 5 * mm  # of the box, inside
+BADGE = 46 * mm  # width of the decision's mark
+
+SHOWN_FIRST = (*WORST_FIRST, Verdict.NONE)
+
+
+def result_box(look: Look, content: ReportContent, width: float) -> Table:
+    """The box: of the one result, of all of them together, or of the cloud where there is none."""
+    inner, found = width - 2 * PADDING, content.characteristics
+    if len(found) == 1:
+        rows = _one(look, found[0], inner)
+    else:
+        rows = _several(look, content, inner) if found else _cloud(look, content, inner)
+    style = TableStyle(
+        [
+            ("FONTNAME", (0, 0), (-1, -1), SANS),
+            ("BACKGROUND", (0, 0), (-1, -1), color(TINT)),
+            ("LINEBEFORE", (0, 0), (0, -1), 2.2, look.accent_color),
+            ("LEFTPADDING", (0, 0), (-1, -1), PADDING),
+            ("RIGHTPADDING", (0, 0), (-1, -1), PADDING),
+            ("TOPPADDING", (0, 0), (-1, -1), 3.5 * mm),
+            ("BOTTOMPADDING", (0, 0), (-1, -1), 3.5 * mm),
+        ]
+    )
+    if content.all_notes:
+        notes = look.words(plural_message("report.remarks", "{n:,} remark", "{n:,} remarks", n=len(content.all_notes)))
+        said = look.words("{remarks} under “Notes and warnings” further on.", remarks=notes)
+        rows.append(look.link(said, "notes", "caption"))
+    return Table([[rows]], colWidths=[width], style=style, hAlign="LEFT")
+
+
+def _facts(look: Look, facts: dict[str, str], width: float) -> Table:
+    cells = [[look.text(label, "label"), look.text(value, "fact")] for label, value in facts.items()]
+    table = plain_table([cells], [width / len(cells)] * len(cells))
+    table.setStyle(
+        TableStyle([("LINEABOVE", (0, 0), (-1, 0), 0.5, color(HAIRLINE)), ("TOPPADDING", (0, 0), (-1, -1), 5)])
+    )
+    return table
+
+
+def _one(look: Look, one: Characteristic, width: float) -> list[Flowable]:
+    words, (unit, factor) = look.words, shown_unit(one)
+    value, _, rest = value_line(one, words).partition(" (")
+    rest = rest.replace(" ", "\u00a0")
+    said = f'{look.markup(value)} <font name="{SANS}" size="11">({markup(rest)}</font>'
+    name = shown_name(one, words)
+    headline = [look.text(name[:1].upper() + name[1:], "label"), Paragraph(said, look.style("result"))]
+    parts: list[Flowable] = [*_headed(look, headline, one.verdict, width), Spacer(0, 2.5 * mm)]
+    decimals = max(decimals_of(factor * one.U), 0)
+    facts = {}
+    if one.limits is not None and one.deviation is not None:
+        facts[words("Nominal value")] = f"{words.general(factor * one.limits.nominal)} {unit}"
+        deviation = words.fixed(factor * one.deviation, decimals, signed=True)
+        facts[words("Deviation from nominal")] = f"{deviation} {unit}"
+        facts[words("Tolerance")] = tolerance_words(one, words)
+    facts[words("Expanded uncertainty U")] = f"{words.fixed(factor * one.U, decimals_of(factor * one.U))} {unit}"
+    parts.append(_facts(look, facts, width))
+    if one.limits is not None and np.isfinite((one.deviation or 0.0) + one.U):
+        parts += [Spacer(0, 1 * mm), ToleranceBar(look, one, width)]
+    reason, meaning = decision_sentence(one, words), uncertainty_sentence(one.k, one.U, words)
+    return [*parts, Spacer(0, 1.5 * mm), look.text(reason), look.text(meaning, "caption")]
+
+
+def _headed(look: Look, headline: list[Flowable], verdict: Verdict, width: float) -> list[Flowable]:
+    """A headline with the decision beside it, if there is one."""
+    if not verdict:
+        return headline
+    head = plain_table([[headline, VerdictMark(look, verdict, BADGE)]], [width - BADGE, BADGE])
+    head.setStyle(TableStyle([("VALIGN", (1, 0), (1, 0), "MIDDLE")]))
+    return [head]
+
+
+def _several(look: Look, content: ReportContent, width: float) -> list[Flowable]:
+    """How many of which decision; the worst of them is that of the part."""
+    words, found = look.words, content.characteristics
+    counts = {verdict: sum(one.verdict == verdict for one in found) for verdict in SHOWN_FIRST}
+    worst = next(verdict for verdict in SHOWN_FIRST if counts[verdict])
+    results = plural_message("report.characteristics", "{n:,} characteristic", "{n:,} characteristics", n=len(found))
+    headline: list[Flowable] = [
+        look.say("Result", "label"),
+        look.text(words(results), "result"),
+    ]
+    facts = {words(VERDICTS[verdict]): grouped(number) for verdict, number in counts.items() if number}
+    said = words(
+        "The decision on the part is the worst of those on its characteristics. Each is stated with U = k·u below; by "
+        "ISO 14253-1 a deviation must stay within its tolerance even when it is enlarged by U."
+    )
+    return [
+        *_headed(look, headline, worst, width),
+        Spacer(0, 2.5 * mm),
+        _facts(look, facts, width),
+        Spacer(0, 2 * mm),
+        look.text(said),
+    ]
+
+
+def _cloud(look: Look, content: ReportContent, width: float) -> list[Flowable]:
+    cloud, words = content.cloud, look.words
+    parts: list[Flowable] = [look.say("Point cloud", "label"), look.text(words(points_counted(len(cloud))), "result")]
+    facts = {words("Triangles of the mesh"): grouped(len(content.mesh.triangles))}
+    known = cloud.sigma[np.isfinite(cloud.sigma)]
+    if len(known):
+        middle, most = np.quantile(known, [0.5, 0.95])
+        decimals = decimals_of(float(middle))
+        facts[words("σ of depth, median")] = f"{words.fixed(float(middle), decimals)} mm"
+        facts[words("σ of depth, 95 % below")] = f"{words.fixed(float(most), decimals)} mm"
+    if len(cloud):
+        size = np.ptp(cloud.points, axis=0)
+        digits = 0 if size.max() >= 10 else 2
+        facts[words("Extent x, y, z")] = " × ".join(words.fixed(float(value), digits) for value in size) + " mm"
+    sentence = look.say(
+        "No pair of parallel faces was evaluated, so there is no thickness and no verdict: this report is of the cloud."
+    )
+    return [*parts, Spacer(0, 2.5 * mm), _facts(look, facts, width), Spacer(0, 2 * mm), sentence]
+
+
+WIDTHS = [size * mm for size in (17, 27, 21, 16, 8, 18, 27)]
+"""Nominal, permitted deviations, measured, U, k, deviation, decision; the name has the rest."""
+
+
+def result_table(look: Look, content: ReportContent, budgets: Collection[int]) -> Table:
+    """One row for each characteristic; the names of those whose numbers are in `budgets` lead to their budgets."""
+    head = heads(
+        look, "Characteristic", "nominal", "permitted", "measured", "U", "k", "deviation", "decision",
+        numbers=range(1, 7),
+    )  # fmt: skip
+    rows: list[list[Flowable | list[Flowable]]] = [[*head]]
+    for number, one in enumerate(content.characteristics):
+        rows.append(_row(look, one, budget_key(number) if number in budgets else ""))
+    table = ruled_table(rows, [TEXT_WIDTH - sum(WIDTHS), *WIDTHS])
+    table.setStyle(TableStyle([("LEFTPADDING", (7, 0), (7, -1), 5)]))
+    return table
+
+
+def budget_key(number: int) -> str:
+    """What links call the budget of the characteristic of this number."""
+    return f"budget-{number}"
+
+
+def _row(look: Look, one: Characteristic, key: str) -> list[Flowable | list[Flowable]]:
+    words, (unit, factor) = look.words, shown_unit(one)
+    decimals = decimals_of(factor * one.U)
+    limits = one.limits
+    nominal = "" if limits is None else f"{words.general(factor * limits.nominal)}\u00a0{unit}"
+    known = one.deviation is not None and math.isfinite(one.deviation)
+    deviation = words.fixed(factor * (one.deviation or 0.0), decimals, signed=True) if known else ""
+    name = shown_name(one, words)
+    title = look.link(name, key, "small_strong") if key else look.text(name, "small_strong")
+    rule: list[Flowable] = [look.text(words.known(one.rule), "rule")] if one.rule else []
+    U = words.fixed(factor * one.U, decimals) if math.isfinite(one.U) else words("unknown")
+    numbers = (
+        nominal,
+        tolerance_words(one, words),
+        f"{words.fixed(factor * one.value, decimals)}\u00a0{unit}" if math.isfinite(one.value) else words("unknown"),
+        U,
+        words.general(one.k),
+        deviation,
+    )
+    decision = f"{SIGNS[one.verdict]} {words(VERDICTS[one.verdict])}"
+    return [
+        [title, *rule],
+        *(look.text(number, "number_strong" if place == 2 else "number") for place, number in enumerate(numbers)),
+        look.text(decision, "small_strong"),
+    ]
+
+
+SIGNS = {Verdict.CONFORMING: "✓", Verdict.NOT_CONFORMING: "✗", Verdict.NOT_PROVEN: "?", Verdict.NONE: "–"}
+"""Of each decision: it is never told by colour alone."""
+
+
+class VerdictMark(Flowable):  # type: ignore[misc]
+    """The decision as word and form: filled with ✓, dark with ✗, outlined with ?."""
+
+    def __init__(self, look: Look, verdict: Verdict, width: float) -> None:
+        super().__init__()
+        self.look, self.verdict, self.width, self.height = look, verdict, width, 10 * mm
+
+    def draw(self) -> None:
+        """Paint it (called by reportlab)."""
+        tone = {Verdict.CONFORMING: self.look.accent, Verdict.NONE: MUTED}.get(self.verdict, INK)
+        filled = self.verdict in (Verdict.CONFORMING, Verdict.NOT_CONFORMING)
+        words = f"{SIGNS[self.verdict]}  {self.look.words(VERDICTS[self.verdict])}"
+        size = min(10.5, 10.5 * (self.width - 6) / stringWidth(words, BOLD, 10.5))
+        canvas = self.canv
+        canvas.setStrokeColor(color(tone))
+        canvas.setFillColor(color(tone if filled else "#FFFFFF"))
+        canvas.setLineWidth(0.9)
+        canvas.roundRect(0, 0, self.width, self.height, 1.2 * mm, stroke=1, fill=1)
+        canvas.setFillColor(color("#FFFFFF" if filled else tone))
+        canvas.setFont(BOLD, size)
+        canvas.drawCentredString(self.width / 2, self.height / 2 - 3.8, words)
+
+
+class ToleranceBar(Flowable):  # type: ignore[misc]
+    """The deviation with its interval ±U against the zone of the tolerance, to scale; open where there is no limit."""
+
+    def __init__(self, look: Look, one: Characteristic, width: float) -> None:
+        super().__init__()
+        unit, factor = shown_unit(one)
+        limits = one.limits
+        if limits is None:
+            raise ValueError("there is no tolerance to draw")
+        self.look, self.unit = look, unit
+        self.deviation, self.U = factor * (one.deviation or 0.0), factor * one.U
+        self.lower, self.upper = factor * limits.lower, factor * limits.upper
+        self.decimals = max(decimals_of(self.U), 0)
+        self.width, self.height = width, 15 * mm
+        # what is drawn spans the limits and the whole interval, with room for the words at both ends
+        known = [abs(limit) for limit in (self.lower, self.upper) if np.isfinite(limit)]
+        self.half = 1.3 * max(*known, abs(self.deviation) + self.U, 1e-9) if known else 1.0
+
+    def x(self, value: float) -> float:
+        """Place of a deviation on paper."""
+        return float(np.clip(self.width / 2 * (1 + value / self.half), 0, self.width))
+
+    def draw(self) -> None:
+        """Paint it (called by reportlab)."""
+        canvas, axis = self.canv, 6.6 * mm
+        low, high = self.x(self.lower), self.x(self.upper)
+        canvas.setFillColor(color("#D5E2E7"))
+        canvas.rect(low, axis - 2.4 * mm, high - low, 4.8 * mm, stroke=0, fill=1)
+        canvas.setStrokeColor(color(MUTED))
+        canvas.setLineWidth(0.5)
+        canvas.line(0, axis, self.width, axis)
+        canvas.setLineWidth(1.0)
+        for place, limit in ((low, self.lower), (high, self.upper)):
+            if np.isfinite(limit):
+                canvas.line(place, axis - 2.4 * mm, place, axis + 2.4 * mm)
+        self._words(low, high, axis)
+        canvas.setStrokeColor(self.look.accent_color)
+        canvas.setFillColor(self.look.accent_color)
+        left, right, middle = (self.x(self.deviation + offset) for offset in (-self.U, self.U, 0.0))
+        canvas.setLineWidth(1.8)
+        canvas.line(left, axis, right, axis)
+        canvas.setLineWidth(1.2)
+        for place in (left, right):
+            canvas.line(place, axis - 1.1 * mm, place, axis + 1.1 * mm)
+        canvas.circle(middle, axis, 1.0 * mm, stroke=0, fill=1)
+
+    def _words(self, low: float, high: float, axis: float) -> None:
+        canvas, words = self.canv, self.look.words
+        canvas.setFont(SANS, 6.5)
+        canvas.setFillColor(color(MUTED))
+        below, above = axis - 2.4 * mm - 7.5, axis + 2.4 * mm + 2.5
+        lean = min(8.0, (high - low) / 2 - 2)  # the two never meet, however narrow the zone is drawn
+        for place, limit, draw in (
+            (low + lean, self.lower, canvas.drawRightString),
+            (high - lean, self.upper, canvas.drawString),
+        ):
+            if np.isfinite(limit):
+                draw(place, below, words.numeral(f"{limit:+g}") + f" {self.unit}")
+        if high - low > 45 * mm and np.isfinite(self.lower + self.upper):
+            canvas.setStrokeColor(color(MUTED))
+            canvas.setLineWidth(0.5)
+            canvas.line(self.x(0), axis - 2.4 * mm, self.x(0), axis + 2.4 * mm)
+            canvas.drawCentredString(self.x(0), below, words("nominal"))
+        canvas.setFillColor(self.look.accent_color)
+        said = words(
+            "deviation {deviation} ± {U}",
+            deviation=f"{words.fixed(self.deviation, self.decimals, signed=True)} {self.unit}",
+            U=f"{words.fixed(self.U, self.decimals)} {self.unit}",
+        )
+        half = canvas.stringWidth(said, SANS, 6.5) / 2
+        canvas.drawCentredString(float(np.clip(self.x(self.deviation), half, self.width - half)), above, said)

@@ -1,0 +1,181 @@
+"""What became of each frame of a scan, and why. Light to import: a window holds these."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import IntEnum
+
+from core.image.stripes.centreline import Centreline
+from core.messages import Message
+
+NO_REASON = Message("scan.no_reason", "no reason recorded")
+MOVED = Message(
+    "scan.frame_moved",
+    "object or camera moved during the scan: the fan's light lies elsewhere than in the reference",
+)
+LOST = Message(
+    "scan.frame_without_fan",
+    "the fan's light is gone: object or camera moved far during the scan, or the three-line laser was off",
+)
+FEW_CROSSINGS = Message("scan.frame_few_crossings", "fewer than three crossings with the fan")
+NO_STRIPE = Message("scan.frame_without_stripe", "no stripe of the hand-held laser")
+
+WITHOUT_POINTS = ("scan.frames_without_points", "scan.many_frames_without_points")
+"""Codes of `left_out_notes`."""
+_NAMED = 3
+"""So many frames are named in a note."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class FrameFeatures:
+    """The sweep's centrelines in one frame, or the `reason` there are none.
+
+    Against the reference: `shift_px` of the fan's light, and `light_change` of the background as a share of it, 0 where
+    it is too small to tell.
+    """
+
+    index: int
+    name: str
+    centrelines: tuple[Centreline, ...]
+    reason: Message | None = None
+    shift_px: float = 0.0
+    light_change: float = 0.0
+
+
+class CrossingUse(IntEnum):
+    """Whether a crossing counts, or why it does not."""
+
+    COUNTS = 0
+    NOT_THE_FAN = 1
+    NOT_THE_SWEEPS = 2
+    MOVED = 3
+    NOT_LOCATED = 4
+
+    @property
+    def message(self) -> Message:
+        """Why it does not count."""
+        return _WHY_LEFT_OUT[self]
+
+
+_WHY_LEFT_OUT = {
+    CrossingUse.COUNTS: Message("scan.crossing_counts", "counts"),
+    CrossingUse.NOT_THE_FAN: Message("scan.crossing_not_the_fan", "disagrees with the fan"),
+    CrossingUse.NOT_THE_SWEEPS: Message("scan.crossing_not_the_sweeps", "disagrees with other sweeps"),
+    CrossingUse.MOVED: Message(
+        "scan.crossing_moved", "object or camera moved between its frame and the others, or the fan"
+    ),
+    CrossingUse.NOT_LOCATED: Message("scan.crossing_not_located", "its frame was not located"),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class FrameRecord:
+    """What became of one frame.
+
+    Parameters
+    ----------
+    index, name
+        Of the frame, in the order of the recording.
+    used
+        Whether it gave points.
+    reason
+        Why it gave none; None if it did.
+    stripes, stripe_px
+        How many centrelines its stripe has, and of how many points in all.
+    fan_crossings, fan_lines_met, sweep_crossings
+        Crossings with the fan, on how many different lines, and crossings with other sweeps.
+    left_out, left_out_reasons
+        How many of the crossings did not count: in all, and by reason.
+    condition
+        Ratio of the singular values of the crossings with the fan: how near to collinear they are.
+    points, sigma_mm
+        How many it gave, and their median σ.
+    """
+
+    index: int
+    name: str
+    used: bool
+    reason: Message | None = None
+    stripes: int = 0
+    stripe_px: int = 0
+    fan_crossings: int = 0
+    fan_lines_met: int = 0
+    sweep_crossings: int = 0
+    left_out: int = 0
+    condition: float = float("inf")
+    points: int = 0
+    sigma_mm: float = float("nan")
+    left_out_reasons: tuple[tuple[CrossingUse, int], ...] = ()
+
+
+def notes_on(frames: Sequence[FrameFeatures]) -> tuple[Message, ...]:
+    """What all frames of a scan tell the technician: that something moved, or that the room's light changed."""
+    return _moved_notes(frames) + _light_notes(frames)
+
+
+def _light_notes(frames: Sequence[FrameFeatures]) -> tuple[Message, ...]:
+    changed = [frame for frame in frames if frame.light_change]
+    if not changed:
+        return ()
+    most = max((frame.light_change for frame in changed), key=abs)
+    brighter, darker = Message("scan.brighter", "brighter"), Message("scan.darker", "darker")
+    return (
+        Message(
+            "scan.room_light_changed",
+            "The room's light changed in {n} of {all} frames, the first {name}: the background is up to "
+            "{percent:.0f} % {which} than in the reference, which makes stripes less sure. Keep the light as it is "
+            "during a scan, or scan again.",
+            n=len(changed),
+            all=len(frames),
+            name=changed[0].name,
+            percent=100 * abs(most),
+            which=brighter if most > 0 else darker,
+        ),
+    )
+
+
+def _moved_notes(frames: Sequence[FrameFeatures]) -> tuple[Message, ...]:
+    moved = [frame for frame in frames if frame.reason in (MOVED, LOST)]
+    if not moved:
+        return ()
+    return (
+        Message(
+            "scan.frames_moved",
+            "Object or camera moved during the scan: {n} of {all} frames were left out, the first {name} (the fan's "
+            "light is {shift_px:.1f} px or more aside, measured across its lines). Hold both still and scan again to "
+            "use them all.",
+            n=len(moved),
+            all=len(frames),
+            name=moved[0].name,
+            shift_px=moved[0].shift_px,
+        ),
+    )
+
+
+def left_out_notes(frames: Sequence[FrameRecord]) -> tuple[Message, ...]:
+    """One note for every reason why frames gave no points, with the names of the first."""
+    names: dict[Message, list[str]] = {}
+    for frame in frames:
+        if not frame.used:
+            names.setdefault(frame.reason or NO_REASON, []).append(frame.name)
+    return tuple(
+        Message(
+            "scan.frames_without_points",
+            "{n} of {all} frames gave no points ({reason}): {names}.",
+            n=len(mine),
+            all=len(frames),
+            reason=reason,
+            names=mine,
+        )
+        if len(mine) <= _NAMED
+        else Message(
+            "scan.many_frames_without_points",
+            "{n} of {all} frames gave no points ({reason}): {names} and others.",
+            n=len(mine),
+            all=len(frames),
+            reason=reason,
+            names=mine[:_NAMED],
+        )
+        for reason, mine in names.items()
+    )

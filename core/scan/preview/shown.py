@@ -1,0 +1,258 @@
+"""Data for showing a scan and its frames. Light to import: a window needs it at its start."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from enum import IntEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.image.stripes.centreline import Centreline
+from core.image.stripes.stripe import StripeSettings
+from core.messages import Message
+from core.model.arrays import Array
+from core.scan.features.frames import NO_REASON, FrameRecord
+
+Float32 = NDArray[np.float32]
+Picture8 = NDArray[np.uint8]
+"""(H, W) grey levels for display."""
+
+
+class CrossingStatus(IntEnum):
+    """Quality of a crossing, as it is marked."""
+
+    GOOD = 0
+    WEAK = 1
+    LEFT_OUT = 2
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class PreviewCloud:
+    """Points for display, light enough to be sent from process to process.
+
+    `points` (P, 3) in mm in the camera frame, `sigma` (P,) standard uncertainty of depth in mm, `intensity` (P,) in
+    grey levels, `uv` (P, 2) in pixels, `frame` (P,) the index of the frame, −1 for the fan's own points.
+    """
+
+    points: Float32
+    sigma: Float32
+    intensity: Float32
+    uv: Float32
+    frame: NDArray[np.int32]
+
+    def __len__(self) -> int:
+        return len(self.points)
+
+    @classmethod
+    def joined(cls, clouds: Sequence[PreviewCloud]) -> PreviewCloud:
+        """All points of `clouds`, in order."""
+        nothing = np.zeros(0, np.float32)
+        flat = np.zeros((0, 3), np.float32), nothing, nothing, np.zeros((0, 2), np.float32), np.zeros(0, np.int32)
+        parts = [(c.points, c.sigma, c.intensity, c.uv, c.frame) for c in clouds]
+        return cls(*(np.concatenate(arrays) for arrays in zip(flat, *parts, strict=True)))
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class FramePreview:
+    """Preview of one frame.
+
+    Parameters
+    ----------
+    index, name
+        Of the frame.
+    centrelines
+        The stripe, thinned for display.
+    sigma_mm
+        For each of the centrelines, (N,) standard uncertainty of depth in mm; NaN where it is unknown.
+    crossing_uv
+        (M, 2) in pixels.
+    crossing_status
+        (M,) `CrossingStatus`.
+    crossing_reason
+        One sentence for each crossing.
+    crossing_with_fan
+        (M,) False for crossings with other sweeps.
+    condition
+        Of the crossings with the fan: ratio of singular values, infinite when they are collinear or too few.
+    speed_px
+        How far the stripe moves from frame to frame, in pixels: since the last frame looked at, by their number; NaN
+        if not known.
+    points, point_sigma, point_intensity
+        (P, 3) in mm in the camera frame, (P,) in mm, (P,) in grey levels: the points worth showing.
+    point_uv
+        (P, 2) where they are in the picture, in pixels.
+    hints
+        At most two short sentences for the hand.
+    reason
+        Why there are no points; None if there are.
+    renewed
+        Not None: all points so far, this frame's and the fan's own included, located anew; they replace all that was
+        given before. So with the first frame.
+    fan_lines
+        Not None: the fan's centrelines by line number, thinned for display, as far as settled; with the first frame,
+        and again whenever a number has changed.
+    """
+
+    index: int
+    name: str
+    centrelines: tuple[Centreline, ...]
+    sigma_mm: tuple[Array, ...]
+    crossing_uv: Array
+    crossing_status: NDArray[np.int8]
+    crossing_reason: tuple[Message, ...]
+    crossing_with_fan: NDArray[np.bool_]
+    condition: float
+    speed_px: float
+    points: Array
+    point_sigma: Array
+    point_intensity: Array
+    point_uv: Array
+    hints: tuple[Message, ...]
+    reason: Message | None
+    renewed: PreviewCloud | None = None
+    fan_lines: tuple[tuple[Centreline, ...], ...] | None = None
+
+
+def cloud_of(preview: FramePreview) -> PreviewCloud:
+    """Make a cloud of the points of this frame alone."""
+    return PreviewCloud(
+        preview.points.astype(np.float32),
+        preview.point_sigma.astype(np.float32),
+        preview.point_intensity.astype(np.float32),
+        preview.point_uv.astype(np.float32),
+        np.full(len(preview.points), preview.index, np.int32),
+    )
+
+
+def empty_preview(index: int, name: str, reason: Message | None) -> FramePreview:
+    """Make the preview of a frame without a stripe, with the reason."""
+    none, empty = np.zeros(0), np.zeros((0, 2))
+    return FramePreview(
+        index,
+        name,
+        (),
+        (),
+        empty,
+        np.zeros(0, np.int8),
+        (),
+        np.zeros(0, np.bool_),
+        float("inf"),
+        float("nan"),
+        np.zeros((0, 3)),
+        none,
+        none,
+        empty,
+        (),
+        reason,
+    )
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class FrameStages:
+    """Pictures and features of one frame at every stage of processing.
+
+    Parameters
+    ----------
+    index, name
+        Of the frame, in the order of the recording.
+    picture
+        As it was recorded.
+    difference
+        Frame − reference, brightened alike for all frames; what is darker than the reference is black.
+    ridge
+        Steger's strength at the stripe's scale, brightened in the same way.
+    brighter
+        Grey levels of `difference` and `ridge` for one grey level of the picture.
+    sweep
+        The hand-held laser's centrelines.
+    fan
+        The fan's centrelines, and in `fan_line` the line (from 0) each of them belongs to; −1 where that is not known.
+    seen
+        Crossings, each good, weak or left out with the reason, as this frame gives them by itself; None without
+        calibrations.
+    shift_px
+        How far the fan's light is from where it is in the reference.
+    left_out
+        Whether this frame is left out by hand; its stages are shown all the same.
+    reason
+        Why there is no sweep; None if there is.
+    """
+
+    index: int
+    name: str
+    picture: Picture8
+    difference: Picture8
+    ridge: Picture8
+    brighter: float
+    sweep: tuple[Centreline, ...]
+    fan: tuple[Centreline, ...]
+    fan_line: tuple[int, ...]
+    seen: FramePreview | None
+    shift_px: float
+    left_out: bool
+    reason: Message | None
+
+
+@dataclass(frozen=True, slots=True)
+class SettledScan:
+    """Settings that a finished measurement has found: the stripes' width and contrast, the fan line of each piece."""
+
+    sweep_stripe: StripeSettings | None
+    fan_stripe: StripeSettings
+    fan_line: tuple[int, ...]
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class ShownScan:
+    """A measured scan, light enough to be sent from process to process.
+
+    Parameters
+    ----------
+    points, sigma
+        (N, 3) float32 in mm in the camera frame, and (N,) float32, the standard uncertainty of each depth in mm without
+        what is common to the whole scan.
+    uv, frame
+        (N, 2) float32, the pixel each was seen at, and (N,) int32, the index of its frame; −1 for the fan's own.
+    triangles
+        How many the mesh has.
+    frames, frames_used
+        The record of every frame, and how many of them gave points.
+    median_sigma_mm, sigma_95_mm
+        Half and 95 % of the points have no larger σ; NaN without points.
+    left_out
+        Why frames gave no points, and how many each time, the most frequent reason first.
+    share
+        Covered share (0 … 1) of what was lit, as in `core.scan.surface.coverage_map`.
+    stripe
+        Width and contrast of the hand-held laser's stripe, as the measurement settled them.
+    notes
+        Notes for the technician about the scan; that about `left_out` is not among it.
+    problems
+        Why a result that exists cannot be shown: whole sentences.
+    """
+
+    points: NDArray[np.float32]
+    sigma: NDArray[np.float32]
+    uv: NDArray[np.float32]
+    frame: NDArray[np.int32]
+    triangles: int
+    frames: tuple[FrameRecord, ...]
+    frames_used: int
+    median_sigma_mm: float
+    sigma_95_mm: float
+    left_out: tuple[tuple[Message, int], ...]
+    share: float
+    stripe: StripeSettings | None
+    notes: tuple[Message, ...]
+    problems: tuple[Message, ...]
+
+    def __len__(self) -> int:
+        return len(self.points)
+
+
+def reasons_counted(frames: Iterable[FrameRecord]) -> tuple[tuple[Message, int], ...]:
+    """Count the frames without points by their reasons, the most frequent first."""
+    return tuple(Counter(frame.reason or NO_REASON for frame in frames if not frame.used).most_common())

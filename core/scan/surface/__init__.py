@@ -1,0 +1,1 @@
+"""Points, their fusion, normals, triangles: the measured surface."""

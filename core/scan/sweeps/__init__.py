@@ -1,0 +1,1 @@
+"""Location of the sweeps: light planes of the frames, from crossings alone."""

@@ -1,0 +1,1 @@
+"""The simulated rig as a live source."""

@@ -1,0 +1,1 @@
+"""Scene of the simulated camera: objects, targets, laser light, speckle, pictures."""

@@ -1,0 +1,115 @@
+"""The languages messages can be told in: catalogues in ``resources/translations``, by the name of their language.
+
+A catalogue is a gettext file, NAME.po: messages stand in it by their code (msgctxt), fixed words by the English ones.
+What it lacks is told in English. The decimal sign and how several things are joined are those of Babel's locale data.
+`make translations` brings the catalogues up to date with the code.
+"""
+
+from __future__ import annotations
+
+import gettext
+import re
+import string
+from collections.abc import Iterable, Sequence
+from functools import cache
+from importlib.resources import files
+
+from core.messages import ENGLISH, Language, Message
+
+PSEUDO = "en-XA"
+"""A language nobody speaks: English with accents, longer, in brackets. It shows texts that are in no catalogue, and
+texts that have no room to be longer."""
+
+_FOLDER = files("resources") / "translations"
+_ACCENTS = str.maketrans(
+    "aceghijklnorstuwyzACDEGHIJKLNORSTUWYZ",
+    "áçéĝĥíĵķļñóŕšţúŵýžÁÇĎÉĜĤÍĴĶĻÑÓŔŠŢÚŴÝŽ",
+)
+_VOWELS = re.compile("([aeiou])")
+_FIXED = re.compile(r"(<[^<>]*>|&\w+;|%\w+)")
+"""Parts of a text that a reader does not see: marks of rich text, entities, places of Qt's."""
+
+
+@cache
+def languages() -> tuple[str, ...]:
+    """The names of all languages there are, English first."""
+    names = (path.name.removesuffix(".po") for path in _FOLDER.iterdir() if path.name.endswith(".po"))
+    return ("en", *sorted(names))
+
+
+def preferred(wanted: Iterable[str]) -> str:
+    """The first of several languages that there is, or one that is near it ('de' for 'de_CH'); else English."""
+    from babel.core import negotiate_locale
+
+    names = [name.replace("-", "_") for name in wanted if name]
+    return PSEUDO if PSEUDO.replace("-", "_") in names[:1] else negotiate_locale(names, languages(), sep="_") or "en"
+
+
+@cache
+def language(name: str) -> Language:
+    """A language by its name; reading its catalogue takes 0.05 to 0.1 s, once.
+
+    Raises
+    ------
+    KeyError
+        If there is no such language.
+    """
+    if name == "en":
+        return ENGLISH
+    if name == PSEUDO:
+        return _Pseudo(PSEUDO)
+    if name not in languages():
+        raise KeyError(name)
+    from babel import Locale
+    from babel.messages.pofile import read_po
+    from babel.numbers import get_decimal_symbol
+
+    with (_FOLDER / f"{name}.po").open("rb") as file:
+        catalog = read_po(file, locale=name)
+    known = [(entry.context, entry.id, entry.string) for entry in catalog if entry.id and not entry.fuzzy]
+    locale = Locale.parse(name)
+    return Language(
+        name,
+        messages={code: _forms(texts) for code, _, texts in known if code and _forms(texts)},
+        labels={str(english): str(text) for code, english, text in known if not code and text},
+        plural_form=gettext.c2py(catalog.plural_expr),
+        decimal=get_decimal_symbol(locale),
+        conjunction=locale.list_patterns["standard"]["end"],
+    )
+
+
+def _forms(texts: str | Sequence[str] | None) -> str | tuple[str, ...]:
+    """A message's text, or one for each plural form; "" where any is missing."""
+    if isinstance(texts, str):
+        return texts
+    return tuple(texts) if texts and all(texts) else ""
+
+
+class _Pseudo(Language):
+    """English that can be told from English."""
+
+    __slots__ = ()
+
+    def _text(self, message: Message) -> str:
+        return strange(super()._text(message)) if message.code else super()._text(message)
+
+    def _label(self, english: str) -> str:
+        return strange(english)
+
+
+def strange(text: str) -> str:
+    """A text with its letters accented, its vowels doubled and brackets around it; its {places} stay.
+
+    >>> strange("{n} of {m} frames")
+    '⟦{n} óóf {m} fŕáámééš⟧'
+    """
+    parts = []
+    for words, name, spec, _ in string.Formatter().parse(text):
+        shown = "".join(
+            part if place % 2 else _VOWELS.sub(r"\1\1", part).translate(_ACCENTS)
+            for place, part in enumerate(_FIXED.split(words))
+        )
+        parts.append(shown.replace("{", "{{").replace("}", "}}"))
+        if name is not None:
+            parts.append(f"{{{name}{':' if spec else ''}{spec}}}")
+    return f"⟦{''.join(parts)}⟧"
