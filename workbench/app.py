@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import argparse
+import gc
+import os
 import signal
 import sys
 from collections.abc import Callable, Sequence
@@ -10,21 +12,21 @@ from importlib.resources import files
 from pathlib import Path
 from typing import TextIO
 
-from PySide6.QtCore import QEvent, QLocale, QTimer, QTranslator
+from PySide6.QtCore import QEvent, QTimer
 from PySide6.QtGui import QFileOpenEvent, QIcon
 from PySide6.QtWidgets import QApplication
 
 from core import __version__
 from core.errors import InputError
-from workbench import association
+from core.translations import PSEUDO, language, languages, preferred
 from workbench.bench import Bench, make_bench
-from workbench.garbage import GarbageCollector
+from workbench.language import choose, text_of, tr
 from workbench.main_window import MainWindow
 from workbench.notices import log_to_file
-from workbench.processes import share_python_willingly
+from workbench.pages.project import double_click
 from workbench.settings import THEMES
-from workbench.theme import apply_colours, apply_sheet, apply_theme
-from workbench.views import scene_view
+from workbench.theme import apply_colours, apply_sheet
+from workbench.views.scene import view as scene_view
 
 
 class Application(QApplication):
@@ -41,7 +43,7 @@ class Application(QApplication):
 
     def event(self, event: QEvent) -> bool:
         if isinstance(event, QFileOpenEvent) and self.window is not None:
-            self.window.doors.open_dropped(Path(event.file()))
+            self.window.projects.open_dropped(Path(event.file()))
             return True
         return super().event(event)
 
@@ -55,53 +57,51 @@ def build_window(app: QApplication, bench: Bench, theme: str = "") -> MainWindow
     apply_colours(app, theme or bench.settings.theme)
     window = MainWindow(bench)
     apply_sheet(app)
-    bench.settings.theme_changed.connect(lambda name: apply_theme(app, name))
-    app.styleHints().colorSchemeChanged.connect(lambda _: apply_theme(app, bench.settings.theme))
+    bench.settings.theme_changed.connect(window.apply_theme)
+    app.styleHints().colorSchemeChanged.connect(window.follow_system)
     return window
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Open the workbench; returns the exit code."""
-    parser = argparse.ArgumentParser("trisect-workbench", description="The Trisect inspection workbench.")
-    parser.add_argument("path", nargs="?", type=Path, help="a project or a recording set to open")
-    parser.add_argument("--theme", choices=THEMES, default="", help="light, dark, or as the system is set")
+    parser = argparse.ArgumentParser("trisect-workbench", description=tr("The Trisect inspection workbench."))
+    parser.add_argument("path", nargs="?", type=Path, help=tr("a project or a recording set to open"))
+    parser.add_argument("--theme", choices=THEMES, default="", help=tr("light, dark, or as the system is set"))
+    parser.add_argument("--language", choices=(*languages(), PSEUDO), default="", help=tr("of the window's texts"))
     parser.add_argument("--version", action="version", version=f"trisect {__version__}")
     parser.add_argument(
-        "--install-desktop", action="store_true", help="have projects open by double click for this user, and end"
+        "--install-desktop", action="store_true", help=tr("have projects open by double click for this user, and end")
     )
-    parser.add_argument("--uninstall-desktop", action="store_true", help="take that back, and end")
+    parser.add_argument("--uninstall-desktop", action="store_true", help=tr("take that back, and end"))
     given = parser.parse_args(argv)
     if given.install_desktop or given.uninstall_desktop:
-        return _associate(association.install if given.install_desktop else association.uninstall)
+        return _associate(double_click.install if given.install_desktop else double_click.uninstall)
     signal.signal(signal.SIGINT, signal.SIG_DFL)  # Ctrl-C in the terminal ends it like a crash: the autosave is there
-    share_python_willingly()
     app = Application(sys.argv[:1])
-    garbage = GarbageCollector(app)
-    translator = QTranslator()
-    if translator.load(QLocale(), "trisect", "_", str(files("resources") / "translations")):
-        app.installTranslator(translator)
     log_file = log_to_file()
     bench = make_bench()
+    wanted = (given.language, bench.settings.text("language", ""), os.environ.get("TRISECT_LANGUAGE", ""))
+    choose(language(preferred(wanted)), app)
     bench.notices.catch_everything()
     window = app.window = build_window(app, bench, given.theme)
     window.log_file = log_file
     window.show()
-    garbage.spare_what_is_there()
-    QTimer.singleShot(0, lambda: _after_start(window, given.path))
+    gc.freeze()  # what is there now stays: later collections need not go through it, and are short
+    QTimer.singleShot(0, window, lambda: _after_start(window, given.path))
     try:
         return app.exec()
     finally:
         bench.close()
-        garbage.stop()
+        bench.wait_until_closed()
         bench.notices.release()
 
 
-def _associate(do: Callable[[], association.Outcome]) -> int:
+def _associate(do: Callable[[], double_click.Outcome]) -> int:
     """Tell the system what opens projects, and say on the terminal what was done."""
     try:
         outcome = do()
     except InputError as error:
-        _say(sys.stderr, str(error))
+        _say(sys.stderr, text_of(error))
         return 2
     _say(sys.stdout, outcome.sentence, *map(str, outcome.files))
     return 0
@@ -116,10 +116,10 @@ def _say(stream: TextIO | None, *lines: str) -> None:
 def _after_start(window: MainWindow, path: Path | None) -> None:
     """Once the window is there: open what was asked for, start the processes, import what the 3D view needs."""
     if path is not None:
-        window.doors.open_dropped(path)
-    window.bench.measuring.warm_up()
-    window.bench.quick.warm_up()
-    scene_view.warm_up()
+        window.projects.open_dropped(path)
+    window.bench.measuring.prepare()
+    window.bench.quick.prepare()
+    scene_view.prepare_3d()
 
 
 if __name__ == "__main__":

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from workbench import jobs
+from PySide6.QtCore import QObject
+
 from workbench.notices import Notices
-from workbench.problems import details, sentence
-from workbench.processes import ONE_THREAD
 from workbench.project_model import ProjectModel
 from workbench.settings import AppSettings
-from workbench.tasks import Lane, Task
+from workbench.work import jobs
+from workbench.work.tasks import Lane, Task
+
+ONE_THREAD: Mapping[str, str] = {name: "1" for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")}
+"""Linear algebra on one core: for many small problems beside other work, more threads are slower."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -26,36 +29,31 @@ class Bench:
     quick: Lane
     live: Lane
 
-    def measure(self, job: jobs.Job, *args: Any, label: str, on_done: Callable[[Any], None], **more: Any) -> Task:
-        """Run a long job whose progress the status bar shows; what goes wrong becomes a notice."""
-        return self._run(self.measuring, job, args, label, on_done, more)
+    def run_long(self, receiver: QObject, job: jobs.Job, *args: Any, label: str, **more: Any) -> Task:
+        """Run a long job, as `Lane.run` does; the status bar shows how far it is, a notice what went wrong."""
+        return self._run(self.measuring, receiver, job, *args, label=label, **more)
 
-    def glance(self, job: jobs.Job, *args: Any, label: str, on_done: Callable[[Any], None], **more: Any) -> Task:
-        """Run a short job whose result is shown at once; what goes wrong becomes a notice."""
-        return self._run(self.quick, job, args, label, on_done, more)
+    def run_quick(self, receiver: QObject, job: jobs.Job, *args: Any, label: str, **more: Any) -> Task:
+        """Run a short job whose result is shown at once, as `Lane.run` does; a notice tells what went wrong."""
+        return self._run(self.quick, receiver, job, *args, label=label, **more)
 
-    def _run(
-        self,
-        lane: Lane,
-        job: jobs.Job,
-        args: tuple[Any, ...],
-        label: str,
-        on_done: Callable[[Any], None],
-        more: dict[str, Any],
-    ) -> Task:
-        on_failed = more.pop("on_failed", None)
-
+    def _run(self, lane: Lane, *args: Any, on_failed: Callable[[Any], None] | None = None, **more: Any) -> Task:
         def failed(problem: Any) -> None:
-            self.notices.error(sentence(problem), details(problem))
+            self.notices.failed(problem)
             if on_failed is not None:
                 on_failed(problem)
 
-        return lane.run(job, *args, label=label, on_done=on_done, on_failed=failed, **more)
+        return lane.run(*args, on_failed=failed, **more)
 
     def close(self) -> None:
-        """End all processes."""
+        """End all processes, without waiting for them."""
         for lane in (self.measuring, self.quick, self.live):
             lane.close()
+
+    def wait_until_closed(self) -> None:
+        """Wait for ended processes to be gone: after the event loop has ended."""
+        for lane in (self.measuring, self.quick, self.live):
+            lane.wait_until_closed()
 
 
 def make_bench(settings: AppSettings | None = None) -> Bench:

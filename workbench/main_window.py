@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any
 
-from PySide6.QtCore import QCoreApplication, QEvent, QSize, Qt
-from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent
+from PySide6.QtCore import QEvent, QSize, Qt, QTimer, QUrl
+from PySide6.QtGui import QCloseEvent, QDesktopServices, QDragEnterEvent, QDropEvent
 from PySide6.QtWidgets import (
+    QApplication,
     QDockWidget,
     QHBoxLayout,
     QLabel,
@@ -19,19 +22,23 @@ from PySide6.QtWidgets import (
 )
 
 from workbench.bench import Bench
+from workbench.language import tr
 from workbench.menus import Menus
 from workbench.notices import Notice
 from workbench.pages.presenter import StepPresenter
-from workbench.pages.project_doors import ProjectDoors
+from workbench.pages.project.actions import ProjectActions
+from workbench.pages.project.double_click import choose_double_click
+from workbench.pages.project.welcome_page import WelcomePage
 from workbench.pages.step_page import StepPage
-from workbench.pages.welcome_page import WelcomePage
-from workbench.remaining import Remaining, in_words
+from workbench.refresh import Refresh
 from workbench.steps import STEPS
-from workbench.tasks import Task
-from workbench.theme import icon
-from workbench.views.notice_list import Banner, NoticeList
-from workbench.views.step_rail import StepRail
+from workbench.theme import apply_theme, icon
+from workbench.views.lists.notice_list import Banner, NoticeList
+from workbench.views.lists.step_rail import StepRail
+from workbench.views.manual import ManualWindow
 from workbench.views.task_bar import TaskBar
+from workbench.work.remaining import Remaining, in_words
+from workbench.work.tasks import Task
 
 
 class MainWindow(QMainWindow):
@@ -40,23 +47,24 @@ class MainWindow(QMainWindow):
     def __init__(self, bench: Bench) -> None:
         super().__init__()
         self.bench, self.model = bench, bench.model
+        self._refreshing = Refresh(self._refresh, self)
         self.setWindowTitle("Trisect")
         self.setMinimumHeight(680)  # how wide it must be, its pages know
         self.resize(1280, 800)
         self.setAcceptDrops(True)
-        self.doors = ProjectDoors(bench, self)
+        self.projects = ProjectActions(bench, self)
         self.presenters: dict[str, StepPresenter] = {step.name: step.presenter(bench) for step in STEPS}
         self.pages: dict[str, StepPage] = {step.name: step.page(self.presenters[step.name]) for step in STEPS}
-        self.rail = StepRail([(step.name, _step(step.title), step.icon) for step in STEPS])
+        self.rail = StepRail([(step.name, tr(step.title), step.icon) for step in STEPS])
         self.banner, self.notice_list, self.task_bar = Banner(), NoticeList(), TaskBar()
-        self.welcome = WelcomePage(self.doors)
+        self.welcome = WelcomePage(self.projects)
         self._title, self._help = QLabel(), QLabel()
         self._title.setObjectName("title")
         self._help.setObjectName("muted")
         self.missing = QLabel()
         self.missing.setObjectName("muted")
-        self.back = QPushButton(self.tr("Back"))
-        self.next = QPushButton(self.tr("Next"))
+        self.back = QPushButton(tr("Back"))
+        self.next = QPushButton(tr("Next"))
         self.next.setProperty("primary", True)
         self._stack, self._pages = QStackedWidget(), QStackedWidget()
         for page in self.pages.values():
@@ -67,9 +75,11 @@ class MainWindow(QMainWindow):
         self._current = ""
         self._task: Task | None = None
         self._remaining = Remaining({})
+        self._left = False
         self.log_file: Path | None = None
         self.messages = self._messages_dock()
-        self.menus = Menus(self)
+        self.manual = ManualWindow(self)
+        self.menus = Menus(self, bench.settings, self.model.undo_stack, self._commands(), self.projects.open_project)
         self._connect()
         self._dress()
         if layout := bench.settings.layout("window"):
@@ -91,8 +101,8 @@ class MainWindow(QMainWindow):
         self._pages.setCurrentWidget(self.pages[name])
         self.rail.set_current(name)
         step = next(step for step in STEPS if step.name == name)
-        self._title.setText(_step(step.title))
-        self._help.setText(_step(step.help))
+        self._title.setText(tr(step.title))
+        self._help.setText(tr(step.help))
         self.presenters[name].entered()
         self._refresh()
 
@@ -117,18 +127,36 @@ class MainWindow(QMainWindow):
             self.task_bar.cancelling()
             self._task.cancel()
 
-    def closeEvent(self, event: QCloseEvent) -> None:
-        if not self.doors.may_leave([presenter.busy() for presenter in self.presenters.values()]):
-            event.ignore()
-            return
-        for presenter in self.presenters.values():
-            presenter.stop()
+    def apply_theme(self, name: str) -> None:
+        """Dress the whole program: "light", "dark" or "system"."""
+        app = QApplication.instance()
+        if isinstance(app, QApplication):
+            apply_theme(app, name)
+
+    def follow_system(self, *_: Any) -> None:
+        """The system has changed between light and dark."""
+        self.apply_theme(self.bench.settings.theme)
+
+    def leave(self) -> bool:
+        """Ask what must be asked, stop what runs, save, and close; False if the window stays, or is closed later."""
+        if not self._left:
+            self.projects.leave(self._leave_now)
+        return self._left
+
+    def _leave_now(self) -> None:
         self.bench.settings.keep_layout("window", self.saveGeometry())
         self.bench.settings.flush()
         for page in self.pages.values():
             page.close()
         self.bench.close()
-        event.accept()
+        self._left = True
+        self.close()
+
+    def closeEvent(self, event: QCloseEvent) -> None:
+        """Close once `leave` has said so; it asks in the next turn, as no question may come up within this event."""
+        event.setAccepted(self._left)
+        if not self._left:
+            QTimer.singleShot(0, self, self.leave)
 
     def changeEvent(self, event: QEvent) -> None:
         super().changeEvent(event)
@@ -142,7 +170,7 @@ class MainWindow(QMainWindow):
     def dropEvent(self, event: QDropEvent) -> None:
         path = _dropped(event)
         if path is not None:
-            self.doors.open_dropped(path)
+            self.projects.open_dropped(path)
 
     def _wizard(self) -> QWidget:
         head = QVBoxLayout()
@@ -172,16 +200,16 @@ class MainWindow(QMainWindow):
         return whole
 
     def _messages_dock(self) -> QDockWidget:
-        dock = QDockWidget(self.tr("Messages"), self)
+        dock = QDockWidget(tr("Messages"), self)
         dock.setObjectName("messages")
         dock.setWidget(self.notice_list)
         dock.setFeatures(QDockWidget.DockWidgetFeature.DockWidgetClosable)
         self.addDockWidget(Qt.DockWidgetArea.BottomDockWidgetArea, dock)
         dock.hide()
-        self._messages_button = QPushButton(self.tr("Messages"))
+        self._messages_button = QPushButton(tr("Messages"))
         self._messages_button.setFlat(True)
         self._messages_button.setIconSize(QSize(14, 14))
-        self._messages_button.clicked.connect(lambda: dock.setVisible(not dock.isVisible()))
+        self._messages_button.clicked.connect(self._toggle_messages)
         self.statusBar().addPermanentWidget(self.task_bar)
         self.statusBar().addPermanentWidget(self._messages_button)
         return dock
@@ -190,17 +218,46 @@ class MainWindow(QMainWindow):
         self._messages_button.setIcon(icon("mdi6.message-text-outline"))
         self.back.setIcon(icon("mdi6.chevron-left"))
 
+    def _commands(self) -> Mapping[str, Callable[[], object]]:
+        """What the entries of the menus do, by their names."""
+        projects = self.projects
+        return {
+            "new": projects.new_project,
+            "open": projects.choose_project,
+            "open set": projects.choose_set,
+            "sample": projects.open_sample,
+            "simulated": projects.try_simulated,
+            "save": projects.save,
+            "copy": projects.copy.save_copy,
+            "close": projects.close_project,
+            "quit": self.leave,
+            **{name: partial(self.presenter_action, name) for name in ("run", "accept", "live", "capture")},
+            "cancel": self.cancel_task,
+            "back": partial(self.go, -1),
+            "next": partial(self.go, 1),
+            **{f"step {step.name}": partial(self.go_to, step.name) for step in STEPS},
+            "messages": self._toggle_messages,
+            "manual": self._open_manual,
+            "double click": partial(choose_double_click, self, self.bench.notices),
+            "log": self._open_log,
+        }
+
+    def _open_manual(self) -> None:
+        """The manual, at the page of the step one is at."""
+        page = next((step.manual for step in STEPS if step.name == self._current), "index")
+        self.manual.open_page(page)
+
     def _connect(self) -> None:
         self.rail.chosen.connect(self.go_to)
         self.back.clicked.connect(lambda: self.go(-1))
         self.next.clicked.connect(lambda: self.go(1))
         self.model.opened.connect(self._project_opened)
-        self.model.changed.connect(self._refresh)
-        self.model.results_changed.connect(self._refresh)
-        self.model.modified.connect(lambda _: self._show_name())
-        self.model.failed.connect(lambda text: self.bench.notices.error(text))
+        self.model.changed.connect(self._refreshing.soon)
+        self.model.results_changed.connect(self._refreshing.soon)
+        self.model.modified.connect(self._show_name)
+        self.model.failed.connect(self.bench.notices.failed)
         for presenter in self.presenters.values():
-            presenter.changed.connect(self._refresh)
+            presenter.changed.connect(self._refreshing.soon)
             presenter.go_to.connect(self.go_to)
         self.bench.notices.added.connect(self._on_notice)
         lane = self.bench.measuring
@@ -208,7 +265,7 @@ class MainWindow(QMainWindow):
         lane.task_ended.connect(self._task_ended)
         self.task_bar.cancel_pressed.connect(self.cancel_task)
         self.task_bar.tick.connect(self._show_progress)
-        self.doors.go_to.connect(self.go_to)
+        self.projects.go_to.connect(self.go_to)
 
     def _project_opened(self) -> None:
         self.banner.hide()
@@ -223,8 +280,8 @@ class MainWindow(QMainWindow):
         self._show_name()
         self._refresh()
 
-    def _refresh(self, *_: Any) -> None:
-        self.menus.refresh()
+    def _refresh(self) -> None:
+        self.menus.refresh(is_open=self.model.is_open)
         if not self.model.is_open:
             return
         states = self.model.states
@@ -233,16 +290,23 @@ class MainWindow(QMainWindow):
         missing = self.presenters[self._current].blocker() if self._current else ""
         self.next.setEnabled(not missing and not last)
         self.next.setVisible(not last)
-        self.next.setToolTip(missing or self.tr("Go on to the next step"))
+        self.next.setToolTip(missing or tr("Go on to the next step"))
         self.missing.setText("" if last else missing)
         self.back.setEnabled(self._current != STEPS[0].name)
 
-    def _show_name(self) -> None:
+    def _toggle_messages(self) -> None:
+        self.messages.setVisible(not self.messages.isVisible())
+
+    def _open_log(self) -> None:
+        if self.log_file is not None:
+            QDesktopServices.openUrl(QUrl.fromLocalFile(str(self.log_file.parent)))
+
+    def _show_name(self, *_: Any) -> None:
         if not self.model.is_open:
             self.setWindowTitle("Trisect")
             self.setWindowModified(False)
             return
-        name = self.model.project.info.name or self.tr("Unnamed project")
+        name = self.model.project.info.name or tr("Unnamed project")
         self.setWindowTitle(f"{name}[*] – Trisect")
         self.setWindowModified(self.model.is_modified)
 
@@ -254,14 +318,14 @@ class MainWindow(QMainWindow):
             )
         else:
             self.statusBar().showMessage(notice.text, 8000)
-        self._messages_button.setText(self.tr("Messages ({0})").format(self.notice_list.count()))
+        self._messages_button.setText(tr("Messages ({n})", n=self.notice_list.count()))
 
     def _task_started(self, task: Task) -> None:
         self._task = task
         self._stage = ""
         self._remaining = Remaining(self.bench.settings.stage_seconds(task.label))
         task.progressed.connect(self._task_progressed)
-        task.done.connect(lambda _: self.bench.settings.keep_stage_seconds(task.label, self._remaining.finish()))
+        task.done.connect(self._task_done)
         self.task_bar.begin(task.label)
 
     def _task_progressed(self, stage: str, done: int, total: int) -> None:
@@ -273,8 +337,12 @@ class MainWindow(QMainWindow):
         if self._task is None or self._task.cancelling:
             return
         left = self._remaining.left
-        words = self.tr("about {0} left").format(in_words(left)) if left is not None else ""
-        self.task_bar.progress(self._task.label, self._stage, self._remaining.share, words)
+        words = tr("about {time} left", time=in_words(left)) if left is not None else ""
+        self.task_bar.progress(self._task.label, tr(self._stage), self._remaining.share, words)
+
+    def _task_done(self, _: Any) -> None:
+        if self._task is not None:
+            self.bench.settings.keep_stage_seconds(self._task.label, self._remaining.finish())
 
     def _task_ended(self, task: Task) -> None:
         if task is self._task:
@@ -285,7 +353,3 @@ class MainWindow(QMainWindow):
 def _dropped(event: QDragEnterEvent | QDropEvent) -> Path | None:
     urls = [url for url in event.mimeData().urls() if url.isLocalFile()]
     return Path(urls[0].toLocalFile()) if urls else None
-
-
-def _step(text: str) -> str:
-    return QCoreApplication.translate("Steps", text)

@@ -1,109 +1,147 @@
-"""Menus and keys of the window, made from the table of shortcuts."""
+"""Menus and keys of the window, made from the table of shortcuts and from what the window can do."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import partial
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Mapping
+from pathlib import Path
 
-from PySide6.QtCore import QCoreApplication, QUrl
-from PySide6.QtGui import QAction, QDesktopServices, QKeySequence
-from PySide6.QtWidgets import QMenu, QMessageBox
+from PySide6.QtCore import QObject
+from PySide6.QtGui import QAction, QKeySequence, QUndoStack
+from PySide6.QtWidgets import QMainWindow, QMenu, QMessageBox
 
 from core import __version__
-from workbench.pages.double_click import choose_double_click
-from workbench.settings import THEMES
-from workbench.shortcuts import KEYS, SHORTCUTS
+from core.messages import label
+from workbench.language import tr
+from workbench.refresh import Refresh
+from workbench.settings import THEMES, AppSettings
 from workbench.steps import STEPS
-from workbench.views.shortcut_list import ShortcutList
+from workbench.views.lists.shortcut_list import ShortcutList
 
-if TYPE_CHECKING:
-    from workbench.main_window import MainWindow
+SHORTCUTS: tuple[tuple[str, str, str], ...] = (
+    ("new", "Ctrl+N", label("New project")),
+    ("open", "Ctrl+O", label("Open project")),
+    ("save", "Ctrl+S", label("Save project")),
+    ("close", "Ctrl+W", label("Close project")),
+    ("quit", "Ctrl+Q", label("Quit")),
+    ("undo", "Ctrl+Z", label("Undo")),
+    ("redo", "Ctrl+Shift+Z", label("Redo")),
+    ("back", "Alt+Left", label("Back")),
+    ("next", "Alt+Right", label("Next")),
+    ("step", "Ctrl+1 … Ctrl+6", label("Go to a step")),
+    ("run", "Ctrl+R", label("Do this step: calibrate, measure, make the report")),
+    ("accept", "Ctrl+Return", label("Accept a calibration")),
+    ("live", "Ctrl+L", label("Start or stop the live source")),
+    ("capture", "Ctrl+Space", label("Take a picture from the live source")),
+    ("cancel", "Ctrl+.", label("Cancel the running job")),
+    ("messages", "Ctrl+M", label("Show or hide the messages")),
+    ("theme", "Ctrl+T", label("Light or dark theme")),
+    ("full", "F11", label("Full screen")),
+    ("manual", "F1", label("The manual, at the page of this step")),
+    ("keys", "?", label("This list")),
+    ("fit", "F", label("Picture: show the whole picture")),
+    ("one", "1", label("Picture: one screen pixel a picture pixel")),
+    ("views", "1 … 7, R", label("3D view: standard views, fit")),
+    ("frames", "Left, Right", label("Scan: go through the frames")),
+    ("polygon", "Return, Esc", label("Drawing a region: close it, give it up")),
+)
+"""Every key the window knows: name, key and meaning. The list under ? shows them, the actions are made from them."""
+
+KEYS = {name: key for name, key, _ in SHORTCUTS}
+
+NEED_A_PROJECT = ("save", "copy", "close", "back", "next", "run", "accept", "live", "capture")
 
 
-class Menus:
-    """Builds the menu bar of `window` and keeps its entries true."""
+class Menus(QObject):
+    """The menu bar of a window, and the keys of its entries.
 
-    def __init__(self, window: MainWindow) -> None:
-        self._window = window
+    Parameters
+    ----------
+    window
+        Has the menu bar.
+    commands
+        What the window does, by the name of the entry: "new", "open", … as in `_fill`; "step NAME" goes to a step.
+    open_project
+        Opens one of the recent projects.
+    """
+
+    def __init__(
+        self,
+        window: QMainWindow,
+        settings: AppSettings,
+        undo_stack: QUndoStack,
+        commands: Mapping[str, Callable[[], object]],
+        open_project: Callable[[Path], object],
+    ) -> None:
+        super().__init__(window)
+        self._window, self._settings, self._commands, self._open_project = window, settings, commands, open_project
         self.actions: dict[str, QAction] = {}
-        self._recent = QMenu(window.tr("Open &recent"), window)
-        self._build()
-        window.bench.settings.recent_changed.connect(self._fill_recent)
+        self._recent = QMenu(tr("Open &recent"), window)
+        self._fill(undo_stack)
+        # In the next turn: the entry that opens a project is deleted when that project goes to the top of the list.
+        self._recent_changed = Refresh(self._fill_recent, self)
+        settings.recent_changed.connect(self._recent_changed.soon)
         self._fill_recent()
-        self.refresh()
+        self.refresh(is_open=False)
 
-    def refresh(self) -> None:
-        """Grey what makes no sense now."""
-        window = self._window
-        is_open = window.model.is_open
-        for name in ("save", "copy", "close", "back", "next", "run", "accept", "live", "capture"):
+    def refresh(self, *, is_open: bool) -> None:
+        """Grey what makes no sense without a project."""
+        for name in (*NEED_A_PROJECT, *(f"step {step.name}" for step in STEPS)):
             self.actions[name].setEnabled(is_open)
-        for step in STEPS:
-            self.actions[f"step {step.name}"].setEnabled(is_open)
 
-    def _build(self) -> None:
-        w = self._window
-        bar = w.menuBar()
-        file = bar.addMenu(w.tr("&File"))
-        self._add(file, "new", w.tr("&New project …"), w.doors.new_project)
-        self._add(file, "open", w.tr("&Open project …"), w.doors.choose_project)
+    def _fill(self, undo_stack: QUndoStack) -> None:
+        bar = self._window.menuBar()
+        file = bar.addMenu(tr("&File"))
+        self._add(file, "new", tr("&New project …"))
+        self._add(file, "open", tr("&Open project …"))
         file.addMenu(self._recent)
-        self._add(file, "open set", w.tr("New project from a recording &set …"), w.doors.choose_set)
+        self._add(file, "open set", tr("New project from a recording &set …"))
         file.addSeparator()
-        self._add(file, "sample", w.tr("Open sam&ple"), w.doors.open_sample)
-        self._add(file, "simulated", w.tr("&Try with the simulated rig"), w.doors.try_simulated)
+        self._add(file, "sample", tr("Open sam&ple"))
+        self._add(file, "simulated", tr("&Try with the simulated rig"))
         file.addSeparator()
-        self._add(file, "save", w.tr("&Save"), w.doors.save)
-        self._add(file, "copy", w.tr("Save a c&opy …"), w.doors.copy.save_copy)
-        self._add(file, "close", w.tr("&Close project"), w.doors.close_project)
-        self._add(file, "quit", w.tr("&Quit"), w.close)
+        self._add(file, "save", tr("&Save"))
+        self._add(file, "copy", tr("Save a c&opy …"))
+        self._add(file, "close", tr("&Close project"))
+        self._add(file, "quit", tr("&Quit"))
 
-        edit = bar.addMenu(w.tr("&Edit"))
-        stack = w.model.undo_stack
+        edit = bar.addMenu(tr("&Edit"))
         for name, action in (
-            ("undo", stack.createUndoAction(w, w.tr("Undo"))),
-            ("redo", stack.createRedoAction(w, w.tr("Redo"))),
+            ("undo", undo_stack.createUndoAction(self, tr("Undo"))),
+            ("redo", undo_stack.createRedoAction(self, tr("Redo"))),
         ):
             action.setShortcut(QKeySequence(KEYS[name]))
             edit.addAction(action)
             self.actions[name] = action
 
-        step = bar.addMenu(w.tr("&Step"))
-        self._add(step, "run", w.tr("&Do this step"), lambda: w.presenter_action("run"))
-        self._add(step, "accept", w.tr("&Accept"), lambda: w.presenter_action("accept"))
-        self._add(step, "live", w.tr("&Live source on or off"), lambda: w.presenter_action("live"))
-        self._add(step, "capture", w.tr("Take a &picture"), lambda: w.presenter_action("capture"))
-        self._add(step, "cancel", w.tr("&Cancel the running job"), w.cancel_task)
+        step = bar.addMenu(tr("&Step"))
+        self._add(step, "run", tr("&Do this step"))
+        self._add(step, "accept", tr("&Accept"))
+        self._add(step, "live", tr("&Live source on or off"))
+        self._add(step, "capture", tr("Take a &picture"))
+        self._add(step, "cancel", tr("&Cancel the running job"))
         step.addSeparator()
-        self._add(step, "back", w.tr("&Back"), lambda: w.go(-1))
-        self._add(step, "next", w.tr("&Next"), lambda: w.go(1))
+        self._add(step, "back", tr("&Back"))
+        self._add(step, "next", tr("&Next"))
         for number, entry in enumerate(STEPS, start=1):
-            title = QCoreApplication.translate("Steps", entry.title)
-            action = self._add(step, f"step {entry.name}", title, partial(w.go_to, entry.name))
-            action.setShortcut(QKeySequence(f"Ctrl+{number}"))
+            self._add(step, f"step {entry.name}", tr(entry.title)).setShortcut(QKeySequence(f"Ctrl+{number}"))
 
-        view = bar.addMenu(w.tr("&View"))
-        self._add(view, "messages", w.tr("&Messages"), lambda: w.messages.setVisible(not w.messages.isVisible()))
-        self._add(view, "theme", w.tr("Light or dark &theme"), self._next_theme)
-        self._add(view, "full", w.tr("&Full screen"), self._full_screen)
+        view = bar.addMenu(tr("&View"))
+        self._add(view, "messages", tr("&Messages"))
+        self._add(view, "theme", tr("Light or dark &theme"), self._next_theme)
+        self._add(view, "full", tr("&Full screen"), self._full_screen)
 
-        help_menu = bar.addMenu(w.tr("&Help"))
-        keys = self._add(help_menu, "help", w.tr("&Keys"), self._show_keys)
-        keys.setShortcuts([QKeySequence("F1"), QKeySequence("?")])
-        self._add(
-            help_menu,
-            "double click",
-            w.tr("Open projects by &double click …"),
-            lambda: choose_double_click(w, w.bench.notices),
-        )
-        self._add(help_menu, "log", w.tr("Open the &log folder"), self._open_log)
-        self._add(help_menu, "about", w.tr("&About Trisect"), self._about)
+        help_menu = bar.addMenu(tr("&Help"))
+        self._add(help_menu, "manual", tr("&Manual"))
+        self._add(help_menu, "keys", tr("&Keys"), self._show_keys)
+        self._add(help_menu, "double click", tr("Open projects by &double click …"))
+        self._add(help_menu, "log", tr("Open the &log folder"))
+        self._add(help_menu, "about", tr("&About Trisect"), self._about)
 
-    def _add(self, menu: QMenu, name: str, text: str, do: Callable[[], object]) -> QAction:
-        action = QAction(text, self._window)
+    def _add(self, menu: QMenu, name: str, text: str, do: Callable[[], object] | None = None) -> QAction:
+        action = QAction(text, self)
         if name in KEYS:
             action.setShortcut(QKeySequence(KEYS[name]))
+        do = do or self._commands[name]
         action.triggered.connect(lambda: do())
         menu.addAction(action)
         self.actions[name] = action
@@ -111,35 +149,29 @@ class Menus:
 
     def _fill_recent(self) -> None:
         self._recent.clear()
-        for path in self._window.bench.settings.recent:
+        for path in self._settings.recent:
             action = self._recent.addAction(path.name)
             action.setToolTip(str(path))
-            action.triggered.connect(lambda _=False, p=path: self._window.doors.open_project(p))
+            action.triggered.connect(lambda _=False, path=path: self._open_project(path))
         self._recent.setEnabled(not self._recent.isEmpty())
 
     def _next_theme(self) -> None:
-        settings = self._window.bench.settings
-        settings.theme = THEMES[2] if settings.theme != THEMES[2] else THEMES[1]
+        self._settings.theme = THEMES[2] if self._settings.theme != THEMES[2] else THEMES[1]
 
     def _full_screen(self) -> None:
-        w = self._window
-        w.showNormal() if w.isFullScreen() else w.showFullScreen()
+        if self._window.isFullScreen():
+            self._window.showNormal()
+        else:
+            self._window.showFullScreen()
 
     def _show_keys(self) -> None:
-        ShortcutList(
-            [(key, QCoreApplication.translate("Shortcuts", meaning)) for _, key, meaning in SHORTCUTS], self._window
-        ).exec()
-
-    def _open_log(self) -> None:
-        path = self._window.log_file
-        if path is not None:
-            QDesktopServices.openUrl(QUrl.fromLocalFile(str(path.parent)))
+        ShortcutList([(key, tr(meaning)) for _, key, meaning in SHORTCUTS], self._window).exec()
 
     def _about(self) -> None:
-        w = self._window
-        text = w.tr(
-            "<b>Trisect {0}</b><p>Measures parts with one camera, a fixed three-line laser and a single line moved by "
-            "hand.</p><p>Method: Sun et al., Sensors 2023, 23, 13, "
-            "<a href='https://doi.org/10.3390/s23010013'>doi:10.3390/s23010013</a>.</p><p>MIT licence.</p>"
-        ).format(__version__)
-        QMessageBox.about(w, w.tr("About Trisect"), text)
+        text = tr(
+            "<b>Trisect {version}</b><p>Measures parts with one camera, a fixed three-line laser and a single line "
+            "moved by hand.</p><p>Method: Sun et al., Sensors 2023, 23, 13, "
+            "<a href='https://doi.org/10.3390/s23010013'>doi:10.3390/s23010013</a>.</p><p>MIT licence.</p>",
+            version=__version__,
+        )
+        QMessageBox.about(self._window, tr("About Trisect"), text)

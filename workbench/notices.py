@@ -22,6 +22,9 @@ from typing import Any
 import platformdirs
 from PySide6.QtCore import QMessageLogContext, QObject, QtMsgType, Signal, qInstallMessageHandler
 
+from workbench.language import text_of
+from workbench.work.worker import Failure
+
 log = logging.getLogger("trisect.workbench")
 
 KEPT = 500
@@ -77,6 +80,10 @@ class Notices(QObject):
     def error(self, text: str, details: str = "") -> None:
         """Something that kept a job from being done."""
         self.add(Level.ERROR, text, details)
+
+    def failed(self, problem: Exception | Failure) -> None:
+        """What kept a job from being done, as it was raised."""
+        self.error(text_of(problem), problem.details if isinstance(problem, Failure) else "")
 
     def raised(self, kind: type[BaseException], value: BaseException, trace: TracebackType | None) -> None:
         """An exception nobody caught, on whatever thread: one notice, and the program goes on."""

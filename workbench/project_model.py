@@ -2,26 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
 
 from PySide6.QtCore import QObject, QTimer, Signal
-from PySide6.QtGui import QUndoStack
+from PySide6.QtGui import QUndoCommand, QUndoStack
 
 from core.errors import InputError
-from core.files.project import (
-    Done,
-    Project,
-    ProjectFile,
-    new_project,
-    read_project,
-    recoverable,
-    remove_autosave,
-    write_autosave,
-    write_project,
-)
-from workbench.edits import Edit
+from core.files.project.data import Done, Project, ProjectFile, new_project
+from core.files.project.folder import read_project, recoverable, remove_autosave, write_autosave, write_project
+from core.messages import Message
 from workbench.step_state import StepState, step_states
 
 CALIBRATIONS = {"camera": "camera", "planes": "fan"}
@@ -31,27 +22,72 @@ AUTOSAVE_MS = 1000
 """An edit is on disk at most so long after it was made."""
 
 
+class Edit(QUndoCommand):
+    """One change of the project by the user: the whole project is swapped, so nothing can be half undone.
+
+    Edits with the same `merge_key` in a row become one.
+
+    Parameters
+    ----------
+    label
+        What the Undo menu calls it: "leave out view03".
+    before, after
+        The whole project before and after.
+    show
+        Called with the project to be in force.
+    """
+
+    def __init__(
+        self, label: str, before: Project, after: Project, show: Callable[[Project], None], merge_key: str = ""
+    ) -> None:
+        super().__init__(label)
+        self.before, self.after, self.merge_key = before, after, merge_key
+        self._show = show
+
+    def redo(self) -> None:
+        self._show(self.after)
+
+    def undo(self) -> None:
+        self._show(self.before)
+
+    def id(self) -> int:
+        return hash(self.merge_key) & 0x3FFFFFFF if self.merge_key else -1
+
+    def mergeWith(self, other: QUndoCommand) -> bool:
+        if not isinstance(other, Edit) or not self.merge_key or other.merge_key != self.merge_key:
+            return False
+        self.after = other.after
+        if self.after == self.before:
+            self.setObsolete(True)
+        return True
+
+
 class ProjectModel(QObject):
     """Project (what the user decided; undoable) and results (what was measured; facts, never undone)."""
 
     opened = Signal()
     leaving = Signal()
-    """The project is about to be saved and closed: finish what must be in it."""
+    """The project is about to be saved and closed: stop what records. It is closed once `recordings_over` has come."""
+
+    recordings_over = Signal()
+    """The last of the recordings that were going on is over, and in the project."""
 
     changed = Signal(object, object)
     results_changed = Signal()
     modified = Signal(bool)
-    failed = Signal(str)
+    failed = Signal(object)
+    """The InputError that kept an autosave from being written."""
 
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self.folder: Path | None = None
         self._file = ProjectFile(new_project(""))
         self._saved: ProjectFile | None = None
-        self._told = ""
+        self._complaint = ""
         self._states_of: ProjectFile | None = None
         self._states: Mapping[str, StepState] = {}
         self._accepted: dict[tuple[str, str], Done] = {}
+        self._recording: set[QObject] = set()
         self.undo_stack = QUndoStack(self)
         self._autosave = QTimer(self)
         self._autosave.setSingleShot(True)
@@ -86,6 +122,11 @@ class ProjectModel(QObject):
         return self.folder is not None
 
     @property
+    def is_recording(self) -> bool:
+        """Whether anything is being recorded for the project."""
+        return bool(self._recording)
+
+    @property
     def is_modified(self) -> bool:
         """Whether project.json says something else."""
         return self.is_open and self._file != self._saved
@@ -99,7 +140,11 @@ class ProjectModel(QObject):
             If there is a project already, or nothing can be written there.
         """
         if (folder / "project.json").exists():
-            raise InputError("there is a project already", where=folder, todo="choose another name, or open it")
+            raise InputError(
+                Message("project.there_already", "there is a project already"),
+                where=folder,
+                todo=Message("project.choose_name", "choose another name, or open it"),
+            )
         file = ProjectFile(project)
         write_project(folder, file)
         self._take(folder, file, saved=file)
@@ -147,6 +192,16 @@ class ProjectModel(QObject):
         self._touched()
         self.results_changed.emit()
 
+    def recording_begins(self, who: QObject) -> None:
+        """`who` records from now on, until `recording_ends`."""
+        self._recording.add(who)
+
+    def recording_ends(self, who: QObject) -> None:
+        """What `who` recorded is in the project."""
+        self._recording.discard(who)
+        if not self._recording:
+            self.recordings_over.emit()
+
     def save(self) -> None:
         """Write project.json; the last five versions are kept.
 
@@ -174,11 +229,11 @@ class ProjectModel(QObject):
                 write_autosave(self.folder, self._file)
             else:
                 remove_autosave(self.folder)
-            self._told = ""
+            self._complaint = ""
         except InputError as error:
-            if str(error) != self._told:  # said once, not at every edit
-                self._told = str(error)
-                self.failed.emit(self._told)
+            if str(error) != self._complaint:  # said once, not at every edit
+                self._complaint = str(error)
+                self.failed.emit(error)
 
     def _show(self, project: Project) -> None:
         before = self.project
@@ -206,7 +261,7 @@ class ProjectModel(QObject):
             self.modified.emit(self.is_modified)
 
     def _take(self, folder: Path | None, file: ProjectFile, saved: ProjectFile | None) -> None:
-        self.folder, self._file, self._saved, self._told = folder, file, saved, ""
+        self.folder, self._file, self._saved, self._complaint = folder, file, saved, ""
         self.undo_stack.clear()
         self._accepted.clear()
         for step, done in file.results.items():

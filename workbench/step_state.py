@@ -6,10 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 
-from PySide6.QtCore import QCoreApplication
-
-from core.files.project import Done, Project
-from core.files.project_keys import changed, rests_on
+from core.files.project.data import Done, Project
+from core.files.project.keys import changed, rests_on
+from core.messages import label
+from workbench.language import tr
 
 ORDER = ("project", "camera", "planes", "scan", "inspect", "report")
 """The steps in the order of work."""
@@ -56,8 +56,8 @@ def step_states(project: Project, results: Mapping[str, Done]) -> dict[str, Step
 
 def _project_state(project: Project) -> StepState:
     if project.info.name.strip():
-        return StepState(State.DONE, _tr("The project has a name; everything else here is for the report."))
-    return StepState(State.READY, _tr("Give the project a name."))
+        return StepState(State.DONE, tr("The project has a name; everything else here is for the report."))
+    return StepState(State.READY, tr("Give the project a name."))
 
 
 def _state(step: str, project: Project, results: Mapping[str, Done], before: Mapping[str, StepState]) -> StepState:
@@ -66,27 +66,23 @@ def _state(step: str, project: Project, results: Mapping[str, Done], before: Map
         why = list(changed(done.rests_on, rests_on(step, project, results)))
         stale = [other for other in STALE_WITH[step] if before[other].state is State.OUTDATED]
         if why:
-            return StepState(State.OUTDATED, _tr("Out of date: changed since: {0}.").format(", ".join(why)))
+            return StepState(State.OUTDATED, tr("Out of date: changed since: {what}.", what=", ".join(why)))
         if stale:
-            names = ", ".join(_NAMES[need]() for need in stale)
-            return StepState(State.OUTDATED, _tr("Out of date, because this is: {0}.").format(names))
+            names = ", ".join(tr(_NAMES[need]) for need in stale)
+            return StepState(State.OUTDATED, tr("Out of date, because this is: {steps}.", steps=names))
         at = done.at.astimezone().strftime("%Y-%m-%d %H:%M")
-        return StepState(State.DONE, _tr("Done on {0}.").format(at))
+        return StepState(State.DONE, tr("Done on {at}.", at=at))
     missing = [need for need in NEEDS[step] if need not in results]
     if missing:
-        return StepState(State.TODO, _tr("First: {0}.").format(", ".join(_NAMES[need]() for need in missing)))
-    return StepState(State.READY, _tr("Ready to be done."))
-
-
-def _tr(text: str) -> str:
-    return QCoreApplication.translate("StepState", text)
+        return StepState(State.TODO, tr("First: {steps}.", steps=", ".join(tr(_NAMES[need]) for need in missing)))
+    return StepState(State.READY, tr("Ready to be done."))
 
 
 _NAMES = {
-    "project": lambda: _tr("the project"),
-    "camera": lambda: _tr("calibrate the camera"),
-    "planes": lambda: _tr("calibrate the laser planes"),
-    "scan": lambda: _tr("scan"),
-    "inspect": lambda: _tr("inspect"),
-    "report": lambda: _tr("report"),
+    "project": label("the project"),
+    "camera": label("calibrate the camera"),
+    "planes": label("calibrate the laser planes"),
+    "scan": label("scan"),
+    "inspect": label("inspect"),
+    "report": label("report"),
 }

@@ -1,16 +1,22 @@
-"""How the window looks: light and dark palettes, and icons that follow them."""
+"""How the window looks: light and dark palettes, the style sheet, and icons that follow them.
+
+The style sheet (resources/style.qss) takes its colours from the palette, so it is one for both themes. Setting it takes
+half a second with all pages made. A new palette takes a few milliseconds, but Qt keeps the colours of the rules each
+widget has used: `polish_again` has the widgets look them up anew.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
+from importlib.resources import files
+from pathlib import Path
 
 import qtawesome
-from PySide6.QtCore import QRect, QSize, Qt
+import shiboken6
+from PySide6.QtCore import QRect, QSize, Qt, QTimer
 from PySide6.QtGui import QColor, QIcon, QIconEngine, QPainter, QPalette, QPixmap
-from PySide6.QtWidgets import QApplication
-
-from workbench.style_sheet import SHEET, polish_again
+from PySide6.QtWidgets import QApplication, QWidget
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,6 +41,16 @@ LIGHT = Shades(
 DARK = Shades(
     "#1b1f24", "#23282f", "#e3e8ee", "#98a3af", "#39414b", "#5aa2ff", "#0d1117", "#4ac26b", "#e0a52c", "#ff7b72"
 )
+
+
+CHECKED = "#1f6feb"
+"""Behind the white tick: dark enough for it and light enough on the ground of either theme."""
+
+POLISHED_AT_ONCE = 150
+"""Hidden widgets that take their new colours in one go: some 10 ms."""
+
+SOON_MS = 1
+"""After this what else waits has its turn; what is to be done after 0 ms Qt does before anything else."""
 
 
 def shades() -> Shades:
@@ -68,7 +84,10 @@ def apply_colours(app: QApplication, name: str) -> None:
 def apply_sheet(app: QApplication) -> None:
     """The style sheet, if it is not there yet; else its rules take the palette's colours."""
     if not app.styleSheet():
-        app.setStyleSheet(SHEET)
+        folder = files("resources")
+        check = Path(str(folder / "icons" / "check.svg")).as_posix()
+        sheet = (folder / "style.qss").read_text(encoding="utf-8")
+        app.setStyleSheet(sheet.replace("CHECKED", CHECKED).replace("CHECK_ICON", check))
     else:
         polish_again(app)
 
@@ -129,3 +148,54 @@ def _palette(s: Shades) -> QPalette:
     for which in (role.WindowText, role.Text, role.ButtonText):
         palette.setColor(QPalette.ColorGroup.Disabled, which, QColor(s.muted))
     return palette
+
+
+def polish_again(app: QApplication) -> None:
+    """Have all widgets take their colours from the palette of now: those seen at once, the others little by little."""
+    hidden = []
+    for widget in app.allWidgets():
+        if widget.isVisible():
+            _polish(widget)
+        else:
+            hidden.append(widget)
+    _later(app).begin(hidden)
+
+
+def is_polishing(app: QApplication) -> bool:
+    """Whether widgets out of sight still have the colours of before."""
+    return _later(app).isActive()
+
+
+class _Later(QTimer):
+    """Polishes what is out of sight, some at a time; a new palette begins anew."""
+
+    def __init__(self, app: QApplication) -> None:
+        super().__init__(app)
+        self._left: list[QWidget] = []
+        self.setInterval(SOON_MS)
+        self.timeout.connect(self._some)
+
+    def begin(self, widgets: list[QWidget]) -> None:
+        self._left = widgets
+        self.start()
+
+    def _some(self) -> None:
+        now, self._left = self._left[:POLISHED_AT_ONCE], self._left[POLISHED_AT_ONCE:]
+        for widget in now:
+            if shiboken6.isValid(widget):
+                _polish(widget)
+        if not self._left:
+            self.stop()
+
+
+def _later(app: QApplication) -> _Later:
+    """The one of this program; made when first asked for."""
+    found = next((child for child in app.children() if isinstance(child, _Later)), None)
+    return found or _Later(app)
+
+
+def _polish(widget: QWidget) -> None:
+    style = widget.style()
+    style.unpolish(widget)
+    style.polish(widget)
+    widget.update()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from PySide6.QtCore import QObject, Signal
 
-from core.files.project import Project
+from core.files.project.data import Project
 from workbench.bench import Bench
 from workbench.step_state import StepState
 
@@ -44,10 +44,6 @@ class StepPresenter(QObject):
         """One sentence saying what is missing before Next makes sense, or ""."""
         return ""
 
-    def busy(self) -> str:
-        """One sentence saying what would be lost if the window were closed now (a live recording), or ""."""
-        return ""
-
     def opened(self) -> None:
         """Another project is open (or none): forget what belonged to the last one, load what this one has."""
 
@@ -59,9 +55,6 @@ class StepPresenter(QObject):
 
     def left(self) -> None:
         """The page is hidden."""
-
-    def stop(self) -> None:
-        """The window closes: stop what runs, keep what is recorded."""
 
     def _opened(self) -> None:
         self.opened()

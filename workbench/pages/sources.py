@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from core.acquire.source import Step
-from core.files.project import source_folder, stored_source
+from core.files.project.folder import source_folder, stored_source
 from workbench.project_model import ProjectModel
 
 

@@ -10,6 +10,7 @@ from PySide6.QtWidgets import QFrame, QLabel, QScrollArea, QSizePolicy, QSplitte
 from superqt import QCollapsible
 
 from workbench.pages.presenter import StepPresenter
+from workbench.refresh import Refresh
 from workbench.theme import icon
 
 SIDE_WIDTH, NARROWEST_SIDE = 380, 300
@@ -18,10 +19,15 @@ LIST_HEIGHT, LIST_SHARE = 240, 0.36
 
 
 class StepPage(QWidget):
-    """A page of the wizard; `refresh` is called whenever its presenter has changed and the page is visible."""
+    """A page of the wizard.
+
+    `refresh` is called once in the turn of the event loop after its presenter has changed, however often it did, and
+    only while the page is visible; a page that was hidden meanwhile is refreshed when it is shown.
+    """
 
     def __init__(self, presenter: StepPresenter, parent: QWidget | None = None) -> None:
         super().__init__(parent)
+        self.refreshing = Refresh(self._refresh_if_seen, self)
         self.presenter: Any = presenter
         self._stale = True
         self._lists: list[QWidget] = []
@@ -39,7 +45,7 @@ class StepPage(QWidget):
         outer = QVBoxLayout(self)
         outer.setContentsMargins(0, 0, 0, 0)
         outer.addWidget(self.splitter)
-        presenter.changed.connect(self._changed)
+        presenter.changed.connect(self.refreshing.soon)
 
     def refresh(self) -> None:
         """Show what the presenter says now."""
@@ -79,17 +85,21 @@ class StepPage(QWidget):
         for widget in self._lists:
             widget.setMinimumHeight(max(LIST_HEIGHT, round(LIST_SHARE * self.height())))
 
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.PaletteChange:
+            self.refreshing.soon()  # icons and colours are the theme's
+
     def showEvent(self, event: Any) -> None:
         super().showEvent(event)
         if self._stale:
             self._stale = False
             self.refresh()
 
-    def _changed(self) -> None:
-        if self.isVisible():
+    def _refresh_if_seen(self) -> None:
+        self._stale = not self.isVisible()
+        if not self._stale:
             self.refresh()
-        else:
-            self._stale = True
 
     def _side_panel(self) -> QWidget:
         self.side.addStretch(1)

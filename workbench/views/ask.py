@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from PySide6.QtCore import QCoreApplication
 from PySide6.QtWidgets import (
     QDialog,
     QDialogButtonBox,
@@ -18,6 +17,8 @@ from PySide6.QtWidgets import (
     QPushButton,
     QWidget,
 )
+
+from workbench.language import tr
 
 
 def ask(parent: QWidget | None, title: str, text: str, answers: Sequence[str]) -> int:
@@ -114,4 +115,4 @@ class _NameAndFolder(QDialog):
 def file_name(name: str) -> str:
     """A project's name as the name of a folder on every system."""
     kept = "".join("-" if c in '<>:"/\\|?*' or ord(c) < 32 else c for c in name).strip(" .")
-    return kept or QCoreApplication.translate("Ask", "project")
+    return kept or tr("project")

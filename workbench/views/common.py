@@ -1,10 +1,11 @@
-"""Style sheets that depend on the theme, and the frame of what has the focus."""
+"""Small things that many views need: style sheets by theme, the frame of the focus, pictures of widgets, paths."""
 
 from __future__ import annotations
 
-from PySide6.QtGui import QColor, QPainter
-from PySide6.QtWidgets import QWidget
+from PySide6.QtGui import QColor, QGuiApplication, QPainter
+from PySide6.QtWidgets import QFileDialog, QWidget
 
+from workbench.language import tr
 from workbench.theme import shades
 
 
@@ -21,3 +22,21 @@ def draw_focus(widget: QWidget) -> None:
         painter.setPen(QColor(shades().accent))
         painter.drawRect(widget.rect().adjusted(0, 0, -1, -1))
         painter.end()
+
+
+def copy_picture(widget: QWidget) -> None:
+    """Put what it shows on the clipboard."""
+    QGuiApplication.clipboard().setPixmap(widget.grab())
+
+
+def save_picture(widget: QWidget, title: str, name: str) -> None:
+    """Ask for a file and write what it shows; `title` is the question's, `name` the file's at first."""
+    kinds = tr("Picture (*.png)")
+    path, _ = QFileDialog.getSaveFileName(widget, title, name, kinds)
+    if path:
+        widget.grab().save(path)
+
+
+def breakable(path: str) -> str:
+    """A path that can be wrapped after each separator."""
+    return path.replace("/", "/\u200b").replace("\\", "\\\u200b")

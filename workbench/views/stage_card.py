@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
-from PySide6.QtCore import QCoreApplication
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
 
+from workbench.language import tr
 from workbench.theme import icon
 
 
@@ -75,13 +75,9 @@ class CalibrationCard(StageCard):
     ) -> None:
         super().__init__(
             [
-                CardButton("run", _tr("Calibrate"), "mdi6.play", run),
-                CardButton("accept", _tr("Accept"), "mdi6.check-bold", accept),
-                CardButton("reject", _tr("Reject"), "mdi6.close-thick", reject),
+                CardButton("run", tr("Calibrate"), "mdi6.play", run),
+                CardButton("accept", tr("Accept"), "mdi6.check-bold", accept),
+                CardButton("reject", tr("Reject"), "mdi6.close-thick", reject),
             ],
             parent,
         )
-
-
-def _tr(text: str) -> str:
-    return QCoreApplication.translate("CalibrationCard", text)

@@ -8,40 +8,41 @@ nothing is left half written.
 
 from __future__ import annotations
 
-import multiprocessing
-import threading
-import traceback
 from collections import deque
 from collections.abc import Callable, Mapping
-from multiprocessing.connection import Connection
 from typing import Any, cast
 
 from PySide6.QtCore import QObject, QTimer, Signal
 
-from workbench.jobs import Job
-from workbench.problems import ENDED
-from workbench.processes import lean_start
-from workbench.worker import Failure, serve
+from workbench.work import wire
+from workbench.work.jobs import Job
+from workbench.work.process import WorkerProcess
+from workbench.work.wire import Kind
+from workbench.work.worker import ENDED, Failure
 
 STOP_WITHIN_MS = 900
 """A cancelled job that has not stopped by then is ended with its process."""
 
 
 class Task(QObject):
-    """One job on its way; exactly one of `done`, `failed`, `cancelled` comes at last, then `ended`."""
+    """One job on its way, and whom its answer is for.
+
+    One of `done`, `failed`, `cancelled` comes at last, unless the receiver is gone by then; `ended` comes in any case.
+    """
 
     progressed = Signal(str, int, int)
-    told = Signal(object)
+    reported = Signal(object)
     view = Signal(object)
     done = Signal(object)
     failed = Signal(object)
     cancelled = Signal()
     ended = Signal()
 
-    def __init__(self, lane: Lane, number: int, label: str) -> None:
+    def __init__(self, lane: Lane, receiver: QObject, number: int, label: str) -> None:
         super().__init__(lane)
         self.number, self.label = number, label
-        self.cancelling = False
+        self.cancelling = self.unwanted = False
+        receiver.destroyed.connect(self._receiver_gone)
 
     @property
     def lane(self) -> Lane:
@@ -54,19 +55,35 @@ class Task(QObject):
 
     def send(self, command: Any) -> None:
         """Give a command to a running job that takes any."""
-        self.lane.post(self, ("command", command))
+        self.lane.post(self, Kind.COMMAND, command)
 
     def shown(self) -> None:
         """Tell a running job that the last view has been shown and the next one is welcome."""
-        self.lane.post(self, ("shown", None))
+        self.lane.post(self, Kind.SHOWN)
+
+    def conclude(self, kind: Kind, value: Any = None) -> None:
+        """The job is over: tell the answer to its receiver, if that is still there."""
+        try:
+            if self.unwanted:
+                pass
+            elif kind is Kind.DONE and not self.cancelling:
+                self.done.emit(value)
+            elif kind is Kind.FAILED:
+                self.failed.emit(value)
+            else:
+                self.cancelled.emit()
+        finally:
+            self.ended.emit()
+
+    def _receiver_gone(self) -> None:
+        self.unwanted = True
 
 
 class Lane(QObject):
-    """A process that runs one job after another; started when first needed or warmed up."""
+    """A process that runs one job after another; started when it is first needed, or by `prepare`."""
 
     task_started = Signal(object)
     task_ended = Signal(object)
-    _message = Signal(int, object)
 
     def __init__(
         self,
@@ -78,18 +95,14 @@ class Lane(QObject):
     ) -> None:
         super().__init__(parent)
         self.name, self._warm, self._environment, self._ahead = name, warm, dict(environment or {}), ahead
-        self._context = multiprocessing.get_context("spawn")
         self._waiting: deque[tuple[Task, Job, tuple[Any, ...], dict[str, str]]] = deque()
         self._current: Task | None = None
-        self._process: Any = None
-        self._connection: Connection | None = None
-        self._reader: threading.Thread | None = None
-        self._generation = 0
+        self._process: WorkerProcess | None = None
         self._numbers = 0
         self._stop_timer = QTimer(self)
         self._stop_timer.setSingleShot(True)
+        self._stop_timer.setInterval(STOP_WITHIN_MS)
         self._stop_timer.timeout.connect(self._end_stubborn)
-        self._message.connect(self._on_message)
 
     @property
     def current(self) -> Task | None:
@@ -101,13 +114,21 @@ class Lane(QObject):
         """Whether anything runs or waits."""
         return self._current is not None or bool(self._waiting)
 
-    def warm_up(self) -> None:
+    @property
+    def pid(self) -> int:
+        """The process's number in the system; 0 if there is none."""
+        return self._process.pid if self._process is not None else 0
+
+    def prepare(self) -> None:
         """Start the process and let it import, and compile while idle, what it will need."""
         if self._process is None:
-            self._start()
+            self._process = process = WorkerProcess(self.name, self._warm, self._ahead, self._environment, self)
+            process.received.connect(self._received)
+            process.gone.connect(self._gone)
 
     def run(
         self,
+        receiver: QObject,
         job: Job,
         *args: Any,
         label: str,
@@ -121,6 +142,9 @@ class Lane(QObject):
 
         Parameters
         ----------
+        receiver
+            Whom the answer is for: once it is deleted, none of the three functions is called any more. The job itself
+            goes on: what it writes is wanted all the same.
         label
             What the status bar says while it runs.
         on_done, on_failed, on_cancelled
@@ -132,7 +156,7 @@ class Lane(QObject):
             Drop waiting ones of this job with the same label: only the newest matters.
         """
         self._numbers += 1
-        task = Task(self, self._numbers, label)
+        task = Task(self, receiver, self._numbers, label)
         task.done.connect(on_done)
         if on_failed:
             task.failed.connect(on_failed)
@@ -150,11 +174,11 @@ class Lane(QObject):
         waiting = next((entry for entry in self._waiting if entry[0] is task), None)
         if waiting is not None:
             self._waiting.remove(waiting)
-            self._conclude(task, "cancelled", None)
+            self._conclude(task, Kind.CANCELLED, None)
         elif task is self._current and not task.cancelling:
             task.cancelling = True
-            self._cancel_number.value = task.number
-            self._stop_timer.start(STOP_WITHIN_MS)
+            self.post(task, Kind.CANCEL)
+            self._stop_timer.start()
 
     def cancel_all(self) -> None:
         """Stop what runs, and forget what waits."""
@@ -163,23 +187,25 @@ class Lane(QObject):
         if self._current is not None:
             self.cancel(self._current)
 
-    def post(self, task: Task, message: tuple[str, Any]) -> None:
-        """Send `message` to the job if it is still running."""
-        if task is self._current and self._connection is not None:
-            try:
-                self._connection.send(message)
-            except OSError:
-                return  # the process died; the reader tells so
+    def post(self, task: Task, kind: Kind, value: Any = None) -> None:
+        """Send the job a message if it is still running."""
+        if task is self._current and self._process is not None:
+            self._process.send(kind, task.number, value)
 
     def close(self) -> None:
-        """End the process; waiting and running jobs are cancelled."""
+        """Kill the process, without waiting for its end; waiting and running jobs are cancelled."""
         for task, *_ in list(self._waiting):
             self.cancel(task)
         running, self._current = self._current, None
         self._stop_timer.stop()
         self._end_process()
         if running is not None:
-            self._conclude(running, "cancelled", None)
+            self._conclude(running, Kind.CANCELLED, None)
+
+    def wait_until_closed(self) -> None:
+        """Wait for killed processes to be gone: at the program's end, when no event comes any more."""
+        for process in self.findChildren(WorkerProcess):
+            process.wait()
 
     def _next(self) -> None:
         if self._current is not None or not self._waiting:
@@ -187,101 +213,62 @@ class Lane(QObject):
         task, job, args, offers = self._waiting.popleft()
         self._current = task
         self.task_started.emit(task)
+        if task is not self._current:
+            return  # closed by whoever heard of it
+        if task.cancelling:
+            self._conclude_soon(task, Kind.CANCELLED, None)
+            return
         try:
-            self.warm_up()
-            assert self._connection is not None
-            self._connection.send(("run", (task.number, job, args, offers)))
-        except Exception as error:  # noqa: BLE001  no process, or nothing that can be sent: the job fails, not the lane
-            if isinstance(error, OSError):
-                self._end_process()
-            self._fail_soon(task, Failure(type(error).__name__, str(error), traceback.format_exc()))
+            self.prepare()
+            self.post(task, Kind.RUN, (job, args, offers))
+        except Exception as error:  # noqa: BLE001  nothing that can be sent: the job fails, not the lane
+            self._conclude_soon(task, Kind.FAILED, Failure.of(error))
 
-    def _fail_soon(self, task: Task, problem: Failure) -> None:
+    def _conclude_soon(self, task: Task, kind: Kind, value: Any) -> None:
         """A job that could not even begin: told a moment later, when whoever asked for it has its task."""
 
-        def fail() -> None:
+        def conclude() -> None:
             if task is self._current:
-                self._finish(task, "cancelled" if task.cancelling else "failed", problem)
+                self._finish(task, Kind.CANCELLED if task.cancelling else kind, value)
 
-        QTimer.singleShot(0, self, fail)
+        QTimer.singleShot(0, self, conclude)
 
-    def _start(self) -> None:
-        ours, theirs = self._context.Pipe()
-        self._generation += 1
-        self._cancel_number = self._context.Value("q", 0, lock=False)
-        process = self._context.Process(
-            target=serve,
-            args=(theirs, self._cancel_number, self._warm, self._ahead),
-            name=f"trisect-{self.name}",
-            daemon=True,
-        )
-        try:
-            with lean_start(self._environment):
-                process.start()
-        except BaseException:
-            ours.close()
-            raise
-        finally:
-            theirs.close()
-        self._process = process
-        self._connection = ours
-        self._reader = threading.Thread(
-            target=self._read, args=(ours, self._generation), name=f"lane-{self.name}", daemon=True
-        )
-        self._reader.start()
-
-    def _read(self, connection: Connection, generation: int) -> None:
-        """On its own thread: pass on what the process sends; None when it is gone."""
-        while True:
-            try:
-                message = connection.recv()
-            except (EOFError, OSError):
-                message = None
-            except Exception as error:  # noqa: BLE001  a result that cannot be unpacked ends the job, not the lane
-                message = (-1, "failed", Failure(type(error).__name__, str(error), ""))
-            try:
-                self._message.emit(generation, message)
-            except RuntimeError:
-                return  # the lane was deleted
-            if message is None:
-                return
-
-    def _on_message(self, generation: int, message: tuple[int, str, Any] | None) -> None:
-        if generation != self._generation:
-            return  # from a process that has been replaced
+    def _received(self, kind: int, number: int, body: bytes) -> None:
         task = self._current
-        if message is None:
-            self._end_process()
-            if task is not None:
-                gone = Failure(ENDED, "the measuring process ended unexpectedly", "")
-                self._finish(task, "cancelled" if task.cancelling else "failed", gone)
+        if task is None or number != task.number:
+            wire.forget(body)
             return
-        number, kind, value = message
-        if task is None or number not in (task.number, -1):
-            return
-        if kind == "progress":
+        try:
+            value = wire.value_of(body)
+        except Exception as error:  # noqa: BLE001  a result that cannot be unpacked ends the job, not the lane
+            kind, value = Kind.FAILED, Failure.of(error)
+        if kind == Kind.PROGRESS:
             task.progressed.emit(*value)
-        elif kind in ("event", "view"):
-            (task.told if kind == "event" else task.view).emit(value)
+        elif kind == Kind.EVENT:
+            task.reported.emit(value)
+        elif kind == Kind.VIEW:
+            task.view.emit(value)
         else:
-            self._finish(task, kind, value)
+            self._finish(task, Kind(kind), value)
 
-    def _finish(self, task: Task, kind: str, value: Any) -> None:
+    def _gone(self, why: str) -> None:
+        """The process could not be started, or has died; the next job gets another one."""
+        self._process = None
+        task = self._current
+        if task is not None:
+            problem = Failure(ENDED, "", why)
+            self._finish(task, Kind.CANCELLED if task.cancelling else Kind.FAILED, problem)
+
+    def _finish(self, task: Task, kind: Kind, value: Any) -> None:
         self._stop_timer.stop()
         self._current = None
         self._conclude(task, kind, value)
         self._next()
 
-    def _conclude(self, task: Task, kind: str, value: Any) -> None:
+    def _conclude(self, task: Task, kind: Kind, value: Any) -> None:
         try:
-            if kind == "done" and not task.cancelling:
-                task.done.emit(value)
-            elif kind in ("done", "cancelled"):
-                task.cancelled.emit()
-            else:
-                task.failed.emit(value)
+            task.conclude(kind, value)
         finally:
-            task.ended.emit()
             self.task_ended.emit(task)
             task.deleteLater()
 
@@ -289,22 +276,9 @@ class Lane(QObject):
         task = self._current
         if task is not None and task.cancelling:
             self._end_process()
-            self._finish(task, "cancelled", None)
+            self._finish(task, Kind.CANCELLED, None)
 
     def _end_process(self) -> None:
-        process, self._process = self._process, None
-        connection, self._connection = self._connection, None
-        self._generation += 1
-        if process is None:
-            return
-        if process.is_alive():
-            process.terminate()
-        process.join(2)
-        if process.is_alive():
-            process.kill()
-            process.join()
-        process.close()
-        if self._reader is not None:
-            self._reader.join(2)  # the process is gone, so it reads to the end; closed before, it might read another's
-        if connection is not None:
-            connection.close()
+        if self._process is not None:
+            self._process.end()
+            self._process = None

@@ -7,11 +7,11 @@ from typing import Any, Literal
 
 from PySide6.QtCore import QObject, Signal
 
-from core.files.project import Project
-from core.files.project_keys import finished
+from core.files.project.data import Project
+from core.files.project.keys import finished
 from workbench.bench import Bench
-from workbench.jobs import Job
 from workbench.project_model import CALIBRATIONS
+from workbench.work.jobs import Job
 
 
 class Acceptance(QObject):
@@ -64,7 +64,7 @@ class Acceptance(QObject):
             self.changed.emit()
 
         label = self._words()[2]
-        self._bench.glance(self._keep, folder, project, *made, label=label, on_done=kept, on_failed=failed)
+        self._bench.run_quick(self, self._keep, folder, project, *made, label=label, on_done=kept, on_failed=failed)
 
     def reject(self, id_: str) -> None:
         """Do not measure with this one."""

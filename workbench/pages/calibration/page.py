@@ -10,17 +10,15 @@ from abc import abstractmethod
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from PySide6.QtCore import QEvent
 from PySide6.QtWidgets import QTabWidget, QWidget
 from superqt import QCollapsible
 
-from workbench.pages.calibration_work import CalibrationWork
+from workbench.pages.calibration.work import CalibrationWork
 from workbench.pages.step_page import StepPage
-from workbench.views.live_panel import LivePanel
-from workbench.views.live_strip import LiveStrip
-from workbench.views.plots import Bar, BarsWithThreshold
-from workbench.views.source_chooser import SourceChooser
-from workbench.views.tables import ListRow, ViewList
+from workbench.views.forms.live_panel import LivePanel, LiveStrip
+from workbench.views.forms.source_chooser import SourceChooser
+from workbench.views.lists.view_list import ListRow, ViewList
+from workbench.views.plots.bars import Bar, BarsWithThreshold
 
 BARS_HEIGHT = 150
 
@@ -47,11 +45,6 @@ class CalibrationPage(StepPage):
         self._rows: Any = None
         self._bars: Any = None
         self._folded = ""
-
-    def changeEvent(self, event: QEvent) -> None:
-        super().changeEvent(event)
-        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "_folded"):
-            self._changed()
 
     # ---- what differs
 

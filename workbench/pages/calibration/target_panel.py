@@ -8,10 +8,10 @@ from typing import Any, Protocol
 from PySide6.QtCore import QCoreApplication, Qt, SignalInstance
 from PySide6.QtWidgets import QComboBox, QHBoxLayout, QPushButton, QVBoxLayout, QWidget
 
-from workbench.pages.target_values import DICTIONARIES, PAPERS
+from workbench.pages.calibration.target import DICTIONARIES, PAPERS
 from workbench.theme import icon
 from workbench.views import ask
-from workbench.views.forms import SettingsForm
+from workbench.views.forms.form import SettingsForm
 
 
 class HasTarget(Protocol):
@@ -51,7 +51,10 @@ class TargetPanel(QWidget):
         column.setContentsMargins(0, 0, 0, 0)
         column.addLayout(self._holder)
         column.addLayout(row)
-        presenter.target_refused.connect(lambda field, why: self.form.set_complaint(field, why))
+        presenter.target_refused.connect(self._complain)
+
+    def _complain(self, field: str, why: str) -> None:
+        self.form.set_complaint(field, why)
 
     def refresh(self) -> None:
         """Show the target."""

@@ -4,18 +4,23 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections import OrderedDict
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, Generic, Literal, TypeVar
 
 from PySide6.QtCore import QObject, Signal
 
-from core.files.project import Project
-from core.files.project_keys import rests_on
+from core.files.project.data import Project
+from core.files.project.keys import rests_on
 from workbench.bench import Bench
-from workbench.jobs import Job
-from workbench.pages.step_pictures import StepPictures
-from workbench.problems import sentence
-from workbench.tasks import Task
+from workbench.language import text_of, tr
+from workbench.pages.sources import folder_of
+from workbench.work import jobs
+from workbench.work.jobs import Job
+from workbench.work.tasks import Task
+
+AT_ONCE = 6
+"""So many thumbnails are made in one go, so that what the eye waits for comes between."""
 
 KEPT = 12
 """So many solutions are kept for undo and redo."""
@@ -23,6 +28,73 @@ KEPT = 12
 Key = tuple[str, ...]
 Found = TypeVar("Found")
 Solution = TypeVar("Solution")
+
+
+class StepPictures(QObject):
+    """`paths` of a step's pictures, None until they are listed; `thumbnails` by the name that `named` gives a path.
+
+    A path whose name is "" is no picture of its own and is left out.
+    """
+
+    changed = Signal()
+
+    def __init__(
+        self,
+        bench: Bench,
+        step: Literal["camera", "planes"],
+        named: Callable[[Path], str],
+        parent: QObject | None = None,
+    ) -> None:
+        super().__init__(parent)
+        self._bench, self._model, self._step, self._named = bench, bench.model, step, named
+        self.forget()
+
+    def forget(self) -> None:
+        """Another project."""
+        self.paths: tuple[Path, ...] | None = None
+        self.thumbnails: dict[str, Any] = {}
+        self._listed = self._thumbnails_of = ""
+
+    def follow(self) -> None:
+        """The project is another: list its pictures, unless that was done."""
+        project, folder = self._model.project, folder_of(self._model, self._step)
+        of = f"{getattr(project.sources, self._step)}|{project.rig.channel}"
+        if of == self._listed:
+            return
+        if of != self._thumbnails_of:
+            self.paths, self.thumbnails = None, {}
+        self._listed = self._thumbnails_of = of
+        if folder is None:
+            self.paths = ()
+            return
+
+        def listed(paths: Sequence[Path]) -> None:
+            if self._listed == of:
+                self.paths = tuple(path for path in paths if self._named(path))
+                self._make_thumbnails(of, self.paths)
+                self.changed.emit()
+
+        self._bench.run_quick(self, jobs.LIST_PICTURES, folder, label=tr("Listing pictures"), on_done=listed, offers={})
+
+    def list_again(self) -> None:
+        """The folder may hold others by now; what is shown stands until they are listed."""
+        self._listed = ""
+        self.follow()
+
+    def _make_thumbnails(self, of: str, left: tuple[Path, ...]) -> None:
+        now, later = left[:AT_ONCE], left[AT_ONCE:]
+        if not now or of != self._listed:
+            return
+
+        def made(pictures: Sequence[Any]) -> None:
+            if of == self._listed:
+                self.thumbnails.update({self._named(p): picture for p, picture in zip(now, pictures, strict=True)})
+                self.changed.emit()
+                self._make_thumbnails(of, later)
+
+        self._bench.run_quick(
+            self, jobs.THUMBNAILS, list(now), self._model.project.rig.channel, label=tr("Small pictures"), on_done=made
+        )
 
 
 class CalibrationWork(QObject, Generic[Found, Solution]):
@@ -79,7 +151,7 @@ class CalibrationWork(QObject, Generic[Found, Solution]):
         """What the tasks that find and solve are called."""
 
     def _in_words(self, problem: Any) -> str:
-        return sentence(problem)
+        return text_of(problem)
 
     def _calibration_changed(self) -> None:
         """Another calibration is shown, or none."""
@@ -134,7 +206,8 @@ class CalibrationWork(QObject, Generic[Found, Solution]):
             return
         key = self.found_key(project)
         self.problem = ""
-        self.search_task = self._bench.measure(
+        self.search_task = self._bench.run_long(
+            self,
             self.FIND,
             folder,
             project,
@@ -198,6 +271,7 @@ class CalibrationWork(QObject, Generic[Found, Solution]):
             return
         self.solving = True
         self._bench.quick.run(
+            self,
             self.SOLVE,
             self._model.folder,
             self._model.project,

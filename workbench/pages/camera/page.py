@@ -6,19 +6,20 @@ from collections.abc import Sequence
 
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
-from workbench.pages import camera_words as words
-from workbench.pages.calibration_page import CalibrationPage, known
-from workbench.pages.camera_panels import TARGETS, CameraCard, CameraModelForm
-from workbench.pages.camera_picture import PictureTab
-from workbench.pages.camera_presenter import CameraPresenter, short
-from workbench.pages.camera_stage import Stage
-from workbench.pages.camera_tabs import CoverageTab, ExpectedTab, HistoryTab, ResidualTab
+from workbench.language import text_of
+from workbench.pages.calibration.page import CalibrationPage, known
+from workbench.pages.calibration.stage import Stage
+from workbench.pages.calibration.target_panel import TargetPanel
+from workbench.pages.camera import words
+from workbench.pages.camera.panels import TARGETS, CameraCard, CameraModelForm
+from workbench.pages.camera.picture import PictureTab
+from workbench.pages.camera.presenter import CameraPresenter, short
+from workbench.pages.camera.tabs import CoverageTab, ExpectedTab, HistoryTab, ResidualTab
 from workbench.pages.step_page import heading, muted
-from workbench.pages.target_panel import TargetPanel
-from workbench.views.live_panel import LivePanel
-from workbench.views.plots import Bar
-from workbench.views.tables import ListRow
-from workbench.views.value_rows import ValueRows
+from workbench.views.forms.live_panel import LivePanel
+from workbench.views.lists.value_rows import ValueRows
+from workbench.views.lists.view_list import ListRow
+from workbench.views.plots.bars import Bar
 
 
 class CameraPage(CalibrationPage):
@@ -67,7 +68,7 @@ class CameraPage(CalibrationPage):
         calibration = p.work.calibration
         self.quality.set_rows(words.quality_rows(calibration, p.work.judgement))
         self.parameters.set_rows(words.parameter_rows(calibration))
-        self.notes.setText("\n".join(calibration.notes) if calibration is not None else "")
+        self.notes.setText("\n".join(map(text_of, calibration.notes)) if calibration is not None else "")
         self.notes.setVisible(bool(self.notes.text()))
         self.result_fold.setVisible(calibration is not None and not self._is_live())
         self._refresh_tab()
@@ -102,13 +103,13 @@ class CameraPage(CalibrationPage):
         if work.calibration is not None:
             return [
                 ListRow(
-                    view.view.name, known(view.rms_px), words.px(view.rms_px), view.used, view.reason,
+                    view.view.name, known(view.rms_px), words.px(view.rms_px), view.used, text_of(view.reason or ""),
                     work.thumbnails.get(view.view.name), short(view.view.name),
                 )
                 for view in work.calibration.views
             ]  # fmt: skip
         excluded = p.project.options.excluded
-        reasons = {view.name: view.reason for view in work.seen.lost} if work.seen is not None else {}
+        reasons = {view.name: text_of(view.reason or "") for view in work.seen.lost} if work.seen is not None else {}
         return [
             ListRow(
                 name, None, "", name not in excluded and name not in reasons, reasons.get(name, ""),

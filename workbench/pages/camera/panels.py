@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from PySide6.QtWidgets import QWidget
 
-from workbench.pages.camera_presenter import CameraPresenter
-from workbench.pages.camera_stage import Stage
-from workbench.views.forms import SettingsForm
+from workbench.pages.calibration.stage import Stage
+from workbench.pages.camera.presenter import CameraPresenter
+from workbench.views.forms.form import SettingsForm
 from workbench.views.stage_card import CalibrationCard
 
 TARGETS = ("checkerboard", "charuco", "circle_grid")
@@ -84,7 +84,12 @@ class CameraModelForm(SettingsForm):
     def __init__(self, presenter: CameraPresenter, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._presenter = presenter
-        self.add_check("skew", self.tr("Skew γ is free"), self.tr("Whether the pixel's axes may be out of square."))
+        skews = [
+            (None, self.tr("free where it helps")),
+            (True, self.tr("free")),
+            (False, self.tr("zero")),
+        ]
+        self.add_choice("skew", self.tr("Skew γ"), skews, self.tr("Whether the pixel's axes may be out of square."))
         self.add_check(
             "k3", self.tr("k₃ is free"), self.tr("For strongly distorting lenses; else it makes the rest less sure.")
         )

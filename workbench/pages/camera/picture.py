@@ -9,12 +9,13 @@ import numpy as np
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QComboBox, QLabel, QVBoxLayout, QWidget
 
-from core.live.events import CameraDetail, LiveView
-from workbench.pages import camera_words as words
-from workbench.pages.camera_presenter import CameraPresenter, short
+from core.pipeline.live.events import CameraDetail, LiveView
+from workbench.language import text_of
+from workbench.pages.camera import words
+from workbench.pages.camera.presenter import CameraPresenter, short
 from workbench.views.colours import CORNER, CORNER_LEFT_OUT
-from workbench.views.image_view import ImageView
-from workbench.views.meters import HintBar
+from workbench.views.image.view import ImageView
+from workbench.views.plots.meters import HintBar
 
 FACTORS = (1, 30, 100, 300, 1000)
 
@@ -45,8 +46,11 @@ class PictureTab(QWidget):
         column.addWidget(self.hints)
         presenter.picture_ready.connect(self._show_picture)
         presenter.live.show_by(self._draw_live)
-        presenter.live.started.connect(lambda _: self.image.clear_layers())
+        presenter.live.started.connect(self._live_started)
         self._empty()
+
+    def _live_started(self, _: object) -> None:
+        self.image.clear_layers()
 
     def refresh(self) -> None:
         """Show what the presenter says now."""
@@ -135,4 +139,5 @@ class PictureTab(QWidget):
                 "corners", detail.uv, colour=CORNER.colour, symbol=CORNER.symbol, size=9, title=self.tr("corners")
             )
         enough = () if detail.missing else (self.tr("Nothing is missing: press Stop, and it is calibrated."),)
-        self.hints.set_hints([sentence for sentence in (detail.sentence, *detail.missing[:2], *enough) if sentence])
+        seen = () if detail.sentence is None else (detail.sentence,)
+        self.hints.set_hints([*map(text_of, (*seen, *detail.missing[:2])), *enough])

@@ -2,68 +2,55 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 from PySide6.QtCore import Signal
 
 from core.calibrate.results import LEFT_OUT, ViewQuality
-from core.files.camera_file import camera_id
-from core.files.project import Project
-from core.image.target_view import TargetView
-from core.live.events import LiveEnded, LiveTaken
+from core.files.project.data import Project
+from core.files.results.camera_file import camera_id
+from core.image.targets.target_view import TargetView
 from core.model.arrays import Array
-from workbench import jobs
 from workbench.bench import Bench
-from workbench.pages.acceptance import Acceptance
-from workbench.pages.camera_history import CameraHistory
-from workbench.pages.camera_stage import Stage, missing, stage_of, why_not_accept, why_not_reject, why_not_search
-from workbench.pages.camera_work import CameraWork
-from workbench.pages.live_presenter import LivePresenter
-from workbench.pages.presenter import StepPresenter
-from workbench.pages.sources import folder_of, put_source
-from workbench.pages.target_choice import TargetChoice
+from workbench.language import tr
+from workbench.pages.calibration.history import CameraHistory
+from workbench.pages.calibration.presenter import CalibrationPresenter
+from workbench.pages.calibration.stage import Stage
+from workbench.pages.calibration.target import TargetChoice
+from workbench.pages.camera.work import CameraWork
+from workbench.work import jobs
 
 PART = "camera/"
 
 
-class CameraPresenter(StepPresenter):
+class CameraPresenter(CalibrationPresenter):
     """The camera: its pictures found, solved and judged; what is accepted."""
 
     step = "camera"
+    KEEP = jobs.ACCEPT_CAMERA
+    work: CameraWork
+    history: CameraHistory
 
     picture_ready = Signal(str, object)
     """Name of a view and its picture."""
 
     def __init__(self, bench: Bench) -> None:
         super().__init__(bench)
-        self.live = LivePresenter(bench, "camera", self)
         self.work = CameraWork(bench, self)
         self.history = CameraHistory(bench, self)
-        self.target = TargetChoice(bench, "camera_target", self.tr("change the camera's target"), self)
-        self.acceptance = Acceptance(bench, "camera", jobs.ACCEPT_CAMERA, self)
-        self.current = ""
+        self.target = TargetChoice(bench, "camera_target", tr("change the camera's target"), self)
+        self._current = ""
         self.threshold: float | None = None
         self._read = ""
-        self.live_views: list[tuple[str, Any]] = []
-        self.live.there = self._views_that_count
-        self.live.changed.connect(self.changed)
-        self.live.started.connect(lambda _: self.live_views.clear())
-        self.live.taken.connect(self._live_taken)
-        self.live.ended.connect(self._live_ended)
-        self.work.changed.connect(self._work_changed)
-        self.history.changed.connect(self.changed)
-        self.acceptance.kept.connect(self.history.refresh)
-        self.acceptance.changed.connect(self.changed)
+        self._connect()
 
     # ---- state
 
     @property
-    def stage(self) -> Stage:
-        """How far the calibration is."""
-        return stage_of(self)
+    def current(self) -> str:
+        """The view that is looked at."""
+        return self._current
 
     @property
     def candidate(self) -> str:
@@ -71,39 +58,37 @@ class CameraPresenter(StepPresenter):
         calibration = self.work.calibration
         return camera_id(calibration.camera) if calibration is not None else ""
 
-    def blocker(self) -> str:
-        return missing(self)
+    def _is_current(self) -> bool:
+        return self.candidate == self.acceptance.accepted or self.is_done
 
-    def busy(self) -> str:
-        return self.live.busy()
+    def _missing(self) -> dict[Stage, str]:
+        return {
+            Stage.NONE: tr("Record or choose pictures of the camera's target first."),
+            Stage.EMPTY: tr("Choose a folder that holds pictures of the camera's target."),
+            Stage.FOUND: tr("Calibrate the camera from its pictures first."),
+            Stage.LIVE: tr("Stop the live source when there are enough views."),
+            Stage.SEARCHING: tr("The pictures are being searched for the target."),
+            Stage.SOLVING: tr("The camera is being solved."),
+            Stage.FAILED: tr("The camera could not be calibrated; record more views or check the target."),
+            Stage.SOLVED: tr("Accept a camera calibration first."),
+            Stage.REJECTED: tr("The calibration was rejected; accept a better one first."),
+            Stage.OUTDATED: tr("The accepted camera calibration is out of date; calibrate again."),
+        }
 
-    @property
-    def can_search(self) -> str:
-        """Why the target cannot be looked for now, or ""."""
-        return why_not_search(self)
+    def _accepted_already(self) -> str:
+        return tr("This calibration is accepted already.")
 
-    @property
-    def can_accept(self) -> str:
-        """Why nothing can be accepted now, or ""."""
-        return why_not_accept(self)
+    def _stored(self, name: str) -> str:
+        return f"{PART}{short(name)}"
 
-    @property
-    def can_reject(self) -> str:
-        """Why nothing can be rejected now, or ""."""
-        return why_not_reject(self)
+    def _names(self, count: int) -> str:
+        return tr("{0} views").format(count)
 
-    # ---- pictures
+    def _source_label(self) -> str:
+        return tr("choose the camera's pictures")
 
-    @property
-    def folder(self) -> Path | None:
-        """The folder of the pictures."""
-        return folder_of(self.model, "camera")
-
-    def use_folder(self, folder: Path) -> None:
-        """Take the pictures of a folder, and look for the target in them."""
-        self.live.stop()
-        put_source(self.model, "camera", folder, self.tr("choose the camera's pictures"))
-        self.work.search()
+    def _made(self) -> tuple[Any, ...]:
+        return (self.work.calibration,)
 
     # ---- what is solved for
 
@@ -117,25 +102,13 @@ class CameraPresenter(StepPresenter):
         options = self.project.options
         changed: dict[str, Any] = {field: value}
         after = replace(options, camera=replace(options.camera, **changed))
-        self.model.edit(self.tr("change the camera model"), replace(self.project, options=after))
+        self.model.edit(tr("change the camera model"), replace(self.project, options=after))
 
     # ---- views
 
     def views(self) -> tuple[ViewQuality, ...]:
         """The views as the calibration shown judges them."""
         return self.work.calibration.views if self.work.calibration is not None else ()
-
-    def set_used(self, names: Sequence[str], used: bool) -> None:
-        """Let views count, or leave them out; undoable. While they are taken live, put them aside."""
-        if self.live.running:
-            if not used:
-                self._put_aside(names)
-            return
-        excluded = self.project.options.excluded
-        after = excluded - set(names) if used else excluded | set(names)
-        what = short(names[0]) if len(names) == 1 else self.tr("{0} views").format(len(names))
-        label = self.tr("let {0} count") if used else self.tr("leave out {0}")
-        self._exclude(after, label.format(what))
 
     def set_threshold(self, limit: float) -> None:
         """Leave out the views above a limit in px, and let those count that only the last limit left out."""
@@ -144,13 +117,13 @@ class CameraPresenter(StepPresenter):
         above = {name for name, rms in judged.items() if rms > limit}
         freed = {name for name, rms in judged.items() if before is not None and before < rms <= limit}
         excluded = (self.project.options.excluded | above) - freed
-        self._exclude(excluded, self.tr("leave out views above {0} px").format(f"{limit:.2f}"), "camera threshold")
+        self._exclude(excluded, tr("leave out views above {0} px").format(f"{limit:.2f}"), "camera threshold")
         self.changed.emit()
 
     def choose_view(self, name: str) -> None:
         """Show this view."""
         if name != self.current:
-            self.current = name
+            self._current = name
             self._read_picture()
             self.changed.emit()
 
@@ -169,37 +142,10 @@ class CameraPresenter(StepPresenter):
         self._read = ""
         self._read_picture()
 
-    # ---- accept and reject
-
-    def accept(self) -> None:
-        """Measure with the calibration that is shown, from now on; undoable."""
-        if not self.can_accept:
-            self.acceptance.accept(self.work.calibration)
-
-    def reject(self) -> None:
-        """Do not measure with the calibration that is shown; undoable."""
-        if not self.can_reject:
-            self.acceptance.reject(self.candidate)
-
-    # ---- keys
-
-    def do_run(self) -> None:
-        if not self.can_search:
-            self.work.search()
-
-    def do_accept(self) -> None:
-        self.accept()
-
-    def do_live(self) -> None:
-        self.live.toggle()
-
-    def do_capture(self) -> None:
-        self.live.capture()
-
     # ---- what happens elsewhere
 
     def opened(self) -> None:
-        self.current, self.threshold, self._read = "", None, ""
+        self._current, self.threshold, self._read = "", None, ""
         self.acceptance.forget()
         self.work.opened()
         self.history.forget()
@@ -207,39 +153,19 @@ class CameraPresenter(StepPresenter):
 
     def project_changed(self, before: Project, after: Project) -> None:
         if before.sources.camera != after.sources.camera:
-            self.current, self.threshold, self._read = "", None, ""
+            self._current, self.threshold, self._read = "", None, ""
         self.work.follow()
 
-    def stop(self) -> None:
-        self.live.finish()
-
-    def _exclude(self, excluded: frozenset[str], label: str, merge_key: str = "") -> None:
-        options = replace(self.project.options, excluded=frozenset(excluded))
-        self.model.edit(label, replace(self.project, options=options), merge_key)
-
-    def _live_taken(self, taken: LiveTaken) -> None:
-        self.live_views.append((f"{PART}{taken.name}", taken.thumbnail))
-
-    def _views_that_count(self) -> tuple[TargetView, ...]:
+    def views_that_count(self) -> tuple[TargetView, ...]:
         """What the target shows in the pictures there are, without those left out by hand."""
         found = self.work.seen.found if self.work.seen is not None else ()
         return tuple(view for view in found if view.name not in self.project.options.excluded)
-
-    def _put_aside(self, names: Sequence[str]) -> None:
-        for name in names:
-            self.live.discard(short(name))
-        self.live_views = [view for view in self.live_views if view[0] not in names]
-        self.changed.emit()
-
-    def _live_ended(self, ended: LiveEnded) -> None:
-        if ended.recorded and self.folder == ended.folder:
-            self.work.search()
 
     def _work_changed(self) -> None:
         self.history.shown_is(self.work.calibration)
         names = [f"{PART}{path.name}" for path in self.work.pictures or ()]
         if self.current not in names:
-            self.current = names[0] if names else ""
+            self._current = names[0] if names else ""
         self._read_picture()
         self.changed.emit()
 
@@ -248,11 +174,12 @@ class CameraPresenter(StepPresenter):
         if not name or folder is None or self._read == name:
             return
         self._read = name
-        self.bench.glance(
+        self.bench.run_quick(
+            self,
             jobs.READ_PICTURE,
             folder / short(name),
             self.project.rig.channel,
-            label=self.tr("Reading a picture"),
+            label=tr("Reading a picture"),
             on_done=lambda picture: self.picture_ready.emit(name, picture) if name == self.current else None,
             offers={},
             replace_waiting=True,

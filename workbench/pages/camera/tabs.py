@@ -7,14 +7,15 @@ from typing import Any
 import numpy as np
 from PySide6.QtWidgets import QComboBox, QHBoxLayout, QPushButton, QVBoxLayout, QWidget
 
-from workbench.pages import camera_words as words
-from workbench.pages.camera_presenter import CameraPresenter
+from workbench.pages.camera import words
+from workbench.pages.camera.presenter import CameraPresenter
 from workbench.pages.step_page import heading, muted
 from workbench.theme import icon
 from workbench.views.colours import CORNER
-from workbench.views.image_view import ImageView
-from workbench.views.plots import HeatMap, ResidualPlot
-from workbench.views.tables import DataTable
+from workbench.views.image.view import ImageView
+from workbench.views.lists.data_table import DataTable
+from workbench.views.plots.map import HeatMap
+from workbench.views.plots.residuals import ResidualPlot
 
 
 class CoverageTab(QWidget):

@@ -5,13 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from core.calibrate.camera.views import RecalledCamera, SeenViews, ViewsJudgement
 from core.calibrate.results import CameraCalibration
-from core.calibrate.seen_views import RecalledCamera, SeenViews
-from core.calibrate.views_judgement import ViewsJudgement
 from core.errors import InputError
-from core.files.project import Project
-from workbench import jobs
-from workbench.pages.calibration_work import CalibrationWork, Key
+from core.files.project.data import Project
+from workbench.pages.calibration.work import CalibrationWork, Key
+from workbench.work import jobs
 
 
 class CameraWork(CalibrationWork[SeenViews, CameraCalibration]):
@@ -51,14 +50,15 @@ class CameraWork(CalibrationWork[SeenViews, CameraCalibration]):
         """A problem as a sentence of its own; where it is, the page itself shows."""
         if not isinstance(problem, InputError) or problem.where not in ("", "camera"):
             return super()._in_words(problem)
-        text = f"{problem.what}; {problem.todo}." if problem.todo else f"{problem.what}."
+        text = f"{problem.what}; {problem.todo}." if str(problem.todo) else f"{problem.what}."
         return text[:1].upper() + text[1:]
 
     def _recall(self, folder: Path, project: Project) -> None:
         if not project.accepted.camera:
             self._ask_what_was_found(folder, project)
             return
-        self._bench.glance(
+        self._bench.run_quick(
+            self,
             jobs.RECALL_CAMERA,
             folder,
             project,
@@ -78,6 +78,7 @@ class CameraWork(CalibrationWork[SeenViews, CameraCalibration]):
         """What was found in the pictures when they were searched last, though nothing made of it was accepted."""
         if project.sources.camera and folder == self._model.folder:
             self._bench.quick.run(
+                self,
                 jobs.FOUND_VIEWS,
                 folder,
                 project,
@@ -90,7 +91,8 @@ class CameraWork(CalibrationWork[SeenViews, CameraCalibration]):
             self.judgement = None
             return
         key = self._solve_key
-        self._bench.glance(
+        self._bench.run_quick(
+            self,
             jobs.JUDGE_VIEWS,
             self.seen,
             self._model.project.options.excluded,

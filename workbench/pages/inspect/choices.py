@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-from PySide6.QtCore import QEvent, Qt, Signal
+from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import (
     QButtonGroup,
     QComboBox,
@@ -17,11 +17,11 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from core.inspect.inspection import DEPTH
+from core.inspect.shown.shown_scan import DEPTH
 from workbench.theme import icon
 
 if TYPE_CHECKING:
-    from core.inspect.inspection import InspectionView
+    from core.inspect.shown.shown_scan import InspectionView
 
 STEPS = 200
 """Of the slider from the smallest σ to the largest."""
@@ -74,6 +74,7 @@ class SurfaceChoices(QWidget):
 
     def show_view(self, view: InspectionView | None, clip_mm: float | None) -> None:
         """Offer what there is to choose for a scan; nothing without one."""
+        self._dress()
         for widget in (*self.shapes.values(), self.colours, self.limit, self.slider):
             widget.setEnabled(view is not None)
         if view is None:
@@ -84,11 +85,6 @@ class SurfaceChoices(QWidget):
             self.shapes["points"].setChecked(True)
         self._name_colours(view)
         self._show_limit(view, clip_mm)
-
-    def changeEvent(self, event: QEvent) -> None:
-        super().changeEvent(event)
-        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "slider"):
-            self._dress()
 
     def _make_shapes(self, bar: QHBoxLayout) -> None:
         group = QButtonGroup(self)

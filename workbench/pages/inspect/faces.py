@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 from PySide6.QtCore import QObject, Signal
 
-from core.files.rig import GaugeSpec
+from core.files.recording.rig import GaugeSpec
 from core.model.arrays import Array
-
-if TYPE_CHECKING:
-    from workbench.pages.inspect_presenter import InspectPresenter
+from workbench.language import tr
+from workbench.pages.inspect.scan import InspectScan
+from workbench.project_model import ProjectModel
 
 FACES = ("upper", "lower")
 NUMBERS = ("nominal_mm", "tolerance_mm")
@@ -27,16 +27,16 @@ class InspectFaces(QObject):
 
     changed = Signal()
 
-    def __init__(self, owner: InspectPresenter) -> None:
-        super().__init__(owner)
-        self._owner = owner
+    def __init__(self, model: ProjectModel, scan: InspectScan) -> None:
+        super().__init__()
+        self._model, self._scan = model, scan
         self._numbers: dict[str, float | None] = {}
         self._regions: dict[str, Array] = {}
 
     @property
     def spec(self) -> GaugeSpec:
         """What the project says."""
-        return self._owner.project.rig.gauge or GaugeSpec()
+        return self._model.project.rig.gauge or GaugeSpec()
 
     # ---- nominal value and tolerance
 
@@ -51,8 +51,8 @@ class InspectFaces(QObject):
         if values[key] is not None or other is None:
             return ""
         if key == "tolerance_mm":
-            return self.tr("Enter the tolerance too, or clear the nominal value: they go together.")
-        return self.tr("Enter the nominal value too, or clear the tolerance: they go together.")
+            return tr("Enter the tolerance too, or clear the nominal value: they go together.")
+        return tr("Enter the nominal value too, or clear the tolerance: they go together.")
 
     def set_number(self, key: str, value: Any) -> None:
         """Change the nominal value or the tolerance; undoable as soon as both are there, or neither."""
@@ -63,9 +63,9 @@ class InspectFaces(QObject):
             return
         self._numbers = {}
         if values["nominal_mm"] is None:
-            label = self.tr("measure without a nominal value")
+            label = tr("measure without a nominal value")
         else:
-            label = self.tr("change the nominal thickness") if key == "nominal_mm" else self.tr("change the tolerance")
+            label = tr("change the nominal thickness") if key == "nominal_mm" else tr("change the tolerance")
         spec = replace(self.spec, nominal_mm=values["nominal_mm"], tolerance_mm=values["tolerance_mm"])
         self._put(spec, label, f"gauge {key}")
         self.changed.emit()
@@ -101,8 +101,8 @@ class InspectFaces(QObject):
         had = self.own
         self._regions = {}
         words = {
-            "upper": self.tr("change the upper face") if had else self.tr("draw the upper face"),
-            "lower": self.tr("change the lower face") if had else self.tr("draw the lower face"),
+            "upper": tr("change the upper face") if had else tr("draw the upper face"),
+            "lower": tr("change the lower face") if had else tr("draw the lower face"),
         }
         self._put_regions({face: polygon, other: beside}, words[face])
 
@@ -110,27 +110,27 @@ class InspectFaces(QObject):
         """Let the upper region be the lower one and the other way round; undoable."""
         upper, lower = self.spec.upper_polygon_px, self.spec.lower_polygon_px
         if upper is not None and lower is not None:
-            self._put_regions({"upper": lower, "lower": upper}, self.tr("exchange the faces"))
+            self._put_regions({"upper": lower, "lower": upper}, tr("exchange the faces"))
 
     def take_found(self) -> None:
         """Make the outlines of the faces that were found regions of one's own, to be changed; undoable."""
         found = {face: self._found(face) for face in FACES}
         if all(outline is not None for outline in found.values()):
-            self._put_regions(found, self.tr("take the faces found as regions"))
+            self._put_regions(found, tr("take the faces found as regions"))
 
     def find_automatically(self) -> None:
         """Let the faces be found again; undoable."""
         self._regions = {}
-        self._put_regions(dict.fromkeys(FACES), self.tr("find the faces automatically"))
+        self._put_regions(dict.fromkeys(FACES), tr("find the faces automatically"))
         self.changed.emit()
 
     @property
     def can_take_found(self) -> str:
         """Why there are no outlines to begin with, or ""."""
         if self.own:
-            return self.tr("The faces are regions of your own already: drag their corners in the picture.")
+            return tr("The faces are regions of your own already: drag their corners in the picture.")
         if self._found("upper") is None:
-            return self.tr("Measure the thickness first, so that there are faces to begin with.")
+            return tr("Measure the thickness first, so that there are faces to begin with.")
         return ""
 
     @property
@@ -138,14 +138,14 @@ class InspectFaces(QObject):
         """Why there is nothing to go back to, or ""."""
         if self.own or self._regions:
             return ""
-        return self.tr("The faces are found automatically already.")
+        return tr("The faces are found automatically already.")
 
     def missing(self) -> str:
         """What keeps the thickness from being measured, or ""."""
         if "upper" in self._regions:
-            return self.tr("Draw the lower face too, or let the faces be found automatically.")
+            return tr("Draw the lower face too, or let the faces be found automatically.")
         if "lower" in self._regions:
-            return self.tr("Draw the upper face too, or let the faces be found automatically.")
+            return tr("Draw the upper face too, or let the faces be found automatically.")
         return ""
 
     # ---- what happens elsewhere
@@ -167,7 +167,7 @@ class InspectFaces(QObject):
         self._numbers, self._regions = {}, {}
 
     def _found(self, face: str) -> Array | None:
-        view = self._owner.view
+        view = self._scan.view
         return None if view is None or view.outlines is None else view.outlines[FACES.index(face)]
 
     def _put_regions(self, regions: dict[str, Array | None], label: str) -> None:
@@ -175,6 +175,6 @@ class InspectFaces(QObject):
         self._put(spec, label, "")
 
     def _put(self, spec: GaugeSpec, label: str, merge_key: str) -> None:
-        project = self._owner.project
+        project = self._model.project
         gauge = None if spec == GaugeSpec() else spec
-        self._owner.model.edit(label, replace(project, rig=replace(project.rig, gauge=gauge)), merge_key)
+        self._model.edit(label, replace(project, rig=replace(project.rig, gauge=gauge)), merge_key)

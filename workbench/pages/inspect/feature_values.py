@@ -7,60 +7,52 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from PySide6.QtCore import QCoreApplication
-
 from core.inspect.characteristic import Limits
-from core.inspect.feature_spec import (
-    DERIVED,
-    ELEMENTS,
-    ONE_SIDED,
-    RESULTS,
+from core.inspect.plan.feature_kind import ResultKind
+from core.inspect.plan.feature_spec import (
     Auto,
     Cut,
     Deviation,
     FeatureSpec,
-    Kind,
     PointsOf,
     Polygon,
     Region,
     Section,
 )
-from core.inspect.inspection_plan import InspectionPlan
+from core.inspect.plan.inspection_plan import InspectionPlan
+from core.inspect.plan.kinds import MOST_FACES, kind_named, kind_of, results_of
+from workbench.language import tr
 
-KINDS: tuple[Kind, ...] = tuple(RESULTS)
 AUTO, DRAWN, PLACED = "auto", "drawn", "placed"
 OF = "of "
 """Where a region's points come from: found, drawn in the picture, placed in part coordinates, "of " and a feature."""
 
-BY_NUMBER: tuple[Kind, ...] = ("plane", "point", "thickness", "steps")
-"""Kinds made of plane faces, which are found by their number from the largest down."""
-MOST_FACES = 8
-
 SIDES = ("nominal", "lower", "upper")
 
 
-def new_feature(kind: Kind, name: str, plan: InspectionPlan, size: tuple[int, int], nominal: str = "") -> FeatureSpec:
+def new_feature(kind: str, name: str, plan: InspectionPlan, size: tuple[int, int], nominal: str = "") -> FeatureSpec:
     """A feature with what is usual: a cut across the middle of the picture (`size`), the last two elements."""
-    made = FeatureSpec(name, kind)
-    if kind in DERIVED:
-        return replace(made, of=elements(plan)[-DERIVED[kind] :])
-    if kind == "section":
-        middle = float(size[1] // 2)
-        return replace(made, section=Section(((0.0, middle), (float(size[0] - 1), middle))))
-    if kind == "deviation":
-        return replace(made, deviation=Deviation(nominal))
+    made, found = FeatureSpec(name, kind), kind_named(kind)
+    if found.made_of:
+        return replace(made, of=elements(plan)[-found.made_of :])
+    match found.settings:
+        case "section":
+            middle = float(size[1] // 2)
+            return replace(made, section=Section(((0.0, middle), (float(size[0] - 1), middle))))
+        case "deviation":
+            return replace(made, deviation=Deviation(nominal))
     return made
 
 
 def elements(plan: InspectionPlan) -> tuple[str, ...]:
     """Names of the features that others can be made from."""
-    return tuple(one.name for one in plan.features if one.kind in ELEMENTS)
+    return tuple(one.name for one in plan.features if kind_of(one).element is not None)
 
 
-def why_not(kind: Kind, plan: InspectionPlan) -> str:
+def why_not(kind: str, plan: InspectionPlan) -> str:
     """Why a feature of this kind cannot be added to the plan, or ""."""
-    if len(elements(plan)) < DERIVED.get(kind, 0):
-        return _tr("It is made of two other features: add planes, spheres, cylinders or points first.")
+    if len(elements(plan)) < kind_named(kind).made_of:
+        return tr("It is made of two other features: add planes, spheres, cylinders or points first.")
     return ""
 
 
@@ -68,7 +60,7 @@ def values_of(spec: FeatureSpec) -> dict[str, Any]:
     """All fields of a feature; what it does not have is not among them."""
     values: dict[str, Any] = {"name": spec.name}
     values |= {f"of {place}": name for place, name in enumerate(spec.of)}
-    if spec.kind not in DERIVED:
+    if not kind_of(spec).made_of:
         filters = spec.filters
         values |= {"sigma_max_mm": filters.sigma_max_mm, "margin_mm": filters.margin_mm}
         values |= {"outliers": filters.outliers, "cell_mm": filters.cell_mm}
@@ -76,12 +68,10 @@ def values_of(spec: FeatureSpec) -> dict[str, Any]:
     for place, region in enumerate(own_regions(spec)):
         values[f"source {place}"] = _source(region)
         values[f"number {place}"] = region.number if isinstance(region, Auto) else 1
-    for result in dict.fromkeys(spec.results):
+    for result in results_of(spec):
         values |= limits_values(spec, result)
-    if spec.kind == "steps":
-        values |= {"heights": "; ".join(f"{height:g}" for height in spec.nominal_heights), "over": spec.over}
-    if spec.deviation is not None:
-        values |= {key: getattr(spec.deviation, key) for key in ("nominal", "align", "tolerance_mm", "reach_mm")}
+    for one in kind_of(spec).fields:
+        values[one.key] = _shown(getattr(_holder(spec), one.key))
     if spec.section is not None:
         values |= _section_values(spec.section)
     return values
@@ -103,12 +93,8 @@ def with_value(spec: FeatureSpec, key: str, value: Any) -> FeatureSpec:
         return with_region(spec, int(rest), _sourced(value) if group == "source" else Auto(int(value)))
     if key in ("sigma_max_mm", "margin_mm", "outliers", "cell_mm"):
         return replace(spec, filters=replace(spec.filters, **{key: value}))
-    if key == "heights":
-        return replace(spec, nominal_heights=_numbers(str(value)))
-    if key == "over":
-        return replace(spec, over=value)
-    if spec.deviation is not None and group in ("nominal", "align", "tolerance_mm", "reach_mm"):
-        return replace(spec, deviation=replace(spec.deviation, **{key: value}))
+    if any(one.key == key for one in kind_of(spec).fields):
+        return _with_own(spec, key, value)
     if spec.section is not None:
         return _with_section(spec, spec.section, key, value)
     raise KeyError(key)
@@ -116,7 +102,7 @@ def with_value(spec: FeatureSpec, key: str, value: Any) -> FeatureSpec:
 
 def own_regions(spec: FeatureSpec) -> tuple[Region, ...]:
     """Where its points are; none for what is made of other features."""
-    return () if spec.kind in DERIVED else spec.regions
+    return () if kind_of(spec).made_of else spec.regions
 
 
 def with_region(spec: FeatureSpec, place: int, region: Region) -> FeatureSpec:
@@ -134,38 +120,34 @@ def limits_values(spec: FeatureSpec, result: str) -> dict[str, float | None]:
     if limits is None:
         return dict.fromkeys(keys)
     shown = (limits.nominal, limits.lower, limits.upper)
-    return {key: _finite(_factor(spec) * value) for key, value in zip(keys, shown, strict=True)}
-
-
-def one_sided(spec: FeatureSpec, result: str) -> bool:
-    """Whether a result cannot be too small, and so has an upper limit alone."""
-    return spec.section is None and result in ONE_SIDED
+    return {key: _finite(_factor(results_of(spec)[result]) * value) for key, value in zip(keys, shown, strict=True)}
 
 
 def with_limits(spec: FeatureSpec, result: str, values: Mapping[str, float | None]) -> FeatureSpec:
     """The feature with a result's limits, by the keys of `limits_values`; ValueError with a sentence if one lacks."""
     nominal, lower, upper = (values.get(f"limits {side} {result}") for side in SIDES)
     kept = tuple(one for one in spec.limits if one[0] != result)
-    if one_sided(spec, result):
+    kind = results_of(spec)[result]
+    if kind.one_sided:
         nominal, lower = None if upper is None else 0.0, None
-    elif spec.kind == "steps" and (lower, upper) != (None, None):
+    elif kind.numbered and (lower, upper) != (None, None):
         nominal = nominal or 0.0
     if nominal is None and lower is None and upper is None:
         return replace(spec, limits=kept)
     if nominal is None:
-        raise ValueError(_tr("Enter the nominal value too: the deviations count from it."))
+        raise ValueError(tr("Enter the nominal value too: the deviations count from it."))
     if lower is None and upper is None:
-        raise ValueError(_tr("Enter a lower or an upper deviation too: without one nothing can be decided."))
+        raise ValueError(tr("Enter a lower or an upper deviation too: without one nothing can be decided."))
     if lower is not None and upper is not None and lower > upper:
-        raise ValueError(_tr("The lower deviation is above the upper one."))
-    per = 1 / _factor(spec)
+        raise ValueError(tr("The lower deviation is above the upper one."))
+    per = 1 / _factor(kind)
     low, high = -math.inf if lower is None else per * lower, math.inf if upper is None else per * upper
     return replace(spec, limits=(*kept, (result, Limits(per * nominal, low, high))))
 
 
-def _factor(spec: FeatureSpec) -> float:
+def _factor(result: ResultKind) -> float:
     """From what a plan holds to what is shown: angles in degrees."""
-    return math.degrees(1.0) if spec.kind == "angle" else 1.0
+    return math.degrees(1.0) if result.quantity == "angle" else 1.0
 
 
 def _finite(value: float) -> float | None:
@@ -199,17 +181,40 @@ def _numbers(text: str) -> tuple[float, ...]:
     try:
         numbers = tuple(float(part.replace(",", ".")) for part in text.split(";") if part.strip())
     except ValueError as error:
-        raise ValueError(_tr("Write the heights in mm with semicolons between them, as 10; 20; 30.")) from error
+        raise ValueError(tr("Write the heights in mm with semicolons between them, as 10; 20; 30.")) from error
     if not all(math.isfinite(number) for number in numbers):
-        raise ValueError(_tr("Write the heights in mm with semicolons between them, as 10; 20; 30."))
+        raise ValueError(tr("Write the heights in mm with semicolons between them, as 10; 20; 30."))
     return numbers
+
+
+# ---- settings of a kind
+
+
+def _holder(spec: FeatureSpec) -> Any:
+    """What holds a kind's own settings: the feature itself, or one of its fields."""
+    settings = kind_of(spec).settings
+    return getattr(spec, settings) if settings else spec
+
+
+def _with_own(spec: FeatureSpec, key: str, value: Any) -> FeatureSpec:
+    """The feature with one of its kind's own settings changed."""
+    settings, holder = kind_of(spec).settings, _holder(spec)
+    if isinstance(getattr(holder, key), tuple):
+        value = _numbers(str(value))
+    changed = replace(holder, **{key: value})
+    return replace(spec, **{settings: changed}) if settings else changed
+
+
+def _shown(value: Any) -> Any:
+    """A setting as its field shows it: several numbers are one text."""
+    return "; ".join(f"{one:g}" for one in value) if isinstance(value, tuple) else value
 
 
 # ---- sections
 
 
 def _section_values(section: Section) -> dict[str, Any]:
-    values: dict[str, Any] = {"half_width_mm": section.half_width_mm, "step_mm": section.step_mm}
+    values: dict[str, Any] = {}
     for place, corner in enumerate(section.line_px or ()):
         values |= {f"line {place} 0": corner[0], f"line {place} 1": corner[1]}
     for place, cut in enumerate(section.cuts):
@@ -222,9 +227,6 @@ def _section_values(section: Section) -> dict[str, Any]:
 
 def _with_section(spec: FeatureSpec, section: Section, key: str, value: Any) -> FeatureSpec:
     group, _, rest = key.partition(" ")
-    if key in ("half_width_mm", "step_mm"):
-        size: dict[str, Any] = {key: float(value)}
-        return replace(spec, section=replace(section, **size))
     place, _, field = rest.partition(" ")
     if group == "line" and section.line_px is not None:
         line = [list(corner) for corner in section.line_px]
@@ -240,7 +242,7 @@ def _with_cut(spec: FeatureSpec, section: Section, place: int, field: str, value
     if field == "name":
         name = str(value).strip()
         if not name or any(other.name == name for other in section.cuts if other is not cut):
-            raise ValueError(_tr("Give each measurement in the section a name of its own."))
+            raise ValueError(tr("Give each measurement in the section a name of its own."))
         limits = tuple((name if result == cut.name else result, one) for result, one in limits)
         changed = replace(cut, name=name)
     elif field == "kind":
@@ -278,7 +280,3 @@ def without_cut(spec: FeatureSpec, place: int) -> FeatureSpec:
 
 def _put(cuts: tuple[Cut, ...], place: int, cut: Cut) -> tuple[Cut, ...]:
     return (*cuts[:place], cut, *cuts[place + 1 :])
-
-
-def _tr(text: str) -> str:
-    return QCoreApplication.translate("Inspect", text)

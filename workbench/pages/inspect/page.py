@@ -4,20 +4,20 @@ from __future__ import annotations
 
 from typing import Any
 
-from PySide6.QtCore import QEvent, QTimer
+from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QTabWidget, QWidget
 
-from workbench.pages import inspect_words as words
-from workbench.pages.inspect_conditions_panel import ConditionsPanel
-from workbench.pages.inspect_features_panel import FeaturesPanel
-from workbench.pages.inspect_panels import FacesPanel, ResultPanel
-from workbench.pages.inspect_picks_panel import PicksPanel
-from workbench.pages.inspect_picture import PictureTab
-from workbench.pages.inspect_plot import PlotTab
-from workbench.pages.inspect_presenter import InspectPresenter, Stage
-from workbench.pages.inspect_series import RepeatsTab
-from workbench.pages.inspect_studies_tab import StudiesTab
-from workbench.pages.inspect_surface import SurfaceTab
+from workbench.pages.inspect import words
+from workbench.pages.inspect.features.conditions_panel import ConditionsPanel
+from workbench.pages.inspect.features.panel import FeaturesPanel
+from workbench.pages.inspect.features.plot import PlotTab
+from workbench.pages.inspect.panels import FacesPanel, ResultPanel
+from workbench.pages.inspect.picks_panel import PicksPanel
+from workbench.pages.inspect.picture import PictureTab
+from workbench.pages.inspect.presenter import InspectPresenter, Stage
+from workbench.pages.inspect.repeats.tab import RepeatsTab
+from workbench.pages.inspect.studies.tab import StudiesTab
+from workbench.pages.inspect.surface import SurfaceTab
 from workbench.pages.step_page import StepPage
 from workbench.views.stage_card import CardButton, StageCard
 
@@ -33,8 +33,9 @@ class InspectPage(StepPage):
     def __init__(self, presenter: InspectPresenter, parent: QWidget | None = None) -> None:
         super().__init__(presenter, parent)
         self.tabs = QTabWidget()
-        self.surface, self.picture, self.series = SurfaceTab(presenter), PictureTab(presenter), RepeatsTab(presenter)
-        self.plot, self.studies = PlotTab(presenter), StudiesTab(presenter)
+        self.surface, self.picture = SurfaceTab(presenter), PictureTab(presenter)
+        self.series = RepeatsTab(presenter.repeats)
+        self.plot, self.studies = PlotTab(presenter.features, presenter.feature), StudiesTab(presenter.studies)
         for tab, title, tip in (
             (self.surface, self.tr("Surface"), self.tr("The measured points and the mesh in 3D")),
             (self.picture, self.tr("Picture"), self.tr("The two faces in the camera's picture; draw regions here")),
@@ -56,9 +57,9 @@ class InspectPage(StepPage):
         self.result_fold = self.add_panel(self.tr("Result"), self.result)
         self.faces = FacesPanel(presenter)
         self.add_panel(self.tr("What is measured"), self.faces)
-        self.features = FeaturesPanel(presenter)
+        self.features = FeaturesPanel(presenter.features, presenter.feature, presenter.templates, presenter.scan)
         self.add_panel(self.tr("Features"), self.features)
-        self.conditions = ConditionsPanel(presenter)
+        self.conditions = ConditionsPanel(presenter.conditions)
         self.conditions_fold = self.add_panel(self.tr("Conditions and frame"), self.conditions, collapsed=True)
         self.picks = PicksPanel(presenter)
         self.add_panel(self.tr("Points and distances"), self.picks)
@@ -67,14 +68,17 @@ class InspectPage(StepPage):
         self.features.draw.connect(self._draw)
         self.picks.pick.connect(self._pick)
         self.surface.notice.connect(presenter.bench.notices.warning)
-        presenter.model.opened.connect(lambda: self.tabs.setCurrentIndex(0))
+        presenter.model.opened.connect(self._show_first_tab)
+
+    def _show_first_tab(self) -> None:
+        self.tabs.setCurrentIndex(0)
 
     def refresh(self) -> None:
         p = self.presenter
         self._show_stage(p.stage)
-        self.result_fold.setVisible(p.gauge is not None)
+        self.result_fold.setVisible(p.scan.gauge is not None)
         self.conditions_fold.setVisible(bool(p.features.plan.features))
-        said = p.features.conditions.in_short
+        said = p.conditions.in_short
         self.conditions_fold.setText(
             self.tr("Conditions and frame ({0})").format(said) if said else self.tr("Conditions and frame")
         )
@@ -84,11 +88,6 @@ class InspectPage(StepPage):
         self.tabs.setTabText(REPEATS, self.tr("Repeats ({0})").format(count) if count else self.tr("Repeats"))
         self.tabs.setTabVisible(PLOT, bool(p.features.plan.features))
         self._refresh_tab()
-
-    def changeEvent(self, event: QEvent) -> None:
-        super().changeEvent(event)
-        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "picks"):
-            self._changed()
 
     def _refresh_tab(self) -> None:
         tab: Any = self.tabs.currentWidget()
@@ -120,7 +119,7 @@ class InspectPage(StepPage):
         title, sentence = self._words()[stage]
         why_not = p.repeats.can_add
         self.card.buttons["measure"].setText(
-            self.tr("Measure again") if p.gauge is not None else self.tr("Measure thickness")
+            self.tr("Measure again") if p.scan.gauge is not None else self.tr("Measure thickness")
         )
         fresh = stage is Stage.MEASURED
         self.card.show_stage(
@@ -135,11 +134,11 @@ class InspectPage(StepPage):
 
     def _words(self) -> dict[Stage, tuple[str, str]]:
         p = self.presenter
-        value = words.thickness(p.gauge) if p.gauge is not None else ""
+        value = words.thickness(p.scan.gauge) if p.scan.gauge is not None else ""
         return {
             Stage.NO_SCAN: (self.tr("Nothing to inspect yet"), self.tr("Scan the part first, then come back.")),
             Stage.READING: (self.tr("Reading the scan …"), self.tr("The surface is being prepared.")),
-            Stage.UNREADABLE: (self.tr("The scan cannot be shown"), p.problem),
+            Stage.UNREADABLE: (self.tr("The scan cannot be shown"), p.scan.problem),
             Stage.MEASURING: (
                 self.tr("Measuring the thickness …"),
                 self.tr("The faces are fitted, and the calibrations' share of the uncertainty is worked out."),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QEvent, QSize, Qt, Signal
+from PySide6.QtCore import QSize, Qt, Signal
 from PySide6.QtWidgets import (
     QGridLayout,
     QHBoxLayout,
@@ -16,15 +16,16 @@ from PySide6.QtWidgets import (
 )
 
 from core.report.wording import verdict_sentence
-from workbench.pages import inspect_words as words
-from workbench.pages.inspect_faces import FACES, NUMBERS
-from workbench.pages.inspect_presenter import InspectPresenter
+from workbench.language import text_of, tr
+from workbench.pages.inspect import words
+from workbench.pages.inspect.faces import FACES, NUMBERS
+from workbench.pages.inspect.presenter import InspectPresenter
 from workbench.pages.step_page import heading, muted
 from workbench.step_state import State
 from workbench.theme import icon
 from workbench.views.colours import FACE_LOWER, FACE_UPPER
-from workbench.views.forms import SettingsForm
-from workbench.views.value_rows import ValueRows, Verdict, VerdictKind
+from workbench.views.forms.form import SettingsForm
+from workbench.views.lists.value_rows import ValueRows, Verdict, VerdictKind
 
 if TYPE_CHECKING:
     from core.inspect.results import GaugeResult
@@ -75,6 +76,7 @@ class FacesPanel(QWidget):
 
     def refresh(self) -> None:
         """Show what the presenter says now."""
+        self._dress()
         faces = self._presenter.faces
         self.form.set_values(faces.values())
         for key in NUMBERS:
@@ -90,7 +92,7 @@ class FacesPanel(QWidget):
                 state = self.tr("own region, {0} corners").format(len(region))
             colour = FACE_UPPER if face == "upper" else FACE_LOWER
             label.setText(f"<span style='color:{colour}'>■</span> {names[face]}: {state}")
-        why_not = "" if self._presenter.view is not None else self.tr("There is no surface to draw on yet.")
+        why_not = "" if self._presenter.scan.view is not None else self.tr("There is no surface to draw on yet.")
         for (face, kind), button in self.tools.items():
             button.setEnabled(not why_not)
             button.setToolTip(why_not or self._tip(face, kind))
@@ -109,11 +111,6 @@ class FacesPanel(QWidget):
             "" if faces.own else self.tr("The faces are found automatically: there is nothing to exchange."),
             self.tr("Exchange the upper and the lower region"),
         )
-
-    def changeEvent(self, event: QEvent) -> None:
-        super().changeEvent(event)
-        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "exchange"):
-            self._dress()
 
     def _rows(self) -> QGridLayout:
         grid = QGridLayout()
@@ -179,15 +176,15 @@ class ResultPanel(QWidget):
     def refresh(self) -> None:
         """Show what the presenter says now."""
         p = self._presenter
-        gauge, outdated = p.gauge, p.state.state is not State.DONE
-        if gauge is None or (p.serial, outdated) == self._shown:
+        gauge, outdated = p.scan.gauge, p.state.state is not State.DONE
+        if gauge is None or (p.scan.serial, outdated) == self._shown:
             return
-        self._shown = (p.serial, outdated)
+        self._shown = (p.scan.serial, outdated)
         self._show_verdict(gauge, outdated)
         self.rows.set_rows(words.result_rows(gauge))
-        self.rule.setText(self.tr("Rule: {0}.").format(gauge.rule))
+        self.rule.setText("" if gauge.rule is None else tr("Rule: {0}.").format(text_of(gauge.rule)))
         self.budget.set_rows(words.budget_rows(gauge))
-        self.notes.setText("\n".join(gauge.notes))
+        self.notes.setText("\n".join(map(text_of, gauge.notes)))
         for widget in (self.notes, self.notes_title):
             widget.setVisible(bool(gauge.notes))
 

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 from PySide6.QtCore import QObject, Signal
 
 from core.inspect.distance import PointDistance, point_distance
 from core.model.arrays import Array
-
-if TYPE_CHECKING:
-    from workbench.pages.inspect_presenter import InspectPresenter
+from workbench.language import tr
+from workbench.pages.inspect.scan import InspectScan
 
 Mode = Literal["", "point", "distance"]
 
@@ -43,9 +42,9 @@ class InspectPicks(QObject):
 
     changed = Signal()
 
-    def __init__(self, owner: InspectPresenter) -> None:
-        super().__init__(owner)
-        self._owner = owner
+    def __init__(self, scan: InspectScan) -> None:
+        super().__init__()
+        self._scan = scan
         self.mode: Mode = ""
         self.first: Pick | None = None
         self.items: list[Pick | Span] = []
@@ -63,7 +62,7 @@ class InspectPicks(QObject):
 
     def pick(self, point: int) -> None:
         """A point of the view was clicked."""
-        view = self._owner.view
+        view = self._scan.view
         if view is None or not self.mode or not 0 <= point < len(view):
             return
         if self.mode == "point":
@@ -94,15 +93,15 @@ class InspectPicks(QObject):
     def hint(self) -> str:
         """What the next click does."""
         if self.mode == "point":
-            return self.tr("Click points of the surface; each is added to the list.")
+            return tr("Click points of the surface; each is added to the list.")
         if self.mode == "distance":
             if self.first is None:
-                return self.tr("Click the first end of the distance.")
-            return self.tr("Click the second end of the distance.")
+                return tr("Click the first end of the distance.")
+            return tr("Click the second end of the distance.")
         return ""
 
     def _picked(self, point: int, name: str) -> Pick:
-        view = self._owner.view
+        view = self._scan.view
         assert view is not None
         u, v = (float(value) for value in view.uv[point])
         return Pick(name, point, view.points[point], float(view.sigma[point]), view.frame_name(point), (u, v))

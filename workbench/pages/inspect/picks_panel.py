@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QEvent, Signal
+from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QHBoxLayout, QListWidget, QListWidgetItem, QPushButton, QVBoxLayout, QWidget
 
-from workbench.pages import inspect_words as words
-from workbench.pages.inspect_picks import Mode, Pick
-from workbench.pages.inspect_presenter import InspectPresenter
+from workbench.pages.inspect import words
+from workbench.pages.inspect.picks import Mode, Pick
+from workbench.pages.inspect.presenter import InspectPresenter
 from workbench.pages.step_page import muted
 from workbench.theme import icon
 
@@ -58,7 +58,8 @@ class PicksPanel(QWidget):
 
     def refresh(self) -> None:
         """Show what the presenter says now."""
-        picks, ready = self._presenter.picks, self._presenter.view is not None
+        self._dress()
+        picks, ready = self._presenter.picks, self._presenter.scan.view is not None
         tips: dict[Mode, str] = {
             "point": self.tr("Click points in 3D: x, y, z in mm in the camera's frame, with frame and pixel"),
             "distance": self.tr("Click two points in 3D: their distance in mm with its standard uncertainty"),
@@ -76,11 +77,6 @@ class PicksPanel(QWidget):
                 self.list.addItem(QListWidgetItem("\n".join(lines)))
             self.list.setCurrentRow(len(names) - 1)
         self._show_buttons()
-
-    def changeEvent(self, event: QEvent) -> None:
-        super().changeEvent(event)
-        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "help"):
-            self._dress()
 
     def _show_buttons(self) -> None:
         for widget in (self.list, self.remove, self.clear):

@@ -6,16 +6,16 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
-from core.inspect.feature_spec import Polygon
-from workbench.pages.inspect_faces import FACES
-from workbench.pages.inspect_feature_edit import LINE
-from workbench.pages.inspect_presenter import RELIEF, InspectPresenter, Stage
+from core.inspect.plan.feature_spec import Polygon
+from workbench.pages.inspect.faces import FACES
+from workbench.pages.inspect.features.edit import LINE
+from workbench.pages.inspect.presenter import RELIEF, InspectPresenter, Stage
 from workbench.pages.step_page import muted
 from workbench.views.colours import FACE_LOWER, FACE_UPPER, FEATURE
-from workbench.views.image_view import ImageView
+from workbench.views.image.view import ImageView
 
 if TYPE_CHECKING:
-    from core.inspect.inspection import InspectionView
+    from core.inspect.shown.shown_scan import InspectionView
 
 USED = "used by the feature"
 """The layer of the points that the chosen feature used."""
@@ -55,14 +55,14 @@ class PictureTab(QWidget):
 
     def refresh(self) -> None:
         """Show what the presenter says now."""
-        p, view = self._presenter, self._presenter.view
+        p, view = self._presenter, self._presenter.scan.view
         self.pictures.setEnabled(view is not None)
         if view is None:
             self._clear()
             return
         self._list_pictures(view)
-        if p.picture == RELIEF and self._shown != (p.serial, RELIEF):
-            self._shown = (p.serial, RELIEF)
+        if p.picture == RELIEF and self._shown != (p.scan.serial, RELIEF):
+            self._shown = (p.scan.serial, RELIEF)
             self.image.set_picture(view.relief.picture, scale=view.relief.cell_px)
         self._lay_faces(view)
         self._lay_feature()
@@ -76,8 +76,8 @@ class PictureTab(QWidget):
             self.image.start_lasso(face)
 
     def _show_picture(self, name: str, picture: Any) -> None:
-        view = self._presenter.view
-        serial = self._presenter.serial
+        view = self._presenter.scan.view
+        serial = self._presenter.scan.serial
         if view is None or self._shown == (serial, name):
             return
         self._shown = (serial, name)
@@ -88,7 +88,7 @@ class PictureTab(QWidget):
         if p.stage is Stage.NO_SCAN:
             message = self.tr("There is no scan yet. Scan the part, then mark its faces here.")
         else:
-            message = p.problem or self.tr("Reading the scan …")
+            message = p.scan.problem or self.tr("Reading the scan …")
         button = self.tr("Go to Scan") if p.stage is Stage.NO_SCAN else ""
         self._shown = self._laid = self._feature = ()
         self.image.clear(message, button, lambda: p.go_to.emit("scan"))
@@ -108,7 +108,10 @@ class PictureTab(QWidget):
         """The regions, or the outlines of the faces found, and the points used; laid anew only if they changed."""
         faces = self._presenter.faces
         regions = {face: faces.region(face) for face in FACES}
-        laid = (self._presenter.serial, *(None if region is None else region.tobytes() for region in regions.values()))
+        laid = (
+            self._presenter.scan.serial,
+            *(None if region is None else region.tobytes() for region in regions.values()),
+        )
         if laid == self._laid:
             return
         self._laid = laid
@@ -133,15 +136,15 @@ class PictureTab(QWidget):
 
     def _lay_feature(self) -> None:
         """The regions drawn for the chosen feature, and the points it used; laid anew only if they changed."""
-        features = self._presenter.features
-        spec, result = features.edit.spec, features.result(features.chosen)
-        laid = (self._presenter.serial, spec, result)
+        features, feature = self._presenter.features, self._presenter.feature
+        spec, result = feature.spec, features.result(features.chosen)
+        laid = (self._presenter.scan.serial, spec, result)
         if laid == self._feature:
             return
         self._feature = laid
         regions = () if spec is None else spec.regions
         for place in range(max(len(regions), self._regions)):
-            name = features.edit.region_name(place)
+            name = feature.region_name(place)
             region = regions[place] if place < len(regions) else None
             if isinstance(region, Polygon):
                 title = self.tr("region of the feature")

@@ -4,31 +4,30 @@ from __future__ import annotations
 
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from PySide6.QtCore import Signal
 
-from core.files.project import Project, source_folder
-from core.files.project_keys import finished
-from workbench import jobs
+from core.files.project.data import Project
+from core.files.project.folder import source_folder
+from core.files.project.keys import finished
 from workbench.bench import Bench
-from workbench.pages.inspect_faces import FACES, InspectFaces
-from workbench.pages.inspect_feature_edit import LINE
-from workbench.pages.inspect_features import InspectFeatures
-from workbench.pages.inspect_picks import InspectPicks
-from workbench.pages.inspect_repeats import InspectRepeats
-from workbench.pages.inspect_scan import InspectScan
-from workbench.pages.inspect_studies import InspectStudies
+from workbench.language import text_of
+from workbench.pages.inspect.faces import FACES, InspectFaces
+from workbench.pages.inspect.features.conditions import InspectConditions
+from workbench.pages.inspect.features.edit import LINE, InspectFeatureEdit
+from workbench.pages.inspect.features.plan import InspectFeatures
+from workbench.pages.inspect.features.templates import InspectTemplates
+from workbench.pages.inspect.picks import InspectPicks
+from workbench.pages.inspect.repeats.repeats import InspectRepeats
+from workbench.pages.inspect.scan import InspectScan
+from workbench.pages.inspect.studies.studies import InspectStudies
 from workbench.pages.presenter import StepPresenter
-from workbench.problems import sentence
 from workbench.step_state import State
-from workbench.tasks import Task
-
-if TYPE_CHECKING:
-    from core.inspect.inspection import InspectionView
-    from core.inspect.results import GaugeResult
+from workbench.work import jobs
+from workbench.work.tasks import Task
 
 RELIEF = "relief"
 """The name of the picture that is made of the surface itself."""
@@ -63,23 +62,26 @@ class InspectPresenter(StepPresenter):
 
     def __init__(self, bench: Bench) -> None:
         super().__init__(bench)
-        self.scan = InspectScan(self)
+        self.scan = InspectScan(bench)
         self.clip_mm: float | None = None
         self.picture = RELIEF
         self.outlining = ""
         self._measuring: Task | None = None
         self._unmeasurable = ""
         self._seen = self._just_measured = False
-        self.faces = InspectFaces(self)
-        self.picks = InspectPicks(self)
-        self.repeats = InspectRepeats(self)
-        self.studies = InspectStudies(self)
-        self.features = InspectFeatures(self)
-        self.faces.changed.connect(self.changed)
-        self.features.changed.connect(self.changed)
-        self.picks.changed.connect(self.changed)
+        self.faces, self.picks = InspectFaces(self.model, self.scan), InspectPicks(self.scan)
+        self.repeats = InspectRepeats(bench, self.scan, self.faces)
+        self.studies = InspectStudies(bench, self.repeats)
+        self.features = InspectFeatures(bench)
+        self.feature = InspectFeatureEdit(self.features, self.scan)
+        self.conditions, self.templates = InspectConditions(self.features), InspectTemplates(self.features)
+        for part in (self.faces, self.picks, self.repeats, self.studies, self.features):
+            part.changed.connect(self.changed)
         self.scan.changed.connect(self._scan_changed)
-        self.model.results_changed.connect(lambda: self.scan.look(seen=self._seen))
+        self.model.results_changed.connect(self._look_at_scan)
+
+    def _look_at_scan(self) -> None:
+        self.scan.look(seen=self._seen)
 
     # ---- state
 
@@ -90,45 +92,15 @@ class InspectPresenter(StepPresenter):
             return Stage.MEASURING
         if "scan" not in self.model.results:
             return Stage.NO_SCAN
-        if self.view is None:
-            return Stage.UNREADABLE if self.problem else Stage.READING
+        if self.scan.view is None:
+            return Stage.UNREADABLE if self.scan.problem else Stage.READING
         if self._unmeasurable:
             return Stage.FAILED
-        if self.stale:
+        if self.scan.stale:
             return Stage.READING
-        if self.view.gauge is None:
+        if self.scan.view.gauge is None:
             return Stage.UNMEASURED
         return Stage.MEASURED if self.state.state is State.DONE else Stage.OUTDATED
-
-    @property
-    def view(self) -> InspectionView | None:
-        """The scan that is shown."""
-        return self.scan.view
-
-    @property
-    def serial(self) -> int:
-        """Tells what is shown from what was shown before."""
-        return self.scan.serial
-
-    @property
-    def problem(self) -> str:
-        """Why the scan cannot be shown, or ""."""
-        return self.scan.problem
-
-    @property
-    def stale(self) -> bool:
-        """Whether something newer than what is shown is being read."""
-        return self.scan.stale
-
-    @property
-    def scan_is_old(self) -> bool:
-        """Whether the scan itself is out of date."""
-        return self.model.states["scan"].state is State.OUTDATED
-
-    @property
-    def gauge(self) -> GaugeResult | None:
-        """The thickness that is shown."""
-        return self.view.gauge if self.view is not None else None
 
     def blocker(self) -> str:
         return self.tr("Scan the part first.") if "scan" not in self.model.results else ""
@@ -139,7 +111,7 @@ class InspectPresenter(StepPresenter):
             Stage.UNMEASURED: self.tr("Measure the thickness, or go on without one: then the report has none."),
             Stage.FAILED: self.tr("Without a thickness the report shows the surface only."),
             Stage.OUTDATED: self.tr("Measure the scan again first, on the page before.")
-            if self.scan_is_old
+            if self.scan.is_old
             else self.tr("Measure again, or the report prints the thickness as it was."),
         }.get(self.stage, "")
 
@@ -153,7 +125,7 @@ class InspectPresenter(StepPresenter):
         """Why the thickness cannot be measured now, or ""."""
         if "scan" not in self.model.results:
             return self.tr("Scan the part first.")
-        if self.problem:
+        if self.scan.problem:
             return self.tr("The scan cannot be read.")
         if self._measuring is not None:
             return self.tr("The thickness is being measured.")
@@ -175,9 +147,10 @@ class InspectPresenter(StepPresenter):
 
         def failed(problem: Any) -> None:
             if folder == self.model.folder:
-                self._unmeasurable = sentence(problem)
+                self._unmeasurable = text_of(problem)
 
-        self._measuring = self.bench.measure(
+        self._measuring = self.bench.run_long(
+            self,
             jobs.MEASURE_GAUGE,
             folder,
             self.scan.as_scanned(),
@@ -196,13 +169,13 @@ class InspectPresenter(StepPresenter):
 
     def points_shown(self) -> int:
         """How many of the points are shown."""
-        if self.view is None:
+        if self.scan.view is None:
             return 0
-        return len(self.view) if self.clip_mm is None else self.view.up_to(self.clip_mm)
+        return len(self.scan.view) if self.clip_mm is None else self.scan.view.up_to(self.clip_mm)
 
     def triangles_shown(self) -> int:
         """How many of the mesh's triangles are shown."""
-        mesh = self.view.mesh if self.view is not None else None
+        mesh = self.scan.view.mesh if self.scan.view is not None else None
         if mesh is None:
             return 0
         return len(mesh.triangles) if self.clip_mm is None else mesh.up_to(self.clip_mm)
@@ -229,7 +202,8 @@ class InspectPresenter(StepPresenter):
         scans = source_folder(folder, self.scan.recording)
         if scans is None:
             return
-        self.bench.glance(
+        self.bench.run_quick(
+            self,
             jobs.READ_PICTURE,
             scans / Path(name).name,
             self.project.rig.channel,
@@ -244,7 +218,7 @@ class InspectPresenter(StepPresenter):
 
     def outline(self, face: str, chosen: NDArray[np.bool_]) -> None:
         """Make the chosen ones of the points shown the region of a face: the outline of the plane they hold."""
-        folder, view = self.model.folder, self.view
+        folder, view = self.model.folder, self.scan.view
         if folder is None or view is None:
             return
         numbers = view.number[: len(chosen)][chosen]
@@ -252,13 +226,14 @@ class InspectPresenter(StepPresenter):
             self.bench.notices.warning(self.tr("There are no points in that region."))
             return
         self.outlining = face
-        meant = face if face in FACES else self.features.edit.meant
+        meant = face if face in FACES else self.feature.meant
 
         def done(outline: Any) -> None:
-            if view is self.view:
+            if view is self.scan.view:
                 self.set_region(face, outline)
 
-        task = self.bench.glance(
+        task = self.bench.run_quick(
+            self,
             jobs.OUTLINE_SELECTED,
             folder,
             numbers[:: -(-len(numbers) // MOST_SENT)],
@@ -274,9 +249,9 @@ class InspectPresenter(StepPresenter):
         if name in FACES:
             self.faces.set_region(name, corners)
         elif name == LINE:
-            self.features.edit.set_line(corners)
+            self.feature.set_line(corners)
         else:
-            self.features.edit.set_region(self.features.edit.place_of(name), corners)
+            self.feature.set_region(self.feature.place_of(name), corners)
 
     def _outlined(self) -> None:
         self.outlining = ""
@@ -312,12 +287,12 @@ class InspectPresenter(StepPresenter):
             self.picks.clear()
             self.faces.forget_regions()
             self.clip_mm, self.outlining, self._unmeasurable = None, "", ""
-        if self.view is None or self.picture not in (RELIEF, *self.view.pictures):
+        if self.scan.view is None or self.picture not in (RELIEF, *self.scan.view.pictures):
             self.picture = RELIEF
         self.read_picture()
-        if self.view is not None:
+        if self.scan.view is not None:
             self.features.look()
         self.changed.emit()
-        if self._just_measured and not self.stale:
+        if self._just_measured and not self.scan.stale:
             self._just_measured = False
             self.measured.emit()

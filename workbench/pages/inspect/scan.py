@@ -7,13 +7,15 @@ from typing import TYPE_CHECKING, Any
 
 from PySide6.QtCore import QObject, Signal
 
-from core.files.project import Project
-from workbench import jobs
-from workbench.problems import sentence
+from core.files.project.data import Project
+from workbench.bench import Bench
+from workbench.language import text_of, tr
+from workbench.step_state import State
+from workbench.work import jobs
 
 if TYPE_CHECKING:
-    from core.inspect.inspection import InspectionView
-    from workbench.pages.inspect_presenter import InspectPresenter
+    from core.inspect.results import GaugeResult
+    from core.inspect.shown.shown_scan import InspectionView
 
 Key = tuple[object, ...]
 """Names a scan, and its thickness."""
@@ -25,9 +27,9 @@ class InspectScan(QObject):
     changed = Signal()
     """Another scan or another thickness is shown, or none."""
 
-    def __init__(self, owner: InspectPresenter) -> None:
-        super().__init__(owner)
-        self._owner = owner
+    def __init__(self, bench: Bench) -> None:
+        super().__init__()
+        self._bench, self._model = bench, bench.model
         self.view: InspectionView | None = None
         self.serial = 0
         self.problem = ""
@@ -41,20 +43,30 @@ class InspectScan(QObject):
         return self._shown != self._asked
 
     @property
+    def gauge(self) -> GaugeResult | None:
+        """The thickness that is shown."""
+        return self.view.gauge if self.view is not None else None
+
+    @property
+    def is_old(self) -> bool:
+        """Whether the scan itself is out of date."""
+        return self._model.states["scan"].state is State.OUTDATED
+
+    @property
     def recording(self) -> str:
         """The recording the scan was measured from, as the project names it."""
-        done = self._owner.model.results.get("scan")
+        done = self._model.results.get("scan")
         return done.rests_on.get("recording", "") if done is not None else ""
 
     def as_scanned(self) -> Project:
         """The project with the recording that the scan among the results was measured from."""
-        project = self._owner.project
+        project = self._model.project
         return replace(project, sources=replace(project.sources, scan=self.recording))
 
     def look(self, *, seen: bool) -> None:
         """Read the scan if the page is seen and there is another one."""
-        owner, results = self._owner, self._owner.model.results
-        if "scan" not in results or not owner.model.is_open:
+        results = self._model.results
+        if "scan" not in results or not self._model.is_open:
             if self.view is not None or self._asked:
                 self.forget()
             return
@@ -63,10 +75,10 @@ class InspectScan(QObject):
         if not seen or wanted == self._asked:
             return
         self._asked, self.problem = wanted, ""
-        folder = owner.model.folder
+        folder = self._model.folder
 
         def is_wanted() -> bool:
-            return wanted == self._asked and folder == owner.model.folder
+            return wanted == self._asked and folder == self._model.folder
 
         def done(view: Any) -> None:
             if is_wanted():
@@ -74,18 +86,19 @@ class InspectScan(QObject):
 
         def failed(problem: Any) -> None:
             if is_wanted():
-                self.problem, self.view = sentence(problem), None
+                self.problem, self.view = text_of(problem), None
                 self.changed.emit()
 
         def cancelled() -> None:
             if is_wanted():
                 self._asked = self._shown
 
-        owner.bench.glance(
+        self._bench.run_quick(
+            self,
             jobs.INSPECTION_VIEW,
             folder,
             self.as_scanned(),
-            label=self.tr("Reading the scan"),
+            label=tr("Reading the scan"),
             on_done=done,
             on_failed=failed,
             on_cancelled=cancelled,

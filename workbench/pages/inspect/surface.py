@@ -10,18 +10,18 @@ from PySide6.QtCore import Qt, QTimer, Signal
 from PySide6.QtGui import QHideEvent, QShowEvent
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
-from core.inspect.inspection import DEPTH
+from core.inspect.shown.shown_scan import DEPTH
 from core.report.wording import grouped
-from workbench.pages import inspect_words as words
-from workbench.pages.inspect_choices import Shape, SurfaceChoices
-from workbench.pages.inspect_picks import Pick, Span
-from workbench.pages.inspect_presenter import InspectPresenter, Stage
+from workbench.pages.inspect import words
+from workbench.pages.inspect.choices import Shape, SurfaceChoices
+from workbench.pages.inspect.picks import Pick, Span
+from workbench.pages.inspect.presenter import InspectPresenter, Stage
 from workbench.views.colours import DEVIATIONS, FACE_LOWER, FACE_UPPER, FEATURE, to_rgba
-from workbench.views.scene_view import SceneView
+from workbench.views.scene.view import Colouring, SceneView
 
 if TYPE_CHECKING:
-    from core.inspect.inspection import InspectionView, ShownMesh
-    from core.inspect.shown_features import ShownFeature
+    from core.inspect.shown.shown_features import ShownFeature
+    from core.inspect.shown.shown_scan import InspectionView, ShownMesh
 
 PLAIN = "#8A96A3"
 """The surface where colour means nothing, and points that were not used."""
@@ -76,17 +76,20 @@ class SurfaceTab(QWidget):
         self.scene.notice.connect(self.notice)
         self.choices.changed.connect(self.refresh)
         self.choices.limited.connect(presenter.clip)
-        presenter.measured.connect(lambda: self.choices.choose_colour("faces"))
+        presenter.measured.connect(self._show_faces)
+
+    def _show_faces(self) -> None:
+        self.choices.choose_colour("faces")
 
     def refresh(self) -> None:
         """Show what the presenter says now."""
-        p, view = self._presenter, self._presenter.view
+        p, view = self._presenter, self._presenter.scan.view
         self.choices.show_view(view, p.clip_mm)
         if view is None:
             self._clear()
             return
-        if (p.serial, self.shape, self.colour, p.points_shown()) != self._drawn:
-            if self._drawn[:1] != (p.serial,):
+        if (p.scan.serial, self.shape, self.colour, p.points_shown()) != self._drawn:
+            if self._drawn[:1] != (p.scan.serial,):
                 self._draw()  # the first picture at once
             else:
                 self._later.start()
@@ -127,8 +130,8 @@ class SurfaceTab(QWidget):
         p = self._presenter
         if p.stage is Stage.NO_SCAN:
             message = self.tr("There is no scan yet. Scan the part, then look at its surface here.")
-        elif p.problem:
-            message = p.problem
+        elif p.scan.problem:
+            message = p.scan.problem
         else:
             message = self.tr("Reading the scan …")
         self._later.stop()
@@ -140,22 +143,22 @@ class SurfaceTab(QWidget):
 
     def _draw(self) -> None:
         """Send cloud and mesh to the 3D view as far as they changed; parts of arrays, so nothing large is copied."""
-        p, view = self._presenter, self._presenter.view
+        p, view = self._presenter, self._presenter.scan.view
         if view is None:
             return
         self._later.stop()
         count, seen = p.points_shown(), self.shape != "mesh"
-        before, self._drawn = self._drawn, (p.serial, self.shape, self.colour, count)
+        before, self._drawn = self._drawn, (p.scan.serial, self.shape, self.colour, count)
         if view.gauge is not None and view.gauge.normal is not None and not self._oriented:
             self._oriented = True
             self.scene.set_orientation(-view.gauge.normal, (0.0, -1.0, 0.0))
         self.scene.show_cloud(seen)
         self.scene.show_mesh(self.shape != "points")
-        cloud = (p.serial, count, self.colour if seen else "plain")
+        cloud = (p.scan.serial, count, self.colour if seen else "plain")
         if cloud != self._cloud:
             self._cloud = cloud
             self.scene.set_cloud(view.points[:count], keep_camera=bool(before), **self._look(view, count, cloud[2]))
-        mesh = (p.serial, p.triangles_shown(), self.colour)
+        mesh = (p.scan.serial, p.triangles_shown(), self.colour)
         if view.mesh is not None and self.shape != "points" and mesh != self._mesh:
             self._mesh = mesh
             self._draw_mesh(view, view.mesh)
@@ -165,7 +168,7 @@ class SurfaceTab(QWidget):
         name = self.colour
         look: dict[str, Any] = {"colour": PLAIN}
         if name in ("sigma", "height", "deviation"):
-            look = {"values": getattr(mesh, name), **self._scale(view, name)}
+            look = {"values": getattr(mesh, name), "colouring": self._colouring(view, name)}
         self.scene.set_mesh(mesh.vertices, mesh.triangles[: self._presenter.triangles_shown()], **look)
 
     def _look(self, view: InspectionView, count: int, name: str) -> dict[str, Any]:
@@ -174,21 +177,21 @@ class SurfaceTab(QWidget):
         if name == "faces":
             table = np.array([to_rgba(colour)[:3] for colour in (PLAIN, FACE_UPPER, FACE_LOWER)], dtype=np.uint8)
             return {"colours": table[view.face[:count]]}
-        return {"values": getattr(view, name)[:count], **self._scale(view, name)}
+        return {"values": getattr(view, name)[:count], "colouring": self._colouring(view, name)}
 
-    def _scale(self, view: InspectionView, name: str) -> dict[str, Any]:
+    def _colouring(self, view: InspectionView, name: str) -> Colouring:
         titles = {
             "sigma": self.tr("σ of the depth"),
             "height": self.tr("depth") if view.height_is == DEPTH else self.tr("height over the lower face"),
             "deviation": self.tr("deviation from the face"),
             "frame": self.tr("frame number"),
         }
-        return {
-            "value_name": titles[name],
-            "unit": "" if name == "frame" else "mm",
-            "limits": view.ranges[name],
-            "colour_map": "deviation" if name == "deviation" else "viridis",
-        }
+        return Colouring(
+            titles[name],
+            unit="" if name == "frame" else "mm",
+            limits=view.ranges[name],
+            colour_map="deviation" if name == "deviation" else "viridis",
+        )
 
     def _mark_used(self, view: InspectionView, count: int) -> None:
         """Points used, on a mesh, which has no colours of its own for them."""

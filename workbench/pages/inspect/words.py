@@ -6,13 +6,13 @@ import math
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QCoreApplication
-
-from core.files.project import Repeat
+from core.files.project.data import Repeat
 from core.report.wording import decimals_of, fixed, grouped, with_uncertainty
 from core.study.repeats import RepeatStatistics
-from workbench.pages.inspect_picks import Pick, Span
+from workbench.language import text_of, tr
+from workbench.pages.inspect.picks import Pick, Span
 from workbench.views.colours import Level
+from workbench.views.lists.value_rows import ValueRow
 
 if TYPE_CHECKING:
     from core.inspect.results import GaugeResult
@@ -21,9 +21,6 @@ if TYPE_CHECKING:
 CAPABLE = "capable"
 """The verdict of `core.study.type1` on a gauge that suffices."""
 
-Row = tuple[str, str, str, Level]
-"""Label, text with unit, tip, level."""
-
 
 def thickness(gauge: GaugeResult) -> str:
     """'50.008 mm ± 0.027 mm (k = 2)'."""
@@ -31,90 +28,90 @@ def thickness(gauge: GaugeResult) -> str:
     return f"{value} mm ± {expanded} mm (k = {gauge.k:g})"
 
 
-def result_rows(gauge: GaugeResult) -> list[Row]:
+def result_rows(gauge: GaugeResult) -> list[ValueRow]:
     """The thickness and all that is said of the faces."""
     decimals = max(decimals_of(gauge.U_mm), 0)
     value, expanded = with_uncertainty(gauge.thickness_mm, gauge.U_mm)
-    rows: list[Row] = [
-        (_tr("Thickness"), f"{value} mm", _tr("Distance of the two parallel planes fitted to both faces"), ""),
+    rows: list[ValueRow] = [
+        (tr("Thickness"), f"{value} mm", tr("Distance of the two parallel planes fitted to both faces"), ""),
         (
-            _tr("U (k = {0})").format(f"{gauge.k:g}"),
+            tr("U (k = {0})").format(f"{gauge.k:g}"),
             f"± {expanded} mm",
-            _tr("Expanded uncertainty: k times the standard uncertainty u"),
+            tr("Expanded uncertainty: k times the standard uncertainty u"),
             "",
         ),
     ]
     if gauge.deviation_mm is not None:
-        nominal = _tr("Measured thickness less the nominal value of {0} mm").format(f"{gauge.nominal_mm:g}")
-        rows.append((_tr("Deviation"), f"{fixed(gauge.deviation_mm, decimals, signed=True)} mm", nominal, ""))
-    flatness = _tr("Spread that holds 95 % of the points used about their plane, the points' noise included")
+        nominal = tr("Measured thickness less the nominal value of {0} mm").format(f"{gauge.nominal_mm:g}")
+        rows.append((tr("Deviation"), f"{fixed(gauge.deviation_mm, decimals, signed=True)} mm", nominal, ""))
+    flatness = tr("Spread that holds 95 % of the points used about their plane, the points' noise included")
     upper, lower = gauge.points_used
     return [
         *rows,
-        (_tr("Flatness, upper face"), f"{fixed(gauge.upper.flatness_mm, 3)} mm", flatness, ""),
-        (_tr("Flatness, lower face"), f"{fixed(gauge.lower.flatness_mm, 3)} mm", flatness, ""),
+        (tr("Flatness, upper face"), f"{fixed(gauge.upper.flatness_mm, 3)} mm", flatness, ""),
+        (tr("Flatness, lower face"), f"{fixed(gauge.lower.flatness_mm, 3)} mm", flatness, ""),
         (
-            _tr("Parallelism"),
+            tr("Parallelism"),
             f"{fixed(math.degrees(gauge.parallelism), 3)}°",
-            _tr("Angle between the two faces when each is fitted by itself"),
+            tr("Angle between the two faces when each is fitted by itself"),
             "",
         ),
-        (_tr("Points used, upper face"), grouped(upper), _tr("Points the upper plane rests on"), ""),
-        (_tr("Points used, lower face"), grouped(lower), _tr("Points the lower plane rests on"), ""),
+        (tr("Points used, upper face"), grouped(upper), tr("Points the upper plane rests on"), ""),
+        (tr("Points used, lower face"), grouped(lower), tr("Points the lower plane rests on"), ""),
     ]
 
 
-def budget_rows(gauge: GaugeResult) -> list[Row]:
+def budget_rows(gauge: GaugeResult) -> list[ValueRow]:
     """Each contribution to the uncertainty, and all together."""
     decimals = max(decimals_of(gauge.u_mm) + 1, 0)
-    rows: list[Row] = [
-        (_first_up(row.source), f"{fixed(row.u_mm, decimals)} mm", _tr("Standard uncertainty (k = 1)"), "")
+    rows: list[ValueRow] = [
+        (_first_up(text_of(row.source)), f"{fixed(row.u_mm, decimals)} mm", tr("Standard uncertainty (k = 1)"), "")
         for row in gauge.budget
     ]
-    together = _tr("Root of the sum of squares of all rows (k = 1)")
-    return [*rows, (_tr("u, all together"), f"{fixed(gauge.u_mm, decimals)} mm", together, "")]
+    together = tr("Root of the sum of squares of all rows (k = 1)")
+    return [*rows, (tr("u, all together"), f"{fixed(gauge.u_mm, decimals)} mm", together, "")]
 
 
-def statistics_rows(statistics: RepeatStatistics, nominal_mm: float | None) -> list[Row]:
+def statistics_rows(statistics: RepeatStatistics, nominal_mm: float | None) -> list[ValueRow]:
     """Mean, error, RMSE, STD and largest error of the repeats."""
-    unknown = _tr("needs a nominal value")
+    unknown = tr("needs a nominal value")
 
     def mm(value: float | None, *, signed: bool = False) -> str:
         return unknown if value is None else f"{fixed(value, 4, signed=signed)} mm"
 
-    std = f"{fixed(statistics.std_mm, 4)} mm" if statistics.n > 1 else _tr("needs two repeats")
-    rows: list[Row] = [
-        (_tr("Repeats"), str(statistics.n), _tr("Scans in the series"), ""),
-        (_tr("Mean"), f"{fixed(statistics.mean_mm, 4)} mm", _tr("Mean of all repeats"), ""),
+    std = f"{fixed(statistics.std_mm, 4)} mm" if statistics.n > 1 else tr("needs two repeats")
+    rows: list[ValueRow] = [
+        (tr("Repeats"), str(statistics.n), tr("Scans in the series"), ""),
+        (tr("Mean"), f"{fixed(statistics.mean_mm, 4)} mm", tr("Mean of all repeats"), ""),
         (
-            _tr("Error of the mean"),
+            tr("Error of the mean"),
             mm(statistics.error_mm, signed=True),
-            _tr("Mean less the nominal value")
+            tr("Mean less the nominal value")
             if nominal_mm is None
-            else _tr("Mean less the nominal value of {0} mm").format(f"{nominal_mm:g}"),
+            else tr("Mean less the nominal value of {0} mm").format(f"{nominal_mm:g}"),
             "",
         ),
-        (_tr("RMSE"), mm(statistics.rmse_mm), _tr("Root mean square of the single errors"), ""),
-        (_tr("STD"), std, _tr("Standard deviation of one repeat about the mean (over n − 1)"), ""),
-        (_tr("Largest error"), mm(statistics.largest_error_mm), _tr("Largest magnitude of a single error"), ""),
+        (tr("RMSE"), mm(statistics.rmse_mm), tr("Root mean square of the single errors"), ""),
+        (tr("STD"), std, tr("Standard deviation of one repeat about the mean (over n − 1)"), ""),
+        (tr("Largest error"), mm(statistics.largest_error_mm), tr("Largest magnitude of a single error"), ""),
     ]
     return rows
 
 
-def type1_rows(study: Type1Study) -> list[Row]:
+def type1_rows(study: Type1Study) -> list[ValueRow]:
     """Bias, Cg and Cgk of a type-1 study, and whether they suffice."""
     level: Level = "good" if study.verdict == CAPABLE else "bad"
-    verdict = _tr("capable") if level == "good" else _tr("not capable")
+    verdict = tr("capable") if level == "good" else tr("not capable")
     low, high = (fixed(end, 2) for end in study.cg_interval)
     lasts = fixed(study.smallest_tolerance, 4)
     return [
-        (_tr("Type-1 study"), verdict, _tr("Capable if Cg and Cgk are 1.33 or more"), level),
-        (_tr("Tolerance T"), f"{study.tolerance:g} mm", _tr("Full width: twice the ± tolerance of the thickness"), ""),
-        (_tr("Cg"), fixed(study.cg, 2), _tr("0.2 T / (6 s); 95 % interval {0} to {1}").format(low, high), ""),
-        (_tr("Cgk"), fixed(study.cgk, 2), _tr("(0.1 T − |bias|) / (3 s)"), ""),
-        (_tr("Bias"), f"{fixed(study.bias, 4, signed=True)} mm", _tr("Mean less the reference value"), ""),
-        (_tr("p of the bias"), f"{study.p:.2g}", _tr("t-test: how probable a bias as large is without any"), ""),
-        (_tr("Smallest T"), f"{lasts} mm", _tr("Smallest tolerance for which Cgk reaches 1.33"), ""),
+        (tr("Type-1 study"), verdict, tr("Capable if Cg and Cgk are 1.33 or more"), level),
+        (tr("Tolerance T"), f"{study.tolerance:g} mm", tr("Full width: twice the ± tolerance of the thickness"), ""),
+        (tr("Cg"), fixed(study.cg, 2), tr("0.2 T / (6 s); 95 % interval {0} to {1}").format(low, high), ""),
+        (tr("Cgk"), fixed(study.cgk, 2), tr("(0.1 T − |bias|) / (3 s)"), ""),
+        (tr("Bias"), f"{fixed(study.bias, 4, signed=True)} mm", tr("Mean less the reference value"), ""),
+        (tr("p of the bias"), f"{study.p:.2g}", tr("t-test: how probable a bias as large is without any"), ""),
+        (tr("Smallest T"), f"{lasts} mm", tr("Smallest tolerance for which Cgk reaches 1.33"), ""),
     ]
 
 
@@ -172,27 +169,27 @@ def pick_lines(pick: Pick) -> tuple[str, str]:
     """Where a picked point is, and where it was seen."""
     decimals = max(decimals_of(pick.sigma_mm), 0)
     x, y, z = (fixed(float(value), decimals) for value in pick.place)
-    place = _tr("{name}   x {x}   y {y}   z {z} mm").format(name=pick.name, x=x, y=y, z=z)
+    place = tr("{name}   x {x}   y {y}   z {z} mm").format(name=pick.name, x=x, y=y, z=z)
     u, v = pick.uv
-    frame = PurePosixPath(pick.frame).name or _tr("fan, no frame")
-    return place, _tr("± {sigma} mm (sd), {frame}, u {u} v {v} px").format(
+    frame = PurePosixPath(pick.frame).name or tr("fan, no frame")
+    return place, tr("± {sigma} mm (sd), {frame}, u {u} v {v} px").format(
         sigma=fixed(pick.sigma_mm, decimals), frame=frame, u=fixed(u, 1), v=fixed(v, 1)
     )
 
 
 def span_lines(span: Span) -> tuple[str, str]:
     """A distance with its standard uncertainty, and its ends."""
-    text = _tr("{name}   {value} mm, u = {u} mm").format(name=span.name, **_span(span))
+    text = tr("{name}   {value} mm, u = {u} mm").format(name=span.name, **_span(span))
     ends = []
     for pick in (span.a, span.b):
         x, y, z = (fixed(float(value), 1) for value in pick.place)
         ends.append(f"({x}, {y}, {z})")
-    return text, _tr("from {0} to {1} mm").format(*ends)
+    return text, tr("from {0} to {1} mm").format(*ends)
 
 
 def span_label(span: Span) -> str:
     """What stands at the dimension line."""
-    return _tr("{name}: {value} mm (u = {u} mm)").format(name=span.name, **_span(span))
+    return tr("{name}: {value} mm (u = {u} mm)").format(name=span.name, **_span(span))
 
 
 def _span(span: Span) -> dict[str, str]:
@@ -202,7 +199,3 @@ def _span(span: Span) -> dict[str, str]:
 
 def _first_up(text: str) -> str:
     return text[:1].upper() + text[1:]
-
-
-def _tr(text: str) -> str:
-    return QCoreApplication.translate("Inspect", text)

@@ -6,19 +6,16 @@ from collections.abc import Callable, Mapping
 from datetime import datetime
 from pathlib import Path
 
-from PySide6.QtCore import QEventLoop, QObject, QTimer, SignalInstance
+from PySide6.QtCore import QObject
 
 from core.acquire.source import Step
 from core.errors import InputError
-from core.files.project import Done
-from core.files.unfinished import forget_recording, note_recording
-from core.live.events import LiveEnded
-from workbench import jobs
+from core.files.project.data import Done
+from core.files.recording.unfinished import forget_recording, note_recording
+from core.pipeline.live.events import LiveEnded
 from workbench.bench import Bench
 from workbench.pages.sources import folder_of, put_source
-
-LET_GO_MS = 1000
-"""A process that is ended has so long to say so."""
+from workbench.work import jobs
 
 
 class LiveEnding(QObject):
@@ -57,7 +54,8 @@ class LiveEnding(QObject):
         if not ended.recorded or self.project_folder is None or self.project_folder != self._model.folder:
             done()
         elif adding and before is not None:
-            self._bench.glance(
+            self._bench.run_quick(
+                self,
                 jobs.ADD_RECORDING,
                 before,
                 ended.folder,
@@ -82,7 +80,7 @@ class LiveEnding(QObject):
         try:
             forget_recording(project)
         except InputError as error:
-            self._bench.notices.error(str(error))
+            self._bench.notices.failed(error)
 
 
 def new_folder(recordings: Path, step: str) -> Path:
@@ -96,21 +94,3 @@ def calibrated_s(results: Mapping[str, Done]) -> float | None:
     """When the older of the two calibrations was made, in s since 1970; None if one is missing."""
     both = [results[step].at.timestamp() for step in ("camera", "planes") if step in results]
     return min(both) if len(both) == 2 else None
-
-
-def wait_until_ended(ended: SignalInstance, stop: Callable[[], None], deadline: QTimer) -> None:
-    """Call `stop`, and let events come until `ended`, or a moment after the `deadline` that stopping has started."""
-    loop = QEventLoop()
-    ended.connect(loop.quit)
-    limit = QTimer(loop)
-    limit.setSingleShot(True)
-    limit.setInterval(LET_GO_MS)
-    limit.timeout.connect(loop.quit)
-    deadline.timeout.connect(limit.start)
-    stop()
-    if not deadline.isActive():
-        limit.start(deadline.interval())
-    loop.exec()
-    limit.stop()
-    deadline.timeout.disconnect(limit.start)
-    ended.disconnect(loop.quit)

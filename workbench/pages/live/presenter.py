@@ -14,12 +14,16 @@ from PySide6.QtCore import QObject, QTimer, Signal
 
 from core.acquire.source import Step
 from core.errors import InputError
-from core.image.target_view import TargetView
-from core.live.commands import LiveRequest, Stop
-from core.live.events import (
+from core.image.targets.target_view import TargetView
+from core.messages import plain
+from core.model import Camera, Fan
+from core.pipeline.live.commands import Auto, Capture, Command, Configure, Discard, LiveRequest, Pause, Resume, Stop
+from core.pipeline.live.events import (
+    LiveAdvice,
     LiveAnswered,
     LiveAsk,
     LiveBack,
+    LiveChecks,
     LiveEnded,
     LiveEvent,
     LiveNotice,
@@ -29,20 +33,29 @@ from core.live.events import (
     LiveUnplugged,
     LiveView,
 )
-from core.model import Camera, Fan
+from core.scan.preview.preflight import Check
 from workbench.bench import Bench
-from workbench.pages.live_commands import LiveCommands
-from workbench.pages.live_ending import LiveEnding, calibrated_s, new_folder, wait_until_ended
+from workbench.language import text_of, tr
+from workbench.pages.live.ending import LiveEnding, calibrated_s, new_folder
+from workbench.pages.live.settings import LiveSettings
 from workbench.pages.sources import folder_of
-from workbench.problems import details, sentence
+from workbench.work import jobs
+from workbench.work.tasks import Task
+from workbench.work.worker import Failure
 
 STOP_WITHIN_MS = 5000
 """A source that has not let go by then is ended with its process; what is on the disk stays."""
 
 DISPLAY_PX = 1280
+"""Width of the live pictures, at most."""
+
+LOST_SHARE = 0.02
+"""From this share of lost frames on, the rate is too high."""
+
+WELL_EXPOSED = LiveAdvice()
 
 
-class LivePresenter(LiveCommands):
+class LivePresenter(QObject):
     """Starts, steers and ends the live recordings of one step.
 
     `calibration`, `cannot_start`, `there` and `pairs` may be set by the page: what is known of camera and fan when a
@@ -52,6 +65,10 @@ class LivePresenter(LiveCommands):
     becomes the step's source by an undoable edit, then `ended` is emitted.
     """
 
+    changed = Signal()
+    """State, choice or settings are others: draw the controls anew."""
+
+    view = Signal(object)
     started = Signal(object)
     taken = Signal(object)
     asked = Signal(str, str)
@@ -66,9 +83,34 @@ class LivePresenter(LiveCommands):
     other_running = Signal(str)
     """Another page's recording runs: this question, to be answered by `start(stop_other=True)` or not at all."""
 
+    name: str
+    """Of the source, once it is open."""
+
+    image_size: tuple[int, int]
+    paused: bool
+    stopping: bool
+    gone: bool
+    """The source is unplugged."""
+
+    recorded: int
+    dropped: int
+    rate_hz: float
+    advice: LiveAdvice
+    """How to expose the stripes better."""
+
+    checks: tuple[Check, ...]
+    """What was looked at before a scan."""
+
+    _ask: LiveAsk | None
+
     def __init__(self, bench: Bench, step: Step, parent: QObject | None = None) -> None:
-        super().__init__(bench, step, parent)
-        self.bench, self.model = bench, bench.model
+        super().__init__(parent)
+        self.bench, self.model, self.step = bench, bench.model, step
+        self.forget()
+        self.settings = LiveSettings(bench, step, self)
+        self.settings.changed.connect(self._configure)
+        self._auto = step != "scan"
+        self._task: Task | None = None
         self._ending = LiveEnding(bench, step, self)
         self.calibration: Callable[[], tuple[Camera | None, Fan | None]] = lambda: (None, None)
         self.cannot_start: Callable[[], str] = lambda: ""
@@ -76,16 +118,107 @@ class LivePresenter(LiveCommands):
         self.pairs = True
         self.adding = False
         self._source = self.settings.choice
-        self._session.told.connect(self._on_event)
-        self._session.view.connect(self._on_view)
-        self._session.ended.connect(self._on_ended)
-        self._session.failed.connect(self._on_failed)
         self._deadline = QTimer(self)
         self._deadline.setSingleShot(True)
         self._deadline.setInterval(STOP_WITHIN_MS)
-        self._deadline.timeout.connect(self._session.abandon)
+        self._deadline.timeout.connect(self._abandon)
         self.model.opened.connect(self._project_opened)
-        self.model.leaving.connect(self.finish)
+        self.model.leaving.connect(self.stop)
+
+    # ---- what is known while it runs
+
+    @property
+    def running(self) -> bool:
+        """Whether a recording is going on, from start until the source is closed."""
+        return self._task is not None
+
+    @property
+    def live(self) -> bool:
+        """Whether pictures are coming: the first one is there and nobody has pressed stop."""
+        return self.running and self.name != "" and not self.stopping
+
+    @property
+    def question(self) -> tuple[str, str]:
+        """What is asked now: sentence and button; two empty texts if nothing is."""
+        return (text_of(self._ask.sentence), tr(self._ask.button)) if self._ask is not None else ("", "")
+
+    def forget(self) -> None:
+        """Nothing is known of a recording that has not begun."""
+        self.name, self.image_size = "", (0, 0)
+        self.recorded = self.dropped = 0
+        self.rate_hz = 0.0
+        self.over()
+
+    def over(self) -> None:
+        """Nothing is asked or advised any more; what was counted stays."""
+        self.paused = self.stopping = self.gone = False
+        self.advice, self.checks, self._ask = WELL_EXPOSED, (), None
+
+    def hear(self, event: LiveEvent) -> None:
+        """Take note of what the recording says."""
+        match event:
+            case LiveStarted():
+                self.name, self.image_size = event.name, event.image_size
+            case LiveView():
+                self.recorded, self.dropped, self.rate_hz = event.recorded, event.dropped, event.rate_hz
+            case LiveAsk() | LiveAnswered():
+                self._ask = event if isinstance(event, LiveAsk) else None
+            case LiveAdvice():
+                self.advice = event
+            case LiveChecks():
+                self.checks = event.checks
+            case LiveUnplugged():
+                self.gone = True
+            case LiveBack():
+                self.gone = False
+
+    def state_text(self) -> str:
+        """What goes on, in a few words."""
+        if not self.running:
+            return tr("The live source is off.")
+        if self.stopping:
+            return tr("Stopping …")
+        if not self.name:
+            return tr("Opening the source …")
+        if self.gone:
+            return tr("{0} is unplugged.").format(self.name)
+        if self.paused:
+            return tr("Paused: {0}").format(self.name)
+        return tr("Live: {0}").format(self.name)
+
+    def counts_text(self) -> str:
+        """Recorded and lost pictures and the rate, with their units."""
+        if not self.running:
+            return ""
+        parts = [self._recorded_text()]
+        if self.rate_hz > 0:
+            parts.append(tr("{0} frames/s").format(f"{self.rate_hz:.0f}"))
+        if self.step == "scan":
+            parts.append(tr("{0} lost").format(self.dropped))
+        return " · ".join(parts)
+
+    def lost_text(self) -> str:
+        """What to do when frames are lost, or "": only a scan needs every frame, and one now and then does no harm."""
+        total = self.recorded + self.dropped
+        if self.step != "scan" or not self.dropped or self.dropped < LOST_SHARE * total:
+            return ""
+        text = tr("{0} of {1} pictures were lost on the way").format(self.dropped, total)
+        if not self.rate_hz > 0:
+            return tr("{0}: choose a lower rate.").format(text)
+        lower = f"{int(self.rate_hz)}" if self.rate_hz >= 1 else f"{0.9 * self.rate_hz:.1f}"
+        return tr("{0}; {1} a second are taken: choose a rate of {2}/s or lower.").format(
+            text, f"{self.rate_hz:.1f}", lower
+        )
+
+    def _recorded_text(self) -> str:
+        words = {
+            "camera": tr("{0} views taken"),
+            "planes": tr("{0} poses taken"),
+            "scan": tr("{0} frames recorded"),
+        }
+        return words[self.step].format(self.recorded)
+
+    # ---- start and stop
 
     @property
     def can_add(self) -> bool:
@@ -99,7 +232,7 @@ class LivePresenter(LiveCommands):
 
     def get_ready(self) -> None:
         """A source will soon be wanted: have the process for it ready, and know the simulated scenes."""
-        self.bench.live.warm_up()
+        self.bench.live.prepare()
         if self.settings.kind == "simulated" and not self.settings.devices and not self.settings.looking:
             self.settings.look_for_devices()
 
@@ -111,7 +244,7 @@ class LivePresenter(LiveCommands):
         if other is not None:
             if not stop_other:
                 self.other_running.emit(
-                    self.tr("Another page is recording. Stop that recording? What it has recorded is kept.")
+                    tr("Another page is recording. Stop that recording? What it has recorded is kept.")
                 )
                 return
             other.send(Stop())
@@ -119,18 +252,30 @@ class LivePresenter(LiveCommands):
             request = self._request(self.model.folder)
             self._ending.begin(self.model.folder, request.folder)
         except InputError as error:
-            self.bench.notices.error(str(error))
+            self.bench.notices.failed(error)
             return
         self.forget()
         self._source = request.source
-        self._session.start(request)
+        self.model.recording_begins(self)
+        self._task = task = self.bench.live.run(
+            self,
+            jobs.RUN_LIVE,
+            request,
+            label=f"live {request.step}",
+            on_done=self._on_ended,
+            on_failed=self._on_failed,
+            on_cancelled=lambda: self._on_failed(None),
+            offers={"channel": "channel"},
+        )
+        task.view.connect(self._on_view)
+        task.reported.connect(self._on_event)
         self.changed.emit()
 
     def stop(self) -> None:
         """Finish the recording; what is recorded is kept."""
         if self.running and not self.stopping:
             self.stopping = True
-            self._session.send(Stop())
+            self._send(Stop())
             self._deadline.start()
             self.changed.emit()
 
@@ -141,14 +286,79 @@ class LivePresenter(LiveCommands):
         else:
             self.start()
 
-    def busy(self) -> str:
-        """What would be interrupted if the project were left now, or ""."""
-        return self.tr("A recording is running.") if self.running else ""
+    # ---- commands while it runs; without a recording they do nothing
 
-    def finish(self) -> None:
-        """The project is about to be left: end the recording, and wait for it for a moment."""
+    @property
+    def auto(self) -> bool:
+        """Whether views and poses are taken without being told."""
+        return self._auto
+
+    def pause(self, on: bool) -> None:
+        """Record nothing for a while, or go on."""
+        if self.live and on != self.paused:
+            self.paused = on
+            self._send(Pause() if on else Resume())
+            self.changed.emit()
+
+    def capture(self) -> None:
+        """Take this picture now."""
+        if self.live:
+            self._send(Capture())
+
+    def set_auto(self, on: bool) -> None:
+        """Take views and poses without being told, or no longer; also before a start."""
+        if on != self._auto:
+            self._auto = on
+            self._send(Auto(on))
+            self.changed.emit()
+
+    def discard(self, name: str) -> None:
+        """Put a picture aside that has been taken."""
+        self._send(Discard(name))
+
+    def take_advice(self) -> None:
+        """Tell the source how to expose the stripes better, as was advised."""
+        if self.advice.settings is not None:
+            settings, self.advice = self.advice.settings, WELL_EXPOSED
+            self.settings.take(settings)
+
+    def answer(self) -> None:
+        """The button of what was asked has been pressed."""
+        if self._ask is not None:
+            self._send(self._ask.answer)
+
+    def shown(self) -> None:
+        """The last view is on the screen; the next one is welcome."""
+        if self._task is not None:
+            self._task.shown()
+
+    def show_by(self, draw: Callable[[LiveView], None]) -> None:
+        """Have each view drawn by this while it runs, and answered by `shown()` whatever comes of that."""
+
+        def show(view: LiveView) -> None:
+            try:
+                if self.running:
+                    draw(view)
+            finally:
+                self.shown()
+
+        self.view.connect(show)
+
+    def _configure(self) -> None:
         if self.running:
-            wait_until_ended(self.ended, self.stop, self._deadline)
+            self._send(Configure(self.settings.values))
+        self.changed.emit()
+
+    # ---- inside
+
+    def _send(self, command: Command) -> None:
+        if self._task is not None:
+            self._task.send(command)
+
+    def _abandon(self) -> None:
+        """Do not wait any longer for a source that hangs: end its process."""
+        if self._task is not None:
+            self._task.cancel()
 
     def _request(self, project: Path) -> LiveRequest:
         camera, fan = self.calibration()
@@ -185,24 +395,25 @@ class LivePresenter(LiveCommands):
             case LiveAsk() | LiveAnswered():
                 self.asked.emit(*self.question)
             case LiveNotice():
-                self.notice.emit(event.sentence)
-                self.bench.notices.info(event.sentence)
+                self.notice.emit(text_of(event.sentence))
+                self.bench.notices.info(text_of(event.sentence))
             case LiveSaving() if self.stopping:
                 self._deadline.start()  # it is not hanging: frames still go to the disk
             case LiveUnplugged():
-                self.bench.notices.info(event.sentence)  # the page says it, as long as it is so
-                self.unplugged.emit(event.sentence)
+                self.bench.notices.info(text_of(event.sentence))  # the page says it, as long as it is so
+                self.unplugged.emit(text_of(event.sentence))
             case LiveBack():
-                self.bench.notices.info(self.tr("{0} is back; the recording goes on.").format(self.name))
+                self.bench.notices.info(tr("{0} is back; the recording goes on.").format(self.name))
                 self.back.emit()
         self.changed.emit()
 
     def _on_ended(self, ended: LiveEnded) -> None:
+        self._task = None
         self._deadline.stop()
-        if ended.error:
-            self.bench.notices.error(ended.error)
+        if ended.error is not None:
+            self.bench.notices.error(text_of(ended.error))
         self.recorded, self.dropped = ended.recorded, ended.dropped
-        if not ended.error and (lost := self.lost_text()):
+        if ended.error is None and (lost := self.lost_text()):
             self.bench.notices.warning(lost)
         asked = self.question[0]
         self.over()
@@ -213,15 +424,18 @@ class LivePresenter(LiveCommands):
             self.adding = False
             self.ended.emit(ended)
             self.changed.emit()
+            if not self.running:
+                self.model.recording_ends(self)
 
         self._ending.hand_over(ended, adding=self.adding, then=finished)
 
     def _on_failed(self, problem: Any) -> None:
         """The loop did not get to its own end: it was ended, its process died, or the source could not be opened."""
-        why = "" if problem is None else sentence(problem)
-        if problem is not None and details(problem):
-            self.bench.notices.error(why, details(problem))
-            why = ""
+        why = None
+        if isinstance(problem, Failure):
+            self.bench.notices.failed(problem)
+        elif problem is not None:
+            why = problem.message if isinstance(problem, InputError) else plain(text_of(problem))
         recorded = self.recorded
         self._on_ended(LiveEnded(self._ending.folder or Path(), recorded, self.dropped, why))
 

@@ -12,24 +12,14 @@ from core.acquire.kept_settings import KeptSettings
 from core.acquire.settings import Region
 from core.acquire.source import Capabilities, SourceChoice, SourceInfo, SourceSettings, Step
 from core.errors import InputError
-from core.files.recorder import Ending
-from workbench import jobs
+from core.files.recording.recorder import Ending
+from core.messages import Message
+from core.pipeline.live.sources import SOURCES
 from workbench.bench import Bench
+from workbench.language import text_of
+from workbench.work import jobs
 
-_CAMERA = ("exposure_ms", "gain_db", "rate_hz")
-_GENICAM = (*_CAMERA, "trigger", "pixel_format", "region")
-
-SETTINGS: dict[str, tuple[str, ...]] = {
-    "simulated": _CAMERA,
-    "opencv": _CAMERA,
-    "replay": ("rate_hz",),
-    "basler": _GENICAM,
-    "genicam": _GENICAM,
-    "aravis": _GENICAM,
-}
-"""The kinds of sources in the order of the list, and what one of each may be told; the first is always there."""
-
-FIRST = next(iter(SETTINGS))
+FIRST = next(iter(SOURCES))
 
 
 class LiveSettings(QObject):
@@ -52,9 +42,9 @@ class LiveSettings(QObject):
 
     @property
     def kind(self) -> str:
-        """One of SETTINGS."""
+        """One of SOURCES."""
         kind = self._bench.settings.text("live/kind", FIRST)
-        return kind if kind in SETTINGS else FIRST
+        return kind if kind in SOURCES else FIRST
 
     @property
     def choice(self) -> SourceChoice:
@@ -70,7 +60,7 @@ class LiveSettings(QObject):
     def names(self) -> tuple[str, ...]:
         """What this source can be told, as far as is known: exactly once it has been open."""
         known = self._known.get(self.choice)
-        return SETTINGS[self.kind] if known is None else known.names
+        return SOURCES[self.kind].settings if known is None else known.names
 
     @property
     def capabilities(self) -> Capabilities:
@@ -101,7 +91,7 @@ class LiveSettings(QObject):
         try:
             self._keep(replace(self.values, **{name: value}))
         except InputError as error:
-            self._complain(str(error))
+            self._complain(text_of(error))
 
     def set_region(self, text: str) -> None:
         """Set the region from four whole numbers; an empty text leaves it to the source."""
@@ -112,7 +102,7 @@ class LiveSettings(QObject):
         try:
             self._keep(replace(self.values, region=Region(*numbers) if numbers else None))
         except InputError as error:
-            self._complain(str(error))
+            self._complain(text_of(error))
 
     def take(self, settings: SourceSettings) -> None:
         """Set what of it is not None."""
@@ -132,9 +122,10 @@ class LiveSettings(QObject):
         """List the devices of this kind, and see whether its driver is there; `devices_changed` when it is done."""
         kind, self.looking = self.kind, True
 
-        def found(devices: Any, missing: str = "") -> None:
+        def found(devices: Any, missing: Message | None = None) -> None:
             if kind == self.kind:
-                self.devices, self.missing, self.looking = tuple(devices), missing, False
+                self.devices, self.looking = tuple(devices), False
+                self.missing = "" if missing is None else f"{text_of(missing)}."
                 self.devices_changed.emit()
 
         def listed(devices: Any) -> None:
@@ -147,7 +138,8 @@ class LiveSettings(QObject):
         self.devices_changed.emit()
 
     def _look(self, job: jobs.Job, kind: str, done: Any, failed: Any) -> None:
-        self._bench.glance(
+        self._bench.run_quick(
+            self,
             job,
             kind,
             label=self.tr("Looking for cameras"),

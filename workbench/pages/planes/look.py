@@ -6,10 +6,10 @@ from typing import Any
 
 from PySide6.QtCore import QObject, Signal
 
-from core.calibrate.pose_features import PoseFeatures
-from workbench import jobs
+from core.calibrate.fan.pose_features import PoseFeatures
 from workbench.bench import Bench
-from workbench.pages.planes_work import PlanesWork
+from workbench.pages.planes.work import PlanesWork
+from workbench.work import jobs
 
 NOTHING: tuple[str, Any, Any] = ("", None, None)
 
@@ -59,7 +59,8 @@ class PlanesLook(QObject):
         path = next((path for path in self._work.pictures or () if path.stem == name), None)
         if features is not None:
             self._read = (name, features, calibration)
-            self._bench.glance(
+            self._bench.run_quick(
+                self,
                 jobs.SHOW_POSE,
                 folder,
                 self._model.project,
@@ -71,7 +72,8 @@ class PlanesLook(QObject):
             )
         elif path is not None:
             self._read = (name, None, None)
-            self._bench.glance(
+            self._bench.run_quick(
+                self,
                 jobs.READ_PICTURE,
                 path,
                 self._model.project.rig.channel,

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from PySide6.QtWidgets import QWidget
 
-from workbench.pages import planes_words as words
-from workbench.pages.calibration_page import CalibrationPage, known
-from workbench.pages.planes_panels import PLATES, LaserForm, PlanesCard, PlanesLive, PlanesResult
-from workbench.pages.planes_picture import PoseTab
-from workbench.pages.planes_presenter import PlanesPresenter
-from workbench.pages.planes_stage import Stage
-from workbench.pages.planes_tabs import HistoryTab, RigTab
-from workbench.pages.target_panel import TargetPanel
-from workbench.views.plots import Bar
-from workbench.views.tables import ListRow
-from workbench.wording import in_the_window
+from workbench.language import text_of
+from workbench.pages.calibration.page import CalibrationPage, known
+from workbench.pages.calibration.stage import Stage
+from workbench.pages.calibration.target_panel import TargetPanel
+from workbench.pages.planes import words
+from workbench.pages.planes.panels import PLATES, LaserForm, PlanesCard, PlanesLive, PlanesResult
+from workbench.pages.planes.picture import PoseTab
+from workbench.pages.planes.presenter import PlanesPresenter
+from workbench.pages.planes.tabs import HistoryTab, RigTab
+from workbench.views.lists.view_list import ListRow
+from workbench.views.plots.bars import Bar
 
 
 class PlanesPage(CalibrationPage):
@@ -79,13 +79,13 @@ class PlanesPage(CalibrationPage):
         if work.calibration is not None:
             return [
                 ListRow(
-                    pose.name, known(pose.rms_mm), words.mm(pose.rms_mm), pose.used, in_the_window(pose.reason),
-                    work.thumbnails.get(pose.name),
+                    pose.name, known(pose.rms_mm), words.mm(pose.rms_mm), pose.used,
+                    text_of(pose.reason or ""), work.thumbnails.get(pose.name),
                 )
                 for pose in work.calibration.poses
             ]  # fmt: skip
         left_out = {name.removeprefix("planes/") for name in p.project.options.excluded_in("planes")}
-        reasons = {pose.name: in_the_window(pose.reason) for pose in work.poses or () if pose.reason}
+        reasons = {pose.name: text_of(pose.reason or "") for pose in work.poses or () if pose.reason}
         return [
             ListRow(
                 path.stem, None, "", path.stem not in left_out and path.stem not in reasons,

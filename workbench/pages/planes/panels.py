@@ -7,14 +7,14 @@ from typing import Any
 
 from PySide6.QtWidgets import QCheckBox, QVBoxLayout, QWidget
 
-from workbench.pages import planes_words as words
-from workbench.pages.planes_presenter import PlanesPresenter
-from workbench.pages.planes_stage import Stage
+from workbench.pages.calibration.stage import Stage
+from workbench.pages.planes import words
+from workbench.pages.planes.presenter import PlanesPresenter
 from workbench.pages.step_page import heading, muted
-from workbench.views.forms import SettingsForm
-from workbench.views.live_panel import LivePanel
+from workbench.views.forms.form import SettingsForm
+from workbench.views.forms.live_panel import LivePanel
+from workbench.views.lists.value_rows import ValueRows
 from workbench.views.stage_card import CalibrationCard
-from workbench.views.value_rows import ValueRows
 
 PLATES = ("black_square", "checkerboard", "charuco", "circle_grid")
 """Kinds of targets the laser planes can be calibrated with."""
@@ -36,7 +36,7 @@ class PlanesCard(CalibrationCard):
         self.show_stage(
             *self._words()[stage],
             {
-                "run": (p.can_measure, self.tr("Measure all pictures and solve the planes (Ctrl+R)")),
+                "run": (p.can_search, self.tr("Measure all pictures and solve the planes (Ctrl+R)")),
                 "accept": (p.can_accept, self.tr("Measure with these laser planes from now on (Ctrl+Return)")),
                 "reject": (p.can_reject, self.tr("Do not measure with these laser planes")),
             },
@@ -66,7 +66,7 @@ class PlanesCard(CalibrationCard):
                     "then the planes are calibrated."
                 ),
             ),
-            Stage.MEASURING: (
+            Stage.SEARCHING: (
                 self.tr("Measuring the pictures …"),
                 self.tr("Target and stripes are found in each pose."),
             ),

@@ -8,13 +8,14 @@ from typing import Any
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QLabel, QVBoxLayout, QWidget
 
-from core.live.events import LiveView, PlanesDetail
-from workbench.pages import planes_words as words
-from workbench.pages.planes_presenter import PlanesPresenter
-from workbench.pages.planes_stage import Stage
+from core.pipeline.live.events import LiveView, PlanesDetail
+from workbench.language import text_of
+from workbench.pages.calibration.stage import Stage
+from workbench.pages.planes import words
+from workbench.pages.planes.presenter import PlanesPresenter
 from workbench.views.colours import CORNER, EXCLUDED, fan_colour
-from workbench.views.image_view import ImageView
-from workbench.views.meters import HintBar
+from workbench.views.image.view import ImageView
+from workbench.views.plots.meters import HintBar
 
 LIVE = "live"
 
@@ -39,8 +40,11 @@ class PoseTab(QWidget):
         presenter.look.measured.connect(self._show_pose)
         presenter.look.picture.connect(self._show_picture)
         presenter.live.show_by(self._draw_live)
-        presenter.live.started.connect(lambda _: self.image.clear_layers())
+        presenter.live.started.connect(self._live_started)
         self._empty()
+
+    def _live_started(self, _: object) -> None:
+        self.image.clear_layers()
 
     def refresh(self) -> None:
         """Show what the presenter says now."""
@@ -59,8 +63,8 @@ class PoseTab(QWidget):
             self._empty()
             return
         features = p.look.features_of(p.current)
-        notes = " ".join(features.notes) if features is not None else ""
-        reason = features.reason if features is not None else ""
+        notes = " ".join(map(text_of, features.notes)) if features is not None else ""
+        reason = text_of(features.reason or "") if features is not None else ""
         said = words.pose_sentence(p.current, p.pose_of(p.current), reason)
         self.line.setText(f"{said} {notes}".strip())
 
@@ -136,4 +140,5 @@ class PoseTab(QWidget):
             self._draw_target(detail.uv)
         self._draw_stripes(list(zip(detail.stripes, detail.line, strict=True)))
         enough = () if detail.missing else (self.tr("Nothing is missing: press Stop, and it is calibrated."),)
-        self.hints.set_hints([sentence for sentence in (detail.sentence, *detail.missing[:2], *enough) if sentence])
+        seen = () if detail.sentence is None else (detail.sentence,)
+        self.hints.set_hints([*map(text_of, (*seen, *detail.missing[:2])), *enough])

@@ -8,14 +8,14 @@ from PySide6.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout, QWidget
 
 from core.calibrate.results import FanCalibration, PlanePose
 from core.model import Camera
-from workbench.pages import planes_words as words
-from workbench.pages.planes_presenter import PlanesPresenter
+from workbench.pages.planes import words
+from workbench.pages.planes.presenter import PlanesPresenter
 from workbench.pages.step_page import muted
 from workbench.theme import icon
-from workbench.views import scene_shapes
 from workbench.views.colours import EXCLUDED, fan_colour
-from workbench.views.scene_view import SceneView
-from workbench.views.tables import DataTable
+from workbench.views.lists.data_table import DataTable
+from workbench.views.scene import shapes as scene_shapes
+from workbench.views.scene.view import SceneView
 
 NEAR, FAR = 0.85, 1.15
 """The planes are drawn from a little before the nearest pose to a little behind the farthest."""

@@ -1,15 +1,21 @@
-"""What is known of the pictures of the plate under the fan: target and stripes found, the light planes solved."""
+"""What is known of the pictures of the plate under the fan, and the camera they are seen through."""
 
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
-from core.calibrate.pose_features import PoseFeatures
+from PySide6.QtCore import QObject, Signal
+
+from core.calibrate.fan.pose_features import PoseFeatures
 from core.calibrate.results import FanCalibration
-from core.files.project import Project
-from core.files.project_keys import rests_on
-from workbench import jobs
-from workbench.pages.calibration_work import CalibrationWork
+from core.files.project.data import Project
+from core.files.project.keys import rests_on
+from core.model import Camera
+from workbench.bench import Bench
+from workbench.language import tr
+from workbench.pages.calibration.work import CalibrationWork
+from workbench.work import jobs
 
 Poses = tuple[PoseFeatures, ...]
 
@@ -36,26 +42,28 @@ class PlanesWork(CalibrationWork[Poses, FanCalibration]):
         return "" if path.stem.endswith("_off") else path.stem
 
     def _labels(self) -> tuple[str, str]:
-        return self.tr("Laser planes"), self.tr("Solving the laser planes")
+        return tr("Laser planes"), tr("Solving the laser planes")
 
     def _can_search(self, project: Project) -> bool:
         return bool(project.sources.planes and project.accepted.camera)
 
     def _recall(self, folder: Path, project: Project) -> None:
         if self._accepted_is_of_these_pictures(project):
-            self._bench.glance(
+            self._bench.run_quick(
+                self,
                 jobs.RECALL_POSES,
                 folder,
                 project,
-                label=self.tr("Reading the laser planes"),
+                label=tr("Reading the laser planes"),
                 on_done=lambda recalled: self._take_up(folder, project, *recalled),
             )
         elif self._can_search(project):
             self._bench.quick.run(
+                self,
                 jobs.FOUND_POSES,
                 folder,
                 project,
-                label=self.tr("Reading what was found"),
+                label=tr("Reading what was found"),
                 on_done=lambda poses: self._take_up(folder, project, poses),
             )
 
@@ -63,3 +71,50 @@ class PlanesWork(CalibrationWork[Poses, FanCalibration]):
         done, keys = self._model.results.get("planes"), rests_on("planes", project, {})
         known = {} if done is None else done.rests_on
         return bool(project.accepted.fan) and all(keys.get(name) == known.get(name) for name in self.FOUND_BY)
+
+
+class PlanesCamera(QObject):
+    """The accepted camera, which live pictures and the 3D view want.
+
+    `camera` is None where none is accepted, while it is read (`reading`), and where it cannot be.
+    """
+
+    changed = Signal()
+
+    def __init__(self, bench: Bench, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self._bench, self._model = bench, bench.model
+        self.forget()
+
+    def forget(self) -> None:
+        """Nothing is known yet."""
+        self.camera: Camera | None = None
+        self.reading = False
+        self._id = ""
+
+    def follow(self) -> None:
+        """Read the accepted camera if it is another than before."""
+        folder, id_ = self._model.folder, self._model.project.accepted.camera
+        if folder is None or not id_:
+            self.forget()
+            return
+        if id_ == self._id:
+            return
+        self._id, self.camera, self.reading = id_, None, True
+
+        def ended(calibration: Any = None) -> None:
+            if id_ == self._id and folder == self._model.folder:
+                self.reading = False
+                self.camera = calibration.camera if calibration is not None else None
+                self.changed.emit()
+
+        self._bench.run_quick(
+            self,
+            jobs.READ_CAMERA,
+            folder,
+            id_,
+            label=tr("Reading the camera"),
+            on_done=ended,
+            on_failed=lambda _: ended(),
+            offers={},
+        )

@@ -1,38 +1,29 @@
-"""All ways into and out of a project: new, open, from a recording set, the sample, the simulated rig, close."""
+"""What is done with projects as a whole: new, open, from a recording set, the sample, the simulated rig, close."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
-from PySide6.QtCore import QObject, Signal
+from PySide6.QtCore import QObject, Qt, Signal
 from PySide6.QtWidgets import QWidget
 
 from core.errors import InputError
-from core.files.project import (
-    OPENER,
-    Project,
-    ProjectFile,
-    can_be_saved,
-    is_project,
-    new_project,
-    project_from_set,
-    read_project,
-    rescues,
-)
-from core.files.unfinished import Unfinished, forget_recording, unfinished_recording
+from core.files.project.data import Project, ProjectFile, new_project
+from core.files.project.folder import OPENER, can_be_saved, is_project, project_from_set, read_project, rescues
+from core.files.recording.unfinished import Unfinished, forget_recording, unfinished_recording
 from workbench.bench import Bench
-from workbench.pages.copy_door import CopyDoor
-from workbench.pages.project_states import wanted_state
-from workbench.pages.sample_door import SampleDoor
+from workbench.pages.project.copying import ProjectCopy
+from workbench.pages.project.sample import SampleProject
+from workbench.pages.project.states import wanted_state
 from workbench.pages.sources import put_source
 from workbench.views import ask
 
 PROJECT, BACKUPS, SET = "project.json", "backups", "rig.toml"
 
 
-class ProjectDoors(QObject):
+class ProjectActions(QObject):
     """Opens and closes projects; asks where something could be lost, and only there."""
 
     go_to = Signal(str)
@@ -40,8 +31,11 @@ class ProjectDoors(QObject):
     def __init__(self, bench: Bench, window: QWidget) -> None:
         super().__init__(window)
         self.bench, self.model, self._window = bench, bench.model, window
-        self.sample = SampleDoor(bench, self.open_project, self)
-        self.copy = CopyDoor(bench, window, self.save, self.close_project, self._open, self)
+        self.sample = SampleProject(bench, self.open_project, self)
+        self.copy = ProjectCopy(bench, window, self.save, self.close_project, self._open, self)
+        self._when_left: Callable[[], object] | None = None
+        # Queued: a recording that ends is at its end then, and not in the midst of telling it.
+        self.model.recordings_over.connect(self._recordings_over, Qt.ConnectionType.QueuedConnection)
 
     def new_project(self) -> None:
         """Ask for a name and make an empty project."""
@@ -85,7 +79,7 @@ class ProjectDoors(QObject):
         try:
             wanted = wanted_state(self._window, folder)
         except InputError as error:
-            self.bench.notices.error(str(error))
+            self.bench.notices.failed(error)
             return
         if wanted is not None:
             self._open(folder, wanted.version, recover=wanted.recover)
@@ -95,12 +89,10 @@ class ProjectDoors(QObject):
         try:
             version = read_project(path)
         except InputError as error:
-            self.bench.notices.error(str(error))
+            self.bench.notices.failed(error)
             return
-        if self._open(path.parent.parent, version):
-            self.bench.notices.info(
-                self.tr("This is an earlier version; once it is saved, the present one is among the backups.")
-            )
+        text = self.tr("This is an earlier version; once it is saved, the present one is among the backups.")
+        self._open(path.parent.parent, version, then=lambda: self.bench.notices.info(text))
 
     def open_set(self, folder: Path) -> None:
         """Make a project that measures a recording set where it lies."""
@@ -119,8 +111,7 @@ class ProjectDoors(QObject):
         base = self.bench.settings.projects_folder
         names = (self.tr("Simulated rig") + (f" {number}" if number > 1 else "") for number in range(1, 1000))
         name = next(name for name in names if not (base / name).exists())
-        if self._create(base / name, new_project, name):
-            self.go_to.emit("camera")
+        self._create(base / name, new_project, name, then=lambda: self.go_to.emit("camera"))
 
     def save(self) -> bool:
         """Save, with what is being typed; False if it could not be."""
@@ -128,34 +119,65 @@ class ProjectDoors(QObject):
         try:
             self.model.save()
         except InputError as error:
-            self.bench.notices.error(str(error))
+            self.bench.notices.failed(error)
             return False
         return True
 
-    def close_project(self) -> bool:
-        """Save and close the project; False if it is to stay open."""
-        if not self.model.is_open:
-            return True
-        if not self.may_leave([self.tr("A recording is running.")] if self.bench.live.busy else []):
-            return False
-        self.bench.measuring.cancel_all()
-        self.model.close()
-        return True
+    def close_project(self, then: Callable[[], object] = lambda: None) -> None:
+        """Save and close the project, `then` go on; neither is done if it is to stay open."""
 
-    def may_leave(self, busy: Sequence[str]) -> bool:
-        """Whether the project can be left: asks if something runs or cannot be saved, else saves.
+        def close() -> None:
+            self.bench.measuring.cancel_all()
+            self.model.close()
+            then()
 
-        `busy`: a sentence for each recording that runs; what is being measured is known here.
+        if self.model.is_open:
+            self.leave(close)
+        else:
+            then()
+
+    def leave(self, then: Callable[[], object]) -> None:
+        """Save the project, `then` go on: at once, or when a recording has ended; not at all if the user stays.
+
+        Asks if something runs, or cannot be saved. While a recording ends the window takes no input.
         """
-        job = self.bench.measuring.current
-        measuring = self.tr("A job is not finished yet: {0}.").format(job.label) if job is not None else ""
-        running = " ".join(dict.fromkeys(sentence for sentence in (*busy, measuring) if sentence))
-        if running:
-            text = self.tr("{0} What is recorded is kept. Stop it and leave?").format(running)
-            if ask.ask(self._window, self.tr("Leave the project"), text, [self.tr("Stop and leave"), self.tr("Stay")]):
-                return False
+        if self._when_left is not None:
+            return
+        self._when_left = then
+        if not self._may_stop():
+            self._when_left = None
+            return
         self._take_typed()
         self.model.leaving.emit()
+        if self.model.is_recording:
+            self._window.setEnabled(False)
+        else:
+            self._recordings_over()
+
+    def _recordings_over(self) -> None:
+        """Nothing records any more: if that was waited for, save and go on."""
+        if self._when_left is None or self.model.is_recording:
+            return
+        self._window.setEnabled(True)
+        saved = self._saved()
+        then, self._when_left = self._when_left, None
+        if saved:
+            then()
+
+    def _may_stop(self) -> bool:
+        """Whether what runs may be stopped: asks if anything does."""
+        job = self.bench.measuring.current
+        running = [self.tr("A recording is running.")] if self.model.is_recording else []
+        if job is not None:
+            running.append(self.tr("A job is not finished yet: {0}.").format(job.label))
+        if not running:
+            return True
+        text = self.tr("{0} What is recorded is kept. Stop it and leave?").format(" ".join(running))
+        answers = [self.tr("Stop and leave"), self.tr("Stay")]
+        return ask.ask(self._window, self.tr("Leave the project"), text, answers) == 0
+
+    def _saved(self) -> bool:
+        """Save; False if that cannot be done, and the changes are not to be lost."""
         if not self.model.is_modified:
             self.model.autosave()  # nothing is left that could be offered for recovery
             return True
@@ -172,20 +194,30 @@ class ProjectDoors(QObject):
             editor.clearFocus()
             editor.setFocus()
 
-    def _open(self, folder: Path, version: ProjectFile | None = None, *, recover: bool = False) -> bool:
-        if not self.close_project():
-            return False
-        try:
-            self.model.open(folder, recover=recover, version=version)
-        except InputError as error:
-            self.bench.notices.error(str(error))
-            return False
-        self.bench.settings.remember(folder)
-        if not can_be_saved(folder):
-            self.copy.offer()
-        if (unfinished := unfinished_recording(folder)) is not None:
-            self._offer(folder, unfinished)
-        return True
+    def _open(
+        self,
+        folder: Path,
+        version: ProjectFile | None = None,
+        *,
+        recover: bool = False,
+        then: Callable[[], object] = lambda: None,
+    ) -> None:
+        """Open a project, the one that is open being closed before, `then` go on."""
+
+        def open_() -> None:
+            try:
+                self.model.open(folder, recover=recover, version=version)
+            except InputError as error:
+                self.bench.notices.failed(error)
+                return
+            self.bench.settings.remember(folder)
+            if not can_be_saved(folder):
+                self.copy.offer()
+            if (unfinished := unfinished_recording(folder)) is not None:
+                self._offer(folder, unfinished)
+            then()
+
+        self.close_project(open_)
 
     def _offer(self, folder: Path, unfinished: Unfinished) -> None:
         """A recording was cut short by a crash: its pictures are whole, and may be used."""
@@ -207,7 +239,7 @@ class ProjectDoors(QObject):
         try:
             forget_recording(folder)
         except InputError as error:
-            self.bench.notices.error(str(error))
+            self.bench.notices.failed(error)
 
     def _make(self, title: str, name: str, project: Callable[[str], Project]) -> None:
         answer = ask.ask_name_and_folder(self._window, title, name, self.bench.settings.projects_folder)
@@ -217,14 +249,23 @@ class ProjectDoors(QObject):
         self.bench.settings.projects_folder = folder
         self._create(folder / ask.file_name(name), project, name)
 
-    def _create(self, folder: Path, project: Callable[[str], Project], name: str) -> bool:
+    def _create(
+        self, folder: Path, project: Callable[[str], Project], name: str, then: Callable[[], object] = lambda: None
+    ) -> None:
+        """Make a project and open it, the one that is open being closed before, `then` go on."""
+
+        def create() -> None:
+            try:
+                self.model.create(folder, replace(made, info=replace(made.info, name=name)))
+            except InputError as error:
+                self.bench.notices.failed(error)
+                return
+            self.bench.settings.remember(folder)
+            then()
+
         try:
             made = project(name)
-            if not self.close_project():
-                return False
-            self.model.create(folder, replace(made, info=replace(made.info, name=name)))
         except InputError as error:
-            self.bench.notices.error(str(error))
-            return False
-        self.bench.settings.remember(folder)
-        return True
+            self.bench.notices.failed(error)
+            return
+        self.close_project(create)

@@ -1,4 +1,4 @@
-"""The way from a project to a copy of it: where it lies it may be read-only."""
+"""Going on in a copy of the open project: where it lies it may be read-only."""
 
 from __future__ import annotations
 
@@ -8,17 +8,17 @@ from pathlib import Path
 from PySide6.QtCore import QObject
 from PySide6.QtWidgets import QWidget
 
-from core.files.project import ProjectFile, can_be_saved
-from workbench import jobs
+from core.files.project.folder import can_be_saved
 from workbench.bench import Bench
 from workbench.views import ask
+from workbench.work import jobs
 
 
-class CopyDoor(QObject):
+class ProjectCopy(QObject):
     """Copies the open project and goes on in the copy, with what is changed and not saved.
 
-    `save` saves the project, `leave` closes it, and both say whether they could; `open_copy` opens a folder in a state,
-    or as it was saved.
+    `save` saves the project and says whether it could; `leave` closes it and goes on with what it is given, unless the
+    user stays; `open_copy` opens a folder in a state, or as it was saved.
     """
 
     def __init__(
@@ -26,8 +26,8 @@ class CopyDoor(QObject):
         bench: Bench,
         window: QWidget,
         save: Callable[[], bool],
-        leave: Callable[[], bool],
-        open_copy: Callable[[Path, ProjectFile | None], bool],
+        leave: Callable[[Callable[[], object]], None],
+        open_copy: Callable[..., None],
         parent: QObject | None = None,
     ) -> None:
         super().__init__(parent)
@@ -50,7 +50,7 @@ class CopyDoor(QObject):
         folder, notices = self._model.folder, self._bench.notices
         if folder is None:
             return
-        if self._bench.live.busy:
+        if self._model.is_recording:
             notices.error(self.tr("Stop the recording first; then the project can be copied."))
             return
         name = self.tr("{0} copy").format(self._model.project.info.name or folder.name)
@@ -60,7 +60,8 @@ class CopyDoor(QObject):
         if answer is None or (can_be_saved(folder) and not self._save()):
             return
         to = answer[1] / ask.file_name(answer[0])
-        self._bench.measure(
+        self._bench.run_long(
+            self,
             jobs.COPY_PROJECT,
             folder,
             to,
@@ -73,9 +74,13 @@ class CopyDoor(QObject):
             self._bench.notices.info(self.tr("The copy is {0}: File, Open project.").format(copy))
             return
         state = self._model.file if self._model.is_modified else None
-        if not can_be_saved(folder):
+        text = self.tr("This is the copy in {0}.").format(copy)
+
+        def go_on() -> None:
+            self._open_copy(copy, state, then=lambda: self._bench.notices.info(text))
+
+        if can_be_saved(folder):
+            self._leave(go_on)
+        else:
             self._model.close()  # what was changed goes along
-        elif not self._leave():
-            return
-        if self._open_copy(copy, state):
-            self._bench.notices.info(self.tr("This is the copy in {0}.").format(copy))
+            go_on()

@@ -17,19 +17,24 @@ from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
 
-from PySide6.QtCore import QCoreApplication, QSettings
+from PySide6.QtCore import QSettings
+from PySide6.QtWidgets import QWidget
 
 from core.errors import InputError
 from core.files.atomic import make_folder, write_text
-from core.files.project import OPENER
+from core.files.project.folder import OPENER
+from core.messages import Message, plain
+from workbench.language import tr
+from workbench.notices import Notices
+from workbench.views import ask
 
 MIME = "application/x-trisect-project"
 CLASS = "Trisect.Project"
 PLATFORM = str(sys.platform)
 CLASSES = r"HKEY_CURRENT_USER\Software\Classes"
 
-TOLD_WITHIN_S = 20.0
-"""The system's own programs that take notice of new files have so long."""
+NOTICED_WITHIN_S = 20.0
+"""Seconds that the system's own programs have to take notice of new files: far more than they need."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,16 +61,18 @@ def install(command: tuple[str, ...] | None = None) -> Outcome:
     command = command or starter()
     if PLATFORM == "win32":
         _register(command)
-        return Outcome(_tr("Windows opens files NAME.trisect in Trisect now."))
+        return Outcome(tr("Windows opens files NAME.trisect in Trisect now."))
     wanted = _wanted(command)
     for path, text in wanted.items():
         make_folder(path.parent)
         if not path.exists() or path.read_text(encoding="utf-8") != text:
             write_text(path, text)
     unknown = _take_notice()
-    sentence = _tr("A double click on NAME.trisect in a project's folder opens it in Trisect now.")
+    sentence = tr("A double click on NAME.trisect in a project's folder opens it in Trisect now.")
     if unknown:
-        sentence += " " + _tr("Log in again for it to work: {0} is not installed here.").format(", ".join(unknown))
+        sentence += " " + tr(
+            "Log in again for it to work: {programs} is not installed here.", programs=", ".join(unknown)
+        )
     return Outcome(sentence, tuple(wanted))
 
 
@@ -77,7 +84,7 @@ def uninstall() -> Outcome:
     InputError
         If a file cannot be removed, or this system has no such thing.
     """
-    gone = _tr("Projects are no longer opened by double click.")
+    gone = tr("Projects are no longer opened by double click.")
     if PLATFORM == "win32":
         _unregister()
         return Outcome(gone)
@@ -86,7 +93,11 @@ def uninstall() -> Outcome:
         try:
             path.unlink()
         except OSError as error:
-            raise InputError(f"cannot be removed ({error.strerror})", where=path, todo="remove it by hand") from error
+            raise InputError(
+                Message("file.not_removed", "cannot be removed ({reason})", reason=plain(str(error.strerror))),
+                where=path,
+                todo=Message("advice.remove_by_hand", "remove it by hand"),
+            ) from error
     _take_notice()
     return Outcome(gone, paths)
 
@@ -108,63 +119,37 @@ def _wanted(command: tuple[str, ...]) -> Mapping[Path, str]:
     """The files that tell the system, and what is in them."""
     if PLATFORM == "darwin":
         raise InputError(
-            "macOS opens files by double click only in programs that are bundles",
-            todo="open a project with File, Open project, or drop its folder on the window",
+            Message("window.no_bundle", "macOS opens files by double click only in programs that are bundles"),
+            todo=Message(
+                "advice.open_in_window", "open a project with File, Open project, or drop its folder on the window"
+            ),
         )
+    started = " ".join(map(_quoted, command))
+    entry = template("desktop", "trisect.desktop").format(command=started, mime=MIME)
+    package = template("desktop", "trisect.xml").format(mime=MIME, opener=OPENER)
     data = _data_home()
     return {
-        data / "applications" / "trisect.desktop": _desktop_entry(command),
-        data / "mime" / "packages" / "trisect.xml": _mime_package(),
-        data / "icons" / "hicolor" / "scalable" / "apps" / "trisect.svg": icon_text(),
+        data / "applications" / "trisect.desktop": entry,
+        data / "mime" / "packages" / "trisect.xml": package,
+        data / "icons" / "hicolor" / "scalable" / "apps" / "trisect.svg": template("icons", "trisect.svg"),
     }
 
 
-def icon_text() -> str:
-    """The program's icon, as SVG."""
-    return (files("resources") / "icons" / "trisect.svg").read_text(encoding="utf-8")
+def template(folder: str, name: str) -> str:
+    """One of the program's own files for the system, with {places} for what differs."""
+    return (files("resources") / folder / name).read_text(encoding="utf-8")
 
 
 def _data_home() -> Path:
     """Where the user's own entries belong: XDG_DATA_HOME, which counts only if it is a full path."""
-    told = Path(os.environ.get("XDG_DATA_HOME", ""))
-    return told if told.is_absolute() else Path.home() / ".local" / "share"
-
-
-def _desktop_entry(command: tuple[str, ...]) -> str:
-    lines = [
-        "[Desktop Entry]",
-        "Type=Application",
-        "Version=1.5",
-        "Name=Trisect",
-        "GenericName=3D inspection",
-        "Comment=Measure parts with one camera and two lasers",
-        f"Exec={' '.join(_quoted(part) for part in command)} %f",
-        "Icon=trisect",
-        "Terminal=false",
-        "Categories=Science;Engineering;",
-        f"MimeType={MIME};",
-        "StartupWMClass=trisect",
-    ]
-    return "\n".join(lines) + "\n"
+    set_ = Path(os.environ.get("XDG_DATA_HOME", ""))
+    return set_ if set_.is_absolute() else Path.home() / ".local" / "share"
 
 
 def _quoted(part: str) -> str:
     """An argument of Exec: quoted, then escaped as a string, and a percent sign doubled (Desktop Entry, "Exec")."""
     quoted = "".join("\\" + char if char in '"`$\\' else char for char in part)
     return '"' + quoted.replace("\\", "\\\\").replace("%", "%%") + '"'
-
-
-def _mime_package() -> str:
-    return f"""<?xml version="1.0" encoding="UTF-8"?>
-<mime-info xmlns="http://www.freedesktop.org/standards/shared-mime-info">
-  <mime-type type="{MIME}">
-    <comment>Trisect project</comment>
-    <sub-class-of type="text/plain"/>
-    <icon name="trisect"/>
-    <glob pattern="*{OPENER}"/>
-  </mime-type>
-</mime-info>
-"""
 
 
 def _take_notice() -> list[str]:
@@ -176,7 +161,7 @@ def _take_notice() -> list[str]:
             unknown.append(name)
             continue
         with suppress(OSError, subprocess.SubprocessError):
-            subprocess.run([program, str(folder)], check=False, capture_output=True, timeout=TOLD_WITHIN_S)
+            subprocess.run([program, str(folder)], check=False, capture_output=True, timeout=NOTICED_WITHIN_S)
     return unknown
 
 
@@ -192,7 +177,7 @@ def _register(command: tuple[str, ...]) -> None:
         classes.setValue(key, value)
     classes.sync()
     if classes.status() != QSettings.Status.NoError:
-        raise InputError("the registry cannot be written to", where=CLASSES)
+        raise InputError(Message("window.registry", "the registry cannot be written to"), where=CLASSES)
 
 
 def _classes() -> QSettings:
@@ -207,5 +192,29 @@ def _unregister() -> None:
     classes.sync()
 
 
-def _tr(text: str) -> str:
-    return QCoreApplication.translate("Association", text)
+def choose_double_click(window: QWidget, notices: Notices) -> None:
+    """Ask whether the system is to open projects in this program, do it, and tell what was done."""
+    try:
+        there = installed()
+        text = _there() if there else _not_there()
+        answers = [tr("Open by double click"), tr("Leave it as it is")]
+        if there:
+            answers = [tr("Renew"), tr("No longer"), tr("Leave it as it is")]
+        answer = ask.ask(window, tr("Open projects by double click"), text, answers)
+        if answer == len(answers) - 1:
+            return
+        outcome = install() if answer == 0 else uninstall()
+    except InputError as error:
+        notices.failed(error)
+        return
+    notices.info(outcome.sentence, "\n".join(map(str, outcome.files)))
+
+
+def _there() -> str:
+    return tr("A double click on NAME.trisect in a project's folder opens it in Trisect. Renew this where the program "
+               "has been moved.")  # fmt: skip
+
+
+def _not_there() -> str:
+    return tr("Every project has a file NAME.trisect in its folder. Shall a double click on it open the project? "
+               "The system is told so for you alone, and it can be taken back here.")  # fmt: skip

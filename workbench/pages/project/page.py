@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QEvent, Qt, QUrl
+from PySide6.QtCore import Qt, QUrl
 from PySide6.QtGui import QDesktopServices
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QPushButton, QScrollArea, QVBoxLayout, QWidget
 
-from workbench.pages.project_presenter import ProjectPresenter
+from workbench.pages.project.presenter import ProjectPresenter
 from workbench.pages.step_page import StepPage, heading, muted
 from workbench.theme import icon
-from workbench.views.forms import SettingsForm
-from workbench.views.paths import breakable
-from workbench.views.value_rows import ValueRows
+from workbench.views.common import breakable
+from workbench.views.forms.form import SettingsForm
+from workbench.views.lists.value_rows import ValueRows
 
 
 class ProjectPage(StepPage):
@@ -57,11 +57,6 @@ class ProjectPage(StepPage):
         self.next_words.setText(self.presenter.next_words())
         self.place.setText(breakable(self.presenter.place()))
         self.folder.setIcon(icon("mdi6.folder-open-outline"))
-
-    def changeEvent(self, event: QEvent) -> None:
-        super().changeEvent(event)
-        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "folder"):
-            self._changed()
 
     def _columns(self) -> QWidget:
         inside = QWidget()

@@ -5,9 +5,7 @@ from __future__ import annotations
 from dataclasses import fields, replace
 from typing import Any, Literal
 
-from PySide6.QtCore import QCoreApplication
-
-from core.files.project import ProjectInfo
+from core.files.project.data import ProjectInfo
 from workbench.pages.presenter import StepPresenter
 from workbench.step_state import ORDER, State
 
@@ -29,7 +27,7 @@ class ProjectPresenter(StepPresenter):
         if isinstance(value, str):
             value = value.strip()
         info = replace(self.project.info, **{name: value})
-        label = QCoreApplication.translate("ProjectPresenter", "change {0}").format(self.label(name).lower())
+        label = self.tr("change {0}").format(self.label(name).lower())
         self.model.edit(label, replace(self.project, info=info))
 
     def blocker(self) -> str:

@@ -1,4 +1,4 @@
-"""The way into the finished sample project: it is made when it is first asked for."""
+"""The finished sample project: opened, and made when it is first asked for."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from typing import Any
 
 from PySide6.QtCore import QObject, Signal
 
-from core.files.project import is_project
-from workbench import jobs
+from core.files.project.folder import is_project
 from workbench.bench import Bench
-from workbench.tasks import Task
+from workbench.work import jobs
+from workbench.work.tasks import Task
 
 
-class SampleDoor(QObject):
+class SampleProject(QObject):
     """Opens the sample with `open_project`; makes it first, once, if it is not there."""
 
     changed = Signal()
@@ -49,11 +49,12 @@ class SampleDoor(QObject):
 
         def cancelled() -> None:
             self._ended()
-            self._bench.glance(
-                jobs.CLEAR_SAMPLE, folder, label=self.tr("Clearing up"), on_done=lambda _: None, offers={}
+            self._bench.run_quick(
+                self, jobs.CLEAR_SAMPLE, folder, label=self.tr("Clearing up"), on_done=lambda _: None, offers={}
             )
 
-        self._task = self._bench.measure(
+        self._task = self._bench.run_long(
+            self,
             jobs.SAMPLE_PROJECT,
             folder,
             label=self.tr("Preparing the sample"),

@@ -5,11 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from PySide6.QtCore import QCoreApplication
 from PySide6.QtWidgets import QWidget
 
 from core.errors import InputError
-from core.files.project import NewerProject, ProjectFile, Version, read_project, recoverable, rescues
+from core.files.project.data import ProjectFile
+from core.files.project.folder import Version, read_project, recoverable, rescues
+from core.files.project.json_form import NewerProject
+from workbench.language import tr
 from workbench.views import ask
 
 
@@ -47,29 +49,25 @@ def wanted_state(parent: QWidget, folder: Path) -> Wanted | None:
 
 
 def _ask_for_version(parent: QWidget, folder: Path, error: InputError, versions: tuple[Version, ...]) -> Wanted | None:
-    text = _tr(
+    text = tr(
         "{0} cannot be read: {1}. There are earlier states of the project; the damaged file is kept in backups."
     ).format(folder / "project.json", error.what)
     answers = [_in_words(version) for version in versions]
-    chosen = ask.ask(parent, _tr("Damaged project"), text, [*answers, _tr("Do not open")])
+    chosen = ask.ask(parent, tr("Damaged project"), text, [*answers, tr("Do not open")])
     return Wanted(version=versions[chosen].file) if chosen < len(versions) else None
 
 
 def _ask_for_recovery(parent: QWidget, folder: Path, recovered: ProjectFile) -> Wanted | None:
-    text = _tr("{0} was not closed properly: there are unsaved changes of {1}.").format(folder.name, _time(recovered))
-    answers = [_tr("Recover the changes"), _tr("Open the saved state"), _tr("Do not open")]
-    chosen = ask.ask(parent, _tr("Recover the project"), text, answers)
+    text = tr("{0} was not closed properly: there are unsaved changes of {1}.").format(folder.name, _time(recovered))
+    answers = [tr("Recover the changes"), tr("Open the saved state"), tr("Do not open")]
+    chosen = ask.ask(parent, tr("Recover the project"), text, answers)
     return Wanted(recover=chosen == 0) if chosen < 2 else None
 
 
 def _in_words(version: Version) -> str:
-    words = _tr("Unsaved changes of {0}") if version.autosaved else _tr("Backup of {0}")
+    words = tr("Unsaved changes of {0}") if version.autosaved else tr("Backup of {0}")
     return words.format(_time(version.file))
 
 
 def _time(file: ProjectFile) -> str:
-    return file.saved.astimezone().strftime("%Y-%m-%d %H:%M") if file.saved else _tr("an unknown time")
-
-
-def _tr(text: str) -> str:
-    return QCoreApplication.translate("ProjectDoors", text)
+    return file.saved.astimezone().strftime("%Y-%m-%d %H:%M") if file.saved else tr("an unknown time")

@@ -20,19 +20,23 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from workbench.pages.project_doors import ProjectDoors
+from workbench.pages.project.actions import ProjectActions
+from workbench.refresh import Refresh
 from workbench.theme import icon
-from workbench.views.notice_list import Banner
+from workbench.views.lists.notice_list import Banner
 
 
 class WelcomePage(QWidget):
     """New, open, recent, sample, simulated rig."""
 
-    def __init__(self, doors: ProjectDoors, parent: QWidget | None = None) -> None:
+    _links: tuple[tuple[QCommandLinkButton, str], ...] = ()
+    """The ways in, each with its icon."""
+
+    def __init__(self, projects: ProjectActions, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self._doors = doors
+        self._projects = projects
         self.banner = Banner()
-        self._links: list[tuple[QCommandLinkButton, str]] = []
+        self._refreshing = Refresh(self.refresh, self)  # a project may be forgotten by an action of the list itself
         title = QLabel("Trisect")
         title.setStyleSheet("font-size: 34px; font-weight: 300;")
         claim = QLabel(self.tr("Measure a part with one camera and two lasers, and know how far to trust the number."))
@@ -46,31 +50,31 @@ class WelcomePage(QWidget):
                 "A finished measurement of a 50 mm gauge block, to look around in. The first time it is rendered "
                 "and measured, in about a minute."
             ),
-            doors.open_sample,
+            projects.open_sample,
         )
         self.simulated = self._link(
             "mdi6.laser-pointer",
             self.tr("Try with the simulated rig"),
             self.tr("Calibrate, scan and measure live, without any hardware."),
-            doors.try_simulated,
+            projects.try_simulated,
         )
         self.new = self._link(
             "mdi6.file-plus-outline",
             self.tr("New project"),
             self.tr("Start an empty project for your own rig."),
-            doors.new_project,
+            projects.new_project,
         )
         self.open = self._link(
             "mdi6.folder-open-outline",
             self.tr("Open project"),
             self.tr("Go on with a project, or drop its folder here."),
-            doors.choose_project,
+            projects.choose_project,
         )
         self.from_set = self._link(
             "mdi6.folder-multiple-image",
             self.tr("Project from a recording set"),
             self.tr("Measure pictures that are there already: a folder with rig.toml."),
-            doors.choose_set,
+            projects.choose_set,
         )
         for place, link in enumerate((self.sample, self.simulated, self.new, self.open, self.from_set)):
             grid.addWidget(link, place, 0)
@@ -113,15 +117,15 @@ class WelcomePage(QWidget):
         row.addStretch(1)
         layout.addLayout(row)
         layout.addStretch(1)
-        doors.sample.changed.connect(self._show_sample)
-        doors.bench.settings.recent_changed.connect(self.refresh)
+        projects.sample.changed.connect(self._show_sample)
+        projects.bench.settings.recent_changed.connect(self._refreshing.soon)
         self._show_sample()
         self.refresh()
 
     def refresh(self) -> None:
         """Show the recent projects."""
         self.recent.clear()
-        for path in self._doors.bench.settings.recent:
+        for path in self._projects.bench.settings.recent:
             item = QListWidgetItem(f"{path.name}\n{path.parent}")
             item.setData(Qt.ItemDataRole.UserRole, path)
             item.setToolTip(self.tr("Open {0}").format(path))
@@ -131,12 +135,12 @@ class WelcomePage(QWidget):
 
     def changeEvent(self, event: QEvent) -> None:
         super().changeEvent(event)
-        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "_links"):
+        if event.type() == QEvent.Type.PaletteChange:
             for link, symbol in self._links:
                 link.setIcon(icon(symbol, colour="accent"))
 
     def _show_sample(self) -> None:
-        preparing = self._doors.sample.preparing
+        preparing = self._projects.sample.preparing
         self.sample.setEnabled(not preparing)
         self.sample.setText(self.tr("Preparing the sample …") if preparing else self.tr("Open sample"))
         self.sample.setToolTip(self.tr("It is being prepared; the status bar says how far it is.") if preparing else "")
@@ -162,19 +166,19 @@ class WelcomePage(QWidget):
     def _open_recent(self, item: QListWidgetItem) -> None:
         """Once the click is over: opening a project changes this list."""
         path = item.data(Qt.ItemDataRole.UserRole)
-        QTimer.singleShot(0, self, lambda: self._doors.open_project(path))
+        QTimer.singleShot(0, self, lambda: self._projects.open_project(path))
 
     def _forget(self) -> None:
         item = self.recent.currentItem()
         if item is not None:
-            self._doors.bench.settings.forget(item.data(Qt.ItemDataRole.UserRole))
+            self._projects.bench.settings.forget(item.data(Qt.ItemDataRole.UserRole))
 
     def _link(self, symbol: str, text: str, help_text: str, do: Callable[[], object]) -> QCommandLinkButton:
         link = QCommandLinkButton(text, help_text)
         link.setIcon(icon(symbol, colour="accent"))
         link.setIconSize(QSize(26, 26))
         link.clicked.connect(lambda: do())
-        self._links.append((link, symbol))
+        self._links = (*self._links, (link, symbol))
         return link
 
 

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QEvent, QUrl
+from PySide6.QtCore import QUrl
 from PySide6.QtGui import QAction, QDesktopServices
 from PySide6.QtWidgets import QCheckBox, QComboBox, QGridLayout, QLabel, QMenu, QPushButton, QVBoxLayout, QWidget
 
-from core.files.export_list import EXPORTS
+from core.files.results.export_list import EXPORTS
 from core.report.template import PAPERS
-from workbench.pages.report_presenter import ReportPresenter, Stage
-from workbench.pages.report_words import AT_HAND, export_words
+from workbench.pages.report.presenter import ReportPresenter, Stage
+from workbench.pages.report.words import AT_HAND, export_words
 from workbench.pages.step_page import StepPage, muted
 from workbench.theme import icon
 from workbench.views import ask
-from workbench.views.page_scroll import PageScroll
+from workbench.views.pages.page_scroll import PageScroll
 from workbench.views.stage_card import CardButton, StageCard
 
 
@@ -46,6 +46,7 @@ class ReportPage(StepPage):
 
     def refresh(self) -> None:
         p = self.presenter
+        self._dress()
         self._show_stage(p.stage)
         self.warning.setText(p.warning())
         self.warning.setVisible(bool(self.warning.text()))
@@ -69,12 +70,6 @@ class ReportPage(StepPage):
         self.folder.setEnabled(not why)
         self.folder.setToolTip(why or str(p.results_folder()))
         self._show_pages()
-
-    def changeEvent(self, event: QEvent) -> None:
-        super().changeEvent(event)
-        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "_shown"):
-            self._dress()
-            self._changed()
 
     def _show_stage(self, stage: Stage) -> None:
         p = self.presenter

@@ -7,16 +7,17 @@ from enum import StrEnum
 from pathlib import Path
 from typing import Any
 
-from core.files.export_list import EXPORTS
-from core.files.project import Project, can_be_saved
-from core.files.project_keys import changed, finished, rests_on
-from core.report.section_names import SECTIONS
-from workbench import jobs
+from core.files.project.data import Project
+from core.files.project.folder import can_be_saved
+from core.files.project.keys import changed, finished, rests_on
+from core.files.results.export_list import EXPORTS
+from core.report.template import SECTIONS
 from workbench.bench import Bench
+from workbench.language import text_of
 from workbench.pages.presenter import StepPresenter
-from workbench.problems import sentence
 from workbench.step_state import State
-from workbench.tasks import Task
+from workbench.work import jobs
+from workbench.work.tasks import Task
 
 PAGE_WIDTH_PX = 1400
 
@@ -97,8 +98,15 @@ class ReportPresenter(StepPresenter):
                 label = self.tr("report without a template") if path is None else self.tr("template of the report")
                 self.model.edit(label, replace(self.project, report=report))
 
-        self.bench.glance(
-            jobs.CHOOSE_TEMPLATE, folder, choices, path, label=self.tr("Reading the template"), on_done=done, offers={}
+        self.bench.run_quick(
+            self,
+            jobs.CHOOSE_TEMPLATE,
+            folder,
+            choices,
+            path,
+            label=self.tr("Reading the template"),
+            on_done=done,
+            offers={},
         )
 
     # ---- how far it is
@@ -218,19 +226,31 @@ class ReportPresenter(StepPresenter):
             self._making = None
             self.changed.emit()
 
-        self._making = self.bench.measure(
-            jobs.MAKE_REPORT, folder, project, label=self.tr("Making the report"), on_done=done, on_failed=ended,
+        self._making = self.bench.run_long(
+            self,
+            jobs.MAKE_REPORT,
+            folder,
+            project,
+            label=self.tr("Making the report"),
+            on_done=done,
+            on_failed=ended,
             on_cancelled=ended,
-        )  # fmt: skip
+        )
         self.changed.emit()
 
     def _export(self, kind: str, path: Path) -> None:
         if self.model.folder is None:
             return
-        self.bench.measure(
-            jobs.EXPORT, self.model.folder, self.project, kind, path, label=self.tr("Writing {0}").format(path.name),
+        self.bench.run_long(
+            self,
+            jobs.EXPORT,
+            self.model.folder,
+            self.project,
+            kind,
+            path,
+            label=self.tr("Writing {0}").format(path.name),
             on_done=lambda written: self.bench.notices.info(self.tr("Written: {0}").format(written)),
-        )  # fmt: skip
+        )
 
     # ---- preview
 
@@ -283,13 +303,14 @@ class ReportPresenter(StepPresenter):
             return
         self._drawing = wanted
         self.bench.quick.run(
+            self,
             jobs.PREVIEW_REPORT,
             self.model.folder,
             self.project,
             PAGE_WIDTH_PX,
             label=self.tr("Drawing the pages"),
             on_done=lambda pages: self._show(wanted, pages, ""),
-            on_failed=lambda problem: self._show(wanted, (), sentence(problem)),
+            on_failed=lambda problem: self._show(wanted, (), text_of(problem)),
             on_cancelled=lambda: self._show(wanted, self.pages, ""),
         )
         self.changed.emit()

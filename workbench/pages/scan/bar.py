@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QEvent, QSize, Qt, Signal
+from PySide6.QtCore import QSize, Qt, Signal
 from PySide6.QtWidgets import (
     QButtonGroup,
     QCheckBox,
@@ -14,10 +14,10 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from workbench.pages import scan_words as words
-from workbench.pages.scan_picture import View
-from workbench.pages.scan_presenter import ScanPresenter
-from workbench.pages.scan_run import short
+from workbench.pages.scan import words
+from workbench.pages.scan.picture import View
+from workbench.pages.scan.presenter import ScanPresenter
+from workbench.pages.scan.run import short
 from workbench.pages.step_page import muted
 from workbench.theme import icon
 
@@ -44,6 +44,7 @@ class FrameBar(QWidget):
 
     def refresh(self) -> None:
         """Show which frame it is."""
+        self._dress()
         p = self._presenter
         names, scrub = p.work.names, p.scrub
         self.slider.blockSignals(True)
@@ -66,11 +67,6 @@ class FrameBar(QWidget):
     def choose(self, view: View) -> None:
         """Show a stage as chosen."""
         self.stages[view].setChecked(True)
-
-    def changeEvent(self, event: QEvent) -> None:
-        super().changeEvent(event)
-        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "_group"):
-            self._dress()
 
     def _lay_out(self) -> None:
         titles = {

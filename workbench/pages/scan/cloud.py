@@ -7,11 +7,10 @@ from typing import Any
 import numpy as np
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
-from core.live.events import LiveView, ScanDetail
-from workbench.pages.scan_overlays import PREVIEW_SIGMA_MM
-from workbench.pages.scan_presenter import ScanPresenter
-from workbench.pages.scan_stage import Stage
-from workbench.views.scene_view import SceneView
+from core.pipeline.live.events import LiveView, ScanDetail
+from workbench.pages.scan.overlays import PREVIEW_SIGMA_MM
+from workbench.pages.scan.presenter import ScanPresenter, Stage
+from workbench.views.scene.view import Colouring, SceneView
 
 _NOTHING = np.zeros((0, 3), np.float32), np.zeros(0, np.float32)
 
@@ -46,9 +45,7 @@ class ScanCloud(QWidget):
         if look is self._look and not self._growing:
             return
         self._look, self._growing = look, False
-        self.scene.set_cloud(
-            look.points, values=look.sigma, value_name="σ", unit="mm", limits=(0.0, limit), keep_camera=True
-        )
+        self.scene.set_cloud(look.points, values=look.sigma, colouring=Colouring("σ", "mm", (0.0, limit)))
 
     def begin_live(self) -> None:
         """A recording begins: its points will come."""
@@ -59,7 +56,7 @@ class ScanCloud(QWidget):
     def begin_measuring(self) -> None:
         """The recording is being measured: what is shown stands until its first points come."""
         self._look, self._growing = None, True
-        if not self.scene.state()["points"]:
+        if not self.scene.state().points:
             self.scene.clear(self._message())
 
     def show_live(self, view: LiveView) -> None:
@@ -77,7 +74,7 @@ class ScanCloud(QWidget):
     def _grow_anew(self) -> None:
         self._growing = True
         points, sigma = _NOTHING
-        self.scene.set_cloud(points, values=sigma, value_name="σ", unit="mm", limits=(0.0, PREVIEW_SIGMA_MM))
+        self.scene.set_cloud(points, values=sigma, colouring=Colouring("σ", "mm", (0.0, PREVIEW_SIGMA_MM)))
 
     def _said(self, message: str) -> bool:
         said, self._last = getattr(self, "_last", None), message

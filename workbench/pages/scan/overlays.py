@@ -6,11 +6,11 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from PySide6.QtCore import QCoreApplication
 
-from core.image.centreline import Centreline
-from core.scan.frame_preview import FramePreview
-from core.scan.hints import HintLimits
+from core.image.stripes.centreline import Centreline
+from core.scan.preview.hints import HintLimits
+from core.scan.preview.shown import FramePreview
+from workbench.language import text_of, tr
 from workbench.views.colours import (
     COVERED,
     CROSSING_GOOD,
@@ -20,7 +20,7 @@ from workbench.views.colours import (
     SWEEP,
     fan_colour,
 )
-from workbench.views.image_view import ImageView
+from workbench.views.image.view import ImageView
 
 PREVIEW_SIGMA_MM = HintLimits().sigma_mm
 """σ at the end of the scale while a scan runs: beyond it better crossings are asked for."""
@@ -42,7 +42,7 @@ def show_fan(image: ImageView, lines: Sequence[Sequence[Centreline]], *, numbere
         if not pieces:
             continue
         names.append(f"fan {place}")
-        title = _tr("fan, line {0}").format(place) if numbered else _tr("fan")
+        title = tr("fan, line {0}").format(place) if numbered else tr("fan")
         image.set_lines(names[-1], [piece.uv for piece in pieces], colour=fan_colour(place), width=1.6, title=title)
     _remove_others(image, "fan ", names)
 
@@ -53,7 +53,7 @@ def show_fan_pieces(image: ImageView, pieces: Sequence[Centreline], line: Sequen
     show_fan(image, [[piece for piece, of in zip(pieces, line, strict=True) if of == k] for k in range(count)])
     unknown = [piece.uv for piece, of in zip(pieces, line, strict=True) if of == _UNKNOWN]
     if unknown:
-        image.set_lines("fan ?", unknown, colour=EXCLUDED, width=1.4, title=_tr("fan, line not known"))
+        image.set_lines("fan ?", unknown, colour=EXCLUDED, width=1.4, title=tr("fan, line not known"))
 
 
 def show_sweep(
@@ -62,15 +62,15 @@ def show_sweep(
     """The hand-held laser's centrelines, coloured by σ where it is given."""
     lines = [piece.uv for piece in pieces]
     if len(sigma) == len(lines):
-        title = _tr("sweep: σ 0 … {0} mm, else grey").format(f"{limit_mm:g}")
+        title = tr("sweep: σ 0 … {0} mm, else grey").format(f"{limit_mm:g}")
         image.set_lines("sweep", lines, values=sigma, limits=(0.0, limit_mm), width=2.4, title=title)
     else:
-        image.set_lines("sweep", lines, colour=SWEEP, width=1.6, title=_tr("sweep"))
+        image.set_lines("sweep", lines, colour=SWEEP, width=1.6, title=tr("sweep"))
 
 
 def show_crossings(image: ImageView, preview: FramePreview | None) -> None:
     """Crossings as marks: green circle, amber triangle, red cross; the reason on hover."""
-    titles = (_tr("crossing, good"), _tr("crossing, weak"), _tr("crossing, left out"))
+    titles = (tr("crossing, good"), tr("crossing, weak"), tr("crossing, left out"))
     for status, (name, mark, title) in enumerate(
         zip(_CROSSINGS, (CROSSING_GOOD, CROSSING_WEAK, CROSSING_LEFT_OUT), titles, strict=True)
     ):
@@ -78,7 +78,7 @@ def show_crossings(image: ImageView, preview: FramePreview | None) -> None:
             image.remove_layer(name)
             continue
         chosen = np.flatnonzero(preview.crossing_status == status)
-        tips = [preview.crossing_reason[place] for place in chosen]
+        tips = [text_of(preview.crossing_reason[place]) for place in chosen]
         uv = preview.crossing_uv[chosen]
         image.set_points(name, uv, colour=mark.colour, symbol=mark.symbol, size=11, tips=tips, title=title)
 
@@ -93,21 +93,17 @@ def show_points(
     ends = np.flatnonzero(np.hypot(*np.diff(uv, axis=0).T) > GAP_PX) + 1
     image.set_lines(
         "points", np.split(uv, ends), values=np.split(sigma, ends), limits=(0.0, limit_mm), width=4.0,
-        title=_tr("points: σ 0 … {0} mm").format(f"{limit_mm:g}"),
+        title=tr("points: σ 0 … {0} mm").format(f"{limit_mm:g}"),
     )  # fmt: skip
 
 
 def show_coverage(image: ImageView, cells: NDArray[np.bool_], lit: NDArray[np.bool_]) -> None:
     """Cells with points, and cells with light but no points yet."""
-    image.set_cells("covered", cells, COVERED, title=_tr("covered with points"))
-    image.set_cells("lit", lit & ~cells, LIT, title=_tr("lit, no points yet"))
+    image.set_cells("covered", cells, COVERED, title=tr("covered with points"))
+    image.set_cells("lit", lit & ~cells, LIT, title=tr("lit, no points yet"))
 
 
 def _remove_others(image: ImageView, start: str, keep: Sequence[str]) -> None:
     for name in image.layer_names():
         if name.startswith(start) and name not in keep:
             image.remove_layer(name)
-
-
-def _tr(text: str) -> str:
-    return QCoreApplication.translate("Scan", text)

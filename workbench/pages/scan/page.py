@@ -3,29 +3,26 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from typing import Any
 
 from PySide6.QtCore import QEvent, Qt, QTimer
 from PySide6.QtGui import QKeyEvent, QKeySequence, QShortcut
 from PySide6.QtWidgets import QSizePolicy, QStackedWidget, QWidget
 
-from core.live.events import LiveView, ScanDetail
-from workbench.pages import scan_words as words
-from workbench.pages.scan_bar import FrameBar
-from workbench.pages.scan_cloud import ScanCloud
-from workbench.pages.scan_panels import ResultPanel, RunningPanel, ScanCard, SettingsPanel
-from workbench.pages.scan_picture import ScanPicture, View
-from workbench.pages.scan_presenter import ScanPresenter
-from workbench.pages.scan_run import short
-from workbench.pages.scan_stage import Stage
+from core.pipeline.live.events import LiveView, ScanDetail
+from workbench.pages.scan import words
+from workbench.pages.scan.bar import FrameBar
+from workbench.pages.scan.cloud import ScanCloud
+from workbench.pages.scan.panels import ResultPanel, RunningPanel, ScanCard, SettingsPanel
+from workbench.pages.scan.picture import ScanPicture, View
+from workbench.pages.scan.presenter import ScanPresenter, Stage
+from workbench.pages.scan.run import short
 from workbench.pages.step_page import StepPage
-from workbench.views.checks_card import ChecksCard
-from workbench.views.live_panel import LivePanel
-from workbench.views.live_strip import LiveStrip
-from workbench.views.side_by_side import SideBySide
-from workbench.views.source_chooser import SourceChooser
-from workbench.views.tables import ListRow, ViewList
+from workbench.views.forms.live_panel import LivePanel, LiveStrip
+from workbench.views.forms.source_chooser import SourceChooser
+from workbench.views.image.side_by_side import SideBySide
+from workbench.views.lists.checks_card import ChecksCard
+from workbench.views.lists.view_list import ListRow, ViewList
 
 BEFORE = ("reference", "ready")
 """Stages of a live scan in which nothing is recorded yet; later only those checks are shown that failed."""
@@ -98,11 +95,6 @@ class ScanPage(StepPage):
         self.picture.refresh()
         self.cloud.refresh()
 
-    def changeEvent(self, event: QEvent) -> None:
-        super().changeEvent(event)
-        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "_folded"):
-            self._changed()
-
     def closeEvent(self, event: Any) -> None:
         self.cloud.scene.close()
         super().closeEvent(event)
@@ -117,9 +109,9 @@ class ScanPage(StepPage):
         p.thumbnails.changed.connect(self._show_frames)
         self.bar.view_chosen.connect(self.picture.show_view)
         self.bar.choose(View.CROSSINGS)
-        p.live.started.connect(lambda _: self._begin(self.cloud.begin_live))
+        p.live.started.connect(self._begin_live)
         p.live.show_by(self._show_live)
-        p.run.started.connect(lambda: self._begin(self.cloud.begin_measuring))
+        p.run.started.connect(self._begin_measuring)
         p.run.frame_seen.connect(self._show_measured)
         p.model.opened.connect(self._opened)
         self.cloud.scene.notice.connect(p.bench.notices.info)
@@ -152,9 +144,13 @@ class ScanPage(StepPage):
         self.views.show_alone(None)
         self.source.set_mode("folder" if self.presenter.project.sources.scan else "live")
 
-    def _begin(self, cloud: Callable[[], None]) -> None:
+    def _begin_live(self, _: Any) -> None:
         self.running.show_detail(None, 0.0)
-        cloud()
+        self.cloud.begin_live()
+
+    def _begin_measuring(self) -> None:
+        self.running.show_detail(None, 0.0)
+        self.cloud.begin_measuring()
 
     def _step(self, by: int) -> None:
         if self.presenter.scrubbing:

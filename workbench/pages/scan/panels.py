@@ -8,16 +8,17 @@ from typing import Any
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QGridLayout, QLabel, QVBoxLayout, QWidget
 
-from core.live.events import ScanDetail
-from core.scan.hints import HintLimits
-from workbench.pages import scan_words as words
-from workbench.pages.scan_presenter import ScanPresenter
-from workbench.pages.scan_stage import Stage
+from core.pipeline.live.events import ScanDetail
+from core.scan.method import Method
+from core.scan.preview.hints import HintLimits
+from workbench.language import text_of
+from workbench.pages.scan import words
+from workbench.pages.scan.presenter import ScanPresenter, Stage
 from workbench.pages.step_page import heading, muted
-from workbench.views.forms import SettingsForm
-from workbench.views.meters import HintBar, Meter
+from workbench.views.forms.form import SettingsForm
+from workbench.views.lists.value_rows import ValueRows
+from workbench.views.plots.meters import HintBar, Meter
 from workbench.views.stage_card import CardButton, StageCard
-from workbench.views.value_rows import ValueRows
 
 FAST = HintLimits().speed_share
 """Share of the picture's width that the stripe may move from frame to frame."""
@@ -116,7 +117,10 @@ class SettingsPanel(QWidget):
         super().__init__(parent)
         self._presenter = presenter
         self.form = form = SettingsForm()
-        methods = [("network", self.tr("Network")), ("three-crossings", self.tr("Three crossings a frame"))]
+        methods = [
+            (Method.NETWORK.value, self.tr("Network")),
+            (Method.THREE_CROSSINGS.value, self.tr("Three crossings a frame")),
+        ]
         form.add_choice(
             "method", self.tr("Method"), methods,
             self.tr("Network: all frames adjusted together, the most accurate. Three crossings: each frame by itself."),
@@ -175,10 +179,10 @@ class ResultPanel(QWidget):
         self.reasons.set_rows(reasons)
         for widget in (self._why, self.reasons):
             widget.setVisible(bool(reasons))
-        said = [*look.notes, *look.problems] if look is not None else []
+        said = [*map(text_of, (*look.notes, *look.problems))] if look is not None else []
         no_gauge = self._presenter.run.no_gauge
-        if no_gauge:
-            said.append(self.tr("No thickness: {0}").format(no_gauge))
+        if no_gauge is not None:
+            said.append(text_of(no_gauge))
         self.notes.setText("\n".join(said))
         self.notes.setVisible(bool(said))
 
@@ -220,7 +224,7 @@ class RunningPanel(QWidget):
         """What a frame shows; its picture is `width_px` wide."""
         preview = detail.preview if detail is not None and detail.stage == "scanning" else None
         self.covered.setText(words.covered_sentence(detail.share) if detail is not None else "")
-        self.hints.set_hints(preview.hints if preview is not None else ())
+        self.hints.set_hints([text_of(hint) for hint in preview.hints] if preview is not None else ())
         if preview is None or not preview.centrelines:
             self.condition.set_value(None)
             self.speed.set_value(None)

@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
-from core.image.centreline import Centreline
-from core.live.events import LiveView, ScanDetail
-from workbench.pages import scan_overlays as overlays
-from workbench.pages.scan_presenter import ScanPresenter
-from workbench.views.image_view import ImageView
+from core.image.stripes.centreline import Centreline
+from core.pipeline.live.events import LiveView, ScanDetail
+from workbench.pages.scan import overlays
+from workbench.pages.scan.presenter import ScanPresenter
+from workbench.views.image.view import ImageView
 
 
 class View(StrEnum):

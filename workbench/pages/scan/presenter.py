@@ -4,25 +4,45 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from enum import StrEnum
 from pathlib import Path
 from typing import Any
 
 from core.errors import InputError
-from core.files.options import Options
-from core.files.project import Project
-from core.files.project_keys import changed, rests_on
-from core.live.events import LiveEnded, LiveView, ScanDetail
-from core.scan.frame_record import FrameRecord
+from core.files.project.data import Project
+from core.files.project.keys import changed, rests_on
+from core.files.recording.options import Options
+from core.image.stripes.stripe import StripeSettings
+from core.pipeline.live.events import LiveEnded, LiveView, ScanDetail
+from core.scan.features.frames import FrameRecord
+from core.scan.preview.shown import ShownScan
 from workbench.bench import Bench
-from workbench.pages.live_presenter import LivePresenter
+from workbench.language import tr
+from workbench.pages.live.presenter import LivePresenter
 from workbench.pages.presenter import StepPresenter
-from workbench.pages.scan_run import ScanRun, short
-from workbench.pages.scan_scrub import FrameScrub
-from workbench.pages.scan_settings import changed_options, values_of
-from workbench.pages.scan_stage import Stage, missing, stage_of, why_not_measure, why_not_record
-from workbench.pages.scan_thumbnails import FrameThumbnails
-from workbench.pages.scan_work import ScanWork
+from workbench.pages.scan.run import ScanRun, short
+from workbench.pages.scan.scrub import FrameScrub
+from workbench.pages.scan.thumbnails import FrameThumbnails
+from workbench.pages.scan.work import ScanWork
 from workbench.pages.sources import folder_of, put_source
+from workbench.step_state import State
+
+USUAL_STRIPE = StripeSettings(6.0, 60.0)
+"""Where width and contrast start when they are to be given and nothing has been measured yet."""
+
+
+class Stage(StrEnum):
+    """How far the scan is."""
+
+    NONE = "none"
+    LISTING = "listing"
+    EMPTY = "empty"
+    LIVE = "live"
+    RECORDED = "recorded"
+    MEASURING = "measuring"
+    FAILED = "failed"
+    MEASURED = "measured"
+    OUTDATED = "outdated"
 
 
 class ScanPresenter(StepPresenter):
@@ -57,7 +77,22 @@ class ScanPresenter(StepPresenter):
     @property
     def stage(self) -> Stage:
         """How far the scan is."""
-        return stage_of(self)
+        if self.live.running:
+            return Stage.LIVE
+        if self.run.measuring:
+            return Stage.MEASURING
+        if self.run.problem:
+            return Stage.FAILED
+        state = self.state.state
+        if state is State.DONE:
+            return Stage.MEASURED
+        if state is State.OUTDATED:
+            return Stage.OUTDATED
+        if not self.project.sources.scan:
+            return Stage.NONE
+        if self.work.frames is None:
+            return Stage.LISTING
+        return Stage.RECORDED if self.work.frames else Stage.EMPTY
 
     @property
     def scrubbing(self) -> bool:
@@ -65,15 +100,41 @@ class ScanPresenter(StepPresenter):
         return self.stage not in (Stage.LIVE, Stage.MEASURING) and bool(self.work.frames)
 
     def blocker(self) -> str:
-        return missing(self)
-
-    def busy(self) -> str:
-        return self.live.busy()
+        stage = self.stage
+        if stage is Stage.MEASURED:
+            return ""
+        if stage in (Stage.LIVE, Stage.MEASURING):
+            return self.cannot_measure
+        if stage is Stage.OUTDATED and not self.changed_since():
+            return self.state.sentence
+        if self.cannot_measure:
+            return self.cannot_measure
+        return {
+            Stage.FAILED: tr("The scan could not be measured; look at why, or record another one."),
+            Stage.OUTDATED: tr("The measured scan is out of date; measure it again."),
+        }.get(stage, tr("Measure the scan first."))
 
     @property
     def cannot_measure(self) -> str:
         """Why the scan cannot be measured now, or ""."""
-        return why_not_measure(self)
+        accepted, work = self.project.accepted, self.work
+        if self.live.running:
+            return tr("Stop the recording first.")
+        if self.run.measuring:
+            return tr("The scan is being measured.")
+        if not accepted.camera:
+            return tr("Accept a camera calibration first.")
+        if not accepted.fan:
+            return tr("Accept the laser planes first.")
+        if not self.project.sources.scan:
+            return tr("Record a scan, or choose a recording, first.")
+        if work.frames is None:
+            return tr("The frames are being listed.")
+        if not work.frames:
+            return work.no_frames or tr("Choose a folder that holds the frames of a scan.")
+        if all(name in self.project.options.excluded for name in work.names):
+            return tr("All frames are left out; let some of them count again.")
+        return ""
 
     def changed_since(self) -> tuple[str, ...]:
         """What the result rests on and is not what it was."""
@@ -96,7 +157,7 @@ class ScanPresenter(StepPresenter):
         """Measure another recording."""
         self.live.stop()
         self.run.cancel()
-        put_source(self.model, "scan", folder, self.tr("choose the recording of the scan"))
+        put_source(self.model, "scan", folder, tr("choose the recording of the scan"))
 
     # ---- frames
 
@@ -112,8 +173,8 @@ class ScanPresenter(StepPresenter):
         """Let frames count, or leave them out; undoable."""
         excluded = self.project.options.excluded
         after = excluded - set(names) if used else excluded | set(names)
-        what = short(names[0]) if len(names) == 1 else self.tr("{0} frames").format(len(names))
-        label = self.tr("let {0} count") if used else self.tr("leave out {0}")
+        what = short(names[0]) if len(names) == 1 else tr("{0} frames").format(len(names))
+        label = tr("let {0} count") if used else tr("leave out {0}")
         self._set_options(label.format(what), replace(self.project.options, excluded=after))
 
     def points_of_frame(self) -> tuple[Any, Any]:
@@ -136,10 +197,10 @@ class ScanPresenter(StepPresenter):
         try:
             options = changed_options(self.project.options, self.work.look, field, value)
         except (InputError, ValueError) as error:
-            self.bench.notices.error(str(error))
+            self.bench.notices.failed(error)
             self.changed.emit()
             return
-        self._set_options(self.tr("change how the scan is measured"), options, f"scan {field}")
+        self._set_options(tr("change how the scan is measured"), options, f"scan {field}")
 
     # ---- measuring
 
@@ -188,10 +249,6 @@ class ScanPresenter(StepPresenter):
         self.work.follow()
         self._follow_frames()
 
-    def stop(self) -> None:
-        self._leave()
-        self.live.finish()
-
     def _leave(self) -> None:
         """The project is about to be left: what is recorded now is measured another time."""
         self._leaving = True
@@ -212,7 +269,11 @@ class ScanPresenter(StepPresenter):
 
     def _cannot_record(self) -> str:
         """Why no recording can start now, or ""."""
-        return why_not_record(self)
+        if self.run.measuring:
+            return tr("The scan is being measured; wait for it, or cancel it.")
+        if not self.work.calibrations_read:
+            return tr("The calibrations are being read.")
+        return ""
 
     def _live_started(self) -> None:
         self._leaving = False
@@ -236,5 +297,34 @@ class ScanPresenter(StepPresenter):
             self.run.start(by_itself=True)
         else:
             self.bench.notices.info(
-                self.tr("The scan is recorded. It can be measured once camera and laser planes are accepted.")
+                tr("The scan is recorded. It can be measured once camera and laser planes are accepted.")
             )
+
+
+def values_of(options: Options, look: ShownScan | None) -> dict[str, Any]:
+    """The fields; width and contrast as they were found where they are found automatically."""
+    stripe = _stripe(options, look)
+    return {
+        "method": str(options.method),
+        "sigma_cut_mm": options.sigma_cut_mm,
+        "automatic": options.stripe is None,
+        "width_px": stripe.width_px,
+        "contrast": stripe.contrast,
+    }
+
+
+def changed_options(options: Options, look: ShownScan | None, field: str, value: Any) -> Options:
+    """The options with one field changed; InputError or ValueError if it cannot be so."""
+    stripe = _stripe(options, look)
+    if field == "automatic":
+        return replace(options, stripe=None if value else stripe)
+    if field in ("width_px", "contrast"):
+        return replace(options, stripe=replace(stripe, **{field: float(value)}))
+    return replace(options, **{field: value})
+
+
+def _stripe(options: Options, look: ShownScan | None) -> StripeSettings:
+    """As given, or as the last measurement found it."""
+    found = look.stripe if look is not None else None
+    usual = StripeSettings(round(found.width_px, 1), round(found.contrast)) if found is not None else USUAL_STRIPE
+    return options.stripe or usual

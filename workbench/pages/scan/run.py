@@ -8,15 +8,17 @@ from typing import Any
 
 from PySide6.QtCore import QObject, Signal
 
-from core.files.project import Project
-from core.files.project_keys import finished, rests_on
-from core.files.project_results import ScanSummary
-from core.live.events import ScanDetail
-from core.scan.preview_cloud import PreviewCloud
-from workbench import jobs
+from core.files.project.data import Project
+from core.files.project.keys import finished, rests_on
+from core.files.project.results import ScanSummary
+from core.messages import Message
+from core.pipeline.live.events import ScanDetail
+from core.scan.preview.shown import PreviewCloud
 from workbench.bench import Bench
+from workbench.language import text_of
 from workbench.pages.sources import folder_of
-from workbench.tasks import Task
+from workbench.work import jobs
+from workbench.work.tasks import Task
 
 PART = "scan/"
 
@@ -38,13 +40,13 @@ class ScanRun(QObject):
 
     started = Signal()
 
-    seen: dict[str, tuple[int, str]]
+    seen: dict[str, tuple[int, Message | None]]
     newest: str
     by_itself: bool
     """Whether it was started by the end of a recording."""
 
-    no_gauge: str
-    """Why the last measurement gave no thickness, or ""."""
+    no_gauge: Message | None
+    """Why the last measurement gave no thickness; None if it did."""
 
     def __init__(self, bench: Bench, parent: QObject | None = None) -> None:
         super().__init__(parent)
@@ -52,7 +54,7 @@ class ScanRun(QObject):
         self._task: Task | None = None
         self._reading = False
         self._problem = ("", "")
-        self.no_gauge = ""
+        self.no_gauge = None
         self._forget(by_itself=False)
 
     def _forget(self, *, by_itself: bool) -> None:
@@ -74,7 +76,7 @@ class ScanRun(QObject):
     def opened(self) -> None:
         """Another project: stop, and forget."""
         self.cancel()
-        self._task, self._problem, self.no_gauge = None, ("", ""), ""
+        self._task, self._problem, self.no_gauge = None, ("", ""), None
         self._forget(by_itself=False)
 
     def start(self, *, by_itself: bool = False) -> None:
@@ -84,18 +86,19 @@ class ScanRun(QObject):
             return
         self._forget(by_itself=by_itself)
         self._problem = ("", "")
-        task: Task = self._bench.measure(
+        task: Task = self._bench.run_long(
+            self,
             jobs.WATCH_SCAN,
             folder,
             project,
             label=self.tr("Scan"),
             on_done=lambda summary: self._measured(folder, project, summary),
-            on_failed=lambda problem: self._not_measured(task, project, str(problem)),
+            on_failed=lambda problem: self._not_measured(task, project, text_of(problem)),
             on_cancelled=lambda: self._not_measured(task, project, ""),
             offers={"progress": "progress", "watch": "watch"},
         )
         self._task = task
-        task.told.connect(lambda detail: self._told(task, detail))
+        task.reported.connect(lambda detail: self._told(task, detail))
         self.started.emit()
         self.changed.emit()
 
@@ -131,6 +134,7 @@ class ScanRun(QObject):
             return
         self._reading = True
         self._bench.quick.run(
+            self,
             jobs.DISPLAY_PICTURE,
             folder / short(detail.preview.name),
             self._model.project.rig.channel,

@@ -6,10 +6,11 @@ from typing import Any
 
 from PySide6.QtCore import QObject, Signal
 
-from core.scan.stages import FrameStages
-from workbench import jobs
+from core.scan.preview.shown import FrameStages
 from workbench.bench import Bench
-from workbench.pages.scan_work import ScanWork
+from workbench.language import text_of
+from workbench.pages.scan.work import ScanWork
+from workbench.work import jobs
 
 
 class FrameScrub(QObject):
@@ -79,13 +80,14 @@ class FrameScrub(QObject):
             return
         self._wanted = wanted
         self._bench.quick.run(
+            self,
             jobs.SHOW_FRAME,
             self._model.folder,
             self._model.project,
             self.current,
             label=self.tr("Looking at a frame"),
             on_done=lambda stages: self._seen(wanted, stages, ""),
-            on_failed=lambda problem: self._seen(wanted, None, str(problem)),
+            on_failed=lambda problem: self._seen(wanted, None, text_of(problem)),
             replace_waiting=True,
         )
 

@@ -6,10 +6,10 @@ from typing import Any
 
 from PySide6.QtCore import QObject, Signal
 
-from workbench import jobs
 from workbench.bench import Bench
-from workbench.pages.scan_run import short
+from workbench.pages.scan.run import short
 from workbench.pages.sources import folder_of
+from workbench.work import jobs
 
 AT_ONCE = 6
 """So many are made in one go, so that what the eye waits for comes between."""
@@ -66,6 +66,7 @@ class FrameThumbnails(QObject):
             self._make()
 
         self._bench.quick.run(
+            self,
             jobs.STRIPE_THUMBNAILS,
             [folder / short(name) for name in names],
             self._model.project.rig.channel,

@@ -4,98 +4,96 @@ from __future__ import annotations
 
 import math
 
-from PySide6.QtCore import QCoreApplication
-
-from core.scan.frame_record import FrameRecord
-from core.scan.scan_look import ScanLook
-from core.scan.stages import FrameStages
-from workbench.views.colours import Level
-
-Row = tuple[str, str, str, Level]
+from core.messages import Message
+from core.scan.features.frames import NO_REASON, FrameRecord
+from core.scan.preview.shown import FrameStages, ShownScan
+from workbench.language import text_of, tr
+from workbench.views.lists.value_rows import ValueRow
 
 _RAISED = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
-def quality_rows(look: ScanLook | None) -> list[Row]:
+def quality_rows(look: ShownScan | None) -> list[ValueRow]:
     """How good the result is: label, value with unit, tip, level."""
     if look is None:
         return []
     return [
-        (_tr("Points"), count(len(look)), _tr("Measured points, each with its own σ"), ""),
-        (_tr("Triangles"), count(look.triangles), _tr("Of the mesh made from the points"), ""),
+        (tr("Points"), count(len(look)), tr("Measured points, each with its own σ"), ""),
+        (tr("Triangles"), count(look.triangles), tr("Of the mesh made from the points"), ""),
         (
-            _tr("Frames used"),
-            _tr("{0} of {1}").format(look.frames_used, len(look.frames)),
-            _tr("Frames that gave points, and all there are"),
+            tr("Frames used"),
+            tr("{0} of {1}").format(look.frames_used, len(look.frames)),
+            tr("Frames that gave points, and all there are"),
             "",
         ),
         (
-            _tr("Median σ"),
+            tr("Median σ"),
             mm(look.median_sigma_mm),
-            _tr("Half of the points have a smaller standard uncertainty of depth; without what is common to the scan"),
+            tr("Half of the points have a smaller standard uncertainty of depth; without what is common to the scan"),
             "",
         ),
-        (_tr("95 % of σ"), mm(look.sigma_95_mm), _tr("95 % of the points have a smaller σ"), ""),
+        (tr("95 % of σ"), mm(look.sigma_95_mm), tr("95 % of the points have a smaller σ"), ""),
         (
-            _tr("Covered"),
-            _tr("{0} of what was lit").format(percent(look.share)),
-            _tr("Share of the picture between all laser light in which there are points"),
+            tr("Covered"),
+            tr("{0} of what was lit").format(percent(look.share)),
+            tr("Share of the picture between all laser light in which there are points"),
             "",
         ),
     ]
 
 
-def reason_rows(look: ScanLook | None) -> list[Row]:
+def reason_rows(look: ShownScan | None) -> list[ValueRow]:
     """Why frames gave no points, and how many."""
     if look is None:
         return []
     return [
-        (sentence(reason), str(frames), _tr("Frames left out for this reason"), "") for reason, frames in look.left_out
+        (sentence(text_of(reason)), str(frames), tr("Frames left out for this reason"), "")
+        for reason, frames in look.left_out
     ]
 
 
-def frame_line(record: FrameRecord | None, seen: tuple[int, str] | None) -> str:
+def frame_line(record: FrameRecord | None, seen: tuple[int, Message | None] | None) -> str:
     """The second line of a frame in the list; `seen`: points in the preview, and why there are none."""
     if record is not None:
         if not record.used:
-            return record.reason
-        return _tr("{0} points").format(count(record.points))
+            return text_of(record.reason or NO_REASON)
+        return tr("{0} points").format(count(record.points))
     if seen is not None:
         points, reason = seen
-        return reason or _tr("{0} points in the preview").format(count(points))
+        return text_of(reason) if reason else tr("{0} points in the preview").format(count(points))
     return ""
 
 
 def frame_sentence(place: int, total: int, name: str, record: FrameRecord | None, stages: FrameStages | None) -> str:
     """What is to be said of one frame."""
-    start = _tr("Frame {0} of {1} ({2})").format(place + 1, total, name)
+    start = tr("Frame {0} of {1} ({2})").format(place + 1, total, name)
     if stages is not None and stages.left_out and (record is None or record.used):
-        start = _tr("{0}, left out by hand").format(start)
+        start = tr("{0}, left out by hand").format(start)
     if record is not None and record.used:
-        return _tr(
+        return tr(
             "{0}: {1} points, median σ {2}; {3} crossings with {4} fan lines, {5} with other sweeps, {6} left out."
         ).format(
             start, count(record.points), mm(record.sigma_mm), record.fan_crossings, record.fan_lines_met,
             record.sweep_crossings, record.left_out,
         )  # fmt: skip
     if record is not None:
-        return _tr("{0}: no points; {1}.").format(start, record.reason)
+        return tr("{0}: no points; {1}.").format(start, text_of(record.reason or NO_REASON))
     if stages is not None and stages.reason:
-        return _tr("{0}: {1}.").format(start, stages.reason)
+        return tr("{0}: {1}.").format(start, text_of(stages.reason))
     if stages is not None and stages.seen is not None:
-        return _tr("{0}: {1} crossings by itself; not measured yet.").format(start, len(stages.seen.crossing_uv))
-    return _tr("{0}: not measured yet.").format(start)
+        return tr("{0}: {1} crossings by itself; not measured yet.").format(start, len(stages.seen.crossing_uv))
+    return tr("{0}: not measured yet.").format(start)
 
 
 def covered_sentence(share: float) -> str:
     """How much of the surface there is."""
-    return _tr("covered {0} of what was lit").format(percent(share))
+    return tr("covered {0} of what was lit").format(percent(share))
 
 
 def condition_text(condition: float) -> str:
     """The condition of a frame's crossings."""
     if math.isinf(condition):
-        return _tr("∞")
+        return tr("∞")
     if condition < 10_000:
         return f"{condition:.0f}"
     exponent = math.floor(math.log10(condition))
@@ -104,7 +102,7 @@ def condition_text(condition: float) -> str:
 
 def speed_text(speed_px: float) -> str:
     """How far the stripe moves from frame to frame."""
-    return "" if math.isnan(speed_px) else _tr("{0} px/frame").format(f"{speed_px:.0f}")
+    return "" if math.isnan(speed_px) else tr("{0} px/frame").format(f"{speed_px:.0f}")
 
 
 def sentence(reason: str) -> str:
@@ -125,7 +123,3 @@ def percent(share: float) -> str:
 def mm(value: float) -> str:
     """A length in millimetres."""
     return "–" if math.isnan(value) else f"{value:.3f} mm"
-
-
-def _tr(text: str) -> str:
-    return QCoreApplication.translate("Scan", text)

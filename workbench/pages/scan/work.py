@@ -9,12 +9,13 @@ from typing import Any
 from PySide6.QtCore import QObject, Signal
 
 from core.model import Camera, Fan
-from core.scan.frame_record import FrameRecord
-from core.scan.scan_look import ScanLook
-from workbench import jobs
+from core.scan.features.frames import FrameRecord
+from core.scan.preview.shown import ShownScan
 from workbench.bench import Bench
-from workbench.pages.scan_run import PART
+from workbench.language import text_of
+from workbench.pages.scan.run import PART
 from workbench.pages.sources import folder_of
+from workbench.work import jobs
 
 
 class ScanWork(QObject):
@@ -38,7 +39,7 @@ class ScanWork(QObject):
         self.camera: Camera | None = None
         self.fan: Fan | None = None
         self.calibrations_read = False
-        self.look: ScanLook | None = None
+        self.look: ShownScan | None = None
         self._listed = self._calibrated = self._looked = ""
 
     @property
@@ -88,10 +89,11 @@ class ScanWork(QObject):
 
         def refused(problem: Any) -> None:
             if self._listed == wanted:
-                self.frames, self.no_frames = (), str(problem)
+                self.frames, self.no_frames = (), text_of(problem)
                 self.changed.emit()
 
-        self._bench.glance(
+        self._bench.run_quick(
+            self,
             jobs.LIST_FRAMES,
             folder,
             label=self.tr("Listing the frames"),
@@ -117,6 +119,7 @@ class ScanWork(QObject):
                 self.changed.emit()
 
         self._bench.quick.run(
+            self,
             jobs.ACCEPTED_CALIBRATION,
             folder,
             project,
@@ -135,9 +138,9 @@ class ScanWork(QObject):
             self.look = None
             return
 
-        def read(look: ScanLook) -> None:
+        def read(look: ShownScan) -> None:
             if self._looked == wanted:
                 self.look = look
                 self.changed.emit()
 
-        self._bench.glance(jobs.SHOW_SCAN, folder, label=self.tr("Reading the scan"), on_done=read)
+        self._bench.run_quick(self, jobs.SHOW_SCAN, folder, label=self.tr("Reading the scan"), on_done=read)

@@ -8,8 +8,8 @@ from PySide6.QtCore import QEvent, Qt, Signal
 from PySide6.QtWidgets import QGridLayout, QLabel, QSizePolicy, QWidget
 
 from workbench.theme import shades
-from workbench.views.dressing import dress
-from workbench.views.form_editors import (
+from workbench.views.common import dress
+from workbench.views.forms.editors import (
     CheckEditor,
     ChoiceEditor,
     Editor,
@@ -136,7 +136,7 @@ class SettingsForm(QWidget):
 
     def changeEvent(self, event: QEvent) -> None:
         super().changeEvent(event)
-        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "_grid"):
+        if event.type() == QEvent.Type.PaletteChange:
             for key in self._helps:
                 self._show_help(key)
 

@@ -1,14 +1,28 @@
-"""Fields of the live controls: a device from a list or typed in, and settings that may be left as they are."""
+"""Which live source, and what it is told: fields that may be left as they are, and the form of them."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtWidgets import QComboBox, QDoubleSpinBox, QHBoxLayout, QLineEdit, QToolButton, QWidget
+from PySide6.QtWidgets import (
+    QComboBox,
+    QDoubleSpinBox,
+    QFormLayout,
+    QHBoxLayout,
+    QLabel,
+    QLineEdit,
+    QToolButton,
+    QVBoxLayout,
+    QWidget,
+)
 
 from core.acquire.source import Region, SourceInfo
+from core.acquire.source_kind import SourceKind
+from core.pipeline.live.sources import SOURCES
+from workbench.language import text_of
 from workbench.theme import icon
 from workbench.views import ask
 
@@ -21,7 +35,7 @@ class DeviceField(QWidget):
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self._kind = ""
+        self._is_folder = False
         self.box, self.button = QComboBox(), QToolButton()
         self.box.setEditable(True)
         self.box.setInsertPolicy(QComboBox.InsertPolicy.NoInsert)
@@ -47,9 +61,9 @@ class DeviceField(QWidget):
         super().setToolTip(tip)
         self.box.setToolTip(tip)
 
-    def show_devices(self, kind: str, chosen: str, devices: Sequence[SourceInfo], looking: bool) -> None:
+    def show_devices(self, kind: SourceKind, chosen: str, devices: Sequence[SourceInfo], looking: bool) -> None:
         """Show the devices there are, and the one that is chosen."""
-        self._kind = kind
+        self._is_folder = kind.is_folder
         self.box.blockSignals(True)
         self.box.clear()
         names = [device.name for device in devices]
@@ -65,19 +79,10 @@ class DeviceField(QWidget):
             self.box.setEditText(chosen)
         edit = self.box.lineEdit()
         assert edit is not None
-        edit.setPlaceholderText(
-            {
-                "simulated": self.tr("the sample's rig"),
-                "opencv": self.tr("0, the first camera"),
-                "basler": self.tr("the first camera"),
-                "genicam": self.tr("the first camera"),
-                "aravis": self.tr("the first camera"),
-                "replay": self.tr("choose a folder"),
-            }.get(kind, "")
-        )
+        edit.setPlaceholderText(text_of(kind.usual))
         edit.setCursorPosition(0)
         self.box.blockSignals(False)
-        browse = kind == "replay"
+        browse = kind.is_folder
         self.button.setIcon(icon("mdi6.folder-open-outline" if browse else "mdi6.magnify"))
         self.button.setEnabled(not looking)
         self.button.setToolTip(
@@ -95,7 +100,7 @@ class DeviceField(QWidget):
             self.chosen.emit(text)
 
     def _pressed(self) -> None:
-        if self._kind != "replay":
+        if not self._is_folder:
             self.look.emit()
             return
         start = Path(self.box.currentText()) if self.box.currentText() else Path.home()
@@ -179,3 +184,132 @@ class RegionField(QLineEdit):
     def _finished(self) -> None:
         if self.text() != self._shown:
             self.edited.emit(self.text())
+
+
+class SourceForm(QWidget):
+    """Kind and device, and the settings the source has; `live` is the page's LivePresenter."""
+
+    def __init__(self, live: Any, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.live = live
+        self.kind, self.device = QComboBox(), DeviceField()
+        as_it_is = self.tr("as it is")
+        self.exposure = NumberField(as_it_is, " ms", 0.01, 60000.0, 2)
+        self.gain = NumberField(as_it_is, " dB", -40.0, 80.0, 1)
+        self.rate = NumberField(as_it_is, " /s", 0.1, 1000.0, 1)
+        self.trigger, self.pixel_format, self.region = ChoiceField(as_it_is), ChoiceField(as_it_is), RegionField()
+        self.files = QComboBox()
+        self.missing, self.complaint = QLabel(), QLabel()
+        self._device_label = QLabel()
+        self._lay_out()
+        self._dress()
+        self._fill()
+        self._connect()
+
+    def refresh(self) -> None:
+        """Show what the presenter says now."""
+        live, settings = self.live, self.live.settings
+        running = live.running
+        self.kind.setCurrentIndex(max(self.kind.findData(settings.kind), 0))
+        kind = SOURCES[settings.kind]
+        self._device_label.setText(text_of(kind.device))
+        self.device.show_devices(kind, settings.choice.id, settings.devices, settings.looking)
+        self.device.setToolTip(text_of(kind.device_help))
+        for widget in (self.kind, self.device, self.files):
+            widget.setEnabled(not running)
+        can, names, values = settings.capabilities, settings.names, settings.values
+        for name, number in self._numbers().items():
+            number.limit(getattr(can, name))
+            number.show_value(getattr(values, name))
+        self.trigger.show_choices(can.triggers, values.trigger)
+        self.pixel_format.show_choices(can.pixel_formats, values.pixel_format)
+        self.region.show_region(values.region, can.sensor)
+        for name, field in self._fields().items():
+            # what can be chosen is known once the source has been open
+            unknown = isinstance(field, ChoiceField) and field.count() < 2
+            self._form.setRowVisible(field, name in names and not unknown)
+        self._form.setRowVisible(self.files, live.step == "scan")
+        self.files.setCurrentIndex(max(self.files.findData(settings.ending), 0))
+        for label, sentence in ((self.missing, settings.missing), (self.complaint, settings.complaint)):
+            label.setText(sentence)
+            label.setVisible(bool(sentence))
+
+    def _numbers(self) -> dict[str, NumberField]:
+        return {"exposure_ms": self.exposure, "gain_db": self.gain, "rate_hz": self.rate}
+
+    def _fields(self) -> dict[str, QWidget]:
+        others = {"trigger": self.trigger, "pixel_format": self.pixel_format, "region": self.region}
+        return {**self._numbers(), **others}
+
+    def _lay_out(self) -> None:
+        self._form = QFormLayout()
+        self._form.setContentsMargins(0, 0, 0, 0)
+        self._form.setFieldGrowthPolicy(QFormLayout.FieldGrowthPolicy.AllNonFixedFieldsGrow)
+        for label, field in (
+            (QLabel(self.tr("Source")), self.kind),
+            (self._device_label, self.device),
+            (QLabel(self.tr("Exposure")), self.exposure),
+            (QLabel(self.tr("Gain")), self.gain),
+            (QLabel(self.tr("Rate")), self.rate),
+            (QLabel(self.tr("Trigger")), self.trigger),
+            (QLabel(self.tr("Format")), self.pixel_format),
+            (QLabel(self.tr("Region")), self.region),
+            (QLabel(self.tr("Files")), self.files),
+        ):
+            label.setBuddy(field)
+            self._form.addRow(label, field)
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(6)
+        column.addLayout(self._form)
+        for label in (self.missing, self.complaint):
+            label.setObjectName("muted")
+            label.setWordWrap(True)
+            label.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
+            column.addWidget(label)
+
+    def _dress(self) -> None:
+        for field, name, tip in (
+            (self.kind, self.tr("Kind of source"), self.tr("What delivers the pictures")),
+            (self.device, self.tr("Device"), ""),
+            (self.exposure, self.tr("Exposure time"), self.tr("Shorter keeps moving things sharp; longer is brighter")),
+            (self.gain, self.tr("Gain"), self.tr("Brighter pictures, but more noise")),
+            (self.rate, self.tr("Frame rate"), self.tr("How many pictures a second")),
+            (self.trigger, self.tr("Trigger"), self.tr("What makes the camera take a picture; Off: it runs freely")),
+            (self.pixel_format, self.tr("Pixel format"), self.tr("Grey levels as the camera sends them")),
+            (
+                self.region,
+                self.tr("Region of the sensor"),
+                self.tr("First column, first row, width and height in pixels. A calibration holds for its own region."),
+            ),
+            (
+                self.files,
+                self.tr("Files of the frames"),
+                self.tr("PNG takes half the room on the disk, PGM a tenth of the time: for fast cameras"),
+            ),
+        ):
+            field.setAccessibleName(name)
+            field.setToolTip(tip)
+
+    def _fill(self) -> None:
+        for kind in SOURCES.values():
+            self.kind.addItem(text_of(kind.title), kind.name)
+            self.kind.setItemData(self.kind.count() - 1, text_of(kind.help), Qt.ItemDataRole.ToolTipRole)
+        self.files.addItem(self.tr("PNG, smaller"), ".png")
+        self.files.addItem(self.tr("PGM, faster"), ".pgm")
+
+    def _connect(self) -> None:
+        settings = self.live.settings
+        self.kind.activated.connect(lambda _: self._choose_kind())
+        self.device.chosen.connect(settings.set_id)
+        self.device.look.connect(settings.look_for_devices)
+        for name, number in self._numbers().items():
+            number.edited.connect(lambda value, name=name: settings.set_value(name, value))
+        for name, choice in (("trigger", self.trigger), ("pixel_format", self.pixel_format)):
+            choice.edited.connect(lambda value, name=name: settings.set_value(name, value))
+        self.region.edited.connect(settings.set_region)
+        self.files.activated.connect(lambda _: settings.set_ending(self.files.currentData()))
+
+    def _choose_kind(self) -> None:
+        self.live.settings.set_kind(self.kind.currentData())
+        self.live.settings.look_for_devices()

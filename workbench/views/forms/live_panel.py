@@ -1,15 +1,27 @@
-"""Controls of a live source, for the side of a page."""
+"""Controls of a live source for the side of a page, and what its recording asks and reports above the picture."""
 
 from __future__ import annotations
 
 from typing import Any
 
-from PySide6.QtCore import QEvent, QTimer
-from PySide6.QtWidgets import QCheckBox, QGridLayout, QLabel, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtCore import QEvent, Qt, QTimer
+from PySide6.QtWidgets import (
+    QCheckBox,
+    QFrame,
+    QGridLayout,
+    QHBoxLayout,
+    QLabel,
+    QPushButton,
+    QSizePolicy,
+    QToolButton,
+    QVBoxLayout,
+    QWidget,
+)
 
+from workbench.language import text_of
 from workbench.theme import icon
 from workbench.views import ask
-from workbench.views.live_form import SourceForm
+from workbench.views.forms.live_form import SourceForm
 
 
 class LivePanel(QWidget):
@@ -72,6 +84,9 @@ class LivePanel(QWidget):
             self.start.style().polish(self.start)
             self.refresh()
 
+    def _on_view(self, _view: object) -> None:
+        self.show_counts()
+
     def show_counts(self) -> None:
         """Show the state and the numbers of pictures."""
         self.state.setText(self.live.state_text())
@@ -86,7 +101,7 @@ class LivePanel(QWidget):
 
     def changeEvent(self, event: QEvent) -> None:
         super().changeEvent(event)
-        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "counts"):
+        if event.type() == QEvent.Type.PaletteChange:
             self.refresh()
 
     def _dress(self) -> None:
@@ -124,7 +139,7 @@ class LivePanel(QWidget):
         self.auto.toggled.connect(live.set_auto)
         self.add.clicked.connect(lambda on: live.set_adding(on))
         live.changed.connect(self.refresh)
-        live.view.connect(lambda _: self.show_counts())
+        live.view.connect(self._on_view)
         live.other_running.connect(self._ask_to_stop_other)
         live.settings.devices_changed.connect(self.refresh)
 
@@ -132,3 +147,98 @@ class LivePanel(QWidget):
         answers = [self.tr("Stop it and start here"), self.tr("Leave it running")]
         if ask.ask(self, self.tr("Live source"), question, answers) == 0:
             self.live.start(stop_other=True)
+
+
+class LiveStrip(QWidget):
+    """What the recording asks, with the button that answers; whether the source is gone, too fast, or badly exposed.
+
+    Hidden while there is nothing to say.
+    """
+
+    def __init__(self, live: Any, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.live = live
+        self._gone = _Card("mdi6.power-plug-off-outline")
+        self._lost = _Card("mdi6.speedometer")
+        self._advice = _Card("mdi6.brightness-6", button=True)
+        self._ask = _Card("mdi6.hand-pointing-right", button=True)
+        self.gone, self.lost, self.advice, self.question = (card.label for card in self._cards())
+        self.take_advice, self.answer = self._advice.button, self._ask.button
+        self.answer.setProperty("primary", True)
+        self.answer.setToolTip(self.tr("Press when it is done"))
+        self.answer.clicked.connect(lambda: live.answer())
+        self.take_advice.setText(self.tr("Set it"))
+        self.take_advice.setToolTip(self.tr("Tell the camera so"))
+        self.take_advice.clicked.connect(lambda: live.take_advice())
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 4)
+        column.setSpacing(4)
+        for card in self._cards():
+            column.addWidget(card)
+        self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Maximum)
+        live.changed.connect(self.refresh)
+        live.view.connect(self._on_view)
+        self._dress()
+        self.refresh()
+
+    def refresh(self) -> None:
+        """Show what is asked and what is wrong now."""
+        sentence, button = self.live.question
+        self.answer.setText(button)
+        self._ask.say(sentence)
+        advice = self.live.advice
+        self.take_advice.setVisible(advice.settings is not None)
+        self._advice.say("" if advice.sentence is None else text_of(advice.sentence))
+        unplugged = self.tr(
+            "The source is unplugged. What is recorded is kept; plug it in again and the recording goes on."
+        )
+        self._gone.say(unplugged if self.live.gone else "")
+        self._show_lost()
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.PaletteChange:
+            self._dress()
+
+    def _dress(self) -> None:
+        for card in self._cards():
+            card.dress()
+
+    def _cards(self) -> tuple[_Card, ...]:
+        return self._gone, self._lost, self._advice, self._ask
+
+    def _on_view(self, _view: object) -> None:
+        self._show_lost()
+
+    def _show_lost(self) -> None:
+        """Frames that are lost while it runs: told while the rate can still be lowered."""
+        self._lost.say(self.live.lost_text() if self.live.running else "")
+        self.setVisible(not all(card.isHidden() for card in self._cards()))
+
+
+class _Card(QFrame):
+    """A sign, a sentence and perhaps a button; hidden while there is no sentence."""
+
+    def __init__(self, symbol: str, *, button: bool = False) -> None:
+        super().__init__()
+        self.setObjectName("card")
+        self._symbol, self._sign = symbol, QToolButton()
+        self.label, self.button = QLabel(), QPushButton()
+        self._sign.setAutoRaise(True)
+        self._sign.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self.label.setWordWrap(True)
+        row = QHBoxLayout(self)
+        row.setContentsMargins(8, 6, 8, 6)
+        row.addWidget(self._sign)
+        row.addWidget(self.label, 1)
+        if button:
+            row.addWidget(self.button)
+        self.hide()
+
+    def say(self, sentence: str) -> None:
+        if sentence != self.label.text():
+            self.label.setText(sentence)
+        self.setVisible(bool(sentence))
+
+    def dress(self) -> None:
+        self._sign.setIcon(icon(self._symbol, colour="warn"))

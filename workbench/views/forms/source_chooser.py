@@ -18,7 +18,7 @@ from PySide6.QtWidgets import (
 
 from workbench.theme import icon
 from workbench.views import ask
-from workbench.views.paths import breakable
+from workbench.views.common import breakable
 
 
 class SourceChooser(QWidget):
@@ -105,7 +105,7 @@ class SourceChooser(QWidget):
 
     def changeEvent(self, event: QEvent) -> None:
         super().changeEvent(event)
-        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "_parts"):
+        if event.type() == QEvent.Type.PaletteChange:
             self._dress()
 
     def _folder_part(self) -> QWidget:

@@ -11,19 +11,26 @@ from PySide6.QtGui import QColor, QKeyEvent, QPainter, QPen, QPolygonF
 from PySide6.QtWidgets import QStyleOptionGraphicsItem, QWidget
 
 from workbench.views.colours import REGION
-from workbench.views.overlays import Layer, Points
-from workbench.views.picture_box import PictureBox
-from workbench.views.symbols import RIM
+from workbench.views.image.overlays import Layer, Points
+from workbench.views.image.picture import PictureBox
+from workbench.views.image.symbols import RIM
 
 FEWEST_CORNERS = 3
+"""Of a region."""
+
 ARROWS = {
     Qt.Key.Key_Left: (-1, 0),
     Qt.Key.Key_Right: (1, 0),
     Qt.Key.Key_Up: (0, -1),
     Qt.Key.Key_Down: (0, 1),
 }
+"""Right and down, by key."""
+
 _LASSO_STEP, _SAME_PLACE = 3.0, 2.0
+"""Screen pixels between points of a stroke, and within which two clicks are one corner: what a hand trembles."""
+
 _STEP, _LEAP = 1, 20
+"""Picture pixels that an arrow key moves the pencil by, and with Shift."""
 
 
 @dataclass(slots=True)

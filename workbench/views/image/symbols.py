@@ -10,7 +10,10 @@ from PySide6.QtGui import QColor, QPainter, QPainterPath, QPen, QPixmap
 from workbench.views.colours import Symbol
 
 RIM = QColor(0, 0, 0, 170)
+"""Round everything drawn on a picture, so that it is seen on bright and dark."""
+
 _STROKE = 1.6
+"""Width of a symbol's lines in screen pixels."""
 
 
 @lru_cache(maxsize=512)

@@ -58,7 +58,7 @@ class ToolStrip(QFrame):
 
     def changeEvent(self, event: QEvent) -> None:
         super().changeEvent(event)
-        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "_row"):
+        if event.type() == QEvent.Type.PaletteChange:
             self._dress()
 
     def _button(self, symbol: str, tip: str) -> QToolButton:

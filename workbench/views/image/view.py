@@ -1,36 +1,60 @@
-"""The picture in its frame: zoom and pan, readout, buttons, legend, and what stands there without a picture."""
+"""A picture with layers of points, lines and regions over it: zoom and pan, readout, buttons, legend, drawing."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import pyqtgraph as pg
 from numpy.typing import ArrayLike
-from PySide6.QtCore import QEvent, QPoint, QPointF, QRectF, Qt
-from PySide6.QtGui import QContextMenuEvent, QFocusEvent, QKeyEvent, QPaintEvent
-from PySide6.QtWidgets import QLabel, QMenu, QVBoxLayout, QWidget
+from PySide6.QtCore import QEvent, QPoint, QPointF, QRectF, Qt, Signal
+from PySide6.QtGui import QContextMenuEvent, QCursor, QFocusEvent, QKeyEvent, QPaintEvent
+from PySide6.QtWidgets import QLabel, QMenu, QToolTip, QVBoxLayout, QWidget
 
 from workbench.theme import is_dark
-from workbench.views.drawing import ARROWS, DrawingTool
-from workbench.views.dressing import draw_focus
+from workbench.views.colours import COVERED, REGION, RESIDUAL, ColourLike, Symbol
+from workbench.views.common import copy_picture, draw_focus, save_picture
 from workbench.views.empty_state import EmptyState
-from workbench.views.grabbed import copy_picture, save_picture
-from workbench.views.image_tools import ToneMenu, ToolStrip
-from workbench.views.layer_stack import LayerStack
-from workbench.views.legend import LayersMenu, Legend
-from workbench.views.picture_box import ZOOM_STEP, PictureBox
-from workbench.views.picture_item import PictureItem
+from workbench.views.image.drawing import ARROWS, DrawingTool
+from workbench.views.image.layers import LayersMenu, LayerStack, Legend
+from workbench.views.image.overlays import (
+    CellsLayer,
+    Grip,
+    LinesLayer,
+    PointsLayer,
+    PolygonLayer,
+    VectorsLayer,
+)
+from workbench.views.image.picture import ZOOM_STEP, PictureBox, PictureItem
+from workbench.views.image.tools import ToneMenu, ToolStrip
 
 GROUND = {True: "#12151A", False: "#DDE1E6"}
 """Round the picture, in the dark and in the light theme."""
 
-_PAN = 60
+_PAN_PX = 60
+"""One press of an arrow key moves the picture by so much."""
+
 _KEYS = {Qt.Key.Key_F, Qt.Key.Key_1, Qt.Key.Key_Plus, Qt.Key.Key_Minus, Qt.Key.Key_Equal, *ARROWS}
 
 
-class ImageFrame(QWidget):
-    """One picture and everything round it; `ImageView` adds the layers."""
+class ImageView(QWidget):
+    """Shows one picture; layers lie over it by name, in the coordinates of the full-resolution picture.
+
+    The centre of the first pixel is (0, 0). Setting a layer replaces the one of that name; `title` puts it into the
+    legend and the layers menu. Wheel: zoom about the cursor; drag or arrows: pan; F: fit; 1: pixel on pixel; +, −.
+    """
+
+    polygon_drawn = Signal(str, object)
+    """Name, corners (N, 2) in pixels; of a lasso as well."""
+
+    polygon_edited = Signal(str, object)
+    """Name, corners (N, 2) in pixels, when a corner or the whole has been dragged."""
+
+    drawing_cancelled = Signal(str)
+    """Name of what was not drawn: Esc, or `stop_drawing`."""
+
+    point_clicked = Signal(str, int)
+    """Layer and index of the point."""
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -50,6 +74,7 @@ class ImageFrame(QWidget):
         self._empty = EmptyState(self._canvas)
         self._strip, self._tone = ToolStrip(), ToneMenu(self)
         self._layers_menu = LayersMenu(self._layers, self)
+        self._grip: tuple[str, Grip] | None = None
         self._fitted = True
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setAccessibleName(self.tr("Picture"))
@@ -177,6 +202,104 @@ class ImageFrame(QWidget):
         """Brighten the picture on the screen: grey · gain, then to the power 1/gamma."""
         self._picture.set_tone(gain, gamma)
 
+    # ---- layers
+
+    def set_points(
+        self,
+        name: str,
+        uv: ArrayLike,
+        *,
+        colour: ColourLike | ArrayLike,
+        symbol: Symbol = "o",
+        size: float = 8,
+        tips: Sequence[str] | None = None,
+        title: str = "",
+    ) -> None:
+        """Points (N, 2); `colour` for all or (N, 3 or 4) uint8; `size` in screen pixels; `tips` show on hover."""
+        self._layers.put(name, PointsLayer(uv, colour, symbol, size, tips, title))
+
+    def set_lines(
+        self,
+        name: str,
+        lines: Sequence[ArrayLike],
+        *,
+        colour: ColourLike | list[ColourLike] = REGION,
+        values: Sequence[ArrayLike] | None = None,
+        limits: tuple[float, float] = (0.0, 1.0),
+        width: float = 1.5,
+        labels: Sequence[str] | None = None,
+        title: str = "",
+    ) -> None:
+        """Lines, each (N, 2): one colour for all, a list of one each, or by a value at each point.
+
+        `values` are coloured as σ between `limits`; above them and NaN are grey. NaN in a line leaves a gap. `labels`
+        stand at the start of each line.
+        """
+        each = colour if isinstance(colour, list) else [colour] * len(lines)
+        self._layers.put(name, LinesLayer(lines, each, values, limits, width, labels, title))
+
+    def set_vectors(
+        self,
+        name: str,
+        uv: ArrayLike,
+        d_uv: ArrayLike,
+        *,
+        factor: float,
+        colour: ColourLike = RESIDUAL,
+        title: str = "",
+    ) -> None:
+        """Arrows from uv (N, 2) to uv + factor · d_uv."""
+        self._layers.put(name, VectorsLayer(uv, d_uv, factor, colour, title))
+
+    def set_cells(self, name: str, grid: ArrayLike, colour: ColourLike = COVERED, *, title: str = "") -> None:
+        """Tint the cells of a grid (rows, columns) over the whole picture where it is True."""
+        self._layers.put(name, CellsLayer(grid, colour, lambda: self._box.extent, title))
+
+    def set_polygon(
+        self, name: str, uv: ArrayLike, *, editable: bool = False, colour: ColourLike = REGION, title: str = ""
+    ) -> None:
+        """A closed region (N, 2); with `editable` its corners, and all of it by its middle, can be dragged."""
+        self._layers.put(name, PolygonLayer(uv, colour, editable, title))
+
+    def remove_layer(self, name: str) -> None:
+        """Take a layer away; none of that name is no error."""
+        self._layers.remove(name)
+
+    def set_layer_visible(self, name: str, visible: bool) -> None:
+        """Show or hide a layer; remembered for the name, also while there is no such layer."""
+        self._layers.set_visible(name, visible)
+
+    def is_layer_visible(self, name: str) -> bool:
+        """Whether a layer of that name is to be shown."""
+        return self._layers.is_visible(name)
+
+    def clear_layers(self) -> None:
+        """Take all layers away."""
+        self._layers.clear()
+
+    def layer_names(self) -> tuple[str, ...]:
+        """The layers there are, from the lowest to the topmost."""
+        return tuple(self._layers)
+
+    # ---- drawing
+
+    def start_polygon(self, name: str) -> None:
+        """Let the user draw: click corners; double-click or Enter closes, Backspace takes one back, Esc cancels.
+
+        By keys alone: arrows move the pencil (with Shift in leaps), Space sets a corner.
+        """
+        self._drawing.start(name, "polygon")
+        self.setFocus()
+
+    def start_lasso(self, name: str) -> None:
+        """Let the user draw round a region with the button held down."""
+        self._drawing.start(name, "lasso")
+        self.setFocus()
+
+    def stop_drawing(self) -> None:
+        """End drawing without a result; nothing being drawn is no error."""
+        self._drawing.stop()
+
     # ---- events
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
@@ -194,7 +317,7 @@ class ImageFrame(QWidget):
         elif key == Qt.Key.Key_Minus:
             self._box.zoom_by(1 / ZOOM_STEP)
         elif key in ARROWS:
-            self._box.pan_by(*(_PAN * step for step in ARROWS[key]))
+            self._box.pan_by(*(_PAN_PX * step for step in ARROWS[key]))
         else:
             super().keyPressEvent(event)
 
@@ -225,7 +348,7 @@ class ImageFrame(QWidget):
 
     def changeEvent(self, event: QEvent) -> None:
         super().changeEvent(event)
-        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "_strip"):
+        if event.type() == QEvent.Type.PaletteChange:
             self._dress()
 
     def contextMenuEvent(self, event: QContextMenuEvent) -> None:
@@ -241,10 +364,71 @@ class ImageFrame(QWidget):
         menu.exec(event.globalPos())
         menu.deleteLater()
 
+    # ---- the mouse
+
+    def _clicked(self, place: QPointF, button: Qt.MouseButton) -> None:
+        drawing = self._drawing.draft is not None
+        if drawing and button == Qt.MouseButton.RightButton:
+            self._drawing.take_back()
+        elif drawing and not self._drawing.lasso and button == Qt.MouseButton.LeftButton:
+            self._drawing.add(place)
+        elif not drawing and button == Qt.MouseButton.LeftButton:
+            met = self._layers.point_at(place.x(), place.y())
+            if met is not None:
+                self.point_clicked.emit(*met)
+
+    def _double_clicked(self, place: QPointF) -> None:
+        if self._drawing.draft is not None and not self._drawing.lasso:
+            self._drawing.add(place)
+            self._drawing.finish()
+
+    def _claims_drag(self, place: QPointF) -> bool:
+        self._grip = None if self._drawing.draft is not None else self._layers.grip_at(place.x(), place.y())
+        return self._grip is not None or self._drawing.lasso
+
+    def _dragged(self, place: QPointF, by: QPointF, phase: str) -> None:
+        if self._drawing.lasso:
+            self._drawing.add(place)
+            if phase == "end":
+                self._drawing.finish()
+        elif self._grip is not None:
+            name, grip = self._grip
+            layer = self._layers[name]
+            assert isinstance(layer, PolygonLayer)
+            layer.drag(grip, by.x(), by.y())
+            if phase == "end":
+                self._grip = None
+                self.polygon_edited.emit(name, layer.uv.copy())
+
+    def _hovered(self, place: QPointF | None) -> None:
+        self._drawing.hover(place)
+        if place is None or not self.has_picture:
+            self._strip.readout.clear()
+            return
+        u, v = place.x(), place.y()
+        value = self._picture.value_at(u, v)
+        text = self.tr("u {u:.1f}  v {v:.1f}  grey {grey}") if value else self.tr("u {u:.1f}  v {v:.1f}")
+        self._strip.readout.setText(text.format(u=u, v=v, grey=value))
+        tip = "" if self._drawing.draft is not None else self._layers.tip_at(u, v)
+        if tip:
+            QToolTip.showText(QCursor.pos() + QPoint(12, 8), tip, self._canvas)
+        elif QToolTip.isVisible():
+            QToolTip.hideText()
+        if self._drawing.draft is None:
+            held = self._layers.grip_at(u, v) is not None
+            self.canvas.setCursor(Qt.CursorShape.SizeAllCursor if held else Qt.CursorShape.ArrowCursor)
+
     # ---- inside
 
     def _connect(self) -> None:
         self._box.zoomed.connect(self._unfit)
+        self._box.claim_drag = self._claims_drag
+        self._box.clicked.connect(self._clicked)
+        self._box.double_clicked.connect(self._double_clicked)
+        self._box.dragged.connect(self._dragged)
+        self._box.hovered.connect(self._hovered)
+        self._drawing.drawn.connect(self.polygon_drawn)
+        self._drawing.cancelled.connect(self.drawing_cancelled)
         self._box.sigResized.connect(self._resized)
         self._box.sigRangeChanged.connect(self._say_zoom)
         self._layers.changed.connect(self._show_legend)

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 from PySide6.QtCore import QEvent, QSize, Qt
 from PySide6.QtWidgets import QFrame, QGridLayout, QLabel, QWidget
 
-from core.scan.preflight import Check, Name, State
+from core.scan.preview.preflight import Check, Name, State
+from workbench.language import text_of
 from workbench.theme import icon
 
 _SIGNS: dict[State, tuple[str, str]] = {
@@ -52,7 +53,7 @@ class ChecksCard(QFrame):
 
     def changeEvent(self, event: QEvent) -> None:
         super().changeEvent(event)
-        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "_grid"):
+        if event.type() == QEvent.Type.PaletteChange:
             self._show()
 
     def _show(self) -> None:
@@ -69,7 +70,7 @@ class ChecksCard(QFrame):
             sign.setAccessibleName(states[check.state])
             sign.setToolTip(states[check.state])
             name.setText(titles[check.name])
-            said.setText(check.sentence)
+            said.setText(text_of(check.message))
 
     def _add_row(self) -> None:
         sign, name, said = QLabel(), QLabel(), QLabel()

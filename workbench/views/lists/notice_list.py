@@ -19,7 +19,7 @@ from PySide6.QtWidgets import (
 )
 
 from workbench.theme import icon, shades
-from workbench.views.dressing import dress
+from workbench.views.common import dress
 
 SYMBOLS = {
     "info": ("mdi6.information-outline", "accent"),

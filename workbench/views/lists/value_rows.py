@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QLabel, QVBoxLay
 
 from workbench.theme import icon, shades
 from workbench.views.colours import Level
-from workbench.views.dressing import dress
+from workbench.views.common import dress
 
 LEVEL_ICONS: dict[Level, tuple[str, str]] = {
     "good": ("mdi6.check-circle-outline", "good"),
@@ -61,7 +61,7 @@ class ValueRows(QWidget):
 
     def changeEvent(self, event: QEvent) -> None:
         super().changeEvent(event)
-        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "_grid"):
+        if event.type() == QEvent.Type.PaletteChange:
             self._show()
 
     def _add_row(self) -> None:
@@ -135,7 +135,7 @@ class Verdict(QFrame):
 
     def changeEvent(self, event: QEvent) -> None:
         super().changeEvent(event)
-        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "_kind"):
+        if event.type() == QEvent.Type.PaletteChange:
             self._show()
 
     def _show(self) -> None:

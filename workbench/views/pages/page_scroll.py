@@ -17,9 +17,9 @@ from PySide6.QtGui import (
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QScrollArea, QStackedLayout, QToolButton, QVBoxLayout, QWidget
 
 from workbench.theme import icon, shades
-from workbench.views.dressing import dress
+from workbench.views.common import dress
 from workbench.views.empty_state import EmptyState
-from workbench.views.page_sheet import PageSheet
+from workbench.views.pages.page_sheet import PageSheet
 
 WIDEST_PX, NARROWEST_PX = 1000, 300
 """A page that fits is never wider or narrower than this."""
@@ -122,11 +122,11 @@ class PageScroll(QWidget):
 
     def changeEvent(self, event: QEvent) -> None:
         super().changeEvent(event)
-        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "_tools"):
+        if event.type() == QEvent.Type.PaletteChange:
             self._dress()
 
     def event(self, event: QEvent) -> bool:
-        if event.type() == QEvent.Type.DevicePixelRatioChange and hasattr(self, "_sharpen"):
+        if event.type() == QEvent.Type.DevicePixelRatioChange:
             self._sharpen.start(SHARPEN_AFTER_MS)
         return super().event(event)
 

@@ -12,8 +12,8 @@ from PySide6.QtGui import QFocusEvent, QKeyEvent, QPaintEvent
 from PySide6.QtWidgets import QWidget
 
 from workbench.theme import shades
-from workbench.views.dressing import draw_focus
-from workbench.views.plot_base import Plot, tinted, written
+from workbench.views.common import draw_focus
+from workbench.views.plots.base import Plot, tinted, written
 
 _HEADROOM = 1.18
 _NUDGE = 0.01

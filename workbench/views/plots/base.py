@@ -10,8 +10,8 @@ from PySide6.QtGui import QColor, QContextMenuEvent, QCursor, QFont, QGuiApplica
 from PySide6.QtWidgets import QMenu, QToolTip, QVBoxLayout, QWidget
 
 from workbench.theme import shades
+from workbench.views.common import copy_picture, save_picture
 from workbench.views.empty_state import EmptyState
-from workbench.views.grabbed import copy_picture, save_picture
 
 _TICK_PIXELS = 11
 
@@ -87,7 +87,7 @@ class Plot(QWidget):
 
     def changeEvent(self, event: QEvent) -> None:
         super().changeEvent(event)
-        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "_labels"):
+        if event.type() == QEvent.Type.PaletteChange:
             self._dress()
             self._redraw()
 

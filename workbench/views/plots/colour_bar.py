@@ -9,8 +9,8 @@ from PySide6.QtGui import QImage, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from workbench.theme import shades
-from workbench.views.plot_base import small_font
-from workbench.views.scene_view_colours import ticks
+from workbench.views.plots.base import small_font
+from workbench.views.scene.colours import ticks
 
 _BAR = 14
 

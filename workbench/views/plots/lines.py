@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QWidget
 
 from workbench.theme import shades
 from workbench.views.colours import FAN, ColourLike, to_colour
-from workbench.views.plot_base import Plot
+from workbench.views.plots.base import Plot
 
 _DASH = Qt.PenStyle.DashLine
 

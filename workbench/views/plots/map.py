@@ -11,10 +11,10 @@ from PySide6.QtCore import QRectF, Qt
 from PySide6.QtWidgets import QGraphicsRectItem, QHBoxLayout, QLabel, QWidget
 
 from workbench.theme import shades
-from workbench.views.colour_bar import ColourBar
 from workbench.views.colours import sigma_table, to_rgba
-from workbench.views.plot_base import Plot, written
-from workbench.views.scene_view_colours import table
+from workbench.views.plots.base import Plot, written
+from workbench.views.plots.colour_bar import ColourBar
+from workbench.views.scene.colours import table
 
 MapName = Literal["viridis", "plasma", "deviation", "sigma"]
 
@@ -26,8 +26,8 @@ class HeatMap(Plot):
         self._values = np.zeros((0, 0))
         self._size, self._limits = (1, 1), (0.0, 1.0)
         self._label, self._unit, self._colour_map = "", "", "viridis"
+        self.bar, self._heading = ColourBar(), QLabel()  # before the rest, which begins by clearing them
         super().__init__(parent, least_height=200)
-        self.bar, self._heading = ColourBar(), QLabel()
         self._heading.setObjectName("muted")
         self._heading.setAlignment(Qt.AlignmentFlag.AlignRight)
         self._column.insertWidget(0, self._heading)
@@ -65,9 +65,8 @@ class HeatMap(Plot):
 
     def clear(self, message: str = "") -> None:
         self._values = np.zeros((0, 0))
-        if hasattr(self, "bar"):
-            self.bar.hide()
-            self._heading.clear()
+        self.bar.hide()
+        self._heading.clear()
         super().clear(message)
 
     def _has_data(self) -> bool:

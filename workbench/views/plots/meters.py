@@ -13,8 +13,8 @@ from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QSizePolicy, QWidget
 
 from workbench.theme import icon, shades
 from workbench.views.colours import Level
-from workbench.views.dressing import dress
-from workbench.views.plot_base import tinted
+from workbench.views.common import dress
+from workbench.views.plots.base import tinted
 
 STAYS_MS = 1000
 """Shortest time a hint stays."""
@@ -169,7 +169,7 @@ class HintBar(QFrame):
 
     def changeEvent(self, event: QEvent) -> None:
         super().changeEvent(event)
-        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "_clock"):
+        if event.type() == QEvent.Type.PaletteChange:
             self._dress()
 
     def hideEvent(self, event: QHideEvent) -> None:

@@ -9,8 +9,8 @@ from PySide6.QtCore import QRectF, QSignalBlocker
 from PySide6.QtWidgets import QComboBox, QGraphicsEllipseItem, QGraphicsRectItem, QHBoxLayout, QLabel, QWidget
 
 from workbench.theme import shades
-from workbench.views.plot_base import Plot, written
-from workbench.views.scene_view_colours import nice_step
+from workbench.views.plots.base import Plot, written
+from workbench.views.scene.colours import nice_step
 
 FACTORS = (5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000)
 _SHARE = 0.05

@@ -12,7 +12,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QWidget
 
 from workbench.theme import shades
-from workbench.views.plot_base import Plot, tinted, written
+from workbench.views.plots.base import Plot, tinted, written
 
 _DASH = Qt.PenStyle.DashLine
 _MOST_BINS = 60

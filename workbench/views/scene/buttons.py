@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 import qtawesome
-from PySide6.QtCore import QCoreApplication, QPointF, QSize, Qt, Signal
+from PySide6.QtCore import QPointF, QSize, Qt, Signal
 from PySide6.QtGui import (
     QAction,
     QColor,
@@ -18,7 +20,12 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QToolBar, QToolButton, QWidget
 
-ICON = 20
+from workbench.language import tr
+
+ViewName = Literal["front", "back", "left", "right", "top", "bottom", "iso", "camera"]
+
+ICON_PX = 20
+"""Side of an icon in logical pixels; the cube below is drawn in these."""
 
 _HEX = [
     QPointF(10, 1.8),
@@ -53,7 +60,7 @@ class SceneButtons(QToolBar):
     def __init__(self, owner: QWidget) -> None:
         super().__init__(owner)
         self.setObjectName("sceneButtons")
-        self.setIconSize(QSize(ICON, ICON))
+        self.setIconSize(QSize(ICON_PX, ICON_PX))
         self.setMovable(False)
         self._owner = owner
         names = {
@@ -115,7 +122,7 @@ class SceneButtons(QToolBar):
         action.setShortcut(QKeySequence(key))
         action.setShortcutContext(Qt.ShortcutContext.WidgetWithChildrenShortcut)
         shown = action.shortcut().toString(QKeySequence.SequenceFormat.NativeText)
-        action.setToolTip(QCoreApplication.translate("SceneButtons", "{what} ({key})").format(what=text, key=shown))
+        action.setToolTip(tr("{what} ({key})", what=text, key=shown))
         self.addAction(action)
         self._owner.addAction(action)  # its keys work anywhere in the view
         self._actions[name] = action
@@ -124,7 +131,7 @@ class SceneButtons(QToolBar):
 
 def _cube_icon(face: str, line: QColor, accent: QColor, ratio: float) -> QIcon:
     """A cube with one face filled."""
-    pixmap = QPixmap(round(ICON * ratio), round(ICON * ratio))
+    pixmap = QPixmap(round(ICON_PX * ratio), round(ICON_PX * ratio))
     pixmap.setDevicePixelRatio(ratio)
     pixmap.fill(Qt.GlobalColor.transparent)
     painter = QPainter(pixmap)

@@ -1,13 +1,16 @@
-"""The part of the 3D view that shows the scene: whatever draws it below, the overlay with labels and tools above."""
+"""The part of the 3D view that shows the scene: its picture, what is written over it, and the tool in hand."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
+import numpy as np
+from numpy.typing import NDArray
 from PySide6.QtCore import QPointF, QRectF, Qt, Signal
 from PySide6.QtGui import (
     QFocusEvent,
     QHideEvent,
+    QImage,
     QKeyEvent,
     QMouseEvent,
     QPainter,
@@ -18,27 +21,50 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QWidget
 
-from workbench.views.scene_view_overlay import Look, paint_sentence, text_plate
-from workbench.views.scene_view_tools import Navigate
+from workbench.views.scene.overlay import OverlayColours, paint_sentence, text_plate
+from workbench.views.scene.tools import Navigate
 
 
-class Overlay(QWidget):
-    """Paints over the scene and takes all mouse and key events."""
+class Canvas(QWidget):
+    """Shows the picture drawn last, stretched to its size until a new one comes, and gives mouse and keys to the tool.
 
+    `paint` paints labels, colour bar and axes over the picture.
+    """
+
+    shown = Signal()
+    hidden = Signal()
+    resized = Signal()
     cancelled = Signal()
+    """Esc was pressed while a tool other than turning the view was in hand."""
 
-    def __init__(self, parent: QWidget, tool: Navigate, paint: Callable[[QPainter], None]) -> None:
+    def __init__(self, tool: Navigate, paint: Callable[[QPainter], None], parent: QWidget) -> None:
         super().__init__(parent)
-        self._tool, self._paint = tool, paint
+        self.tool, self._paint = tool, paint
         self._message: str | None = None
+        self._picture: QImage | None = None
+        self.embedded = False
+        """Whether an OpenGL widget below shows the scene; else the picture given is shown."""
+        self.setMinimumSize(120, 90)
         self.setMouseTracking(True)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setContextMenuPolicy(Qt.ContextMenuPolicy.PreventContextMenu)
 
     @property
-    def tool(self) -> Navigate:
-        """What the mouse does."""
-        return self._tool
+    def logical_size(self) -> tuple[int, int]:
+        """Width and height in logical pixels."""
+        return max(self.width(), 2), max(self.height(), 2)
+
+    @property
+    def device_size(self) -> tuple[int, int]:
+        """Width and height in device pixels."""
+        width, height = self.logical_size
+        ratio = self.devicePixelRatioF()
+        return round(width * ratio), round(height * ratio)
+
+    def show_picture(self, pixels: NDArray[np.uint8]) -> None:
+        """Show a picture of the scene, (h, w, 3)."""
+        self._picture = as_image(pixels)
+        self.update()
 
     def show_message(self, message: str | None) -> None:
         """Show a sentence on an empty ground instead of the scene; None shows the scene."""
@@ -47,42 +73,44 @@ class Overlay(QWidget):
 
     def set_tool(self, tool: Navigate) -> None:
         """Let the mouse do something else."""
-        self._tool = tool
+        self.tool = tool
         self.setCursor(tool.cursor)
         self.update()
 
     def paintEvent(self, event: QPaintEvent) -> None:
         painter = QPainter(self)
-        look = Look.of(self.palette())
+        colours = OverlayColours.of(self.palette())
         if self._message is not None:
-            painter.fillRect(self.rect(), look.ground)
-            paint_sentence(painter, QRectF(self.rect()), self._message, look)
+            painter.fillRect(self.rect(), colours.ground)
+            paint_sentence(painter, QRectF(self.rect()), self._message, colours)
         else:
+            if self._picture is not None and not self.embedded:
+                painter.drawImage(self.rect(), self._picture)
             self._paint(painter)
-            self._tool.paint(painter, look)
-            if self._tool.hint:
-                text_plate(painter, QPointF(self.width() / 2, 18), self._tool.hint, look)
+            self.tool.paint(painter, colours)
+            if self.tool.hint:
+                text_plate(painter, QPointF(self.width() / 2, 18), self.tool.hint, colours)
         if self.hasFocus():
             painter.setBrush(Qt.BrushStyle.NoBrush)
-            painter.setPen(look.accent)
+            painter.setPen(colours.accent)
             painter.drawRect(self.rect().adjusted(0, 0, -1, -1))
         painter.end()
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
         self.setFocus(Qt.FocusReason.MouseFocusReason)
-        self._tool.press(event)
+        self.tool.press(event)
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
-        self._tool.move(event)
+        self.tool.move(event)
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
-        self._tool.release(event)
+        self.tool.release(event)
 
     def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
-        self._tool.double_click(event)
+        self.tool.double_click(event)
 
     def wheelEvent(self, event: QWheelEvent) -> None:
-        self._tool.wheel(event)
+        self.tool.wheel(event)
         event.accept()
 
     def focusInEvent(self, event: QFocusEvent) -> None:
@@ -92,46 +120,12 @@ class Overlay(QWidget):
         self.update()
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
-        if event.key() == Qt.Key.Key_Escape and type(self._tool) is not Navigate:
+        if event.key() == Qt.Key.Key_Escape and type(self.tool) is not Navigate:
             self.cancelled.emit()
-        elif not self._tool.key(event):
+        elif not self.tool.key(event):
             super().keyPressEvent(event)
 
-
-class Canvas(QWidget):
-    """Keeps what draws the scene and the overlay as large as itself."""
-
-    shown = Signal()
-    hidden = Signal()
-    resized = Signal()
-
-    def __init__(self, parent: QWidget) -> None:
-        super().__init__(parent)
-        self.setMinimumSize(120, 90)
-        self._layers: list[QWidget] = []
-
-    def put_below(self, widget: QWidget) -> None:
-        """Add what draws the scene."""
-        self._layers.insert(0, widget)
-        widget.setGeometry(self.rect())
-        widget.lower()
-        widget.show()
-
-    def put_above(self, widget: QWidget) -> None:
-        """Add the overlay."""
-        self._layers.append(widget)
-        widget.setGeometry(self.rect())
-        widget.raise_()
-        widget.show()
-
-    def take(self, widget: QWidget) -> None:
-        """Let go of a layer, if it is one."""
-        if widget in self._layers:
-            self._layers.remove(widget)
-
     def resizeEvent(self, event: QResizeEvent) -> None:
-        for widget in self._layers:
-            widget.setGeometry(self.rect())
         self.resized.emit()
 
     def showEvent(self, event: QShowEvent) -> None:
@@ -139,3 +133,16 @@ class Canvas(QWidget):
 
     def hideEvent(self, event: QHideEvent) -> None:
         self.hidden.emit()
+
+
+def as_image(pixels: NDArray[np.uint8]) -> QImage:
+    """A picture from (h, w, 3)."""
+    height, width = pixels.shape[:2]
+    return QImage(np.ascontiguousarray(pixels).data, width, height, 3 * width, QImage.Format.Format_RGB888).copy()
+
+
+def as_pixels(image: QImage) -> NDArray[np.uint8]:
+    """A copy of a picture as (h, w, 3)."""
+    rgb = image.convertToFormat(QImage.Format.Format_RGB888)
+    rows = np.frombuffer(rgb.constBits(), dtype=np.uint8)[: rgb.bytesPerLine() * rgb.height()]
+    return rows.reshape(rgb.height(), rgb.bytesPerLine())[:, : 3 * rgb.width()].reshape(rgb.height(), -1, 3).copy()

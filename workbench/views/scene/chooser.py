@@ -1,4 +1,4 @@
-"""Choosing points on the screen: the one nearest to a click, all inside a drawn outline. Numpy only."""
+"""Choosing points on the screen: the one that a click means, all inside a drawn outline. Numpy only."""
 
 from __future__ import annotations
 
@@ -7,55 +7,49 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from core.model.arrays import Array
-from workbench.views.scene_view_camera import SceneCamera
+from workbench.views.scene.camera import SceneCamera
 
-REACH = 14.0
-"""A click takes a point no farther away than so many pixels."""
+REACH_PX = 14.0
+"""A click takes a point no farther away: what a hand on a mouse misses a small point by."""
 
-SAME_SPOT = 3.0
-"""Of points as near to the click as the nearest and so many pixels, the one in front is taken."""
+SAME_SPOT_PX = 3.0
+"""Of points that are farther from the click than the nearest by no more than this, the one in front is taken."""
 
 BATCH = 250_000
-"""So many points are looked at in one go: some milliseconds."""
-
-
-class Nearest:
-    """Looks for the point that a click at `at` means: the nearest to it on the screen, unless others there hide it."""
-
-    def __init__(
-        self, camera: SceneCamera, size: tuple[int, int], at: tuple[float, float], reach: float = REACH
-    ) -> None:
-        self._camera, self._size, self._at, self._reach = camera, size, at, reach
-        self._found: list[tuple[NDArray[np.int64], Array, Array]] = []
-
-    def look(self, points: Array, start: int) -> None:
-        """Look at points (N, 3) that are numbered from `start`."""
-        screen, depth = self._camera.project(points, self._size)
-        with np.errstate(invalid="ignore"):
-            dx, dy = screen[:, 0] - self._at[0], screen[:, 1] - self._at[1]
-            near = np.flatnonzero((dx * dx + dy * dy <= self._reach**2) & (depth > 0))
-        self._found.append((near + start, np.hypot(dx[near], dy[near]), depth[near]))
-
-    @property
-    def number(self) -> int | None:
-        """The number of the point; None when there is none within reach."""
-        if not self._found:
-            return None
-        numbers, spot, deep = (np.concatenate(parts) for parts in zip(*self._found, strict=True))
-        if not len(numbers):
-            return None
-        # What stands in front hides what is behind it: a face of a block hides the face below.
-        around = spot <= spot.min() + SAME_SPOT
-        thickness = 4 * SAME_SPOT / self._camera.pixels_per_mm(self._size)
-        front = around & (deep <= deep[around].min() + thickness)
-        return int(numbers[np.flatnonzero(front)[np.argmin(spot[front])]])
+"""Points that are projected together: their arrays stay in the processor's cache."""
 
 
 def nearest_point(points: Array, camera: SceneCamera, size: tuple[int, int], at: tuple[float, float]) -> int | None:
-    """Which of `points` (N, 3) a click at `at` means; None when there is none within reach."""
-    nearest = Nearest(camera, size, at)
-    nearest.look(points, 0)
-    return nearest.number
+    """Which of `points` (N, 3) a click at `at` means: the nearest on the screen, unless others there hide it.
+
+    None when there is none within reach.
+    """
+    numbers, spots, depths = [], [], []
+    for start in range(0, len(points), BATCH):
+        screen, depth = camera.project(points[start : start + BATCH], size)
+        with np.errstate(invalid="ignore"):
+            dx, dy = screen[:, 0] - at[0], screen[:, 1] - at[1]
+            near = np.flatnonzero((dx * dx + dy * dy <= REACH_PX**2) & (depth > 0))
+        numbers.append(near + start)
+        spots.append(np.hypot(dx[near], dy[near]))
+        depths.append(depth[near])
+    if not any(map(len, numbers)):
+        return None
+    number, spot, deep = (np.concatenate(parts) for parts in (numbers, spots, depths))
+    # What stands in front hides what is behind it: a face of a block hides the face below.
+    around = spot <= spot.min() + SAME_SPOT_PX
+    thickness = 4 * SAME_SPOT_PX / camera.pixels_per_mm(size)
+    front = around & (deep <= deep[around].min() + thickness)
+    return int(number[np.flatnonzero(front)[np.argmin(spot[front])]])
+
+
+def points_inside(points: Array, camera: SceneCamera, size: tuple[int, int], outline: Outline) -> NDArray[np.bool_]:
+    """Which of `points` (N, 3) are seen inside an outline: (N,) bool. Points behind the viewer are not."""
+    inside = np.zeros(len(points), dtype=bool)
+    for start in range(0, len(points), BATCH):
+        screen, depth = camera.project(points[start : start + BATCH], size)
+        inside[start : start + BATCH] = outline.contains(screen) & (depth > 0)
+    return inside
 
 
 class Outline:
@@ -77,18 +71,12 @@ class Outline:
         with np.errstate(invalid="ignore"):
             near = np.flatnonzero((spots >= low).all(axis=1) & (spots <= high).all(axis=1))
         column, row = (np.floor(spots[near]).astype(int) - self._low).T
-        told = self._mask[row, column]
+        looked_up = self._mask[row, column]
         inside = np.zeros(len(spots), dtype=bool)
-        inside[near] = told == 1
-        doubtful = near[told == 2]
+        inside[near] = looked_up == 1
+        doubtful = near[looked_up == 2]
         inside[doubtful] = _even_odd(spots[doubtful].astype(np.float64), self._corners)
         return inside
-
-
-def points_inside(points: Array, camera: SceneCamera, size: tuple[int, int], outline: Outline) -> NDArray[np.bool_]:
-    """Which of `points` (N, 3) are seen inside an outline: (N,) bool. Points behind the viewer are not."""
-    screen, depth = camera.project(points, size)
-    return outline.contains(screen) & (depth > 0)
 
 
 def _even_odd(spots: Array, corners: Array) -> NDArray[np.bool_]:

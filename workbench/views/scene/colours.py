@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cache
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -11,6 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 from core.model.arrays import Array
 
 Rgb = tuple[int, int, int]
+ColourMap = Literal["viridis", "plasma", "deviation"]
+"""viridis and plasma run from low to high, deviation is blue below, red above the middle."""
 
 UNKNOWN: Rgb = (140, 140, 140)
 """Colour of NaN."""
@@ -29,12 +32,16 @@ _STOPS = {
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Colouring:
-    """How a cloud or a mesh is coloured: by a number each, by given colours, or all in one."""
+    """How a cloud or a mesh is coloured: by a number each, by given colours, or all in one.
+
+    Name and unit stand over the colour bar; `limits` are the values at its ends, 1 % and 99 % of all values if not
+    given.
+    """
 
     name: str = ""
     unit: str = ""
     limits: tuple[float, float] | None = None
-    colour_map: str = "viridis"
+    colour_map: ColourMap = "viridis"
     colours: NDArray[np.uint8] | None = None
     plain_colour: Rgb = PLAIN
     clipped: tuple[bool, bool] = (False, False)
@@ -85,7 +92,7 @@ class Colouring:
 
 
 @cache
-def table(colour_map: str) -> NDArray[np.uint8]:
+def table(colour_map: ColourMap) -> NDArray[np.uint8]:
     """The map as 256 colours (256, 3)."""
     stops = np.array([list(bytes.fromhex(stop)) for stop in _STOPS[colour_map].split()], dtype=np.float64)
     at = np.linspace(0, len(stops) - 1, 256)

@@ -1,4 +1,4 @@
-"""What is in the scene, as plain arrays: every way of drawing it reads this and nothing else."""
+"""What a 3D view shows, as plain arrays: cloud, mesh, marks, planes, lines, labels and measures."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from core.model.arrays import Array
-from workbench.views.scene_view_cloud import SceneCloud, finite_rows
-from workbench.views.scene_view_colours import Colouring, Rgb
+from workbench.views.scene.cloud import SceneCloud, as_points, finite_rows
+from workbench.views.scene.colours import Colouring, Rgb
 
 GRID = "#grid"
 """Name of the lines of the grid, which is seen whole."""
@@ -105,7 +105,7 @@ class Scene:
     @property
     def visible_cloud(self) -> SceneCloud | None:
         """The cloud, if it is shown and has points."""
-        return self.cloud if self.cloud is not None and self.cloud_shown and self.cloud.drawn else None
+        return self.cloud if self.cloud is not None and self.cloud_shown and self.cloud.drawable else None
 
     @property
     def visible_mesh(self) -> SurfaceMesh | None:
@@ -129,10 +129,6 @@ class Scene:
         for key in [key for key in self.items if key[1] == name and kind in (None, key[0])]:
             del self.items[key]
 
-    def of_kind(self, kind: type) -> list[Item]:
-        """All items of one kind."""
-        return [item for key, item in self.items.items() if key[0] is kind]
-
     def clear(self) -> None:
         """Take everything away; what comes next is shown."""
         self.cloud = self.mesh = None
@@ -143,6 +139,11 @@ class Scene:
     def empty(self) -> bool:
         """Whether there is nothing to see."""
         return self.visible_cloud is None and self.visible_mesh is None and not self.items
+
+    @property
+    def has_edges(self) -> bool:
+        """Whether there are lines or a mesh, whose edges are smoothed."""
+        return self.visible_mesh is not None or any(isinstance(item, Lines) for item in self.items.values())
 
     def to_fit(self) -> Array:
         """Points (N, 3) that a fitted view shows: cloud and mesh with their marks, or else everything."""
@@ -183,22 +184,6 @@ def _points(item: Item) -> Iterator[Array]:
             yield item.places
         case Measure():
             yield item.ends
-
-
-def as_points(points: ArrayLike, what: str = "points") -> Array:
-    """(N, 3) float64.
-
-    Raises
-    ------
-    ValueError
-        If the shape does not match; the message names `what`.
-    """
-    array = np.asarray(points, dtype=np.float64)
-    if array.size == 0:
-        return np.empty((0, 3))
-    if array.ndim != 2 or array.shape[1] != 3:
-        raise ValueError(f"{what} have shape {array.shape}, not n × 3")
-    return array
 
 
 def as_mesh(points: ArrayLike, triangles: ArrayLike, values: ArrayLike | None, colouring: Colouring) -> SurfaceMesh:

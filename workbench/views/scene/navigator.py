@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike
 from PySide6.QtCore import QObject, QPointF, Signal
 
 from core.model.arrays import Array
-from workbench.views.scene_view_camera import CAMERA_FRAME, VIEW_ANGLE, Orientation, SceneCamera, from_origin
-from workbench.views.scene_view_contents import Scene
+from workbench.views.scene.camera import CAMERA_FRAME, VIEW_ANGLE, Orientation, SceneCamera, from_origin
+from workbench.views.scene.contents import Scene
 
 GROWN = 1.15
 """A scene that has grown by this factor is fitted again, as long as nobody has turned the view."""
@@ -30,8 +30,6 @@ class Navigator(QObject):
     ----------
     size, margin
         Give the size of the view in logical pixels, and what to leave free at the right and at the lower edge.
-    pyramid
-        Gives the corners (5, 3) of the measuring camera's pyramid, if it is known.
     """
 
     moved = Signal()
@@ -41,11 +39,12 @@ class Navigator(QObject):
         scene: Scene,
         size: Callable[[], tuple[int, int]],
         margin: Callable[[], tuple[int, int]],
-        pyramid: Callable[[], Array | None],
         parent: QObject,
     ) -> None:
         super().__init__(parent)
-        self._scene, self._size, self._margin, self._pyramid = scene, size, margin, pyramid
+        self._scene, self._size, self._margin = scene, size, margin
+        self.pyramid: Array | None = None
+        """Corners (5, 3) of the measuring camera's pyramid, if it is known."""
         self.orientation = CAMERA_FRAME
         self._name = "iso"
         self._touched = False
@@ -57,7 +56,7 @@ class Navigator(QObject):
         self._name, self._touched = name, False
         points = self._scene.to_fit()
         if name == "camera":
-            seen = from_origin(points, self._size(), self._pyramid())
+            seen = from_origin(points, self._size(), self.pyramid)
         else:
             back, up = self.orientation.direction(name)
             seen = SceneCamera.looking(back, up, self.camera.focal, self.camera.distance)
@@ -106,7 +105,7 @@ class Navigator(QObject):
 
     def forget(self) -> None:
         """The scene is empty: what comes next is fitted, seen from a corner."""
-        self._extent, self._touched, self._name = 0.0, False, "iso"
+        self._extent, self._touched, self._name, self.pyramid = 0.0, False, "iso", None
 
     def set_orientation(self, up: ArrayLike, north: ArrayLike) -> None:
         """Another up and north; a standard view is taken again."""

@@ -9,16 +9,18 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from PySide6.QtCore import QCoreApplication, QPointF, QRectF, Qt
+from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFont, QFontMetricsF, QLinearGradient, QPainter, QPalette, QPen, QPolygonF
 
 from core.model.arrays import Array
-from workbench.views.scene_view_camera import SceneCamera
-from workbench.views.scene_view_colours import Colouring, Rgb, nice_step, table, ticks
-from workbench.views.scene_view_contents import Labels, Measure, Scene
+from workbench.language import number, tr
+from workbench.views.scene.camera import SceneCamera
+from workbench.views.scene.colours import Colouring, Rgb, nice_step, table, ticks
+from workbench.views.scene.contents import Labels, Measure, Scene
 
-MARGIN = 14.0
-BAR_WIDTH = 14.0
+MARGIN, BAR_WIDTH = 14.0, 14.0
+"""Round the overlay, and of the colour bar; in logical pixels."""
+
 AXES: tuple[tuple[str, Rgb, Rgb], ...] = (
     ("X", (200, 45, 45), (255, 110, 105)),
     ("Y", (30, 130, 60), (95, 205, 115)),
@@ -28,7 +30,7 @@ AXES: tuple[tuple[str, Rgb, Rgb], ...] = (
 
 
 @dataclass(frozen=True, slots=True)
-class Look:
+class OverlayColours:
     """The theme's colours as the overlay uses them."""
 
     ground: QColor
@@ -36,7 +38,7 @@ class Look:
     accent: QColor
 
     @classmethod
-    def of(cls, palette: QPalette) -> Look:
+    def of(cls, palette: QPalette) -> OverlayColours:
         """From a widget's palette."""
         role = QPalette.ColorRole
         return cls(palette.color(role.Window), palette.color(role.WindowText), palette.color(role.Highlight))
@@ -59,7 +61,7 @@ def paint_overlay(
     scene: Scene,
     camera: SceneCamera,
     size: tuple[int, int],
-    look: Look,
+    colours: OverlayColours,
     *,
     axes: bool,
     grid_mm: float,
@@ -68,14 +70,14 @@ def paint_overlay(
     painter.setRenderHint(QPainter.RenderHint.Antialiasing)
     for item in scene.items.values():
         if isinstance(item, Labels):
-            _paint_labels(painter, item, camera, size, look)
+            _paint_labels(painter, item, camera, size, colours)
         elif isinstance(item, Measure):
-            _paint_measure(painter, item, camera, size, look)
+            _paint_measure(painter, item, camera, size, colours)
     if axes:
-        _paint_triad(painter, camera, size, look)
-        _paint_scale(painter, camera, size, look, grid_mm)
+        _paint_triad(painter, camera, size, colours)
+        _paint_scale(painter, camera, size, colours, grid_mm)
     if scene.colouring is not None:
-        _paint_bar(painter, scene.colouring, size, look)
+        _paint_bar(painter, scene.colouring, size, colours)
 
 
 def bar_width(colouring: Colouring | None, font: QFont) -> int:
@@ -88,16 +90,18 @@ def bar_width(colouring: Colouring | None, font: QFont) -> int:
     return round(max(BAR_WIDTH + 8 + numbers, *(metrics.horizontalAdvance(line) for line in lines)) + 2 * MARGIN)
 
 
-def text_plate(painter: QPainter, at: QPointF, text: str, look: Look, colour: QColor | None = None) -> QRectF:
+def text_plate(
+    painter: QPainter, at: QPointF, text: str, colours: OverlayColours, colour: QColor | None = None
+) -> QRectF:
     """A text on a plate, its middle at `at`; the plate's rectangle."""
     painter.setFont(_small(painter.font()))
     box = painter.fontMetrics().boundingRect(0, 0, 1000, 1000, int(Qt.AlignmentFlag.AlignLeft), text)
     plate = QRectF(0, 0, box.width() + 10, box.height() + 4)
     plate.moveCenter(at)
     painter.setPen(Qt.PenStyle.NoPen)
-    painter.setBrush(look.plate)
+    painter.setBrush(colours.plate)
     painter.drawRoundedRect(plate, 4, 4)
-    painter.setPen(colour or look.text)
+    painter.setPen(colour or colours.text)
     painter.drawText(plate, int(Qt.AlignmentFlag.AlignCenter), text)
     return plate
 
@@ -108,19 +112,23 @@ def _small(font: QFont) -> QFont:
     return small
 
 
-def _paint_labels(painter: QPainter, labels: Labels, camera: SceneCamera, size: tuple[int, int], look: Look) -> None:
+def _paint_labels(
+    painter: QPainter, labels: Labels, camera: SceneCamera, size: tuple[int, int], colours: OverlayColours
+) -> None:
     screen, depth = camera.project(labels.places, size)
     colour = QColor(*labels.colour) if labels.colour is not None else None
     for k in np.argsort(-depth):
         if depth[k] > 0 and np.isfinite(screen[k]).all():
             at = QPointF(float(screen[k, 0]), float(screen[k, 1]))
-            text_plate(painter, at - QPointF(0, 14), labels.texts[k], look, colour)
+            text_plate(painter, at - QPointF(0, 14), labels.texts[k], colours, colour)
             painter.setPen(Qt.PenStyle.NoPen)
-            painter.setBrush(colour or look.text)
+            painter.setBrush(colour or colours.text)
             painter.drawEllipse(at, 2.2, 2.2)
 
 
-def _paint_measure(painter: QPainter, measure: Measure, camera: SceneCamera, size: tuple[int, int], look: Look) -> None:
+def _paint_measure(
+    painter: QPainter, measure: Measure, camera: SceneCamera, size: tuple[int, int], colours: OverlayColours
+) -> None:
     """A line with a cross stroke at each end, rimmed so that it shows on any cloud."""
     screen, depth = camera.project(measure.ends, size)
     if not (depth > 0).all():
@@ -129,22 +137,22 @@ def _paint_measure(painter: QPainter, measure: Measure, camera: SceneCamera, siz
     along = screen[1] - screen[0]
     length = float(np.hypot(*along)) or 1.0
     across = QPointF(-along[1] / length * 6, along[0] / length * 6)
-    for pen in (QPen(look.ground, 5), QPen(look.text, 2.0)):
+    for pen in (QPen(colours.ground, 5), QPen(colours.text, 2.0)):
         painter.setPen(pen)
         painter.drawLine(a, b)
         painter.drawLine(a - across, a + across)
         painter.drawLine(b - across, b + across)
-    text_plate(painter, (a + b) / 2, measure.text, look)
+    text_plate(painter, (a + b) / 2, measure.text, colours)
 
 
-def _paint_triad(painter: QPainter, camera: SceneCamera, size: tuple[int, int], look: Look) -> None:
+def _paint_triad(painter: QPainter, camera: SceneCamera, size: tuple[int, int], colours: OverlayColours) -> None:
     """Directions of the axes, those that point away first."""
     centre, length = QPointF(MARGIN + 30, size[1] - MARGIN - 30), 24.0
     painter.setFont(_small(painter.font()))
     right, up, back = camera.axes
     for k in np.argsort(back):
         name, on_light, on_dark = AXES[k]
-        colour = QColor(*(on_dark if look.dark else on_light))
+        colour = QColor(*(on_dark if colours.dark else on_light))
         if back[k] < -0.05:
             colour.setAlpha(150)
         direction = QPointF(float(right[k]), -float(up[k]))
@@ -156,7 +164,9 @@ def _paint_triad(painter: QPainter, camera: SceneCamera, size: tuple[int, int], 
         painter.drawText(place, int(Qt.AlignmentFlag.AlignCenter), name)
 
 
-def _paint_scale(painter: QPainter, camera: SceneCamera, size: tuple[int, int], look: Look, grid_mm: float) -> None:
+def _paint_scale(
+    painter: QPainter, camera: SceneCamera, size: tuple[int, int], colours: OverlayColours, grid_mm: float
+) -> None:
     """A bar of a round number of mm, at the depth the view turns about."""
     scale = camera.pixels_per_mm(size)
     if not np.isfinite(scale) or scale <= 0:
@@ -166,16 +176,18 @@ def _paint_scale(painter: QPainter, camera: SceneCamera, size: tuple[int, int], 
     left, y = MARGIN + 84.0, size[1] - MARGIN - 10.0
     if left + length > size[0] - MARGIN:
         return
-    for pen in (QPen(look.ground, 5), QPen(look.text, 1.6)):
+    for pen in (QPen(colours.ground, 5), QPen(colours.text, 1.6)):
         painter.setPen(pen)
         painter.drawPolyline(
             [QPointF(left, y - 5), QPointF(left, y), QPointF(left + length, y), QPointF(left + length, y - 5)]
         )
-    number = f"{length_mm:g} mm"
-    text_plate(painter, QPointF(left + length / 2, y - 14), number if camera.parallel else f"≈ {number}", look)
+    length_text = f"{number(length_mm, 'g')} mm"
+    text_plate(
+        painter, QPointF(left + length / 2, y - 14), length_text if camera.parallel else f"≈ {length_text}", colours
+    )
     if grid_mm:
-        grid = QCoreApplication.translate("SceneView", "grid {step} mm").format(step=f"{grid_mm:g}")
-        text_plate(painter, QPointF(left + length + 60, y - 5), grid, look)
+        grid = tr("grid {step:g} mm", step=grid_mm)
+        text_plate(painter, QPointF(left + length + 60, y - 5), grid, colours)
 
 
 def _ticks(colouring: Colouring, height: float) -> tuple[list[float], list[str]]:
@@ -194,7 +206,7 @@ def _wrapped(title: str, metrics: QFontMetricsF, width: float = 92.0) -> list[st
     return lines or [""]
 
 
-def _paint_bar(painter: QPainter, colouring: Colouring, size: tuple[int, int], look: Look) -> None:
+def _paint_bar(painter: QPainter, colouring: Colouring, size: tuple[int, int], colours: OverlayColours) -> None:
     """The colour bar at the right edge, half as high as the view; points of arrows say that values lie beyond."""
     assert colouring.limits is not None
     font = _small(painter.font())
@@ -207,18 +219,18 @@ def _paint_bar(painter: QPainter, colouring: Colouring, size: tuple[int, int], l
     left, top = size[0] - width + MARGIN, (size[1] - height) / 2
     low, high = colouring.limits
     painter.setFont(font)
-    painter.setPen(look.text)
+    painter.setPen(colours.text)
     for k, line in enumerate(reversed(lines)):
         painter.drawText(QPointF(left, top - 16 - k * metrics.height()), line)
     bar = QRectF(left, top, BAR_WIDTH, height)
     gradient = QLinearGradient(bar.bottomLeft(), bar.topLeft())
-    colours = table(colouring.colour_map)
+    shades = table(colouring.colour_map)
     for k in range(0, 256, 15):
-        gradient.setColorAt(k / 255, QColor(*(int(c) for c in colours[k])))
+        gradient.setColorAt(k / 255, QColor(*(int(c) for c in shades[k])))
     painter.setPen(Qt.PenStyle.NoPen)
     for beyond, y, sign, colour in (
-        (colouring.clipped[1], bar.top(), -1, colours[-1]),
-        (colouring.clipped[0], bar.bottom(), 1, colours[0]),
+        (colouring.clipped[1], bar.top(), -1, shades[-1]),
+        (colouring.clipped[0], bar.bottom(), 1, shades[0]),
     ):
         if beyond:
             painter.setBrush(QColor(*(int(c) for c in colour)))
@@ -229,42 +241,42 @@ def _paint_bar(painter: QPainter, colouring: Colouring, size: tuple[int, int], l
     values, texts = _ticks(colouring, height)
     for value, text in zip(values, texts, strict=True):
         y = bar.bottom() - (value - low) / (high - low) * height
-        painter.setPen(QPen(look.text, 1))
+        painter.setPen(QPen(colours.text, 1))
         painter.drawLine(QPointF(bar.right(), y), QPointF(bar.right() + 4, y))
         painter.drawText(QPointF(bar.right() + 8, y + metrics.ascent() / 2 - 1), text)
 
 
-def paint_outline(painter: QPainter, corners: Sequence[QPointF], look: Look, *, closed: bool) -> None:
+def paint_outline(painter: QPainter, corners: Sequence[QPointF], colours: OverlayColours, *, closed: bool) -> None:
     """The region that is being drawn."""
     painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-    inside = QColor(look.accent)
+    inside = QColor(colours.accent)
     inside.setAlpha(45)
     painter.setPen(Qt.PenStyle.NoPen)
     painter.setBrush(inside)
     painter.drawPolygon(QPolygonF(list(corners)))
     painter.setBrush(Qt.BrushStyle.NoBrush)
     draw: Callable[[QPolygonF], None] = painter.drawPolygon if closed else painter.drawPolyline
-    for pen in (QPen(look.ground, 4), QPen(look.accent, 2)):
+    for pen in (QPen(colours.ground, 4), QPen(colours.accent, 2)):
         painter.setPen(pen)
         draw(QPolygonF(list(corners)))
 
 
-def paint_marker(painter: QPainter, at: QPointF, text: str, look: Look) -> None:
+def paint_marker(painter: QPainter, at: QPointF, text: str, colours: OverlayColours) -> None:
     """A ring round a chosen point, with its coordinates."""
     painter.setRenderHint(QPainter.RenderHint.Antialiasing)
     painter.setBrush(Qt.BrushStyle.NoBrush)
-    for pen in (QPen(look.ground, 6), QPen(look.text, 2.4)):
+    for pen in (QPen(colours.ground, 6), QPen(colours.text, 2.4)):
         painter.setPen(pen)
         painter.drawEllipse(at, 8, 8)
-    painter.setPen(QPen(look.ground, 1))
-    painter.setBrush(look.accent)
+    painter.setPen(QPen(colours.ground, 1))
+    painter.setBrush(colours.accent)
     painter.drawEllipse(at, 3, 3)
-    text_plate(painter, at - QPointF(0, 24), text, look)
+    text_plate(painter, at - QPointF(0, 24), text, colours)
 
 
-def paint_sentence(painter: QPainter, area: QRectF, text: str, look: Look) -> None:
+def paint_sentence(painter: QPainter, area: QRectF, text: str, colours: OverlayColours) -> None:
     """A sentence in the middle of an empty view."""
-    colour = QColor(look.text)
+    colour = QColor(colours.text)
     colour.setAlpha(170)
     painter.setPen(colour)
     flags = int(Qt.AlignmentFlag.AlignCenter) | int(Qt.TextFlag.TextWordWrap)
@@ -273,5 +285,5 @@ def paint_sentence(painter: QPainter, area: QRectF, text: str, look: Look) -> No
 
 def place_text(point: Array) -> str:
     """Coordinates as they are read out."""
-    x, y, z = (f"{c:.3f}".replace("-", "−") for c in point)
+    x, y, z = (number(c, ".3f") for c in point)
     return f"{x}   {y}   {z} mm"

@@ -1,4 +1,4 @@
-"""Shapes for drawing a rig in 3D: the camera's pyramid and patches of light planes. Corners only, no results."""
+"""Shapes for drawing a rig in 3D: the grid, the camera's pyramid, patches of light planes, outlines of targets."""
 
 from __future__ import annotations
 
@@ -6,6 +6,13 @@ import numpy as np
 
 from core.model import Camera, LightPlane, Pose
 from core.model.arrays import Array
+from workbench.views.scene.camera import Orientation
+from workbench.views.scene.colours import Rgb, nice_step
+from workbench.views.scene.contents import Labels, Lines
+
+GREY: Rgb = (128, 134, 142)
+PYRAMID: Rgb = (74, 134, 220)
+"""Of the grid and of the camera: seen on the light and on the dark ground."""
 
 
 def frustum(camera: Camera, depth_mm: float) -> Array:
@@ -50,3 +57,29 @@ def target_outline(pose: Pose, points: Array) -> Array:
     corners = np.array([[left, top], [right, top], [right, bottom], [left, bottom], [left, top]])
     outline: Array = np.column_stack([corners, np.zeros(5)]) @ pose.rotation.T + pose.translation
     return outline
+
+
+def ground_grid(points: Array, orientation: Orientation) -> tuple[Lines, float]:
+    """Lines under `points` (N, 3) along east and north, and the distance between them in mm."""
+    axes = np.array([orientation.east, orientation.north, orientation.up])
+    local = points @ axes.T
+    low, high = local.min(axis=0), local.max(axis=0)
+    step = nice_step(max(float((high - low)[:2].max()), 1e-6) / 12)
+    floor = low[2] - 0.02 * max(float((high - low).max()), step)
+    first, last = np.floor(low[:2] / step), np.ceil(high[:2] / step)
+    lines = []
+    for axis in (0, 1):
+        for k in np.arange(first[axis], last[axis] + 1):
+            ends = np.empty((2, 3))
+            ends[:, axis] = k * step
+            ends[:, 1 - axis] = first[1 - axis] * step, last[1 - axis] * step
+            ends[:, 2] = floor
+            lines.append(ends @ axes)
+    return Lines(tuple(lines), (GREY,) * len(lines), 1.0), step
+
+
+def camera_pyramid(corners: Array, name: str) -> tuple[Lines, Labels]:
+    """Edges of a pyramid from its centre and four corners (5, 3), and its name at the centre."""
+    edges = [np.array([corners[0], corner]) for corner in corners[1:]]
+    lines = Lines((*edges, corners[[1, 2, 3, 4, 1]]), (PYRAMID,) * 5, 1.6)
+    return lines, Labels(corners[:1], (name,), None)

@@ -1,16 +1,17 @@
 """What the mouse and the keys do in the 3D view: turn and move it, pick a point, draw a region.
 
-A tool gets the events of the overlay and tells the view through `Hands`; it paints what it is about to do.
+A tool gets the events of the overlay and tells the view through `ViewControl`; it paints what it is about to do.
 """
 
 from __future__ import annotations
 
 from typing import Protocol
 
-from PySide6.QtCore import QCoreApplication, QPointF, Qt
+from PySide6.QtCore import QPointF, Qt
 from PySide6.QtGui import QKeyEvent, QMouseEvent, QPainter, QWheelEvent
 
-from workbench.views.scene_view_overlay import Look, paint_outline
+from workbench.language import tr
+from workbench.views.scene.overlay import OverlayColours, paint_outline
 
 CLICK = 4.0
 """A press that moves less than so many pixels is a click."""
@@ -19,9 +20,10 @@ CLOSE_TO = 10.0
 """A click so near to the first corner closes a polygon."""
 
 ARROWS = {Qt.Key.Key_Left: (-30, 0), Qt.Key.Key_Right: (30, 0), Qt.Key.Key_Up: (0, -30), Qt.Key.Key_Down: (0, 30)}
+"""A press turns or moves as a drag of so many pixels."""
 
 
-class Hands(Protocol):
+class ViewControl(Protocol):
     """What a tool can do to the view."""
 
     def orbit(self, dx: float, dy: float) -> None:
@@ -52,8 +54,8 @@ class Navigate:
     cursor = Qt.CursorShape.ArrowCursor
     hint = ""
 
-    def __init__(self, hands: Hands) -> None:
-        self.hands = hands
+    def __init__(self, view: ViewControl) -> None:
+        self.view = view
         self._last: QPointF | None = None
         self._start = QPointF()
         self._button = Qt.MouseButton.NoButton
@@ -75,11 +77,11 @@ class Navigate:
         step, self._last = at - self._last, at
         shift = bool(event.modifiers() & Qt.KeyboardModifier.ShiftModifier)
         if self._button == Qt.MouseButton.RightButton or (self._button == Qt.MouseButton.LeftButton and shift):
-            self.hands.pan(step.x(), step.y())
+            self.view.pan(step.x(), step.y())
         elif self._button == Qt.MouseButton.LeftButton:
-            self.hands.orbit(step.x(), step.y())
+            self.view.orbit(step.x(), step.y())
         else:
-            self.hands.zoom(1.01 ** -step.y(), self._start)
+            self.view.zoom(1.01 ** -step.y(), self._start)
 
     def release(self, event: QMouseEvent) -> None:
         """A button comes up."""
@@ -93,27 +95,27 @@ class Navigate:
 
     def double_click(self, event: QMouseEvent) -> None:
         """Turn about what is there."""
-        self.hands.centre_on(event.position())
+        self.view.centre_on(event.position())
 
     def wheel(self, event: QWheelEvent) -> None:
         """Nearer or farther, towards the cursor."""
-        self.hands.zoom(1.0015 ** event.angleDelta().y(), event.position())
+        self.view.zoom(1.0015 ** event.angleDelta().y(), event.position())
 
     def key(self, event: QKeyEvent) -> bool:
         """Whether a key was used."""
         if event.key() in ARROWS:
             dx, dy = ARROWS[Qt.Key(event.key())]
             if event.modifiers() & Qt.KeyboardModifier.ShiftModifier:
-                self.hands.pan(dx, dy)
+                self.view.pan(dx, dy)
             else:
-                self.hands.orbit(dx, dy)
+                self.view.orbit(dx, dy)
             return True
         if event.key() in (Qt.Key.Key_Plus, Qt.Key.Key_Equal, Qt.Key.Key_Minus):
-            self.hands.zoom(0.8 if event.key() == Qt.Key.Key_Minus else 1.25)
+            self.view.zoom(0.8 if event.key() == Qt.Key.Key_Minus else 1.25)
             return True
         return False
 
-    def paint(self, painter: QPainter, look: Look) -> None:
+    def paint(self, painter: QPainter, colours: OverlayColours) -> None:
         """Paint what the tool is about to do."""
 
 
@@ -122,14 +124,12 @@ class Pick(Navigate):
 
     cursor = Qt.CursorShape.CrossCursor
 
-    def __init__(self, hands: Hands) -> None:
-        super().__init__(hands)
-        self.hint = QCoreApplication.translate(
-            "SceneView", "Click a point of the cloud. Drag to turn the view, Esc ends."
-        )
+    def __init__(self, view: ViewControl) -> None:
+        super().__init__(view)
+        self.hint = tr("Click a point of the cloud. Drag to turn the view, Esc ends.")
 
     def click(self, at: QPointF) -> None:
-        self.hands.pick(at)
+        self.view.pick(at)
 
     def double_click(self, event: QMouseEvent) -> None:
         """Two clicks on one point are one choice."""
@@ -140,11 +140,10 @@ class Polygon(Navigate):
 
     cursor = Qt.CursorShape.CrossCursor
 
-    def __init__(self, hands: Hands) -> None:
-        super().__init__(hands)
-        self.hint = QCoreApplication.translate(
-            "SceneView",
-            "Click the corners of the region. Double click closes it, Backspace takes one back, Esc cancels.",
+    def __init__(self, view: ViewControl) -> None:
+        super().__init__(view)
+        self.hint = tr(
+            "Click the corners of the region. Double click closes it, Backspace takes one back, Esc cancels."
         )
         self._corners: list[QPointF] = []
         self._cursor = QPointF()
@@ -161,13 +160,13 @@ class Polygon(Navigate):
             return
         self._corners.append(at)
         self._cursor = at
-        self.hands.repaint_tool()
+        self.view.repaint_tool()
 
     def move(self, event: QMouseEvent) -> None:
         super().move(event)
         self._cursor = event.position()
         if self._corners:
-            self.hands.repaint_tool()
+            self.view.repaint_tool()
 
     def release(self, event: QMouseEvent) -> None:
         self._last = None
@@ -186,33 +185,31 @@ class Polygon(Navigate):
             return True
         if event.key() == Qt.Key.Key_Backspace:
             self._corners = self._corners[:-1]
-            self.hands.repaint_tool()
+            self.view.repaint_tool()
             return True
         return super().key(event) if not self._corners else False
 
-    def paint(self, painter: QPainter, look: Look) -> None:
+    def paint(self, painter: QPainter, colours: OverlayColours) -> None:
         if self._corners:
-            paint_outline(painter, [*self._corners, self._cursor], look, closed=False)
-            painter.setBrush(look.accent)
+            paint_outline(painter, [*self._corners, self._cursor], colours, closed=False)
+            painter.setBrush(colours.accent)
             for corner in self._corners:
                 painter.drawEllipse(corner, 3.5, 3.5)
 
     def _finish(self) -> None:
         corners, self._corners = self._corners, []
         if len(corners) >= 3:
-            self.hands.choose_region(corners)
+            self.view.choose_region(corners)
         else:
-            self.hands.repaint_tool()
+            self.view.repaint_tool()
 
 
 class Lasso(Polygon):
     """The outline follows the mouse while the button is down."""
 
-    def __init__(self, hands: Hands) -> None:
-        super().__init__(hands)
-        self.hint = QCoreApplication.translate(
-            "SceneView", "Draw round the region with the mouse button held down. Esc cancels."
-        )
+    def __init__(self, view: ViewControl) -> None:
+        super().__init__(view)
+        self.hint = tr("Draw round the region with the mouse button held down. Esc cancels.")
 
     def press(self, event: QMouseEvent) -> None:
         if event.button() == Qt.MouseButton.LeftButton:
@@ -226,7 +223,7 @@ class Lasso(Polygon):
         elif (event.position() - self._corners[-1]).manhattanLength() >= 2:
             self._corners.append(event.position())
             self._cursor = event.position()
-            self.hands.repaint_tool()
+            self.view.repaint_tool()
 
     def release(self, event: QMouseEvent) -> None:
         self._last = None
@@ -236,6 +233,6 @@ class Lasso(Polygon):
     def double_click(self, event: QMouseEvent) -> None:
         """Nothing: a lasso is closed by letting go."""
 
-    def paint(self, painter: QPainter, look: Look) -> None:
+    def paint(self, painter: QPainter, colours: OverlayColours) -> None:
         if self._corners:
-            paint_outline(painter, self._corners, look, closed=True)
+            paint_outline(painter, self._corners, colours, closed=True)

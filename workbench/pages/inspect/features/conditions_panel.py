@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from PySide6.QtCore import QEvent, QTimer
+from PySide6.QtCore import QTimer
 from PySide6.QtGui import QShowEvent
 from PySide6.QtWidgets import QLabel, QPushButton, QVBoxLayout, QWidget
 
-from core.inspect.inspection_plan import InspectionPlan
-from workbench.pages import inspect_condition_values as fields
-from workbench.pages.inspect_presenter import InspectPresenter
+from core.inspect.plan.inspection_plan import InspectionPlan
+from workbench.pages.inspect.features import conditions as fields
+from workbench.pages.inspect.features.conditions import InspectConditions
 from workbench.pages.step_page import muted
 from workbench.theme import icon, shades
 from workbench.views import ask
-from workbench.views.dressing import dress
-from workbench.views.forms import SettingsForm
+from workbench.views.common import dress
+from workbench.views.forms.form import SettingsForm
 
 LONGEST = 5000.0
 
@@ -23,9 +23,9 @@ LONGEST = 5000.0
 class ConditionsPanel(QWidget):
     """The form is made anew where other features can be chosen, or a group is switched on or off."""
 
-    def __init__(self, presenter: InspectPresenter, parent: QWidget | None = None) -> None:
+    def __init__(self, conditions: InspectConditions, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self._presenter, self._conditions = presenter, presenter.features.conditions
+        self._conditions = conditions
         self._made: object = None
         self._inside = QWidget()
         self.forms: dict[str, SettingsForm] = {}
@@ -57,6 +57,7 @@ class ConditionsPanel(QWidget):
 
     def _show(self) -> None:
         conditions = self._conditions
+        self._dress()
         values = conditions.values()
         for form in self.forms.values():
             form.set_values(values)
@@ -67,11 +68,6 @@ class ConditionsPanel(QWidget):
     def showEvent(self, event: QShowEvent) -> None:
         super().showEvent(event)
         self.refresh()
-
-    def changeEvent(self, event: QEvent) -> None:
-        super().changeEvent(event)
-        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "_column"):
-            self._dress()
 
     # ---- making it
 
@@ -174,9 +170,7 @@ class ConditionsPanel(QWidget):
             form.add_section(self.tr("There is no feature with a length yet: add one first."))
 
     def _take(self) -> None:
-        folder = ask.choose_folder(
-            self, self.tr("Project or results of the master"), self._presenter.bench.settings.projects_folder
-        )
+        folder = ask.choose_folder(self, self.tr("Project or results of the master"), self._conditions.projects_folder)
         if folder is not None:
             self._conditions.take_master(folder)
 

@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
-from PySide6.QtCore import QObject
 
-from core.files.project import stored_source
-from core.inspect.feature_spec import FeatureSpec, Kind, Polygon
-from core.inspect.stretches import usual_stretches
-from workbench.pages import inspect_feature_values as fields
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from workbench.pages.inspect_features import InspectFeatures
+from core.files.project.folder import stored_source
+from core.inspect.plan.feature_spec import FeatureSpec, Polygon
+from core.inspect.plan.kinds import kind_of
+from core.inspect.profile import usual_stretches
+from workbench.language import text_of, tr
+from workbench.pages.inspect import feature_values as fields
+from workbench.pages.inspect.features.plan import InspectFeatures
+from workbench.pages.inspect.scan import InspectScan
 
 LINE = "line of the section"
 REGION = "region of the feature"
@@ -26,15 +25,14 @@ NO_PICTURE = (1280, 960)
 """The picture's size in pixels where none is known yet."""
 
 
-class InspectFeatureEdit(QObject):
+class InspectFeatureEdit:
     """What stands in the form.
 
     Limits whose other half is missing, and values that cannot be, are kept here until they can be put into the plan.
     """
 
-    def __init__(self, owner: InspectFeatures) -> None:
-        super().__init__(owner)
-        self._owner = owner
+    def __init__(self, features: InspectFeatures, scan: InspectScan) -> None:
+        self._features, self._model, self._scan = features, features.model, scan
         self._of = ""
         self._pending: dict[str, Any] = {}
         self._complaints: dict[str, str] = {}
@@ -42,7 +40,7 @@ class InspectFeatureEdit(QObject):
     @property
     def spec(self) -> FeatureSpec | None:
         """The chosen feature; None if none is."""
-        plan, chosen = self._owner.plan, self._owner.chosen
+        plan, chosen = self._features.plan, self._features.chosen
         return plan.feature(chosen) if chosen in plan.names else None
 
     def values(self) -> dict[str, Any]:
@@ -55,16 +53,16 @@ class InspectFeatureEdit(QObject):
         self._follow()
         return self._complaints.get(key, "")
 
-    def add(self, kind: Kind, nominal: Path | None = None) -> None:
+    def add(self, kind: str, nominal: Path | None = None) -> None:
         """Add a feature of a kind and choose it; undoable. A deviation needs its `nominal` surface."""
-        owner = self._owner
-        why_not, folder, view = fields.why_not(kind, owner.plan), owner.owner.model.folder, owner.owner.view
+        features, view = self._features, self._scan.view
+        why_not, folder = fields.why_not(kind, features.plan), self._model.folder
         if why_not or folder is None:
-            owner.owner.bench.notices.warning(why_not or self.tr("Open a project first."))
+            features.bench.notices.warning(why_not or tr("Open a project first."))
             return
         stored = "" if nominal is None else stored_source(folder, nominal)
         size = NO_PICTURE if view is None else view.image_size
-        owner.put(fields.new_feature(kind, owner.free_name(kind), owner.plan, size, stored))
+        features.put(fields.new_feature(kind, features.free_name(kind), features.plan, size, stored))
 
     def set_value(self, key: str, value: Any) -> None:
         """Change a field; what cannot be is kept in the form with a sentence, and the plan stays as it was."""
@@ -81,9 +79,9 @@ class InspectFeatureEdit(QObject):
             else:
                 changed, done = fields.with_value(spec, key, value), [key]
         except ValueError as error:
-            self._complain(key, str(error))
+            self._complain(key, text_of(error))
             return
-        wrong = self._owner.complaint(changed, spec.name)
+        wrong = self._features.complaint(changed, spec.name)
         if wrong:
             self._complain(key, wrong)
             return
@@ -112,7 +110,7 @@ class InspectFeatureEdit(QObject):
     @property
     def meant(self) -> str:
         """What points chosen in 3D stand for: the plane face among them, or ("") all of them."""
-        return "upper" if self.spec is not None and self.spec.kind in fields.BY_NUMBER else ""
+        return "upper" if self.spec is not None and kind_of(self.spec).automatic == "numbered" else ""
 
     def region_name(self, place: int) -> str:
         """What a region of the chosen feature is called in the pictures."""
@@ -124,7 +122,7 @@ class InspectFeatureEdit(QObject):
 
     def set_nominal(self, path: Path) -> None:
         """Compare with another nominal surface; undoable."""
-        folder = self._owner.owner.model.folder
+        folder = self._model.folder
         if folder is not None:
             self.set_value("nominal", stored_source(folder, path))
 
@@ -133,7 +131,7 @@ class InspectFeatureEdit(QObject):
         spec = self.spec
         if spec is None:
             return
-        shown = self._owner.result(spec.name)
+        shown = self._features.result(spec.name)
         profile = None if shown is None else shown.profile
         if profile is None or len(profile.mean_position) < 2:
             self._put(spec, fields.with_new_cut(spec))  # nothing measured yet
@@ -150,16 +148,16 @@ class InspectFeatureEdit(QObject):
 
     def _put(self, before: FeatureSpec, after: FeatureSpec) -> None:
         if after != before:
-            self._owner.put(after, before.name)
+            self._features.put(after, before.name)
         else:
-            self._owner.changed.emit()
+            self._features.changed.emit()
 
     def _complain(self, key: str, sentence: str) -> None:
         self._complaints[key] = sentence
-        self._owner.changed.emit()
+        self._features.changed.emit()
 
     def _follow(self) -> None:
         """Another feature is chosen: what was half entered of the last one is forgotten."""
-        if self._of != self._owner.chosen:
-            self._of = self._owner.chosen
+        if self._of != self._features.chosen:
+            self._of = self._features.chosen
             self._pending, self._complaints = {}, {}

@@ -4,26 +4,23 @@ from __future__ import annotations
 
 from typing import Any
 
-from PySide6.QtCore import QEvent, QSize, Signal
+from PySide6.QtCore import QSize, Signal
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QPushButton, QToolButton, QVBoxLayout, QWidget
 
-from core.inspect.feature_spec import DERIVED, Auto, FeatureSpec, InBox, InSphere, PointsOf, Polygon
-from core.inspect.inspection_plan import InspectionPlan
-from workbench.pages import inspect_feature_values as fields
-from workbench.pages import inspect_feature_words as words
-from workbench.pages.inspect_feature_settings import (
-    add_cuts,
-    add_deviation,
-    add_filters,
-    add_limits,
-    add_section,
-    add_steps,
-)
-from workbench.pages.inspect_presenter import InspectPresenter
+from core.inspect.plan.feature_spec import Auto, FeatureSpec, InBox, InSphere, PointsOf, Polygon
+from core.inspect.plan.inspection_plan import InspectionPlan
+from core.inspect.plan.kinds import MOST_FACES, kind_of
+from workbench.language import tr
+from workbench.pages.inspect import feature_values as fields
+from workbench.pages.inspect import feature_words as words
+from workbench.pages.inspect.feature_settings import add_cuts, add_fields, add_filters, add_limits, add_line
+from workbench.pages.inspect.features.edit import InspectFeatureEdit
+from workbench.pages.inspect.features.plan import InspectFeatures
+from workbench.pages.inspect.scan import InspectScan
 from workbench.pages.step_page import heading
 from workbench.theme import icon
 from workbench.views import ask
-from workbench.views.forms import SettingsForm
+from workbench.views.forms.form import SettingsForm
 
 
 class FeatureForm(QWidget):
@@ -32,9 +29,11 @@ class FeatureForm(QWidget):
     draw = Signal(str, str)
     """Name of a region and kind of tool: it is to be drawn."""
 
-    def __init__(self, presenter: InspectPresenter, parent: QWidget | None = None) -> None:
+    def __init__(
+        self, features: InspectFeatures, edit: InspectFeatureEdit, scan: InspectScan, parent: QWidget | None = None
+    ) -> None:
         super().__init__(parent)
-        self._presenter, self._edit = presenter, presenter.features.edit
+        self._features, self._edit, self._scan = features, edit, scan
         self._made: object = None
         self._inside = QWidget()
         self.where, self.what = SettingsForm(), SettingsForm()
@@ -46,7 +45,7 @@ class FeatureForm(QWidget):
 
     def refresh(self) -> None:
         """Show what the presenter says now."""
-        spec, plan = self._edit.spec, self._presenter.features.plan
+        spec, plan = self._edit.spec, self._features.plan
         self.setVisible(spec is not None)
         if spec is None:
             return
@@ -60,11 +59,7 @@ class FeatureForm(QWidget):
             for key in form.values():
                 form.set_complaint(key, self._edit.complaint(key))
         self._show_tools()
-
-    def changeEvent(self, event: QEvent) -> None:
-        super().changeEvent(event)
-        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "buttons"):
-            self._dress()
+        self._dress()
 
     # ---- making it
 
@@ -77,7 +72,7 @@ class FeatureForm(QWidget):
         column = QVBoxLayout(self._inside)
         column.setContentsMargins(0, 6, 0, 0)
         column.setSpacing(4)
-        column.addWidget(heading(words.title(spec.kind).removesuffix(" …")))
+        column.addWidget(heading(tr(kind_of(spec).title)))
         self._add_where(spec, plan)
         column.addWidget(self.where)
         if fields.own_regions(spec):
@@ -94,15 +89,14 @@ class FeatureForm(QWidget):
         form = self.where
         form.add_text("name", self.tr("Name"), self.tr("As it is called in the list and in the report."))
         others = [(name, name) for name in fields.elements(plan)]
-        for place in range(DERIVED.get(spec.kind, 0)):
+        for place in range(kind_of(spec).made_of):
             title = self.tr("First feature") if place == 0 else self.tr("Second feature")
             form.add_choice(f"of {place}", title, others, self.tr("A plane, sphere, cylinder or point of the list."))
-        if spec.kind in ("thickness", "steps"):
-            least = 2
-            most = 2 if spec.kind == "thickness" else fields.MOST_FACES
+        most = kind_of(spec).most_regions
+        if most > 1:
             form.add_number(
                 "parts", self.tr("Faces"), "", self.tr("How many faces are named one by one; automatic: all found."),
-                minimum=least, maximum=most, none_text=self.tr("automatic"),
+                minimum=2, maximum=most, none_text=self.tr("automatic"),
             )  # fmt: skip
         for place, region in enumerate(fields.own_regions(spec)):
             self._add_region(spec, plan, place, isinstance(region, Auto))
@@ -115,21 +109,22 @@ class FeatureForm(QWidget):
         choices += [
             (fields.OF + one.name, self.tr("points of {0}").format(one.name))
             for one in plan.features
-            if one.name != spec.name and one.kind not in DERIVED
+            if one.name != spec.name and not kind_of(one).made_of
         ]
         self.where.add_choice(
             f"source {place}", self._region_title(spec, place), choices, self.tr("Where its points are taken from.")
         )
-        single = spec.kind in ("thickness", "steps") and len(spec.regions) == 1
-        if found and spec.kind in fields.BY_NUMBER and not single:
+        single = kind_of(spec).most_regions > 1 and len(spec.regions) == 1
+        if found and kind_of(spec).automatic == "numbered" and not single:
             self.where.add_number(
                 f"number {place}", self.tr("Number of the face"), "",
-                self.tr("1 is the largest plane face of the scan, 2 the next."), minimum=1, maximum=fields.MOST_FACES,
+                self.tr("1 is the largest plane face of the scan, 2 the next."), minimum=1, maximum=MOST_FACES,
             )  # fmt: skip
 
     def _region_title(self, spec: FeatureSpec, place: int) -> str:
-        if spec.kind == "thickness" and len(spec.regions) == 2:
-            return self.tr("Upper face") if place == 0 else self.tr("Lower face")
+        titles = kind_of(spec).region_titles
+        if len(titles) == len(spec.regions):
+            return tr(titles[place])
         return self.tr("Level {0}").format(place + 1) if len(spec.regions) > 1 else self.tr("Region")
 
     def _drawing_tools(self, spec: FeatureSpec) -> QGridLayout:
@@ -152,15 +147,13 @@ class FeatureForm(QWidget):
 
     def _add_what(self, spec: FeatureSpec) -> None:
         form = self.what
-        if spec.kind == "steps":
-            add_steps(form)
-        if spec.deviation is not None:
-            add_deviation(form)
         if spec.section is not None:
-            add_section(form, spec.section)
+            add_line(form, spec.section)
+        add_fields(form, kind_of(spec).fields)
+        if spec.section is not None:
             add_cuts(form, spec.section)
         add_limits(form, spec)
-        if spec.kind not in DERIVED:
+        if not kind_of(spec).made_of:
             add_filters(form)
 
     def _add_buttons(self, spec: FeatureSpec, column: QVBoxLayout) -> None:
@@ -197,13 +190,13 @@ class FeatureForm(QWidget):
 
     def _choose_nominal(self) -> None:
         path = ask.choose_file_to_open(
-            self, self.tr("Nominal surface"), self._presenter.model.folder, self.tr("STL (*.stl *.STL)")
+            self, self.tr("Nominal surface"), self._features.model.folder, self.tr("STL (*.stl *.STL)")
         )
         if path is not None:
             self._edit.set_nominal(path)
 
     def _show_tools(self) -> None:
-        why_not = "" if self._presenter.view is not None else self.tr("There is no surface to draw on yet.")
+        why_not = "" if self._scan.view is not None else self.tr("There is no surface to draw on yet.")
         for (_, kind), button in self.tools.items():
             first = (
                 self.tr("Draw the region corner by corner.")

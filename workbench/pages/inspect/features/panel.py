@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QEvent, Qt, Signal
+from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QAction, QKeySequence, QShortcut
 from PySide6.QtWidgets import (
     QAbstractItemView,
@@ -19,16 +20,21 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from core.inspect.feature_spec import Kind
-from workbench.pages import inspect_feature_values as fields
-from workbench.pages import inspect_feature_words as words
-from workbench.pages.inspect_feature_form import FeatureForm
-from workbench.pages.inspect_presenter import InspectPresenter
-from workbench.pages.inspect_templates_button import TemplatesButton
+from core.inspect.plan import kinds
+from core.inspect.plan.feature_kind import FeatureKind
+from core.inspect.plan.kinds import kind_named, kind_of
+from workbench.language import text_of, tr
+from workbench.pages.inspect import feature_values as fields
+from workbench.pages.inspect import feature_words as words
+from workbench.pages.inspect.features.edit import InspectFeatureEdit
+from workbench.pages.inspect.features.form import FeatureForm
+from workbench.pages.inspect.features.plan import InspectFeatures
+from workbench.pages.inspect.features.templates import InspectTemplates
+from workbench.pages.inspect.scan import InspectScan
 from workbench.pages.step_page import muted
-from workbench.theme import icon
+from workbench.theme import icon, is_dark
 from workbench.views import ask
-from workbench.views.value_rows import VERDICT_ICONS
+from workbench.views.lists.value_rows import VERDICT_ICONS
 
 if TYPE_CHECKING:
     from core.inspect.characteristic import Characteristic
@@ -43,15 +49,22 @@ class FeaturesPanel(QWidget):
     draw = Signal(str, str)
     """Name of a region and kind of tool: it is to be drawn."""
 
-    def __init__(self, presenter: InspectPresenter, parent: QWidget | None = None) -> None:
+    def __init__(
+        self,
+        features: InspectFeatures,
+        edit: InspectFeatureEdit,
+        templates: InspectTemplates,
+        scan: InspectScan,
+        parent: QWidget | None = None,
+    ) -> None:
         super().__init__(parent)
-        self._presenter, self._features = presenter, presenter.features
+        self._features, self._edit = features, edit
         self._shown: object = None
         self.list, self.add, self.measure = QTreeWidget(), QPushButton(), QPushButton()
-        self.templates = TemplatesButton(presenter.features.templates)
+        self.templates = TemplatesButton(templates)
         self.remove, self.up, self.down = QToolButton(), QToolButton(), QToolButton()
-        self.state, self.form = muted(), FeatureForm(presenter)
-        self.kinds: dict[Kind, QAction] = {}
+        self.state, self.form = muted(), FeatureForm(features, edit, scan)
+        self.kinds: dict[str, QAction] = {}
         self._make_list()
         self._make_menu()
         column = QVBoxLayout(self)
@@ -75,6 +88,7 @@ class FeaturesPanel(QWidget):
 
     def refresh(self) -> None:
         """Show what the presenter says now."""
+        self._dress()
         features = self._features
         some = bool(features.plan.features)
         for widget in (self.list, self.remove, self.up, self.down, self.measure):
@@ -85,13 +99,6 @@ class FeaturesPanel(QWidget):
         self.state.setText(self._sentence())
         self.state.setVisible(bool(self.state.text()))
         self.form.refresh()
-
-    def changeEvent(self, event: QEvent) -> None:
-        super().changeEvent(event)
-        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "form"):
-            self._dress()
-            self._shown = None
-            self._show_list()
 
     # ---- the list
 
@@ -119,12 +126,12 @@ class FeaturesPanel(QWidget):
     def _show_list(self) -> None:
         """All items anew where anything in them has changed; the one chosen stays chosen."""
         features = self._features
-        shown = (features.plan, features.shown, features.measuring)
+        shown = (features.plan, features.shown, features.measuring, is_dark())
         if shown != self._shown:
             self._shown = shown
             self.list.blockSignals(True)
             self.list.clear()
-            self.list.addTopLevelItems([self._item(spec.name, spec.kind) for spec in features.plan.features])
+            self.list.addTopLevelItems([self._item(spec.name, kind_of(spec)) for spec in features.plan.features])
             self.list.expandAll()
             self.list.blockSignals(False)
             self._fit_list()
@@ -144,21 +151,21 @@ class FeaturesPanel(QWidget):
         header, frame = self.list.header().sizeHint().height(), 2 * self.list.frameWidth()
         self.list.setFixedHeight(header + frame + min(rows, MOST_ROWS) * row)
 
-    def _item(self, name: str, kind: Kind) -> QTreeWidgetItem:
+    def _item(self, name: str, kind: FeatureKind) -> QTreeWidgetItem:
         result = self._features.result(name)
         rows = () if result is None else result.rows
         text = words.value(rows[0]) if len(rows) == 1 else ""
         item = QTreeWidgetItem([f"{name}, {words.short_name(rows[0], name)}" if text else name, text])
         item.setData(0, Qt.ItemDataRole.UserRole, name)
-        item.setIcon(0, icon(words.SYMBOLS[kind]))
+        item.setIcon(0, icon(kind.icon))
         item.setTextAlignment(1, Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
-        tips = [words.title(kind).removesuffix(" …")]
+        tips = [tr(kind.title)]
         if result is None:
             item.setText(1, self.tr("measuring …") if self._features.measuring else self.tr("not measured"))
         elif result.problem:
             item.setText(1, self.tr("cannot be measured"))
             item.setIcon(1, icon("mdi6.alert-outline", colour="warn"))
-            tips.append(result.problem)
+            tips.append(text_of(result.problem))
         else:
             tips += [words.used(result), *(words.tip(row) for row in rows)]
             self._mark(item, words.verdict(result))
@@ -192,10 +199,10 @@ class FeaturesPanel(QWidget):
     def _make_menu(self) -> None:
         menu = QMenu(self)
         menu.setToolTipsVisible(True)
-        for kind in fields.KINDS:
+        for kind in kinds.KINDS:
             action = menu.addAction(words.title(kind))
             action.triggered.connect(lambda _=False, kind=kind: self._add(kind))
-            self.kinds[kind] = action
+            self.kinds[kind.name] = action
         self.add.setText(self.tr("Add feature"))
         self.add.setMenu(menu)
         self.measure.setText(self.tr("Measure all"))
@@ -206,10 +213,10 @@ class FeaturesPanel(QWidget):
 
     def _show_buttons(self) -> None:
         features, plan = self._features, self._features.plan
-        for kind, action in self.kinds.items():
-            why_not = fields.why_not(kind, plan)
+        for name, action in self.kinds.items():
+            why_not = fields.why_not(name, plan)
             action.setEnabled(not why_not)
-            action.setToolTip(why_not or words.help_of(kind))
+            action.setToolTip(why_not or tr(kind_named(name).help))
         self.add.setToolTip(self.tr("Measure something beside the thickness"))
         why_not = features.cannot_measure
         self.measure.setEnabled(not why_not)
@@ -235,20 +242,20 @@ class FeaturesPanel(QWidget):
             return features.problem
         chosen = features.result(features.chosen)
         if chosen is not None and chosen.problem:
-            return chosen.problem
+            return text_of(chosen.problem)
         if features.measuring or features.shown is not None:
             shown = features.shown
-            return "" if shown is None else "\n".join(shown.notes)
+            return "" if shown is None else "\n".join(map(text_of, shown.notes))
         return features.cannot_measure or self.tr("The features have changed or are not measured yet: measure them.")
 
-    def _add(self, kind: Kind) -> None:
-        if kind != "deviation":
-            self._features.edit.add(kind)
+    def _add(self, kind: FeatureKind) -> None:
+        if not kind.nominal_file:
+            self._edit.add(kind.name)
             return
-        start = self._presenter.model.folder
+        start = self._features.model.folder
         path = ask.choose_file_to_open(self, self.tr("Nominal surface"), start, self.tr("STL (*.stl *.STL)"))
         if path is not None:
-            self._features.edit.add(kind, path)
+            self._edit.add(kind.name, path)
 
     def _remove(self) -> None:
         if self._features.chosen:
@@ -263,5 +270,67 @@ class FeaturesPanel(QWidget):
             (self.down, "mdi6.arrow-down"),
         ):
             button.setIcon(icon(symbol))
-        for kind, action in self.kinds.items():
-            action.setIcon(icon(words.SYMBOLS[kind]))
+        for name, action in self.kinds.items():
+            action.setIcon(icon(kind_named(name).icon))
+
+
+class TemplatesButton(QPushButton):
+    """A menu: save the plan as a template, take one from a file, or one of those used last."""
+
+    def __init__(self, templates: InspectTemplates, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._templates = templates
+        self._paths: list[Path] | None = None
+        self.setText(self.tr("Templates"))
+        self.setToolTip(self.tr("Keep these features for the next part, or take those of another"))
+        menu = QMenu(self)
+        menu.setToolTipsVisible(True)
+        self.save = menu.addAction(self.tr("Save as template …"))
+        self.open = menu.addAction(self.tr("Take from file …"))
+        self.open.setToolTip(self.tr("Measure the features of a plan.toml from now on, instead of these"))
+        self._line = menu.addSeparator()
+        self.recent: list[QAction] = []
+        self.save.triggered.connect(lambda: self._save())
+        self.open.triggered.connect(lambda: self._open())
+        self.setMenu(menu)
+        self._dress()
+
+    def refresh(self) -> None:
+        """Show what the presenter says now."""
+        self._dress()
+        why_not, paths = self._templates.cannot_save, self._templates.recent
+        self.save.setEnabled(not why_not)
+        self.save.setToolTip(why_not or self.tr("Write these features, their regions and limits to a file"))
+        if paths == self._paths:
+            return
+        self._paths = paths
+        menu = self.menu()
+        for action in self.recent:
+            menu.removeAction(action)
+            action.deleteLater()
+        self.recent = []
+        for path in paths:
+            action = menu.addAction(path.stem)
+            action.setToolTip(self.tr("Measure these features on this part: {0}").format(path))
+            action.triggered.connect(lambda _=False, path=path: self._templates.take(path))
+            self.recent.append(action)
+        self._line.setVisible(bool(paths))
+
+    def _save(self) -> None:
+        path = ask.choose_file_to_save(
+            self, self.tr("Save as template"), self._templates.place(), self.tr("Plan (*.toml)")
+        )
+        if path is not None:
+            self._templates.save(path)
+
+    def _open(self) -> None:
+        path = ask.choose_file_to_open(
+            self, self.tr("Take the features of a template"), self._templates.place().parent, self.tr("Plan (*.toml)")
+        )
+        if path is not None:
+            self._templates.take(path)
+
+    def _dress(self) -> None:
+        self.setIcon(icon("mdi6.playlist-plus"))
+        self.save.setIcon(icon("mdi6.content-save-outline"))
+        self.open.setIcon(icon("mdi6.folder-open-outline"))

@@ -10,20 +10,17 @@ from typing import TYPE_CHECKING, Any
 from PySide6.QtCore import QObject, Signal
 
 from core.errors import InputError
-from core.files.project_keys import changed as changes
-from core.files.project_keys import finished, rests_on
-from core.inspect.feature_spec import FeatureSpec, PointsOf
-from core.inspect.inspection_plan import InspectionPlan
-from workbench import jobs
-from workbench.pages.inspect_conditions import InspectConditions
-from workbench.pages.inspect_feature_edit import InspectFeatureEdit
-from workbench.pages.inspect_templates import InspectTemplates
-from workbench.problems import sentence
-from workbench.tasks import Task
+from core.files.project.keys import changed as changes
+from core.files.project.keys import finished, rests_on
+from core.inspect.plan.feature_spec import FeatureSpec, PointsOf
+from core.inspect.plan.inspection_plan import InspectionPlan
+from workbench.bench import Bench
+from workbench.language import text_of, tr
+from workbench.work import jobs
+from workbench.work.tasks import Task
 
 if TYPE_CHECKING:
-    from core.inspect.shown_features import ShownFeature, ShownInspection
-    from workbench.pages.inspect_presenter import InspectPresenter
+    from core.inspect.shown.shown_features import ShownFeature, ShownInspection
 
 
 REMEMBERING = {"progress": "progress", "memory": "memory"}
@@ -35,29 +32,21 @@ class InspectFeatures(QObject):
 
     changed = Signal()
 
-    def __init__(self, owner: InspectPresenter) -> None:
-        super().__init__(owner)
-        self._owner = owner
+    def __init__(self, bench: Bench) -> None:
+        super().__init__()
+        self.bench, self.model = bench, bench.model
         self._measuring: Task | None = None
         self._shown: ShownInspection | None = None
         self._shown_for: object = None
         self.problem = ""
         self.chosen = ""
-        self.edit = InspectFeatureEdit(self)
-        self.conditions = InspectConditions(self)
-        self.templates = InspectTemplates(self)
 
     # ---- the plan
 
     @property
     def plan(self) -> InspectionPlan:
         """What is to be measured."""
-        return self._owner.project.inspection
-
-    @property
-    def owner(self) -> InspectPresenter:
-        """The presenter of the page."""
-        return self._owner
+        return self.model.project.inspection
 
     def free_name(self, kind: str) -> str:
         """A name for a new feature that no other has: "plane 2"."""
@@ -71,13 +60,13 @@ class InspectFeatures(QObject):
         try:
             self._with(spec, instead_of).ordered()
         except InputError as error:
-            return sentence(error)
+            return text_of(error)
         return ""
 
     def put(self, spec: FeatureSpec, instead_of: str = "") -> None:
         """Add a feature, or change the one called `instead_of`; undoable. Others follow when it is given a new name."""
         plan = self._with(spec, instead_of)
-        label = self.tr("change {0}").format(spec.name) if instead_of else self.tr("add {0}").format(spec.name)
+        label = tr("change {0}").format(spec.name) if instead_of else tr("add {0}").format(spec.name)
         self.chosen = spec.name
         self.put_plan(plan, label)
 
@@ -85,26 +74,26 @@ class InspectFeatures(QObject):
         """Take a feature out of the plan; undoable. One that others rest on stays, and a notice says which."""
         why_not = self.cannot_remove(name)
         if why_not:
-            self._owner.bench.notices.warning(why_not)
+            self.bench.notices.warning(why_not)
             return
         kept = tuple(one for one in self.plan.features if one.name != name)
         master = self.plan.master
         if master is not None:
             master = replace(master, features=tuple(one for one in master.features if one != name))
-        self.put_plan(replace(self.plan, features=kept, master=master), self.tr("remove {0}").format(name))
+        self.put_plan(replace(self.plan, features=kept, master=master), tr("remove {0}").format(name))
 
     def cannot_remove(self, name: str) -> str:
         """Why a feature cannot be taken out, or ""."""
         if name not in self.plan.names:
-            return self.tr("Choose a feature first.")
+            return tr("Choose a feature first.")
         frame = self.plan.frame.names if self.plan.frame is not None else ()
         resting = [one.name for one in self.plan.features if name in one.needs]
         if name in frame:
-            resting.append(self.tr("the part's coordinates"))
+            resting.append(tr("the part's coordinates"))
         if self.plan.master is not None and self.plan.master.features == (name,):
-            resting.append(self.tr("the comparison with the master"))
+            resting.append(tr("the comparison with the master"))
         if resting:
-            return self.tr("{0} cannot be removed: {1} rests on it.").format(name, ", ".join(resting))
+            return tr("{0} cannot be removed: {1} rests on it.").format(name, ", ".join(resting))
         return ""
 
     def move(self, name: str, by: int) -> None:
@@ -114,15 +103,11 @@ class InspectFeatures(QObject):
             return
         features = list(self.plan.features)
         features.insert(names.index(name) + by, features.pop(names.index(name)))
-        self.put_plan(replace(self.plan, features=tuple(features)), self.tr("move {0}").format(name))
-
-    def take_template(self, plan: InspectionPlan, name: str) -> None:
-        """Measure this plan from now on; undoable."""
-        self.put_plan(plan, self.tr("take the plan {0}").format(name))
+        self.put_plan(replace(self.plan, features=tuple(features)), tr("move {0}").format(name))
 
     def put_plan(self, plan: InspectionPlan, label: str) -> None:
         """Measure this plan from now on; undoable."""
-        self._owner.model.edit(label, replace(self._owner.project, inspection=plan))
+        self.model.edit(label, replace(self.model.project, inspection=plan))
         if self.chosen not in plan.names:
             self.chosen = ""
 
@@ -136,24 +121,24 @@ class InspectFeatures(QObject):
     @property
     def cannot_measure(self) -> str:
         """Why the plan cannot be measured now, or ""."""
-        if "scan" not in self._owner.model.results:
-            return self.tr("Scan the part first.")
-        if not self.plan.features and "features" not in self._owner.model.results:
-            return self.tr("Add a feature first.")
+        if "scan" not in self.model.results:
+            return tr("Scan the part first.")
+        if not self.plan.features and "features" not in self.model.results:
+            return tr("Add a feature first.")
         if self.measuring:
-            return self.tr("The features are being measured.")
+            return tr("The features are being measured.")
         return ""
 
     @property
     def up_to_date(self) -> bool:
         """Whether what was measured is of this plan and this scan."""
-        results = self._owner.model.results
+        results = self.model.results
         done = results.get("features")
-        return done is not None and not changes(done.rests_on, rests_on("features", self._owner.project, results))
+        return done is not None and not changes(done.rests_on, rests_on("features", self.model.project, results))
 
     def measure(self) -> None:
         """Measure the whole plan on the scan among the results."""
-        model, project, folder = self._owner.model, self._owner.project, self._owner.model.folder
+        model, project, folder = self.model, self.model.project, self.model.folder
         if folder is None or self.cannot_measure:
             return
         self.problem, wanted, results = "", self._wanted(), model.results
@@ -163,7 +148,7 @@ class InspectFeatures(QObject):
                 self._shown, self._shown_for = shown, wanted
                 model.record("features", finished("features", project, results))
 
-        self._run(jobs.MEASURE_FEATURES, folder, done, self.tr("Measuring the features"))
+        self._run(jobs.MEASURE_FEATURES, folder, done, tr("Measuring the features"))
 
     def follow(self, before: InspectionPlan) -> None:
         """The plan was edited, or an edit undone: what was measured once is measured anew."""
@@ -176,16 +161,16 @@ class InspectFeatures(QObject):
 
     def look(self) -> None:
         """Have what was measured earlier drawn, if it is still true of this plan and this scan."""
-        folder = self._owner.model.folder
+        folder = self.model.folder
         if folder is None or self.measuring or not self.up_to_date or self.shown is not None:
             return
         wanted = self._wanted()
 
         def done(shown: Any) -> None:
-            if folder == self._owner.model.folder:
+            if folder == self.model.folder:
                 self._shown, self._shown_for = shown, wanted
 
-        self._run(jobs.LOOK_AT_FEATURES, folder, done, self.tr("Preparing the features"))
+        self._run(jobs.LOOK_AT_FEATURES, folder, done, tr("Preparing the features"))
 
     @property
     def shown(self) -> ShownInspection | None:
@@ -213,11 +198,11 @@ class InspectFeatures(QObject):
 
     def _run(self, job: jobs.Job, folder: Path, done: Any, label: str) -> None:
         def failed(problem: Any) -> None:
-            if folder == self._owner.model.folder:
-                self.problem = sentence(problem)
+            if folder == self.model.folder:
+                self.problem = text_of(problem)
 
-        self._measuring = self._owner.bench.measure(
-            job, folder, self._owner.project, label=label, on_done=done, on_failed=failed, offers=REMEMBERING
+        self._measuring = self.bench.run_long(
+            self, job, folder, self.model.project, label=label, on_done=done, on_failed=failed, offers=REMEMBERING
         )
         self._measuring.ended.connect(self._ended)
         self.changed.emit()
@@ -229,11 +214,11 @@ class InspectFeatures(QObject):
 
     def _measure_again(self) -> None:
         """Measure a plan that has changed since it was measured; one that failed waits for the next edit."""
-        if "features" in self._owner.model.results and not self.up_to_date and not self.problem:
+        if "features" in self.model.results and not self.up_to_date and not self.problem:
             self.measure()
 
     def _wanted(self) -> object:
-        scan = self._owner.model.results.get("scan")
+        scan = self.model.results.get("scan")
         return self.plan, None if scan is None else scan.key
 
     def _with(self, spec: FeatureSpec, instead_of: str) -> InspectionPlan:

@@ -8,23 +8,26 @@ import numpy as np
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
-from workbench.pages import inspect_feature_words as words
-from workbench.pages.inspect_presenter import InspectPresenter
+from core.inspect.plan.kinds import kind_of
+from workbench.language import text_of
+from workbench.pages.inspect import feature_words as words
+from workbench.pages.inspect.features.edit import InspectFeatureEdit
+from workbench.pages.inspect.features.plan import InspectFeatures
 from workbench.pages.step_page import muted
 from workbench.views.colours import FEATURE
-from workbench.views.plots import LineChart
-from workbench.views.value_rows import ValueRows
+from workbench.views.lists.value_rows import ValueRows
+from workbench.views.plots.lines import LineChart
 
 if TYPE_CHECKING:
-    from core.inspect.shown_features import ShownDeviations, ShownFeature, ShownProfile
+    from core.inspect.shown.shown_features import ShownDeviations, ShownFeature, ShownProfile
 
 
 class PlotTab(QWidget):
     """A chart, and beside it what it says in numbers."""
 
-    def __init__(self, presenter: InspectPresenter, parent: QWidget | None = None) -> None:
+    def __init__(self, features: InspectFeatures, edit: InspectFeatureEdit, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self._presenter = presenter
+        self._features, self._edit = features, edit
         self._shown: object = None
         self.chart, self.rows, self.words = LineChart(), ValueRows(), muted()
         column = QVBoxLayout(self)
@@ -39,7 +42,7 @@ class PlotTab(QWidget):
 
     def refresh(self) -> None:
         """Show what the presenter says now; drawn anew only for another feature or result."""
-        features = self._presenter.features
+        features = self._features
         result = features.result(features.chosen)
         wanted = (features.chosen, result)
         if wanted == self._shown:
@@ -57,9 +60,9 @@ class PlotTab(QWidget):
 
     def _message(self, result: ShownFeature | None) -> str:
         if result is not None and result.problem:
-            return result.problem
-        spec = self._presenter.features.edit.spec
-        if spec is not None and spec.kind in ("section", "deviation"):
+            return text_of(result.problem)
+        spec = self._edit.spec
+        if spec is not None and kind_of(spec).plotted:
             return self.tr("Measure the features: then what was found is drawn here.")
         return self.tr("Choose a cross-section or a deviation in the list of features: it is drawn here.")
 

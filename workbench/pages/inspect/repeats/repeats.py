@@ -6,24 +6,30 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from PySide6.QtCore import QObject
+from PySide6.QtCore import QObject, Signal
 
-from core.files.project import Repeat
+from core.files.project.data import Repeat
+from core.files.recording.rig import GaugeSpec
 from core.study.repeats import RepeatStatistics, repeat_statistics
-from workbench import jobs
+from workbench.bench import Bench
+from workbench.language import tr
+from workbench.pages.inspect.faces import InspectFaces
+from workbench.pages.inspect.scan import InspectScan
 from workbench.step_state import State
+from workbench.work import jobs
 
 if TYPE_CHECKING:
     from core.study.type1 import Type1Study
-    from workbench.pages.inspect_presenter import InspectPresenter
 
 
 class InspectRepeats(QObject):
     """The series of repeats in the project; every change is undoable."""
 
-    def __init__(self, owner: InspectPresenter) -> None:
-        super().__init__(owner)
-        self._owner = owner
+    changed = Signal()
+
+    def __init__(self, bench: Bench, scan: InspectScan, faces: InspectFaces) -> None:
+        super().__init__()
+        self._bench, self._model, self._scan, self._faces = bench, bench.model, scan, faces
         self._type1: Type1Study | None = None
         self._type1_of: object = None
         self._asked: object = None
@@ -31,20 +37,24 @@ class InspectRepeats(QObject):
     @property
     def all(self) -> tuple[Repeat, ...]:
         """The repeats in the order they were added."""
-        return self._owner.project.repeats
+        return self._model.project.repeats
+
+    @property
+    def spec(self) -> GaugeSpec:
+        """Nominal value and tolerance they are judged by."""
+        return self._faces.spec
 
     @property
     def can_add(self) -> str:
         """Why the thickness shown cannot be added, or ""."""
-        owner = self._owner
-        if owner.gauge is None:
-            return self.tr("Measure the thickness first.")
-        if owner.scan_is_old:
-            return self.tr("The scan is out of date: measure it again first, on the page before.")
-        if owner.state.state is not State.DONE or owner.stale:
-            return self.tr("The thickness is out of date: measure it again first.")
-        if any(repeat.scan == owner.scan.recording for repeat in self.all):
-            return self.tr(
+        if self._scan.gauge is None:
+            return tr("Measure the thickness first.")
+        if self._scan.is_old:
+            return tr("The scan is out of date: measure it again first, on the page before.")
+        if self._model.states["inspect"].state is not State.DONE or self._scan.stale:
+            return tr("The thickness is out of date: measure it again first.")
+        if any(repeat.scan == self._scan.recording for repeat in self.all):
+            return tr(
                 "This scan is among the repeats already. A repeat is another scan of the part: measuring the same "
                 "pictures again says nothing about how well the measurement repeats."
             )
@@ -52,33 +62,33 @@ class InspectRepeats(QObject):
 
     def add(self) -> None:
         """Add the thickness of this scan to the series; undoable. The same scan twice is refused with a sentence."""
-        why_not, gauge, view = self.can_add, self._owner.gauge, self._owner.view
-        scan = self._owner.model.results.get("scan")
+        why_not, gauge, view = self.can_add, self._scan.gauge, self._scan.view
+        scan = self._model.results.get("scan")
         if why_not or gauge is None or view is None or scan is None:
-            self._owner.bench.notices.warning(why_not or self.tr("Measure the thickness first."))
+            self._bench.notices.warning(why_not or tr("Measure the thickness first."))
             return
         repeat = Repeat(
-            scan=self._owner.scan.recording,
+            scan=self._scan.recording,
             thickness_mm=gauge.thickness_mm,
             U_mm=gauge.U_mm,
             k=gauge.k,
             calibration_id=view.calibration_id,
             measured_at=scan.at,
         )
-        self._put((*self.all, repeat), self.tr("add a repeat"))
+        self._put((*self.all, repeat), tr("add a repeat"))
 
     def remove(self, rows: Sequence[int]) -> None:
         """Take repeats out of the series; undoable."""
         kept = tuple(repeat for row, repeat in enumerate(self.all) if row not in set(rows))
         count = len(self.all) - len(kept)
-        label = self.tr("remove a repeat") if count == 1 else self.tr("remove {0} repeats").format(count)
+        label = tr("remove a repeat") if count == 1 else tr("remove {0} repeats").format(count)
         self._put(kept, label)
 
     def statistics(self) -> RepeatStatistics | None:
         """What they say together; None if there are none."""
         if not self.all:
             return None
-        return repeat_statistics([repeat.thickness_mm for repeat in self.all], self._owner.faces.spec.nominal_mm)
+        return repeat_statistics([repeat.thickness_mm for repeat in self.all], self.spec.nominal_mm)
 
     @property
     def type1(self) -> Type1Study | None:
@@ -88,40 +98,41 @@ class InspectRepeats(QObject):
     @property
     def no_type1(self) -> str:
         """Why there is no type-1 study, or ""."""
-        spec = self._owner.faces.spec
+        spec = self.spec
         if spec.nominal_mm is None or spec.tolerance_mm is None:
-            return self.tr("A type-1 study needs a reference part: enter its thickness and the tolerance.")
+            return tr("A type-1 study needs a reference part: enter its thickness and the tolerance.")
         if len(self.all) < 2:
-            return self.tr("A type-1 study needs two repeats or more; 25 are asked for, 50 are usual.")
+            return tr("A type-1 study needs two repeats or more; 25 are asked for, 50 are usual.")
         return ""
 
     def study(self) -> None:
         """Have the type-1 study worked out, unless it is there or under way."""
-        wanted, spec = self._type1_wanted(), self._owner.faces.spec
+        wanted, spec = self._type1_wanted(), self.spec
         if self.no_type1 or spec.tolerance_mm is None or wanted in (self._type1_of, self._asked):
             return
         self._asked = wanted
 
         def done(study: Any) -> None:
             self._type1, self._type1_of = study, wanted
-            self._owner.changed.emit()
+            self.changed.emit()
 
         def ended(*_: Any) -> None:
             self._asked = None if self._asked == wanted else self._asked
 
-        task = self._owner.bench.glance(
+        task = self._bench.run_quick(
+            self,
             jobs.TYPE1_STUDY,
             [repeat.thickness_mm for repeat in self.all],
             spec.nominal_mm,
             2 * spec.tolerance_mm,
-            label=self.tr("Studying the repeats"),
+            label=tr("Studying the repeats"),
             on_done=done,
             offers={},
         )
         task.ended.connect(ended)
 
     def _type1_wanted(self) -> object:
-        spec = self._owner.faces.spec
+        spec = self.spec
         return tuple(repeat.thickness_mm for repeat in self.all), spec.nominal_mm, spec.tolerance_mm
 
     def calibrations(self) -> int:
@@ -129,4 +140,4 @@ class InspectRepeats(QObject):
         return len({repeat.calibration_id for repeat in self.all})
 
     def _put(self, repeats: tuple[Repeat, ...], label: str) -> None:
-        self._owner.model.edit(label, replace(self._owner.project, repeats=repeats))
+        self._model.edit(label, replace(self._model.project, repeats=repeats))

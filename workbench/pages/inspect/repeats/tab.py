@@ -2,26 +2,27 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QEvent, Qt
+from PySide6.QtCore import Qt
 from PySide6.QtGui import QGuiApplication
 from PySide6.QtWidgets import QHBoxLayout, QPushButton, QSplitter, QTabWidget, QVBoxLayout, QWidget
 
-from core.files.project import Repeat
-from workbench.pages import inspect_words as words
-from workbench.pages.inspect_presenter import InspectPresenter
+from core.files.project.data import Repeat
+from workbench.language import text_of
+from workbench.pages.inspect import words
+from workbench.pages.inspect.repeats.repeats import InspectRepeats
 from workbench.pages.step_page import muted
 from workbench.theme import icon
-from workbench.views.plots import Histogram, RunChart
-from workbench.views.tables import DataTable
-from workbench.views.value_rows import ValueRows
+from workbench.views.lists.data_table import DataTable
+from workbench.views.lists.value_rows import ValueRows
+from workbench.views.plots.runs import Histogram, RunChart
 
 
 class RepeatsTab(QWidget):
     """All repeats of the project and what they say together."""
 
-    def __init__(self, presenter: InspectPresenter, parent: QWidget | None = None) -> None:
+    def __init__(self, repeats: InspectRepeats, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self._presenter = presenter
+        self._repeats = repeats
         self._shown: object = None
         self.table, self.chart, self.rows, self.words = DataTable(), RunChart(), ValueRows(), muted()
         self.histogram, self.type1, self.type1_words = Histogram(), ValueRows(), muted()
@@ -38,8 +39,8 @@ class RepeatsTab(QWidget):
         self.add.setText(self.tr("Add this scan"))
         self.remove.setText(self.tr("Remove"))
         self.copy.setText(self.tr("Copy all"))
-        self.add.clicked.connect(lambda: presenter.repeats.add())
-        self.remove.clicked.connect(lambda: presenter.repeats.remove([self.table.current_row()]))
+        self.add.clicked.connect(lambda: repeats.add())
+        self.remove.clicked.connect(lambda: repeats.remove([self.table.current_row()]))
         self.copy.clicked.connect(self._copy)
         self.table.current_row_changed.connect(lambda _: self._show_buttons())
         buttons = QHBoxLayout()
@@ -78,8 +79,8 @@ class RepeatsTab(QWidget):
 
     def refresh(self) -> None:
         """Show what the presenter says now."""
-        p, repeats = self._presenter, self._presenter.repeats
-        spec = p.faces.spec
+        self._dress()
+        repeats, spec = self._repeats, self._repeats.spec
         wanted = (repeats.all, spec.nominal_mm, spec.tolerance_mm)
         self._show_buttons()
         self._show_type1()
@@ -115,21 +116,16 @@ class RepeatsTab(QWidget):
 
     def _show_type1(self) -> None:
         """The study where there can be one; else what it needs, as soon as there is a repeat."""
-        repeats = self._presenter.repeats
+        repeats = self._repeats
         repeats.study()
         study = repeats.type1
         self.type1.set_rows([] if study is None else words.type1_rows(study))
-        told = "" if not repeats.all else repeats.no_type1 if study is None else "\n".join(study.notes)
-        self.type1_words.setText(told)
-        self.type1_words.setVisible(bool(told))
-
-    def changeEvent(self, event: QEvent) -> None:
-        super().changeEvent(event)
-        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "copy"):
-            self._dress()
+        said = repeats.no_type1 if study is None else "\n".join(map(text_of, study.notes))
+        self.type1_words.setText(said if repeats.all else "")
+        self.type1_words.setVisible(bool(self.type1_words.text()))
 
     def _show_buttons(self) -> None:
-        repeats = self._presenter.repeats
+        repeats = self._repeats
         why_not = repeats.can_add
         self.add.setEnabled(not why_not)
         self.add.setToolTip(why_not or self.tr("Add the thickness of this scan to the series"))
@@ -148,7 +144,7 @@ class RepeatsTab(QWidget):
         )
 
     def _sentence(self) -> str:
-        repeats = self._presenter.repeats
+        repeats = self._repeats
         if not repeats.all:
             return self.tr(
                 "No repeats yet: measure a scan, add it here, then scan the part again. Each scan counts once."
@@ -163,7 +159,7 @@ class RepeatsTab(QWidget):
         return self.tr("Recording {0}, calibration {1}").format(repeat.scan, repeat.calibration_id)
 
     def _copy(self) -> None:
-        repeats = self._presenter.repeats
+        repeats = self._repeats
         QGuiApplication.clipboard().setText(words.repeats_tsv(repeats.all, repeats.statistics(), repeats.type1))
 
     def _dress(self) -> None:

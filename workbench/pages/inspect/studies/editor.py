@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QEvent
 from PySide6.QtGui import QFontDatabase
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QPlainTextEdit, QPushButton, QVBoxLayout, QWidget
 
-from workbench.pages import inspect_study_words as words
-from workbench.pages.inspect_presenter import InspectPresenter
-from workbench.pages.inspect_studies import LIMITS, Draft
+from workbench.pages.inspect.studies import words
+from workbench.pages.inspect.studies.studies import LIMITS, Draft, InspectStudies
 from workbench.pages.step_page import heading, muted
 from workbench.theme import icon, shades
 from workbench.views import ask
-from workbench.views.dressing import dress
-from workbench.views.forms import SettingsForm
+from workbench.views.common import dress
+from workbench.views.forms.form import SettingsForm
 
 FORM_WIDTH = 300
 LONGEST = 5000.0
@@ -22,9 +20,9 @@ LONGEST = 5000.0
 class StudyEditor(QWidget):
     """The table at the left, settings at the right, buttons below."""
 
-    def __init__(self, presenter: InspectPresenter, parent: QWidget | None = None) -> None:
+    def __init__(self, studies: InspectStudies, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self._presenter, self._studies = presenter, presenter.studies
+        self._studies = studies
         self.title, self.help, self.problem = heading(""), muted(), QLabel()
         self.problem.setWordWrap(True)
         self.text = QPlainTextEdit()
@@ -68,6 +66,7 @@ class StudyEditor(QWidget):
 
     def refresh(self) -> None:
         """Show what the presenter says now."""
+        self._dress()
         studies, draft = self._studies, self._studies.draft
         if draft is None:
             return
@@ -85,11 +84,6 @@ class StudyEditor(QWidget):
             button.setEnabled(not busy)
         self.make.setToolTip(busy or self.tr("Work the study out and keep it in the project"))
         self.add.setToolTip(busy or self._add_tip(draft))
-
-    def changeEvent(self, event: QEvent) -> None:
-        super().changeEvent(event)
-        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "make"):
-            self._dress()
 
     def _help(self, draft: Draft) -> str:
         if draft.kind == "grr":
@@ -147,13 +141,13 @@ class StudyEditor(QWidget):
 
     def _open(self) -> None:
         path = ask.choose_file_to_open(
-            self, self.tr("Table of the study"), self._presenter.model.folder, self.tr("Table (*.csv *.txt *.tsv)")
+            self, self.tr("Table of the study"), self._studies.model.folder, self.tr("Table (*.csv *.txt *.tsv)")
         )
         if path is not None:
             self._studies.open_table(path)
 
     def _add(self) -> None:
-        folder = ask.choose_folder(self, self.tr("Project"), self._presenter.bench.settings.projects_folder)
+        folder = ask.choose_folder(self, self.tr("Project"), self._studies.bench.settings.projects_folder)
         if folder is not None:
             self._studies.add_project(folder)
 

@@ -5,17 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
-from PySide6.QtCore import QObject
+from PySide6.QtCore import QObject, Signal
 
-from core.files.project import KeptStudy
-from workbench import jobs
-from workbench.problems import sentence
-from workbench.tasks import Task
-
-if TYPE_CHECKING:
-    from workbench.pages.inspect_presenter import InspectPresenter
+from core.files.project.data import KeptStudy
+from workbench.bench import Bench
+from workbench.language import text_of, tr
+from workbench.pages.inspect.repeats.repeats import InspectRepeats
+from workbench.work import jobs
+from workbench.work.tasks import Task
 
 Kind = Literal["grr", "acceptance"]
 HEADS: Mapping[Kind, str] = {
@@ -40,9 +39,11 @@ class Draft:
 class InspectStudies(QObject):
     """The list, the chosen study, and the draft of a new one."""
 
-    def __init__(self, owner: InspectPresenter) -> None:
-        super().__init__(owner)
-        self._owner = owner
+    changed = Signal()
+
+    def __init__(self, bench: Bench, repeats: InspectRepeats) -> None:
+        super().__init__()
+        self.bench, self.model, self._repeats = bench, bench.model, repeats
         self.chosen = ""
         self.draft: Draft | None = None
         self.problem = ""
@@ -53,7 +54,7 @@ class InspectStudies(QObject):
     @property
     def all(self) -> tuple[KeptStudy, ...]:
         """The studies in the order they are reported."""
-        return self._owner.project.studies
+        return self.model.project.studies
 
     @property
     def study(self) -> Any:
@@ -69,36 +70,36 @@ class InspectStudies(QObject):
         """Show this study; "" for none."""
         self.chosen = id_
         self._look()
-        self._owner.changed.emit()
+        self.changed.emit()
 
     # ---- the list
 
     def include(self, id_: str, included: bool) -> None:
         """Put a study into the report or leave it out; undoable."""
-        label = self.tr("report the study") if included else self.tr("leave the study out")
+        label = tr("report the study") if included else tr("leave the study out")
         self._put(tuple(replace(one, included=included) if one.id == id_ else one for one in self.all), label)
 
     def remove(self, id_: str) -> None:
         """Take a study out of the project; undoable."""
         if any(one.id == id_ for one in self.all):
-            self._put(tuple(one for one in self.all if one.id != id_), self.tr("remove a study"))
+            self._put(tuple(one for one in self.all if one.id != id_), tr("remove a study"))
 
     @property
     def cannot_keep_type1(self) -> str:
         """Why the repeats give no type-1 study to be kept, or ""."""
-        if not self._owner.model.is_open:
-            return self.tr("Open a project first.")
-        return self._owner.repeats.no_type1
+        if not self.model.is_open:
+            return tr("Open a project first.")
+        return self._repeats.no_type1
 
     def keep_type1(self) -> None:
         """Keep the type-1 study of the repeats as they are now; undoable."""
-        spec, repeats = self._owner.faces.spec, self._owner.repeats.all
+        spec, repeats = self._repeats.spec, self._repeats.all
         if self.cannot_keep_type1 or spec.tolerance_mm is None:
-            self._owner.bench.notices.warning(self.cannot_keep_type1)
+            self.bench.notices.warning(self.cannot_keep_type1)
             return
         values = [repeat.thickness_mm for repeat in repeats]
         self._run(
-            jobs.KEEP_TYPE1, values, spec.nominal_mm, 2 * spec.tolerance_mm, label=self.tr("Studying the repeats"),
+            jobs.KEEP_TYPE1, values, spec.nominal_mm, 2 * spec.tolerance_mm, label=tr("Studying the repeats"),
             on_done=self._keep, offers={},
         )  # fmt: skip
 
@@ -106,30 +107,30 @@ class InspectStudies(QObject):
         """Write a copy of a study: its table if the name ends in .csv, else study.json."""
         path = path if path.suffix.lower() in (".csv", ".json") else path.with_name(path.name + ".json")
         self._run(
-            jobs.EXPORT_STUDY, id_, path, label=self.tr("Writing {0}").format(path.name), offers={},
-            on_done=lambda written: self._owner.bench.notices.info(self.tr("Written: {0}").format(written)),
+            jobs.EXPORT_STUDY, id_, path, label=tr("Writing {0}").format(path.name), offers={},
+            on_done=lambda written: self.bench.notices.info(tr("Written: {0}").format(written)),
         )  # fmt: skip
 
     # ---- a new one
 
     def begin(self, kind: Kind) -> None:
         """Begin a study of this kind, with an empty table."""
-        folder = self._owner.model.folder
+        folder = self.model.folder
         if folder is None:
-            self._owner.bench.notices.warning(self.tr("Open a project first."))
+            self.bench.notices.warning(tr("Open a project first."))
             return
-        tolerance = self._owner.faces.spec.tolerance_mm
+        tolerance = self._repeats.spec.tolerance_mm
         values: dict[str, Any] = {"tolerance_mm": tolerance}
         if kind == "acceptance":
             values = dict.fromkeys(LIMITS) | {"artefact": "sphere", "calibrated_mm": 25.0, "u_mm": 0.0}
             values |= {"diameter_mm": 25.0}
         self.draft, self.problem = Draft(kind, HEADS[kind], folder, values), ""
-        self._owner.changed.emit()
+        self.changed.emit()
 
     def give_up(self) -> None:
         """Make no study after all."""
         self.draft, self.problem = None, ""
-        self._owner.changed.emit()
+        self.changed.emit()
 
     def write(self, text: str) -> None:
         """Take this text for the table."""
@@ -140,7 +141,7 @@ class InspectStudies(QObject):
         """Change a setting of the draft."""
         if self.draft is not None:
             self.draft = replace(self.draft, values={**self.draft.values, key: value})
-            self._owner.changed.emit()
+            self.changed.emit()
 
     def open_table(self, path: Path) -> None:
         """Take the table in this file; names of results in it are seen from its folder."""
@@ -149,9 +150,7 @@ class InspectStudies(QObject):
             if self.draft is not None:
                 self.draft = replace(self.draft, text=text, base=path.parent)
 
-        self._run(
-            jobs.READ_STUDY_TABLE, path, label=self.tr("Reading the table"), on_done=done, offers={}, of_project=False
-        )
+        self._run(jobs.READ_STUDY_TABLE, path, label=tr("Reading the table"), on_done=done, offers={}, of_project=False)
 
     def add_project(self, folder: Path) -> None:
         """Add what another project has measured to the table."""
@@ -168,7 +167,7 @@ class InspectStudies(QObject):
 
         self._run(
             jobs.PROJECT_ROWS, draft.kind, folder, values.get("artefact", "plane"), *settings,
-            label=self.tr("Reading {0}").format(folder.name), on_done=done, of_project=False,
+            label=tr("Reading {0}").format(folder.name), on_done=done, of_project=False,
         )  # fmt: skip
 
     def finish(self) -> None:
@@ -183,7 +182,7 @@ class InspectStudies(QObject):
             limits = {key: draft.values[key] for key in LIMITS if draft.values[key] is not None}
         self._run(
             jobs.KEEP_STUDY, draft.kind, _one_separator(draft.text), draft.base, limits,
-            label=self.tr("Making the study"), on_done=self._keep,
+            label=tr("Making the study"), on_done=self._keep,
         )  # fmt: skip
 
     # ---- what happens elsewhere
@@ -199,53 +198,54 @@ class InspectStudies(QObject):
         self.draft, self.problem = None, ""
         self.chosen = kept.id
         if all(one.id != kept.id for one in self.all):
-            self._put((*self.all, kept), self.tr("add a study"))
+            self._put((*self.all, kept), tr("add a study"))
         self._look()
 
     def _put(self, studies: tuple[KeptStudy, ...], label: str) -> None:
-        self._owner.model.edit(label, replace(self._owner.project, studies=studies))
+        self.model.edit(label, replace(self.model.project, studies=studies))
 
     def _look(self) -> None:
         """Read the chosen study, unless it is there or under way."""
-        folder, id_ = self._owner.model.folder, self.chosen
+        folder, id_ = self.model.folder, self.chosen
         if folder is None or not id_ or id_ in self._looked or id_ in self._asked:
             return
         self._asked.add(id_)
 
         def done(study: Any) -> None:
-            if folder == self._owner.model.folder:
+            if folder == self.model.folder:
                 self._looked[id_] = study
-                self._owner.changed.emit()
+                self.changed.emit()
 
-        self._owner.bench.glance(
-            jobs.LOOK_AT_STUDY, folder, id_, label=self.tr("Reading the study"), on_done=done, offers={}
-        ).ended.connect(lambda *_: self._asked.discard(id_))
+        task = self.bench.run_quick(
+            self, jobs.LOOK_AT_STUDY, folder, id_, label=tr("Reading the study"), on_done=done, offers={}
+        )
+        task.ended.connect(lambda: self._asked.discard(id_))
 
     def _run(self, job: jobs.Job, *args: Any, of_project: bool = True, **more: Any) -> None:
         """One job at a time; what goes wrong with it is told where the study is made, too."""
-        folder, on_done = self._owner.model.folder, more.pop("on_done")
+        folder, on_done = self.model.folder, more.pop("on_done")
         if folder is None or self.working:
             return
         self.problem = ""
 
         def done(answer: Any) -> None:
-            if folder == self._owner.model.folder:
+            if folder == self.model.folder:
                 on_done(answer)
 
         def failed(problem: Any) -> None:
-            if folder == self._owner.model.folder:
-                self.problem = sentence(problem)
+            if folder == self.model.folder:
+                self.problem = text_of(problem)
 
         first = (folder,) if of_project else ()
-        bench = self._owner.bench
-        run = bench.measure if job == jobs.PROJECT_ROWS else bench.glance  # a cloud is looked through for the artefact
-        self._working = run(job, *first, *args, on_done=done, on_failed=failed, **more)
+        # A cloud is looked through for the artefact, which takes long.
+        run = self.bench.run_long if job == jobs.PROJECT_ROWS else self.bench.run_quick
+        self._working = run(self, job, *first, *args, on_done=done, on_failed=failed, **more)
         self._working.ended.connect(self._ended)
-        self._owner.changed.emit()
+        self.changed.emit()
 
     def _ended(self) -> None:
         self._working = None
-        self._owner.changed.emit()
+        self.changed.emit()
 
 
 def _one_separator(text: str) -> str:

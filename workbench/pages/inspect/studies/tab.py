@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QEvent, Qt
+from PySide6.QtCore import Qt
 from PySide6.QtWidgets import (
     QHBoxLayout,
     QHeaderView,
@@ -15,15 +15,16 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from core.files.project import KeptStudy
-from workbench.pages import inspect_study_words as words
-from workbench.pages.inspect_presenter import InspectPresenter
-from workbench.pages.inspect_study_editor import StudyEditor
+from core.files.project.data import KeptStudy
+from workbench.language import text_of
+from workbench.pages.inspect.studies import words
+from workbench.pages.inspect.studies.editor import StudyEditor
+from workbench.pages.inspect.studies.studies import InspectStudies
 from workbench.pages.step_page import muted
 from workbench.theme import icon
 from workbench.views import ask
-from workbench.views.tables import DataTable
-from workbench.views.value_rows import ValueRows
+from workbench.views.lists.data_table import DataTable
+from workbench.views.lists.value_rows import ValueRows
 
 LIST_HEIGHT = 150
 
@@ -31,15 +32,15 @@ LIST_HEIGHT = 150
 class StudiesTab(QWidget):
     """The list above, the study below; in its place the editor while one is being made."""
 
-    def __init__(self, presenter: InspectPresenter, parent: QWidget | None = None) -> None:
+    def __init__(self, studies: InspectStudies, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self._presenter, self._studies = presenter, presenter.studies
+        self._studies = studies
         self._shown: tuple[KeptStudy, ...] = ()
         self._shown_study: object = None
         self.list, self.rows, self.table = QTreeWidget(), ValueRows(), DataTable()
         self.title, self.words, self.notes = QLabel(), muted(), muted()
         self.title.setObjectName("heading")
-        self.editor = StudyEditor(presenter)
+        self.editor = StudyEditor(studies)
         self.buttons: dict[str, QPushButton] = {}
         self.stack = QStackedWidget()
         self.stack.addWidget(self._kept())
@@ -51,6 +52,7 @@ class StudiesTab(QWidget):
 
     def refresh(self) -> None:
         """Show what the presenter says now."""
+        self._dress()
         studies = self._studies
         self.stack.setCurrentIndex(0 if studies.draft is None else 1)
         if studies.draft is not None:
@@ -59,11 +61,6 @@ class StudiesTab(QWidget):
         self._show_list()
         self._show_buttons()
         self._show_study()
-
-    def changeEvent(self, event: QEvent) -> None:
-        super().changeEvent(event)
-        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "stack"):
-            self._dress()
 
     # ---- making it
 
@@ -149,7 +146,7 @@ class StudiesTab(QWidget):
     def _show_buttons(self) -> None:
         studies = self._studies
         busy = self.tr("A study is being worked out.") if studies.working else ""
-        closed = "" if self._presenter.model.is_open else self.tr("Open a project first.")
+        closed = "" if self._studies.model.is_open else self.tr("Open a project first.")
         chosen = any(one.id == studies.chosen for one in studies.all)
         choose = "" if chosen else self.tr("Choose a study in the list first.")
         for key, why_not, tip in (
@@ -178,11 +175,11 @@ class StudiesTab(QWidget):
         self.rows.set_rows(words.rows(kept.kind, study))
         self.table.set_headers(headers)
         self.table.set_rows(body)
-        self.notes.setText("\n".join(study.notes))
+        self.notes.setText("\n".join(map(text_of, study.notes)))
 
     def _export(self) -> None:
         kept = next((one for one in self._studies.all if one.id == self._studies.chosen), None)
-        folder = self._presenter.model.folder
+        folder = self._studies.model.folder
         if kept is None or folder is None:
             return
         kinds = self.tr("Study (*.json);;Table (*.csv)")

@@ -6,12 +6,11 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from PySide6.QtCore import QCoreApplication
-
 from core.report.wording import fixed
-from workbench.pages import inspect_words
-from workbench.pages.inspect_words import Row
+from workbench.language import text_of, tr
+from workbench.pages.inspect import words as inspect_words
 from workbench.views.colours import Level
+from workbench.views.lists.value_rows import ValueRow
 
 if TYPE_CHECKING:
     from core.study.acceptance import AcceptanceCheck
@@ -32,16 +31,16 @@ Table = tuple[list[tuple[str, str]], list[Sequence[str]]]
 def kind_title(kind: str) -> str:
     """What a kind of study is called."""
     return {
-        "repeats": _tr("Repeats"),
-        "type1": _tr("Type-1 study"),
-        "grr": _tr("Gauge R&R"),
-        "acceptance": _tr("Acceptance check"),
+        "repeats": tr("Repeats"),
+        "type1": tr("Type-1 study"),
+        "grr": tr("Gauge R&R"),
+        "acceptance": tr("Acceptance check"),
     }[kind]
 
 
-def rows(kind: str, study: Any) -> list[Row]:
+def rows(kind: str, study: Any) -> list[ValueRow]:
     """The figures of a study."""
-    made: Mapping[str, Callable[[Any], list[Row]]] = {
+    made: Mapping[str, Callable[[Any], list[ValueRow]]] = {
         "type1": inspect_words.type1_rows,
         "grr": _grr_rows,
         "acceptance": _acceptance_rows,
@@ -55,53 +54,53 @@ def table(kind: str, study: Any) -> Table:
     return made[kind](study) if kind in made else ([], [])
 
 
-def verdict_row(verdict: str) -> Row:
+def verdict_row(verdict: str) -> ValueRow:
     """What was decided."""
     words = {
-        "": _tr("no limit stated"),
-        "acceptable": _tr("acceptable"),
-        "acceptable with reservations": _tr("with reservations"),
-        "not acceptable": _tr("not acceptable"),
-        "conforming": _tr("conforming"),
-        "not proven": _tr("not proven"),
-        "not conforming": _tr("not conforming"),
+        "": tr("no limit stated"),
+        "acceptable": tr("acceptable"),
+        "acceptable with reservations": tr("with reservations"),
+        "not acceptable": tr("not acceptable"),
+        "conforming": tr("conforming"),
+        "not proven": tr("not proven"),
+        "not conforming": tr("not conforming"),
     }
-    return _tr("Decision"), words[verdict], "", LEVELS.get(verdict, "")
+    return tr("Decision"), words[verdict], "", LEVELS.get(verdict, "")
 
 
-def _grr_rows(study: GrrStudy) -> list[Row]:
+def _grr_rows(study: GrrStudy) -> list[ValueRow]:
     of_total, of_tolerance = study.component("gauge R&R").of_total, study.component("gauge R&R").of_tolerance
-    said: list[Row] = [verdict_row(study.verdict)]
+    said: list[ValueRow] = [verdict_row(study.verdict)]
     if of_tolerance is not None and study.tolerance is not None:
-        tip = _tr("6 s of gauge R&R over T = {0} mm; up to 10 % is good, above 30 % is not acceptable")
-        said.append((_tr("%GRR of T"), _percent(of_tolerance), tip.format(f"{study.tolerance:g}"), ""))
+        tip = tr("6 s of gauge R&R over T = {0} mm; up to 10 % is good, above 30 % is not acceptable")
+        said.append((tr("%GRR of T"), _percent(of_tolerance), tip.format(f"{study.tolerance:g}"), ""))
     low, high = (_percent(end) for end in study.grr_interval)
-    tip = _tr("s of gauge R&R over the whole scatter; 95 % interval {0} to {1}").format(low, high)
-    said.append((_tr("%GRR of the total"), _percent(of_total), tip, ""))
+    tip = tr("s of gauge R&R over the whole scatter; 95 % interval {0} to {1}").format(low, high)
+    said.append((tr("%GRR of the total"), _percent(of_total), tip, ""))
     categories = "∞" if study.categories is None else str(study.categories)
-    tip = _tr("Number of distinct categories: how many groups of parts it can tell apart; 5 or more are wanted")
-    said.append((_tr("ndc"), categories, tip, "" if study.categories is None or study.categories >= 5 else "warn"))
+    tip = tr("Number of distinct categories: how many groups of parts it can tell apart; 5 or more are wanted")
+    said.append((tr("ndc"), categories, tip, "" if study.categories is None or study.categories >= 5 else "warn"))
     interaction = next((row for row in study.anova if row.source == "interaction"), None)
     if interaction is not None and interaction.p is not None:
-        pooled = _tr("pooled") if study.pooled else _tr("kept")
-        tip = _tr("p = {0}: pooled with the error above 0.05").format(f"{interaction.p:.2g}")
-        said.append((_tr("Interaction"), pooled, tip, ""))
+        pooled = tr("pooled") if study.pooled else tr("kept")
+        tip = tr("p = {0}: pooled with the error above 0.05").format(f"{interaction.p:.2g}")
+        said.append((tr("Interaction"), pooled, tip, ""))
     return said
 
 
 def _components(study: GrrStudy) -> Table:
     names = {
-        "gauge R&R": _tr("gauge R&R"),
-        "repeatability": _tr("repeatability"),
-        "reproducibility": _tr("reproducibility"),
-        "operators": _tr("  operators"),
-        "interaction": _tr("  interaction"),
-        "parts": _tr("parts"),
-        "total": _tr("total"),
+        "gauge R&R": tr("gauge R&R"),
+        "repeatability": tr("repeatability"),
+        "reproducibility": tr("reproducibility"),
+        "operators": tr("  operators"),
+        "interaction": tr("  interaction"),
+        "parts": tr("parts"),
+        "total": tr("total"),
     }
     with_tolerance = study.tolerance is not None
-    headers = [(_tr("Source"), ""), (_tr("s"), study.unit), (_tr("% of s²"), ""), (_tr("% of total"), "")]
-    headers += [(_tr("% of T"), "")] if with_tolerance else []
+    headers = [(tr("Source"), ""), (tr("s"), study.unit), (tr("% of s²"), ""), (tr("% of total"), "")]
+    headers += [(tr("% of T"), "")] if with_tolerance else []
     body: list[Sequence[str]] = []
     for one in study.components:
         shares = [one.contribution, one.of_total] + ([one.of_tolerance or 0.0] if with_tolerance else [])
@@ -110,22 +109,22 @@ def _components(study: GrrStudy) -> Table:
     return headers, body
 
 
-def _acceptance_rows(study: AcceptanceCheck) -> list[Row]:
+def _acceptance_rows(study: AcceptanceCheck) -> list[ValueRow]:
     return [verdict_row(study.verdict)]
 
 
 def _quantities(study: AcceptanceCheck) -> Table:
     headers = [
-        (_tr("Quantity"), ""),
-        (_tr("Positions"), ""),
-        (_tr("Largest error"), "mm"),
-        (_tr("At"), ""),
-        (_tr("Limit"), "mm"),
-        (_tr("Decision"), ""),
+        (tr("Quantity"), ""),
+        (tr("Positions"), ""),
+        (tr("Largest error"), "mm"),
+        (tr("At"), ""),
+        (tr("Limit"), "mm"),
+        (tr("Decision"), ""),
     ]
     body: list[Sequence[str]] = [
         [
-            one.title,
+            text_of(one.title),
             str(len(one.readings)),
             fixed(one.largest_error, 4, signed=True),
             one.worst.position,
@@ -139,7 +138,3 @@ def _quantities(study: AcceptanceCheck) -> Table:
 
 def _percent(share: float) -> str:
     return f"{fixed(100 * share, 1)} %" if math.isfinite(share) else "–"
-
-
-def _tr(text: str) -> str:
-    return QCoreApplication.translate("Inspect", text)

@@ -1,0 +1,87 @@
+"""The language of the window: every text that a technician reads goes through here.
+
+One catalogue serves core's messages, the window's own words and what Qt asks for (`QObject.tr`). It is chosen once,
+when the program starts.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+from PySide6.QtCore import QCoreApplication, QObject, QTranslator
+
+from core.errors import InputError
+from core.messages import Language, Message, label
+from workbench.work.worker import ENDED, Failure
+
+
+class _Catalogue(QTranslator):
+    """Answers Qt's own question for a text from the same catalogue."""
+
+    def translate(self, context: str, sourceText: str, disambiguation: str | None = None, n: int = -1) -> str:
+        return _chosen.label(sourceText)
+
+    def isEmpty(self) -> bool:
+        return _chosen.name == "en"
+
+
+_FIELDS = {
+    "[camera_target]": label("the target"),
+    "laser_fan.lines": label("the number of lines under Laser"),
+    "plane_target.kind": label("the kind of plate"),
+    "target.inner_corners": label("columns and rows of the target"),
+    "target.circles": label("columns and rows of the target"),
+    "target.dictionary": label("markers of the target"),
+    "target.columns, rows and dictionary": label("columns, rows and markers"),
+    "target.size": label("size"),
+}
+"""What the window calls the fields of the files that people write for the command line."""
+
+_ELSEWHERE = Message(
+    "window.elsewhere", "make the folder writable, or copy the project to another disk and open it there"
+)
+_ADVICE = {
+    "advice.another_out": _ELSEWHERE,
+    "advice.results_into_set": Message("window.another_folder", "choose another folder"),
+    "advice.name_results_folder": Message("window.results_folder", "choose the folder of its results"),
+    "advice.another_characteristic": Message("window.another_result", "choose another result"),
+}
+"""What the window advises in place of an option of the command line, by the code of that advice."""
+
+
+def _for_the_window(language: Language) -> Language:
+    fields = {key: language.label(english) for key, english in _FIELDS.items()}
+    advice = {code: language(message) for code, message in _ADVICE.items()}
+    return replace(language, messages={**language.messages, **advice}, fields=fields, commands=False)
+
+
+_chosen = _for_the_window(Language())
+
+
+def choose(language: Language, parent: QObject) -> None:
+    """Have the window speak `language` from now on; what is shown already stays as it is."""
+    global _chosen
+    _chosen = _for_the_window(language)
+    QCoreApplication.installTranslator(_Catalogue(parent))
+
+
+def tr(english: str, /, **values: Any) -> str:
+    """Fixed words of the window, with values in their places: `tr("{n} of {m} frames", n=3, m=5)`."""
+    return _chosen.label(english, **values)
+
+
+def text_of(message: Message | Exception | Failure | str) -> str:
+    """What core has to say or what went wrong with a job, in the window's language; anything else as it is."""
+    if isinstance(message, Failure):
+        if message.kind == ENDED:
+            return tr("The process that does this ended unexpectedly. What was recorded and measured before is kept.")
+        return tr("Something went wrong in the program; your work is kept. Details: {details}", details=str(message))
+    if isinstance(message, InputError):
+        return message.told(_chosen)
+    return _chosen(message) if isinstance(message, Message) else str(message)
+
+
+def number(value: float, spec: str = "") -> str:
+    """A number as the window's language writes it."""
+    return _chosen.number(value, spec)

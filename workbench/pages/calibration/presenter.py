@@ -1,0 +1,243 @@
+"""Decisions that the pages of both calibrations share: pictures, which of them count, accept or reject."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, ClassVar, Literal
+
+from core.image.targets.target_view import TargetView
+from core.pipeline.live.events import LiveEnded, LiveTaken
+from workbench.bench import Bench
+from workbench.language import tr
+from workbench.pages.calibration.acceptance import Acceptance
+from workbench.pages.calibration.history import StoredCalibrations
+from workbench.pages.calibration.stage import Facts, Stage, stage_of
+from workbench.pages.calibration.target import TargetChoice
+from workbench.pages.calibration.work import CalibrationWork
+from workbench.pages.live.presenter import LivePresenter
+from workbench.pages.presenter import StepPresenter
+from workbench.pages.sources import folder_of, put_source
+from workbench.step_state import State
+from workbench.work.jobs import Job
+
+
+class CalibrationPresenter(StepPresenter):
+    """Pictures found, solved and judged; what is accepted.
+
+    A subclass says in `KEEP` which job keeps an accepted one, brings its `work`, `history` and `target`, and says
+    what differs in words.
+    """
+
+    step: Literal["camera", "planes"]
+    KEEP: ClassVar[Job]
+
+    work: CalibrationWork[Any, Any]
+    history: StoredCalibrations
+    target: TargetChoice
+
+    def __init__(self, bench: Bench) -> None:
+        super().__init__(bench)
+        self.live = LivePresenter(bench, self.step, self)
+        self.live.there = self.views_that_count
+        self.live_views: list[tuple[str, Any]] = []
+        """Name and small picture of each that was taken since the live source was started."""
+        self.acceptance = Acceptance(bench, self.step, self.KEEP, self)
+        self.live.changed.connect(self.changed)
+        self.live.started.connect(self._live_started)
+        self.live.taken.connect(self._live_taken)
+        self.live.ended.connect(self._live_ended)
+        self.acceptance.changed.connect(self.changed)
+
+    def _connect(self) -> None:
+        """To be called by a subclass once its `work` and `history` are there."""
+        self.work.changed.connect(self._work_changed)
+        self.history.changed.connect(self.changed)
+        self.acceptance.kept.connect(self.history.refresh)
+
+    # ---- what differs
+
+    @property
+    @abstractmethod
+    def current(self) -> str:
+        """The picture that is looked at."""
+
+    @property
+    @abstractmethod
+    def candidate(self) -> str:
+        """The id of the calibration that is shown, or ""."""
+
+    @abstractmethod
+    def _is_current(self) -> bool:
+        """Whether the accepted calibration is what the project gives now."""
+
+    @abstractmethod
+    def _missing(self) -> dict[Stage, str]:
+        """What is missing at each stage before the next step makes sense; nothing where it is accepted."""
+
+    @abstractmethod
+    def _accepted_already(self) -> str:
+        """Why the accepted calibration cannot be accepted."""
+
+    @abstractmethod
+    def _stored(self, name: str) -> str:
+        """What the project calls a picture of the list."""
+
+    @abstractmethod
+    def _names(self, count: int) -> str:
+        """So many pictures, in words."""
+
+    @abstractmethod
+    def _source_label(self) -> str:
+        """What the edit is called that chooses the pictures."""
+
+    @abstractmethod
+    def _made(self) -> tuple[Any, ...]:
+        """What keeping the calibration takes."""
+
+    @abstractmethod
+    def views_that_count(self) -> tuple[TargetView, ...]:
+        """What the target shows in the pictures there are, without those left out by hand."""
+
+    @abstractmethod
+    def _work_changed(self) -> None:
+        """Something else was found or solved."""
+
+    # ---- state
+
+    @property
+    def stage(self) -> Stage:
+        """How far the calibration is."""
+        work, project, accepted = self.work, self.project, self.acceptance.accepted
+        return stage_of(
+            Facts(
+                live=self.live.running,
+                searching=work.searching,
+                solving=work.found is not None and work.solving,
+                accepted=accepted,
+                candidate=self.candidate,
+                current=self._is_current(),
+                rejected=self.acceptance.is_rejected(self.candidate),
+                camera_missing=self.step == "planes" and not project.accepted.camera,
+                failed=bool(work.problem),
+                source=bool(getattr(project.sources, self.step)),
+                empty=work.pictures == (),
+            )
+        )
+
+    @property
+    def is_done(self) -> bool:
+        """Whether the step is done, and nothing it rests on has changed since."""
+        return self.state.state is State.DONE
+
+    def blocker(self) -> str:
+        return self._missing().get(self.stage, "")
+
+    @property
+    def can_search(self) -> str:
+        """Why the pictures cannot be searched now, or ""."""
+        if self.live.running:
+            return tr("Stop the live source first.")
+        if self.step == "planes" and not self.project.accepted.camera:
+            return tr("Accept a camera calibration first.")
+        if not getattr(self.project.sources, self.step):
+            return tr("Choose or record pictures first.")
+        return self._missing()[Stage.SEARCHING] if self.work.searching else ""
+
+    @property
+    def can_accept(self) -> str:
+        """Why nothing can be accepted now, or ""."""
+        if self.live.running:
+            return tr("Stop the live source first.")
+        if self.work.calibration is None or self.work.solving or self.acceptance.keeping:
+            return tr("There is no calibration yet.")
+        if self.candidate == self.acceptance.accepted and self._is_current():
+            return self._accepted_already()
+        return ""
+
+    @property
+    def can_reject(self) -> str:
+        """Why nothing can be rejected now, or ""."""
+        if self.live.running:
+            return tr("Stop the live source first.")
+        if not self.candidate or self.work.solving:
+            return tr("There is no calibration yet.")
+        if self.acceptance.is_rejected(self.candidate) and self.candidate != self.acceptance.accepted:
+            return tr("This calibration is rejected already.")
+        return ""
+
+    # ---- pictures
+
+    @property
+    def folder(self) -> Path | None:
+        """The folder of the pictures."""
+        return folder_of(self.model, self.step)
+
+    def use_folder(self, folder: Path) -> None:
+        """Take the pictures of a folder, and search them."""
+        self.live.stop()
+        put_source(self.model, self.step, folder, self._source_label())
+        self.work.search()
+
+    def set_used(self, names: Sequence[str], used: bool) -> None:
+        """Let pictures count, or leave them out; undoable. While they are taken live, put them aside."""
+        if self.live.running:
+            if not used:
+                for name in names:
+                    self.live.discard(name.removeprefix(f"{self.step}/"))
+                self.live_views = [view for view in self.live_views if view[0] not in names]
+                self.changed.emit()
+            return
+        stored = {self._stored(name) for name in names}
+        excluded = self.project.options.excluded
+        what = names[0].removeprefix(f"{self.step}/") if len(names) == 1 else self._names(len(names))
+        label = tr("let {0} count") if used else tr("leave out {0}")
+        self._exclude(excluded - stored if used else excluded | stored, label.format(what))
+
+    def _exclude(self, excluded: frozenset[str], label: str, merge_key: str = "") -> None:
+        options = replace(self.project.options, excluded=frozenset(excluded))
+        self.model.edit(label, replace(self.project, options=options), merge_key)
+
+    # ---- what the user does
+
+    def accept(self) -> None:
+        """Measure with the calibration that is shown, from now on; undoable."""
+        if not self.can_accept:
+            self.acceptance.accept(*self._made())
+
+    def reject(self) -> None:
+        """Do not measure with the calibration that is shown; undoable."""
+        if not self.can_reject:
+            self.acceptance.reject(self.candidate)
+
+    def do_run(self) -> None:
+        """Search the pictures, then solve."""
+        if not self.can_search:
+            self.work.search()
+
+    def do_accept(self) -> None:
+        """Accept."""
+        self.accept()
+
+    def do_live(self) -> None:
+        """Start the live source, or stop it."""
+        self.live.toggle()
+
+    def do_capture(self) -> None:
+        """Take this picture."""
+        self.live.capture()
+
+    # ---- what happens elsewhere
+
+    def _live_started(self) -> None:
+        self.live_views.clear()
+
+    def _live_taken(self, taken: LiveTaken) -> None:
+        name = taken.name if self.step == "planes" else self._stored(taken.name)
+        self.live_views.append((name, taken.thumbnail))
+
+    def _live_ended(self, ended: LiveEnded) -> None:
+        if ended.recorded and self.folder == ended.folder:
+            self.work.search()

@@ -1,0 +1,88 @@
+"""Features of a plan and what they gave, in words."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from core.inspect.conformity import Verdict
+from core.inspect.plan.feature_kind import FeatureKind
+from core.inspect.plan.kinds import kind_of
+from core.report.wording import decision_sentence, grouped, shown_unit, value_line, with_uncertainty
+from workbench.language import text_of, tr
+from workbench.views.lists.value_rows import ValueRow
+
+if TYPE_CHECKING:
+    from core.inspect.characteristic import Characteristic
+    from core.inspect.plan.feature_spec import FeatureSpec
+    from core.inspect.shown.shown_features import ShownDeviations, ShownFeature
+
+
+def title(kind: FeatureKind) -> str:
+    """What a kind of feature is called in a menu."""
+    return f"{tr(kind.title)} …" if kind.nominal_file else tr(kind.title)
+
+
+def source_of_none(spec: FeatureSpec) -> str:
+    """What stands for a region that nobody has drawn."""
+    kind = kind_of(spec)
+    if kind.automatic == "all points":
+        return tr("the whole scan")
+    if kind.most_regions > 1 and len(spec.regions) == 1:
+        return tr("found automatically")
+    return tr("by number") if kind.automatic == "numbered" else tr("found")
+
+
+def value(row: Characteristic) -> str:
+    """'50.012 ± 0.024 mm'."""
+    unit, factor = shown_unit(row)
+    if not math.isfinite(row.U):
+        return value_line(row)
+    shown, expanded = with_uncertainty(factor * row.value, factor * row.U)
+    return f"{shown} ± {expanded} {unit}" if unit != "°" else f"{shown}° ± {expanded}°"
+
+
+def tip(row: Characteristic) -> str:
+    """All about one result: value with k, the decision and why, what was measured."""
+    lines = [f"{row.name}: {value_line(row)}"]
+    if row.verdict:
+        lines.append(decision_sentence(row))
+    if row.rule:
+        lines.append(tr("Rule: {0}.").format(text_of(row.rule)))
+    return "\n".join([*lines, *map(text_of, row.notes)])
+
+
+def short_name(row: Characteristic, feature: str) -> str:
+    """What a result is called under its feature."""
+    return row.name.removeprefix(feature).strip() or row.kind
+
+
+def verdict(feature: ShownFeature) -> Verdict:
+    """The worst of a feature's verdicts."""
+    return Verdict.worst(row.verdict for row in feature.rows)
+
+
+def result_rows(feature: ShownFeature) -> list[ValueRow]:
+    """Each result of a feature with its uncertainty."""
+    return [(short_name(row, feature.name), value(row), tip(row), "") for row in feature.rows]
+
+
+def class_rows(found: ShownDeviations) -> list[ValueRow]:
+    """The share of each class of deviations, outwards first."""
+    share = tr("Share of all places compared")
+    rows: list[ValueRow] = [(tr("Deviation [mm]"), tr("share"), share, "")]
+    for one in reversed(found.classes):
+        if math.isinf(one.high_mm):
+            span = tr("over {0}").format(f"{one.low_mm:+g}")
+        elif math.isinf(one.low_mm):
+            span = tr("under {0}").format(f"{one.high_mm:+g}".replace("-", "−"))
+        else:
+            span = tr("{0} to {1}").format(*(f"{end:+g}".replace("-", "−") for end in (one.low_mm, one.high_mm)))
+        name = f"{one.mark}  {span}" if one.mark else span
+        rows.append((name, f"{100 * one.share:.1f} %", share, ""))
+    return rows
+
+
+def used(feature: ShownFeature) -> str:
+    """How many points it rests on."""
+    return tr("{0} points used").format(grouped(feature.used)) if feature.used else ""

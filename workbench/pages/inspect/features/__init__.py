@@ -1,0 +1,1 @@
+"""Features measured beside the thickness, and what they have in common."""

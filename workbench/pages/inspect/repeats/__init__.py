@@ -1,0 +1,1 @@
+"""Repeats: the thickness of several scans of one part."""

@@ -1,0 +1,1 @@
+"""The project page, and the ways into and out of a project."""

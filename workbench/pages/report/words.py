@@ -1,0 +1,55 @@
+"""What is handed over, in words."""
+
+from __future__ import annotations
+
+from workbench.language import tr
+
+AT_HAND = ("pdf", "cloud", "csv", "stl", "xlsx", "json")
+"""Exports with a button of their own; the others are in a menu."""
+
+
+def export_words(kind: str) -> tuple[str, str, str]:
+    """Title, help and icon of what is handed over."""
+    return {
+        "pdf": (tr("Report (PDF)"), tr("The report, for people"), "mdi6.file-pdf-box"),
+        "cloud": (
+            tr("Points (PLY)"),
+            tr("All points in mm with normal, σ and frame, for other programs"),
+            "mdi6.dots-hexagon",
+        ),
+        "e57": (tr("Points (E57)"), tr("All points in m, σ as intensity"), "mdi6.dots-hexagon"),
+        "csv": (tr("Points (CSV)"), tr("All points as a table, in mm, for a spreadsheet"), "mdi6.table"),
+        "mesh": (tr("Surface (PLY)"), tr("The surface as triangles, in mm"), "mdi6.triangle-outline"),
+        "stl": (
+            tr("Surface (STL)"),
+            tr("The surface as triangles, in mm, for CAD programs and printers"),
+            "mdi6.cube-outline",
+        ),
+        "obj": (tr("Surface (OBJ)"), tr("The surface as triangles, in mm"), "mdi6.cube-outline"),
+        "3mf": (tr("Surface (3MF)"), tr("The surface, its unit said in the file"), "mdi6.cube-outline"),
+        "table": (tr("Results (CSV)"), tr("All results as a table, for a spreadsheet"), "mdi6.table"),
+        "xlsx": (
+            tr("Results (XLSX)"),
+            tr("All results, their budgets and settings as a workbook"),
+            "mdi6.file-excel-outline",
+        ),
+        "results": (
+            tr("Results (JSON)"),
+            tr("All results with their schema, for other programs"),
+            "mdi6.code-json",
+        ),
+        "dfq": (tr("Results (Q-DAS DFQ)"), tr("All results, for statistics programs"), "mdi6.chart-bell-curve"),
+        "qif": (tr("Results (QIF 3.0)"), tr("All results, for quality programs"), "mdi6.file-check-outline"),
+        "json": (
+            tr("Thickness (JSON)"),
+            tr("The thickness with U, flatness, parallelism and verdict, for other programs"),
+            "mdi6.code-json",
+        ),
+        "opencv": (tr("Camera (OpenCV YAML)"), tr("The calibration, for OpenCV"), "mdi6.camera-outline"),
+        "opencv-json": (
+            tr("Camera (OpenCV JSON)"),
+            tr("The calibration, for OpenCV"),
+            "mdi6.camera-outline",
+        ),
+        "ros": (tr("Camera (ROS camera_info)"), tr("The calibration, for ROS"), "mdi6.camera-outline"),
+    }[kind]

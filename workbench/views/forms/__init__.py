@@ -1,0 +1,1 @@
+"""Forms: settings, live sources."""

@@ -1,0 +1,103 @@
+"""The manual in a window of its own: the same pages that `make docs` builds for a browser, offline."""
+
+from __future__ import annotations
+
+import re
+from importlib.resources import files
+from pathlib import Path
+
+from PySide6.QtCore import Qt, QUrl
+from PySide6.QtGui import QDesktopServices, QTextBlockFormat, QTextCursor, QTextDocument
+from PySide6.QtWidgets import QHBoxLayout, QPushButton, QTextBrowser, QVBoxLayout, QWidget
+
+from workbench.language import tr
+
+SIZE = (860, 900)
+MARGIN_PX = 24
+ABOVE_HEADING_PX = 18
+_DIRECTIVE = re.compile(r"^```{.*?^```$", re.MULTILINE | re.DOTALL)  # for Sphinx alone
+
+
+def manual_folder() -> Path:
+    """Where the pages of the manual lie."""
+    return Path(str(files("resources") / "manual"))
+
+
+class ManualPages(QTextBrowser):
+    """The pages, with links between them; links to elsewhere go to the system's browser."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setOpenLinks(False)
+        self.anchorClicked.connect(self._follow)
+
+    def open_page(self, name: str) -> None:
+        """Show one page by its name without an ending: "scan"."""
+        self._follow(QUrl.fromLocalFile(str(manual_folder() / f"{name}.md")))
+
+    def _follow(self, link: QUrl) -> None:
+        target = self.source().resolved(link)
+        if target.isLocalFile():
+            self.setSource(target)
+            self.scrollToAnchor(target.fragment())
+        else:
+            QDesktopServices.openUrl(target)
+
+    def doSetSource(
+        self, name: QUrl | str, type: QTextDocument.ResourceType = QTextDocument.ResourceType.UnknownResource
+    ) -> None:
+        """A page as Qt reads Markdown; what is for Sphinx alone is left out."""
+        path = Path(QUrl(name).toLocalFile())
+        if path.suffix != ".md" or not path.is_file():
+            return
+        super().doSetSource(name, type)  # the history, and where pictures are looked for
+        self.setMarkdown(_DIRECTIVE.sub("", path.read_text(encoding="utf-8")))
+        self.document().setBaseUrl(QUrl(name))
+        self.document().setDocumentMargin(MARGIN_PX)
+        self._space_headings()
+
+    def _space_headings(self) -> None:
+        block = self.document().begin().next()
+        while block.isValid():
+            if block.blockFormat().headingLevel():
+                spaced = QTextBlockFormat()
+                spaced.setTopMargin(ABOVE_HEADING_PX)
+                QTextCursor(block).mergeBlockFormat(spaced)
+            block = block.next()
+
+
+class ManualWindow(QWidget):
+    """The manual with buttons for back, forward and its first page."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent, Qt.WindowType.Window)
+        self.setWindowTitle(tr("Manual"))
+        self.resize(*SIZE)
+        self.pages = ManualPages(self)
+        self.back, self.forward, self.start = (
+            QPushButton(text, self) for text in (tr("Back"), tr("Forward"), tr("Contents"))
+        )
+        self.back.clicked.connect(self.pages.backward)
+        self.forward.clicked.connect(self.pages.forward)
+        self.start.clicked.connect(self._open_contents)
+        self.pages.backwardAvailable.connect(self.back.setEnabled)
+        self.pages.forwardAvailable.connect(self.forward.setEnabled)
+        self.back.setEnabled(False)
+        self.forward.setEnabled(False)
+        buttons = QHBoxLayout()
+        for button in (self.back, self.forward, self.start):
+            buttons.addWidget(button)
+        buttons.addStretch()
+        column = QVBoxLayout(self)
+        column.addLayout(buttons)
+        column.addWidget(self.pages)
+
+    def open_page(self, name: str) -> None:
+        """Show one page, the window in front."""
+        self.pages.open_page(name)
+        self.show()
+        self.raise_()
+        self.activateWindow()
+
+    def _open_contents(self) -> None:
+        self.pages.open_page("index")

@@ -1,0 +1,174 @@
+"""The point cloud of a 3D view, cut into chunks of which any few are a fair sample of the whole."""
+
+from __future__ import annotations
+
+from itertools import count
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from core.model.arrays import Array
+from workbench.views.scene.colours import Colouring
+
+CHUNK = 25_000
+"""Points in a chunk: software OpenGL draws so many within a frame."""
+
+MEASURED_FOR_LIMITS = 100_000
+"""So many values are looked at for the ends of the colour bar: enough for percentiles, a few ms."""
+
+_serials = count()
+
+
+class SceneCloud:
+    """Points (N, 3) in mm with a value (N,) or a colour each; more can be added.
+
+    The points given first are dealt out to as many chunks as they fill, one after the other, so that each chunk is
+    spread over the whole; added points fill further chunks in their order. `serial` tells clouds and recoloured
+    clouds apart.
+
+    Raises
+    ------
+    ValueError
+        If the shapes do not match.
+    """
+
+    def __init__(self, points: ArrayLike, values: ArrayLike | None, colouring: Colouring) -> None:
+        self._points: Array = as_points(points)
+        self._values: Array | None = None if values is None else _values(values, len(self._points))
+        self.given = self._first = len(self._points)
+        self._dealt = -(-self._first // CHUNK)
+        self.corners = _extent(self._points)
+        """Two opposite corners (2, 3) of the box round all points; NaN when there are none."""
+        self._asked = colouring
+        self._colour()
+
+    @property
+    def points(self) -> Array:
+        """All points (N, 3) as given, in mm."""
+        return self._points[: self.given]
+
+    @property
+    def drawable(self) -> bool:
+        """Whether there is a point with finite coordinates."""
+        return bool(np.isfinite(self.corners).all())
+
+    @property
+    def chunks(self) -> int:
+        """How many chunks there are."""
+        return self._dealt + -(-(self.given - self._first) // CHUNK)
+
+    def rows(self, chunk: int) -> slice:
+        """Which of the given points are in a chunk."""
+        if chunk < self._dealt:
+            return slice(chunk, self._first, self._dealt)
+        start = self._first + (chunk - self._dealt) * CHUNK
+        return slice(start, min(start + CHUNK, self.given))
+
+    def size(self, chunk: int) -> int:
+        """How many points are in a chunk; only the last chunk changes, when points are added."""
+        return len(range(*self.rows(chunk).indices(self.given)))
+
+    def chunk(self, number: int) -> tuple[NDArray[np.float32], NDArray[np.uint8]]:
+        """Points (n, 3) in mm and colours (n, 3) of a chunk, without points that are not finite."""
+        rows = self.rows(number)
+        points = self._points[rows].astype(np.float32)
+        if self._values is not None:
+            colours = self.colouring.of(self._values[rows])
+        else:
+            colours = self.colouring.plain(np.arange(*rows.indices(self.given)))
+        finite = finite_rows(points)
+        return (points, colours) if finite.all() else (points[finite], colours[finite])
+
+    def spread(self, chunks: int) -> list[int]:
+        """So many chunks, evenly over all."""
+        if chunks >= self.chunks:
+            return list(range(self.chunks))
+        return sorted({int(k) for k in np.linspace(0, self.chunks - 1, max(chunks, 1))})
+
+    def sample(self, at_most: int = 20_000) -> Array:
+        """A fair sample (n, 3) of the points, the newest among them."""
+        return self.points[:: -max(1, -(-self.given // at_most))]
+
+    def add(self, points: ArrayLike, values: ArrayLike | None) -> None:
+        """Append points; those that are not finite are given a number but never drawn.
+
+        Raises
+        ------
+        ValueError
+            If there are values for some points only.
+        """
+        more = as_points(points)
+        if not len(more):
+            return
+        if (values is None) != (self._values is None) and self.given:
+            raise ValueError("points of a cloud with values need values, others must have none")
+        new_values = None if values is None else _values(values, len(more))
+        if self._values is None and new_values is not None:
+            self._values = np.empty(0)
+        total = self.given + len(more)
+        regrown = total > len(self._points)
+        if regrown:  # room for twice as many: points that come one by one are not copied each time
+            self._points = _roomier(self._points, self.given, 2 * total)
+            if self._values is not None:
+                self._values = _roomier(self._values, self.given, 2 * total)
+        self._points[self.given : total] = more
+        if self._values is not None and new_values is not None:
+            self._values[self.given : total] = new_values
+        self.given = total
+        low, high = _extent(more)
+        self.corners = np.array([np.fmin(self.corners[0], low), np.fmax(self.corners[1], high)])
+        if regrown and self._asked.limits is None:
+            self._colour()
+
+    def _colour(self) -> None:
+        """Find the limits of the colours for the values there are now."""
+        self.serial = next(_serials)
+        self.colouring = self._asked
+        """How values become colours, with limits that are known."""
+        if self._values is not None:
+            step = max(1, self.given // MEASURED_FOR_LIMITS)
+            self.colouring = self._asked.limited(self._values[: self.given : step])
+
+
+def as_points(points: ArrayLike, what: str = "points") -> Array:
+    """(N, 3) float64.
+
+    Raises
+    ------
+    ValueError
+        If the shape does not match; the message names `what`.
+    """
+    array = np.asarray(points, dtype=np.float64)
+    if array.size == 0:
+        return np.empty((0, 3))
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise ValueError(f"{what} have shape {array.shape}, not n × 3")
+    return array
+
+
+def finite_rows(points: NDArray[np.floating]) -> NDArray[np.bool_]:
+    """Which points (N, 3) have three finite coordinates."""
+    return np.asarray(np.isfinite(points).all(axis=1))
+
+
+def _values(values: ArrayLike, count: int) -> Array:
+    array = np.asarray(values, dtype=np.float64).ravel()
+    if len(array) != count:
+        raise ValueError(f"{len(array)} values for {count} points")
+    return array
+
+
+def _roomier(array: Array, used: int, room: int) -> Array:
+    roomy: Array = np.empty((max(room, CHUNK), *array.shape[1:]))
+    roomy[:used] = array[:used]
+    return roomy
+
+
+def _extent(points: Array) -> Array:
+    """Smallest and largest coordinates (2, 3) of the finite points; NaN without any."""
+    if len(points) and not np.isfinite(points.sum()):
+        points = points[finite_rows(points)]
+    if not len(points):
+        return np.full((2, 3), np.nan)
+    # Column by column: numpy reduces rows of three many times slower.
+    return np.array([[column.min() for column in points.T], [column.max() for column in points.T]])

@@ -1,0 +1,187 @@
+"""How this computer can draw in 3D, found out without stopping the window and without crashing it.
+
+1. Qt can make an OpenGL 3.2 context for its windows (Qt refuses politely where VTK would abort): VTK is embedded.
+2. Else another process renders a small picture off screen: if it comes out well, pictures of the scene are shown.
+3. Else there is no 3D.
+
+The libraries are imported by a thread that knows nothing of Qt: importing pyvista takes seconds. The answer holds for
+the life of the program.
+"""
+
+from __future__ import annotations
+
+import importlib
+import logging
+import os
+import sys
+import threading
+from typing import Literal
+
+from PySide6.QtCore import QCoreApplication, QObject, QProcess, QTimer, Signal
+from PySide6.QtGui import QGuiApplication, QOffscreenSurface, QOpenGLContext, QSurfaceFormat
+from PySide6.QtWidgets import QWidget
+
+Kind = Literal["embedded", "pictures", "none"]
+
+VARIABLE = "TRISECT_NO_OPENGL"
+"""In the environment: "none" for no 3D at all, anything else but nothing for no OpenGL in the window."""
+
+WITH_WINDOWS = ("xcb", "wayland", "wayland-egl", "windows", "cocoa")
+"""Qt's platforms whose windows can have OpenGL."""
+
+SURFACES = "workbench.views.scene.surfaces"
+"""The module that draws; run as a program it tries whether pictures can be rendered."""
+
+TRIAL_MS = 30_000
+"""A driver that has drawn nothing by then never will; a busy machine takes a few seconds."""
+
+LOOK_MS = 30
+"""How often is looked whether the libraries are there."""
+
+_log = logging.getLogger(__name__)
+
+
+class Readiness(QObject):
+    """What is known about drawing in 3D; one for the program: see `readiness`."""
+
+    known = Signal()
+    """`kind` has become known, or has changed."""
+
+    def __init__(self, parent: QObject | None) -> None:
+        super().__init__(parent)
+        self._kind: Kind | None = None
+        self._opengl: bool | None = None
+        self._trial: QProcess | None = None
+        self._thread: threading.Thread | None = None
+        self._look_again = QTimer(self, singleShot=True, interval=LOOK_MS)
+        self._look_again.timeout.connect(self._look)
+        self._importing: tuple[Kind, list[Exception]] = ("none", [])
+        """What holds once the libraries are imported, and why they could not be."""
+        self.notified: frozenset[Kind] = frozenset()
+        """What the technician has been told of: once is enough."""
+
+    @property
+    def kind(self) -> Kind | None:
+        """How the scene is drawn here, its libraries imported; None while that is not known."""
+        return "none" if os.environ.get(VARIABLE) == "none" else self._kind
+
+    def opengl_in_windows(self) -> bool:
+        """Whether Qt gives its windows OpenGL good enough for VTK; tried once."""
+        if os.environ.get(VARIABLE):
+            return False
+        if self._opengl is None:
+            self._opengl = QGuiApplication.platformName() in WITH_WINDOWS and _context_can_be_made()
+        return self._opengl
+
+    def find_out(self) -> None:
+        """Begin to find out, unless that is done or on its way."""
+        if self.kind is not None or self._trial is not None or self._thread is not None:
+            return
+        if self.opengl_in_windows():
+            self._import("embedded")
+            return
+        trial = self._trial = QProcess(self)
+        trial.setStandardInputFile(QProcess.nullDevice())
+        trial.finished.connect(self._tried)
+        trial.errorOccurred.connect(self._tried)
+        patience = QTimer(trial)  # ends with the trial, as a single shot would not
+        patience.setSingleShot(True)
+        patience.timeout.connect(trial.kill)
+        patience.start(TRIAL_MS)
+        trial.start(sys.executable, ["-m", SURFACES])
+
+    def give_up(self, kind: Kind) -> None:
+        """Drawing was promised and does not work so: an OpenGL window is replaced by pictures, pictures by nothing."""
+        self._opengl = False
+        self._kind = None if kind == "embedded" else "none"
+        self.find_out()
+        self.known.emit()
+
+    def stop(self) -> None:
+        """The program ends: do not wait for a trial that is under way."""
+        if self._trial is not None:
+            self._trial.blockSignals(True)
+            self._trial.kill()
+            self._trial.waitForFinished(1000)
+            self._trial = None
+
+    def _tried(self) -> None:
+        trial, self._trial = self._trial, None
+        if trial is None:
+            return
+        trial.deleteLater()
+        if trial.error() == QProcess.ProcessError.UnknownError and trial.exitCode() == 0:  # "unknown" is Qt's "none"
+            self._import("pictures")
+            return
+        said = bytes(trial.readAllStandardError().data()).decode(errors="replace")[-500:]
+        _log.warning("drawing in 3D does not work here: %s", said or trial.errorString())
+        self.give_up("pictures")
+
+    def _import(self, kind: Kind) -> None:
+        """Import the libraries on a thread that knows nothing of Qt."""
+        failed: list[Exception] = []
+        self._thread = threading.Thread(target=_import_surfaces, args=(failed,), name="pyvista import")
+        self._thread.start()
+        self._importing = kind, failed
+        self._look()
+
+    def _look(self) -> None:
+        """Whether the libraries are there; else once more in a moment."""
+        kind, failed = self._importing
+        if self._thread is not None and self._thread.is_alive():
+            self._look_again.start()
+            return
+        self._thread = None
+        if failed:
+            _log.error("the 3D libraries cannot be imported: %r", failed[0])
+        self._kind = "none" if failed else kind
+        self.known.emit()
+
+
+def _import_surfaces(failed: list[Exception]) -> None:
+    try:
+        importlib.import_module(SURFACES)
+    except Exception as error:  # noqa: BLE001  whatever is wrong with the libraries, the program goes on without them
+        failed.append(error)
+
+
+def reserve_opengl(view: QWidget) -> None:
+    """A window that gets its first OpenGL widget while it is seen is made anew and flickers: let it have one."""
+    if readiness().opengl_in_windows():
+        from PySide6.QtOpenGLWidgets import QOpenGLWidget
+
+        placeholder = QOpenGLWidget(view)
+        placeholder.setGeometry(0, 0, 1, 1)
+        placeholder.hide()
+
+
+def _context_can_be_made() -> bool:
+    wanted = QSurfaceFormat()
+    wanted.setRenderableType(QSurfaceFormat.RenderableType.OpenGL)
+    wanted.setProfile(QSurfaceFormat.OpenGLContextProfile.CoreProfile)
+    wanted.setVersion(3, 2)
+    context = QOpenGLContext()
+    context.setFormat(wanted)
+    if not context.create() or context.format().version() < (3, 2) or context.isOpenGLES():
+        return False
+    surface = QOffscreenSurface()
+    surface.setFormat(context.format())
+    surface.create()
+    if not surface.isValid() or not context.makeCurrent(surface):
+        return False
+    context.doneCurrent()
+    return True
+
+
+_readiness: list[Readiness] = []
+
+
+def readiness() -> Readiness:
+    """The program's knowledge about drawing in 3D. GUI thread only."""
+    if not _readiness:
+        app = QCoreApplication.instance()
+        made = Readiness(app)
+        if app is not None:
+            app.aboutToQuit.connect(made.stop)
+        _readiness.append(made)
+    return _readiness[0]

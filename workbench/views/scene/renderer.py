@@ -1,0 +1,295 @@
+"""The scene as VTK actors in one render window, drawn in passes. Everything in the GUI thread."""
+
+from __future__ import annotations
+
+import logging
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
+from vtkmodules.vtkCommonCore import (
+    vtkCommand,
+    vtkDataArray,
+    vtkIdTypeArray,
+    vtkLogger,
+    vtkObject,
+    vtkOutputWindow,
+    vtkPoints,
+    vtkUnsignedCharArray,
+)
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+from vtkmodules.vtkCommonMath import vtkMatrix4x4
+from vtkmodules.vtkRenderingCore import vtkActor, vtkLight, vtkPolyDataMapper, vtkRenderer, vtkRenderWindow
+from vtkmodules.vtkRenderingOpenGL2 import vtkGenericOpenGLRenderWindow
+
+from core.model.arrays import Array
+from workbench.views.scene.camera import SceneCamera
+from workbench.views.scene.colours import Rgb
+from workbench.views.scene.contents import MARKS_NEARER, Item, Lines, Marks, Patches, Scene
+from workbench.views.scene.passes import Part, Pass, Version, gather, version
+
+_log = logging.getLogger("vtk")
+_observed: list[vtkOutputWindow] = []
+
+
+class Renderer:
+    """Draws scenes into a render window, of a widget or off screen."""
+
+    def __init__(self, window: vtkRenderWindow) -> None:
+        self._renderer = vtkRenderer()
+        self._renderer.SetUseOIT(False)
+        self._renderer.SetAutomaticLightCreation(False)
+        self._renderer.RemoveAllLights()
+        self._renderer.AddLight(_headlight())
+        self._renderer.GetCullers().RemoveAllItems()
+        self._window = window
+        renderers = window.GetRenderers()
+        for _ in range(renderers.GetNumberOfItems()):  # the plotter's own
+            window.RemoveRenderer(renderers.GetFirstRenderer())
+        self._window.SetMultiSamples(0)
+        self._window.AddRenderer(self._renderer)
+        self.point_size = 2.0
+        """Diameter of the cloud's points in logical pixels."""
+        self._items: dict[tuple[type, str], tuple[Item, vtkActor | None]] = {}
+        self._parts: dict[Part, tuple[Version, vtkActor]] = {}
+
+    def set_background(self, colour: Rgb) -> None:
+        """Colour behind the scene."""
+        self._renderer.SetBackground(*(c / 255 for c in colour))
+
+    def is_made(self, scene: Scene, part: Part) -> bool:
+        """Whether a part can be drawn at once, without being gathered first."""
+        return part in self._parts and self._parts[part][0] == version(scene, part)
+
+    def draw(self, scene: Scene, camera: SceneCamera, what: Pass, size: tuple[int, int], ratio: float) -> None:
+        """Draw a pass and wait for it: `size` in device pixels, of which a logical pixel has `ratio`."""
+        if what.first:
+            if not isinstance(self._window, vtkGenericOpenGLRenderWindow):  # a widget's window has the widget's size
+                self._window.SetSize(*size)
+            self._sync(scene)
+        for part in what.parts:
+            if not self.is_made(scene, part) and version(scene, part) is not None:
+                self._make(scene, part)
+        shown = set(what.parts)
+        for part, (_, actor) in self._parts.items():
+            actor.SetVisibility(part in shown)
+            if part.kind == "cloud":
+                actor.GetProperty().SetPointSize(self.point_size * ratio)
+        nearer = _nearer(camera)
+        for item, item_actor in self._items.values():
+            if item_actor is None:
+                continue
+            item_actor.SetVisibility(what.first if isinstance(item, Lines) else what.last)
+            if isinstance(item, Lines):
+                item_actor.GetProperty().SetLineWidth(item.width * ratio)
+            if isinstance(item, Marks):
+                item_actor.GetProperty().SetPointSize(item.size * ratio)
+            if not isinstance(item, Patches):
+                item_actor.SetUserMatrix(nearer)
+        self._renderer.SetPreserveColorBuffer(not what.first)
+        self._renderer.SetPreserveDepthBuffer(not what.first)
+        self._renderer.SetUseFXAA(what.smooth)
+        self._aim(camera, scene)
+        self._window.SetSwapBuffers(what.last)
+        self._window.Render()
+        self._window.WaitForCompletion()  # or the time of a pass would show up in a later one
+
+    def pixels(self) -> NDArray[np.uint8]:
+        """The picture drawn last, (h, w, 3)."""
+        width, height = self._window.GetSize()
+        self._window.MakeCurrent()
+        data = vtkUnsignedCharArray()
+        self._window.GetPixelData(0, 0, width - 1, height - 1, 0, data, 0)
+        rows: NDArray[np.uint8] = vtk_to_numpy(data).reshape(height, width, 3)  # type: ignore[no-untyped-call]
+        return rows[::-1].copy()
+
+    def close(self) -> None:
+        """Let go of everything while the window still lives."""
+        self._renderer.RemoveAllViewProps()
+        self._items, self._parts = {}, {}
+        self._window.RemoveRenderer(self._renderer)
+
+    def _sync(self, scene: Scene) -> None:
+        """Make the actors of items those of the scene, and drop the parts it has no longer."""
+        for name in [name for name in self._items if scene.items.get(name) is not self._items[name][0]]:
+            if (actor := self._items.pop(name)[1]) is not None:
+                self._renderer.RemoveActor(actor)
+        for name, item in scene.items.items():
+            if name not in self._items:
+                actor = _item_actor(item)
+                self._items[name] = item, actor
+                if actor is not None:
+                    self._renderer.AddActor(actor)
+        for part, (made, _) in list(self._parts.items()):
+            current = version(scene, part)
+            if current is None or current.serial != made.serial:  # one that has grown is shown until it is made anew
+                self._renderer.RemoveActor(self._parts.pop(part)[1])
+
+    def _aim(self, camera: SceneCamera, scene: Scene) -> None:
+        vtk_camera = self._renderer.GetActiveCamera()
+        vtk_camera.SetFocalPoint(*camera.focal)
+        vtk_camera.SetPosition(*camera.position)
+        vtk_camera.SetViewUp(*camera.axes[1])
+        vtk_camera.SetViewAngle(np.degrees(camera.view_angle))
+        vtk_camera.SetParallelProjection(camera.parallel)
+        vtk_camera.SetParallelScale(camera.half_height)
+        box = scene.box()
+        if len(box):
+            vtk_camera.SetClippingRange(*camera.depth_range(box))
+
+    def _make(self, scene: Scene, part: Part) -> None:
+        """Gather a part into an actor."""
+        if part in self._parts:
+            self._renderer.RemoveActor(self._parts[part][1])
+        made = version(scene, part)
+        assert made is not None
+        gathered = gather(scene, part)
+        data = _data(gathered.points, gathered.colours)
+        if gathered.triangles is None:
+            data.SetVerts(_cell_of_all(len(gathered.points)))
+        else:
+            cells = vtkCellArray()
+            cells.SetData(3, _ids(gathered.triangles.ravel()))
+            data.SetPolys(cells)
+            data.GetPointData().SetNormals(_vtk(gathered.normals))
+        actor = _actor(data)
+        if gathered.triangles is not None:
+            _light(actor)
+        self._renderer.AddActor(actor)
+        self._parts[part] = made, actor
+
+
+def _item_actor(item: Item) -> vtkActor | None:
+    """What VTK draws of an item; labels and measures are written over the picture."""
+    if isinstance(item, Marks):
+        data = _data(item.points)
+        data.SetVerts(_cell_of_all(len(item.points)))
+        return _actor(data, item.colour)
+    if isinstance(item, Patches):
+        return _patches(item)
+    if isinstance(item, Lines):
+        return _lines(item)
+    return None
+
+
+def _lines(lines: Lines) -> vtkActor:
+    colours = np.repeat(_rows(lines.colours, 3), [len(line) for line in lines.lines], axis=0)
+    data = _data(np.vstack([*lines.lines, np.empty((0, 3))]), colours)
+    cells, start = vtkCellArray(), 0
+    for line in lines.lines:
+        cells.InsertNextCell(len(line), list(range(start, start + len(line))))
+        start += len(line)
+    data.SetLines(cells)
+    return _actor(data)
+
+
+def _patches(patches: Patches) -> vtkActor:
+    alpha = round(255 * patches.opacity)
+    colours = np.repeat(_rows([(*colour, alpha) for colour in patches.colours], 4), 4, axis=0)
+    data = _data(np.vstack([*patches.corners, np.empty((0, 3))]), colours)
+    cells = vtkCellArray()
+    for k in range(len(patches.corners)):
+        cells.InsertNextCell(4, [4 * k, 4 * k + 1, 4 * k + 2, 4 * k + 3])
+    data.SetPolys(cells)
+    actor = _actor(data)
+    actor.ForceTranslucentOn()
+    return actor
+
+
+def _rows(colours: Any, channels: int) -> NDArray[np.uint8]:
+    return np.array(colours, dtype=np.uint8).reshape(-1, channels)
+
+
+def _data(points: NDArray[np.float32] | Array, colours: NDArray[np.uint8] | None = None) -> vtkPolyData:
+    """Points with colours, without cells."""
+    held = vtkPoints()
+    held.SetData(_vtk(np.ascontiguousarray(points, dtype=np.float32)))
+    data = vtkPolyData()
+    data.SetPoints(held)
+    if colours is not None:
+        data.GetPointData().SetScalars(_vtk(np.ascontiguousarray(colours)))
+    return data
+
+
+def _actor(data: vtkPolyData, colour: Rgb | None = None) -> vtkActor:
+    """An unlit actor, in one colour or in those of its points."""
+    mapper = vtkPolyDataMapper()
+    mapper.SetInputData(data)
+    mapper.SetStatic(True)
+    mapper.SetScalarVisibility(colour is None)
+    mapper.SetColorModeToDirectScalars()
+    actor = vtkActor()
+    actor.SetMapper(mapper)
+    actor.GetProperty().LightingOff()
+    if colour is not None:
+        actor.GetProperty().SetColor(*(c / 255 for c in colour))
+    return actor
+
+
+def _nearer(camera: SceneCamera) -> vtkMatrix4x4:
+    """Brings points nearer to the viewer, each on its line of sight."""
+    linear, shift = np.eye(3), camera.axes[2] * camera.distance * MARKS_NEARER
+    if not camera.parallel:
+        linear, shift = linear * (1 - MARKS_NEARER), camera.position * MARKS_NEARER
+    matrix = vtkMatrix4x4()
+    matrix.DeepCopy([*np.column_stack([linear, shift]).ravel(), 0, 0, 0, 1])
+    return matrix
+
+
+def _light(actor: vtkActor) -> None:
+    """Shade by the normals."""
+    looks = actor.GetProperty()
+    looks.LightingOn()
+    looks.SetInterpolationToGouraud()
+    looks.SetAmbient(0.3)
+    looks.SetDiffuse(0.8)
+
+
+def _vtk(array: Any) -> vtkDataArray:
+    """An array for VTK that keeps the numpy array alive."""
+    given: vtkDataArray = numpy_to_vtk(array)  # type: ignore[no-untyped-call]
+    return given
+
+
+def _ids(array: NDArray[np.int64]) -> vtkIdTypeArray:
+    given: vtkIdTypeArray = numpy_to_vtkIdTypeArray(array, deep=True)  # type: ignore[no-untyped-call]
+    return given
+
+
+def _cell_of_all(count: int) -> vtkCellArray:
+    """One cell of all points: VTK draws each of them."""
+    cells = vtkCellArray()
+    cells.SetData(_ids(np.array([0, count] if count else [0])), _ids(np.arange(count)))
+    return cells
+
+
+def _headlight() -> Any:
+    light = vtkLight()
+    light.SetLightTypeToCameraLight()
+    light.SetPosition(-0.35, 0.45, 1.0)
+    light.SetFocalPoint(0, 0, 0)
+    return light
+
+
+def route_messages() -> None:
+    """Send what VTK has to say to Python's logging, not to the console: once, before anything is made."""
+    if _observed:
+        return
+    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
+    window = vtkOutputWindow.GetInstance()
+    window.AddObserver(int(vtkCommand.ErrorEvent), _error)
+    window.AddObserver(int(vtkCommand.WarningEvent), _warning)
+    _observed.append(window)
+
+
+def _error(_sender: vtkObject, _event: str, text: str) -> None:
+    _log.error("%s", text.strip())
+
+
+def _warning(_sender: vtkObject, _event: str, text: str) -> None:
+    _log.warning("%s", text.strip())
+
+
+for _observer in (_error, _warning):
+    setattr(_observer, "CallDataType", "string0")  # noqa: B010  how VTK is told to pass the text on

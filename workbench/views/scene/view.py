@@ -1,0 +1,574 @@
+"""The 3D view: a point cloud, a mesh, planes and marks in millimetres, to look at, turn, measure on and choose from.
+
+Everything a page needs of 3D is a method or a signal of `SceneView`; pages know nothing of VTK. Inside, `Scene` holds
+what is shown and `Navigator` from where; `Drawing` decides when and how much is drawn, the canvas shows the picture
+with labels and colour bar written over it by Qt, and tools turn mouse and keys into motions and choices.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from PySide6.QtCore import QBuffer, QEvent, QIODevice, QPointF, Signal
+from PySide6.QtGui import QCloseEvent, QColor, QImage, QPainter
+from PySide6.QtWidgets import QFileDialog, QVBoxLayout, QWidget
+
+from core.errors import InputError
+from core.files import atomic
+from core.model.arrays import Array
+from workbench.language import text_of
+from workbench.views.scene.buttons import SceneButtons, ViewName
+from workbench.views.scene.camera import SceneCamera
+from workbench.views.scene.canvas import Canvas, as_image, as_pixels
+from workbench.views.scene.chooser import Outline, nearest_point, points_inside
+from workbench.views.scene.cloud import SceneCloud, as_points
+from workbench.views.scene.colours import PLAIN, Colouring, Rgb, as_colours
+from workbench.views.scene.contents import (
+    GRID,
+    Item,
+    Labels,
+    Lines,
+    Marks,
+    Measure,
+    Patches,
+    Scene,
+    as_mesh,
+    each,
+)
+from workbench.views.scene.drawing import Drawing
+from workbench.views.scene.navigator import Navigator
+from workbench.views.scene.overlay import OverlayColours, bar_width, paint_marker, paint_overlay, place_text
+from workbench.views.scene.ready import Kind, readiness, reserve_opengl
+from workbench.views.scene.shapes import camera_pyramid, ground_grid
+from workbench.views.scene.tools import Lasso, Navigate, Pick, Polygon
+
+__all__ = ["ColourLike", "Colouring", "SceneView", "ViewName", "prepare_3d"]
+
+ColourLike = str | tuple[int, int, int] | QColor
+
+PYRAMID = "#pyramid"
+"""Name of the lines that show the camera."""
+
+HIGHLIGHT_WIDER_PX = 1.5
+"""Highlighted points are wider than the cloud's by so much, to be seen among them."""
+
+
+def prepare_3d() -> None:
+    """Find out whether 3D can be drawn and import its libraries, between other events; call it when there is time.
+
+    Returns at once. Views made earlier or later start as soon as the libraries are there.
+    """
+    readiness().find_out()
+
+
+@dataclass(frozen=True, slots=True)
+class DrawingState:
+    """How the scene is drawn, for messages and tests.
+
+    `kind` tells how ("none" before anything of OpenGL has been made), `points` are those in the cloud,
+    `drawn_moving` the points and triangles in the last quick picture, `complete` means that everything is shown,
+    `pass_ms` is how long the last passes took.
+    """
+
+    kind: Kind
+    points: int
+    drawn_moving: int
+    complete: bool
+    pass_ms: tuple[float, ...]
+
+
+class SceneView(QWidget):
+    """A 3D scene with its tool bar, colour bar, axes and scale.
+
+    All coordinates are in mm, in the camera's frame unless `set_orientation` says which way is up. Arrays are kept,
+    not copied: do not change them afterwards. Nothing of OpenGL is made before there is something to see in a view
+    that is seen. Where nothing can be drawn in 3D, the view says so in place of the scene.
+    """
+
+    notice = Signal(str)
+    """One sentence: there is no OpenGL for the window, or no 3D at all (each once), or why a picture was not saved."""
+
+    point_picked = Signal(int, object)
+    """Number of the point among those given to `set_cloud` and `add_points`, and its coordinates (3,) in mm."""
+
+    region_selected = Signal(object)
+    """Which of the cloud's points, as given, lie inside the drawn region: (N,) bool."""
+
+    drawing_cancelled = Signal()
+    """Picking or drawing was ended by Esc or `stop_drawing`, without a result."""
+
+    def __init__(self, parent: QWidget | None = None, *, tools: bool = True) -> None:
+        super().__init__(parent)
+        self._scene = Scene()
+        self._message = ""
+        self._axes = True
+        self._grid_mm = 0.0
+        self._marked: Array | None = None
+        self._canvas = Canvas(Navigate(self), self._paint_overlay, self)
+        self._canvas.setAccessibleName(self.tr("3D view"))
+        self.setFocusProxy(self._canvas)
+        self._navigator = Navigator(self._scene, lambda: self._canvas.logical_size, self._margin, self)
+        self._drawing = Drawing(self._scene, lambda: self._navigator.camera, self._canvas)
+        self._buttons = SceneButtons(self)
+        self._buttons.setVisible(tools)
+        rows = QVBoxLayout(self)
+        rows.setContentsMargins(0, 0, 0, 0)
+        rows.setSpacing(0)
+        rows.addWidget(self._buttons)
+        rows.addWidget(self._canvas, 1)
+        self._buttons.view_asked.connect(self.view)
+        self._buttons.fit_asked.connect(self.fit)
+        self._buttons.parallel_asked.connect(self._navigator.set_parallel)
+        self._buttons.grid_asked.connect(self._toggle_grid)
+        self._buttons.save_asked.connect(self._ask_and_save)
+        self._canvas.shown.connect(self._on_shown)
+        self._canvas.hidden.connect(self._drawing.stop)
+        self._canvas.resized.connect(self._on_resized)
+        self._canvas.cancelled.connect(self.stop_drawing)
+        self._navigator.moved.connect(self._on_moved)
+        readiness().known.connect(self._on_known)
+        reserve_opengl(self)
+        self._show_message()
+
+    # ---- what is shown
+
+    def set_cloud(
+        self,
+        points: ArrayLike,
+        *,
+        values: ArrayLike | None = None,
+        colouring: Colouring | None = None,
+        colours: ArrayLike | ColourLike | None = None,
+        keep_camera: bool = True,
+    ) -> None:
+        """Show a cloud instead of the one before.
+
+        Parameters
+        ----------
+        points
+            (N, 3) in mm; may be empty, to grow by `add_points`. Points that are not finite are not drawn.
+        values, colouring
+            (N,) one number a point, and how it is coloured. NaN is grey.
+        colours
+            Instead of values: (N, 3) uint8, or one colour for all.
+        keep_camera
+            Leave the view as it is, except when nothing was shown before.
+
+        Raises
+        ------
+        ValueError
+            If the shapes do not match.
+        """
+        colouring = colouring or Colouring()
+        if colours is not None and values is None:
+            if isinstance(colours, str | tuple | QColor):
+                colouring = Colouring(plain_colour=_rgb(colours))
+            else:
+                colouring = Colouring(colours=as_colours(colours, len(np.asarray(points).reshape(-1, 3))))
+        self._marked = None
+        self._scene.cloud = SceneCloud(points, values, colouring)
+        self._changed(afresh=not keep_camera)
+
+    def add_points(self, points: ArrayLike, values: ArrayLike | None = None) -> None:
+        """Let the cloud grow by `points` (M, 3) in mm with `values` (M,) if it has values.
+
+        Cheap: only new points are sent to the graphics card, at most ten times a second. `set_cloud` with empty
+        arrays before says how the values are called and coloured.
+        """
+        if self._scene.cloud is None:
+            self.set_cloud(points, values=values)
+            return
+        first = self._scene.empty
+        self._scene.cloud.add(points, values)
+        if self._scene.visible_cloud is None:
+            return
+        if self._navigator.follow() or first:
+            self._changed()
+        else:
+            self._drawing.grown()
+
+    def set_mesh(
+        self,
+        points: ArrayLike,
+        triangles: ArrayLike,
+        *,
+        values: ArrayLike | None = None,
+        colouring: Colouring | None = None,
+        colour: ColourLike | None = None,
+        keep_camera: bool = True,
+    ) -> None:
+        """Show a surface: vertices (V, 3) in mm, triangles (T, 3) of vertex numbers, values (V,) as in `set_cloud`.
+
+        Raises
+        ------
+        ValueError
+            If the shapes do not match or a triangle names a vertex that is not there.
+        """
+        how = colouring or Colouring(plain_colour=_rgb(colour) if colour is not None else PLAIN)
+        self._scene.mesh = as_mesh(points, triangles, values, how) if len(np.asarray(triangles)) else None
+        self._changed(afresh=not keep_camera)
+
+    def show_cloud(self, shown: bool) -> None:
+        """Show or hide the cloud."""
+        self._scene.cloud_shown = shown
+        self._changed()
+
+    def show_mesh(self, shown: bool) -> None:
+        """Show or hide the mesh."""
+        self._scene.mesh_shown = shown
+        self._changed()
+
+    def set_highlight(self, name: str, points: ArrayLike, colour: ColourLike) -> None:
+        """Mark points (N, 3) in one colour, drawn larger than the cloud's."""
+        self._put(name, Marks(as_points(points), _rgb(colour), self._drawing.point_size + HIGHLIGHT_WIDER_PX))
+
+    def remove_highlight(self, name: str) -> None:
+        """Take a highlight away; none of that name is no error."""
+        self._scene.remove(name, Marks)
+        self._changed()
+
+    def set_planes(
+        self,
+        name: str,
+        corners: Sequence[ArrayLike],
+        colours: Sequence[ColourLike] | ColourLike,
+        opacity: float = 0.25,
+    ) -> None:
+        """Show transparent four-cornered patches, each (4, 3) in mm; those that are not finite are left out."""
+        patches = [as_points(patch, "corners") for patch in corners]
+        shades = each(_rgbs(colours), len(patches))
+        kept = [k for k, patch in enumerate(patches) if np.isfinite(patch).all()]
+        self._put(name, Patches(tuple(patches[k] for k in kept), tuple(shades[k] for k in kept), opacity))
+
+    def set_polylines(
+        self, name: str, lines: Sequence[ArrayLike], colour: ColourLike | Sequence[ColourLike], width: float = 2.0
+    ) -> None:
+        """Show lines, each (N, 3) in mm; one colour for all or one each; `width` in pixels."""
+        given = [as_points(line, "lines") for line in lines]
+        self._put(name, Lines(tuple(given), each(_rgbs(colour), len(given)), width))
+
+    def set_camera_frustum(self, corners: ArrayLike | None) -> None:
+        """Show where the camera is: (5, 3), its centre and the four corners of its picture; None takes it away.
+
+        See `shapes.frustum`. The view "camera" then shows what the camera sees.
+        """
+        self._scene.remove(PYRAMID)
+        pyramid = self._navigator.pyramid = None if corners is None else as_points(corners, "corners")
+        if pyramid is not None:
+            for item in camera_pyramid(pyramid, self.tr("camera")):
+                self._scene.put(PYRAMID, item)
+        self._changed()
+
+    def set_labels(self, name: str, labels: Sequence[tuple[ArrayLike, str]], colour: ColourLike | None = None) -> None:
+        """Write texts at places (3,) in mm."""
+        places = as_points([np.asarray(place, dtype=np.float64) for place, _ in labels], "places")
+        self._put(name, Labels(places, tuple(text for _, text in labels), None if colour is None else _rgb(colour)))
+
+    def set_measure(self, name: str, a: ArrayLike, b: ArrayLike, text: str) -> None:
+        """Draw a dimension line from `a` to `b`, both (3,) in mm, with a text, computed by the caller."""
+        ends = as_points([np.asarray(a, dtype=np.float64), np.asarray(b, dtype=np.float64)], "ends")
+        self._put(name, Measure(ends, text))
+
+    def set_axes(self, shown: bool) -> None:
+        """Show or hide the axes' triad and the scale bar."""
+        self._axes = shown
+        self._canvas.update()
+
+    def set_grid(self, shown: bool) -> None:
+        """Show or hide a millimetre grid under the scene."""
+        self._buttons.grid.setChecked(shown)
+
+    def remove(self, name: str) -> None:
+        """Take away planes, lines, labels, measures or highlights of that name; none is no error."""
+        self._scene.remove(name)
+        self._changed()
+
+    def clear(self, message: str = "") -> None:
+        """Take everything away; a message stands in the empty view."""
+        self.stop_drawing()
+        self._marked = None
+        self._scene.clear()
+        self._message = message
+        self._navigator.forget()
+        self._changed()
+
+    # ---- from where it is seen
+
+    def view(self, name: ViewName) -> None:
+        """Look from a standard direction and fit."""
+        self._navigator.view(name)
+
+    def fit(self) -> None:
+        """Keep the direction, show everything."""
+        self._navigator.fit()
+
+    def set_parallel(self, parallel: bool) -> None:
+        """Parallel projection, in which lengths can be compared, or perspective."""
+        self._buttons.parallel.setChecked(parallel)
+
+    def set_orientation(self, up: ArrayLike, north: ArrayLike) -> None:
+        """Say which way is up and which is away from the viewer of the front view, both (3,).
+
+        Until then up is towards the camera and north is up in the camera's picture.
+
+        Raises
+        ------
+        ValueError
+            If they are parallel or not finite.
+        """
+        self._navigator.set_orientation(up, north)
+        self._changed()
+
+    def screen_positions(self, points: ArrayLike) -> Array:
+        """Where points (N, 3) are in this view: (N, 2) in logical pixels of its canvas; NaN behind the viewer."""
+        return self._camera.project(as_points(points), self._canvas.logical_size)[0]
+
+    # ---- choosing
+
+    def start_picking(self) -> None:
+        """Every click on the cloud gives `point_picked` until Esc or `stop_drawing`; dragging still turns the view."""
+        self._start(Pick(self))
+
+    def start_polygon(self) -> None:
+        """Let the user click the corners of a region; a double click or Enter closes it, Esc cancels."""
+        self._start(Polygon(self))
+
+    def start_lasso(self) -> None:
+        """Let the user draw round a region with the button held down; Esc cancels."""
+        self._start(Lasso(self))
+
+    def stop_drawing(self) -> None:
+        """End picking or drawing without a result."""
+        if type(self._canvas.tool) is not Navigate:
+            self._canvas.set_tool(Navigate(self))
+            self._marked = None
+            self.drawing_cancelled.emit()
+
+    # ---- pictures
+
+    def picture(self) -> NDArray[np.uint8]:
+        """What is shown, whole, with colour bar and labels: (h, w, 3). Waits until everything is drawn."""
+        pixels = self._drawing.whole_picture()
+        if pixels is None:  # nothing to see, or no 3D here
+            image = QImage(*self._canvas.device_size, QImage.Format.Format_RGB32)
+            image.fill(OverlayColours.of(self.palette()).ground)
+        else:
+            image = as_image(pixels).convertToFormat(QImage.Format.Format_RGB32)
+        width, height = self._canvas.logical_size
+        painter = QPainter(image)
+        painter.scale(image.width() / width, image.height() / height)
+        self._paint_overlay(painter)
+        painter.end()
+        return as_pixels(image)
+
+    def save_picture(self, path: Path) -> None:
+        """Write the picture as PNG; InputError if the file cannot be written."""
+        buffer = QBuffer()
+        buffer.open(QIODevice.OpenModeFlag.WriteOnly)
+        as_image(self.picture()).save(buffer, "PNG")  # type: ignore[call-overload]
+        atomic.write_bytes(path, bytes(buffer.data().data()))
+
+    def state(self) -> DrawingState:
+        """How the scene is drawn now."""
+        drawing, cloud = self._drawing, self._scene.cloud
+        return DrawingState(
+            kind=drawing.kind,
+            points=cloud.given if cloud is not None else 0,
+            drawn_moving=drawing.moving_elements,
+            complete=drawing.complete,
+            pass_ms=tuple(drawing.pass_ms),
+        )
+
+    # ---- what tools do (`ViewControl`)
+
+    def orbit(self, dx: float, dy: float) -> None:
+        """Turn by a drag in pixels."""
+        self._navigator.orbit(dx, dy)
+
+    def pan(self, dx: float, dy: float) -> None:
+        """Move by a drag in pixels."""
+        self._navigator.pan(dx, dy)
+
+    def zoom(self, factor: float, at: QPointF | None = None) -> None:
+        """Nearer by a factor, towards a point of the screen or its middle."""
+        self._navigator.zoom(factor, at)
+
+    def pick(self, at: QPointF) -> None:
+        """Choose and mark the point of the cloud under the cursor."""
+        number, points = self._under(at), self._points_seen()
+        if number is not None:
+            self._marked = points[number].copy()
+            self._canvas.update()
+            self.point_picked.emit(number, self._marked)
+
+    def centre_on(self, at: QPointF) -> None:
+        """Turn about the point under the cursor from now on."""
+        number = self._under(at)
+        if number is not None:
+            self._navigator.centre_on(self._points_seen()[number])
+
+    def choose_region(self, corners: list[QPointF]) -> None:
+        """Choose the points of the cloud inside an outline."""
+        inside = np.zeros(self._scene.cloud.given if self._scene.cloud is not None else 0, dtype=bool)
+        points = self._points_seen()
+        if len(points):
+            outline = Outline([(corner.x(), corner.y()) for corner in corners])
+            inside = points_inside(points, self._camera, self._canvas.logical_size, outline)
+        self._canvas.set_tool(Navigate(self))
+        self.region_selected.emit(inside)
+
+    def repaint_tool(self) -> None:
+        """Paint the tool again."""
+        self._canvas.update()
+
+    # ---- Qt
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() in (QEvent.Type.PaletteChange, QEvent.Type.StyleChange):
+            self._buttons.dress()
+            self._on_moved()
+
+    def closeEvent(self, event: QCloseEvent) -> None:
+        self._drawing.finish()
+        super().closeEvent(event)
+
+    # ---- inside
+
+    @property
+    def _camera(self) -> SceneCamera:
+        return self._navigator.camera
+
+    def _put(self, name: str, item: Item) -> None:
+        self._scene.put(name, item)
+        self._changed()
+
+    def _changed(self, *, afresh: bool = False) -> None:
+        """Something else is to be seen; `afresh`: fit it."""
+        self._lay_grid()
+        self._navigator.follow(afresh=afresh)
+        self._show_message()
+        self._drawing.changed()
+        self._canvas.update()
+
+    def _toggle_grid(self) -> None:
+        self._lay_grid()
+        self._navigator.resized()
+        self._drawing.changed()
+
+    def _lay_grid(self) -> None:
+        """Lay the grid under what there is now."""
+        self._scene.remove(GRID)
+        self._grid_mm = 0.0
+        points = self._scene.to_fit() if self._buttons.grid.isChecked() else np.empty((0, 3))
+        if len(points):
+            lines, self._grid_mm = ground_grid(points, self._navigator.orientation)
+            self._scene.put(GRID, lines)
+
+    def _on_shown(self) -> None:
+        self._navigator.resized()
+        self._show_message()
+        if not self._drawing.complete:
+            self._drawing.moved()
+
+    def _on_resized(self) -> None:
+        self._navigator.resized()
+        self._drawing.moved()
+
+    def _on_moved(self) -> None:
+        self._drawing.moved()
+        self._canvas.update()
+
+    def _on_known(self) -> None:
+        """It is known now whether there is 3D."""
+        self._show_message()
+        self._drawing.changed()
+
+    def _start(self, tool: Navigate) -> None:
+        self.stop_drawing()
+        self._canvas.set_tool(tool)
+        self._canvas.setFocus()
+
+    def _points_seen(self) -> Array:
+        """Points (N, 3) of the cloud, if it is seen or a mesh of it is; else none."""
+        seen = self._scene.visible_cloud or (self._scene.cloud if self._scene.visible_mesh is not None else None)
+        return seen.points if seen is not None else np.empty((0, 3))
+
+    def _under(self, at: QPointF) -> int | None:
+        """Number of the cloud's point under the cursor."""
+        return nearest_point(self._points_seen(), self._camera, self._canvas.logical_size, (at.x(), at.y()))
+
+    def _show_message(self) -> None:
+        """What stands in the place of the scene, if anything."""
+        kind, message = readiness().kind, None
+        no_3d = self.tr("This computer cannot draw in 3D (no OpenGL). Everything else works as usual.")
+        if self._scene.empty:
+            message = self._message
+        elif kind is None:
+            message = self.tr("Preparing the 3D view …")
+        elif kind == "none":
+            message = no_3d
+        self._canvas.show_message(message)
+        if (
+            kind in ("pictures", "none")
+            and not self._scene.empty
+            and self.isVisible()
+            and kind not in readiness().notified
+        ):
+            readiness().notified |= {kind}
+            pictures = self.tr(
+                "This computer offers no OpenGL to the window: the 3D view shows rendered pictures of the scene. "
+                "Everything works as usual, turning may be slower."
+            )
+            self.notice.emit(pictures if kind == "pictures" else no_3d)
+
+    def _margin(self) -> tuple[int, int]:
+        return bar_width(self._scene.colouring, self.font()), 0
+
+    def _paint_overlay(self, painter: QPainter) -> None:
+        colours, size = OverlayColours.of(self.palette()), self._canvas.logical_size
+        painter.setFont(self.font())
+        paint_overlay(painter, self._scene, self._camera, size, colours, axes=self._axes, grid_mm=self._grid_mm)
+        if self._marked is not None:
+            x, y = self._camera.project(self._marked, size)[0][0]
+            if np.isfinite([x, y]).all():
+                paint_marker(painter, QPointF(float(x), float(y)), place_text(self._marked), colours)
+
+    def _ask_and_save(self) -> None:
+        """Ask for a place, and write the picture there."""
+        name, _ = QFileDialog.getSaveFileName(
+            self, self.tr("Save this picture"), "scene.png", self.tr("Pictures (*.png)")
+        )
+        if not name:
+            return
+        try:
+            self.save_picture(Path(name).with_suffix(".png"))
+        except InputError as error:
+            self.notice.emit(text_of(error))
+
+
+def _rgb(colour: ColourLike) -> Rgb:
+    """Any way of saying a colour, as three numbers.
+
+    Raises
+    ------
+    ValueError
+        If there is no such colour.
+    """
+    shade = QColor(*colour) if isinstance(colour, tuple) else QColor(colour)
+    if not shade.isValid():
+        raise ValueError(f"{colour!r} is no colour")
+    return shade.red(), shade.green(), shade.blue()
+
+
+def _rgbs(colours: ColourLike | Sequence[ColourLike]) -> list[Rgb]:
+    """One colour or several."""
+    if isinstance(colours, str | QColor):
+        return [_rgb(colours)]
+    if isinstance(colours, tuple) and len(colours) == 3 and all(isinstance(c, int) for c in colours):
+        return [_rgb(colours)]  # type: ignore[arg-type]
+    return [_rgb(colour) for colour in colours]  # type: ignore[arg-type]

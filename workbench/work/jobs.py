@@ -1,0 +1,76 @@
+"""What the window asks `core` to do, by name.
+
+Named instead of imported: a job runs in another process, and a window that imported the numerical libraries would
+open seconds later. `tests/workbench/test_rooms.py` holds every name to a function that exists.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import Any, NewType
+
+Job = NewType("Job", str)
+
+_CALIBRATION = "core.pipeline.project.calibration"
+_MEASURING = "core.pipeline.project.measuring"
+
+FIND_VIEWS = Job(f"{_CALIBRATION}:find_views")
+FOUND_VIEWS = Job(f"{_CALIBRATION}:found_views")
+SOLVE_VIEWS = Job(f"{_CALIBRATION}:solve_views")
+ACCEPT_CAMERA = Job(f"{_CALIBRATION}:accept_camera")
+FIND_POSES = Job(f"{_CALIBRATION}:find_poses")
+FOUND_POSES = Job(f"{_CALIBRATION}:found_poses")
+SOLVE_POSES = Job(f"{_CALIBRATION}:solve_poses")
+ACCEPT_FAN = Job(f"{_CALIBRATION}:accept_fan")
+SHOW_POSE = Job("core.pipeline.project.looks:show_pose")
+RECALL_POSES = Job("core.pipeline.project.looks:recall_poses")
+MEASURE_SCAN = Job(f"{_MEASURING}:measure_scan")
+WATCH_SCAN = Job("core.pipeline.project.watched_scan:measure_watched")
+SHOW_SCAN = Job("core.pipeline.project.looks:show_scan")
+SHOW_FRAME = Job("core.pipeline.project.looks:show_frame")
+ACCEPTED_CALIBRATION = Job("core.pipeline.project.looks:accepted_calibration")
+LIST_FRAMES = Job("core.files.recording.set_listing:scan_frames")
+MEASURE_GAUGE = Job(f"{_MEASURING}:measure_gauge")
+MEASURE_FEATURES = Job("core.pipeline.project.inspection:measure_features")
+LOOK_AT_FEATURES = Job("core.pipeline.project.inspection:look_at_features")
+MEASURED_MASTER = Job("core.pipeline.steps.master_step:measured_master")
+READ_PLAN = Job("core.files.plan.plan_file:read_plan")
+WRITE_PLAN = Job("core.files.plan.plan_file:write_plan")
+MAKE_REPORT = Job("core.pipeline.project.report:make_report")
+PREVIEW_REPORT = Job("core.pipeline.project.handing_over:preview_report")
+CHOOSE_TEMPLATE = Job("core.pipeline.project.handing_over:choose_template")
+EXPORT = Job("core.pipeline.project.handing_over:export")
+READ_CAMERA = Job("core.files.project.calibration_store:read_stored_camera")
+RECALL_CAMERA = Job("core.pipeline.project.camera_history:recall_camera")
+HISTORY = Job("core.files.project.calibration_store:history")
+COMPARE_CAMERAS = Job("core.pipeline.project.camera_history:compare_stored")
+JUDGE_VIEWS = Job("core.calibrate.camera.views:judge_views")
+TARGET_SHEET = Job("core.pipeline.steps.target_file:write_target_sheet")
+LIST_PICTURES = Job("core.files.recording.set_listing:pictures_in")
+READ_PICTURE = Job("core.files.pictures:read_picture")
+DISPLAY_PICTURE = Job("core.pipeline.project.thumbnails:display_picture")
+STRIPE_THUMBNAILS = Job("core.pipeline.project.thumbnails:stripe_thumbnails")
+THUMBNAILS = Job("core.pipeline.project.thumbnails:thumbnails")
+LIST_SOURCES = Job("core.pipeline.live.sources:list_sources")
+MISSING_DRIVER = Job("core.pipeline.live.sources:missing_driver")
+COPY_PROJECT = Job("core.files.project.copying:copy_project")
+ADD_RECORDING = Job("core.files.recording.add_recording:add_recording")
+RUN_LIVE = Job("workbench.work.worker:run_live_job")
+SAMPLE_PROJECT = Job("core.pipeline.project.sample_project:sample_project")
+CLEAR_SAMPLE = Job("core.pipeline.project.sample_project:clear_unfinished")
+INSPECTION_VIEW = Job("core.pipeline.project.inspect_view:inspection_view")
+OUTLINE_SELECTED = Job("core.pipeline.project.inspect_view:outline_selected")
+KEEP_STUDY = Job("core.pipeline.steps.study_step:keep_study")
+KEEP_TYPE1 = Job("core.pipeline.steps.study_step:keep_type1")
+LOOK_AT_STUDY = Job("core.pipeline.steps.study_step:look_at_study")
+PROJECT_ROWS = Job("core.pipeline.steps.study_step:project_rows")
+READ_STUDY_TABLE = Job("core.pipeline.steps.study_step:read_study_table")
+EXPORT_STUDY = Job("core.pipeline.steps.study_step:export_study")
+TYPE1_STUDY = Job("core.study.type1:type1_study")
+COMPILE_AHEAD = Job("core.pipeline.live.warm_up:stages")
+
+
+def resolve(job: Job) -> Any:
+    """The function behind the name; imports its module."""
+    module, _, name = job.partition(":")
+    return getattr(import_module(module), name)

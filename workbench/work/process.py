@@ -1,0 +1,115 @@
+"""A worker process of the window: a QProcess, and what goes through its pipes.
+
+All of it happens in the GUI thread: Qt reads the pipes, and tells when a whole message may be there. No Python thread
+of the window ever holds an object of Qt's, so the garbage collector may run whenever Python likes.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Mapping
+from typing import Any
+
+from PySide6.QtCore import QObject, QProcess, QProcessEnvironment, Qt, QTimer, Signal
+
+from workbench.work import wire
+from workbench.work.jobs import Job
+from workbench.work.wire import HEAD, Kind
+
+ENDS_WITHIN_MS = 3000
+"""A process that was killed is gone after milliseconds; the program's end waits for it no longer than this."""
+
+
+class WorkerProcess(QObject):
+    """One process that runs jobs, from its start to its end.
+
+    `received` brings the kind of each message, the number of its job, and its body, to be read with `wire.value_of` or
+    `wire.forget`. `gone` comes once, with why: the process could not be started, or ended by itself. After `end`
+    neither comes.
+    """
+
+    received = Signal(int, int, object)
+    gone = Signal(str)
+
+    def __init__(
+        self, name: str, warm: tuple[Job, ...], ahead: Job | None, environment: Mapping[str, str], parent: QObject
+    ) -> None:
+        super().__init__(parent)
+        self._folder = wire.memory_folder()
+        self._head: tuple[int, int, int] | None = None
+        self._ended = False
+        self._more = QTimer(self)
+        self._more.setSingleShot(True)
+        self._more.setInterval(0)
+        self._more.timeout.connect(self._read)
+        self._process = QProcess(self)
+        self._process.setProcessChannelMode(QProcess.ProcessChannelMode.ForwardedErrorChannel)
+        self._process.setProcessEnvironment(_environment(environment))
+        # Queued: within its own signal Qt would tell of nothing new, and a question in between would stop the lane.
+        self._process.readyReadStandardOutput.connect(self._read, Qt.ConnectionType.QueuedConnection)
+        self._process.finished.connect(self._finished, Qt.ConnectionType.QueuedConnection)
+        self._process.errorOccurred.connect(self._failed, Qt.ConnectionType.QueuedConnection)
+        # -P: a module that lies in the current folder by chance is not taken for one of Python's
+        self._process.start(sys.executable, ["-P", "-m", "workbench.work.worker", name, self._folder.name])
+        self.send(Kind.SETUP, 0, (warm, ahead))
+
+    @property
+    def pid(self) -> int:
+        """Its number in the system; 0 if it does not run."""
+        return self._process.processId()
+
+    def send(self, kind: Kind, number: int, value: Any = None) -> None:
+        """Send a message; it is written when the process can take it. Raises what pickle raises."""
+        self._process.write(wire.frame(kind, number, value))
+
+    def end(self) -> None:
+        """Kill the process, wait for nothing, and tell of nothing more; this object deletes itself."""
+        if self._ended:
+            return
+        self._ended = True
+        if self._process.state() == QProcess.ProcessState.NotRunning:
+            self._finished()
+        else:
+            self._process.kill()
+
+    def wait(self) -> None:
+        """Wait until a process that was ended is gone: at the program's end, when no event comes any more."""
+        if self._process.state() != QProcess.ProcessState.NotRunning:
+            self._process.waitForFinished(ENDS_WITHIN_MS)
+        self._folder.cleanup()
+
+    def _read(self) -> None:
+        """Tell of every whole message; whoever hears of one may ask a question, in which this is called again."""
+        while not self._ended:
+            if self._head is None and self._process.bytesAvailable() >= HEAD.size:
+                self._head = HEAD.unpack(self._process.read(HEAD.size).data())
+            if self._head is None or self._process.bytesAvailable() < self._head[2]:
+                return
+            kind, number, size = self._head
+            self._head = None
+            body = self._process.read(size).data()
+            if self._process.bytesAvailable():
+                self._more.start()  # what is there already is told of by no signal of Qt's, if a question comes now
+            self.received.emit(kind, number, body)
+
+    def _failed(self, error: QProcess.ProcessError) -> None:
+        if error is QProcess.ProcessError.FailedToStart:
+            self._finished()
+
+    def _finished(self, *_: Any) -> None:
+        self._read()
+        told, self._ended = self._ended, True
+        self._folder.cleanup()
+        if not told:
+            self.gone.emit(self._process.errorString())
+        self.deleteLater()
+
+
+def _environment(more: Mapping[str, str]) -> QProcessEnvironment:
+    """The environment of this process, where Python finds what it finds here, and `more`."""
+    all_ = QProcessEnvironment.systemEnvironment()
+    all_.insert("PYTHONPATH", os.pathsep.join(path for path in sys.path if path))
+    for name, value in more.items():
+        all_.insert(name, value)
+    return all_
