@@ -31,7 +31,7 @@ def pytest_collection() -> Iterator[None]:
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Modules with long proofs first, then windows: a long module handed out last would keep one process busy alone."""
-    long = {item.path for item in items if item.get_closest_marker("slow")}
+    long = {item.path for item in items if item.get_closest_marker("slow") or item.get_closest_marker("accuracy")}
     items.sort(key=lambda item: (item.path not in long, "workbench" not in item.path.parts))
 
 
@@ -46,7 +46,8 @@ def simulated(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="session")
 def tiny_set(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A still smaller set, for what has to go through all steps whatever they find; copy it before changing it."""
-    from tests.simulated import TINY, simulate_set
+    from core.simulate.recording import simulate_set
+    from tests.simulated import TINY
 
     return made_once(tmp_path_factory, "tiny", lambda folder: simulate_set(TINY, folder / "block")) / "block"
 

@@ -1,4 +1,4 @@
-"""What is slow to make is made once for all test processes, and copied where it is changed."""
+"""What tests share: pictures of others beside this checkout, and what is slow to make and so is made once."""
 
 from __future__ import annotations
 
@@ -8,6 +8,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+
+REAL_SETS = Path(__file__).resolve().parents[2] / "shared" / "real"
+"""Photographs of others with published results; tests that need them are skipped where they are not."""
 
 GIVE_UP_S = 240.0
 

@@ -42,6 +42,7 @@ def trisect(*words: object) -> Said:
         try:
             main([str(word) for word in words])
         except SystemExit as leave:
+            assert not isinstance(leave.code, str), leave.code
             code = leave.code or 0
     return Said(code, out.getvalue(), err.getvalue())
 

@@ -24,10 +24,11 @@ from pathlib import Path
 import numpy as np
 
 from core.acquire.source import SourceChoice
-from core.files.recording_log import lost_frames, read_log
-from core.live.commands import LiveRequest, Resume, Stop, TakeReference
-from core.live.events import LiveAsk, LiveNotice, LiveView
-from core.pipeline.live import run_live
+from core.files.recording.recorder import Ending
+from core.files.recording.recording_log import lost_frames, read_log
+from core.pipeline.live.commands import LiveRequest, Resume, Stop, TakeReference
+from core.pipeline.live.events import LiveAsk, LiveNotice, LiveView, ScanDetail
+from core.pipeline.live.session import run_live
 from tests.soak_camera import RIG, SERIAL, Tally, calibration, settings_for, sweep
 
 FLAT = 0.05
@@ -185,7 +186,7 @@ def prepared(folder: Path, scale: float) -> None:
     subprocess.run([sys.executable, "-m", "tests.soak_camera", str(folder), str(scale)], check=True)
 
 
-def soak(seconds: float, scale: float = 1.0, rate_hz: float = 14.0, ending: str = ".pgm") -> Soaked:
+def soak(seconds: float, scale: float = 1.0, rate_hz: float = 14.0, ending: Ending = ".pgm") -> Soaked:
     """Run the recording alone, in this process."""
     os.environ["PYLON_CAMEMU"] = "1"
     with tempfile.TemporaryDirectory(prefix="trisect-soak-") as name:
@@ -198,7 +199,8 @@ def soak(seconds: float, scale: float = 1.0, rate_hz: float = 14.0, ending: str 
 
 
 def _record(request: LiveRequest, folder: Path, seconds: float) -> Soaked:
-    result, commands, memory = Soaked(), deque(), Memory()
+    result, memory = Soaked(), Memory()
+    commands: deque[Resume | TakeReference] = deque()
     began: list[float] = []
     shown: dict[str, float] = {}
 
@@ -211,10 +213,10 @@ def _record(request: LiveRequest, folder: Path, seconds: float) -> Soaked:
             case LiveAsk(answer=TakeReference() | Resume() as answer):
                 commands.append(answer)
             case LiveNotice(sentence):
-                result.notices.append(sentence)
+                result.notices.append(str(sentence))
             case LiveView(detail=detail):
                 result.views += 1
-                if detail is not None and detail.preview is not None:
+                if isinstance(detail, ScanDetail) and detail.preview is not None:
                     shown.setdefault(detail.preview.name, time.monotonic())
 
     def next_command():
@@ -237,8 +239,8 @@ def _record(request: LiveRequest, folder: Path, seconds: float) -> Soaked:
     finally:
         done.set()
         watcher.join()
-    if ended.error:
-        raise SystemExit(ended.error)
+    if ended.error is not None:
+        raise SystemExit(str(ended.error))
     figures = tally.figures
     result.seconds = time.monotonic() - began[0]
     result.count(figures, request.folder, ended.recorded, ended.dropped)

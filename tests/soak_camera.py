@@ -19,19 +19,19 @@ from unittest import mock
 import cv2
 import numpy as np
 
-from core.acquire import basler_driver
-from core.acquire.genicam import GenICamSource
+from core.acquire.drivers import basler as basler_driver
+from core.acquire.drivers.genicam import GenICamSource
 from core.acquire.source import Region, SourceSettings
-from core.files.recorder import Recorder
-from core.files.rig import Rig
+from core.files.recording.recorder import Recorder
+from core.files.recording.rig import Rig
 from core.image.targets import BlackSquare, Checkerboard
-from core.live.commands import LiveRequest
-from core.live.events import LiveEnded
 from core.model import Camera, Fan
-from core.pipeline import live
-from core.pipeline.live_preview import ScanPreviewer
+from core.pipeline.live import session as live
+from core.pipeline.live.commands import LiveRequest
+from core.pipeline.live.events import LiveEnded
+from core.pipeline.live.preview import ScanPreviewer
 from core.progress import Progress
-from workbench.live_job import run_live_job
+from workbench.work.worker import run_live_job
 
 SERIAL = "0815-0000"
 RENDERED = 6
@@ -45,7 +45,7 @@ KEPT = 10
 
 def prepare(folder: Path, scale: float) -> None:
     """Frames and reference of a scan, as the emulator reads them quickly, and the rig they were seen with."""
-    from core.pipeline.warm_up import stages
+    from core.pipeline.live.warm_up import stages
     from core.simulate.recording import scan_of
     from core.simulate.scenario import Scenario
 
@@ -90,9 +90,11 @@ class EmulatedCamera(GenICamSource):
     def read(self, timeout_s: float):
         if not self._swept and (self._folder / "swept").exists():
             self._swept = True
-            self._driver.stop()
-            self._driver.camera.ImageFilename.SetValue(str(self._folder / "frames"))
-            self._start(self._driver)
+            driver = self._driver
+            assert isinstance(driver, basler_driver.PylonDriver)
+            driver.stop()
+            driver.camera.ImageFilename.SetValue(str(self._folder / "frames"))
+            self._start(driver)
         frame = super().read(timeout_s)
         if frame is not None:
             self.arrived_s.append((frame.index, time.monotonic()))
@@ -134,7 +136,8 @@ class Tally:
     """Inside, a live recording has the emulated camera; `figures` are what it and the recorder counted."""
 
     def __init__(self, folder: Path) -> None:
-        self.camera, self._recorders = EmulatedCamera(folder), []
+        self.camera = EmulatedCamera(folder)
+        self._recorders: list[SweepingRecorder] = []
         self.looked: dict[str, float] = {}
         self.sent: dict[str, float] = {}
 

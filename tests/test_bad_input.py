@@ -177,8 +177,8 @@ def test_black_and_white_frames_among_good_ones(folder, out):
     assert said.code == 0, said.err
     records = frame_records(out)
     assert [record["points"] > 0 for record in (records[2], records[6])] == [False, False]
-    assert records[2]["reason"] == "the picture is all black"
-    assert records[6]["reason"] == "the picture is all white"
+    assert records[2]["reason"]["code"] == "scan.frame_black"
+    assert records[6]["reason"]["code"] == "scan.frame_white"
 
 
 @pytest.mark.parametrize("how", ["black", "white"])
@@ -234,7 +234,7 @@ def test_the_object_moves_half_way(folder, out):
         write_picture(frame, np.roll(read_picture(frame), (2, 3), axis=(0, 1)))
     said = trisect("scan", folder, "--out", out, *CUT, "--json")
     assert said.code == 0, said.err
-    moved = [record for record in frame_records(out) if "moved" in record["reason"]]
+    moved = [record for record in frame_records(out) if record["reason"] and "moved" in record["reason"]["text"]]
     assert [record["index"] for record in moved] == list(range(SMALL.frames // 2, SMALL.frames))
     assert any("moved" in note for note in json.loads(said.out)["notes"])
 

@@ -95,7 +95,7 @@ def test_a_camera_goes_to_opencv_and_comes_back_to_calibrate_the_planes_with(sim
 
 
 def test_help_of_export_names_every_format():
-    from core.files.export_list import EXPORTS
+    from core.files.results.export_list import EXPORTS
 
     said = re.split(r"[^\w-]+", trisect("export", "--help").out)
     assert [name for name in EXPORTS if name not in said] == []

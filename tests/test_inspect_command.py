@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import pytest
 
-from core.files.inspection_file import read_inspection
-from core.files.inspection_plan_file import read_plan
-from core.pipeline.inspect_step import inspect, open_scan
+from core.files.plan.plan_file import read_plan
+from core.files.results.inspection_file import read_inspection
+from core.pipeline.steps.inspect_step import inspect, open_scan
 from core.simulate.recording import simulate_set
 from tests.simulated import CUT, SMALL, copy_of, trisect
 
@@ -115,13 +115,13 @@ def test_a_recording_set_is_inspected_with_its_results(simulated, results):
 def test_a_cloud_alone_is_inspected_and_says_what_is_not_known(results, tmp_path):
     (tmp_path / "lonely.ply").write_bytes((results / "cloud.ply").read_bytes())
     said = json.loads(trisect("inspect", tmp_path / "lonely.ply", "--plan", results / "plan.toml", "--json").out)
-    assert any("less than is known" in note for note in said["notes"])
+    assert any("less than is known" in note["text"] for note in said["notes"])
     assert said["files"] == {}
     assert said["verdict"] == "not proven"
     whole = json.loads(trisect("inspect", results / "cloud.ply", "--plan", results / "plan.toml", "--json").out)
     alone, known = (one["characteristics"][0] for one in (said, whole))
     assert alone["value"] == pytest.approx(known["value"], abs=0.2)
-    assert not any("less than is known" in note for note in whole["notes"])
+    assert not any("less than is known" in note["text"] for note in whole["notes"])
 
 
 @pytest.mark.parametrize(

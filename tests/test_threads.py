@@ -6,7 +6,7 @@ import time
 import pytest
 
 from core.errors import Cancelled
-from core.progress import Told
+from core.progress import StepProgress
 from core.threads import ordered_map
 
 
@@ -55,8 +55,8 @@ def test_a_jobs_own_timeout_is_raised_as_it_is():
 
 def test_a_part_of_a_step_repeats_where_the_whole_step_is():
     heard = []
-    told = Told(lambda *words: heard.append(words))
-    told.again("rounds", 1, 12)
+    told = StepProgress(lambda *words: heard.append(words))
+    told.within_step("rounds", 1, 12)
     told("network", 1, 3)
-    told.again("rounds", 2, 12)
+    told.within_step("rounds", 2, 12)
     assert heard == [("rounds", 1, 12), ("network", 1, 3), ("network", 1, 3)]

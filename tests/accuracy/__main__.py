@@ -22,7 +22,7 @@ BEGIN, END = "<!-- accuracy table: make accuracy -->", "<!-- end of the accuracy
 def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m tests.accuracy", description=__doc__)
     parser.add_argument("--short", action="store_true", help="one scan of each kind, at half resolution")
-    parser.add_argument("--readme", action="store_true", help="put the table into README.md")
+    parser.add_argument("--manual", action="store_true", help="put the table into the manual")
     parser.add_argument("--out", type=Path, default=ROOT / "build" / "accuracy", help="where the figures go")
     parser.add_argument("--processes", type=int, default=PROCESSES)
     chosen = parser.parse_args()
@@ -37,8 +37,8 @@ def main() -> None:
     lines += ["", "What the pictures allow at best (Cramér–Rao):", "", *bounds.table(bounds.all_bounds())]
     print("\n".join(lines))
     write_text(chosen.out / "table.md", "\n".join(lines) + "\n")
-    if chosen.readme:
-        _into_readme(lines)
+    if chosen.manual:
+        _into_manual(lines)
 
 
 def _points_rows(scans: list[Case], results: dict[str, Figures], found: points.Points) -> list[str]:
@@ -84,8 +84,8 @@ def _commit() -> str:
     return found.stdout.strip() or "unknown"
 
 
-def _into_readme(lines: list[str]) -> None:
-    path = ROOT / "README.md"
+def _into_manual(lines: list[str]) -> None:
+    path = ROOT / "resources" / "manual" / "accuracy.md"
     before, _, rest = path.read_text(encoding="utf-8").partition(BEGIN)
     _, _, after = rest.partition(END)
     write_text(path, "\n".join([before + BEGIN, "", *lines, "", END + after]))

@@ -48,7 +48,7 @@ def goals(bounds: Mapping[str, tuple[Bound, ...]]) -> list[Goal]:
     """The goals for thickness, mask and ball, with the bounds of each of RIGS."""
 
     def u(rig: str, quantity: str) -> float:
-        return next(bound.with_speckle for bound in bounds[rig] if bound.quantity == quantity)
+        return next(bound.with_speckle for bound in bounds[rig] if str(bound.quantity) == quantity)
 
     def thickness(rig: str) -> float:
         return float(np.sqrt(np.mean([u(rig, f"thickness of {height:g} mm") ** 2 for height in HEIGHTS_MM])))

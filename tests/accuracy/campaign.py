@@ -16,15 +16,18 @@ from typing import Any
 import numpy as np
 
 from core.errors import InputError
-from core.files.ply import read_cloud
-from core.files.recording_set import open_set
-from core.files.scan_file import read_scan
+from core.files.recording.options import Options
+from core.files.recording.recording_set import open_set
+from core.files.results.ply import read_cloud
+from core.files.results.scan_file import read_scan
 from core.inspect.gauge import fit_gauge
-from core.inspect.sphere import fit_sphere
-from core.pipeline import Options, Workspace, scan_step
-from core.pipeline.gauge_step import point_errors
+from core.pipeline.steps.gauge_step import point_errors
+from core.pipeline.steps.scan_step import scan_step
+from core.pipeline.steps.workspace import Workspace
+from core.scan.method import Method
 from tests.accuracy.cases import Case, calibration_key
 from tests.accuracy.twin import Measured, measure
+from tests.inspect.sphere_fit import fit_sphere
 
 Figures = dict[str, Any]
 
@@ -91,7 +94,7 @@ def figures_of(measured: Measured) -> Figures:
     if measured.gauge is not None:
         figures["error"] = measured.gauge.thickness_mm - thing["thickness_mm"]
         figures["u"] = measured.gauge.u_mm
-        figures["budget"] = {row.source: row.u_mm for row in measured.gauge.budget}
+        figures["budget"] = {str(row.source): row.u_mm for row in measured.gauge.budget}
     if thing["kind"] == "sphere":
         fit = fit_sphere(cloud, errors=measured.errors)
         figures["error"] = 2 * (fit.radius_mm - thing["radius_mm"])
@@ -113,7 +116,7 @@ def _paper(place: Path, measured: Measured) -> Figures:
     shutil.copytree(place / "out", place / "paper")
     work = Workspace.open(open_set(place / "set"), place / "paper")
     try:
-        scan = scan_step(work, Options(method="three-crossings")).scan
+        scan = scan_step(work, Options(method=Method.THREE_CROSSINGS)).scan
     except InputError as problem:
         return {"why": str(problem)}
     of_sweeps = scan.cloud.sweep >= 0

@@ -24,18 +24,18 @@ from multiprocessing import get_context
 
 import numpy as np
 
-from core.calibrate.camera import calibrate_camera
-from core.calibrate.deviations import Deviation, calibration_deviations, moved_fan
-from core.calibrate.fan import FanOptions, fit_fan
-from core.calibrate.reprojection import camera_of, parameters_of
+from core.calibrate.camera.calibration import calibrate_camera
+from core.calibrate.camera.reprojection import camera_of, parameters_of
+from core.calibrate.deviations import Deviation, Source, calibration_deviations, moved_fan
+from core.calibrate.fan.calibration import FanOptions, fit_fan
 from core.inspect.gauge import fit_gauge
-from core.inspect.point_errors import PointErrors
-from core.inspect.uncertainty import combined
+from core.inspect.uncertainty.budget import combined
+from core.inspect.uncertainty.point_errors import PointErrors
 from core.model import Camera, Fan
 from core.scan.common_errors import CommonErrors, solve_common
-from core.scan.fan_lines import FanLines
 from core.scan.reconstruct import reconstruct
 from core.scan.results import ScanResult
+from core.scan.sweeps.fan_lines import FanLines
 from core.simulate.scenario import Scenario
 from tests.calibrate import camera_views, fan_scenes
 from tests.scan.centreline_scan import ExactScan
@@ -122,7 +122,7 @@ def _scans(index: int, seed: int, frames: int) -> Iterator[np.ndarray]:
     displaced = [Deviation(source, *_off(rig.camera, rig.fan, step)) for source, step in steps]
     template = solve_common(features, first, rig.camera, rig.fan, displaced)
     while True:
-        draw = sum(rng.normal() * step for _, step in steps)
+        draw = sum((rng.normal() * step for _, step in steps), np.zeros(19))
         camera, fan = _off(rig.camera, rig.fan, draw)
         features = exact.measured(seed=int(rng.integers(2**31)))
         scan = reconstruct(features, camera, fan, fan_lines=lines)
@@ -140,7 +140,7 @@ def _scans(index: int, seed: int, frames: int) -> Iterator[np.ndarray]:
 
 
 @cache
-def _calibration_steps() -> tuple[tuple[str, np.ndarray], ...]:
+def _calibration_steps() -> tuple[tuple[Source, np.ndarray], ...]:
     """One-σ steps (19,) of camera and fan, and whose they are, from calibrations of the paper's numbers of pictures."""
     camera = calibrate_camera(camera_views.synthetic_views(5, noise_px=0.02), camera_views.TRUTH.image_size)
     poses = fan_scenes.features(fan_scenes.poses(9, 2), fan_scenes.Noise(), 2)
@@ -174,6 +174,7 @@ def _about(template: CommonErrors, first: ScanResult, scan: ScanResult, camera: 
 def _points_within(exact: ExactScan, height: float, cloud) -> float:
     """Share of the points on table and upper face whose depth is within 2σ of what their pixel truly sees."""
     table = exact.scene.pose_cam_table
+    assert table is not None
     up, foot = table.rotation[:, 2], table.translation
     rays = exact.rig.camera.rays(cloud.uv)
     true = np.array([(foot + level * up) @ up / (rays @ up) for level in (0.0, height)])

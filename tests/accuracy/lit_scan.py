@@ -13,8 +13,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from core.simulate.laser import Sheet, fan_sheets
-from core.simulate.stage import WORK_POINT
+from core.simulate.scene.laser import Sheet, fan_sheets
+from core.simulate.scene.stage import WORK_POINT
 from tests.accuracy.lit_sections import centres
 from tests.scan.centreline_scan import Curve, ExactScan
 
@@ -43,6 +43,7 @@ def _lit(exact: ExactScan, sheet: Sheet, curve: Curve) -> Curve:
     (sphere,) = exact.scene.spheres
     outward = (curve.points - sphere.centre) / sphere.radius
     of_sphere = np.abs(np.linalg.norm(outward, axis=1) - 1) < 1e-4
+    assert exact.scene.pose_cam_table is not None
     table = exact.scene.pose_cam_table.rotation[:, 2]
     normal = np.where(of_sphere[:, None], outward, table)
     rays = curve.points / curve.points[:, 2:]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from core.simulate.laser import Sheet
+from core.simulate.scene.laser import Sheet
 from tests.scan.centreline_scan import Curve, ExactScan
 
 REACH = 5.0
@@ -31,7 +31,7 @@ def centres(exact: ExactScan, sheet: Sheet, curve: Curve, on: np.ndarray) -> tup
 
 
 def _light(exact: ExactScan, sheet: Sheet, uv: np.ndarray) -> np.ndarray:
-    """Light (N,) that the sphere seen at pixels `uv` (N, 2) sends back, by the law of `core.simulate.laser`."""
+    """Light (N,) that the sphere seen at pixels `uv` (N, 2) sends back, by the law of `core.simulate.scene.laser`."""
     (sphere,) = exact.scene.spheres
     rays = exact.rig.camera.rays(uv)
     rays /= np.linalg.norm(rays, axis=1)[:, None]

@@ -23,12 +23,13 @@ from pathlib import Path
 import numpy as np
 
 from core.calibrate.deviations import calibration_deviations
-from core.files.recording_set import open_set
-from core.files.scan_file import read_scan
-from core.pipeline import Workspace, camera_step, planes_step
-from core.pipeline.workspace import Calibration
+from core.files.recording.recording_set import open_set
+from core.files.results.scan_file import read_scan
+from core.pipeline.steps.camera_step import camera_step
+from core.pipeline.steps.planes_step import planes_step
+from core.pipeline.steps.workspace import Calibration, Workspace
 from core.scan.common_errors import solve_common
-from core.scan.features import ScanFeatures
+from core.scan.features.extraction import ScanFeatures
 from core.scan.reconstruct import reconstruct
 from core.simulate.recording import simulate_set
 from core.simulate.scenario import Scenario

@@ -2,7 +2,8 @@
 
 Camera, light planes and crossings are exact here and there is no speckle; a stripe is found only as well as its light
 lies. Across a stripe the light of a sheet of σ_mm falls on a surface that turns away, so the section's middle is not
-where the sheet's middle plane meets the surface (`core.image.shading`). For every point of every stripe the picture of
+where the sheet's middle plane meets the surface (`core.image.stripes.shading`). For every point of every stripe the
+picture of
 its surroundings is computed by the simulator's own law of light, blurred by the lens, and its centre is found twice:
 
 - as the centroid of the light, which is what a likelihood under speckle trusts (all of the section counts alike);
@@ -10,7 +11,7 @@ its surroundings is computed by the simulator's own law of light, blurred by the
 
 Nothing in one section tells that it lies uneven: it stays a Gaussian. What the radius is then off by falls with the
 square of the light's width and hardly with the camera's resolution. But the surface that has been found tells it, and
-`core.scan.uneven_sections` takes it off: `solved` is what whole scans of such stripes give, all but without noise,
+`core.scan.bend_correction` takes it off: `solved` is what whole scans of such stripes give, all but without noise,
 before and after. `python -m tests.accuracy.sphere_bound` prints both.
 """
 
@@ -21,14 +22,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from core.inspect.sphere import through
-from core.scan.fan_lines import FanLines
+from core.inspect.fit.round import sphere_through
+from core.scan.bend_correction import corrected_for_bends
 from core.scan.reconstruct import reconstruct
 from core.scan.results import ScanResult
-from core.scan.uneven_sections import evened
-from core.simulate.laser import Sheet, fan_sheets
+from core.scan.sweeps.fan_lines import FanLines
 from core.simulate.scenario import Scenario
-from core.simulate.stage import WORK_POINT
+from core.simulate.scene.laser import Sheet, fan_sheets
+from core.simulate.scene.stage import WORK_POINT
 from tests.accuracy.lit_scan import lit
 from tests.accuracy.lit_sections import centres
 from tests.scan.centreline_scan import Curve, ExactScan, Noise
@@ -73,7 +74,7 @@ def sphere_bound(
         for found, offset in zip(points, offsets, strict=False):
             rays = exact.rig.camera.rays(curve.uv[on] + offset[:, None] * curve.normal[on])
             found.append(rays / (rays @ sheet.plane.pi)[:, None])
-    centroid, gaussian = (through(np.concatenate(found)).radius - sphere.radius for found in points)
+    centroid, gaussian = (sphere_through(np.concatenate(found)).radius - sphere.radius for found in points)
     return SphereBound(light_mm, scale, centroid, gaussian, float(np.median(np.concatenate(widths))))
 
 
@@ -92,7 +93,7 @@ def solved(light_mm: float = 0.22, *, seed: int = 11, scale: float = 0.5, frames
     faint = replace(faint, sweep_px=FAINT * faint.sweep_px, fan_px=FAINT * faint.fan_px)
     features = lit(exact, light_mm).measured(1, faint)
     once = reconstruct(features, rig.camera, rig.fan, fan_lines=lines)
-    twice = reconstruct(evened(features, once, rig.camera, rig.fan), rig.camera, rig.fan, fan_lines=lines)
+    twice = reconstruct(corrected_for_bends(features, once, rig.camera, rig.fan), rig.camera, rig.fan, fan_lines=lines)
     return _error(exact, once), _error(exact, twice)
 
 
@@ -100,7 +101,7 @@ def _error(exact: ExactScan, scan: ScanResult) -> float:
     (sphere,) = exact.scene.spheres
     off = np.abs(np.linalg.norm(scan.cloud.points - sphere.centre, axis=1) - sphere.radius)
     on = off < ON_SPHERE_MM
-    return through(scan.cloud.points[on]).radius - sphere.radius
+    return sphere_through(scan.cloud.points[on]).radius - sphere.radius
 
 
 def table(lights_mm: tuple[float, ...] = (0.22, 0.16, 0.11, 0.055), seeds: tuple[int, ...] = (11, 5)) -> list[str]:

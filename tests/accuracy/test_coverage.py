@@ -4,7 +4,7 @@ import pytest
 
 from tests.accuracy.coverage import run
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.accuracy
 
 
 def test_the_truth_lies_within_what_is_stated():

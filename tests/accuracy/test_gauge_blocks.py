@@ -1,6 +1,6 @@
 """The main job against hidden truth: the paper's rig at half resolution, 60 frames, own calibration.
 
-The limits are those the project promises; `make accuracy` measures all heights and seeds for the README's table.
+The limits are those the project promises; `make accuracy` measures all heights and seeds for the manual's table.
 """
 
 import numpy as np
@@ -12,7 +12,7 @@ from tests.accuracy.twin import Measured, measure
 THICKNESS_MM = 0.045
 MEDIAN_DEPTH_MM = 0.06
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.accuracy
 
 
 class BlocksOfOneSeed:
@@ -26,7 +26,7 @@ class BlocksOfOneSeed:
     def block(cls, tmp_path_factory):
         """Measured blocks by height, each rendered when it is first asked for."""
         folder = tmp_path_factory.mktemp(f"seed{cls.seed}")
-        done: dict[float, Measured] = {}
+        done = {}
 
         def of_height(height: float) -> Measured:
             if height not in done:
@@ -50,7 +50,7 @@ class BlocksOfOneSeed:
         depth_errors = measured.depth_errors()
         known = np.isfinite(depth_errors)
         median = np.median(np.abs(depth_errors[known]))
-        print(  # pytest -rP shows the figures of the README's table
+        print(  # pytest -rP shows the figures of the manual's table
             f"seed {self.seed}, {height:g} mm: thickness error {error:+.4f} mm, u {u:.4f} mm, "
             f"median |depth error| {median:.4f} mm, {len(depth_errors)} points"
         )

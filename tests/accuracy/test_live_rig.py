@@ -1,7 +1,7 @@
 """The simulated rig recorded as a technician would: its calibrations are right for its scans.
 
 The pictures are asked for at the moments that count. How the live source comes to them, frame by frame and order by
-order, is proved in tests/simulate/test_live.py.
+order, is proved in tests/simulate/live/test_source.py.
 """
 
 from itertools import count
@@ -9,10 +9,10 @@ from itertools import count
 import pytest
 
 from core.acquire.source import Lasers
-from core.files.recorder import Recorder
-from core.pipeline import run
+from core.files.recording.recorder import Recorder
+from core.pipeline.steps.run import run
 from core.simulate.calibration import rig_toml
-from core.simulate.live_scene import (
+from core.simulate.live.scene import (
     CAMERA_MOVE_S,
     CAMERA_REST_S,
     CAMERA_RESTS,
@@ -56,7 +56,7 @@ def record(scene, folder):
     assert scan.dropped == views.dropped == poses.dropped == 0
 
 
-@pytest.mark.slow
+@pytest.mark.accuracy
 def test_a_block_recorded_live_measures_what_it_is(tmp_path):
     scene = LiveScene(sample_scenario())
     record(scene, tmp_path / "set")

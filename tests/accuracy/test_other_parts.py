@@ -3,13 +3,16 @@
 import numpy as np
 import pytest
 
-from core.files.recording_set import open_set
-from core.inspect.sphere import find_sphere, fit_sphere
-from core.pipeline import Options, Workspace, scan_step
+from core.files.recording.options import Options
+from core.files.recording.recording_set import open_set
+from core.inspect.fit.round import find_sphere
+from core.pipeline.steps.scan_step import scan_step
+from core.pipeline.steps.workspace import Workspace
 from core.simulate.scenario import Scenario
 from tests.accuracy.twin import measure
+from tests.inspect.sphere_fit import fit_sphere
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.accuracy
 
 
 @pytest.fixture(scope="module")
@@ -29,7 +32,7 @@ def test_a_sphere_of_50_mm_has_its_radius(sphere):
 
 
 def test_a_sphere_has_its_radius_on_the_worst_of_five_seeds_too(tmp_path):
-    """The one that wide light made smallest, when scans were solved only once (core.scan.uneven_sections)."""
+    """The one that wide light made smallest, when scans were solved only once (core.scan.bend_correction)."""
     measured = measure(Scenario(object="sphere", height_mm=50.0, seed=5, scale=0.5, frames=60), tmp_path)
     fit = fit_sphere(measured.cloud, find_sphere(measured.cloud), errors=measured.errors)
     print(f"radius error {fit.radius_mm - 25.0:+.4f} mm, u {fit.u_mm:.4f} mm")

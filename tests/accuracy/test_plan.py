@@ -5,8 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from core.files.recording_set import open_set
-from core.pipeline import Options, Workspace, camera_step, gauge_step, planes_step, scan_step
+from core.files.recording.options import Options
+from core.files.recording.recording_set import open_set
+from core.pipeline.steps.camera_step import camera_step
+from core.pipeline.steps.gauge_step import gauge_step
+from core.pipeline.steps.planes_step import planes_step
+from core.pipeline.steps.scan_step import scan_step
+from core.pipeline.steps.workspace import Workspace
 from core.plan.design import Design
 from core.plan.predict import Planner
 from core.simulate.recording import simulate_set
@@ -42,7 +47,7 @@ def measured(design: Design, seed: int, folder):
     return gauge.u_mm, gauge.thickness_mm - HEIGHT, float(np.median(scan.cloud.sigma))
 
 
-@pytest.mark.slow
+@pytest.mark.accuracy
 @pytest.mark.parametrize("name", RIGS)
 def test_the_twin_delivers_the_uncertainty_that_was_planned(name, tmp_path):
     design = RIGS[name]

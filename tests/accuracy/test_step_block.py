@@ -4,19 +4,19 @@ import numpy as np
 import pytest
 
 from core.inspect.evaluate import evaluate
-from core.inspect.feature_spec import FeatureSpec
-from core.inspect.inspection_plan import InspectionPlan
-from core.inspect.point_errors import PointErrors
-from core.scan.fan_lines import FanLines
-from core.scan.normals import with_normals
+from core.inspect.plan.feature_spec import FeatureSpec
+from core.inspect.plan.inspection_plan import InspectionPlan
+from core.inspect.uncertainty.point_errors import PointErrors
 from core.scan.reconstruct import reconstruct
+from core.scan.surface.normals import with_normals
+from core.scan.sweeps.fan_lines import FanLines
 from core.simulate.scenario import Scenario
 from tests.scan.centreline_scan import ExactScan
 
 HEIGHTS = np.array([40.0, 50.0, 60.0, 70.0])
 
 
-@pytest.mark.slow
+@pytest.mark.accuracy
 def test_heights_of_all_levels_are_as_sure_as_they_say():
     exact = ExactScan.of(Scenario(object="steps", seed=5, scale=0.5, frames=60))
     plan = InspectionPlan((FeatureSpec("block", "steps", nominal_heights=tuple(HEIGHTS)),))

@@ -8,16 +8,19 @@ import numpy as np
 from scipy.ndimage import map_coordinates
 
 from core.calibrate.results import CAMERA_PARAMETERS, CameraCalibration
-from core.files.camera_file import read_camera
-from core.files.gauge_file import read_gauge
-from core.files.ply import read_cloud
-from core.files.recording_set import open_set
-from core.files.scan_file import read_scan
-from core.inspect.point_errors import PointErrors
+from core.files.recording.recording_set import open_set
+from core.files.results.camera_file import read_camera
+from core.files.results.gauge_file import read_gauge
+from core.files.results.ply import read_cloud
+from core.files.results.scan_file import read_scan
 from core.inspect.results import GaugeResult
-from core.pipeline import Workspace, camera_step, gauge_step, planes_step, scan_step
-from core.pipeline.gauge_step import point_errors
-from core.scan.cloud import Cloud
+from core.inspect.uncertainty.point_errors import PointErrors
+from core.pipeline.steps.camera_step import camera_step
+from core.pipeline.steps.gauge_step import gauge_step, point_errors
+from core.pipeline.steps.planes_step import planes_step
+from core.pipeline.steps.scan_step import scan_step
+from core.pipeline.steps.workspace import Workspace
+from core.scan.surface.cloud import Cloud
 from core.simulate.recording import simulate_set
 from core.simulate.scenario import Scenario
 from core.simulate.truth import Truth, load_truth

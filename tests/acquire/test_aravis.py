@@ -9,15 +9,15 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from core.acquire import aravis_driver
-from core.acquire.aravis_driver import connect, list_cameras
-from core.acquire.genicam import GenICamSource
+from core.acquire.drivers import aravis as aravis_driver
+from core.acquire.drivers.aravis import connect, list_cameras
+from core.acquire.drivers.genicam import GenICamSource
 from core.acquire.source import Region, SourceSettings
 from core.errors import InputError
-from core.files.rig import Rig
+from core.files.recording.rig import Rig
 from core.image.targets import BlackSquare, Checkerboard
-from core.live.commands import Stop
-from core.live.events import LiveBack, LiveUnplugged, LiveView
+from core.pipeline.live.commands import Stop
+from core.pipeline.live.events import LiveBack, LiveUnplugged, LiveView
 from tests.pipeline.live_bench import Window, record
 
 FAKE = "arv-fake-gv-camera-0.8"
@@ -43,7 +43,7 @@ def camera():
     if shutil.which(FAKE) is None:
         pytest.skip(f"{FAKE} is not installed (apt install aravis-tools)")
     if aravis_driver.is_missing():
-        pytest.skip(aravis_driver.INSTALL)
+        pytest.skip(str(aravis_driver.INSTALL))
     process = start_camera()
     wait_for_camera()
     yield process
@@ -132,9 +132,9 @@ def test_a_camera_that_falls_silent_is_told_and_looked_for_and_the_recording_goe
         for process in again:
             process.kill()
             process.wait()
-    assert ended.error == ""
+    assert ended.error is None
     (gone,) = window.all(LiveUnplugged)
-    assert gone.sentence.endswith("plug it in again.")
+    assert str(gone.sentence).endswith("plug it in again.")
     assert len(again) == len(window.all(LiveBack)) == 1
     first, last = window.all(LiveView)[0], window.all(LiveView)[-1]
     assert last.index <= first.index + 20  # counted anew

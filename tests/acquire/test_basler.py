@@ -9,9 +9,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from core.acquire.basler_driver import connect, list_cameras
-from core.acquire.genicam import GenICamSource
-from core.acquire.pixel_formats import full_range
+from core.acquire.drivers.basler import connect, list_cameras
+from core.acquire.drivers.genicam import GenICamSource
+from core.acquire.drivers.pixel_formats import full_range
 from core.acquire.source import Lasers, Region, SourceSettings, Unplugged
 from core.errors import InputError
 from core.files.pictures import write_picture

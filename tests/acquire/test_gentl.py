@@ -8,9 +8,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from core.acquire import gentl_driver
-from core.acquire.genicam import DriverError, GenICamSource, Grabbed
-from core.acquire.gentl_driver import connect, list_cameras
+from core.acquire.drivers import gentl as gentl_driver
+from core.acquire.drivers.genicam import DriverError, GenICamSource, Grabbed
+from core.acquire.drivers.gentl import connect, list_cameras
 from core.acquire.source import Region, SourceSettings, Unplugged
 from core.errors import InputError
 

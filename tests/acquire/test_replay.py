@@ -8,7 +8,7 @@ from core.acquire.replay import HOLDS, ReplaySource
 from core.acquire.source import Ended, Lasers, SourceSettings, Unplugged
 from core.errors import InputError
 from core.files.pictures import read_picture, write_picture
-from core.files.replay_pictures import ReplayPictures
+from core.files.recording.replay_pictures import ReplayPictures
 
 FAN, DARK, BOTH = Lasers(fan=True, hand=False), Lasers(fan=False, hand=False), Lasers(fan=True, hand=True)
 AS_FAST = SourceSettings(rate_hz=0)

@@ -7,17 +7,16 @@ from itertools import count
 import numpy as np
 from scipy.spatial import cKDTree
 
-from core.image.centreline import Centreline
-from core.image.linking import link
-from core.image.pieces import END_TRIM_PX
-from core.image.ridge import ridge_response
-from core.image.stripes import _limits, extract_centrelines
-from core.scan.crossings import CrossingWindow
-from core.scan.features import FrameReader
-from core.scan.frame_reader import saturated_pixels
-from core.scan.reference import check_reference
-from core.scan.tracking import SweepTracker
-from core.scan.triangulate import triangulate
+from core.image.stripes.centreline import Centreline
+from core.image.stripes.extraction import _limits, extract_centrelines
+from core.image.stripes.runs import END_TRIM_PX
+from core.image.stripes.tracing.linking import link
+from core.image.stripes.tracing.ridge import ridge_response
+from core.scan.features.crossings import CrossingWindow
+from core.scan.features.extraction import FrameReader, saturated_pixels
+from core.scan.features.reference import check_reference
+from core.scan.surface.triangulate import triangulate
+from core.scan.sweeps.tracking import SweepTracker
 from core.simulate.scenario import Scenario
 from tests.benchmarks.conftest import FullFrame, processor_ms, table
 from tests.benchmarks.peers import opencv_steger, skimage_hessian

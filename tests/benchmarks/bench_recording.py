@@ -10,10 +10,10 @@ from pathlib import Path
 import numpy as np
 
 from core.acquire.source import Frame
-from core.files.direct_file import DirectWriter
-from core.files.pgm import pgm_parts
-from core.files.recorder import Recorder
-from core.files.recording_log import lost_frames, read_log
+from core.files.pictures import pgm_parts
+from core.files.recording.direct_file import DirectWriter
+from core.files.recording.recorder import Recorder
+from core.files.recording.recording_log import lost_frames, read_log
 from tests.benchmarks.conftest import table
 
 FRAMES, RATE_HZ = 300, 100.0

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from core.scan.cloud import Cloud
-from core.scan.crossing_search import all_crossings
-from core.scan.crossings import CrossingWindow
-from core.scan.fusion import fuse
-from core.scan.locate import locate_together, number_fan_lines, numbered
-from core.scan.mesh import build_mesh
-from core.scan.normals import with_normals
+from core.scan.features.crossing_search import all_crossings
+from core.scan.features.crossings import CrossingWindow
+from core.scan.surface.cloud import Cloud
+from core.scan.surface.fusion import fuse
+from core.scan.surface.mesh import build_mesh
+from core.scan.surface.normals import with_normals
+from core.scan.sweeps.locate import locate_together, number_fan_lines, numbered
 from core.simulate.scenario import Scenario
 from tests.benchmarks.conftest import processor_ms, table
 from tests.scan.centreline_scan import ExactScan

@@ -12,10 +12,10 @@ import cv2
 import numpy as np
 import pytest
 
-from core.image.noise import NoiseModel
-from core.image.stripe import StripeSettings
-from core.image.stripe_settings import choose_settings
-from core.scan.features import ReferenceFeatures, choose_sweep_stripe, read_reference
+from core.image.stripes.noise import NoiseModel
+from core.image.stripes.settings import choose_settings
+from core.image.stripes.stripe import StripeSettings
+from core.scan.features.extraction import ReferenceFeatures, choose_sweep_stripe, read_reference
 from core.simulate.recording import scan_of
 from core.simulate.scenario import Scenario
 

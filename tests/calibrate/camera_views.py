@@ -3,14 +3,11 @@
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from core.image.target_view import TargetView
-from core.model import Camera, Pose
+from core.image.targets.target_view import TargetView
+from core.model import Pose
+from tests import paper
 
-TRUTH = Camera(
-    (3840, 2748),
-    [[4990.2635, 0.77900164, 1929.2399], [0, 4993.9024, 1279.1607], [0, 0, 1]],
-    [0.0815, -0.3809, 0.0042, -0.0004],
-).scaled(0.5)
+TRUTH = paper.HALF
 
 
 def board(columns: int = 17, rows: int = 12, square_mm: float = 10.0) -> np.ndarray:

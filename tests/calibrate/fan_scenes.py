@@ -9,21 +9,17 @@ from scipy.ndimage import gaussian_filter1d
 from scipy.spatial.transform import Rotation
 
 from core.calibrate.board_shape import Board, BoardShape
-from core.calibrate.pencil import pencil_near
-from core.calibrate.plane_pose import PoseFeatures
-from core.image.centreline import Centreline
-from core.image.target_view import TargetView
+from core.calibrate.fan.pencil import pencil_near
+from core.calibrate.fan.pose_features import PoseFeatures
+from core.image.stripes.centreline import Centreline
 from core.image.targets import BlackSquare, Checkerboard
-from core.model import Camera, Pose
+from core.image.targets.target_view import TargetView
+from core.model import Pose
+from tests import paper
 
-CAMERA = Camera(
-    (3840, 2748),
-    [[4990.2635, 0.77900164, 1929.2399], [0, 4993.9024, 1279.1607], [0, 0, 1]],
-    [0.0815, -0.3809, 0.0042, -0.0004],
-).scaled(0.5)
-PUBLISHED = -np.array([[0.922, -7.397, -1.429], [1.321, -9.319, -0.992], [1.986, -12.52, -0.263]]) / 1000
+CAMERA = paper.HALF
 ALPHA = np.deg2rad(5)
-PAPER = pencil_near(PUBLISHED, ALPHA).pis
+PAPER = pencil_near(paper.PLANES, ALPHA).pis
 SQUARE = BlackSquare(60.0).points
 GRID = Checkerboard(9, 7, 10.0).points
 PLATE = Board(np.array([30.0, 30.0]), np.array([75.0, 75.0]))
@@ -51,6 +47,13 @@ def poses(count: int, seed: int) -> list[Pose]:
     return found
 
 
+def displaced(pose: Pose, ahead: float, tilt_x: float, tilt_y: float) -> Pose:
+    """The pose with the plate's middle moved along its normal, and its edges by its tilts, all in mm."""
+    half, middle = PLATE.half, np.append(PLATE.middle, 0.0)
+    turned = pose.rotation @ Rotation.from_rotvec([tilt_x / half[1], tilt_y / half[0], 0.0]).as_matrix()
+    return Pose(turned, pose.apply(middle[None])[0] - turned @ middle + ahead * pose.rotation[:, 2])
+
+
 def bowed(*bow: float) -> BoardShape:
     """The plate with these bows in mm at its edges."""
     return BoardShape(PLATE, np.array([*bow, 0.0]), np.zeros((4, 4)))
@@ -74,10 +77,11 @@ def stripe(
     system = np.array([pi, normal, direction])
     foot = np.linalg.solve(system, [1.0, normal @ pose.translation, direction @ middle])
     points = foot + np.linspace(-reach, reach, int(2 * reach * CAMERA.focal / foot[2]))[:, None] * direction
-    for _ in range(4 if shape else 0):
-        height = shape.shaped(pose.inverse().apply(points) * [1, 1, 0])[:, 2]
-        known = np.column_stack([np.ones(len(points)), normal @ pose.translation + height, points @ direction])
-        points = np.linalg.solve(system, known.T).T
+    if shape is not None:
+        for _ in range(4):
+            height = shape.shaped(pose.inverse().apply(points) * [1, 1, 0])[:, 2]
+            known = np.column_stack([np.ones(len(points)), normal @ pose.translation + height, points @ direction])
+            points = np.linalg.solve(system, known.T).T
     uv = CAMERA.project(points)
     inside = ((uv > 4) & (uv < np.array(CAMERA.image_size) - 5)).all(axis=1)
     uv = uv[inside]
@@ -107,8 +111,13 @@ def features(
     points: np.ndarray = SQUARE,
     flatness_mm: float = 0.0,
     shape: BoardShape | None = None,
+    scatter_mm: float = 0.0,
 ) -> list[PoseFeatures]:
-    """What pictures of the poses would show; the stripes in an order that tells nothing."""
+    """What pictures of the poses would show; the stripes in an order that tells nothing.
+
+    `flatness_mm` is how far each stripe's place on the plate is off its plane, `scatter_mm` how far the plate itself is
+    from where its points say, in the middle and by either tilt at its edges.
+    """
     rng = np.random.default_rng(seed)
     found = []
     for number, pose in enumerate(where):
@@ -116,8 +125,9 @@ def features(
         uv = CAMERA.project_pose(pose, seen) + rng.normal(0, noise.corner_px, (len(points), 2))
         view = TargetView(points, uv, np.full(len(points), noise.corner_px), f"p{number}")
         lines = []
+        truly = displaced(pose, *rng.normal(0, scatter_mm, 3)) if scatter_mm else pose
         for pi in pis:
-            bent = Pose(pose.rotation, pose.translation + pose.rotation[:, 2] * rng.normal(0, flatness_mm))
+            bent = Pose(truly.rotation, truly.translation + truly.rotation[:, 2] * rng.normal(0, flatness_mm))
             lines.append(stripe(pi, bent, noise, rng, shape=shape))
         rng.shuffle(lines)
         found.append(PoseFeatures(f"p{number}", view, tuple(lines)))

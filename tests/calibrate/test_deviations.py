@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from core.calibrate.camera import calibrate_camera
-from core.calibrate.camera_covariance import principal_deviations
+from core.calibrate.camera.calibration import calibrate_camera
+from core.calibrate.camera.covariance import principal_deviations
+from core.calibrate.camera.reprojection import parameters_of
 from core.calibrate.deviations import calibration_deviations, fan_behind
-from core.calibrate.fan import FanOptions, fit_fan
-from core.calibrate.reprojection import parameters_of
+from core.calibrate.fan.calibration import FanOptions, fit_fan
 from core.calibrate.results import CameraCalibration, FanCalibration
 from core.model import Camera
 from tests.calibrate.camera_views import synthetic_views
@@ -82,7 +82,7 @@ def depths(camera: Camera, pis: np.ndarray) -> np.ndarray:
     return np.array(found)
 
 
-@pytest.mark.slow
+@pytest.mark.accuracy
 def test_deviations_carry_the_uncertainty_that_repeated_calibrations_show():
     """Of the mean depth, for which the camera counts most, and of a difference of depths, for which the fan does."""
 

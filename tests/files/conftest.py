@@ -4,10 +4,13 @@ import numpy as np
 import pytest
 
 from core.calibrate.results import CameraCalibration, FanCalibration, PlanePose, ViewQuality
-from core.image.target_view import TargetView
+from core.image.targets.target_view import TargetView
+from core.inspect.conformity import Verdict
 from core.inspect.results import Contribution, Face, GaugeResult
+from core.inspect.uncertainty.causes import cause_named
+from core.messages import plain
 from core.model import Camera, Fan, LightPlane, Pose
-from core.scan.cloud import FAN, Cloud
+from core.scan.surface.cloud import FAN, Cloud
 
 
 def square(rng, size, scale):
@@ -26,11 +29,11 @@ def camera():
     )  # fmt: skip
     lost = ViewQuality(
         TargetView(np.zeros((2, 3)), np.ones((2, 2)), np.ones(2), "b.png"),
-        Pose.identity(), np.full((2, 2), np.nan), np.nan, np.nan, np.nan, False, "too few corners",
+        Pose.identity(), np.full((2, 2), np.nan), np.nan, np.nan, np.nan, False, plain("too few corners"),
     )  # fmt: skip
     return CameraCalibration(
         Camera((1920, 1374), matrix, np.array([-0.1, 0.09, 1e-4, -2e-4])),
-        square(rng, 10, 0.1), (good, lost), 0.11, 0.09, 0.8, 0.7, np.nan, ("Tilt more.",),
+        square(rng, 10, 0.1), (good, lost), 0.11, 0.09, 0.8, 0.7, np.nan, (plain("Tilt more."),),
     )  # fmt: skip
 
 
@@ -41,7 +44,7 @@ def fan():
     poses = (PlanePose("p1", Pose.identity(), 0.05, (np.zeros((4, 3)),), (np.zeros(4),), 0.02, True),)
     return FanCalibration(
         Fan(planes, square(rng, 9, 1e-8)), Fan(planes), (0.01, 0.02, 0.03), (0.087, 0.087), (0.086, 0.088), 0.02, True,
-        "The constraint suits this laser.", poses, ("note",),
+        plain("The constraint suits this laser."), poses, (plain("note"),),
     )  # fmt: skip
 
 
@@ -69,5 +72,6 @@ def gauge(cloud):
 
     return GaugeResult(
         49.987, 0.012, 2.0, face(np.arange(20), 650.0), face(np.arange(25, 50), 700.0), 1e-4,
-        (Contribution("camera", 0.01),), 50.0, 0.2, "conforming", np.array([0, 0, 1.0]), "the rule", ("a note",),
+        (Contribution(cause_named("camera"), 0.01),), 50.0, 0.2, Verdict.CONFORMING,
+        np.array([0, 0, 1.0]), plain("the rule"), (plain("a note"),),
     )  # fmt: skip

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from core.acquire.source import Frame
-from core.files.recorder import Recorder
+from core.files.recording.recorder import Recorder
 
 SIZE, LARGE = (24, 32), (1100, 1000)
 """Frames that are written plainly, and frames that go straight to the disk."""

@@ -3,7 +3,7 @@
 import os
 import time
 
-from core.files.leftovers import remove_leftovers
+from core.files.atomic import remove_leftovers
 
 
 def left(parent, name, hours):

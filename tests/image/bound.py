@@ -16,8 +16,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import erf
 
-from core.image.noise import NoiseModel
-from core.image.speckle import Speckle
+from core.image.stripes.noise import NoiseModel
+from core.image.stripes.speckle import Speckle
 
 Array = np.ndarray
 

@@ -13,8 +13,8 @@ Pattern = Callable[[np.ndarray, np.ndarray], np.ndarray]
 
 def rig(factor: float = 0.25) -> Camera:
     """A camera like the paper's at a fraction of its picture size, with skew and distortion."""
-    full = Camera((3840, 2748), [[4990, 0.78, 1915], [0, 4990, 1380], [0, 0, 1]], [-0.08, 0.1, 0.0004, -0.0003])
-    return full.scaled(factor)
+    matrix = np.array([[4990, 0.78, 1915], [0, 4990, 1380], [0, 0, 1]])
+    return Camera((3840, 2748), matrix, np.array([-0.08, 0.1, 0.0004, -0.0003])).scaled(factor)
 
 
 def pose(tilt_x: float, tilt_y: float, roll: float, centre, distance: float, shift=(0.0, 0.0)) -> Pose:

@@ -12,16 +12,17 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from core.calibrate.plane_pose import DARK, PoseFeatures, measure_plane_pose
-from core.image.centreline import Centreline
+from core.calibrate.fan.plane_pose import DARK, measure_plane_pose
+from core.calibrate.fan.pose_features import PoseFeatures
+from core.image.stripes.centreline import Centreline
 from core.image.targets import BlackSquare
 from core.simulate.calibration import CalibrationPictures
-from core.simulate.rays import ray_map
 from core.simulate.recording import scenario_rig
 from core.simulate.rig import Rig
 from core.simulate.sample import sample_scenario
+from core.simulate.scene.rays import ray_map
 
-ASTRAY_PX = 1.0
+UNSUSPICIOUS_PX = 1.0
 LARGEST_Z = 6.0
 """Errors over stated σ: among some thousand points of Gaussian errors the largest is 4; speckle's tails are longer."""
 NEAR_EDGE_PX = 14
@@ -69,7 +70,7 @@ def poses() -> Poses:
 
 def hold(line: Centreline, error: np.ndarray) -> None:
     """No point of a line may be astray, nor err by more than its σ allows."""
-    assert np.abs(error).max() < ASTRAY_PX
+    assert np.abs(error).max() < UNSUSPICIOUS_PX
     assert np.abs(error / line.sigma).max() < LARGEST_Z
     assert np.sqrt(np.mean((error / line.sigma) ** 2)) < 1.5
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from core.scan.cloud import FAN, Cloud
+from core.scan.surface.cloud import FAN, Cloud
 
 FOCAL = 2495.0
 CENTRE = np.array([960.0, 687.0])

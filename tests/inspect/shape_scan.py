@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from core.inspect.point_errors import PointErrors
-from core.scan.cloud import Cloud
+from core.inspect.uncertainty.point_errors import PointErrors
+from core.scan.surface.cloud import Cloud
 from tests.inspect.block_scan import CENTRE, FOCAL
 
 TABLE_MM = 545.0

@@ -6,13 +6,13 @@ import trimesh
 from scipy.spatial.transform import Rotation
 
 from core.errors import InputError
-from core.inspect.alignment import best_fit
-from core.inspect.deviation_map import classes_of, mark
 from core.inspect.evaluate import evaluate
-from core.inspect.feature_spec import Deviation, FeatureSpec, Polygon
-from core.inspect.inspection_plan import InspectionPlan, PartFrame
-from core.scan.triangles import Surroundings, Triangles
-from core.simulate.objects import step_block
+from core.inspect.plan.alignment import best_fit
+from core.inspect.plan.feature_spec import Deviation, FeatureSpec, Polygon
+from core.inspect.plan.inspection_plan import InspectionPlan, PartFrame
+from core.inspect.shown.deviation_map import classes_of, mark
+from core.scan.surface.triangles import ProximityQuery, Triangles
+from core.simulate.scene.objects import step_block
 from tests.inspect.shape_scan import BALL, BALL_RADIUS, PIN, PIN_AXIS, ShapeScan
 
 STEPS = Triangles(step_block((12.0, 20.0, 31.0), (60.0, 35.0)).triangles)
@@ -22,7 +22,7 @@ def test_the_nearest_place_is_that_of_all_triangles():
     rng = np.random.default_rng(0)
     corners = rng.uniform(-10, 10, (60, 1, 3)) + rng.normal(0, [8.0, 1.0, 0.1], (60, 3, 3))  # long and thin ones too
     points = rng.uniform(-15, 15, (300, 3))
-    found = Surroundings(Triangles(corners)).nearest(points)
+    found = ProximityQuery(Triangles(corners)).nearest(points)
     samples = rng.dirichlet([0.4, 0.4, 0.4], 1500)
     dense = np.einsum("sk,tkc->tsc", samples, corners).reshape(-1, 3)
     brute = np.min(np.linalg.norm(points[:, None] - dense[None, ::7], axis=2), axis=1)
@@ -33,7 +33,7 @@ def test_the_nearest_place_is_that_of_all_triangles():
 
 
 def test_inside_is_negative_and_outside_positive():
-    near = Surroundings(STEPS).nearest(np.array([[-20.0, 0.0, 13.0], [-20.0, 0.0, 11.5], [0.0, 0.0, 22.0]]))
+    near = ProximityQuery(STEPS).nearest(np.array([[-20.0, 0.0, 13.0], [-20.0, 0.0, 11.5], [0.0, 0.0, 22.0]]))
     assert near.distance == pytest.approx([1.0, -0.5, 2.0])
 
 
@@ -55,7 +55,7 @@ def test_a_part_is_found_however_it_lies(turn):
     rotation, shift = Rotation.from_euler("x", np.pi).as_matrix() @ lie.as_matrix(), np.array([10.0, -20.0, 540.0])
     points = seen_from_above(rng) @ rotation.T + shift
     points[:100] += rng.uniform(-8, 8, (100, 3))
-    aligned = best_fit(points, np.array([0.0, 0.0, -1.0]), Surroundings(STEPS))
+    aligned = best_fit(points, np.array([0.0, 0.0, -1.0]), ProximityQuery(STEPS))
     pose = aligned.pose_camera_nominal
     corners = STEPS.corners.reshape(-1, 3)
     assert np.abs(pose.apply(corners) - (corners @ rotation.T + shift)).max() < 0.03
@@ -65,7 +65,7 @@ def test_one_face_alone_is_laid_on_a_face_it_fits_on():
     rng = np.random.default_rng(4)
     points = np.column_stack([rng.uniform(-29, 29, (600, 1)), rng.uniform(-17, 17, (600, 1)), rng.normal(0, 0.01, 600)])
     aligned = best_fit(
-        points * [1, -1, -1] + [0, 0, 500], np.array([0.0, 0.0, -1.0]), Surroundings(STEPS)
+        points * [1, -1, -1] + [0, 0, 500], np.array([0.0, 0.0, -1.0]), ProximityQuery(STEPS)
     )  # the bottom is 60 × 35
     assert aligned.left_mm < 0.01
     feet = aligned.pose_camera_nominal.inverse().apply(points * [1, -1, -1] + [0, 0, 500])
@@ -75,7 +75,7 @@ def test_one_face_alone_is_laid_on_a_face_it_fits_on():
 def test_another_part_is_refused():
     points = np.random.default_rng(2).uniform(-30, 30, (600, 3)) + [0, 0, 500]
     with pytest.raises(InputError, match="cannot be laid"):
-        best_fit(points, np.array([0.0, 0.0, -1.0]), Surroundings(STEPS))
+        best_fit(points, np.array([0.0, 0.0, -1.0]), ProximityQuery(STEPS))
 
 
 def test_classes_are_told_apart_by_marks():
@@ -129,10 +129,10 @@ def test_a_nominal_surface_in_part_coordinates_is_laid_on_by_the_parts_frame():
     used = inspection.result("form").indices
     assert np.mean(scan.on[used] == 0) > 0.98
     without = evaluate(InspectionPlan(features[3:]), cloud, nominals=nominals)
-    assert "no part coordinates to align it by" in without.problems[0]
+    assert "no part coordinates to align it by" in str(without.problems[0])
 
 
 def test_without_its_file_a_deviation_is_a_problem():
     spec = FeatureSpec("ball", "deviation", deviation=Deviation("ball.stl"))
     inspection = evaluate(InspectionPlan((spec,)), ShapeScan().measure(np.random.default_rng(0)))
-    assert "nominal surface was not read" in inspection.problems[0]
+    assert "nominal surface was not read" in str(inspection.problems[0])

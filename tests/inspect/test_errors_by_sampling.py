@@ -8,15 +8,15 @@ import numpy as np
 import pytest
 
 from core.inspect.evaluate import evaluate
-from core.inspect.feature_spec import Cut, FeatureSpec, InSphere, Polygon, Section
-from core.inspect.inspection_plan import InspectionPlan
-from core.inspect.point_errors import PointErrors
+from core.inspect.plan.feature_spec import Cut, FeatureSpec, InSphere, Polygon, Section
+from core.inspect.plan.inspection_plan import InspectionPlan
+from core.inspect.uncertainty.point_errors import PointErrors
 from tests.inspect.block_scan import NORMAL, TABLE_MM, BlockScan
 
 SEEDS = range(5)
 BLOCK = BlockScan(sweeps=12)
 TOP, BELOW = (Polygon(tuple((float(u), float(v)) for u, v in polygon)) for polygon in BLOCK.polygons)
-ON_TOP = tuple(float(part) for part in (TABLE_MM - 40.0) * NORMAL)
+X, Y, Z = ((TABLE_MM - 40.0) * NORMAL).tolist()
 CUT = Section(
     line_px=((760.0, 1300.0), (1400.0, 1350.0)),
     half_width_mm=3.0,
@@ -28,7 +28,7 @@ PLAN = InspectionPlan(
         FeatureSpec("step", "steps"),
         FeatureSpec("cut", "section", section=CUT),
         FeatureSpec("table", "plane"),
-        FeatureSpec("spot", "point", (InSphere(ON_TOP, 8.0),)),
+        FeatureSpec("spot", "point", (InSphere((X, Y, Z), 8.0),)),
         FeatureSpec("spot over table", "distance", of=("spot", "table")),
     )
 )

@@ -7,9 +7,9 @@ import pytest
 
 from core.errors import InputError
 from core.inspect.characteristic import Limits
-from core.inspect.conditions import Temperature
 from core.inspect.evaluate import evaluate
-from core.inspect.feature_spec import (
+from core.inspect.plan.conditions import Temperature
+from core.inspect.plan.feature_spec import (
     Auto,
     Cut,
     Deviation,
@@ -19,9 +19,9 @@ from core.inspect.feature_spec import (
     Polygon,
     Section,
 )
-from core.inspect.inspection_plan import InspectionPlan
-from core.inspect.point_errors import PointErrors
-from core.scan.triangles import Triangles
+from core.inspect.plan.inspection_plan import InspectionPlan
+from core.inspect.uncertainty.point_errors import PointErrors
+from core.scan.surface.triangles import Triangles
 from tests.inspect.block_scan import BlockScan
 
 BLOCK = BlockScan(sweeps=24)
@@ -120,8 +120,8 @@ def test_a_feature_that_is_not_there_has_a_problem_and_the_others_are_measured(c
     )
     inspection = evaluate(plan, cloud, errors=ERRORS)
     assert len(inspection.problems) == 2
-    assert "feature lost" in inspection.problems[0]
-    assert "lost was not measured" in inspection.problems[1]
+    assert "feature lost" in str(inspection.problems[0])
+    assert "lost was not measured" in str(inspection.problems[1])
     assert [row.name for row in inspection.characteristics] == ["table flatness"]
     assert inspection.verdict == "not proven"
 
@@ -132,7 +132,7 @@ def test_points_used_are_named_and_lie_on_the_face(cloud):
     assert np.all(np.diff(top.indices) > 0)
     assert BLOCK.upper[top.indices].mean() > 0.99
     assert np.isin(again.indices, top.indices).all()
-    assert "less than is known" in inspection.notes[0]
+    assert "less than is known" in str(inspection.notes[0])
 
 
 def test_lengths_are_stated_at_20_degrees(cloud):

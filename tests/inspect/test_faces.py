@@ -5,7 +5,7 @@ import pytest
 
 from core.errors import InputError
 from core.inspect.faces import faces_in_polygons, find_faces
-from core.scan.cloud import Cloud
+from core.scan.surface.cloud import Cloud
 from tests.inspect.block_scan import FOCAL, HALF, NORMAL, TABLE_MM, BlockScan, axes, cloud_at, square
 
 

@@ -6,13 +6,20 @@ import numpy as np
 import pytest
 
 from core.errors import InputError
-from core.inspect.coverage import coverage_factor, effective_dof
 from core.inspect.faces import FacePair
 from core.inspect.gauge import RULE, fit_gauge, measure_gauge
-from core.inspect.point_errors import PointErrors
-from core.inspect.uncertainty import CAMERA, FAN_CALIBRATION, FAN_SPECKLE, FORM, POINT_NOISE, SWEEP_PLANES
+from core.inspect.uncertainty.causes import (
+    CAMERA,
+    FAN_CALIBRATION,
+    FAN_SPECKLE,
+    FORM,
+    POINT_NOISE,
+    SWEEP_PLANES,
+)
+from core.inspect.uncertainty.coverage import coverage_factor, effective_dof
+from core.inspect.uncertainty.point_errors import PointErrors
 from core.scan.common_errors import CommonErrors
-from core.scan.fan_speckle import FanSpeckle
+from core.scan.network.fan_speckle import FanSpeckle
 from tests.inspect.block_scan import CENTRE, FOCAL, NORMAL, TABLE_MM, BlockScan, pixels, square
 
 STRETCH_PX = 13.0  # six points of the synthetic stripes share their noise
@@ -193,7 +200,7 @@ def common_errors(scan, **scales):
 def test_calibration_terms_and_verdicts(scan):
     cloud = scan.measure(np.random.default_rng(7))
     base = measure_gauge(cloud, regions=faces(scan), errors=errors(scan))
-    common = common_errors(scan, **{CAMERA: 1.0004, FAN_CALIBRATION: 1.0002})
+    common = common_errors(scan, camera=1.0004, fan=1.0002)
     full = measure_gauge(
         cloud, regions=faces(scan), errors=errors(scan, common=common), nominal_mm=50.0, tolerance_mm=0.2
     )
@@ -204,9 +211,11 @@ def test_calibration_terms_and_verdicts(scan):
     assert full.U_mm == pytest.approx(2 * full.u_mm)
     assert full.u_mm > base.u_mm
     assert full.verdict == "conforming"
-    assert full.notes == ("The stated uncertainty does not hold what the sweeps owe to the fan's speckle.",)
+    assert [str(note) for note in full.notes] == [
+        "The stated uncertainty does not hold what the sweeps owe to the fan's speckle."
+    ]
     assert base.verdict == ""
-    assert "that of the camera, that of the fan" in base.notes[-1]
+    assert "that of the camera, that of the fan" in str(base.notes[-1])
     off = measure_gauge(cloud, regions=faces(scan), nominal_mm=49.0, tolerance_mm=0.2)
     assert off.verdict == "not conforming"
     assert off.deviation_mm == pytest.approx(1.0, abs=0.03)
@@ -221,7 +230,7 @@ def test_an_error_that_would_bend_the_faces_is_told_by_their_flatness(scan):
     camera = [FOCAL, FOCAL, 0.0, *CENTRE, 0.0, 0.0, 0.0, 0.0, 0.0]
     shifted = scan.fan_pis + np.array([[0.0, 0.0, 2e-7], [0.0, 0.0, -2e-7], [0.0, 0.0, 2e-7]])
     pis = [scan.pis, scan.pis]
-    common = CommonErrors((1920, 1374), (FAN_CALIBRATION,), [camera] * 2, [scan.fan_pis, shifted], pis)
+    common = CommonErrors((1920, 1374), ("fan",), [camera] * 2, [scan.fan_pis, shifted], pis)
     cloud = scan.measure(np.random.default_rng(9))
     row = next(
         row

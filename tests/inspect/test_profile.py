@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from core.inspect.stretches import usual_stretches
+from core.inspect.profile import usual_stretches
 
 POSITION = np.arange(0.25, 90.0, 0.5)
 

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from core.errors import InputError
-from core.inspect.cylinder import find_cylinder
 from core.inspect.evaluate import evaluate
-from core.inspect.feature_spec import Cut, FeatureSpec, InBox, InSphere, Polygon, Section
-from core.inspect.inspection_plan import InspectionPlan, PartFrame
-from core.scan.cloud import Cloud
+from core.inspect.fit.round import find_cylinder
+from core.inspect.plan.feature_spec import Cut, FeatureSpec, InBox, InSphere, Polygon, Section
+from core.inspect.plan.inspection_plan import InspectionPlan, PartFrame
+from core.scan.surface.cloud import Cloud
 from tests.inspect.block_scan import CENTRE, FOCAL
 from tests.inspect.shape_scan import BALL, PIN, PIN_AXIS, ShapeScan
 

@@ -3,12 +3,8 @@ import numpy as np
 import pytest
 
 from core.model import Camera, Fan, LightPlane, Pose, angle_between
-
-PAPER = Camera(
-    (3840, 2748),
-    [[4990.2635, 0.77900164, 1929.2399], [0, 4993.9024, 1279.1607], [0, 0, 1]],
-    [0.0815, -0.3809, 0.0042, -0.0004],
-)
+from tests.paper import CAMERA as PAPER
+from tests.paper import PLANES
 
 
 def pixels_everywhere() -> np.ndarray:
@@ -87,7 +83,6 @@ def test_triangulated_points_lie_on_the_light_plane_and_on_their_rays():
 
 
 def test_the_papers_fan_is_one_pencil_with_angles_near_five_degrees():
-    coefficients = np.array([[0.922, -7.397, -1.429], [1.321, -9.319, -0.992], [1.986, -12.52, -0.263]])
-    fan = Fan(tuple(LightPlane(-row / 1000) for row in coefficients))
+    fan = Fan(tuple(LightPlane(pi) for pi in PLANES))
     assert np.rad2deg(fan.angles) == pytest.approx([4.929, 4.919], abs=0.001)
     assert np.rad2deg(angle_between(fan.planes[0], fan.planes[2])) == pytest.approx(9.848, abs=0.001)

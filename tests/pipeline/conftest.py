@@ -6,12 +6,13 @@ from pathlib import Path
 
 import pytest
 
-from core.calibrate.pose_features import PoseFeatures
+from core.calibrate.camera.views import SeenViews
+from core.calibrate.fan.pose_features import PoseFeatures
 from core.calibrate.results import CameraCalibration, FanCalibration
-from core.calibrate.seen_views import SeenViews
-from core.files.project import Accepted, Project, project_from_set
-from core.files.project_results import ScanSummary
-from core.pipeline.project_calibration import (
+from core.files.project.data import Accepted, Project
+from core.files.project.folder import project_from_set
+from core.files.project.results import ScanSummary
+from core.pipeline.project.calibration import (
     accept_camera,
     accept_fan,
     find_poses,
@@ -19,9 +20,9 @@ from core.pipeline.project_calibration import (
     solve_poses,
     solve_views,
 )
-from core.pipeline.project_measuring import measure_scan
-from core.pipeline.project_report import make_report
-from core.scan.frame_preview import FramePreview
+from core.pipeline.project.measuring import measure_scan
+from core.pipeline.project.report import make_report
+from core.scan.preview.shown import FramePreview
 from tests.shared import made_once
 
 GIVEN = "given.pickle"
@@ -60,7 +61,8 @@ def _do(simulated: Path, made: Path) -> None:
     folder.mkdir(parents=True)
     project = project_from_set(simulated, "block")
     project = replace(project, options=replace(project.options, sigma_cut_mm=0.3))
-    told, watched = [], []
+    told: list[str] = []
+    watched: list[FramePreview] = []
 
     def progress(step, done, total):
         told.append(step)

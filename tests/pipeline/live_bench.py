@@ -7,10 +7,11 @@ from pathlib import Path
 
 from core.acquire.source import Capabilities, Ended, Frame, Lasers, SourceChoice, SourceSettings, Unplugged
 from core.errors import InputError
-from core.files.rig import Rig
-from core.live.commands import LiveRequest
-from core.live.events import LiveView
-from core.pipeline import live, live_loop
+from core.files.recording.rig import Rig
+from core.pipeline.live import loop as live_loop
+from core.pipeline.live import session as live
+from core.pipeline.live.commands import LiveRequest
+from core.pipeline.live.events import LiveView
 
 
 class ScriptedSource:

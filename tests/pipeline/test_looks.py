@@ -7,14 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from core.calibrate.pose_stages import NOT_SEEN
+from core.calibrate.fan.pose_stages import NOT_SEEN
 from core.errors import Cancelled, InputError
-from core.files.project import Accepted
-from core.files.project_folder import results_folder
-from core.files.recording_set import open_set
-from core.files.scan_file import read_scan
-from core.pipeline.frame_stages import frame_stages
-from core.pipeline.project_looks import recall_poses, show_frame, show_pose
+from core.files.project.data import Accepted
+from core.files.project.folder import results_folder
+from core.files.recording.recording_set import open_set
+from core.files.results.scan_file import read_scan
+from core.pipeline.project.frame_stages import frame_stages
+from core.pipeline.project.looks import recall_poses, show_frame, show_pose
 from tests.simulated import copy_of
 
 
@@ -37,7 +37,7 @@ def test_every_crossing_of_a_frame_is_good_weak_or_left_out_with_a_sentence(done
     seen = show_frame(done.folder, done.project, frame(5)).seen
     assert len(seen.crossing_uv) == len(seen.crossing_status) == len(seen.crossing_reason) > 0
     assert set(seen.crossing_status) <= {0, 1, 2}
-    assert all(reason.endswith(".") for reason in seen.crossing_reason)
+    assert all(str(reason).endswith(".") for reason in seen.crossing_reason)
     assert seen.crossing_with_fan.all()
 
 
@@ -64,7 +64,7 @@ def test_before_anything_is_measured_a_frame_can_be_looked_at(simulated):
     stages = frame_stages(open_set(simulated), frame(5))
     assert set(stages.fan_line) == {-1}
     assert stages.sweep
-    assert stages.reason == ""
+    assert stages.reason is None
 
 
 def test_a_recording_without_reference_can_be_looked_at(simulated, tmp_path):
@@ -141,6 +141,6 @@ def test_looks_can_be_pickled(done):
 
 
 def open_set_of(done):
-    from core.pipeline.project_workspace import project_set
+    from core.pipeline.project.workspace import project_set
 
     return project_set(done.folder, done.project)

@@ -2,7 +2,6 @@
 
 from core.plan.design import Design
 
-QUARTER = {"pixels": (960, 687), "pixel_um": 6.68}
-SMALL = Design(**QUARTER, views=8, poses=6, sweeps=16)
+SMALL = Design(pixels=(960, 687), pixel_um=6.68, views=8, poses=6, sweeps=16)
 CUT_MM = 0.2
 """A quarter of the pixels gives points several times as uncertain as the usual cut allows."""

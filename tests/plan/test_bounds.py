@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from scipy.stats import norm
 
-from core.calibrate.reprojection import camera_of, parameters_of
-from core.image.noise import NoiseModel
-from core.image.speckle import NO_SPECKLE, Speckle
+from core.calibrate.camera.reprojection import camera_of, parameters_of
+from core.image.stripes.noise import NoiseModel
+from core.image.stripes.speckle import NO_SPECKLE, Speckle
 from core.image.targets import Checkerboard, CircleGrid
 from core.model import LightPlane
 from core.plan.bounds import bounds_of
@@ -17,7 +17,7 @@ from core.plan.light_bounds import crossing_bound, edge_density, point_bound, st
 from core.plan.light_lines import LitLine, lit_ball
 from core.plan.scanning import Stage
 from core.plan.seen_stripes import SeenStripes
-from core.simulate.scene import Sphere
+from core.simulate.scene.scene import Sphere
 from tests.image import bound
 from tests.image import crossing_bound as other
 from tests.plan.small import SMALL
@@ -175,7 +175,7 @@ def test_a_round_stripe_moves_in_the_picture_as_its_information_says(sensing):
 
 @pytest.fixture(scope="module")
 def bounds():
-    return {one.quantity: one for one in bounds_of(SMALL, (50.0,))}
+    return {str(one.quantity): one for one in bounds_of(SMALL, (50.0,))}
 
 
 def test_speckle_costs_and_the_part_is_known_less_well_than_with_perfect_calibrations(bounds):
@@ -187,7 +187,7 @@ def test_speckle_costs_and_the_part_is_known_less_well_than_with_perfect_calibra
 
 def test_four_times_the_poses_and_views_halve_the_calibrations_bounds(bounds):
     more = bounds_of(replace(SMALL, poses=4 * SMALL.poses, views=4 * SMALL.views), (50.0,))
-    ratios = {one.quantity: one.with_speckle / bounds[one.quantity].with_speckle for one in more}
+    ratios = {str(one.quantity): one.with_speckle / bounds[str(one.quantity)].with_speckle for one in more}
     assert ratios["focal length"] == pytest.approx(0.5, abs=0.12)
     assert ratios["depth on the fan's lines, from camera and fan"] == pytest.approx(0.5, abs=0.15)
     assert ratios["thickness of 50 mm, camera and fan known"] == pytest.approx(1.0)

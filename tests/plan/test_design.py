@@ -7,7 +7,7 @@ from core.errors import InputError
 from core.plan.design import Design
 from core.simulate.rig import paper_rig
 from core.simulate.scenario import Scenario
-from core.simulate.stage import build_scene
+from core.simulate.scene.stage import build_scene
 
 
 @pytest.mark.parametrize("scale", [1.0, 0.5])

@@ -1,7 +1,7 @@
 import pytest
 
 from core.errors import InputError
-from core.files.rig import read_rig
+from core.files.recording.rig import read_rig
 from core.image.targets import Charuco
 from core.plan.design import Design
 from core.plan.from_rig import read_design

@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from core.image.noise import NoiseModel
-from core.image.stripe import StripeSettings
-from core.image.stripes import extract_centrelines
+from core.image.stripes.extraction import extract_centrelines
+from core.image.stripes.noise import NoiseModel
+from core.image.stripes.stripe import StripeSettings
 from core.plan.light_lines import faces_of, lit_lines, runs
 from core.plan.seen_stripes import SeenStripes
-from core.simulate.image import blurred
-from core.simulate.laser import laser_light
-from core.simulate.scene import surface_maps
+from core.simulate.scene.image import blurred
+from core.simulate.scene.laser import laser_light
+from core.simulate.scene.scene import surface_maps
 from tests.plan.small import SMALL
 
 HEIGHT = 50.0

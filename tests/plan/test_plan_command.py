@@ -5,8 +5,8 @@ import pytest
 
 from core.errors import InputError
 from core.files.pictures import read_picture
-from core.pipeline.plan_step import plan, write_plan
-from core.report.plan_map import plan_map_png
+from core.pipeline.steps.plan_step import plan, write_plan
+from core.report.plots.plan_map import plan_map_png
 from tests.plan.small import CUT_MM, SMALL
 from tests.simulated import trisect
 

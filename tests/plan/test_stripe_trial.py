@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from core.plan.stripe_trial import Light, try_stripes
+from core.plan.seen_stripes import Light, try_stripes
 from core.simulate.rig import Optics
 
 LIGHT = Light(width_px=1.5, background_grey=25.0, single=False)

@@ -8,16 +8,26 @@ import numpy as np
 from PIL import Image
 
 from core.inspect.characteristic import Characteristic, Limits
+from core.inspect.gauge import RULE
 from core.inspect.results import Contribution
+from core.inspect.uncertainty.causes import cause_named
+from core.messages import Message
 from core.report.content import CalibrationMark, Deviations
 from core.report.template import ReportTemplate
 from core.study.acceptance import Reading, acceptance_check
+from core.study.budget import from_stated
 from core.study.grr import grr_study
-from core.study.repeats import repeat_study
-from core.study.repeats_budget import from_stated
+from core.study.repeats import Requirement, repeat_study
 from core.study.type1 import type1_study
 
 from .report_samples import block_content, repeats
+
+STATED = Message(
+    "feature.stated_at_20",
+    "Stated at 20 °C: {change_um:+.2f} µm for a part at {part_celsius:g} °C.",
+    change_um=-0.75,
+    part_celsius=21.3,
+)
 
 INF = math.inf
 MEASURED = datetime(2026, 3, 14, 15, 9, 26, tzinfo=UTC)
@@ -25,20 +35,20 @@ MEASURED = datetime(2026, 3, 14, 15, 9, 26, tzinfo=UTC)
 
 def characteristics():
     budget = (
-        Contribution("centreline noise of the points", 0.0049, 0.0245),
-        Contribution("camera calibration", 0.0033),
-        Contribution("temperature of the part", 0.0012, 0.5, "rectangular", INF, 21.3, "°C"),
-        Contribution("repeatability of the scans", 0.0021, 0.0021, "t", 9.0),
+        Contribution(cause_named("centreline noise of the points"), 0.0049, 0.0245),
+        Contribution(cause_named("camera calibration"), 0.0033),
+        Contribution(cause_named("temperature of the part"), 0.0012, 0.5, "rectangular", INF, 21.3, "°C"),
+        Contribution(cause_named("repeatability of the scans"), 0.0021, 0.0021, "t", 9.0),
     )
     u = math.sqrt(sum(row.u_mm**2 for row in budget))
-    rule = "distance of two parallel planes fitted jointly and robustly to the points of both faces"
+    rule = RULE
     rows = [
         Characteristic("block thickness", "thickness", 50.0123, u, k=2.05, limits=Limits(50, -0.2, 0.2), budget=budget,
-                       rule=rule, notes=("Stated at 20 °C: -0.75 µm for a part at 21.3 °C.",)),
+                       rule=rule, notes=(STATED,)),
         Characteristic("top flatness", "flatness", 0.031, 0.004, limits=Limits(0, -INF, 0.05)),
         Characteristic("top to side", "angle", math.radians(89.95), math.radians(0.02), "angle",
                        limits=Limits(math.radians(90), math.radians(-0.06), math.radians(0.06)),
-                       budget=(Contribution("camera calibration", math.radians(0.02)),)),
+                       budget=(Contribution(cause_named("camera calibration"), math.radians(0.02)),)),
         Characteristic("step 2 height", "height", 10.2, 0.01, limits=Limits(10, -0.05, 0.05)),
         Characteristic("ball diameter", "diameter", 24.98, 0.02),
         Characteristic("unknown", "distance", math.nan, math.nan, limits=Limits(3, -INF, 0.03)),
@@ -48,14 +58,14 @@ def characteristics():
 
 def studies():
     """As study.json has them, by the functions that write it."""
-    from core.files.study_file import study_values
+    from core.files.study.study_file import study_values
 
     rng = np.random.default_rng(4)
     values = 50.0 + rng.normal(0.002, 0.004, 25)
     parts = 49.9 + 0.05 * rng.standard_normal((5, 1, 1)) + 0.002 * rng.standard_normal((5, 3, 2))
     repeated = (50.004 + 0.006 * rng.standard_normal(12)).tolist()
     budget = from_stated(repeated, [0.01] * 12)
-    known = {"complete": True, "U": [0.02] * 12, "nominal": 50.0, "limits": (-0.1, 0.1)}
+    known = {"complete": True, "U": [0.02] * 12, "asked": Requirement(50.0, (-0.1, 0.1))}
     readings = [Reading("form", f"p{place}", 0.02 + 0.001 * place) for place in range(10)]
     readings += [Reading("size", f"p{place}", 50.01 - 0.002 * place, 50.0, 0.001) for place in range(4)]
     made = (

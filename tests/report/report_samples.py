@@ -7,23 +7,25 @@ from hashlib import sha256
 import numpy as np
 
 from core.calibrate.results import CameraCalibration, FanCalibration, PlanePose, ViewQuality
-from core.image.centreline import Centreline
-from core.image.target_view import TargetView
+from core.image.stripes.centreline import Centreline
+from core.image.targets.target_view import TargetView
 from core.inspect.results import Contribution, Face, GaugeResult
+from core.inspect.uncertainty.causes import cause_named
+from core.messages import Message, plain
 from core.model import Camera, Fan, LightPlane, Pose
 from core.report.content import Overlay, RepeatLine, ReportContent
-from core.scan.cloud import Cloud
 from core.scan.results import FrameRecord
-from core.scan.surface import Mesh
+from core.scan.surface.cloud import Cloud
+from core.scan.surface.fused_surface import Mesh
 
 CAMERA = Camera(
     (1920, 1374),
-    [[2494.92, 0.39, 964.37], [0, 2496.74, 639.33], [0, 0, 1]],
-    [0.0815, -0.3809, 0.0042, -0.0004],
+    np.array([[2494.92, 0.39, 964.37], [0, 2496.74, 639.33], [0, 0, 1]]),
+    np.array([0.0815, -0.3809, 0.0042, -0.0004]),
 )
 TABLE = LightPlane.from_normal([0.02, -0.17, 0.985], 548.0)
 TOP = LightPlane.from_normal(TABLE.normal, TABLE.d_mm - 50.012)
-FAN = Fan(tuple(LightPlane([a / 1000, 0.0, (1.62 + 0.02 * a) / 1000]) for a in (-0.18, -0.02, 0.14)))
+FAN = Fan(tuple(LightPlane(np.array([a / 1000, 0.0, (1.62 + 0.02 * a) / 1000])) for a in (-0.18, -0.02, 0.14)))
 
 
 def surface_depth(rays):
@@ -63,11 +65,11 @@ def face(cloud, plane, indices):
 
 def gauge(cloud, block, **changes):
     budget = (
-        Contribution("Crossings and centrelines of this scan (network)", 0.0049, 0.0245),
-        Contribution("Fan's centrelines (static speckle)", 0.0082, 0.0410),
-        Contribution("Light planes of the fan (calibration)", 0.0061),
-        Contribution("Camera parameters (calibration)", 0.0033),
-        Contribution("Form of the two faces", 0.00004),
+        Contribution(cause_named("Crossings and centrelines of this scan (network)"), 0.0049, 0.0245),
+        Contribution(cause_named("Fan's centrelines (static speckle)"), 0.0082, 0.0410),
+        Contribution(cause_named("Light planes of the fan (calibration)"), 0.0061),
+        Contribution(cause_named("Camera parameters (calibration)"), 0.0033),
+        Contribution(cause_named("Form of the two faces"), 0.00004),
     )
     given = {
         "thickness_mm": 50.0123,
@@ -126,7 +128,7 @@ def camera_calibration():
         view = TargetView(points, 30 * points[:, :2], np.full(20, 0.05), f"camera/view_{number:02d}.png")
         used = number != 7
         residuals = rng.normal(0, 0.05, (20, 2))
-        reason = "" if used else "the board lies half outside the picture"
+        reason = None if used else plain("the board lies half outside the picture")
         views.append(ViewQuality(view, Pose.identity(), residuals, 0.071 + 0.001 * number, 0.063, 0.4, used, reason))
     return CameraCalibration(CAMERA, np.diag(deviations**2), tuple(views), 0.0747, 0.0653, 0.83, 0.91, 0.031)
 
@@ -135,7 +137,12 @@ def fan_calibration():
     poses = []
     for number in range(8):
         used = number != 3
-        reason = "" if used else "the target moved by 0.90 px between the pictures with the fan off and on"
+        moved = Message(
+            "fan.target_moved",
+            "the target moved by {shift_px:.2f} px between the pictures with the fan off and on",
+            shift_px=0.9,
+        )
+        reason = None if used else moved
         poses.append(
             PlanePose(
                 f"planes/pose_{number}",
@@ -150,7 +157,7 @@ def fan_calibration():
         )
     return FanCalibration(
         FAN, FAN, (0.031, 0.028, 0.034), tuple(np.radians([5.0, 5.0])), tuple(np.radians([4.9291, 4.9192])), 0.042,
-        True, "The free planes meet one pencil of 5° within their uncertainty: the constraint suits this laser",
+        True, plain("The free planes meet one pencil of 5° within their uncertainty: the constraint suits this laser"),
         tuple(poses),
     )  # fmt: skip
 
@@ -169,7 +176,10 @@ def frames():
         18: "no sweep stripe found",
         44: "the sweep crosses no fan line",
     }
-    return tuple(FrameRecord(n, f"frame_{n:03d}.png", n not in reasons, reasons.get(n, "")) for n in range(60))
+    return tuple(
+        FrameRecord(n, f"frame_{n:03d}.png", n not in reasons, plain(reasons[n]) if n in reasons else None)
+        for n in range(60)
+    )
 
 
 def repeats(count=10):
@@ -205,8 +215,8 @@ def block_content(**changes):
         frames=frames(),
         settings={"method": "network", "σ cut": "0.05 mm", "stripe width": "automatic (2.4 px)",
                   "stripe contrast": "automatic (38 grey levels)", "seed": "0"},
-        notes=("1 picture could not be read and was skipped: scan/frame_004.png is truncated.",
-               "The red channel is saturated on 0.8 % of the stripe; these points weigh nothing."),
+        notes=(plain("1 picture could not be read and was skipped: scan/frame_004.png is truncated."),
+               plain("The red channel is saturated on 0.8 % of the stripe; these points weigh nothing.")),
         method="network over all sweeps, tied to the fan",
         part="Gauge block 50 mm",
         serial="GB-50-0417",

@@ -8,9 +8,9 @@ import pypdfium2
 import pytest
 from pypdf import PdfReader
 
-from core.report.content import SECTIONS
 from core.report.pdf import build_report
-from core.scan.surface import Mesh
+from core.report.template import SECTIONS
+from core.scan.surface.fused_surface import Mesh
 
 from .report_samples import block_content, gauge, repeats
 

@@ -4,6 +4,7 @@ from datetime import UTC, datetime
 import numpy as np
 import pytest
 
+from core.messages import plain
 from core.report.content import Overlay
 
 from .report_samples import block_content, overlay
@@ -38,17 +39,21 @@ def test_order_of_the_hashes_does_not_matter(content):
 
 def test_frames_left_out_come_by_reason_commonest_first(content):
     reasons = content.frames_left_out
-    assert reasons[0] == ("no sweep stripe found", ["frame_017.png", "frame_018.png"])
+    assert reasons[0] == (plain("no sweep stripe found"), ["frame_017.png", "frame_018.png"])
     assert len(reasons) == 3
 
 
 def test_notes_of_gauge_and_calibrations_are_printed_once(content):
     noted = replace(
         content,
-        camera=replace(content.camera, notes=("Too few tilts.", content.notes[0])),
-        gauge=replace(content.gauge, notes=("The faces are small.",)),
+        camera=replace(content.camera, notes=(plain("Too few tilts."), content.notes[0])),
+        gauge=replace(content.gauge, notes=(plain("The faces are small."),)),
     )
-    assert noted.all_notes == (*content.notes, "The faces are small.", "Too few tilts.")
+    assert [str(note) for note in noted.all_notes] == [
+        *map(str, content.notes),
+        "The faces are small.",
+        "Too few tilts.",
+    ]
 
 
 def test_overlay_refuses_what_does_not_fit_together():

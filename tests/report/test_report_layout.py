@@ -3,10 +3,9 @@ import io
 from pypdf import PdfReader
 from reportlab.platypus import SimpleDocTemplate, Spacer
 
-from core.report.language import Words
-from core.report.layout import section
-from core.report.look import Look
-from core.report.style import SANS, prepare_reportlab
+from core.report.layout.blocks import section
+from core.report.layout.style import SANS, Look, prepare_reportlab
+from core.report.wording import Words
 
 LOOK = Look(Words(), "#14586E")
 

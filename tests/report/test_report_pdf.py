@@ -9,9 +9,10 @@ import pytest
 from pypdf import PdfReader
 
 from core.errors import Cancelled
+from core.messages import plain
 from core.report.pdf import build_report
 from core.scan.results import FrameRecord
-from core.scan.surface import Mesh
+from core.scan.surface.fused_surface import Mesh
 
 from .report_samples import block_content, gauge
 
@@ -184,21 +185,21 @@ def test_one_point_is_drawn(quick, content):
     ],
 )
 def test_names_in_any_script_and_of_any_length_are_whole(quick, name):
-    data = build_report(replace(quick, part=name, operator=name[::-1], notes=(f"Note: {name}.",)))
+    data = build_report(replace(quick, part=name, operator=name[::-1], notes=(plain(f"Note: {name}."),)))
     text = bare(words(data))
     assert text.count(bare(name)) >= 2
     assert bare(name[::-1]) in text
 
 
 def test_a_text_beyond_measure_is_shortened_and_says_so(quick):
-    text = words(build_report(replace(quick, part="W" * 20000, rig={"key": "v " * 9000}, notes=("n " * 9000,))))
+    text = words(build_report(replace(quick, part="W" * 20000, rig={"key": "v " * 9000}, notes=(plain("n " * 9000),))))
     assert "shortened from 20000 characters" in text
 
 
 def test_a_long_scan_stays_within_four_pages_and_counts_what_it_leaves_out(content):
     hashes = {f"scan/frame_{n:05d}.png": sha256(str(n).encode()).hexdigest() for n in range(1500)}
-    frames = tuple(FrameRecord(n, f"frame_{n:05d}.png", n % 3 > 0, f"reason {n % 40}") for n in range(1500))
-    notes = tuple(f"Note {n} of a long series." for n in range(60))
+    frames = tuple(FrameRecord(n, f"frame_{n:05d}.png", n % 3 > 0, plain(f"reason {n % 40}")) for n in range(1500))
+    notes = tuple(plain(f"Note {n} of a long series.") for n in range(60))
     data = build_report(replace(content, hashes=hashes, frames=frames, notes=notes))
     text = words(data)
     assert len(reader(data).pages) <= 4
@@ -207,7 +208,7 @@ def test_a_long_scan_stays_within_four_pages_and_counts_what_it_leaves_out(conte
 
 
 def test_progress_is_told_and_can_cancel(quick):
-    told: list[tuple[int, int]] = []
+    told = []
     build_report(quick, lambda step, done, total: told.append((done, total)))
     assert told[0][0] == 0
     assert told[-1][0] == told[-1][1]

@@ -5,14 +5,16 @@ import pytest
 
 from core.inspect.characteristic import Characteristic, Limits
 from core.inspect.results import Face, GaugeResult
+from core.messages import plain
 from core.model import LightPlane
-from core.report.language import Words
 from core.report.wording import (
+    Words,
     decimals_of,
     decision_sentence,
     fixed,
     grouped,
     limits_of_thickness,
+    points_counted,
     thickness_line,
     tolerance_words,
     uncertainty_sentence,
@@ -83,7 +85,7 @@ def test_no_nominal_value_no_verdict():
 
 def test_what_the_thickness_is_follows_the_rule_of_the_fit():
     assert "distance of two parallel planes" in limits_of_thickness(gauge(50, 0.01))[0]
-    ruled = gauge(50, 0.01, rule="distance of two parallel lines in one light profile")
+    ruled = gauge(50, 0.01, rule=plain("distance of two parallel lines in one light profile"))
     assert limits_of_thickness(ruled)[0].startswith("The thickness is the distance of two parallel lines in one light")
 
 
@@ -104,7 +106,7 @@ INF = math.inf
 )
 def test_permitted_deviations_are_said_as_they_are_asked(limits, english, german):
     one = Characteristic("a", "thickness", 50.0, 0.01, limits=limits)
-    assert (tolerance_words(one), tolerance_words(one, Words("de"))) == (english, german)
+    assert (tolerance_words(one), tolerance_words(one, Words.of("de"))) == (english, german)
 
 
 def test_an_angle_is_said_in_degrees():
@@ -116,9 +118,9 @@ def test_an_angle_is_said_in_degrees():
 
 
 def test_german_numbers_have_a_comma_and_thousands_do_not_break():
-    words = Words("de")
-    assert (words.fixed(-0.0123, 3, signed=True), words.general(0.25), words.count(1204, "frame")) == (
-        "−0,012", "0,25", "1\u00a0204 Bildern")  # fmt: skip
+    words = Words.of("de")
+    assert (words.fixed(-0.0123, 3, signed=True), words.general(0.25), words(points_counted(1204))) == (
+        "−0,012", "0,25", "1\u00a0204 Punkte")  # fmt: skip
 
 
 def test_very_small_values_are_said_with_a_power_of_ten():

@@ -18,23 +18,23 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from scipy.ndimage import gaussian_filter1d, map_coordinates, minimum_filter
 
-from core.image.centreline import Centreline
-from core.image.pieces import END_TRIM_PX
-from core.image.stripe import StripeSettings
+from core.image.stripes.centreline import Centreline
+from core.image.stripes.runs import END_TRIM_PX
+from core.image.stripes.stripe import StripeSettings
 from core.model import Pose
-from core.scan.crossings import CrossingTable, CrossingWindow
-from core.scan.fan_lines import FanLines
-from core.scan.features import FrameFeatures, ScanFeatures, gather
-from core.scan.line_errors import LineErrors
-from core.scan.locate import numbered
-from core.scan.reference_features import FeatureOptions
-from core.simulate.image import generator
-from core.simulate.laser import Sheet, fan_sheets
+from core.scan.features.crossings import CrossingTable, CrossingWindow
+from core.scan.features.extraction import FrameFeatures, ScanFeatures, gather
+from core.scan.features.reference import FeatureOptions
+from core.scan.network.line_errors import LineErrors
+from core.scan.sweeps.fan_lines import FanLines
+from core.scan.sweeps.locate import numbered
 from core.simulate.recording import scenario_rig
 from core.simulate.rig import Rig
 from core.simulate.scenario import Scenario
-from core.simulate.scene import Scene, surface_maps
-from core.simulate.stage import WORK_POINT, aim_of, build_scene
+from core.simulate.scene.image import generator
+from core.simulate.scene.laser import Sheet, fan_sheets
+from core.simulate.scene.scene import Scene, surface_maps
+from core.simulate.scene.stage import WORK_POINT, aim_of, build_scene
 from core.simulate.sweep import hand_sweeps, sweep_range
 
 RAYS_PER_PX = 1.6
@@ -116,7 +116,7 @@ class ExactScan:
         """The scan that `core.simulate` would render; `moved` shifts the object by so many mm from that frame on."""
         rig = rig or scenario_rig(scenario)
         stage_scene, figures, shots = _scene(scenario, rig)
-        shots = shots if sheets is None else sheets
+        shots = shots if sheets is None else list(sheets)
         scenes = [stage_scene] * len(shots)
         if moved is not None:
             later = shifted(stage_scene, moved[1])
@@ -141,7 +141,7 @@ class ExactScan:
     def measured(
         self, seed: int, noise: Noise | None = None, *, window: CrossingWindow | None = None, smoothed: bool = True
     ) -> ScanFeatures:
-        """The scan's features with noise of this seed; `smoothed` as `core.scan.features` leaves them."""
+        """The scan's features with noise of this seed; `smoothed` as `core.scan.features.extraction` leaves them."""
         noise = noise or Noise.of_twin(self.rig.scale)
         rng = np.random.default_rng([seed, 2023])
         fan = tuple(curve.measured(noise.fan_px, noise.correlation_px, rng) for curve in self.fan)

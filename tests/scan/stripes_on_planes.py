@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from core.scan.cloud import Cloud
+from core.scan.surface.cloud import Cloud
 
 FOCAL = 2495.0
 SIZE = (480, 360)

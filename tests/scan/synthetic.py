@@ -4,23 +4,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.model import Camera, Fan, LightPlane
-from core.scan.crossings import CrossingTable
-from core.scan.geometry import CrossingRays
+from core.model import Fan, LightPlane
+from core.scan.features.crossings import CrossingTable
+from core.scan.network.geometry import CrossingRays
+from tests import paper
 
-CAMERA = Camera(
-    (3840, 2748),
-    [[4990.2635, 0.77900164, 1929.2399], [0, 4993.9024, 1279.1607], [0, 0, 1]],
-    [0.0815, -0.3809, 0.0042, -0.0004],
-).scaled(0.5)
-FAN = Fan(
-    tuple(
-        LightPlane(-np.array(row) / 1000)
-        for row in ([0.922, -7.397, -1.429], [1.321, -9.319, -0.992], [1.986, -12.52, -0.263])
-    )
-)
+CAMERA = paper.HALF
+FAN = Fan(tuple(LightPlane(pi) for pi in paper.PLANES))
 TABLE = LightPlane.from_normal([0.02, 0.05, 0.99856], 560.0)
-BLOCK = {"x": (-35.0, 35.0), "y": (25.0, 85.0), "height": 50.0}
+BLOCK = {"x": (-35.0, 35.0), "y": (25.0, 85.0)}
+HEIGHT_MM = 50.0
 
 
 def sweeps(count: int, seed: int) -> np.ndarray:
@@ -50,7 +43,7 @@ def network(
 ) -> Network:
     """All crossings of `planes` with the fan and each other on the table and on the block's upper face."""
     rng = np.random.default_rng(seed)
-    faces = [TABLE, LightPlane.from_normal(TABLE.normal, TABLE.d_mm - BLOCK["height"])] if relief else [TABLE]
+    faces = [TABLE, LightPlane.from_normal(TABLE.normal, TABLE.d_mm - HEIGHT_MM)] if relief else [TABLE]
     window = 40.0
     offsets: dict[tuple[int, int, int], float] = {}
     rows = []
@@ -82,33 +75,34 @@ def network(
             rows.append((uv, t_a, t_b, a, b, line, face_index, key))
     cell = np.array([row[-1][2] if row[-1] else 0 for row in rows])
     count = len(rows)
-    uv, t_a, t_b, a, b, line, face = (np.array([row[i] for row in rows]) for i in range(7))
+    uv, t_a, t_b, sweep, other_sweep, lines, on_face = (np.array([row[i] for row in rows]) for i in range(7))
+    apart = 1000.0 * np.arange(count, dtype=np.float64)  # every error of a sweep is drawn on its own
     fan_sigma = max(fan_noise_px, 1e-3)
     table = CrossingTable(
         uv=uv,
         tangent_a=t_a,
         tangent_b=t_b,
         sigma_a=np.full(count, max(noise_px, 1e-3)),
-        sigma_b=np.where(b < 0, fan_sigma, max(noise_px, 1e-3)),
-        a=a,
-        b=b,
-        piece_a=face,
-        piece_b=np.where(b < 0, line * 2 + face, face),
-        along_a=np.arange(count) * 1000.0,  # every error of a sweep is drawn on its own
-        along_b=np.where(b < 0, 2 * window * cell, np.arange(count) * 1000.0),
+        sigma_b=np.where(other_sweep < 0, fan_sigma, max(noise_px, 1e-3)),
+        a=sweep,
+        b=other_sweep,
+        piece_a=on_face,
+        piece_b=np.where(other_sweep < 0, lines * 2 + on_face, on_face),
+        along_a=apart,
+        along_b=np.where(other_sweep < 0, 2 * window * cell, apart),
         half_length_px=2 * window,
         cell_a=np.zeros(count, dtype=np.int64),
         cell_b=cell,
         share_a=np.zeros((count, 1)),
-        share_b=np.where(b < 0, fan_sigma, 0.0)[:, None],  # one error for all crossings on a stretch of the fan
+        share_b=np.where(other_sweep < 0, fan_sigma, 0.0)[:, None],  # one error for a whole stretch of the fan
     )
-    return Network(table, CrossingRays.of(table, CAMERA), line)
+    return Network(table, CrossingRays.of(table, CAMERA), lines)
 
 
 def stripe_rays(pi: np.ndarray) -> np.ndarray:
     """Rays (N, 3) at which the stripe of plane `pi` is seen on the table and on the block."""
     rays = []
-    for on_top, face in ((False, TABLE), (True, LightPlane.from_normal(TABLE.normal, TABLE.d_mm - BLOCK["height"]))):
+    for on_top, face in ((False, TABLE), (True, LightPlane.from_normal(TABLE.normal, TABLE.d_mm - HEIGHT_MM))):
         v = np.arange(100.0, 1300.0, 25.0)
         y = CAMERA.rays(np.column_stack([np.full(len(v), 960.0), v]))[:, 1]
         difference = pi - face.pi

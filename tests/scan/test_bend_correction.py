@@ -5,14 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from core.image.pieces import arc_length
-from core.inspect.sphere import through
-from core.scan.bent_crossings import BentLine, met_again
-from core.scan.fan_lines import FanLines
+from core.image.stripes.runs import arc_length
+from core.inspect.fit.round import sphere_through
+from core.scan.bend_correction import corrected_for_bends, reconstruct_twice
+from core.scan.features.bent_crossings import BentLine, crossed_again
+from core.scan.features.straightening import straightened
 from core.scan.reconstruct import ReconstructOptions, reconstruct
-from core.scan.sections import LARGEST
-from core.scan.straightening import straightened
-from core.scan.uneven_sections import evened, reconstruct_twice
+from core.scan.surface.sections import LARGEST_SHIFT
+from core.scan.sweeps.fan_lines import FanLines
 from core.simulate.scenario import Scenario
 from tests.accuracy.lit_scan import lit
 from tests.accuracy.sphere_bound import FAINT
@@ -29,7 +29,7 @@ def scans():
     features = lit(exact).measured(1, faint)
     camera, fan, lines = exact.rig.camera, exact.rig.fan, FanLines.settled_as(exact.fan_line)
     first = reconstruct(features, camera, fan, fan_lines=lines)
-    even = evened(features, first, camera, fan)
+    even = corrected_for_bends(features, first, camera, fan)
     return exact, (features, first), (even, reconstruct(even, camera, fan, fan_lines=lines))
 
 
@@ -37,7 +37,7 @@ def _diameter_error(exact, scan):
     """By least squares over the points that the rim's σ does not make useless."""
     (sphere,) = exact.scene.spheres
     on = np.abs(np.linalg.norm(scan.cloud.points - sphere.centre, axis=1) - sphere.radius) < 0.3
-    return 2 * (through(scan.cloud.points[on]).radius - sphere.radius)
+    return 2 * (sphere_through(scan.cloud.points[on]).radius - sphere.radius)
 
 
 def test_a_ball_that_wide_light_makes_too_small_has_its_diameter_when_solved_again(scans):
@@ -56,7 +56,7 @@ def test_stripes_move_towards_their_light_planes_on_the_ball_and_stay_on_the_tab
             if abs(np.linalg.norm(curve.points[0] - sphere.centre) - sphere.radius) > 0.1:
                 assert np.median(step) == 0
                 continue
-            assert (step <= LARGEST * line.width + 1e-9).all()
+            assert (step <= LARGEST_SHIFT * line.width + 1e-9).all()
             for uv, into in ((line.uv, before), (again.uv, after)):
                 into.extend(((uv - curve.uv) * curve.normal).sum(axis=1))
     assert np.median(np.abs(after)) < 0.5 * np.median(np.abs(before))
@@ -92,14 +92,14 @@ def test_crossings_on_a_bend_lie_where_the_averaged_lines_meet(scans):
         for frame, pieces in ((-1, features.fan), *((one.index, one.centrelines) for one in features.frames))
         for piece, line in enumerate(pieces)
     }
-    again = met_again(table, lines)
+    again = crossed_again(table, lines)
     assert np.linalg.norm(again.uv - table.uv, axis=1).max() < 0.1
     off = table.uv + 0.3 * table.tangent_a
-    back = met_again(replace(table, uv=off, sigma_a=table.sigma_a + 1.0), lines)
+    back = crossed_again(replace(table, uv=off, sigma_a=table.sigma_a + 1.0), lines)
     assert np.abs(back.uv - again.uv).max() < 1e-2
     assert back.sigma_a == pytest.approx(again.sigma_a, rel=1e-3)
     flat = {name: line._replace(bent=np.zeros(len(line.line), dtype=bool)) for name, line in lines.items()}
-    assert met_again(table, flat).uv.tobytes() == table.uv.tobytes()
+    assert crossed_again(table, flat).uv.tobytes() == table.uv.tobytes()
 
 
 def _arc(line, camera):

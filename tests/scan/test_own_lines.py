@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from core.image.centreline import Centreline
+from core.image.stripes.centreline import Centreline
 from core.model import Camera
-from core.scan.line_errors import LineErrors
-from core.scan.locate import locate_together
-from core.scan.triangulate import OwnLine, triangulate
+from core.scan.network.line_errors import LineErrors
+from core.scan.surface.triangulate import OwnLine, triangulate
+from core.scan.sweeps.locate import locate_together
 from core.simulate.scenario import Scenario
 from tests.scan.centreline_scan import ExactCrossings, ExactScan
 

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from core.errors import InputError
-from core.scan.fan_lines import FanLines
-from core.scan.left_out import MOVED, REASONS
-from core.scan.locate import numbered
+from core.scan.features.frames import CrossingUse
 from core.scan.reconstruct import reconstruct
 from core.scan.records import MOVED_FRAME
-from core.scan.standstill import SURE, find_movement
+from core.scan.standstill import SCORE_LIMIT, find_movement
+from core.scan.sweeps.fan_lines import FanLines
+from core.scan.sweeps.locate import numbered
 from core.simulate.scenario import Scenario
 from tests.scan.centreline_scan import ExactScan
 
@@ -44,7 +44,7 @@ def test_a_scan_at_rest_is_not_suspected(kind):
 def test_a_shift_of_three_tenths_is_found_and_so_is_its_frame(kind, frame):
     found = movement(exact(kind, (frame, ASIDE)), 1)
     assert found is not None
-    assert found.score > 2 * SURE
+    assert found.score > 2 * SCORE_LIMIT
     assert (found.last_before, found.first_after) == (frame - 1, frame)
 
 
@@ -53,11 +53,11 @@ def test_the_larger_part_is_used_and_the_rest_says_why(moved):
     assert set(result.sweep_frames.tolist()) <= set(range(40))
     assert [frame.used for frame in result.frames[40:]] == [False] * 20
     assert {frame.reason for frame in result.frames[40:]} == {MOVED_FRAME}
-    assert "moved between frame0039 and frame0040" in " ".join(result.notes)
+    assert "moved between frame0039 and frame0040" in " ".join(map(str, result.notes))
     late = result.crossings.a >= 40
-    assert np.all(result.crossing_reasons[late] == MOVED)
+    assert np.all(result.crossing_reasons[late] == CrossingUse.MOVED)
     assert np.all(result.crossing_weights[late] == 0)
-    assert dict(result.frames[50].left_out_reasons).keys() == {REASONS[MOVED]}
+    assert dict(result.frames[50].left_out_reasons).keys() == {CrossingUse.MOVED}
 
 
 def test_what_is_left_measures_as_well_as_a_scan_at_rest(moved):
@@ -85,7 +85,7 @@ def test_a_lifted_block_gives_the_block_of_the_reference():
     assert np.median(height[height > 40]) == pytest.approx(50.0, abs=0.08)  # of the reference, not 50.3
 
 
-@pytest.mark.slow
+@pytest.mark.accuracy
 def test_scans_at_rest_stay_far_below_the_limit():
     for kind in ("block", "steps", "sphere", "mask"):
         assert [movement(exact(kind), seed) for seed in range(2, 8)] == [None] * 6

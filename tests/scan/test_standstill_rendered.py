@@ -2,20 +2,20 @@
 
 import pytest
 
-from core.scan.features import MOVED, FeatureOptions, extract_features
+from core.scan.features.extraction import MOVED, FeatureOptions, extract_features
 from core.scan.reconstruct import ReconstructOptions, reconstruct
 from core.scan.records import MOVED_FRAME
-from core.simulate.image import Sensor
 from core.simulate.recording import scan_of
 from core.simulate.scan import ScanStage
 from core.simulate.scenario import Scenario
-from core.simulate.stage import WORK_POINT
+from core.simulate.scene.image import Sensor
+from core.simulate.scene.stage import WORK_POINT
 from tests.scan.centreline_scan import shifted
 
 FRAMES, AT = 48, 30
 
 
-@pytest.mark.slow
+@pytest.mark.accuracy
 def test_frames_after_the_push_are_not_used():
     scenario = Scenario(object="mask", scale=0.4, frames=FRAMES)
     stage, sheets, _ = scan_of(scenario)
@@ -34,4 +34,4 @@ def test_frames_after_the_push_are_not_used():
     assert {frame.reason for frame in result.frames[AT + 2 :]} <= {MOVED, MOVED_FRAME}
     assert sum(frame.used for frame in result.frames[:AT]) > 0.8 * AT
     assert result.datum.scale < 0.003
-    assert "moved" in " ".join(result.notes)
+    assert "moved" in " ".join(map(str, result.notes))

@@ -7,7 +7,7 @@ import pytest
 
 from core.errors import Cancelled, InputError
 from core.files.pictures import read_picture
-from core.files.recording_set import open_set
+from core.files.recording.recording_set import open_set
 from core.simulate import sample
 from core.simulate.recording import scan_of, simulate_set
 from core.simulate.rig import published_fan

@@ -1,12 +1,12 @@
 import numpy as np
 import pytest
 
-from core.simulate.laser import fan_sheets, laser_light
-from core.simulate.rays import ray_map
 from core.simulate.rig import fan_axis, paper_rig, pencil_fan, published_fan
 from core.simulate.scenario import Scenario
-from core.simulate.scene import surface_maps
-from core.simulate.stage import WORK_POINT, build_scene
+from core.simulate.scene.laser import fan_sheets, laser_light
+from core.simulate.scene.rays import ray_map
+from core.simulate.scene.scene import surface_maps
+from core.simulate.scene.stage import WORK_POINT, build_scene
 
 
 def test_default_fan_is_one_pencil_of_exactly_five_degrees():

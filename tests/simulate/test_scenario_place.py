@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from core.simulate.scenario import Scenario
-from core.simulate.stage import build_scene, table_pose
+from core.simulate.scene.stage import build_scene, table_pose
 
 
 def corners(**place):

@@ -1,9 +1,9 @@
 import numpy as np
 
-from core.simulate.image import generator
 from core.simulate.rig import paper_rig
 from core.simulate.scenario import Scenario
-from core.simulate.stage import WORK_POINT, aim_of, build_scene
+from core.simulate.scene.image import generator
+from core.simulate.scene.stage import WORK_POINT, aim_of, build_scene
 from core.simulate.sweep import hand_sweeps, sweep_range
 
 RIG = paper_rig(0.5)

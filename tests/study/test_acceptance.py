@@ -42,10 +42,10 @@ def test_without_limits_there_is_no_verdict():
 
 def test_it_says_what_it_is_not_and_how_many_positions_are_missing():
     notes = acceptance_check([*spheres([0.0] * 10), Reading("flatness", "left", 0.02)], {"flatness": 0.1}).notes
-    assert "not a certificate" in notes[0]
-    assert any("1 of the 6 positions" in note for note in notes)
-    assert not any("of the 10 positions" in note for note in notes)
-    assert any("no uncertainty of the artefact" in note for note in notes)
+    assert "not a certificate" in str(notes[0])
+    assert any("1 of the 6 positions" in str(note) for note in notes)
+    assert not any("of the 10 positions" in str(note) for note in notes)
+    assert any("no uncertainty of the artefact" in str(note) for note in notes)
 
 
 def test_the_same_position_twice_is_one_position():

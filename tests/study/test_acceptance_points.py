@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from core.study.acceptance_points import probed_flatness, probed_sphere
+from core.study.acceptance import probed_flatness, probed_sphere
 
 CENTRE, RADIUS = np.array([10.0, -20.0, 550.0]), 15.0
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from core.errors import InputError
-from core.files.ply import write_cloud
-from core.pipeline.acceptance_step import read_positions
-from core.scan.cloud import Cloud
+from core.files.results.ply import write_cloud
+from core.pipeline.steps.acceptance_step import read_positions
+from core.scan.surface.cloud import Cloud
 from tests.study.test_acceptance_points import cap
 
 TABLE_Z, RADIUS = 600.0, 15.0

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from core.inspect.results import Contribution
+from core.inspect.uncertainty.causes import cause_named
 from core.study.budget import Input, add_up, combine, covariance_of, dof_of_doubt, of_observations, within
 
 LENGTH, ALPHA, OFF = 50.000623e6, 11.5e-6, -0.1
@@ -114,12 +115,12 @@ def test_freedom_of_correlated_inputs_is_that_of_the_least_known_and_of_independ
 
 
 def test_known_contributions_give_k_of_two_and_guessed_ones_more():
-    known, few = Contribution("camera", 0.003), Contribution("form", 0.004, dof=4)
+    known, few = Contribution(cause_named("camera"), 0.003), Contribution(cause_named("form"), 0.004, dof=4)
     assert add_up([known]).k == pytest.approx(2)
     found = add_up([known, few])
     assert (found.u, found.dof) == (pytest.approx(0.005), pytest.approx(0.005**4 / (0.004**4 / 4)))
     assert found.k == pytest.approx(2.32, abs=0.005)  # t_95.45(9), table G.2
-    assert add_up([Contribution("nothing", 0.0)]).U == 0
+    assert add_up([Contribution(cause_named("nothing"), 0.0)]).U == 0
 
 
 @pytest.mark.parametrize(

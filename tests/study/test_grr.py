@@ -46,7 +46,7 @@ def test_the_manuals_study_has_its_interaction_pooled_and_the_printed_components
     ]  # fmt: skip
     assert study.categories == 4
     assert study.verdict == CONDITIONAL
-    assert any("4 distinct categories" in note for note in study.notes)
+    assert any("4 distinct categories" in str(note) for note in study.notes)
 
 
 def test_a_significant_interaction_stays_in_the_model_as_in_the_thermal_study():
@@ -134,7 +134,7 @@ def test_one_operator_alone_gives_repeatability_and_says_so():
     assert [row.source for row in study.anova] == ["parts", "error", "total"]
     assert study.component("reproducibility").variance == 0
     assert study.component("gauge R&R").variance == study.component("repeatability").variance
-    assert any("One operator alone" in note for note in study.notes)
+    assert any("One operator alone" in str(note) for note in study.notes)
 
 
 @pytest.mark.parametrize(("error", "verdict"), [(0.01, ACCEPTABLE), (0.2, CONDITIONAL), (0.8, NOT_ACCEPTABLE)])

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from core.inspect.results import Contribution
-from core.inspect.uncertainty import CAMERA, POINT_NOISE, SWEEP_PLANES
-from core.study.repeats import RepeatStatistics, histogram, repeat_statistics, repeat_study, run_chart
-from core.study.repeats_budget import OBSERVED, from_budgets, from_stated
+from core.inspect.uncertainty.causes import CAMERA, OBSERVED, POINT_NOISE, SWEEP_PLANES
+from core.study.budget import from_budgets, from_stated
+from core.study.repeats import RepeatStatistics, Requirement, histogram, repeat_statistics, repeat_study, run_chart
 
 TABLE_1 = {
     70: (69.920, 70.101, 70.063, 70.042, 69.929, 69.918, 69.892, 70.102, 70.097, 70.114),
@@ -86,8 +86,8 @@ def test_the_histogram_counts_every_value_once_in_few_bins(values):
     assert len(found.edges) == len(found.counts) + 1 <= 21
 
 
-def study(values, u, **more):
-    return repeat_study(values, from_stated(values, u), complete=u is not None, **more)
+def study(values, u, **asked):
+    return repeat_study(values, from_stated(values, u), complete=u is not None, asked=Requirement(**asked))
 
 
 def test_the_verdict_is_that_of_the_mean_with_its_own_uncertainty():
@@ -104,7 +104,7 @@ def test_the_verdict_is_that_of_the_mean_with_its_own_uncertainty():
 def test_scatter_alone_proves_nothing_because_what_is_common_is_not_in_it():
     found = study([50.0, 50.001, 50.0], None, nominal=50.0, limits=(-1, 1))
     assert found.verdict == "not proven"
-    assert any("nothing is proven" in note for note in found.notes)
+    assert any("nothing is proven" in str(note) for note in found.notes)
 
 
 def test_what_is_common_to_all_repeats_does_not_average_out_and_their_own_noise_does():

@@ -6,11 +6,12 @@ import math
 import numpy as np
 import pytest
 
-from core.files.gauge_file import write_gauge
-from core.files.ply import write_cloud
+from core.files.results.gauge_file import write_gauge
+from core.files.results.ply import write_cloud
 from core.inspect.results import Contribution, Face, GaugeResult
+from core.inspect.uncertainty.causes import CAMERA, SWEEP_PLANES
 from core.model import LightPlane
-from tests.inspect.test_sphere import RADIUS, scan
+from tests.inspect.fit.test_round import RADIUS, scan
 from tests.simulated import trisect
 from tests.study.grr_tables import AIAG
 from tests.study.test_repeats import TABLE_1
@@ -32,7 +33,7 @@ def results(folder, thickness, u=0.01, budget=None):
     """A folder as `trisect run` leaves it, as far as a study reads it."""
     folder.mkdir()
     face = Face(LightPlane.from_normal([0, 0, 1.0], 600.0), NO_POINTS, np.empty(0), 0.01, 0.01)
-    rows = (Contribution("camera calibration", u),) if budget is None else budget
+    rows = (Contribution(CAMERA, u),) if budget is None else budget
     gauge = GaugeResult(thickness, u, 2.0, face, face, 0.0, rows, 50.0, 0.2, "conforming")
     write_gauge(folder / "gauge.json", gauge, "abc")
     return folder
@@ -77,13 +78,16 @@ def test_the_exit_code_of_repeats_is_that_of_their_verdict(tmp_path, u, verdict,
 
 
 def test_folders_of_results_bring_their_values_their_limits_and_their_budgets(tmp_path):
-    budget = (Contribution("camera calibration", 0.006), Contribution("light planes of the sweeps (network)", 0.008))
+    budget = (
+        Contribution(CAMERA, 0.006),
+        Contribution(SWEEP_PLANES, 0.008),
+    )
     folders = [results(tmp_path / f"scan{n}", value, 0.01, budget) for n, value in enumerate((50.01, 50.02, 50.03))]
     said = trisect("study", "repeats", *folders, "--json")
     found = json.loads(said.out)
     assert (said.code, found["verdict"], found["nominal"]) == (0, "conforming", 50)
     assert [scan["scan"] for scan in found["scans"]] == ["scan0", "scan1", "scan2"]
-    rows = {row["source"]: row["contribution"] for row in found["budget_of_mean"]["rows"]}
+    rows = {row["source"]["text"]: row["contribution"] for row in found["budget_of_mean"]["rows"]}
     assert rows["camera calibration"] == pytest.approx(0.006)
     assert rows["repeatability of the scans, above their stated noise"] == pytest.approx(0.01 / math.sqrt(3))
     assert rows.keys() == {"camera calibration", "repeatability of the scans, above their stated noise"}
@@ -211,7 +215,7 @@ GRR, CHECK = "part,operator,value\n1,A,5\n", "quantity,position,measured_mm\n"
         (("repeats",), "value,value\n1,1\n", 'the column "value" is there twice'),
         (("repeats",), "value,u_mm\n50,0.1\n51,\n", "line 3, column u_mm is empty, not a number"),
         (("repeats",), "value,U_mm,k\n50,0.1,0\n", "line 2, column k is 0, not a number above 0"),
-        (("repeats",), "value,u_mm\n50,-0.1\n", "line 2, column u_mm is -0.1, not a length of 0 or more"),
+        (("repeats",), "value,u_mm\n50,-0.1\n", "line 2, column u_mm is −0.1, not a length of 0 or more"),
         (("repeats",), "value\n", "the table has no rows below its head"),
         (("repeats",), "value\n50\n", "one value alone, with no stated uncertainty, is no study"),
         (("repeats", "--tolerance", 1), "value\n50\n51\n", "a tolerance needs a nominal value; give --nominal as well"),
@@ -222,7 +226,7 @@ GRR, CHECK = "part,operator,value\n1,A,5\n", "quantity,position,measured_mm\n"
         (("grr",), GRR + "1,A,6\n", "1 parts and 2 repeats are too few"),
         (("acceptance",), CHECK + "shape,a,1\n", 'line 2, column quantity is "shape", not form, size'),
         (("acceptance",), CHECK + "size,a,1\n", "line 2, column calibrated_mm must be above 0 for size"),
-        (("acceptance", "--size", -1), ACCEPTANCE, "-1 mm is no limit; give a length above 0"),
+        (("acceptance", "--size", -1), ACCEPTANCE, "−1 mm is no limit; give a length above 0"),
     ],
 )
 def test_bad_input_is_told_in_one_sentence_with_file_row_and_column(tmp_path, words, text, said):

@@ -7,10 +7,11 @@ import pytest
 from core.errors import InputError
 from core.files.atomic import write_text
 from core.files.json_text import to_json
-from core.files.study_results import measured_in
+from core.files.study.results import measured_in
 from core.inspect.characteristic import Characteristic
-from core.inspect.conditions import Temperature
-from core.inspect.temperature import PART_EXPANSION, at_reference
+from core.inspect.plan.conditions import Temperature
+from core.inspect.plan.temperature import at_reference
+from core.inspect.uncertainty.causes import PART_EXPANSION
 from core.study.budget import add_up
 
 

@@ -62,7 +62,7 @@ def test_a_bias_alone_can_make_a_gauge_incapable_and_the_note_says_so():
     found = type1_study(spread(10.08, 0.01), 10.0, 1.0)
     assert found.cg > 1.33 > found.cgk
     assert found.verdict == NOT_CAPABLE
-    assert any("bias does not" in note for note in found.notes)
+    assert any("bias does not" in str(note) for note in found.notes)
 
 
 def test_the_smallest_tolerance_is_the_one_for_which_the_gauge_is_just_capable():
@@ -92,11 +92,11 @@ def test_values_all_the_same_are_capable_only_where_the_bias_allows_and_say_what
     right, wrong = type1_study([10.0] * 30, 10.0, 1.0), type1_study([10.2] * 30, 10.0, 1.0)
     assert (right.cg, right.cgk, right.t, right.p) == (math.inf, math.inf, 0.0, 1.0)
     assert (wrong.cgk, wrong.verdict) == (-math.inf, NOT_CAPABLE)
-    assert any("resolution hides" in note for note in right.notes)
+    assert any("resolution hides" in str(note) for note in right.notes)
 
 
 def test_few_repeats_are_said_to_be_few():
-    assert any("10 repeats" in note for note in type1_study(spread(1, 0.1, 10), 1.0, 1.0).notes)
+    assert any("10 repeats" in str(note) for note in type1_study(spread(1, 0.1, 10), 1.0, 1.0).notes)
 
 
 @pytest.mark.parametrize(

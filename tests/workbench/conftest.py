@@ -19,21 +19,22 @@ if not os.environ.get("DISPLAY"):
 
 import pytest
 import shiboken6
-from PySide6.QtCore import QCoreApplication, QEvent, QTimer
+from PySide6.QtCore import QCoreApplication, QEvent, QObject, QTimer
 from PySide6.QtWidgets import QApplication, QWidget
 
 from tests.shared import SAID_ALOUD, made_once
 from tests.workbench import screen
 from tests.workbench.technician import Technician
-from workbench import jobs
 from workbench.app import build_window
 from workbench.bench import Bench
 from workbench.main_window import MainWindow
 from workbench.notices import Notices
 from workbench.project_model import ProjectModel
 from workbench.settings import AppSettings
-from workbench.tasks import Lane
 from workbench.views import ask
+from workbench.views.scene.ready import Readiness
+from workbench.work import jobs
+from workbench.work.tasks import Lane
 
 HANGS_AFTER_S = 180
 """A test that takes so long hangs: where every thread stands is told, and the test process ends."""
@@ -45,15 +46,6 @@ def pytest_configure(config: pytest.Config) -> None:
     if os.environ.get(screen.WANTED) == "1" and runs_tests:
         server = screen.open_screen()
         config.add_cleanup(server.terminate)
-
-
-def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """One more try for a window that was kept waiting by other processes of its machine; a flaw fails twice."""
-    if not config.pluginmanager.hasplugin("rerunfailures"):
-        return  # -p no:rerunfailures: to see what fails now and then
-    for item in items:
-        if Path(__file__).parent in item.path.parents:
-            item.add_marker(pytest.mark.flaky(reruns=1))
 
 
 class SharedBench(Bench):
@@ -96,6 +88,7 @@ def lanes() -> Iterator[dict[str, Lane]]:
     yield made
     for lane in made.values():
         lane.close()
+        lane.wait_until_closed()
 
 
 @pytest.fixture
@@ -125,12 +118,11 @@ def window(bench: Bench, qapp: QApplication, monkeypatch: pytest.MonkeyPatch) ->
     bench.close()  # whatever a failed test left running is not asked about
     with monkeypatch.context() as patch:
         patch.setattr(ask, "ask", lambda *_: 0)
-        made.close()
+        made.leave()
     made.deleteLater()
     del made
     QCoreApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete)
     gc.collect(1)
-    bench.settings.theme_changed.disconnect()
     qapp.setStyleSheet(sheet)
     qapp.setStyle(style)
     qapp.setPalette(palette)
@@ -168,8 +160,8 @@ def measured_project(finished_project_folder: Path, tmp_path: Path) -> Path:
 
 
 def _finish_project(folder: Path, pictures: Path) -> None:
-    from core.files.project import project_from_set, stored_source, write_project
-    from core.pipeline.sample_project import finished_project
+    from core.files.project.folder import project_from_set, stored_source, write_project
+    from core.pipeline.project.sample_project import finished_project
 
     recordings = Path(shutil.copytree(pictures, folder / "recordings"))
     project = project_from_set(recordings, "Block")
@@ -199,7 +191,7 @@ def nothing_left_behind(request: pytest.FixtureRequest) -> Iterator[None]:
     app.sendPostedEvents(None, QEvent.Type.DeferredDelete)  # what is closed is gone: no later test's theme shows it
     shown = [w for w in app.topLevelWidgets() if isinstance(w, QWidget) and w.isVisible()]
     assert not shown, f"windows left open: {shown}"
-    threads = [t for t in threading.enumerate() if t not in before and not t.name.startswith(("lane-", "pyvista"))]
+    threads = [t for t in threading.enumerate() if t not in before and not t.name.startswith("pyvista")]
     for thread in threads:
         thread.join(2)
     threads = [thread for thread in threads if thread.is_alive()]
@@ -212,10 +204,18 @@ def nothing_left_behind(request: pytest.FixtureRequest) -> Iterator[None]:
 
 
 def _running_timers() -> list[QTimer]:
-    """Timers that would fire again although their window is closed, whoever holds them."""
+    """Timers that would fire again although their window is closed, whoever holds them.
+
+    How 3D can be drawn is found out once for the program, and may take longer than the window that asked.
+    """
     there = gc.get_objects()
     kinds = {kind for kind in set(map(type, there)) if issubclass(kind, QTimer)}  # asking each object takes a second
-    return [each for each in there if type(each) in kinds and shiboken6.isValid(each) and each.isActive()]
+    running = [each for each in there if type(each) in kinds and shiboken6.isValid(each) and each.isActive()]
+    return [each for each in running if not _of_readiness(each)]
+
+
+def _of_readiness(thing: QObject | None) -> bool:
+    return thing is not None and (isinstance(thing, Readiness) or _of_readiness(thing.parent()))
 
 
 def _foreign_children(request: pytest.FixtureRequest) -> list[str]:
@@ -243,4 +243,5 @@ def _children(listing: Path) -> Iterator[str]:
 
 
 def _is_known(line: str) -> bool:
-    return any(known in line for known in ("multiprocessing", "scene_view_probe", "from execnet", "Xvfb"))
+    own = ("multiprocessing", "workbench.work.worker", "workbench.views.scene.surfaces", "from execnet", "Xvfb")
+    return any(known in line for known in own)

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, cast
 
 from PySide6.QtCore import QObject, QTimer, Signal
 
 from core.errors import InputError
-from workbench.jobs import Job, resolve
-from workbench.tasks import Task
+from workbench.work.jobs import Job, resolve
+from workbench.work.tasks import Lane, Task
+from workbench.work.wire import Kind
 
 
 class HandLane(QObject):
@@ -26,7 +27,7 @@ class HandLane(QObject):
         self.waiting: list[tuple[Task, Job, tuple[Any, ...], dict[str, str]]] = []
         self.ran: list[Job] = []
         self.sent: list[Any] = []
-        self.warmed = False
+        self.prepared = False
 
     @property
     def current(self) -> Task | None:
@@ -36,14 +37,15 @@ class HandLane(QObject):
     def busy(self) -> bool:
         return bool(self.waiting)
 
-    def warm_up(self) -> None:
-        self.warmed = True
+    def prepare(self) -> None:
+        self.prepared = True
 
     def close(self) -> None:
         self.waiting.clear()
 
     def run(
         self,
+        receiver: QObject,
         job: Job,
         *args: Any,
         label: str,
@@ -53,7 +55,7 @@ class HandLane(QObject):
         offers: dict[str, str] | None = None,
         replace_waiting: bool = False,
     ) -> Task:
-        task = Task(self, len(self.ran), label)
+        task = Task(cast(Lane, self), receiver, len(self.ran), label)
         task.done.connect(on_done)
         if on_failed:
             task.failed.connect(on_failed)
@@ -62,31 +64,31 @@ class HandLane(QObject):
         if replace_waiting:
             for old in [entry for entry in self.waiting[1:] if (entry[0].label, entry[1]) == (label, job)]:
                 self.waiting.remove(old)
-                old[0].cancelled.emit()
+                old[0].conclude(Kind.CANCELLED)
         self.waiting.append((task, job, args, {"progress": "progress"} if offers is None else offers))
         self.task_started.emit(task)
         QTimer.singleShot(0, self._work)
         return task
 
     def cancel(self, task: Task) -> None:
-        self._end(task, lambda: task.cancelled.emit())
+        self._end(task, Kind.CANCELLED)
 
     def cancel_all(self) -> None:
         for task, *_ in reversed(list(self.waiting)):
             self.cancel(task)
 
-    def post(self, task: Task, message: tuple[str, Any]) -> None:
-        self.sent.append(message[1] if message[0] == "command" else message[0])
+    def post(self, task: Task, kind: Kind, value: Any = None) -> None:
+        self.sent.append(value if kind is Kind.COMMAND else kind.name.lower())
 
     def finish(self, result: Any) -> None:
         """The job that waits is done."""
         task = self.waiting[0][0]
-        self._end(task, lambda: task.done.emit(result))
+        self._end(task, Kind.DONE, result)
 
     def fail(self, problem: Any) -> None:
         """The job that waits has failed."""
         task = self.waiting[0][0]
-        self._end(task, lambda: task.failed.emit(problem))
+        self._end(task, Kind.FAILED, problem)
 
     def _work(self) -> None:
         if not self.waiting or self.waiting[0][1] in self.held:
@@ -98,17 +100,15 @@ class HandLane(QObject):
             keywords = {name: offered[what] for name, what in offers.items() if what in offered}
             answer = self.answers[job](*args) if job in self.answers else resolve(job)(*args, **keywords)
         except InputError as error:
-            problem = error
-            self._end(task, lambda: task.failed.emit(problem))
+            self._end(task, Kind.FAILED, error)
         else:
-            self._end(task, lambda: task.done.emit(answer))
+            self._end(task, Kind.DONE, answer)
 
-    def _end(self, task: Task, tell: Callable[[], None]) -> None:
+    def _end(self, task: Task, kind: Kind, value: Any = None) -> None:
         entry = next((entry for entry in self.waiting if entry[0] is task), None)
         if entry is None:
             return
         self.waiting.remove(entry)
-        tell()
-        task.ended.emit()
+        task.conclude(kind, value)
         self.task_ended.emit(task)
         QTimer.singleShot(0, self._work)

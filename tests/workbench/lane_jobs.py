@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 import os
+import sys
 import time
+from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from core.errors import InputError
 from core.progress import Progress
@@ -86,3 +90,37 @@ _DONE: list[int] = []
 
 def pieces_done(progress: Progress) -> int:
     return len(_DONE)
+
+
+def picture(megabytes: int, progress: Progress) -> Any:
+    return {"picture": np.full((megabytes, 1 << 20), 7, np.uint8), "small": np.arange(5)}
+
+
+def pictures_for_ever(channel: Any) -> None:
+    while True:
+        channel.emit(np.zeros(1 << 21, np.uint8))
+        time.sleep(0.001)
+
+
+def pictures_shown(count: int, channel: Any) -> None:
+    large = np.zeros((10, 1 << 20), np.uint8)
+    for _ in range(count):
+        while not channel.ready():
+            time.sleep(0.002)
+        channel.offer(large)
+
+
+def prints(progress: Progress) -> int:
+    print("printed")
+    os.write(1, b"written to the first descriptor\n")
+    return len(sys.stdin.read())
+
+
+def until_the_window_is_gone(place: str, channel: Any) -> None:
+    Path(place, "began").write_text(str(os.getpid()))
+    try:
+        while True:
+            channel.command()
+            time.sleep(0.01)
+    finally:
+        Path(place, "kept").write_text("")

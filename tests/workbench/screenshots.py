@@ -19,20 +19,20 @@ from PySide6.QtCore import QPoint, QSize, Qt
 from PySide6.QtGui import QImage, QPainter
 from PySide6.QtWidgets import QApplication, QScrollArea, QWidget
 
-from core.files.stl import write_stl
+from core.files.results.mesh_export import write_stl
 from core.inspect.characteristic import Limits
-from core.inspect.feature_spec import Auto, Deviation, FeatureSpec, Section
-from core.inspect.inspection_plan import InspectionPlan
-from core.scan.surface import Mesh
-from core.simulate.objects import gauge_block
+from core.inspect.plan.feature_spec import Auto, Deviation, FeatureSpec, Section
+from core.inspect.plan.inspection_plan import InspectionPlan
+from core.scan.surface.fused_surface import Mesh
+from core.simulate.scene.objects import gauge_block
 from tests.study.grr_tables import AIAG
 from workbench.app import Application, build_window
 from workbench.bench import Bench, make_bench
 from workbench.main_window import MainWindow
-from workbench.pages.report_presenter import Stage
+from workbench.pages.report.presenter import Stage
 from workbench.settings import AppSettings
 from workbench.steps import STEPS
-from workbench.style_sheet import is_polishing
+from workbench.theme import is_polishing
 
 SIZES = (QSize(1280, 800), QSize(1920, 1080))
 THEMES = ("light", "dark")
@@ -67,7 +67,7 @@ def main() -> int:
         try:
             (_readme if "--readme" in sys.argv else _all)(app, bench, window, folder)
         finally:
-            window.close()
+            window.leave()
     return 0
 
 
@@ -89,13 +89,13 @@ def _all(app: QApplication, bench: Bench, window: MainWindow, folder: Path) -> N
 
 def _open_sample(app: QApplication, bench: Bench, window: MainWindow) -> None:
     """The finished sample, with features measured on it and a repeat."""
-    window.doors.open_sample()
+    window.projects.open_sample()
     _wait(app, lambda: window.model.is_open and not bench.measuring.busy, PATIENCE_S)
     assert window.model.folder is not None
     _write_nominal(window.model.folder / NOMINAL)
     window.go_to("inspect")
     inspect: Any = window.presenters["inspect"]
-    _wait(app, lambda: inspect.view is not None, PATIENCE_S)
+    _wait(app, lambda: inspect.scan.view is not None, PATIENCE_S)
     inspect.repeats.add()
     inspect.features.put_plan(PLAN, "features")
     inspect.features.measure()
@@ -141,7 +141,7 @@ def _inspect_tabs(app: QApplication, bench: Bench, window: MainWindow) -> Iterat
     _wait(app, lambda: inspect.studies.study is not None, PATIENCE_S)
     yield "studies"
     for key, value in (("primary", "table"), ("at 20 °C", True), ("with master", True), ("name", "Block 50 no. 7")):
-        inspect.features.conditions.set_value(key, value)
+        inspect.conditions.set_value(key, value)
     shown(page.surface)
     page.conditions_fold.expand(animate=False)
     _wait(app, lambda: not inspect.features.measuring, PATIENCE_S)

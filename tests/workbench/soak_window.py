@@ -23,18 +23,17 @@ if not os.environ.get("DISPLAY"):
 from PySide6.QtCore import QEvent, QObject, QTimer
 from PySide6.QtWidgets import QAbstractButton, QApplication
 
-from core.files.project import Accepted, new_project
-from core.live.events import LiveEnded, LiveView, ScanDetail
+from core.files.project.data import Accepted, new_project
+from core.files.recording.recorder import Ending
+from core.pipeline.live.events import LiveEnded, LiveView, ScanDetail
 from tests.soak import LOOK_EVERY_S, Memory, Soaked, prepared
 from tests.soak_camera import FOLDER, RIG, SERIAL, calibration, settings_for, sweep
 from tests.workbench.watchdog import Watchdog, slowness, too_long
-from workbench import jobs
 from workbench.app import build_window
 from workbench.bench import make_bench
-from workbench.garbage import GarbageCollector
 from workbench.main_window import MainWindow
-from workbench.processes import share_python_willingly
 from workbench.settings import AppSettings
+from workbench.work import jobs
 
 SWEPT_MS = 500
 """The camera shows the hand-held laser so long before Start is pressed."""
@@ -146,29 +145,28 @@ class Soak(QObject):
 
     def _measure(self) -> None:
         with suppress(OSError, AttributeError):  # the process may be about to end
-            self.memory["recording"].look(self.window.bench.live._process.pid)
+            self.memory["recording"].look(self.window.bench.live.pid)
             self.memory["window"].look()
 
     def _take_end(self, ended: LiveEnded) -> None:
         self.ended = ended
 
 
-def soak_window(seconds: float, scale: float = 1.0, rate_hz: float = 14.0, ending: str = ".pgm") -> Soaked:
+def soak_window(seconds: float, scale: float = 1.0, rate_hz: float = 14.0, ending: Ending = ".pgm") -> Soaked:
     """Run the recording on the page; what is measured afterwards by itself is left out."""
-    with tempfile.TemporaryDirectory(prefix="trisect-soak-") as name, _surroundings(Path(name)):
+    with tempfile.TemporaryDirectory(prefix="trisect-soak-") as name, _environment(Path(name)):
         folder = Path(name)
         prepared(folder, scale)
         settings = AppSettings(folder / "settings.ini")
-        app = QApplication.instance() or QApplication(["trisect"])
+        app = QApplication.instance()
+        if not isinstance(app, QApplication):
+            app = QApplication(["trisect"])
         signal.signal(signal.SIGINT, signal.SIG_DFL)
-        share_python_willingly()
-        garbage = GarbageCollector(app)
         bench = make_bench(settings)
         window = build_window(app, bench, "light")
         try:
             window.resize(1280, 800)
             window.show()
-            garbage.spare_what_is_there()
             bench.model.create(folder / "project", replace(new_project("Soak"), rig=RIG, accepted=Accepted("a", "b")))
             window.go_to("scan")
             job = Soak(window, folder, seconds)
@@ -192,11 +190,11 @@ def soak_window(seconds: float, scale: float = 1.0, rate_hz: float = 14.0, endin
             return result
         finally:
             bench.close()
-            window.close()
-            garbage.stop()
+            window.leave()
+            bench.wait_until_closed()
 
 
-def _choose_camera(settings: Any, folder: Path, rate_hz: float, ending: str) -> None:
+def _choose_camera(settings: Any, folder: Path, rate_hz: float, ending: Ending) -> None:
     told = settings_for(calibration(folder)[0], rate_hz)
     settings.set_kind("basler")
     settings.set_id(SERIAL)
@@ -205,7 +203,7 @@ def _choose_camera(settings: Any, folder: Path, rate_hz: float, ending: str) -> 
 
 
 @contextmanager
-def _surroundings(folder: Path) -> Iterator[None]:
+def _environment(folder: Path) -> Iterator[None]:
     """The emulated camera for the process that records, and the true calibrations for the page."""
     with (
         mock.patch.dict(os.environ, {FOLDER: str(folder), "PYLON_CAMEMU": "1"}),

@@ -24,11 +24,10 @@ from superqt import QCollapsible
 
 from workbench.main_window import MainWindow
 from workbench.views import ask
-from workbench.views.scene_view import SceneView
-from workbench.views.tables import ViewList
-from workbench.views.view_delegate import CHECK_WIDTH
+from workbench.views.lists.view_list import CHECK_WIDTH, ViewList
+from workbench.views.scene.view import SceneView
 
-PATIENCE_S = 30.0
+PATIENCE_S = 120.0
 
 
 class Technician:
@@ -162,6 +161,7 @@ class Technician:
         editor.setFocus()
         self.until(lambda: self._typing_in(editor) is not None, f"{editor} to take the focus")
         typed = self._typing_in(editor)
+        assert typed is not None
         self.keys(typed, "a", Qt.KeyboardModifier.ControlModifier)
         self._qtbot.keyClicks(typed, text)
         self._qtbot.keyClick(typed, Qt.Key.Key_Tab)

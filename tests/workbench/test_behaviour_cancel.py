@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from tests.workbench.technician import Technician
-from workbench.tasks import Task
+from workbench.work.tasks import Task
 
 WITHIN_S = 1.0
 SLACK_S = 0.4
@@ -68,7 +68,7 @@ def test_cancel_acts_within_a_second(
     technician: Technician, measured_project: Path, page: str, button: str, stage: str
 ) -> None:
     t = technician
-    t.window.doors.open_project(measured_project)
+    t.window.projects.open_project(measured_project)
     t.window.go_to(page)
     t.idle()
     before, results = fingerprint(measured_project), dict(t.model.results)
@@ -86,7 +86,7 @@ def test_cancel_acts_within_a_second(
 
 def test_a_job_can_be_done_after_one_was_cancelled(technician: Technician, measured_project: Path) -> None:
     t = technician
-    t.window.doors.open_project(measured_project)
+    t.window.projects.open_project(measured_project)
     t.window.go_to("report")
     t.idle()
     canceller = Canceller(t, "")

@@ -13,8 +13,9 @@ from pathlib import Path
 import pytest
 
 from core.files.pictures import read_picture
-from core.files.project import new_project, read_project, recoverable, write_project
-from core.files.set_listing import scan_frames
+from core.files.project.data import new_project
+from core.files.project.folder import read_project, recoverable, write_project
+from core.files.recording.set_listing import scan_frames
 from tests.workbench.technician import Technician
 
 ROOT = Path(__file__).parents[2]
@@ -30,7 +31,7 @@ class Running:
     def __init__(self, home: Path, *arguments: str) -> None:
         environment = os.environ | {
             "QT_QPA_PLATFORM": "offscreen",
-            "TRISECT_NO_OPENGL": "painter",
+            "TRISECT_NO_OPENGL": "none",
             "HOME": str(home),
             "XDG_CONFIG_HOME": str(home / "config"),
             "XDG_STATE_HOME": str(home / "state"),
@@ -95,7 +96,7 @@ def program(tmp_path: Path) -> Iterator[Program]:
 @pytest.fixture
 def project(tmp_path: Path) -> Path:
     """A saved project."""
-    from core.files.project import ProjectFile
+    from core.files.project.data import ProjectFile
 
     folder = tmp_path / "project"
     write_project(folder, ProjectFile(new_project("Crash")))
@@ -136,7 +137,7 @@ def test_killed_while_recording_with_unsaved_edits_nothing_is_lost(
     assert read_project(project).project.info.part == ""
     t = technician
     with t.answers("Recover the changes", "Use them") as asked:
-        t.window.doors.open_project(project)
+        t.window.projects.open_project(project)
     assert "was not closed properly" in asked[0]
     assert f"{len(frames) + 1} pictures" in asked[1]
     assert t.model.project.info.part == "Edited, not saved"
@@ -156,6 +157,6 @@ def test_killed_with_unsaved_edits_the_saved_state_can_be_had_as_well(
     running.said(lambda line: line == "edited")
     running.kill(everything=True)
     with technician.answers("Open the saved state"):
-        technician.window.doors.open_project(project)
+        technician.window.projects.open_project(project)
     assert technician.model.project.info.part == ""
     assert recoverable(project) is None

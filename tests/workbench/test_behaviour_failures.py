@@ -14,8 +14,8 @@ from PySide6.QtCore import QRunnable, Qt, QThreadPool, QTimer
 from PySide6.QtWidgets import QPushButton
 
 from tests.workbench.technician import Technician
-from workbench.jobs import Job
 from workbench.notices import Level, Notice, log_to_file
+from workbench.work.jobs import Job
 
 pytestmark = pytest.mark.qt_no_exception_capture
 
@@ -70,11 +70,11 @@ def in_a_runnable(t: Technician) -> None:
 
 
 def in_a_job(t: Technician) -> None:
-    t.bench.measure(Job("tests.workbench.lane_jobs:crash"), label="crash", on_done=lambda _: None)
+    t.bench.run_long(t.window, Job("tests.workbench.lane_jobs:crash"), label="crash", on_done=lambda _: None)
 
 
 def in_what_follows_a_job(t: Technician) -> None:
-    t.bench.measure(Job("tests.workbench.lane_jobs:double"), 2, label="double", on_done=break_down)
+    t.bench.run_long(t.window, Job("tests.workbench.lane_jobs:double"), 2, label="double", on_done=break_down)
 
 
 @pytest.mark.parametrize(
@@ -99,13 +99,13 @@ def test_an_exception_is_one_notice_and_a_log_entry_and_the_program_goes_on(
 
 
 def kill_process_of(lane: Any) -> None:
-    os.kill(lane._process.pid, signal.SIGKILL)
+    os.kill(lane.pid, signal.SIGKILL)
 
 
 def test_a_process_killed_in_the_middle_of_a_job_is_told_and_the_next_job_works(
     t: Technician, measured_project: Path
 ) -> None:
-    t.window.doors.open_project(measured_project)
+    t.window.projects.open_project(measured_project)
     t.window.go_to("scan")
     t.idle()
     scanned = t.model.results["scan"]
@@ -124,11 +124,11 @@ def test_a_process_killed_in_the_middle_of_a_job_is_told_and_the_next_job_works(
 
 
 def test_the_process_that_reads_pictures_killed_meanwhile_comes_back(t: Technician, measured_project: Path) -> None:
-    t.window.doors.open_project(measured_project)
+    t.window.projects.open_project(measured_project)
     t.window.go_to("camera")
     t.idle()
     kill_process_of(t.bench.quick)
-    t.until(lambda: t.bench.quick._process is None, "the end of the process to be noticed")
+    t.until(lambda: t.bench.quick.pid == 0, "the end of the process to be noticed")
     t.window.go_to("report")
     t.until(lambda: t.presenter().pages, "the pages of the report")
     assert errors(t) == []

@@ -9,8 +9,9 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QApplication, QListView, QTabBar, QWidget
 
 from tests.workbench.technician import Technician
-from workbench.shortcuts import SHORTCUTS
+from workbench.menus import SHORTCUTS
 from workbench.step_state import ORDER
+from workbench.steps import STEPS
 
 ALT, CONTROL = Qt.KeyboardModifier.AltModifier, Qt.KeyboardModifier.ControlModifier
 MOST_TABS = 150
@@ -29,8 +30,8 @@ def focused() -> QWidget:
 
 def named(widget: QWidget) -> str:
     """What the technician sees the focus is on."""
-    text = widget.text() if callable(getattr(widget, "text", None)) else ""
-    return str(text).replace("&", "") or widget.accessibleName()
+    text = getattr(widget, "text", None)
+    return str(text() if callable(text) else "").replace("&", "") or widget.accessibleName()
 
 
 def tab_to(t: Technician, name: str) -> None:
@@ -102,7 +103,7 @@ def test_every_button_of_a_page_is_reached_by_tab_and_has_a_name(
     technician: Technician, measured_project: Path, page: str
 ) -> None:
     t = technician
-    t.window.doors.open_project(measured_project)
+    t.window.projects.open_project(measured_project)
     t.activate()
     t.window.go_to(page)
     t.idle()
@@ -134,14 +135,17 @@ def test_every_button_of_a_page_is_reached_by_tab_and_has_a_name(
 
 def test_fields_of_the_target_come_where_they_are_seen(technician: Technician, measured_project: Path) -> None:
     t = technician
-    t.window.doors.open_project(measured_project)
+    t.window.projects.open_project(measured_project)
     t.window.go_to("camera")
     t.idle()
     t.activate()
     t.unfold("Target")
     for _ in range(2):
         t.field("Kind").setFocus()
-        order = [focused().accessibleName() for _ in range(4) if press(t, Qt.Key.Key_Tab) is None]
+        order = []
+        for _ in range(4):
+            press(t, Qt.Key.Key_Tab)
+            order.append(focused().accessibleName())
         assert order[-1] != "Kind"
         assert order[:3] == ["Columns", "Rows", "Square"]
         t.choose("Kind", "ChArUco" if "Check" in t.field("Kind").currentText() else "Checkerboard")
@@ -162,7 +166,7 @@ def test_the_list_under_the_question_mark_tells_every_key(technician: Technician
         told.extend(str(view.model().index(row, 0).data()) for view in views for row in range(view.model().rowCount()))
 
     with t.meets(read):
-        press(t, Qt.Key.Key_F1)
+        t.window.menus.actions["keys"].trigger()
     for _, key, meaning in SHORTCUTS:
         assert any(key in text for text in told), key
         assert any(meaning in text for text in told), meaning
@@ -173,4 +177,14 @@ def test_every_key_of_the_window_is_in_the_list(technician: Technician) -> None:
     numbered = {f"Ctrl+{number}" for number in range(1, len(ORDER) + 1)}
     for name, action in technician.window.menus.actions.items():
         for shortcut in action.shortcuts():
-            assert shortcut.toString() in keys | numbered | {"?"}, name
+            assert shortcut.toString() in keys | numbered, name
+
+
+def test_f1_opens_the_manual_at_the_page_of_the_step(technician: Technician) -> None:
+    t = technician
+    t.activate()
+    press(t, Qt.Key.Key_F1)
+    pages = t.window.manual.pages
+    assert t.window.manual.isVisible()
+    assert pages.source().fileName() == f"{next((s.manual for s in STEPS if s.name == t.window.current), 'index')}.md"
+    t.window.manual.close()

@@ -10,8 +10,9 @@ from pathlib import Path
 import pytest
 
 from core.files.pictures import read_picture
-from core.files.project import new_project, read_project
-from core.files.set_listing import scan_frames
+from core.files.project.data import new_project
+from core.files.project.folder import read_project
+from core.files.recording.set_listing import scan_frames
 from tests.workbench.technician import Technician
 
 SCENE = "scale = 0.2\nseed = 3\n"
@@ -90,7 +91,7 @@ def test_the_process_of_a_recording_killed_loses_nothing_that_was_recorded(
     live_scan(t, tmp_path / "project", "Simulated rig", str(scene))
     live = t.presenter().live
     count = live.recorded
-    os.kill(t.bench.live._process.pid, signal.SIGKILL)
+    os.kill(t.bench.live.pid, signal.SIGKILL)
     t.until(lambda: not live.running, "the end to be noticed")
     (said,) = t.errors()
     assert "ended unexpectedly" in said
@@ -110,15 +111,15 @@ def test_closing_while_scanning_asks_and_leaving_keeps_what_is_recorded(technici
     live_scan(t, folder, "Simulated rig", str(scene))
     live = t.presenter().live
     with t.answers("Stay") as asked:
-        t.window.close()
+        t.window.leave()
     assert asked == ["A recording is running. What is recorded is kept. Stop it and leave?"]
     assert t.window.isVisible()
     assert live.running
     before = live.recorded
     recorded(t, before + 3)
     with t.answers("Stop and leave"):
-        t.window.close()
-    assert not t.window.isVisible()
+        t.window.leave()
+    t.until(lambda: not t.window.isVisible(), "the recording to end, and the window to close")
     assert not live.running
     saved = read_project(folder).project
     assert saved.sources.scan.startswith("recordings/scan-")
@@ -131,17 +132,17 @@ def test_closing_while_measuring_asks_and_leaving_keeps_the_result_before(
     technician: Technician, measured_project: Path
 ) -> None:
     t = technician
-    t.window.doors.open_project(measured_project)
+    t.window.projects.open_project(measured_project)
     t.window.go_to("scan")
     t.idle()
     before = read_project(measured_project).results["scan"]
     t.press("Measure again")
     t.until(lambda: t.presenter().stage == "measuring", "the measurement to begin")
     with t.answers("Stay"):
-        t.window.close()
+        t.window.leave()
     assert t.bench.measuring.busy
     with t.answers("Stop and leave"):
-        t.window.close()
+        t.window.leave()
     assert not t.window.isVisible()
     assert read_project(measured_project).results["scan"] == before
     assert (measured_project / "results" / "cloud.ply").exists()

@@ -9,11 +9,10 @@ import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QApplication
 
-from core.files.project import new_project
+from core.files.project.data import new_project
 from tests.workbench.technician import Technician
 from workbench.step_state import ORDER
-from workbench.style_sheet import is_polishing
-from workbench.theme import is_dark
+from workbench.theme import is_dark, is_polishing
 
 MISSING = {
     "project": "Give the project a name first.",
@@ -48,7 +47,7 @@ def test_a_finished_project_lacks_nothing_on_any_page(
     technician: Technician, measured_project: Path, page: str
 ) -> None:
     t = technician
-    t.window.doors.open_project(measured_project)
+    t.window.projects.open_project(measured_project)
     t.window.go_to(page)
     t.idle()
     assert t.presenter().blocker() == ""
@@ -77,7 +76,7 @@ def test_the_theme_is_switched_on_every_page(technician: Technician, measured_pr
     t.activate()
     t.shortcut(Qt.Key.Key_T)
     assert is_dark()
-    t.window.doors.open_project(measured_project)
+    t.window.projects.open_project(measured_project)
     for page in ORDER:
         t.window.go_to(page)
         t.idle()
@@ -91,28 +90,27 @@ def test_the_theme_is_switched_on_every_page(technician: Technician, measured_pr
             assert shown.pixelColor(t.window.width() - 3, t.window.height() // 2).lightness() == pytest.approx(
                 ground.lightness(), abs=40
             ), f"{page} is not dressed"
-    t.until(lambda: not is_polishing(QApplication.instance()), "what is out of sight to have the new colours")
+    app = QApplication.instance()
+    assert isinstance(app, QApplication)
+    t.until(lambda: not is_polishing(app), "what is out of sight to have the new colours")
     assert t.errors() == []
 
 
-def test_without_opengl_pictures_are_shown_with_one_notice(
+def test_where_there_is_no_3d_one_notice_tells_of_it(
     technician: Technician, measured_project: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from workbench.views import scene_view_choice as choice
+    from workbench.views.scene.ready import readiness
 
-    monkeypatch.setattr(choice._Choice, "kind", "painter")
-    monkeypatch.setattr(choice._Choice, "opengl", False)
-    monkeypatch.setattr(choice._Choice, "told", frozenset())
+    monkeypatch.setenv("TRISECT_NO_OPENGL", "none")
+    monkeypatch.setattr(readiness(), "notified", frozenset())
     t = technician
-    t.window.doors.open_project(measured_project)
+    t.window.projects.open_project(measured_project)
     for page in ("scan", "inspect"):
         t.window.go_to(page)
         t.idle()
         scenes = [scene for scene in t.scenes() if scene.isVisible()]
-        t.until(lambda scenes=scenes: all(scene.state()["complete"] for scene in scenes), "the scene to be drawn")
-        assert scenes
-        assert {scene.state()["kind"] for scene in scenes} == {"painter"}
-    said = [notice.text for notice in t.bench.notices.all if "OpenGL" in notice.text]
+        assert scenes and {scene.state().kind for scene in scenes} == {"none"}
+    said = [notice.text for notice in t.bench.notices.all if "3D" in notice.text]
     assert len(said) == 1
     QApplication.processEvents()
 
@@ -140,5 +138,5 @@ def test_leaving_with_everything_undone_leaves_nothing_to_recover(technician: Te
     t.model.autosave()
     t.shortcut(Qt.Key.Key_Z)
     assert not t.model.is_modified
-    assert t.window.close()
+    assert t.window.leave()
     assert not (folder / ".autosave.json").exists()

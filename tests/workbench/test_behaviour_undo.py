@@ -62,7 +62,7 @@ def choose_another_folder(t: Technician) -> None:
 
 def draw_regions(t: Technician) -> None:
     faces = t.presenter().faces
-    t.until(lambda: faces.region("upper") is not None or t.presenter().view is not None, "the scan to be read")
+    t.until(lambda: faces.region("upper") is not None or t.presenter().scan.view is not None, "the scan to be read")
     square = np.array([[0.0, 0.0], [60.0, 0.0], [60.0, 60.0], [0.0, 60.0]])
     faces.set_region("upper", square + 200)
 
@@ -115,7 +115,7 @@ def test_an_edit_is_undone_and_redone_from_the_menu_and_results_follow(
     outdated: tuple[str, ...],
 ) -> None:
     t = technician
-    t.window.doors.open_project(measured_project)
+    t.window.projects.open_project(measured_project)
     t.window.go_to(page)
     t.idle()
     t.activate()
@@ -155,7 +155,7 @@ def test_accepting_another_calibration_is_an_edit_and_what_rested_on_the_last_on
     technician: Technician, measured_project: Path
 ) -> None:
     t = technician
-    t.window.doors.open_project(measured_project)
+    t.window.projects.open_project(measured_project)
     t.window.go_to("camera")
     t.idle()
     first = t.model.project.accepted.camera
@@ -178,11 +178,11 @@ def test_accepting_another_calibration_is_an_edit_and_what_rested_on_the_last_on
 
 def test_a_new_project_has_nothing_to_undo(technician: Technician, measured_project: Path) -> None:
     t = technician
-    t.window.doors.open_project(measured_project)
+    t.window.projects.open_project(measured_project)
     t.type_in(t.field("Part"), "Another")
-    t.window.doors.close_project()
+    t.window.projects.close_project()
     for name in ("undo", "redo", "save", "next"):
         assert not t.window.menus.actions[name].isEnabled(), name
-    t.window.doors.open_project(measured_project)
+    t.window.projects.open_project(measured_project)
     assert t.model.project.info.part == "Another"
     assert not t.window.menus.actions["undo"].isEnabled()

@@ -8,8 +8,9 @@ from typing import Any
 import pytest
 
 from core.errors import InputError
-from core.files.project import Project, new_project, read_project, recoverable
-from core.files.project_keys import finished
+from core.files.project.data import Project, new_project
+from core.files.project.folder import read_project, recoverable
+from core.files.project.keys import finished
 from workbench.project_model import ProjectModel
 from workbench.step_state import State, step_states
 
@@ -61,9 +62,9 @@ def test_results_are_facts_and_survive_an_undo(model: ProjectModel) -> None:
 def test_saving_keeps_project_and_results(model: ProjectModel) -> None:
     model.edit("rename", renamed(model.project, "Other"))
     model.record("camera", finished("camera", model.project, model.results))
-    assert model.is_modified
+    before = model.is_modified
     model.save()
-    assert not model.is_modified
+    assert (before, model.is_modified) == (True, False)
     assert model.folder is not None
     stored = read_project(model.folder)
     assert stored.project == model.project

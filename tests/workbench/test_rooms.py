@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 import workbench
-from workbench import jobs
+from workbench.work import jobs
 
 ROOT = Path(workbench.__file__).parent
 STEPS = ("project", "camera", "planes", "scan", "inspect", "report")
@@ -37,15 +37,15 @@ def imported(path: Path) -> Iterator[str]:
 @pytest.mark.parametrize("path", modules(), ids=lambda path: path.relative_to(ROOT).as_posix())
 def test_a_module_touches_only_what_its_room_may(path: Path) -> None:
     names, room = set(imported(path)), path.relative_to(ROOT).as_posix()
-    if not room.startswith("views/scene_view"):
+    if not room.startswith("views/scene/"):
         assert not [n for n in names if n.split(".")[0] in ("pyvista", "pyvistaqt", "vtk", "vtkmodules")]
-    if path.stem.endswith("_presenter") or path.stem in ("presenter", "bench", "project_model", "tasks", "step_state"):
+    if path.stem in ("presenter", "bench", "project_model", "tasks", "step_state"):
         assert not [n for n in names if n.startswith(("PySide6.QtWidgets", "workbench.views"))], "no widgets here"
-    if not room.startswith("views/scene_view"):  # what the mouse meant is decided in screen pixels there
+    if not room.startswith("views/scene/"):  # what the mouse meant is decided in screen pixels there
         assert not [n for n in names if n.startswith(NUMBERS)], "numbers are made in core"
     if room.startswith("pages/"):
-        mine = next((step for step in STEPS if path.stem.startswith(step)), None)
-        others = tuple(f"workbench.pages.{step}_" for step in STEPS if step != mine)
+        mine = next((step for step in STEPS if path.parent.name == step), None)
+        others = tuple(f"workbench.pages.{step}." for step in STEPS if step != mine)
         assert mine is None or not [n for n in names if n.startswith(others)], "pages never import each other"
 
 

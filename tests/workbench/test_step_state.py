@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import pytest
 
-from core.files.project import Done, Project, new_project
-from core.files.project_keys import finished
-from core.files.rig import GaugeSpec
+from core.files.project.data import Done, Project, new_project
+from core.files.project.keys import finished
+from core.files.recording.rig import GaugeSpec
 from workbench.step_state import ORDER, State, step_states
 
 STEPS = ORDER[1:]

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import json
+from functools import partial
 from pathlib import Path
 
 import pytest
 
-from core.files.ply import read_cloud
-from core.pipeline import run
-from core.pipeline.options import Options
-from core.pipeline.workspace import FILES
+from core.files.recording.options import Options
+from core.files.results.ply import read_cloud
+from core.pipeline.steps.run import run
+from core.pipeline.steps.workspace import FILES
 from tests.workbench.technician import Technician
 from tests.workbench.watchdog import Watchdog, slowness, too_long
 
@@ -49,12 +50,15 @@ def do_the_whole_job(t: Technician, recordings: Path, exports: Path) -> Path:
     assert len(t.model.project.repeats) == 1
     t.next()
 
+    def written(file: Path) -> bool:
+        return file.exists() and not t.bench.measuring.busy
+
     t.press("Make the report")
     t.until(lambda: "report" in t.model.results, "the report", 60)
     for name, button in (("report.pdf", "Report (PDF)"), ("cloud.ply", "Points (PLY)")):
         t.will_choose(exports / name)
         t.press(button)
-        t.until(lambda name=name: (exports / name).exists() and not t.bench.measuring.busy, name)
+        t.until(partial(written, exports / name), name)
     return folder
 
 

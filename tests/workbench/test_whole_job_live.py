@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from core.pipeline.workspace import FILES
+from core.pipeline.steps.workspace import FILES
 from tests.workbench.technician import Technician
 
 SCENE = "scale = 0.25\nseed = 3\n"

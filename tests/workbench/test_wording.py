@@ -2,45 +2,35 @@
 
 from __future__ import annotations
 
-import re
-from pathlib import Path
-
 import pytest
 
-import core
-from workbench.wording import in_the_window
-
-ROOM = Path(core.__file__).parent
-COMMAND_LINE = re.compile(r"trisect \w+ SET|--out")
+from core.errors import InputError
+from core.files.atomic import ANOTHER_OUT
+from core.messages import Command, Field, Message
+from workbench.language import text_of
 
 
 @pytest.mark.parametrize(
-    ("said", "plainer"),
+    ("key", "said"),
     [
-        (
-            "planes: only 2 of the 3 promised fan lines were seen; check laser_fan.lines in rig.toml, and that every "
-            "line falls on the target in several poses.",
-            "planes: only 2 of the 3 promised fan lines were seen; check the number of lines under Laser, and that "
-            "every line falls on the target in several poses.",
-        ),
-        ("show more, and check its columns, rows and dictionary in rig.toml", "check its columns, rows and markers"),
-        ("check the camera's calibration and the target's size in rig.toml", "and the target's size"),
-        ("cloud.ply: the file is missing; measure the scan first: trisect scan SET --out DIR.", "the scan first."),
-        ("x: cannot be written, because the disk is full; choose another folder with --out.", "open it there."),
-        ("x: damaged; check rig.toml.", "x: damaged; check rig.toml."),
+        ("[camera_target]", "check the target"),
+        ("laser_fan.lines", "check the number of lines under Laser"),
+        ("target.circles", "check columns and rows of the target"),
+        ("target.inner_corners", "check columns and rows of the target"),
+        ("target.dictionary", "check markers of the target"),
     ],
 )
-def test_the_command_lines_words_are_replaced(said: str, plainer: str) -> None:
-    assert in_the_window(said).endswith(plainer)
+def test_a_field_of_a_file_is_called_as_in_the_window(key: str, said: str) -> None:
+    assert text_of(Message("test.field", "check {field}", field=Field(key))) == said
 
 
-def test_no_advice_in_core_keeps_an_option_of_the_command_line() -> None:
-    advice = re.compile(r'(?<!")"([^"]*(?:--out|SET --)[^"]*)"(?!")')
-    found = [
-        text
-        for path in ROOM.rglob("*.py")
-        if path.relative_to(ROOM).parts[0] not in ("cli.py", "cli")
-        for text in advice.findall(path.read_text(encoding="utf-8"))
-    ]
-    assert found
-    assert not [text for text in found if COMMAND_LINE.search(in_the_window(text))]
+def test_a_command_is_not_told() -> None:
+    todo = Message("test.scan", "measure the scan first{command}", command=Command("trisect scan SET --out DIR"))
+    missing = InputError(Message("test.missing", "the file is missing"), where="cloud.ply", todo=todo)
+    assert text_of(missing) == "cloud.ply: the file is missing; measure the scan first."
+
+
+def test_advice_of_an_option_is_advice_of_the_windows_own() -> None:
+    full = InputError(Message("test.full", "cannot be written"), where="x", todo=ANOTHER_OUT)
+    assert text_of(full).endswith("copy the project to another disk and open it there.")
+    assert str(full).endswith("choose another folder with --out.")

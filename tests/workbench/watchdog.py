@@ -141,7 +141,7 @@ def too_long(dog: Watchdog, slower: float) -> list[str]:
     return [
         str(absence)
         for absence in dog.longer_than(LIMIT_MS * slower)
-        if not any("scene_view" in line for line in absence.where) or absence.busy_ms > SCENE_LIMIT_MS * slower
+        if not any("views/scene" in line for line in absence.where) or absence.busy_ms > SCENE_LIMIT_MS * slower
     ]
 
 

@@ -6,13 +6,13 @@ from functools import cache
 import numpy as np
 import pytest
 
-from core.calibrate.camera import calibrate_camera
-from core.calibrate.camera_covariance import principal_deviations
-from core.calibrate.camera_options import CameraOptions
-from core.calibrate.reprojection import linearise, moved, parameters_of
+from core.calibrate.camera.adjustment import CameraOptions
+from core.calibrate.camera.calibration import calibrate_camera
+from core.calibrate.camera.covariance import principal_deviations
+from core.calibrate.camera.reprojection import linearise, moved, parameters_of
 from core.calibrate.results import CAMERA_PARAMETERS, LEFT_OUT, CameraCalibration
 from core.errors import Cancelled, InputError
-from core.image.target_view import TargetView
+from core.image.targets.target_view import TargetView
 from core.model import Camera, Pose
 from tests.calibrate.camera_views import TRUTH, board, changed, random_pose, synthetic_views
 
@@ -21,7 +21,7 @@ SIZE = TRUTH.image_size
 
 @cache
 def calibrated(seed: int, bend_px: float = 0.0) -> CameraCalibration:
-    return calibrate_camera(synthetic_views(seed, bend_px=bend_px), SIZE)
+    return calibrate_camera(synthetic_views(seed, bend_px=bend_px), SIZE, CameraOptions(skew=True))
 
 
 def errors_in_sd(calibration: CameraCalibration) -> np.ndarray:
@@ -83,9 +83,9 @@ def test_standard_deviations_are_honest_over_twenty_seeds():
 def test_standard_deviations_stay_honest_when_corners_of_a_view_err_together():
     bent = [calibrated(seed, bend_px=0.03) for seed in range(12)]
     assert 0.6 < np.mean([normalised_square(calibration) for calibration in bent]) < 1.8
-    assert all(any("err together" in note for note in calibration.notes) for calibration in bent)
+    assert all(any("err together" in str(note) for note in calibration.notes) for calibration in bent)
     plain = [calibrated(seed) for seed in range(20)]
-    assert sum(any("err " in note for note in calibration.notes) for calibration in plain) <= 1
+    assert sum(any("err " in str(note) for note in calibration.notes) for calibration in plain) <= 1
 
 
 def test_standard_deviations_stay_honest_when_the_target_is_printed_wrong():
@@ -98,16 +98,16 @@ def test_standard_deviations_stay_honest_when_the_target_is_printed_wrong():
         for quality in calibrated(seed).views:
             uv = TRUTH.project_pose(quality.pose, printed) + rng.normal(0, 0.03, quality.view.uv.shape)
             views.append(changed(quality.view, uv))
-        calibration = calibrate_camera(views, SIZE)
+        calibration = calibrate_camera(views, SIZE, CameraOptions(skew=True))
         squares.append(normalised_square(calibration))
-        assert any("alike in every view" in note for note in calibration.notes)
+        assert any("alike in every view" in str(note) for note in calibration.notes)
     assert 0.4 < np.mean(squares) < 2
 
 
 def test_the_stated_sigma_of_the_corners_does_not_change_the_standard_deviations():
     views = synthetic_views(1)
     louder = [TargetView(view.points, view.uv, 10 * view.sigma, view.name) for view in views]
-    assert calibrate_camera(louder, SIZE).sd == pytest.approx(calibrated(1).sd, rel=1e-6)
+    assert calibrate_camera(louder, SIZE, CameraOptions(skew=True)).sd == pytest.approx(calibrated(1).sd, rel=1e-6)
 
 
 def test_noisy_corners_that_say_so_count_for_less():
@@ -196,8 +196,8 @@ def test_a_bad_view_is_left_out_with_its_reason_and_does_no_harm(how, words):
     views[5] = spoilt(views[5], how)
     calibration = calibrate_camera(views, SIZE)
     assert [quality.used for quality in calibration.views] == [i != 5 for i in range(14)]
-    assert words in calibration.views[5].reason
-    assert any(note.startswith("view05.png is left out") for note in calibration.notes)
+    assert words in str(calibration.views[5].reason)
+    assert any(str(note).startswith("view05.png is left out") for note in calibration.notes)
     assert calibration.ranked[-1].view is views[5]
     assert np.abs(errors_in_sd(calibration)).max() < 4
     assert calibration.rms_px < 0.05
@@ -217,10 +217,10 @@ def test_views_left_out_by_hand_change_nothing_but_their_own_residuals_are_known
     assert (good.used, good.reason) == (False, LEFT_OUT)
     assert good.rms_px < 2 * without.rms_px
     assert np.isnan(shuffled.residuals).all()
-    assert shuffled.reason.startswith(LEFT_OUT)
-    assert "pattern" in shuffled.reason
+    assert str(shuffled.reason).startswith(str(LEFT_OUT))
+    assert "pattern" in str(shuffled.reason)
     assert moved_aside.rms_px < 1  # the pose takes up a shift
-    assert with_them.notes[0] == ("3 of 14 views are left out by hand: view02.png, view05.png, view09.png.")
+    assert str(with_them.notes[0]) == ("3 of 14 views are left out by hand: view02.png, view05.png, view09.png.")
 
 
 @pytest.mark.parametrize("outliers", ["gross", "all"])
@@ -267,7 +267,7 @@ def test_views_all_in_parallel_are_refused(noise_px, tilt_deg):
 
 def test_hardly_tilted_views_give_a_wide_deviation_and_a_note():
     calibration = calibrate_camera(synthetic_views(12, max_tilt_deg=6), SIZE)
-    assert any("tilted by at most" in note for note in calibration.notes)
+    assert any("tilted by at most" in str(note) for note in calibration.notes)
     assert np.abs(errors_in_sd(calibration)).max() < 4
     assert calibration.sd["alpha"] > 5 * calibrated(0).sd["alpha"]
 
@@ -275,7 +275,7 @@ def test_hardly_tilted_views_give_a_wide_deviation_and_a_note():
 def test_missing_coverage_and_few_views_are_told():
     views = [view for view in synthetic_views(13, count=40) if view.uv[:, 0].min() > SIZE[0] * 0.34][:6]
     assert len(views) >= 3
-    notes = " ".join(calibrate_camera(views, SIZE).notes)
+    notes = " ".join(map(str, calibrate_camera(views, SIZE).notes))
     assert "no corner in the" in notes
     assert "left" in notes
     assert f"Only {len(views)} views" in notes
@@ -302,11 +302,11 @@ def test_principal_deviations_carry_the_covariance():
     assert np.std(sampled, axis=0)[:2] == pytest.approx(spread[0, :2], rel=0.8)
 
 
-def test_fourteen_views_take_less_than_two_seconds():
+def test_fourteen_views_take_less_than_four_seconds_of_a_processor():
     views = synthetic_views(15)
-    begin = time.perf_counter()
-    calibrate_camera(views, SIZE)
-    assert time.perf_counter() - begin < 2
+    begin = time.process_time()
+    calibrate_camera(views, SIZE)  # with and without skew
+    assert time.process_time() - begin < 4
 
 
 def test_progress_is_told_and_can_cancel():

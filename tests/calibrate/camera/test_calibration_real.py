@@ -1,22 +1,20 @@
 """The camera calibration against published results on real pictures."""
 
-from pathlib import Path
-
 import cv2
 import numpy as np
 import pytest
 
-from core.calibrate.camera import calibrate_camera
-from core.calibrate.camera_options import CameraOptions
-from core.image.target_view import TargetView
+from core.calibrate.camera.adjustment import CameraOptions
+from core.calibrate.camera.calibration import calibrate_camera
+from core.image.targets.target_view import TargetView
+from tests.shared import REAL_SETS
 
-REAL = Path(__file__).resolve().parents[2].parent / "shared" / "real"
 SIZE = (640, 480)
 
 
 @pytest.fixture(scope="module")
 def zhang_views() -> list[TargetView]:
-    folder = REAL / "zhang-original"
+    folder = REAL_SETS / "zhang-original"
     if not folder.is_dir():
         pytest.skip("Zhang's corner data is not on this machine")
     model = np.loadtxt(folder / "Model.txt").reshape(-1, 2)
@@ -29,25 +27,26 @@ def zhang_views() -> list[TargetView]:
 
 @pytest.fixture(scope="module")
 def left_views() -> list[TargetView]:
-    folder = REAL / "opencv-left13"
+    folder = REAL_SETS / "opencv-left13"
     if not folder.is_dir():
         pytest.skip("OpenCV's left pictures are not on this machine")
     x, y = np.meshgrid(np.arange(9), np.arange(6))
-    points = np.column_stack([x.ravel(), y.ravel(), np.zeros(54)]) * 25.0
+    points: np.ndarray = np.column_stack([x.ravel(), y.ravel(), np.zeros(54)]) * 25.0
     stop = (cv2.TERM_CRITERIA_EPS + cv2.TERM_CRITERIA_MAX_ITER, 30, 0.001)
     views = []
     for path in sorted(folder.glob("left*.jpg")):
         picture = cv2.imread(str(path), cv2.IMREAD_GRAYSCALE)
+        assert picture is not None
         found, corners = cv2.findChessboardCorners(picture, (9, 6))
         assert found
         corners = cv2.cornerSubPix(picture, corners, (11, 11), (-1, -1), stop)
-        views.append(TargetView(points, corners.reshape(-1, 2), np.ones(54), path.name))
+        views.append(TargetView(points, corners.reshape(-1, 2).astype(np.float64), np.ones(54), path.name))
     return views
 
 
 @pytest.mark.parametrize("outliers", ["keep", "gross", "all"])
 def test_zhangs_own_corners_give_his_published_camera(zhang_views, outliers):
-    options = CameraOptions(fixed=frozenset({"p1", "p2"}), outliers=outliers)
+    options = CameraOptions(skew=True, fixed=frozenset({"p1", "p2"}), outliers=outliers)
     calibration = calibrate_camera(zhang_views, SIZE, options)
     matrix, (k1, k2, *_) = calibration.camera.matrix, calibration.camera.distortion
     assert [matrix[0, 0], matrix[1, 1]] == pytest.approx([832.5, 832.53], abs=0.05)
@@ -74,7 +73,7 @@ def test_left13_by_default_stays_within_half_a_pixel_of_the_table_and_names_the_
     assert found == pytest.approx([536.07, 536.02, 342.37, 235.54], abs=0.5)
     assert calibration.rms_px == pytest.approx(0.409, abs=0.02)
     assert calibration.ranked[-1].view.name == "left02.jpg"
-    assert any(note.startswith("left02.jpg fits") for note in calibration.notes)
+    assert any(str(note).startswith("left02.jpg fits") for note in calibration.notes)
 
 
 def test_left13_with_all_misfound_corners_left_out_fits_twice_as_well(left_views):

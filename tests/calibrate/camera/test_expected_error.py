@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 from scipy.spatial import Delaunay
 
-from core.calibrate.bundle import Bundle, Observed, refine, residuals
-from core.calibrate.camera import calibrate_camera
-from core.calibrate.camera_options import CameraOptions
-from core.calibrate.expected_error import expected_error, residual_field
-from core.calibrate.reprojection import camera_of, parameters_of
+from core.calibrate.camera.adjustment import CameraOptions
+from core.calibrate.camera.bundle import Bundle, Observed, refine, residuals
+from core.calibrate.camera.calibration import calibrate_camera
+from core.calibrate.camera.expected_error import expected_error, residual_field
+from core.calibrate.camera.reprojection import camera_of, parameters_of
+from core.calibrate.results import LEFT_OUT
 from core.model import Pose
 from tests.calibrate.camera_views import TRUTH, synthetic_views
 
@@ -105,7 +106,7 @@ def test_a_shift_of_the_centre_is_for_the_most_part_a_turn_of_the_frame(calibrat
 
 def test_residuals_are_those_of_the_corners_that_count_in_used_views(calibration):
     views = list(calibration.views)
-    views[2] = replace(views[2], used=False, reason="left out by hand")
+    views[2] = replace(views[2], used=False, reason=LEFT_OUT)
     keep = views[5].counted.copy()
     keep[:7] = False
     views[5] = replace(views[5], counted=keep)

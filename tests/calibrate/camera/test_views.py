@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from core.calibrate.camera import calibrate_camera
-from core.calibrate.camera_changes import camera_changes
+from core.calibrate.camera.calibration import calibrate_camera
+from core.calibrate.camera.changes import camera_changes
+from core.calibrate.camera.views import SeenView, SeenViews, judge_views, seen_again
 from core.calibrate.results import CAMERA_PARAMETERS
-from core.calibrate.seen_views import SeenView, SeenViews, seen_again
-from core.calibrate.views_judgement import judge_views
-from core.image.target_view import TargetView
+from core.image.targets.target_view import TargetView
+from core.messages import plain
 from tests.calibrate.camera_views import TRUTH, synthetic_views
 
 
@@ -28,9 +28,9 @@ def test_the_views_of_a_calibration_can_be_solved_again_without_their_pictures(c
 
 def test_a_lost_view_stays_lost_when_seen_again(calibration):
     nothing = TargetView(np.zeros((0, 3)), np.zeros((0, 2)), np.zeros(0), "camera/empty.png")
-    lost = replace(calibration.views[0], view=nothing, used=False, reason="no board")
+    lost = replace(calibration.views[0], view=nothing, used=False, reason=plain("no board"))
     seen = seen_again(replace(calibration, views=(*calibration.views, lost)), "somewhere")
-    assert [(one.name, one.reason) for one in seen.lost] == [("camera/empty.png", "no board")]
+    assert [(one.name, str(one.reason)) for one in seen.lost] == [("camera/empty.png", "no board")]
 
 
 def test_views_are_judged_with_and_without_a_calibration(calibration):
@@ -48,11 +48,11 @@ def test_views_left_out_cover_nothing(calibration):
     seen = seen_again(calibration, "somewhere")
     judged = judge_views(seen, {view.name for view in seen.found})
     assert not judged.cells.any()
-    assert "there is none" in judged.missing[0]
+    assert "there is none" in str(judged.missing[0])
 
 
 def test_no_readable_picture_is_judged_too():
-    judged = judge_views(SeenViews((SeenView("camera/a.png", reason="damaged"),), "somewhere"))
+    judged = judge_views(SeenViews((SeenView("camera/a.png", reason=plain("damaged")),), "somewhere"))
     assert not judged.cells.any()
 
 

@@ -5,6 +5,8 @@ import pytest
 
 from core.inspect.characteristic import Characteristic, Limits
 from core.inspect.results import Contribution
+from core.inspect.uncertainty.causes import cause_named
+from core.messages import plain
 from tests.report.report_samples import block_content
 
 INF = math.inf
@@ -14,12 +16,12 @@ INF = math.inf
 def content():
     """An inspection with a characteristic of every sort: of a length, a form, an angle, one-sided, not known."""
     budget = (
-        Contribution("centreline noise of the sweeps' points", 0.004, 0.02),
-        Contribution("temperature of the part", 0.003, 0.5, "rectangular", 8.0, 20.4, "°C"),
+        Contribution(cause_named("centreline noise of the sweeps' points"), 0.004, 0.02),
+        Contribution(cause_named("temperature of the part"), 0.003, 0.5, "rectangular", 8.0, 20.4, "°C"),
     )
     rows = (
         Characteristic("thickness", "thickness", 50.0123, 0.005, limits=Limits(50, -0.2, 0.2), budget=budget,
-                       rule="distance of two parallel planes"),
+                       rule=plain("distance of two parallel planes")),
         Characteristic("Ebenheit größer", "flatness", 0.031, 0.004, limits=Limits(0, -INF, 0.05)),
         Characteristic("flatness, free", "flatness", 0.031, 0.004),
         Characteristic("top to side", "angle", math.radians(89.95), math.radians(0.02), "angle", 3.0,

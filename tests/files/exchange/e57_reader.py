@@ -63,8 +63,8 @@ def points_of(path):
     fields = [(etree.QName(one).localname, TYPES[one.get("precision", "double")]) for one in node.find("{*}prototype")]
     assert {one.get("type") for one in node.find("{*}prototype")} == {"Float"}
     start = logical(int(node.get("fileOffset")))
-    section, length, first = content[start], *struct.unpack_from("<QQ", content, start + 8)
-    assert section == SECTION
+    assert content[start] == SECTION
+    length, first = struct.unpack_from("<QQ", content, start + 8)
     at, streams = logical(first), {name: b"" for name, _ in fields}
     while at < start + length:
         kind, size, count = content[at], struct.unpack_from("<H", content, at + 2)[0] + 1, 0

@@ -5,10 +5,10 @@ import math
 import pytest
 
 from core.errors import InputError
-from core.files.inspection_plan_file import read_plan, write_plan
+from core.files.plan.plan_file import read_plan, write_plan
 from core.inspect.characteristic import Limits
-from core.inspect.conditions import Master, Temperature
-from core.inspect.feature_spec import (
+from core.inspect.plan.conditions import Master, Temperature
+from core.inspect.plan.feature_spec import (
     Auto,
     Cut,
     Deviation,
@@ -20,7 +20,8 @@ from core.inspect.feature_spec import (
     Polygon,
     Section,
 )
-from core.inspect.inspection_plan import InspectionPlan, PartFrame
+from core.inspect.plan.inspection_plan import InspectionPlan, PartFrame
+from core.inspect.uncertainty.causes import CAMERA
 
 SQUARE = Polygon(((800.0, 500.0), (1100.5, 500.0), (950.0, 800.0)))
 EVERYTHING = InspectionPlan(
@@ -49,7 +50,7 @@ EVERYTHING = InspectionPlan(
     ),
     frame=PartFrame("top", "side", "ball"),
     temperature=Temperature(22.0, 0.5, 11.5e-6, 1e-6),
-    master=Master("M50", 50.0001, 0.0001, 50.02, (("camera calibration", 0.01),), ("block",)),
+    master=Master("M50", 50.0001, 0.0001, 50.02, ((CAMERA, 0.01),), ("block",)),
     k=2.5,
 )
 

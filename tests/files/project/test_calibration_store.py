@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from core.calibrate.plane_pose import PoseFeatures
+from core.calibrate.fan.pose_features import PoseFeatures
 from core.errors import InputError
-from core.files.calibration_store import (
+from core.files.project.calibration_store import (
     history,
     keep_camera,
     keep_fan,
@@ -20,17 +20,18 @@ from core.files.calibration_store import (
     read_stored_fan,
     read_stored_poses,
 )
-from core.files.camera_file import camera_id, read_camera, write_camera
-from core.files.fan_file import fan_id, read_fan, write_fan
-from core.files.options import Options
-from core.files.poses_file import read_poses
-from core.files.project import Accepted
-from core.image.target_view import TargetView
+from core.files.project.data import Accepted
+from core.files.recording.features_file import read_poses
+from core.files.recording.options import Options
+from core.files.results.camera_file import camera_id, read_camera, write_camera
+from core.files.results.fan_file import fan_id, read_fan, write_fan
+from core.image.targets.target_view import TargetView
+from core.messages import plain
 from core.model import Camera, Fan, LightPlane
 
 POSES = (
     PoseFeatures("p1", TargetView(np.eye(3), np.ones((3, 2)), np.ones(3), "p1"), ()),
-    PoseFeatures("p2", None, (), "there is no target"),
+    PoseFeatures("p2", None, (), plain("there is no target")),
 )
 
 
@@ -62,7 +63,7 @@ def test_a_kept_fan_comes_back_by_its_id_with_its_poses(tmp_path, camera, fan):
     assert kept == fan_id(fan.fan)
     assert fan_id(read_stored_fan(tmp_path, kept, camera.camera).fan) == kept
     back = read_stored_poses(tmp_path, kept)
-    assert [(pose.name, pose.reason) for pose in back] == [("p1", ""), ("p2", "there is no target")]
+    assert [(pose.name, pose.reason) for pose in back] == [("p1", None), ("p2", plain("there is no target"))]
     assert np.array_equal(back[0].view.points, np.eye(3))
     write_fan(tmp_path / "planes.json", fan, camera.camera)
     assert (tmp_path / "calibrations" / f"planes-{kept}.json").read_bytes() == (tmp_path / "planes.json").read_bytes()

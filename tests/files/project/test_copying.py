@@ -3,8 +3,9 @@
 import pytest
 
 from core.errors import Cancelled, InputError
-from core.files.project import ProjectFile, new_project, read_project, write_autosave, write_project
-from core.files.project_copy import copy_project
+from core.files.project.copying import copy_project
+from core.files.project.data import ProjectFile, new_project
+from core.files.project.folder import read_project, write_autosave, write_project
 
 
 @pytest.fixture

@@ -12,14 +12,10 @@ from pathlib import Path
 import pytest
 
 from core.errors import InputError
-from core.files.project import (
-    Done,
-    ProjectFile,
-    ProjectInfo,
-    Sources,
+from core.files.project.data import Done, ProjectFile, ProjectInfo, Sources, new_project
+from core.files.project.folder import (
     backups,
     is_project,
-    new_project,
     project_from_set,
     read_autosave,
     read_project,
@@ -31,7 +27,7 @@ from core.files.project import (
     write_autosave,
     write_project,
 )
-from core.files.rig import read_rig
+from core.files.recording.rig import read_rig
 
 RIG = """
 [camera_target]
@@ -134,7 +130,8 @@ def test_a_damaged_project_is_kept_too_when_it_is_written_over(tmp_path):
 KILLED = """
 import os, signal
 from pathlib import Path
-from core.files.project import *
+from core.files.project.folder import *
+from core.files.project.data import *
 
 before = Path.replace
 
@@ -195,7 +192,7 @@ def test_a_failed_save_does_not_push_versions_out(tmp_path, monkeypatch):
     for number in range(3):
         write_project(tmp_path, named(str(number)))
     with monkeypatch.context() as patch:
-        patch.setattr("core.files.project_folder.write_text", failing(errno.ENOSPC))
+        patch.setattr("core.files.project.folder.write_text", failing(errno.ENOSPC))
         for _ in range(6):
             with pytest.raises(InputError, match="the disk is full"):
                 write_project(tmp_path, named("new"))

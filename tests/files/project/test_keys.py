@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from core.files.project_data import Accepted, KeptStudy, Repeat, ReportChoices, Sources, new_project
-from core.files.project_keys import STEPS, changed, finished, rests_on
-from core.files.rig import GaugeSpec
+from core.files.project.data import Accepted, KeptStudy, Repeat, ReportChoices, Sources, new_project
+from core.files.project.keys import STEPS, changed, finished, rests_on
+from core.files.recording.rig import GaugeSpec
 from core.image.targets import Checkerboard
-from core.inspect.feature_spec import FeatureSpec
-from core.inspect.inspection_plan import InspectionPlan
+from core.inspect.plan.feature_spec import FeatureSpec
+from core.inspect.plan.inspection_plan import InspectionPlan
 
 START = replace(
     new_project("block"),

@@ -8,11 +8,10 @@ import numpy as np
 import pytest
 
 from core.calibrate.board_shape import BoardTolerance
-from core.calibrate.camera_options import CameraOptions
+from core.calibrate.camera.adjustment import CameraOptions
 from core.errors import InputError
-from core.files import project_json
-from core.files.options import Options
-from core.files.project import (
+from core.files.project import json_form as project_json
+from core.files.project.data import (
     Accepted,
     Done,
     KeptStudy,
@@ -23,17 +22,18 @@ from core.files.project import (
     ReportChoices,
     Sources,
     new_project,
-    read_project,
-    write_project,
 )
-from core.files.project_json import SCHEMA, project_text
-from core.files.rig import GaugeSpec, Rig, default_rig, read_rig, rig_to_toml
-from core.image.stripe import StripeSettings
+from core.files.project.folder import read_project, write_project
+from core.files.project.json_form import SCHEMA, project_text
+from core.files.recording.options import Options
+from core.files.recording.rig import GaugeSpec, Rig, default_rig, read_rig, rig_to_toml
+from core.image.stripes.stripe import StripeSettings
 from core.image.targets import Charuco, CircleGrid
 from core.inspect.characteristic import Limits
-from core.inspect.conditions import Master, Temperature
-from core.inspect.feature_spec import FeatureSpec, Filters, Polygon
-from core.inspect.inspection_plan import InspectionPlan, PartFrame
+from core.inspect.plan.conditions import Master, Temperature
+from core.inspect.plan.feature_spec import FeatureSpec, Filters, Polygon
+from core.inspect.plan.inspection_plan import InspectionPlan, PartFrame
+from core.messages import plain
 
 AT = datetime(2026, 1, 31, 12, 30, 15, 250_000, timezone(timedelta(hours=2)))
 POLYGON = np.array([[0, 0], [10.5, 0], [10, 1 / 3]])
@@ -48,7 +48,8 @@ def full_project():
             "green", BoardTolerance(0.1, 2e-4), BoardTolerance(0.05, 3e-4)),
         Sources("/data/set/camera", "recordings/planes-1", "C:/pictures/scan"),
         Options("three-crossings", 0.3, CameraOptions(False, frozenset({"p1", "k2"}), True, "all"), "my part",
-                StripeSettings(8.5, 120), frozenset({"camera/b.png", "planes/pose02", "scan/ä ö.png"}), False, True),
+                StripeSettings(8.5, 120), frozenset({"camera/b.png", "planes/pose02", "scan/ä ö.png"}), False, True,
+                StripeSettings(12.5, 90), True),
         Accepted("0123456789ab", "ba9876543210"),
         frozenset({"deadbeef0123", "0123456789cd"}),
         (REPEAT, replace(REPEAT, thickness_mm=50.001)),
@@ -68,7 +69,7 @@ def full_plan():
         limits=(("diameter", Limits(50.0, -0.05, 0.1)),),
     )
     hot = Temperature(22.5, 0.3, 11.5e-6, 1e-6, 21.0, 0.2, 9e-6, 5e-7)
-    master = Master("ring", 49.999, 0.0002, 50.004, (("noise", 0.003),), ("ball Ø",), False)
+    master = Master("ring", 49.999, 0.0002, 50.004, ((plain("noise"), 0.003),), ("ball Ø",), False)
     return InspectionPlan((ball,), PartFrame("ball Ø", "table", "side"), hot, master, 3.0)
 
 
@@ -110,8 +111,10 @@ def swapped(to, source, path):
     return replace(to, **{name: swapped(getattr(to, name), inner, rest) if rest else inner})
 
 
-WHOLE = {("rig", "gauge"), ("options", "stripe")} | {("inspection", of) for of in ("frame", "temperature", "master")}
-"""What a new project has none of."""
+WHOLE = {("rig", "gauge"), ("rig", "unstated"), ("options", "stripe"), ("options", "plane_stripe")} | {
+    ("inspection", of) for of in ("frame", "temperature", "master")
+}
+"""What a new project has none of; a project states all of its rig."""
 ONE_BY_ONE = [path for path in leaves(full_project()) if path[:2] not in WHOLE]
 
 

@@ -4,7 +4,7 @@ import pytest
 from PIL import Image
 
 from core.errors import InputError
-from core.files.report_template import read_report_template
+from core.files.project.report_template import read_report_template
 from core.report.template import ReportTemplate
 
 WHOLE = """

@@ -4,16 +4,9 @@ import os
 
 import pytest
 
-from core.files.project import (
-    NewerProject,
-    ProjectFile,
-    can_be_saved,
-    new_project,
-    read_project,
-    rescues,
-    write_autosave,
-    write_project,
-)
+from core.files.project.data import ProjectFile, new_project
+from core.files.project.folder import can_be_saved, read_project, rescues, write_autosave, write_project
+from core.files.project.json_form import NewerProject
 
 
 def named(name):

@@ -3,7 +3,7 @@
 import pytest
 
 from core.errors import InputError
-from core.files.add_recording import add_recording
+from core.files.recording.add_recording import add_recording
 
 
 def folder_with(folder, *names):

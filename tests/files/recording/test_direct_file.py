@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from core.errors import InputError
-from core.files import direct_file
-from core.files.direct_file import BLOCK, WORTH_BYTES, DirectWriter
 from core.files.pictures import picture_parts, read_picture
+from core.files.recording import direct_file
+from core.files.recording.direct_file import BLOCK, WORTH_BYTES, DirectWriter
 
 LARGE = WORTH_BYTES + BLOCK + 17
 only_linux = pytest.mark.skipif(not hasattr(os, "O_DIRECT"), reason="this system has no direct writes")

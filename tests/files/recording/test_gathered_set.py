@@ -5,10 +5,17 @@ import numpy as np
 import pytest
 
 from core.errors import InputError
-from core.files.exclusion import excludable, excluded_names
 from core.files.pictures import write_picture
-from core.files.recording_set import gather_set, open_set, require_camera, require_planes, require_scan
-from core.files.rig import default_rig, read_rig, rig_to_toml
+from core.files.recording.recording_set import (
+    excludable,
+    excluded_names,
+    gather_set,
+    open_set,
+    require_camera,
+    require_planes,
+    require_scan,
+)
+from core.files.recording.rig import default_rig, read_rig, rig_to_toml
 
 PARTS = ("camera", "planes", "scan")
 

@@ -1,17 +1,12 @@
 import pytest
 
-from core.calibrate.camera_options import CameraOptions
+from core.calibrate.camera.adjustment import CameraOptions
 from core.errors import InputError
-from core.files.options import METHODS, Options
-from core.pipeline.options import Options as OptionsOfThePipeline
-
-
-def test_the_pipeline_and_the_project_have_the_same_options():
-    assert OptionsOfThePipeline is Options
+from core.files.recording.options import Options
 
 
 def test_usual_options_say_in_run_json_what_they_always_said():
-    assert Options().camera_settings == {"skew": True, "k3": False, "fixed": [], "outliers": "gross"}
+    assert Options().camera_settings == {"skew": None, "k3": False, "fixed": [], "outliers": "gross"}
     assert Options().scan_settings == {"method": "network", "sigma_cut_mm": 0.05, "stripe": "automatic"}
     assert Options().excluded_settings("planes") == {}
 
@@ -31,7 +26,6 @@ def test_options_can_be_compared():
 
 
 def test_absurd_options_are_refused():
-    assert METHODS == ("network", "three-crossings")
     with pytest.raises(InputError, match="method: 'magic' is not network or three-crossings"):
         Options("magic")
     with pytest.raises(InputError, match="sigma-cut: 11 is not above 0 and at most 10 mm"):
@@ -43,6 +37,6 @@ def test_a_project_loads_without_compilers_and_windows():
     import subprocess
     import sys
 
-    program = "import sys, core.files.project; print(*{'numba', 'PySide6', 'matplotlib'} & set(sys.modules))"
+    program = "import sys, core.files.project.folder; print(*{'numba', 'PySide6', 'matplotlib'} & set(sys.modules))"
     said = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert said.stdout.split() == []

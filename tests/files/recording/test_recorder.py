@@ -9,7 +9,7 @@ import pytest
 from core.errors import InputError
 from core.files import atomic
 from core.files.pictures import read_picture, write_picture
-from core.files.recorder import Recorder
+from core.files.recording.recorder import Recorder
 
 
 def noise(seed, dtype=np.uint8):

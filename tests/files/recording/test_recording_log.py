@@ -11,11 +11,11 @@ import pytest
 
 from core.acquire.source import Frame
 from core.errors import InputError
-from core.files import recording_log
 from core.files.pictures import read_picture, write_picture
-from core.files.recorder import Recorder
-from core.files.recording_log import LOG, LoggedFrame, RecordingLog, lost_frames, read_log
-from core.files.set_listing import check_sizes, scan_frames
+from core.files.recording import recording_log
+from core.files.recording.recorder import Recorder
+from core.files.recording.recording_log import LOG, LoggedFrame, RecordingLog, lost_frames, read_log
+from core.files.recording.set_listing import check_sizes, scan_frames
 from tests.files.killed_recorder import picture, size_of
 
 

@@ -6,7 +6,7 @@ import pytest
 
 from core.errors import InputError
 from core.files.pictures import write_picture
-from core.files.recording_set import open_set, require_camera, require_planes, require_scan
+from core.files.recording.recording_set import open_set, require_camera, require_planes, require_scan
 
 RIG = """
 [camera_target]

@@ -6,8 +6,17 @@ import pytest
 
 from core.calibrate.board_shape import BoardTolerance
 from core.errors import InputError
-from core.files.rig import GaugeSpec, Rig, default_rig, read_rig, rig_of, rig_tables, rig_to_toml
-from core.files.rig_tables import RigTables
+from core.files.recording.rig import (
+    GaugeSpec,
+    Rig,
+    RigTables,
+    default_rig,
+    read_rig,
+    require_tables,
+    rig_of,
+    rig_tables,
+    rig_to_toml,
+)
 from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid
 
 GOOD = """
@@ -154,8 +163,6 @@ def test_text_in_another_encoding_is_refused(tmp_path):
             ["gauge.lower_polygon_px is missing"],
         ),
         ("[camera_target]", 'channel = "infrared"\n[camera_target]', ['channel is "infrared"', '"red", "green"']),
-        ("[laser_fan]\nlines = 3\nangle_deg = 5.0", "", ["laser_fan is missing", "a table [laser_fan]"]),
-        ("[laser_fan]\nlines = 3\nangle_deg = 5.0", "", ["laser_fan"]),
     ],
 )
 def test_complaints_name_the_field_and_what_is_allowed(tmp_path, old, new, said):
@@ -177,12 +184,25 @@ def test_a_table_given_as_a_number(tmp_path):
     )
 
 
+def test_each_step_wants_its_own_tables_only(tmp_path):
+    camera_only = GOOD.partition("[plane_target]")[0]
+    rig = read(tmp_path, camera_only)
+    assert rig.unstated == {"plane_target", "laser_fan"}
+    require_tables(rig, tmp_path / "rig.toml", "camera_target")
+    with pytest.raises(InputError, match=r"plane_target is missing; it must be a table \[plane_target\]"):
+        require_tables(rig, tmp_path / "rig.toml", "plane_target", "laser_fan")
+    assert read(tmp_path, rig_to_toml(rig)) == rig
+
+
 def written(tmp_path, rig):
     (tmp_path / "rig.toml").write_text(rig_to_toml(rig), encoding="utf-8")
     return read_rig(tmp_path / "rig.toml")
 
 
-POLYGONS = [[[0.5, 0.0], [10.0, 1 / 3], [10.0, 10.0]], [[20, 0], [30, 0], [30, 10], [20.5, 10]]]
+POLYGONS = (
+    np.array([[0.5, 0.0], [10.0, 1 / 3], [10.0, 10.0]]),
+    np.array([[20, 0], [30, 0], [30, 10], [20.5, 10]]),
+)
 
 
 @pytest.mark.parametrize("target", [

@@ -3,7 +3,7 @@ import pytest
 
 from core.errors import InputError
 from core.files.pictures import write_picture
-from core.files.unfinished import NOTE, Unfinished, forget_recording, note_recording, unfinished_recording
+from core.files.recording.unfinished import NOTE, Unfinished, forget_recording, note_recording, unfinished_recording
 
 GREY = np.full((4, 6), 90, np.uint8)
 

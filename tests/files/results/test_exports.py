@@ -5,9 +5,9 @@ import pytest
 import trimesh
 
 from core.errors import Cancelled, InputError
-from core.files.csv_file import POINT_COLUMNS, write_points_csv
-from core.files.stl import write_stl
-from core.scan.surface import Mesh
+from core.files.results.cloud_csv import POINT_COLUMNS, write_points_csv
+from core.files.results.mesh_export import write_stl
+from core.scan.surface.fused_surface import Mesh
 
 
 @pytest.fixture
@@ -45,7 +45,7 @@ def test_an_empty_mesh_and_a_long_id_are_still_a_file(tmp_path):
 
 
 def test_points_are_read_by_numpy_to_a_nanometre(tmp_path, cloud, monkeypatch):
-    monkeypatch.setattr("core.files.csv_file._ROWS_AT_ONCE", 7)
+    monkeypatch.setattr("core.files.results.cloud_csv._ROWS_AT_ONCE", 7)
     write_points_csv(tmp_path / "cloud.csv", cloud)
     table = np.genfromtxt(tmp_path / "cloud.csv", delimiter=",", names=True)
     assert table.dtype.names == tuple(POINT_COLUMNS)
@@ -64,7 +64,8 @@ def test_points_are_read_by_numpy_to_a_nanometre(tmp_path, cloud, monkeypatch):
 
 def test_every_line_has_the_columns_of_the_head(tmp_path, cloud):
     write_points_csv(tmp_path / "cloud.csv", cloud)
-    rows = list(csv.reader((tmp_path / "cloud.csv").open(newline="")))
+    with (tmp_path / "cloud.csv").open(newline="") as file:
+        rows = list(csv.reader(file))
     assert rows[0][:4] == ["x_mm", "y_mm", "z_mm", "sigma_mm"]
     assert {len(row) for row in rows} == {len(POINT_COLUMNS)}
     write_points_csv(tmp_path / "empty.csv", cloud.select(np.zeros(len(cloud), dtype=bool)))

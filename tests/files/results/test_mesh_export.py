@@ -4,11 +4,10 @@ import numpy as np
 import pytest
 import trimesh
 
-from core.files.mesh_export import write_3mf, write_obj
-from core.files.ply import read_mesh, write_mesh
-from core.files.stl import write_stl
-from core.scan.mesh_holes import fill_holes
-from tests.scan.test_mesh_holes import HOLED
+from core.files.results.mesh_export import write_3mf, write_obj, write_stl
+from core.files.results.ply import read_mesh, write_mesh
+from core.scan.surface.mesh_holes import fill_holes
+from tests.scan.surface.test_mesh_holes import HOLED
 
 FILLED = fill_holes(HOLED, 10.0)
 

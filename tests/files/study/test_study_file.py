@@ -7,24 +7,24 @@ import numpy as np
 import pytest
 
 from core.errors import InputError
-from core.files.study_file import study_values, write_study
-from core.files.study_reader import read_study
+from core.files.study.study_file import read_study, study_values, write_study
 from core.inspect.results import Contribution
+from core.inspect.uncertainty.causes import cause_named
 from core.study.acceptance import Reading, acceptance_check
+from core.study.budget import from_budgets
 from core.study.grr import grr_study
-from core.study.repeats import repeat_study
-from core.study.repeats_budget import from_budgets
+from core.study.repeats import Requirement, repeat_study
 from core.study.type1 import type1_study
 
 VALUES = [50.01, 50.03, 50.02, 50.04]
 
 
 def repeats(limits):
-    rows = (Contribution("camera", 0.01, 2.0, "rectangular", 9.0, 7.0, "°C"),)
+    rows = (Contribution(cause_named("camera"), 0.01, 2.0, "rectangular", 9.0, 7.0, "°C"),)
     budget = from_budgets(VALUES, [rows] * 4)
     return repeat_study(
-        VALUES, budget, complete=True, name="width", labels="abcd", U=[0.1, math.nan, 0.1, 0.1], nominal=50.0,
-        limits=limits, r=0.83,
+        VALUES, budget, complete=True, name="width", labels="abcd", U=[0.1, math.nan, 0.1, 0.1],
+        asked=Requirement(50.0, limits, 0.83),
     )  # fmt: skip
 
 

@@ -7,9 +7,9 @@ import time
 import numpy as np
 import pytest
 
-from core.image.breaks import breaks
-from core.image.centreline import Centreline
-from core.image.crossing import cross_centrelines, search_crossings
+from core.image.crossings.breaks import breaks
+from core.image.crossings.crossing import cross_centrelines, search_crossings
+from core.image.stripes.centreline import Centreline
 
 S, A = 1.5, 120.0
 HALF = 40.0

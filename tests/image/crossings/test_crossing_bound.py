@@ -13,10 +13,10 @@ import pytest
 from scipy.ndimage import gaussian_filter1d
 from scipy.signal import lfilter
 
-from core.image.centreline import Centreline
-from core.image.crossing import Crossing, cross_centrelines
-from core.image.noise import NoiseModel
-from core.image.stripes import StripeSettings, extract_centrelines
+from core.image.crossings.crossing import Crossing, cross_centrelines
+from core.image.stripes.centreline import Centreline
+from core.image.stripes.extraction import StripeSettings, extract_centrelines
+from core.image.stripes.noise import NoiseModel
 from tests.image.crossing_bound import Line, crossing_bound, curvature_integral, kriging_bound, section_density
 from tests.image.synthetic_stripes import draw, expose, speckle, straight
 
@@ -62,7 +62,7 @@ def sampled(shape: Shape, angle_deg: float, count: int, seed: int = 1) -> list[C
     return found
 
 
-def rms_error(crossings: list[Crossing], place: object = (0.0, 0.0)) -> float:
+def rms_error(crossings: list[Crossing], place: tuple[float, float] = (0.0, 0.0)) -> float:
     return float(np.sqrt(np.mean([np.sum((c.uv - place) ** 2) for c in crossings])))
 
 
@@ -226,7 +226,7 @@ def rendered(angle_deg: float, contrast: float, count: int) -> tuple[tuple[np.nd
             if contrast:
                 light = light * speckle(light.shape, contrast, 1.4, rng)
             lines.append(extract_centrelines(expose(light, rng).astype(np.float32), settings, noise=NOISE))
-        for _, _, crossing in cross_centrelines(*lines, 40.0, 0.2):
+        for _, _, crossing in cross_centrelines(lines[0], lines[1], 40.0, 0.2):
             found.append((crossing.uv - centre, crossing))
     return tuple(found)
 

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
-from core.image.centreline import Centreline
-from core.image.noise import NoiseModel, estimate_noise, estimate_noise_of_pair
-from core.image.ridge import kernel_radius
-from core.image.stripes import StripeSettings, choose_settings, correlation_length_px, extract_centrelines
+from core.image.stripes.centreline import Centreline
+from core.image.stripes.extraction import StripeSettings, choose_settings, correlation_length_px, extract_centrelines
+from core.image.stripes.noise import NoiseModel, estimate_noise, estimate_noise_of_pair
+from core.image.stripes.tracing.ridge import kernel_radius
 from tests.image.synthetic_stripes import Distance, circle, draw, expose, speckle, straight
 
 QUIET = NoiseModel(0.3)
@@ -104,10 +106,15 @@ def test_points_reach_to_where_the_filter_would_leave_the_picture(angle_deg: flo
     assert np.abs(errors(line, truth)).max() < 0.003
 
 
+def until(end: float) -> Distance:
+    """The height of a stripe that ends at u = `end`."""
+    return lambda u, v: np.where(u < end, 150.0, 0.0)
+
+
 def test_a_stripe_that_ends_beside_the_border_is_trimmed_like_any_other() -> None:
     truth = straight((110.0, 80.0), 0.0)
     for end in (198, 204, 207):
-        (line,) = find(draw(SHAPE, truth, S, lambda u, v, end=end: 150.0 * (u < end)))
+        (line,) = find(draw(SHAPE, truth, S, until(end)))
         assert line.uv[:, 0].max() < end - 3
         assert np.abs(errors(line, truth)).max() < 0.01
 
@@ -304,8 +311,9 @@ def test_an_edge_of_brightness_is_no_stripe() -> None:
 
 def test_pictures_too_small_or_of_the_wrong_kind() -> None:
     assert find(np.zeros((9, 9))) == ()
+    double: Any = np.zeros((50, 50))
     with pytest.raises(ValueError, match="float32"):
-        extract_centrelines(np.zeros((50, 50)), SETTINGS, noise=QUIET)
+        extract_centrelines(double, SETTINGS, noise=QUIET)
     with pytest.raises(ValueError, match="mask"):
         find(np.zeros((50, 50)), ignore=np.zeros((40, 50), dtype=bool))
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from core.image.centreline import Centreline
-from core.image.noise import NoiseModel
-from core.image.stripes import StripeSettings, extract_centrelines
+from core.image.stripes.centreline import Centreline
+from core.image.stripes.extraction import StripeSettings, extract_centrelines
+from core.image.stripes.noise import NoiseModel
 from tests.image.synthetic_stripes import Distance, expose, speckle, straight
 
 NOISE = NoiseModel(1.0, 0.02)
@@ -38,14 +38,15 @@ def test_both_lines_are_whole_through_every_crossing(angle_deg: float, width: fl
     angles = (0.05, 0.05 + np.radians(angle_deg))
     lines = [straight(MEET, angle) for angle in angles]
     grains = [speckle(SHAPE, contrast, 0.8 * width, rng) if contrast else 1.0 for _ in lines]
-    found = find(expose(sum(light(d, width) * g for d, g in zip(lines, grains, strict=True)), rng), width)
+    both = sum((light(d, width) * g for d, g in zip(lines, grains, strict=True)), np.zeros(SHAPE))
+    found = find(expose(both, rng), width)
     assert len(found) == 2
     for truth, angle in zip(lines, angles, strict=True):
         (line,) = (one for one in found if np.median(np.abs(truth(*one.uv.T))) < 0.5)
         place = np.sort(along(line, angle))
         assert place[0] < -130 and place[-1] > 130
         gap = np.diff(place).max()
-        pulled = 3.5 * np.hypot(1, 1.4) * width  # by the other light, see core.image.neighbours
+        pulled = 3.5 * np.hypot(1, 1.4) * width  # by the other light, see core.image.stripes.neighbours
         assert gap < 2 * pulled / np.sin(np.radians(angle_deg)) + 12 * 1.4 * width
         error = np.abs(truth(*line.uv.T))
         assert np.sqrt(np.mean((error / line.sigma) ** 2)) < (1.5 if contrast else 1.3)
@@ -55,7 +56,7 @@ def test_both_lines_are_whole_through_every_crossing(angle_deg: float, width: fl
 def test_a_line_and_its_parts_run_one_way() -> None:
     """The normals of parts that were turned to be joined turn with them."""
     lines = [straight(MEET, 0.05), straight(MEET, 0.9)]
-    for line in find(expose(sum(light(d, 2.0) for d in lines), np.random.default_rng(1)), 2.0):
+    for line in find(expose(sum((light(d, 2.0) for d in lines), np.zeros(SHAPE)), np.random.default_rng(1)), 2.0):
         steps = np.diff(line.uv, axis=0)
         steps /= np.linalg.norm(steps, axis=1)[:, None]
         assert np.sum(steps * line.tangent[:-1], axis=1).min() > 0.99

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from core.image.ridge_picture import ridge_strength
-from core.image.stripe import StripeSettings
+from core.image.stripes.ridge_picture import ridge_strength
+from core.image.stripes.stripe import StripeSettings
 
 SETTINGS = StripeSettings(width_px=8.0, contrast=50.0)
 

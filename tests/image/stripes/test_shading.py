@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from core.image.centreline import Centreline
-from core.image.shading import shading_sigma
+from core.image.stripes.centreline import Centreline
+from core.image.stripes.shading import shading_sigma
 
 
 def line_of(strength: np.ndarray, width: float = 1.5) -> Centreline:

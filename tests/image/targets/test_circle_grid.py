@@ -1,7 +1,5 @@
 """Circle grids against the analytic truth of rendered pictures, and in real ones."""
 
-from pathlib import Path
-
 import cv2
 import numpy as np
 import pytest
@@ -9,11 +7,12 @@ import pytest
 from core.image.targets import CircleGrid, TargetNotFound, camera_shift, detect
 from core.image.targets.ellipses import centre_shift
 from tests.image.rendered_targets import circles, pose, render, rig
+from tests.shared import REAL_SETS
 
 GRID = CircleGrid(7, 7, 12.0)
 CAMERA = rig(1 / 6)
 STEEP = pose(-25, 40, 20, (36, 36), 380)
-LINELIGHT = Path(__file__).resolve().parents[2].parent / "shared" / "real" / "linelight"
+LINELIGHT = REAL_SETS / "linelight"
 
 
 def nearest(view, true):

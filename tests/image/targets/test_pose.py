@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from core.image.target_view import TargetView
 from core.image.targets import BlackSquare, Checkerboard, TargetNotFound, camera_shift, detect, estimate_pose
+from core.image.targets.target_view import TargetView
 from core.model import Pose
 from tests.image.rendered_targets import pose, render, rig, square
 

@@ -1,13 +1,12 @@
 """Fits of one plane and of two parallel planes against analytic truth."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
-from core.inspect.plane_fit import _solve, fit_parallel_planes, fit_plane
+from core.inspect.fit.plane_fit import _solve, fit_parallel_planes, fit_plane
+from tests.shared import REAL_SETS
 
-REAL = Path(__file__).resolve().parents[2].parent / "shared" / "real" / "gaugeblock"
+REAL = REAL_SETS / "gaugeblock"
 NORMAL = np.array([0.1, -0.3, 1.0]) / np.linalg.norm([0.1, -0.3, 1.0])
 AXES = np.linalg.svd(NORMAL[None, :])[2][1:]
 

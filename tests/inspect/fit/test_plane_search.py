@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from core.inspect.plane_search import find_planes
+from core.inspect.fit.plane_search import find_planes
 from tests.inspect.block_scan import NORMAL, TABLE_MM, axes, cloud_at
 
 

@@ -4,11 +4,12 @@ import numpy as np
 import pytest
 
 from core.errors import InputError
-from core.inspect.point_errors import PointErrors
-from core.inspect.sphere import find_sphere, fit_sphere
-from core.inspect.uneven_light import UNEVEN_LIGHT
-from core.scan.cloud import Cloud
+from core.inspect.fit.round import find_sphere
+from core.inspect.uncertainty.causes import UNEVEN_LIGHT
+from core.inspect.uncertainty.point_errors import PointErrors
+from core.scan.surface.cloud import Cloud
 from tests.inspect.block_scan import CENTRE, FOCAL
+from tests.inspect.sphere_fit import fit_sphere
 
 RADIUS = 25.0
 MIDDLE = np.array([8.0, -5.0, 545.0 - RADIUS])

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from core.inspect.evaluate import evaluate
-from core.inspect.feature_spec import FeatureSpec
-from core.inspect.inspection_plan import InspectionPlan
-from core.inspect.uneven_light import UNEVEN_LIGHT
+from core.inspect.plan.feature_spec import FeatureSpec
+from core.inspect.plan.inspection_plan import InspectionPlan
+from core.inspect.uncertainty.causes import UNEVEN_LIGHT
 from tests.inspect.test_shape_features import DERIVED, ELEMENTS, SCAN, THROUGH_BALL
 
 

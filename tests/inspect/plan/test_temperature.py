@@ -3,20 +3,24 @@
 import pytest
 
 from core.inspect.characteristic import Characteristic, Limits
-from core.inspect.results import Contribution
-from core.inspect.temperature import (
-    CERTIFICATE,
-    MASTER_MEASURED,
-    PART_EXPANSION,
-    PART_TEMPERATURE,
-    SCALE_EXPANSION,
-    Master,
-    Temperature,
+from core.inspect.plan.conditions import AT_REFERENCE, Master, Temperature
+from core.inspect.plan.temperature import (
     at_reference,
     compared,
     temperature_contributions,
 )
-from core.inspect.uncertainty import CAMERA, POINT_NOISE, SCALE, combined
+from core.inspect.results import Contribution
+from core.inspect.uncertainty.budget import combined
+from core.inspect.uncertainty.causes import (
+    CAMERA,
+    CERTIFICATE,
+    MASTER_MEASURED,
+    PART_EXPANSION,
+    PART_TEMPERATURE,
+    POINT_NOISE,
+    SCALE,
+    SCALE_EXPANSION,
+)
 
 WARM = Temperature(24.0, 0.5, 11.5e-6, 1.0e-6)
 
@@ -36,7 +40,8 @@ def test_a_warm_steel_block_is_shorter_at_20_degrees():
     assert rows[PART_EXPANSION].u_mm == pytest.approx(50.02 * 4.0 * 1e-6, rel=1e-9)
     assert row.u == pytest.approx(combined(row.budget), rel=1e-12)
     assert row.deviation == pytest.approx(row.value - 50.0)
-    assert "20 °C" in row.notes[0]
+    assert row.notes[0].code == AT_REFERENCE
+    assert "20 °C" in str(row.notes[0])
 
 
 def test_a_scale_of_the_same_material_at_the_same_temperature_cancels_the_expansion():
@@ -95,4 +100,4 @@ def test_a_master_measured_with_another_calibration_cancels_nothing():
 def test_a_master_of_quite_another_size_is_not_used():
     row = compared(length(value=70.0), MASTER)
     assert row.value == 70.0
-    assert "too different" in row.notes[-1]
+    assert "too different" in str(row.notes[-1])

@@ -6,8 +6,8 @@ import pytest
 from core.errors import InputError
 from core.inspect.face_region import inside_polygon, on_face
 from core.inspect.faces import faces_in_polygons
-from core.inspect.outline import MOST_CORNERS, face_outline, outline_px
-from core.scan.normals import with_normals
+from core.inspect.shown.outline import MOST_CORNERS, face_outline, outline_px
+from core.scan.surface.normals import with_normals
 from tests.inspect.block_scan import NORMAL, TABLE_MM, BlockScan
 
 

@@ -4,13 +4,14 @@ import numpy as np
 import pytest
 
 from core.inspect.conformity import decide
-from core.inspect.error_sources import Sources
-from core.inspect.generalised import generalised_fit
-from core.inspect.point_errors import PointErrors
-from core.inspect.uncertainty import FAN_SPECKLE, FORM, POINT_NOISE, SWEEP_PLANES, budget, combined
-from core.scan.cloud import FAN, Cloud
+from core.inspect.fit.generalised import generalised_fit
+from core.inspect.uncertainty.budget import budget, combined
+from core.inspect.uncertainty.causes import CAMERA, FAN_SPECKLE, FORM, POINT_NOISE, SWEEP_PLANES
+from core.inspect.uncertainty.error_sources import Sources
+from core.inspect.uncertainty.point_errors import PointErrors
 from core.scan.common_errors import CommonErrors
-from core.scan.triangulate import join
+from core.scan.surface.cloud import FAN, Cloud
+from core.scan.surface.triangulate import join
 
 
 def stripe_cloud(sweep, count=100, sigma=0.02, v=0.0):
@@ -27,8 +28,7 @@ def mean_depth(cloud, errors):
     face = np.zeros(len(cloud), dtype=np.int64)
     sources = Sources.of(cloud, np.array([0.0, 0.0, 1.0]), np.ones(len(cloud)), face, face, errors)
     gains = np.bincount(sources.stretch) / len(cloud)
-    calibrations = errors.common.sources if errors.common else ()
-    return budget(gains, sources, form_mm=0.0, calibrations=calibrations)
+    return budget(gains, sources, form_mm=0.0, calibrations=errors.calibrations)
 
 
 def u_of(rows):
@@ -96,7 +96,7 @@ def common(*depths):
 
 def test_a_calibrations_displacements_add_in_squares_and_never_average_out():
     rows = u_of(mean_depth(stripe_cloud(0), PointErrors(common=common(0.03, -0.04))))
-    assert rows["camera"] == pytest.approx(0.05, rel=1e-6)
+    assert rows[CAMERA] == pytest.approx(0.05, rel=1e-6)
     assert common(0.03, -0.04).sigma(stripe_cloud(0)) == pytest.approx(np.full(100, 0.05), rel=1e-6)
 
 

@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from core.calibrate.reprojection import parameters_of
-from core.inspect.error_sources import _gain_of_noise
-from core.inspect.point_errors import PointErrors
+from core.calibrate.camera.reprojection import parameters_of
+from core.inspect.uncertainty.error_sources import _gain_of_noise
+from core.inspect.uncertainty.point_errors import PointErrors
 from core.model import Camera
-from core.scan.cloud import Cloud
 from core.scan.common_errors import CommonErrors
+from core.scan.surface.cloud import Cloud
 
 CAMERA = Camera((1920, 1374), np.array([[2500.0, 0, 960], [0, 2500, 687], [0, 0, 1]]), np.zeros(5))
 MIDDLE, RADIUS = np.array([5.0, -8.0, 530.0]), 25.0

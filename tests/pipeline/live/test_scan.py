@@ -5,16 +5,19 @@ import numpy as np
 import pytest
 
 from core.acquire.source import Frame, Lasers, SourceSettings
-from core.calibrate.plane_pose import PoseFeatures
+from core.calibrate.fan.pose_features import PoseFeatures
 from core.errors import InputError
-from core.files.options import Options
 from core.files.pictures import is_picture, read_picture, write_picture
-from core.files.poses_file import write_poses
-from core.files.recording_log import read_log
-from core.files.rig import Rig
+from core.files.recording.features_file import write_poses
+from core.files.recording.options import Options
+from core.files.recording.recording_log import read_log
+from core.files.recording.rig import Rig
 from core.image.targets import BlackSquare, Checkerboard
-from core.live.commands import Configure, Pause, Resume, Stop, Switch, TakeReference
-from core.live.events import (
+from core.pipeline.live import checks as live_checks
+from core.pipeline.live import preview as live_preview
+from core.pipeline.live import session as live
+from core.pipeline.live.commands import Configure, Pause, Resume, Stop, Switch, TakeReference
+from core.pipeline.live.events import (
     LiveAdvice,
     LiveAnswered,
     LiveAsk,
@@ -27,8 +30,7 @@ from core.live.events import (
     LiveUnplugged,
     LiveView,
 )
-from core.pipeline import live, live_checks, live_preview
-from core.scan.features import read_reference
+from core.scan.features.extraction import read_reference
 from core.simulate.recording import scan_of
 from core.simulate.scenario import Scenario
 from tests.pipeline.live_bench import ScriptedSource, Window, after, answer_to, record
@@ -75,7 +77,7 @@ def names(folder):
 def test_a_source_that_switches_lasers_itself_takes_the_reference_and_scans(monkeypatch, tmp_path, stage):
     window = Window()
     ended = scan(monkeypatch, tmp_path, stage, swept(stage, 20, pace_s=0.05), window)
-    assert ended.error == ""
+    assert ended.error is None
     assert window.all(LiveStarted)[0].image_size == (960, 687)
     assert [taken.name for taken in window.all(LiveTaken)] == ["reference"]
     assert not window.all(LiveAsk)
@@ -126,9 +128,9 @@ def test_a_source_unplugged_in_the_middle_comes_back_and_nothing_is_lost(monkeyp
     window = Window()
     source = swept(stage, 24, unplug_at={15}, away=2)
     ended = scan(monkeypatch, tmp_path, stage, source, window)
-    assert "cable" in window.all(LiveUnplugged)[0].sentence
+    assert "cable" in str(window.all(LiveUnplugged)[0].sentence)
     assert len(window.all(LiveBack)) == 1
-    assert ended.error == ""
+    assert ended.error is None
     assert names(tmp_path) == [f"frame{i:05d}.png" for i in range(ended.recorded)] + ["reference.png"]
     assert source.lit == Lasers(fan=True, hand=True)
 
@@ -159,8 +161,8 @@ def test_a_damaged_frame_is_told_and_left_out(monkeypatch, tmp_path, stage):
     source.read = damaged
     window = Window()
     ended = scan(monkeypatch, tmp_path, stage, source, window)
-    assert any("damaged" in notice.sentence for notice in window.all(LiveNotice))
-    assert (ended.recorded, ended.error) == (20, "")
+    assert any("damaged" in str(notice.sentence) for notice in window.all(LiveNotice))
+    assert (ended.recorded, ended.error) == (20, None)
 
 
 def test_a_source_that_gives_nothing_but_damage_ends_with_the_reason(monkeypatch, tmp_path, stage):
@@ -171,14 +173,14 @@ def test_a_source_that_gives_nothing_but_damage_ends_with_the_reason(monkeypatch
 
     source.read = damaged
     ended = scan(monkeypatch, tmp_path, stage, source, Window())
-    assert "damaged" in ended.error
+    assert "damaged" in str(ended.error)
 
 
 def test_a_source_that_stays_away_can_be_given_up(monkeypatch, tmp_path, stage):
     window = Window(answer_to(LiveUnplugged, Stop()))
     ended = scan(monkeypatch, tmp_path, stage, swept(stage, 40, unplug_at={14}, away=10**6), window)
     assert ended.recorded > 0
-    assert ended.error == ""
+    assert ended.error is None
     assert len(names(tmp_path)) == ended.recorded + 1
 
 
@@ -215,7 +217,7 @@ def test_a_reference_without_the_fan_is_refused_and_asked_for_again(monkeypatch,
 
     window = Window(hand)
     ended = scan(monkeypatch, tmp_path, stage, source, window)
-    assert any("no line of the fan" in notice.sentence for notice in window.all(LiveNotice))
+    assert any("no line of the fan" in str(notice.sentence) for notice in window.all(LiveNotice))
     assert len(asked) == 3
     assert ended.recorded > 0
 
@@ -224,7 +226,7 @@ def test_a_reference_is_not_taken_while_the_laser_is_swept(monkeypatch, tmp_path
     source = ScriptedSource(lambda lasers, number: stage.frames[number % FRAMES], 12, pace_s=0.01)
     window = Window()
     ended = scan(monkeypatch, tmp_path, stage, source, window)
-    assert any("Something moves" in notice.sentence for notice in window.all(LiveNotice))
+    assert any("Something moves" in str(notice.sentence) for notice in window.all(LiveNotice))
     assert ended.recorded == 0
     assert not (tmp_path / "scan").exists()
 
@@ -320,9 +322,9 @@ def test_a_fault_in_the_preview_never_ends_the_recording(monkeypatch, tmp_path, 
     monkeypatch.setattr(live_preview.ScanPreviewer, "_shown", broken)
     window = Window()
     ended = scan(monkeypatch, tmp_path, stage, swept(stage, 40), window)
-    assert any("boom" in notice.sentence for notice in window.all(LiveNotice))
+    assert any("boom" in str(notice.sentence) for notice in window.all(LiveNotice))
     assert ended.recorded > 20
-    assert ended.error == ""
+    assert ended.error is None
 
 
 def test_a_thing_that_was_moved_is_told_while_there_is_time(monkeypatch, tmp_path, stage):
@@ -331,7 +333,7 @@ def test_a_thing_that_was_moved_is_told_while_there_is_time(monkeypatch, tmp_pat
 
     window = Window()
     scan(monkeypatch, tmp_path, stage, swept(moved, 30, pace_s=0.03), window)
-    assert any("during the scan" in notice.sentence for notice in window.all(LiveNotice))
+    assert any("during the scan" in str(notice.sentence) for notice in window.all(LiveNotice))
 
 
 def test_a_full_disk_pauses_and_asks(monkeypatch, tmp_path, stage):
@@ -342,8 +344,8 @@ def test_a_full_disk_pauses_and_asks(monkeypatch, tmp_path, stage):
     monkeypatch.setattr(live, "Recorder", lambda folder, ending: recorder(folder, put=full))
     window = Window()
     ended = scan(monkeypatch, tmp_path, stage, swept(stage, 30, pace_s=0.01), window)
-    assert "disk is full" in window.all(LiveAsk)[0].sentence
-    assert "disk is full" in ended.error
+    assert "disk is full" in str(window.all(LiveAsk)[0].sentence)
+    assert "disk is full" in str(ended.error)
     assert ended.recorded == 0
     assert ended.dropped > 0
 
@@ -373,7 +375,7 @@ def test_settings_go_to_the_source_and_a_refusal_is_told(monkeypatch, tmp_path, 
     source = swept(stage, 30)
     scan(monkeypatch, tmp_path, stage, source, window)
     assert wanted in source.calls
-    assert any("no gain" in notice.sentence for notice in window.all(LiveNotice))
+    assert any("no gain" in str(notice.sentence) for notice in window.all(LiveNotice))
     assert Lasers(fan=False, hand=False) in source.calls
 
 
@@ -402,13 +404,13 @@ def test_the_focus_is_held_against_the_stripes_the_fan_was_calibrated_with(
     scan(monkeypatch, tmp_path, stage, swept(stage, 1, pace_s=0.05), window, kept_fan=(tmp_path, "f1"))
     focus = next(check for check in window.all(LiveChecks)[-1].checks if check.name == "focus")
     assert focus.state == state
-    assert "px when the fan was calibrated" in focus.sentence
+    assert "px when the fan was calibrated" in str(focus.message)
 
 
 def test_a_calibration_whose_poses_are_gone_leaves_the_focus_to_the_picture_alone(monkeypatch, tmp_path, stage):
     window = Window()
     ended = scan(monkeypatch, tmp_path, stage, swept(stage, 1, pace_s=0.05), window, kept_fan=(tmp_path, "f1"))
-    assert ended.error == ""
+    assert ended.error is None
     assert checks(window.all(LiveChecks)[-1])["focus"] == "ok"
 
 
@@ -424,7 +426,7 @@ def test_a_reference_that_does_not_hold_any_more_is_told_while_nothing_is_record
     )
     scan(monkeypatch, tmp_path, stage, source, window)
     last = window.all(LiveChecks)[-1]
-    assert "does not hold any more: " in last.checks[0].sentence
+    assert "does not hold any more: " in str(last.checks[0].message)
 
 
 def test_an_overexposed_stripe_brings_advice_that_can_be_followed(monkeypatch, tmp_path, stage):
@@ -437,16 +439,16 @@ def test_an_overexposed_stripe_brings_advice_that_can_be_followed(monkeypatch, t
     window = Window(answer_to(LiveAdvice, Stop()))
     scan(monkeypatch, tmp_path, stage, swept(glaring, 1500, pace_s=0.03), window, settings=told)
     advice = window.all(LiveAdvice)[0]
-    assert "overexposed: set the exposure time to" in advice.sentence
+    assert "overexposed: set the exposure time to" in str(advice.sentence)
     assert advice.settings.exposure_ms in (4.0, 5.6)
 
 
 def test_a_setting_the_source_does_not_have_is_left_out_and_told(monkeypatch, tmp_path, stage):
     window, source = Window(), swept(stage, 3)
     ended = scan(monkeypatch, tmp_path, stage, source, window, settings=SourceSettings(exposure_ms=5.0, trigger="Off"))
-    assert ended.error == ""
+    assert ended.error is None
     assert source.calls[0] == SourceSettings(exposure_ms=5.0)
-    assert window.all(LiveNotice)[0].sentence == "Scripted camera has no trigger to set: what it has is used."
+    assert str(window.all(LiveNotice)[0].sentence) == "Scripted camera has no trigger to set: what it has is used."
     assert window.all(LiveStarted)[0].capabilities.names == ("exposure_ms",)
 
 
@@ -462,7 +464,7 @@ def test_a_source_that_cannot_be_opened_is_told_at_the_end(monkeypatch, tmp_path
     source = ScriptedSource(stage)
     source.missing = 1
     ended = scan(monkeypatch, tmp_path, stage, source, Window())
-    assert "no such camera" in ended.error
+    assert "no such camera" in str(ended.error)
     assert not (tmp_path / "scan").exists()
 
 
@@ -470,7 +472,7 @@ def test_a_folder_that_holds_something_is_not_touched(monkeypatch, tmp_path, sta
     (tmp_path / "scan").mkdir()
     (tmp_path / "scan" / "reference.png").write_bytes(b"older")
     ended = scan(monkeypatch, tmp_path, stage, ScriptedSource(stage), Window())
-    assert "something in the folder" in ended.error
+    assert "something in the folder" in str(ended.error)
     assert (tmp_path / "scan" / "reference.png").read_bytes() == b"older"
 
 

@@ -3,13 +3,13 @@
 import numpy as np
 
 from core.acquire.source import SourceChoice, SourceSettings
-from core.files.rig import Rig
+from core.files.recording.rig import Rig
 from core.image.targets import BlackSquare, Checkerboard
-from core.live.commands import LiveRequest, Stop
-from core.live.events import LiveTaken, LiveView
-from core.pipeline.live import run_live
-from core.pipeline.sources import make_source
-from core.simulate.stage import table_pose
+from core.pipeline.live.commands import LiveRequest, Stop
+from core.pipeline.live.events import LiveTaken, LiveView
+from core.pipeline.live.session import run_live
+from core.pipeline.live.sources import make_source
+from core.simulate.scene.stage import table_pose
 from tests.pipeline.live_bench import Window
 
 RIG = Rig(Checkerboard(17, 12, 10.0), BlackSquare(60.0), 3, np.radians(5.0))
@@ -23,7 +23,7 @@ def test_the_growing_cloud_of_a_block_is_true(tmp_path):
         "scan", CHOICE, SourceSettings(rate_hz=12), RIG, tmp_path / "scan", camera=truth.camera, fan=truth.fan
     )
     ended = run_live(request, window.next_command, window.hear, window.ready)
-    assert ended.error == ""
+    assert ended.error is None
     assert ended.recorded >= 60
     cloud = []
     for detail in window.details:
@@ -48,4 +48,4 @@ def test_views_of_the_board_are_taken_at_its_rests(tmp_path):
     request = LiveRequest("camera", CHOICE, SourceSettings(rate_hz=12), RIG, tmp_path / "camera")
     ended = run_live(request, window.next_command, window.hear, window.ready)
     assert ended.recorded == 3
-    assert {"Hold still.", "Taken."} <= {detail.sentence for detail in window.details}
+    assert {"Hold still.", "Taken."} <= {str(detail.sentence) for detail in window.details}

@@ -3,14 +3,14 @@ import pytest
 
 from core.acquire.source import Lasers
 from core.files.pictures import read_picture
-from core.files.rig import Rig
+from core.files.recording.rig import Rig
 from core.image.targets import BlackSquare, Checkerboard, detect
-from core.live.commands import Auto, Capture, Discard, Stop
-from core.live.events import LiveAnswered, LiveAsk, LiveNotice, LiveStarted, LiveTaken, LiveView
+from core.pipeline.live.commands import Auto, Capture, Discard, Stop
+from core.pipeline.live.events import LiveAnswered, LiveAsk, LiveNotice, LiveStarted, LiveTaken, LiveView
 from core.simulate.calibration import CalibrationPictures
-from core.simulate.rays import ray_map
 from core.simulate.recording import scenario_rig
 from core.simulate.scenario import Scenario
+from core.simulate.scene.rays import ray_map
 from tests.pipeline.live_bench import ScriptedSource, Window, after, answer_to, record
 
 RIG = Rig(Checkerboard(17, 12, 10.0), BlackSquare(60.0), 3, np.radians(5.0))
@@ -84,7 +84,7 @@ def test_views_that_add_something_are_taken_by_themselves(monkeypatch, tmp_path,
     assert seen[-1].uv.shape == (17 * 12, 2)
     assert seen[-1].views >= 3
     assert seen[-1].cells.any()
-    assert seen[0].missing == ("Record at least 10 views; there is none.",)
+    assert [str(one) for one in seen[0].missing] == ["Record at least 10 views; there is none."]
 
 
 def test_views_that_are_there_already_count_for_what_is_missing_and_are_not_taken_again(monkeypatch, tmp_path, plates):
@@ -94,23 +94,23 @@ def test_views_that_are_there_already_count_for_what_is_missing_and_are_not_take
     ended = views_taken(monkeypatch, tmp_path, plates, window, shown, frames=60, there=there)
     assert ended.recorded == 0
     seen = [detail for detail in window.details if detail.uv is not None]
-    assert seen[0].missing[0] == "Record at least 10 views; there are 3."
+    assert str(seen[0].missing[0]) == "Record at least 10 views; there are 3."
     assert seen[0].cells.any()
-    assert "Turn the board: this tilt is already there." in {detail.sentence for detail in seen}
+    assert "Turn the board: this tilt is already there." in {str(detail.sentence) for detail in seen}
 
 
 def test_the_same_view_is_taken_once(monkeypatch, tmp_path, plates):
     window = Window()
     ended = views_taken(monkeypatch, tmp_path, plates, window, OneAfterAnother(plates.views[:1]), frames=120)
     assert ended.recorded == 1
-    assert "Turn the board: this tilt is already there." in {detail.sentence for detail in window.details}
+    assert "Turn the board: this tilt is already there." in {str(detail.sentence) for detail in window.details}
 
 
 def test_by_hand_a_view_is_taken_when_told_even_if_it_adds_nothing(monkeypatch, tmp_path, plates):
     pressed = []
 
     def hand(event):
-        sentence = event.detail.sentence if isinstance(event, LiveView) and event.detail is not None else ""
+        sentence = str(event.detail.sentence) if isinstance(event, LiveView) and event.detail is not None else ""
         for wanted in ("Press Capture to take this view.", "Turn the board: this tilt is already there."):
             if sentence == wanted and wanted not in pressed:
                 pressed.append(wanted)
@@ -126,7 +126,7 @@ def test_by_hand_a_view_is_taken_when_told_even_if_it_adds_nothing(monkeypatch, 
 
 def test_auto_can_be_switched_off_and_on(monkeypatch, tmp_path, plates):
     def hand(event):
-        sentence = event.detail.sentence if isinstance(event, LiveView) and event.detail is not None else ""
+        sentence = str(event.detail.sentence) if isinstance(event, LiveView) and event.detail is not None else ""
         return Auto(True) if sentence.startswith("Press Capture") else None
 
     window = Window(hand, answer_to(LiveStarted, Auto(False)), answer_to(LiveTaken, Stop()))
@@ -140,7 +140,7 @@ def test_capture_without_a_target_says_why(monkeypatch, tmp_path, plates):
     window = Window(after(3, LiveView, Capture()))
     ended = views_taken(monkeypatch, tmp_path, plates, window, OneAfterAnother([plates.nothing]), frames=60)
     assert ended.recorded == 0
-    assert "No checkerboard is seen in the picture." in window.all(LiveNotice)[-1].sentence
+    assert "No checkerboard is seen in the picture." in str(window.all(LiveNotice)[-1].sentence)
 
 
 def test_a_discarded_view_is_put_aside_and_may_be_taken_again(monkeypatch, tmp_path, plates):
@@ -175,7 +175,7 @@ def test_a_pose_whose_target_moved_between_the_pictures_is_not_kept(monkeypatch,
         monkeypatch, tmp_path, plates, window, OneAfterAnother([moved]), "planes", frames=120, camera=plates.camera
     )
     assert ended.recorded == 0
-    assert any("moved by" in notice.sentence for notice in window.all(LiveNotice))
+    assert any("moved by" in str(notice.sentence) for notice in window.all(LiveNotice))
 
 
 def test_a_person_switches_the_fan_off_when_the_source_cannot(monkeypatch, tmp_path, plates):
@@ -223,7 +223,7 @@ def test_poses_can_be_taken_without_a_second_picture(monkeypatch, tmp_path, plat
 
 def test_a_plate_without_the_fan_s_light_is_not_taken(monkeypatch, tmp_path, plates):
     def told(event):
-        return isinstance(event, LiveView) and event.detail is not None and "is it on?" in event.detail.sentence
+        return isinstance(event, LiveView) and event.detail is not None and "is it on?" in str(event.detail.sentence)
 
     window = Window(lambda event: Stop() if told(event) else None)
     off, choices = plates.poses[0][1], {"frames": UNTIL_STOPPED, "camera": plates.camera}
@@ -238,7 +238,7 @@ def test_a_pose_that_was_refused_is_not_tried_over_and_over(monkeypatch, tmp_pat
 
     def later(event):
         if isinstance(event, LiveView) and event.detail is not None:
-            refused[0] += refused[0] > 0 or "moved by" in event.detail.sentence
+            refused[0] += refused[0] > 0 or "moved by" in str(event.detail.sentence)
         return Stop() if refused[0] > 40 else None
 
     window = Window(later)

@@ -10,10 +10,9 @@ import pytest
 from core.acquire.source import Lasers, SourceChoice, SourceSettings, Unplugged
 from core.errors import InputError
 from core.files.pictures import write_picture
-from core.files.rig import read_rig
+from core.files.recording.rig import read_rig
 from core.image.targets import Charuco
-from core.pipeline import sources
-from core.pipeline.sources import SOURCES, list_sources, make_source, scenario_of
+from core.pipeline.live.sources import SOURCES, list_sources, make_source, scenario_of
 from core.simulate.calibration import rig_toml
 from core.simulate.sample import sample_scenario
 from core.simulate.scenario import Scenario
@@ -28,13 +27,12 @@ def rig(tmp_path):
 def test_every_kind_has_a_title_and_one_line_of_help():
     assert list(SOURCES) == ["simulated", "opencv", "replay", "basler", "genicam", "aravis"]
     for kind in SOURCES.values():
-        assert kind.title
-        assert kind.help.endswith(".")
-        assert "\n" not in kind.help
+        assert str(kind.title) and str(kind.device) and str(kind.device_help)
+        assert "\n" not in str(kind.help)
 
 
 def test_the_simulated_rig_is_never_missing_and_offers_several_objects():
-    assert SOURCES["simulated"].missing == ""
+    assert SOURCES["simulated"].missing is None
     offered = list_sources("simulated")
     assert offered[0].choice == SourceChoice("simulated", "")
     assert offered[0].detail == "1920 × 1374 pixels"
@@ -43,12 +41,12 @@ def test_the_simulated_rig_is_never_missing_and_offers_several_objects():
 
 
 def test_without_its_driver_a_kind_lists_nothing_and_says_what_to_install(monkeypatch):
-    monkeypatch.setattr(sources.importlib.util, "find_spec", lambda name: None)
-    assert SOURCES["basler"].missing == "Basler cameras need pypylon: install it with pip install 'trisect[basler]'."
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    assert SOURCES["basler"].missing.code == "source.install_pypylon"
     assert list_sources("basler") == ()
     with pytest.raises(InputError, match=r"trisect\[basler\]'\.$"):
         make_source(SourceChoice("basler"))
-    assert SOURCES["opencv"].missing == ""
+    assert SOURCES["opencv"].missing is None
 
 
 def test_unknown_kinds_are_refused():

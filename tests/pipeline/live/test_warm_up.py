@@ -10,7 +10,7 @@ from tests.simulated import copy_of
 COMPILED = """
 import gc, sys
 from pathlib import Path
-from core.files.recording_set import open_set
+from core.files.recording.recording_set import open_set
 
 def compiled():
     return {
@@ -20,8 +20,10 @@ def compiled():
 """
 
 SCAN = """
-from core.pipeline import Options, Workspace, scan_step
-from core.pipeline.warm_up import stages
+from core.files.recording.options import Options
+from core.pipeline.steps.scan_step import scan_step
+from core.pipeline.steps.workspace import Workspace
+from core.pipeline.live.warm_up import stages
 
 for stage in stages():
     stage()
@@ -32,10 +34,10 @@ scan_step(Workspace.open(open_set(Path(sys.argv[1])), Path(sys.argv[2])), Option
 LIVE = """
 import numpy as np
 from core.acquire.source import Frame
-from core.pipeline import Options
-from core.pipeline.live_preview import ScanPreviewer
-from core.pipeline.live_warm_up import get_ready_for_live
-from core.pipeline.workspace import Workspace
+from core.files.recording.options import Options
+from core.pipeline.live.preview import ScanPreviewer
+from core.pipeline.live.warm_up import get_ready_for_live
+from core.pipeline.steps.workspace import Workspace
 
 found = open_set(Path(sys.argv[1]))
 calibration = Workspace.open(found, Path(sys.argv[2])).calibration()

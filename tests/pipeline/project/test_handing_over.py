@@ -10,12 +10,12 @@ from pypdf import PdfReader
 
 from core.errors import Cancelled, InputError
 from core.files.atomic import write_bytes
-from core.files.ply import read_cloud, read_mesh
-from core.files.project import ReportChoices
-from core.files.project_folder import results_folder
-from core.pipeline.handing_over import export, preview_report
-from core.pipeline.project_report import make_report, report_bytes
-from core.report.content import SECTIONS
+from core.files.project.data import ReportChoices
+from core.files.project.folder import results_folder
+from core.files.results.ply import read_cloud, read_mesh
+from core.pipeline.project.handing_over import export, preview_report
+from core.pipeline.project.report import make_report, report_bytes
+from core.report.template import SECTIONS
 from tests.simulated import copy_of
 
 

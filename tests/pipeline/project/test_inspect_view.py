@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from core.errors import Cancelled, InputError
-from core.files.ply import read_cloud, read_mesh
-from core.files.project_folder import results_folder
-from core.files.rig import GaugeSpec
-from core.inspect.inspection import DEPTH, HEIGHT, LOWER, NO_FACE, UPPER
-from core.pipeline.inspect_view import inspection_view, outline_selected
-from core.pipeline.project_measuring import measure_gauge
+from core.files.project.folder import results_folder
+from core.files.recording.rig import GaugeSpec
+from core.files.results.ply import read_cloud, read_mesh
+from core.inspect.shown.shown_scan import DEPTH, HEIGHT, LOWER, NO_FACE, UPPER
+from core.pipeline.project.inspect_view import inspection_view, outline_selected
+from core.pipeline.project.measuring import measure_gauge
 from tests.simulated import copy_of
 
 

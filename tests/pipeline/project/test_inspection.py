@@ -8,19 +8,19 @@ import numpy as np
 import pytest
 
 from core.errors import InputError
-from core.files.inspection_plan_file import write_plan
-from core.files.ply import read_mesh
-from core.files.project import ProjectFile, write_project
-from core.files.project_folder import results_folder
-from core.files.stl import write_stl
-from core.inspect import evaluate
-from core.inspect.feature_spec import Auto, Deviation, FeatureSpec, Filters, Section
-from core.inspect.inspection_plan import InspectionPlan
-from core.pipeline import project_inspection
-from core.pipeline.inspect_step import inspect_step
-from core.pipeline.master_step import measured_master
-from core.pipeline.project_inspection import look_at_features, measure_features
-from core.pipeline.project_report import project_content
+from core.files.plan.plan_file import write_plan
+from core.files.project.data import ProjectFile
+from core.files.project.folder import results_folder, write_project
+from core.files.results.mesh_export import write_stl
+from core.files.results.ply import read_mesh
+from core.inspect.plan.feature_kind import FeatureKind
+from core.inspect.plan.feature_spec import Auto, Deviation, FeatureSpec, Filters, Section
+from core.inspect.plan.inspection_plan import InspectionPlan
+from core.pipeline.project import inspection as project_inspection
+from core.pipeline.project.inspection import look_at_features, measure_features
+from core.pipeline.project.report import project_content
+from core.pipeline.steps.inspect_step import inspect_step
+from core.pipeline.steps.master_step import measured_master
 
 PLAN = InspectionPlan(
     (
@@ -120,15 +120,15 @@ def test_what_is_drawn_is_of_the_scan_and_kept_so_that_it_need_not_be_measured_a
 def test_after_an_edit_only_what_it_changed_is_measured_and_the_file_is_as_if_all_were(done, folder, monkeypatch):
     measured, memory = [], {}
 
-    def counted(kind, measure):
+    def counted(measure):
         def count(spec, scene):
             measured.append(spec.name)
             return measure(spec, scene)
 
         return count
 
-    kinds = {kind: counted(kind, measure) for kind, measure in evaluate.MEASURES.items()}
-    monkeypatch.setattr(evaluate, "MEASURES", kinds)
+    load = FeatureKind.measure.fget
+    monkeypatch.setattr(FeatureKind, "measure", property(lambda kind: counted(load(kind))))
     measure_features(folder, replace(done.project, inspection=PLAN), memory=memory)
     assert measured == ["table", "top", "ball", "height"]
     table, top, *others = PLAN.features

@@ -6,8 +6,8 @@ import pytest
 from pypdf import PdfReader
 
 from core.errors import Cancelled
-from core.files.project import ProjectInfo, ReportChoices
-from core.pipeline.project_report import make_report
+from core.files.project.data import ProjectInfo, ReportChoices
+from core.pipeline.project.report import make_report
 from tests.simulated import contents, copy_of
 
 

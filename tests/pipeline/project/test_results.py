@@ -1,7 +1,7 @@
 """A project's results as they are loaded: as measured, or not at all."""
 
-from core.files.project_folder import results_folder
-from core.pipeline.project_results import load_results
+from core.files.project.folder import results_folder
+from core.pipeline.project.results import load_results
 from tests.simulated import copy_of
 
 
@@ -23,7 +23,7 @@ def test_results_that_do_not_belong_together_are_not_loaded(done, tmp_path):
     results = load_results(folder)
     assert results.camera is not None
     assert (results.fan, results.cloud, results.gauge, results.frames) == (None, None, None, ())
-    assert "calibrated again" in results.problems[0]
+    assert "calibrated again" in str(results.problems[0])
 
 
 def test_a_project_without_results_loads_nothing_and_complains_of_nothing(tmp_path):

@@ -5,10 +5,10 @@ from pathlib import Path
 import pytest
 
 from core.errors import Cancelled, InputError
-from core.files.project import read_project
-from core.files.project_keys import STEPS, changed, rests_on
-from core.pipeline import sample_project as module
-from core.pipeline.sample_project import clear_unfinished, sample_project
+from core.files.project.folder import read_project
+from core.files.project.keys import STEPS, changed, rests_on
+from core.pipeline.project import sample_project as module
+from core.pipeline.project.sample_project import clear_unfinished, sample_project
 
 
 @pytest.fixture

@@ -3,7 +3,7 @@
 import numpy as np
 
 from core.files.pictures import write_picture
-from core.pipeline.thumbnails import brightened, stripe_thumbnails, thumbnails
+from core.pipeline.project.thumbnails import brightened, stripe_thumbnails, thumbnails
 
 
 def test_a_faint_stripe_is_seen_in_the_small_picture_of_a_frame(tmp_path):

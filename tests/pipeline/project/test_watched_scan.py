@@ -7,18 +7,18 @@ import numpy as np
 import pytest
 
 from core.errors import Cancelled, InputError
-from core.files.project import Accepted
-from core.files.project_folder import results_folder
-from core.live.events import ScanDetail
-from core.pipeline.project_looks import accepted_calibration, show_scan
-from core.pipeline.thumbnails import display_picture
-from core.pipeline.watched_scan import Watched, measure_watched
+from core.files.project.data import Accepted
+from core.files.project.folder import results_folder
+from core.pipeline.live.events import ScanDetail
+from core.pipeline.project.looks import accepted_calibration, show_scan
+from core.pipeline.project.thumbnails import display_picture
+from core.pipeline.project.watched_scan import Watched, measure_watched
 from tests.simulated import copy_of
 
 
 @pytest.fixture(scope="module")
 def details(done) -> list[ScanDetail]:
-    told = []
+    told: list[ScanDetail] = []
     watched = Watched(done.camera.camera.image_size, told.append)
     for preview in done.watched:
         watched(preview)
@@ -92,7 +92,7 @@ def test_a_damaged_result_is_shown_as_none_with_the_reason(done, tmp_path):
     (results_folder(folder) / "cloud.ply").write_bytes(b"ply\nnonsense")
     look = show_scan(folder)
     assert len(look) == 0
-    assert any("cloud.ply" in problem for problem in look.problems)
+    assert any("cloud.ply" in str(problem) for problem in look.problems)
 
 
 def test_accepted_calibrations_come_as_far_as_there_are_any(done):

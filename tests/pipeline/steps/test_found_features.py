@@ -5,15 +5,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from core.calibrate.seen_views import SeenView, SeenViews
+from core.calibrate.camera.views import SeenView, SeenViews
 from core.errors import InputError
-from core.files.calibration_store import history
-from core.files.project import Accepted
-from core.files.rig import Rig
-from core.files.views_file import read_views, write_views
-from core.image.target_view import TargetView
+from core.files.project.calibration_store import history
+from core.files.project.data import Accepted
+from core.files.recording.features_file import read_views, write_views
+from core.files.recording.rig import Rig
 from core.image.targets import Checkerboard
-from core.pipeline.project_calibration import find_views, found_poses, found_views, solve_poses, solve_views
+from core.image.targets.target_view import TargetView
+from core.messages import plain
+from core.pipeline.project.calibration import find_views, found_poses, found_views, solve_poses, solve_views
 from tests.simulated import copy_of
 
 
@@ -67,13 +68,17 @@ def test_a_damaged_file_is_passed_over_and_none_of_it_is_in_the_history(done, tm
 
 def test_what_was_seen_reads_back_as_it_was_written(tmp_path):
     view = TargetView(np.array([[0.0, 0, 0], [10, 0, 0]]), np.array([[1.5, 2], [3, 4]]), np.array([0.1, 0.2]), "b")
-    views = (SeenView("a", None, "damaged"), SeenView("b", view, "", (64, 48)), SeenView("c", None, "x", (9, 8)))
+    views = (
+        SeenView("a", None, plain("damaged")),
+        SeenView("b", view, None, (64, 48)),
+        SeenView("c", None, plain("x"), (9, 8)),
+    )
     seen = SeenViews(views, "somewhere")
     path = tmp_path / "views.npz"
     write_views(path, "key", seen)
     back = read_views(path, "key")
     assert back.where == "somewhere"
-    assert [(one.name, one.reason, one.size) for one in back.views] == [
+    assert [(one.name, str(one.reason or ""), one.size) for one in back.views] == [
         ("a", "damaged", None), ("b", "", (64, 48)), ("c", "x", (9, 8)),
     ]  # fmt: skip
     assert back.views[0].view is None and np.array_equal(back.views[1].view.uv, view.uv)

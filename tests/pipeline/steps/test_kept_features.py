@@ -7,10 +7,10 @@ import pytest
 
 from core.errors import Cancelled
 from core.files.pictures import read_picture, write_picture
-from core.files.project_folder import results_folder
-from core.files.run_file import read_run
-from core.files.scan_file import read_scan
-from core.pipeline.project_measuring import measure_scan
+from core.files.project.folder import results_folder
+from core.files.results.run_file import read_run
+from core.files.results.scan_file import read_scan
+from core.pipeline.project.measuring import measure_scan
 from tests.simulated import copy_of
 
 RESULTS = ("cloud.ply", "mesh.ply", "scan.npz", "gauge.json", "gauge.npz")

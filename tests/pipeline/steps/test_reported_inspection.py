@@ -9,8 +9,8 @@ import pytest
 
 from core.errors import InputError
 from core.files.arrays_file import write_arrays
-from core.files.study_file import write_study
-from core.pipeline.reported_inspection import with_inspection, with_studies
+from core.files.study.study_file import write_study
+from core.pipeline.steps.report_step import with_inspection, with_studies
 from core.report.content import CalibrationMark
 from core.study.type1 import type1_study
 from tests.report.report_samples import block_content
@@ -60,7 +60,7 @@ def test_characteristics_points_deviations_and_problems_come_from_the_files(tmp_
     assert (deviations.name, deviations.tolerance_mm) == ("to CAD", 0.25)
     assert np.allclose(deviations.uv, content.cloud.uv[:50], atol=0.01), "where the camera sees them"
     for note in ("Said by the inspection.", "ball: there is no sphere.", "top flatness: Few points."):
-        assert note in found.all_notes
+        assert note in [str(told) for told in found.all_notes]
 
 
 def test_the_inspection_of_another_scan_is_refused(tmp_path, content):

@@ -10,10 +10,11 @@ import pytest
 
 from core.cli import studying
 from core.errors import InputError
-from core.files.project import ProjectFile, Repeat, write_project
-from core.files.study_file import study_path, study_values, write_study
-from core.pipeline.project_report import project_content
-from core.pipeline.study_step import (
+from core.files.project.data import ProjectFile, Repeat
+from core.files.project.folder import write_project
+from core.files.study.study_file import study_path, study_values, write_study
+from core.pipeline.project.report import project_content
+from core.pipeline.steps.study_step import (
     HEADS,
     export_study,
     keep_study,

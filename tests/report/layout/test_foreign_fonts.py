@@ -9,14 +9,14 @@ from fontTools.fontBuilder import FontBuilder
 from fontTools.pens.ttGlyphPen import TTGlyphPen
 from pypdf import PdfReader
 
-from core.report import foreign_fonts
-from core.report.content import SECTIONS
-from core.report.figures import drawable, families
+from core.report.layout import foreign_fonts
+from core.report.layout.style import NO_FONT, NOT_EMBEDDED, Look, font_note, markup, prepare_reportlab
 from core.report.pdf import build_report
-from core.report.points_plot import points_figure
-from core.report.style import NO_FONT, NOT_EMBEDDED, font_note, markup, prepare_reportlab
-
-from .report_samples import block_content
+from core.report.plots.charts import points_figure
+from core.report.plots.figures import drawable, families
+from core.report.template import SECTIONS
+from core.report.wording import Words
+from tests.report.report_samples import block_content
 
 CHINESE, THAI = "量块", "ก"
 
@@ -71,7 +71,7 @@ def test_a_font_of_this_computer_is_embedded_for_its_characters_alone(computer, 
     assert f"Teil {CHINESE} 7" in text
     assert any("Squares" in font["/BaseFont"] for font in fonts)
     assert all("/FontFile2" in font["/FontDescriptor"] for font in fonts)
-    assert NOT_EMBEDDED not in text
+    assert str(NOT_EMBEDDED) not in text
     assert markup(f"a{CHINESE}b") == f'a<font name="Foreign-squares">{CHINESE}</font>b'
     assert (drawable(CHINESE), families(CHINESE)) == (CHINESE, ["DejaVu Sans", "Squares"])
 
@@ -80,7 +80,7 @@ def test_east_asian_text_without_a_font_is_left_to_the_readers_program_and_a_not
     computer()
     fonts, text = fonts_and_text(build_report(replace(bare, part=CHINESE)))
     assert CHINESE in text
-    assert NOT_EMBEDDED in text
+    assert str(NOT_EMBEDDED) in text
     assert any("/FontDescriptor" not in font or "/FontFile2" not in font["/FontDescriptor"] for font in fonts)
     german = fonts_and_text(build_report(replace(bare, part=CHINESE, language="de")))[1]
     assert "Einige ostasiatische Zeichen dieses Berichts" in german
@@ -90,7 +90,7 @@ def test_a_character_no_font_has_is_printed_by_its_code_point_and_a_note_says_so
     computer()
     text = fonts_and_text(build_report(replace(bare, part=f"part {THAI}\U00010330\ntwo")))[1]
     assert "part [U+0E01][U+10330] two" in text
-    assert NO_FONT in text
+    assert str(NO_FONT) in text
 
 
 def test_a_font_that_cannot_be_read_or_embedded_is_passed_over(computer, tmp_path):
@@ -98,12 +98,12 @@ def test_a_font_that_cannot_be_read_or_embedded_is_passed_over(computer, tmp_pat
     font_file(tmp_path / "thai.ttf", THAI)
     computer(("Broken", str(tmp_path / "broken.ttf")), ("Thai", str(tmp_path / "thai.ttf")))
     assert foreign_fonts.embedded_font(THAI) == ("Foreign-thai", "Thai")
-    assert font_note([f"x {THAI}"]) == ""
+    assert font_note([f"x {THAI}"]) is None
 
 
 def test_what_the_reports_own_fonts_have_needs_no_note(computer):
     computer()
-    assert font_note(["Größe Κύβος Концевая 50 µm ± σ\u00a0\n"]) == ""
+    assert font_note(["Größe Κύβος Концевая 50 µm ± σ\u00a0\n"]) is None
 
 
 def test_this_computers_fonts_are_files_and_none_has_a_box_for_everything():
@@ -113,9 +113,7 @@ def test_this_computers_fonts_are_files_and_none_has_a_box_for_everything():
 @pytest.mark.filterwarnings("error")
 def test_a_plot_has_no_empty_boxes(computer, bare):
     """Matplotlib warns of each character that its font lacks."""
-    from core.report.look import Look
-
     computer()
-    figure = points_figure(Look.of(bare), bare.cloud, {CHINESE: np.arange(50)}, (1920, 1374), 160.0, 70.0)
+    figure = points_figure(Look(Words(), "#14586E"), bare.cloud, {CHINESE: np.arange(50)}, (1920, 1374), 160.0, 70.0)
     figure.canvas.draw()
     assert [text.get_text().split("\n")[0] for text in figure.axes[0].get_legend().get_texts()] == ["??"]

@@ -2,9 +2,9 @@ import numpy as np
 import pytest
 
 from core.model import LightPlane
-from core.report.surface_view import Ground, surface_picture, viewer_axes
-from core.scan.cloud import Cloud
-from core.scan.surface import Mesh
+from core.report.plots.surface_view import Ground, surface_picture, viewer_axes
+from core.scan.surface.cloud import Cloud
+from core.scan.surface.fused_surface import Mesh
 
 TABLE = LightPlane.from_normal([0.1, -0.2, 0.97], 560.0)
 

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from core.errors import Cancelled
-from core.image.centreline import Centreline
-from core.image.segments import Stack
-from core.scan.crossing_search import all_crossings, meetings_of
-from core.scan.crossings import CrossingTable, CrossingWindow, crossing_table, meetings, shaded
+from core.image.crossings.segments import Stack
+from core.image.stripes.centreline import Centreline
+from core.scan.features.crossing_search import all_crossings, meetings_of
+from core.scan.features.crossings import CrossingTable, CrossingWindow, crossing_table, meetings, shaded
 
 WINDOW = CrossingWindow(half_length_px=20.0)
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from core.scan.features import extract_features
+from core.scan.features.extraction import extract_features
 
 WIDTH = 2.0
 
@@ -31,15 +31,15 @@ def features(lights, background=20.0, dtype=np.uint8):
 def test_frames_in_changed_light_are_counted_and_still_used(dtype):
     found = features([0, 0, 14, 10, 0], dtype=dtype)
     assert len(found.notes) == 1
-    assert "The room's light changed in 2 of 5 frames, the first frame2.png" in found.notes[0]
-    assert " % brighter than in the reference" in found.notes[0]
+    assert "The room's light changed in 2 of 5 frames, the first frame2.png" in str(found.notes[0])
+    assert " % brighter than in the reference" in str(found.notes[0])
     assert all(frame.centrelines for frame in found.frames)
     assert [frame.light_change for frame in found.frames] == pytest.approx([0, 0, 0.7, 0.5, 0], abs=0.03)
 
 
 def test_darker_is_told_from_brighter():
     found = features([0, -30, 0], background=60.0)
-    assert "background is up to 50 % darker than in the reference" in found.notes[0]
+    assert "background is up to 50 % darker than in the reference" in str(found.notes[0])
     assert found.frames[1].light_change == pytest.approx(-0.5, abs=0.02)
 
 

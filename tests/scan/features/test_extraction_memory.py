@@ -7,8 +7,8 @@ import weakref
 import numpy as np
 import pytest
 
-from core.image.stripe import StripeSettings
-from core.scan.features import LOOK_AHEAD, FeatureOptions, extract_features
+from core.image.stripes.stripe import StripeSettings
+from core.scan.features.extraction import LOOK_AHEAD, FeatureOptions, extract_features
 
 WIDTH, HEIGHT = 240, 160
 STRIPE = StripeSettings(6.0, 100.0)

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from core.image.centreline import Centreline
-from core.scan.reference import check_reference, picture_difference, quantile_reference, sample_indices
+from core.image.stripes.centreline import Centreline
+from core.scan.features.reference import check_reference, picture_difference, quantile_reference, sample_indices
 
 WIDTH = 2.0
 

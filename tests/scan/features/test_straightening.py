@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from core.scan.crossing_search import all_crossings
-from core.scan.crossings import CrossingWindow
-from core.scan.straightening import bent_back, straightened
+from core.scan.features.crossing_search import all_crossings
+from core.scan.features.crossings import CrossingWindow
+from core.scan.features.straightening import bent_back, straightened
 from core.simulate.scenario import Scenario
 from tests.scan.centreline_scan import ExactCrossings, ExactScan
 

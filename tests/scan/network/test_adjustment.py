@@ -3,8 +3,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from core.scan.geometry import CrossingRays
-from core.scan.network import Network, solve_network
+from core.scan.network.adjustment import Network, solve_network
+from core.scan.network.geometry import CrossingRays
 from tests.scan.synthetic import CAMERA, FAN, network, stripe_rays, sweeps
 
 NOISE_PX = 0.05

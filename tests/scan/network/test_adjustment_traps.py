@@ -5,13 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from core.scan.adjustment import Adjustment
-from core.scan.features import gather
-from core.scan.geometry import CrossingRays
-from core.scan.line_errors import LineErrors
-from core.scan.locate import by_sweep, locate_together
-from core.scan.network import HUBER, has_collapsed, huber_weights, solve_network
+from core.model.robust import huber_weights
+from core.scan.features.extraction import gather
+from core.scan.network.adjustment import HUBER_AT, has_collapsed, solve_network
+from core.scan.network.equations import Adjustment
+from core.scan.network.geometry import CrossingRays
+from core.scan.network.line_errors import LineErrors
 from core.scan.reconstruct import reconstruct
+from core.scan.sweeps.locate import by_sweep, locate_together
 from core.simulate.scenario import Scenario
 from tests.scan.centreline_scan import ExactCrossings, ExactScan, Noise
 
@@ -226,7 +227,7 @@ def test_weights_do_not_run_away_where_two_sweeps_are_almost_one():
     equations, _ = adjusted(exact, exact.drawn(2))
     solution = equations.start()
     for _ in range(8):
-        solution = equations.improve(solution, huber_weights(solution.residuals))
+        solution = equations.improve(solution, huber_weights(solution.residuals, HUBER_AT))
     pull = solution.weights / solution.sigma**2
     assert pull.max() < 1000 * np.median(pull)  # by their own gradient they would pull a million times as hard
     sample = Sampled(exact, 20)
@@ -242,8 +243,8 @@ def test_rejecting_comes_late_and_never_silences_the_fan(block):
     solved = locate_together(block.drawn(1), block.line, block.scan.rig.camera, wrong)
     with_fan = block.table.with_fan
     assert np.mean(solved.weights[with_fan] < 0.05) < 0.25
-    assert any("Many crossings with the fan disagree" in note for note in solved.notes)
-    assert solved.scale > HUBER
+    assert any(note.code == "scan.fan_disagrees" for note in solved.notes)
+    assert solved.scale > HUBER_AT
 
 
 def offsets(noisy, clean, with_rows=False):

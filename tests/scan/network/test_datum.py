@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from core.scan.datum import datum_of
-from core.scan.locate import by_sweep, locate_together
+from core.scan.network.datum import datum_of
 from core.scan.reconstruct import reconstruct
+from core.scan.sweeps.locate import by_sweep, locate_together
 from core.simulate.scenario import Scenario
 from tests.scan.centreline_scan import ExactCrossings, ExactScan
 
@@ -34,7 +34,7 @@ def test_a_block_under_the_fan_needs_no_advice():
     assert not result.datum.weak
     assert result.datum.scale < 0.001
     sentence = f"The relief under the fan fixes the scale to {100 * result.datum.scale:.2g} %."
-    assert sentence in result.notes
+    assert sentence in map(str, result.notes)
 
 
 def test_a_flat_scene_is_advised_to_put_a_step_beside_the_part():
@@ -42,15 +42,15 @@ def test_a_flat_scene_is_advised_to_put_a_step_beside_the_part():
     result = reconstruct(scan.measured(1), scan.rig.camera, scan.rig.fan)
     assert result.datum.weak
     assert result.datum.depth_mm < 0.05  # its place is known all the same
-    assert "nothing fixes the scale of heights; put a step beside the part" in " ".join(result.notes)
+    assert "nothing fixes the scale of heights; put a step beside the part" in " ".join(map(str, result.notes))
 
 
 def test_few_sweeps_across_low_relief_are_weak():
     scan = ExactScan.of(Scenario(height_mm=6.0, scale=0.25, frames=14))
     found = datum(scan)
     assert found.weak
-    assert "fixes the scale only to" in found.sentence
-    assert "put a step beside the part" in found.sentence
+    assert "fixes the scale only to" in str(found.note)
+    assert "put a step beside the part" in str(found.note)
 
 
 def test_the_stated_scale_is_that_of_repeated_scans():

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from core.image.pieces import arc_length
-from core.image.smoothing import smooth
-from core.scan.fan_speckle import fan_speckle
+from core.image.stripes.runs import arc_length
+from core.image.stripes.smoothing import smooth
+from core.scan.network.fan_speckle import fan_speckle
 from core.simulate.scenario import Scenario
 from tests.scan.centreline_scan import ExactScan, Noise
 

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from core.scan.sweep_plane import solve_sweep_plane
+from core.scan.network.sweep_plane import solve_sweep_plane
 
 PI = np.array([0.004, 0.0005, 0.0018])
 SPREAD = np.array([[-0.05, -0.1, 1], [0.04, 0.02, 1], [-0.02, 0.12, 1], [0.08, -0.03, 1], [0.0, 0.05, 1]])

@@ -5,9 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from core.image.centreline import Centreline
+from core.image.stripes.centreline import Centreline
+from core.messages import plain
 from core.model import Camera, Fan, LightPlane
-from core.scan.preflight import Preflight
+from core.scan.preview.preflight import Preflight
 
 SIZE = (1920, 1374)
 CAMERA = Camera(SIZE, np.array([[2486.0, 0, 960], [0, 2486, 687], [0, 0, 1]]))
@@ -34,7 +35,7 @@ def states(preflight):
 
 
 def sentence(preflight, name):
-    return next(check.sentence for check in preflight.checks() if check.name == name)
+    return next(str(check.message) for check in preflight.checks() if check.name == name)
 
 
 def test_all_is_well():
@@ -52,7 +53,7 @@ def test_before_the_reference_only_the_calibration_is_known():
 @pytest.mark.parametrize(
     ("change", "name", "state", "said"),
     [
-        ({"departed": "the camera moved"}, "reference", "failed", "does not hold any more: the camera moved."),
+        ({"departed": plain("the camera moved")}, "reference", "failed", "does not hold any more: the camera moved."),
         ({"fan_lines": ((stripe(),), (), (stripe(),))}, "lines", "failed", "Only 2 of the fan's 3 lines"),
         ({"camera": None, "fan": None}, "lines", "unknown", "once camera and fan are calibrated"),
         ({"camera": None}, "calibration", "failed", "The camera is not calibrated"),

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from core.scan.bends import bends_of
+from core.scan.surface.bends import bends_of
 from tests.inspect.shape_scan import BALL, BALL_RADIUS, PIN_AXIS, PIN_RADIUS, ShapeScan
 
 SIZE = (1920, 1374)

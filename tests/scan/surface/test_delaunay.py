@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial import ConvexHull, Delaunay
 
-from core.scan.delaunay import delaunay
+from core.scan.surface.delaunay import delaunay
 
 
 def ordered(triangles):

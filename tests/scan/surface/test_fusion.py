@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from core.errors import Cancelled, InputError
-from core.scan.cloud import FAN
-from core.scan.fusion import fuse, with_normals
+from core.scan.surface.cloud import FAN
+from core.scan.surface.fusion import fuse, with_normals
 from tests.scan.stripes_on_planes import SIZE, cloud_of, on_plane, stripes
 
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from core.errors import InputError
-from core.scan.fusion import fuse, with_normals
-from core.scan.mesh import build_mesh
+from core.scan.surface.fusion import fuse, with_normals
+from core.scan.surface.mesh import build_mesh
 from tests.scan.stripes_on_planes import FOCAL, SIZE, cloud_of, on_plane, stripes
 
 

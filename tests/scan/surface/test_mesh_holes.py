@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from core.errors import InputError
-from core.scan.decimation import decimate, decimate_to
-from core.scan.mesh import vertex_normals
-from core.scan.mesh_holes import fill_holes, holes
-from core.scan.surface import Mesh
-from core.scan.triangles import Surroundings, Triangles
+from core.scan.surface.decimation import decimate, decimate_to
+from core.scan.surface.fused_surface import Mesh
+from core.scan.surface.mesh import vertex_normals
+from core.scan.surface.mesh_holes import fill_holes, holes
+from core.scan.surface.triangles import ProximityQuery, Triangles
 
 
 def surface(height, side=41, without=()):
@@ -65,7 +65,7 @@ def test_the_stated_error_of_a_decimated_mesh_is_that_of_its_worst_vertex():
     result = decimate(whole, 400)
     assert len(result.mesh.triangles) < 450
     corners = result.mesh.vertices[result.mesh.triangles]
-    away = np.abs(Surroundings(Triangles(corners)).nearest(whole.vertices).distance)
+    away = np.abs(ProximityQuery(Triangles(corners)).nearest(whole.vertices).distance)
     assert len(corners) > 360
     assert max(result.largest_mm, result.edge_mm) == pytest.approx(away.max())
     assert 0 < result.most_mm < result.largest_mm < 0.3
@@ -90,7 +90,7 @@ def test_the_border_stays_when_decimated(height, most_mm, without):
     assert 40 < len(result.mesh.triangles) < 80
     corners = result.mesh.vertices[result.mesh.triangles]
     used = np.unique(whole.triangles)
-    assert np.abs(Surroundings(Triangles(corners)).nearest(whole.vertices[used]).distance).max() < 0.5
+    assert np.abs(ProximityQuery(Triangles(corners)).nearest(whole.vertices[used]).distance).max() < 0.5
     assert flat_area(result.mesh) == pytest.approx(flat_area(whole), rel=0.005)
 
 

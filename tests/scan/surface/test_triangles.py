@@ -5,7 +5,7 @@ import tracemalloc
 import numpy as np
 import pytest
 
-from core.scan.triangles import Surroundings, Triangles
+from core.scan.surface.triangles import ProximityQuery, Triangles
 
 MANY_MB = 300
 
@@ -24,7 +24,7 @@ def wavy():
 def test_one_huge_triangle_among_many_small_ones_costs_no_memory(wavy):
     surface, places = wavy
     points = places[::8] + np.random.default_rng(0).normal(0, 0.05, places[::8].shape)
-    around = Surroundings(surface)
+    around = ProximityQuery(surface)
     tracemalloc.start()
     near = around.nearest(points, 2.0)
     peak = tracemalloc.get_traced_memory()[1] / 1e6
@@ -38,7 +38,7 @@ def test_it_is_the_nearest_of_all_whatever_its_size(wavy):
     size = 10.0 ** rng.uniform(-2, 2, 300)
     corners = rng.uniform(-50, 50, (300, 1, 3)) + size[:, None, None] * rng.normal(size=(300, 3, 3))
     surface, points = Triangles(corners), rng.uniform(-80, 80, (200, 3))
-    found = Surroundings(surface).nearest(points)
+    found = ProximityQuery(surface).nearest(points)
     weights = rng.dirichlet((0.5, 0.5, 0.5), 400)  # places strewn over each triangle, corners and edges too
     strewn = np.einsum("wk,tkd->twd", weights, corners).reshape(-1, 3)
     best = np.array([np.linalg.norm(strewn - point, axis=1).min() for point in points])

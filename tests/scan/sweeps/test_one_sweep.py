@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 
-from core.scan.fan_lines import UNASSIGNED
-from core.scan.network import solve_network
-from core.scan.one_sweep import KnownPlanes, judge_plane, locate_one
+from core.scan.network.adjustment import solve_network
+from core.scan.sweeps.fan_lines import UNASSIGNED
+from core.scan.sweeps.one_sweep import KnownPlanes, judge_plane, locate_one
 from tests.scan.synthetic import CAMERA, FAN, Network, network, sweeps
 
 NOISE_PX = 0.05

@@ -11,18 +11,18 @@ from core.acquire.source import Lasers, SourceSettings
 from core.errors import InputError
 from core.image.targets import BlackSquare, Checkerboard
 from core.simulate.calibration import CAMERA_GREY
-from core.simulate.exposure_timer import ExposureTimer
-from core.simulate.image import generator
-from core.simulate.live import SimulatedSource
-from core.simulate.live_scene import LiveScene, Moment
-from core.simulate.motion import CROSSING_S, PASS_S, HandPath
-from core.simulate.rays import ray_map
+from core.simulate.live.exposure_timer import ExposureTimer
+from core.simulate.live.motion import CROSSING_S, PASS_S, HandPath
+from core.simulate.live.scene import LiveScene, Moment
+from core.simulate.live.source import SimulatedSource
 from core.simulate.rig import paper_rig
 from core.simulate.sample import sample_scenario
 from core.simulate.scenario import Scenario
-from core.simulate.stage import aim_of, build_scene
+from core.simulate.scene.image import generator
+from core.simulate.scene.rays import ray_map
+from core.simulate.scene.stage import aim_of, build_scene
+from core.simulate.scene.targets import RenderContext, camera_picture, fan_light, room_light
 from core.simulate.sweep import sweep_range
-from core.simulate.targets import Studio, camera_picture, fan_light, room_light
 
 DARK, FAN, BOTH = Lasers(fan=False, hand=False), Lasers(fan=True, hand=False), Lasers(fan=True, hand=True)
 SMALL = Scenario(scale=0.1)
@@ -136,11 +136,11 @@ def test_the_hand_moves_on_steadily_and_its_light_is_always_a_sheet_the_camera_c
 def test_pictures_are_the_twins_own_whatever_part_of_them_is_drawn(scene):
     quiet = LiveScene(Scenario(scale=0.25, noise=0.0, speckle=0.0))
     rays = ray_map(quiet.rig.camera)
-    studio = Studio(quiet.rig, rays, quiet._sensor)
+    context = RenderContext(quiet.rig, rays, quiet._sensor)
     for time_s in (0.5, 2.0, 4.4):
         pose, _ = quiet._motions["camera"].at(time_s)
         plate = quiet._plates["camera"]
-        whole = camera_picture(studio, plate, pose, CAMERA_GREY, generator(1, "none"))
+        whole = camera_picture(context, plate, pose, CAMERA_GREY, generator(1, "none"))
         drawn = quiet.picture(Moment("camera", DARK, time_s, 0.0, 3))
         assert np.array_equal(drawn, whole)
     pose, _ = quiet._motions["planes"].at(0.5)

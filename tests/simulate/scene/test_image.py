@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 
-from core.simulate.image import Sensor, blurred, generator
 from core.simulate.rig import Optics
-from core.simulate.speckle import Speckle
+from core.simulate.scene.image import Sensor, blurred, generator
+from core.simulate.scene.speckle import Speckle
 
 PLAIN = Optics()
 

@@ -7,13 +7,13 @@ import pytest
 from scipy.optimize import brentq
 
 from core.model import LightPlane, Pose
-from core.simulate.image import blurred
-from core.simulate.laser import Sheet, fan_sheets, laser_light
-from core.simulate.objects import box
-from core.simulate.rays import ray_map
 from core.simulate.rig import paper_rig
-from core.simulate.scene import Scene, Sphere, surface_maps
-from core.simulate.stage import WORK_POINT, table_pose
+from core.simulate.scene.image import blurred
+from core.simulate.scene.laser import Sheet, fan_sheets, laser_light
+from core.simulate.scene.objects import box
+from core.simulate.scene.rays import ray_map
+from core.simulate.scene.scene import Scene, Sphere, surface_maps
+from core.simulate.scene.stage import WORK_POINT, table_pose
 
 RIG = paper_rig(0.5)
 CAMERA = RIG.camera
@@ -52,7 +52,7 @@ def meeting(depth_of_ray, plane: LightPlane, axis: int, at: int, low: float, hig
 
     def off(t: float) -> float:
         ray = CAMERA.rays([[at, t] if axis == 0 else [t, at]])[0]
-        return plane.distances((ray * depth_of_ray(ray))[None])[0]
+        return float(plane.distances((ray * depth_of_ray(ray))[None])[0])
 
     return brentq(off, low, high, xtol=1e-9)
 
@@ -60,7 +60,7 @@ def meeting(depth_of_ray, plane: LightPlane, axis: int, at: int, low: float, hig
 def table_depth(ray: np.ndarray) -> float:
     pose = table_pose()
     up = pose.rotation[:, 2]
-    return (up @ pose.translation) / (ray @ up)
+    return float((up @ pose.translation) / (ray @ up))
 
 
 @pytest.mark.parametrize("line", [0, 1, 2])

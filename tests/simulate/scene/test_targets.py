@@ -6,16 +6,16 @@ import pytest
 
 from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid
 from core.model import Pose
-from core.simulate.boards import BLACK, WHITE, printed
 from core.simulate.calibration import PLATES, CalibrationPictures
-from core.simulate.image import Sensor, generator
-from core.simulate.patterns import Pattern, draw_pattern
 from core.simulate.poses import camera_poses, plane_poses
-from core.simulate.rays import ray_map
 from core.simulate.recording import scenario_rig
 from core.simulate.rig import Optics, paper_rig
 from core.simulate.scenario import Scenario
-from core.simulate.targets import Studio, camera_picture, fan_centres
+from core.simulate.scene.boards import BLACK, WHITE, printed
+from core.simulate.scene.image import Sensor, generator
+from core.simulate.scene.patterns import Pattern, draw_pattern
+from core.simulate.scene.rays import ray_map
+from core.simulate.scene.targets import RenderContext, camera_picture, fan_centres
 
 RIG = paper_rig(0.5)
 CAMERA = RIG.camera
@@ -27,7 +27,7 @@ def views_of(target, count: int):
     """Noise-free 16-bit pictures of a plate, with their poses."""
     pattern = printed(target)
     for pose in camera_poses(CAMERA, pattern.outline, count, generator(5, "test")):
-        yield camera_picture(Studio(RIG, RAYS, QUIET), pattern, pose, 200.0, generator(5, "none")), pose
+        yield camera_picture(RenderContext(RIG, RAYS, QUIET), pattern, pose, 200.0, generator(5, "none")), pose
 
 
 @pytest.mark.parametrize("roll", [0.0, 0.003, 0.1, 0.7])

@@ -11,19 +11,20 @@ import numpy as np
 import pytest
 from PySide6.QtWidgets import QApplication
 
-from core.calibrate.seen_views import SeenView, SeenViews
+from core.calibrate.camera.views import SeenView, SeenViews
 from core.errors import InputError
 from core.files.pictures import write_picture
-from core.files.project import Accepted, Project, new_project
+from core.files.project.data import Accepted, Project, new_project
+from core.messages import plain
 from tests.calibrate.camera_views import TRUTH, synthetic_views
 from tests.workbench.hand_lane import HandLane
 from tests.workbench.pages import scan_cases
-from workbench import jobs
 from workbench.bench import Bench
 from workbench.notices import Notices
 from workbench.project_model import ProjectModel
 from workbench.settings import AppSettings
-from workbench.tasks import Lane
+from workbench.work import jobs
+from workbench.work.tasks import Lane
 
 VIEWS = 9
 
@@ -59,8 +60,8 @@ def seen(folder: Path, project: Project) -> SeenViews:
     views = [replace(view, name=f"camera/{view.name}") for view in synthetic_views(1, VIEWS - 1)]
     rng = np.random.default_rng(5)
     views[3] = replace(views[3], uv=views[3].uv + rng.normal(0, 0.06, views[3].uv.shape))
-    lost = SeenView(f"camera/view{VIEWS - 1:02d}.png", None, "no checkerboard", TRUTH.image_size)
-    return SeenViews((*(SeenView(view.name, view, "", TRUTH.image_size) for view in views), lost), str(folder))
+    lost = SeenView(f"camera/view{VIEWS - 1:02d}.png", None, plain("no checkerboard"), TRUTH.image_size)
+    return SeenViews((*(SeenView(view.name, view, None, TRUTH.image_size) for view in views), lost), str(folder))
 
 
 @pytest.fixture

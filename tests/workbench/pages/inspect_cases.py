@@ -4,16 +4,20 @@ from __future__ import annotations
 
 from dataclasses import replace
 from datetime import UTC, datetime
+from typing import Any
 
 import numpy as np
 
-from core.files.project import Done, Project, Repeat, new_project
-from core.files.project_keys import finished
-from core.files.rig import GaugeSpec
-from core.inspect.inspection import DEPTH, HEIGHT, LOWER, UPPER, InspectionView, Relief, ShownMesh
+from core.files.project.data import Done, Project, Repeat, new_project
+from core.files.project.keys import finished
+from core.files.recording.rig import GaugeSpec
+from core.inspect.conformity import Verdict
 from core.inspect.results import Contribution, Face, GaugeResult
+from core.inspect.shown.shown_scan import DEPTH, HEIGHT, LOWER, UPPER, InspectionView, Relief, ShownMesh
+from core.inspect.uncertainty.causes import CAMERA
+from core.messages import plain
 from core.model import LightPlane
-from workbench.pages.inspect_presenter import InspectPresenter
+from workbench.pages.inspect.presenter import InspectPresenter
 
 POINTS = 600
 SIZE = (64, 48)
@@ -24,10 +28,10 @@ LOWER_OUTLINE = np.array([[5.0, 5.0], [60.0, 5.0], [60.0, 44.0], [5.0, 44.0]])
 AT = datetime(2025, 3, 4, 10, 30, tzinfo=UTC)
 
 
-def project(**gauge: object) -> Project:
+def project(**gauge: Any) -> Project:
     """A project with a recording; nominal value and tolerance as given."""
     made = new_project("block")
-    spec = GaugeSpec(**gauge) if gauge else None  # type: ignore[arg-type]
+    spec = GaugeSpec(**gauge) if gauge else None
     return replace(made, rig=replace(made.rig, gauge=spec), sources=replace(made.sources, scan=RECORDING))
 
 
@@ -39,16 +43,16 @@ def results(made: Project, *, inspected: bool = True) -> dict[str, Done]:
     return done
 
 
-def gauge(thickness_mm: float = 50.012, *, verdict: str = "conforming", **more: object) -> GaugeResult:
+def gauge(thickness_mm: float = 50.012, *, verdict: str = "conforming", **more: Any) -> GaugeResult:
     """Half of the points on either face."""
     upper, lower = np.arange(0, POINTS, 2), np.arange(1, POINTS, 2)
-    faces = [
+    over, below = (
         Face(LightPlane.from_normal([0.0, 0.0, 1.0], depth), indices, np.zeros(len(indices)), flatness, 0.01)
         for indices, depth, flatness in ((upper, 500.0, 0.031), (lower, 550.0, 0.042))
-    ]
+    )
     return GaugeResult(
-        thickness_mm, 0.012, 2.0, *faces, 0.0005, (Contribution("camera calibration", 0.002),), 50.0, 0.2, verdict,
-        np.array([0.0, 0.0, 1.0]), "distance of two parallel planes", **more,
+        thickness_mm, 0.012, 2.0, over, below, 0.0005, (Contribution(CAMERA, 0.002),), 50.0, 0.2, Verdict(verdict),
+        np.array([0.0, 0.0, 1.0]), plain("distance of two parallel planes"), **more,
     )  # fmt: skip
 
 
@@ -102,5 +106,5 @@ def entered(bench, folder, project, qtbot) -> InspectPresenter:
     for step, done in results(made.project).items():
         made.model.record(step, done)
     made.entered()
-    qtbot.waitUntil(lambda: made.view is not None and not made.stale)
+    qtbot.waitUntil(lambda: made.scan.view is not None and not made.scan.stale)
     return made

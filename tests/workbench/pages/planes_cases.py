@@ -12,18 +12,19 @@ from typing import Any, cast
 
 import numpy as np
 
-from core.calibrate.pose_features import PoseFeatures
-from core.calibrate.pose_stages import NumberedStripe, PoseStages
+from core.calibrate.fan.pose_features import PoseFeatures
+from core.calibrate.fan.pose_stages import NumberedStripe, PoseStages
 from core.calibrate.results import FanCalibration
 from core.errors import InputError
-from core.files.fan_file import fan_id
 from core.files.pictures import write_picture
-from core.files.project import Accepted, Project, ProjectInfo, Sources
-from core.pipeline.planes_step import solve_planes
+from core.files.project.data import Accepted, Project, ProjectInfo, Sources
+from core.files.results.fan_file import fan_id
+from core.messages import Field, Message, plain
+from core.pipeline.steps.planes_step import solve_planes
 from tests.calibrate.fan_scenes import CAMERA, Noise, features, poses
 from tests.workbench.hand_lane import HandLane
-from workbench import jobs
 from workbench.bench import Bench
+from workbench.work import jobs
 
 POSES = 7
 """The last of them shows no plate."""
@@ -36,7 +37,7 @@ def measured() -> tuple[PoseFeatures, ...]:
     """What finding target and stripes gives."""
     seen = features(poses(POSES - 1, 1), Noise(), 2)
     named = [replace(pose, name=f"pose{number:02d}") for number, pose in enumerate(seen)]
-    return (*named, PoseFeatures(f"pose{POSES - 1:02d}", None, (), NO_PLATE))
+    return (*named, PoseFeatures(f"pose{POSES - 1:02d}", None, (), plain(NO_PLATE)))
 
 
 @lru_cache(maxsize=32)
@@ -78,7 +79,9 @@ class Planes:
     def find(self, folder: Path, project: Project) -> tuple[PoseFeatures, ...]:
         if "Checker" in type(project.rig.plane_target).__name__:
             raise InputError(
-                "none of the 7 poses can be used", where="planes", todo="check laser_fan.lines in rig.toml"
+                "none of the 7 poses can be used",
+                where="planes",
+                todo=Message("fan.check_lines", "check {field}", field=Field("laser_fan.lines")),
             )
         return measured()
 

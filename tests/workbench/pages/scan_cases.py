@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
-from core.files.project_results import ScanSummary
-from core.image.centreline import Centreline
-from core.image.stripe import StripeSettings
-from core.live.events import LiveView, ScanDetail, ScanStage
-from core.scan.frame_preview import FramePreview
-from core.scan.frame_record import FrameRecord
-from core.scan.preview_cloud import PreviewCloud
-from core.scan.scan_look import ScanLook, reasons_counted
-from core.scan.stages import FrameStages
+from core.files.project.results import ScanSummary
+from core.image.stripes.centreline import Centreline
+from core.image.stripes.stripe import StripeSettings
+from core.messages import plain
+from core.pipeline.live.events import LiveView, ScanDetail, ScanStage
+from core.scan.features.frames import FrameRecord
+from core.scan.preview.shown import FramePreview, FrameStages, PreviewCloud, ShownScan, reasons_counted
 
 FRAMES = 6
 SIZE = (64, 48)
@@ -35,17 +35,17 @@ def line(u0: float, u1: float, v: float) -> Centreline:
 
 def records() -> tuple[FrameRecord, ...]:
     used = [
-        FrameRecord(n, name_of(n), True, "", 2, 60, 3, 3, 20, 1, 120.0, 100 * (n + 1), 0.01 * (n + 1))
+        FrameRecord(n, name_of(n), True, None, 2, 60, 3, 3, 20, 1, 120.0, 100 * (n + 1), 0.01 * (n + 1))
         for n in range(FRAMES - 1)
     ]
-    return (*used, FrameRecord(FRAMES - 1, name_of(FRAMES - 1), False, UNCERTAIN))
+    return (*used, FrameRecord(FRAMES - 1, name_of(FRAMES - 1), False, plain(UNCERTAIN)))
 
 
-def look(points: int = 1500) -> ScanLook:
+def look(points: int = 1500) -> ShownScan:
     rng = np.random.default_rng(1)
     frames = records()
-    return ScanLook(
-        points=rng.normal(0, 20, (points, 3)).astype(np.float32) + np.float32([0, 0, 600]),
+    return ShownScan(
+        points=rng.normal(0, 20, (points, 3)).astype(np.float32) + np.array([0, 0, 600], np.float32),
         sigma=np.full(points, 0.02, np.float32),
         uv=np.column_stack([np.arange(points) % SIZE[0], np.full(points, 20)]).astype(np.float32),
         frame=(np.arange(points) % FRAMES).astype(np.int32),
@@ -57,14 +57,14 @@ def look(points: int = 1500) -> ScanLook:
         left_out=reasons_counted(frames),
         share=0.63,
         stripe=StripeSettings(5.9, 91.5),
-        notes=("The relief fixes the scale well.",),
+        notes=(plain("The relief fixes the scale well."),),
         problems=(),
     )
 
 
-def summary(*, gauge: object = True) -> ScanSummary:
-    no_gauge = "" if gauge else "there are no two parallel faces"
-    return ScanSummary(records(), 1500, 2800, gauge, no_gauge, (), "cal", {})  # type: ignore[arg-type]
+def summary(*, gauge: Any = True) -> ScanSummary:
+    no_gauge = None if gauge else plain("There are no two parallel faces")
+    return ScanSummary(records(), 1500, 2800, gauge, no_gauge, (), "cal", {})
 
 
 def preview(number: int, *, condition: float = 120.0, hints: tuple[str, ...] = ()) -> FramePreview:
@@ -77,7 +77,9 @@ def preview(number: int, *, condition: float = 120.0, hints: tuple[str, ...] = (
         sigma_mm=tuple(np.full(len(piece), 0.05) for piece in pieces),
         crossing_uv=np.array([[10.0, 12.0], [30.0, 12.0], [50.0, 12.0]]),
         crossing_status=np.array([0, 1, 2], np.int8),
-        crossing_reason=("Good: it crosses line 1 of the fan at 80°.", WEAK, "Left out: the lines bend too much here."),
+        crossing_reason=tuple(
+            map(plain, ("Good: it crosses line 1 of the fan at 80°.", WEAK, "Left out: the lines bend too much here."))
+        ),
         crossing_with_fan=np.ones(3, bool),
         condition=condition,
         speed_px=1.0,
@@ -85,13 +87,13 @@ def preview(number: int, *, condition: float = 120.0, hints: tuple[str, ...] = (
         point_sigma=np.full(30, 0.05),
         point_intensity=np.full(30, 90.0),
         point_uv=np.full((30, 2), 12.0),
-        hints=hints,
-        reason="",
+        hints=tuple(map(plain, hints)),
+        reason=None,
     )
 
 
-def detail(number: int, *, stage: ScanStage = "scanning", renewed: bool = False, **more: object) -> ScanDetail:
-    seen = preview(number, **more)  # type: ignore[arg-type]
+def detail(number: int, *, stage: ScanStage = "scanning", renewed: bool = False, **more: Any) -> ScanDetail:
+    seen = preview(number, **more)
     cells = np.zeros((6, 8), bool)
     cells[: number + 1] = True
     none = np.zeros(len(seen.points), np.float32)
@@ -103,15 +105,16 @@ def detail(number: int, *, stage: ScanStage = "scanning", renewed: bool = False,
     return ScanDetail(number, stage, seen, fan, cells, np.ones((6, 8), bool), 0.63, points, renewed)
 
 
-def live_view(number: int, **more: object) -> LiveView:
+def live_view(number: int, **more: Any) -> LiveView:
     picture = np.full((SIZE[1] // 2, SIZE[0] // 2), 40, np.uint8)
-    return LiveView(picture, 2, number, 20.0, number + 1, 0, detail(number, **more))  # type: ignore[arg-type]
+    return LiveView(picture, 2, number, 20.0, number + 1, 0, detail(number, **more))
 
 
 def stages(name: str, *, calibrated: bool = True) -> FrameStages:
     number = int(name[-8:-4])
-    grey = [np.full(SIZE[::-1], level, np.uint8) for level in (40, 80, 120)]
+    picture, difference, ridge = (np.full(SIZE[::-1], level, np.uint8) for level in (40, 80, 120))
     return FrameStages(
-        number, name, *grey, 1.7, (line(4, 60, 10.0 + number),), (line(2, 62, 8.0), line(2, 62, 18.0)), (0, -1),
-        preview(number) if calibrated else None, 0.0, False, "",
+        number, name, picture, difference, ridge, 1.7,
+        (line(4, 60, 10.0 + number),), (line(2, 62, 8.0), line(2, 62, 18.0)), (0, -1),
+        preview(number) if calibrated else None, 0.0, False, None,
     )  # fmt: skip

@@ -1,7 +1,7 @@
 import pytest
 
-from workbench.views.meters import HintBar, Meter
-from workbench.views.value_rows import ValueRows, Verdict
+from workbench.views.lists.value_rows import ValueRows, Verdict
+from workbench.views.plots.meters import HintBar, Meter
 
 
 def test_values_are_shown_beside_their_labels_and_rows_may_go(qtbot, theme):

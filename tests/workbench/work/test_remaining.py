@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import pytest
 
-from workbench.remaining import Remaining, in_words
+from workbench.work.remaining import Remaining, in_words
 
 
 class Clock:

@@ -1,21 +1,22 @@
 from __future__ import annotations
 
 import os
+import sys
 import time
 import weakref
-from types import SimpleNamespace
 from typing import Any
 
 import pytest
+import shiboken6
+from PySide6.QtCore import QObject
 from PySide6.QtWidgets import QApplication
 
 from core.errors import InputError
-from workbench.bench import Bench
-from workbench.jobs import Job
-from workbench.problems import details, sentence
-from workbench.processes import ONE_THREAD
-from workbench.tasks import Lane, Task
-from workbench.worker import Failure
+from workbench.bench import ONE_THREAD, Bench
+from workbench.language import text_of
+from workbench.work.jobs import Job
+from workbench.work.tasks import Lane, Task
+from workbench.work.worker import Failure
 
 
 def job(name: str) -> Job:
@@ -30,6 +31,7 @@ class Answers:
 
     def run(self, lane: Lane, name: str, *args: Any, **more: Any) -> Task:
         return lane.run(
+            lane,
             job(name),
             *args,
             label=name,
@@ -58,9 +60,23 @@ def test_a_job_gives_its_result_and_tells_its_progress(qtbot: Any, lane: Lane) -
     assert told == [("doubling", 1, 1)]
 
 
+def test_an_answer_whose_receiver_is_gone_is_dropped_and_the_job_is_done_all_the_same(qtbot: Any, lane: Lane) -> None:
+    got: list[Any] = []
+    receiver, other = QObject(), QObject()
+    for one in (receiver, other):
+        lane.run(one, job("double"), 21, label="double", on_done=got.append, on_failed=got.append)
+    lane.run(receiver, job("refuse"), label="refuse", on_done=got.append, on_failed=got.append)
+    ended: list[str] = []
+    lane.task_ended.connect(lambda task: ended.append(task.label))
+    shiboken6.delete(receiver)
+    finish(qtbot, lane)
+    assert got == [42]
+    assert ended == ["double", "double", "refuse"]
+
+
 def test_threads_of_a_lane_do_not_wait_long_for_one_another(qtbot: Any, lane: Lane) -> None:
     got: list[float] = []
-    lane.run(Job("sys:getswitchinterval"), label="lock", on_done=got.append, offers={})
+    lane.run(lane, Job("sys:getswitchinterval"), label="lock", on_done=got.append, offers={})
     finish(qtbot, lane)
     assert got == [pytest.approx(0.001)]
 
@@ -97,7 +113,7 @@ def test_another_job_of_the_same_label_keeps_waiting(qtbot: Any, lane: Lane) -> 
     answers = Answers()
     answers.run(lane, "double", 1)
     answers.run(lane, "double", 2)
-    lane.run(job("refuse"), label="double", on_done=lambda _: None, replace_waiting=True)
+    lane.run(lane, job("refuse"), label="double", on_done=lambda _: None, replace_waiting=True)
     finish(qtbot, lane)
     assert answers.got == [("done", 2), ("done", 4)]
 
@@ -109,8 +125,7 @@ def test_bad_input_arrives_as_its_one_sentence(qtbot: Any, lane: Lane) -> None:
     ((kind, problem),) = answers.got
     assert kind == "failed"
     assert isinstance(problem, InputError)
-    assert sentence(problem) == "view03.png: the board has 8 × 6 corners, not 9 × 6; check rig.toml."
-    assert details(problem) == ""
+    assert text_of(problem) == "view03.png: the board has 8 × 6 corners, not 9 × 6; check rig.toml."
 
 
 @pytest.mark.parametrize(("name", "kind"), [("crash", "ZeroDivisionError"), ("die", "ProcessEnded")])
@@ -136,19 +151,16 @@ def test_a_result_that_cannot_be_sent_is_a_failure(qtbot: Any, lane: Lane) -> No
 def test_a_process_that_cannot_be_started_fails_the_job_and_the_lane_goes_on(
     qtbot: Any, lane: Lane, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def refuse(_: Any) -> None:
-        raise OSError("too many open files")
-
     lane.close()
     answers = Answers()
     with monkeypatch.context() as patch:
-        patch.setattr(lane._context.Process, "start", refuse)
+        patch.setattr(sys, "executable", "/no/such/python")
         answers.run(lane, "double", 1)
         assert answers.got == [], "told before whoever asked could know of the task"
         finish(qtbot, lane)
     ((kind, problem),) = answers.got
     assert kind == "failed"
-    assert "too many open files" in sentence(problem)
+    assert "No such file" in problem.details
     answers.run(lane, "double", 4)
     finish(qtbot, lane)
     assert answers.got[1:] == [("done", 8)]
@@ -190,13 +202,14 @@ def test_a_waiting_job_can_be_cancelled_before_it_begins(qtbot: Any, lane: Lane)
 def test_events_arrive_while_the_job_runs_and_before_its_result(qtbot: Any, lane: Lane) -> None:
     answers = Answers()
     task = answers.run(lane, "watched", 5, offers={"progress": "progress", "watch": "watch"})
-    task.told.connect(lambda value: answers.got.append(("event", value)))
+    task.reported.connect(lambda value: answers.got.append(("event", value)))
     finish(qtbot, lane)
     assert answers.got == [*(("event", i) for i in range(5)), ("done", 5)]
 
 
 def test_a_view_is_sent_only_after_the_last_one_was_shown(qtbot: Any, lane: Lane) -> None:
-    answers, views = Answers(), []
+    answers = Answers()
+    views: list[str] = []
     task = answers.run(lane, "echo", offers={"channel": "channel"})
     task.view.connect(views.append)
     for command in ("a", "b", "c"):
@@ -220,6 +233,7 @@ def test_a_lane_sees_its_environment_and_carries_no_window(qtbot: Any, monkeypat
         finish(qtbot, lane)
     finally:
         lane.close()
+        lane.wait_until_closed()
     assert answers.got == [("done", ("1", False))]
     assert os.environ["OMP_NUM_THREADS"] == "7"
 
@@ -234,6 +248,7 @@ def test_what_is_done_ahead_is_done_piece_by_piece_while_no_job_waits(qtbot: Any
         finish(qtbot, lane)
     finally:
         lane.close()
+        lane.wait_until_closed()
     (_, first), (_, second) = answers.got
     assert first < second < 50
 
@@ -242,7 +257,7 @@ def test_a_lane_that_nobody_holds_any_more_ends_before_its_tasks(
     qapp: QApplication, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Ended by its last task it would delete that task, its child, a second time: the program would crash."""
-    monkeypatch.setattr(Lane, "_start", lambda lane: setattr(lane, "_connection", SimpleNamespace(send=lambda _: None)))
+    monkeypatch.setattr(Lane, "prepare", lambda _: None)
     lane, answers = Lane("short"), Answers()
     answers.run(lane, "double", 1)
     lane.close()

@@ -8,14 +8,13 @@ from functools import cache
 import numpy as np
 import pytest
 
-from core.image.centreline import Centreline
-from core.image.cuts import cuts_of
-from core.image.influence import REACH, influence, weight_at
-from core.image.likelihood import residuals
-from core.image.noise import NoiseModel
-from core.image.profile import Sections
-from core.image.speckle import NO_SPECKLE, Speckle, measure_speckle
-from core.image.stripes import StripeSettings, extract_centrelines
+from core.image.stripes.centreline import Centreline
+from core.image.stripes.extraction import StripeSettings, extract_centrelines
+from core.image.stripes.likelihood.influence import REACH, influence, weight_at
+from core.image.stripes.likelihood.refinement import cuts_of, residuals
+from core.image.stripes.noise import NoiseModel
+from core.image.stripes.profile import Sections
+from core.image.stripes.speckle import NO_SPECKLE, Speckle, measure_speckle
 from tests.image.bound import Stripe, bound_of_mean, bound_per_root_px
 from tests.image.synthetic_stripes import Distance, circle, draw, expose, speckle, straight
 

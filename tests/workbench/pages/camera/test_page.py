@@ -8,13 +8,14 @@ from PySide6.QtCore import QMimeData, QPoint, QPointF, Qt, QUrl
 from PySide6.QtGui import QDragEnterEvent, QDropEvent
 from PySide6.QtWidgets import QApplication
 
-from core.live.events import CameraDetail, LiveEnded, LiveStarted, LiveTaken, LiveView
+from core.messages import plain
+from core.pipeline.live.events import CameraDetail, LiveEnded, LiveStarted, LiveTaken, LiveView
 from tests.workbench.hand_lane import HandLane
-from workbench import jobs
-from workbench.pages.camera_page import CameraPage
-from workbench.pages.camera_presenter import CameraPresenter
-from workbench.pages.camera_stage import Stage
+from workbench.pages.calibration.stage import Stage
+from workbench.pages.camera.page import CameraPage
+from workbench.pages.camera.presenter import CameraPresenter
 from workbench.views import ask
+from workbench.work import jobs
 
 LEFT = Qt.MouseButton.LeftButton
 
@@ -44,13 +45,13 @@ def lane(camera_bench):
 
 
 def live_view(uv=None, sentence="Hold still.", missing=("Record at least 10 views; there are 2.",)):
-    detail = CameraDetail(7, uv, sentence, np.eye(12, 16, dtype=bool), missing, 2, True)
+    detail = CameraDetail(7, uv, plain(sentence), np.eye(12, 16, dtype=bool), tuple(map(plain, missing)), 2, True)
     return LiveView(np.zeros((48, 64), np.uint8), 10, 7, 12.0, 2, 0, detail)
 
 
 def start_live(page, lane, qtbot):
     qtbot.mouseClick(page.live_panel.start, LEFT)
-    lane.current.told.emit(LiveStarted("Camera 1", (640, 480)))
+    lane.current.reported.emit(LiveStarted("Camera 1", (640, 480)))
 
 
 def test_an_empty_page_says_what_to_do_next_and_offers_it(page, qtbot, monkeypatch, views_folder):
@@ -92,6 +93,7 @@ def test_views_are_listed_and_unchecking_one_leaves_it_out(solved, qtbot):
 def test_a_click_on_a_bar_shows_the_view_with_corners_and_residuals(solved, qtbot):
     solved.bars.bar_clicked.emit("camera/view05.png")
     qtbot.waitUntil(lambda: "residuals" in solved.picture.image.layer_names())
+    solved.refreshing.at_once()
     assert solved.views.current() == "camera/view05.png"
     assert solved.picture.line.text().startswith("view05.png: RMS 0.0")
 
@@ -166,8 +168,8 @@ def test_a_live_picture_is_answered_while_another_page_is_shown(page, lane, qtbo
 
 def test_views_taken_are_listed_and_can_be_put_aside(page, lane, qtbot):
     start_live(page, lane, qtbot)
-    lane.current.told.emit(LiveTaken("view00", np.zeros((30, 40), np.uint8)))
-    lane.current.told.emit(LiveTaken("view01", np.zeros((30, 40), np.uint8)))
+    lane.current.reported.emit(LiveTaken("view00", np.zeros((30, 40), np.uint8)))
+    lane.current.reported.emit(LiveTaken("view01", np.zeros((30, 40), np.uint8)))
     assert [name for name, _ in page.presenter.live_views] == ["camera/view00", "camera/view01"]
     page.views.toggled_together.emit(("camera/view00",), False)
     assert [name for name, _ in page.presenter.live_views] == ["camera/view01"]
@@ -198,7 +200,7 @@ def test_it_is_said_when_nothing_is_missing_any_more(page, lane, qtbot):
 def test_the_user_may_look_at_another_tab_while_views_are_taken(page, lane, qtbot):
     start_live(page, lane, qtbot)
     page.tabs.setCurrentWidget(page.history)
-    lane.current.told.emit(LiveTaken("view00", np.zeros((30, 40), np.uint8)))
+    lane.current.reported.emit(LiveTaken("view00", np.zeros((30, 40), np.uint8)))
     assert page.tabs.currentWidget() is page.history
 
 

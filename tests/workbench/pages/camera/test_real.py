@@ -4,10 +4,10 @@ from pathlib import Path
 
 import pytest
 
-from core.files.project import project_from_set
+from core.files.project.folder import project_from_set
 from workbench.bench import Bench
-from workbench.pages.camera_presenter import CameraPresenter
-from workbench.pages.camera_stage import Stage
+from workbench.pages.calibration.stage import Stage
+from workbench.pages.camera.presenter import CameraPresenter
 
 
 @pytest.fixture

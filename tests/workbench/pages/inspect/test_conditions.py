@@ -6,15 +6,17 @@ from typing import cast
 import numpy as np
 import pytest
 
-from core.inspect.conditions import Master, Temperature
-from core.inspect.feature_spec import FeatureSpec
-from core.inspect.inspection_plan import InspectionPlan, PartFrame
+from core.inspect.plan.conditions import Master, Temperature
+from core.inspect.plan.feature_spec import FeatureSpec
+from core.inspect.plan.inspection_plan import InspectionPlan, PartFrame
+from core.inspect.uncertainty.causes import CAMERA, MASTER_MEASURED
+from core.messages import plain
 from tests.workbench.hand_lane import HandLane
 from tests.workbench.pages import inspect_cases as cases
-from workbench import jobs
-from workbench.pages import inspect_condition_values as fields
-from workbench.pages.inspect_page import InspectPage
+from workbench.pages.inspect.features import conditions as fields
+from workbench.pages.inspect.page import InspectPage
 from workbench.views import ask
+from workbench.work import jobs
 
 PLAN = InspectionPlan(
     (
@@ -25,7 +27,7 @@ PLAN = InspectionPlan(
         FeatureSpec("ball", "sphere"),
     )
 )
-MASTER = Master("Block 50 no. 7", 50.0, 0.0, 50.004, (("camera calibration", 0.003), ("own noise", 0.004)), (), False)
+MASTER = Master("Block 50 no. 7", 50.0, 0.0, 50.004, ((CAMERA, 0.003), (plain("own noise"), 0.004)), (), False)
 
 
 @pytest.fixture
@@ -40,12 +42,12 @@ def presenter(hand_bench, tmp_path, qtbot):
 
 @pytest.fixture
 def conditions(presenter):
-    return presenter.features.conditions
+    return presenter.conditions
 
 
 @pytest.fixture
 def page(presenter, qtbot, monkeypatch):
-    monkeypatch.setenv("TRISECT_NO_OPENGL", "painter")
+    monkeypatch.setenv("TRISECT_NO_OPENGL", "none")
     made = InspectPage(presenter)
     qtbot.addWidget(made)
     made.resize(1280, 800)
@@ -117,7 +119,7 @@ def test_a_master_waits_until_all_of_it_is_known(presenter, conditions):
     assert said[-1] == ""
     conditions.set_value(fields.U_MEASURED, 0.005)
     conditions.set_value(fields.COMPARED + "ball", False)
-    wanted = Master("Block", 50.001, 0.0, 50.006, (("measurement", 0.005),), ("height",), True)
+    wanted = Master("Block", 50.001, 0.0, 50.006, ((MASTER_MEASURED, 0.005),), ("height",), True)
     assert presenter.features.plan.master == wanted
     conditions.set_value(fields.COMPARED + "height", False)
     assert presenter.features.plan.master == wanted and "Choose a feature" in conditions.complaint("master")
@@ -146,7 +148,7 @@ def test_frame_and_master_follow_a_new_name_and_hold_what_they_rest_on(presenter
     qtbot.waitUntil(lambda: features.plan.master is not None)
     for name, new in (("height", "block"), ("top", "table")):
         features.choose(name)
-        features.edit.set_value("name", new)
+        presenter.feature.set_value("name", new)
     assert features.plan.master.features == ("block", "ball") and features.plan.frame.names == ("table", "side")
     features.remove("ball")
     assert features.plan.master.features == ("block",)
@@ -156,21 +158,29 @@ def test_frame_and_master_follow_a_new_name_and_hold_what_they_rest_on(presenter
 
 def test_the_panel_shows_what_is_set_and_sets_what_is_clicked(page, presenter, qtbot):
     panel = page.conditions
+    page.refreshing.at_once()
     assert set(panel.forms["temperature"].values()) == {fields.AT_20}
     panel.forms["temperature"].editor(fields.AT_20).click()
+    page.refreshing.at_once()
     assert presenter.features.plan.temperature is not None
     assert page.conditions_fold.text() == "Conditions and frame (20 °C)"
     qtbot.waitUntil(lambda: panel.forms["temperature"].values().get("part_celsius") == 23.5)
     choice = panel.forms["frame"].editor("primary")
     choice.setCurrentIndex(choice.findText("top"))
     choice.activated.emit(choice.currentIndex())
+    page.refreshing.at_once()
     qtbot.waitUntil(lambda: "secondary" in panel.forms["frame"].values())
+    page.refreshing.at_once()
     assert "second feature" in panel.complaints["frame"].text()
     panel.forms["master"].editor(fields.WITH_MASTER).click()
+    page.refreshing.at_once()
     qtbot.waitUntil(lambda: panel.take.isVisible())
+    page.refreshing.at_once()
     assert fields.COMPARED + "ball" in panel.forms["master"].values()
     undo(presenter)
+    page.refreshing.at_once()
     qtbot.waitUntil(lambda: set(panel.forms["temperature"].values()) == {fields.AT_20})
+    page.refreshing.at_once()
     assert all(
         form.help_of(key) for form in panel.forms.values() for key in form.values() if not key.startswith("comp")
     )

@@ -5,9 +5,10 @@ import math
 import pytest
 
 from core.inspect.characteristic import Limits
-from core.inspect.feature_spec import Auto, FeatureSpec, PointsOf, Polygon
-from core.inspect.inspection_plan import InspectionPlan
-from workbench.pages import inspect_feature_values as fields
+from core.inspect.plan.feature_spec import Auto, FeatureSpec, PointsOf, Polygon
+from core.inspect.plan.inspection_plan import InspectionPlan
+from core.inspect.plan.kinds import KINDS
+from workbench.pages.inspect import feature_values as fields
 
 SIZE = (640, 480)
 PLANES = InspectionPlan((FeatureSpec("top", "plane"), FeatureSpec("table", "plane")))
@@ -17,13 +18,13 @@ def made(kind, plan=PLANES):
     return fields.new_feature(kind, "new", plan, SIZE, "part.stl")
 
 
-@pytest.mark.parametrize("kind", fields.KINDS)
+@pytest.mark.parametrize("kind", [kind.name for kind in KINDS])
 def test_a_new_feature_fits_into_a_plan(kind):
     assert not fields.why_not(kind, PLANES)
     InspectionPlan((*PLANES.features, made(kind))).ordered()
 
 
-@pytest.mark.parametrize("kind", fields.KINDS)
+@pytest.mark.parametrize("kind", [kind.name for kind in KINDS])
 def test_every_field_can_be_set_to_what_it_is(kind):
     spec = fields.with_new_cut(made(kind))
     for key, value in fields.values_of(spec).items():
@@ -75,10 +76,10 @@ def test_regions_come_from_faces_by_number_or_from_other_features():
 
 
 def test_heights_are_read_with_semicolons_and_refused_with_a_sentence():
-    spec = fields.with_value(made("steps"), "heights", "10; 20,5 ;30")
+    spec = fields.with_value(made("steps"), "nominal_heights", "10; 20,5 ;30")
     assert spec.nominal_heights == (10.0, 20.5, 30.0)
     with pytest.raises(ValueError, match="semicolons"):
-        fields.with_value(spec, "heights", "ten")
+        fields.with_value(spec, "nominal_heights", "ten")
 
 
 def test_what_is_asked_of_a_cut_follows_its_name_and_goes_with_it():

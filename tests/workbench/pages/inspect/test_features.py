@@ -11,19 +11,25 @@ from PySide6.QtWidgets import QAbstractButton, QLabel
 
 from core.errors import InputError
 from core.inspect.characteristic import Characteristic, Limits
-from core.inspect.deviation_map import bounds, mark
-from core.inspect.feature_spec import Auto, FeatureSpec, PointsOf, Polygon
-from core.inspect.inspection_plan import InspectionPlan
-from core.inspect.shown_features import ShownClass, ShownDeviations, ShownFeature, ShownInspection, ShownProfile
+from core.inspect.conformity import Verdict
+from core.inspect.plan.feature_spec import Auto, FeatureSpec, PointsOf, Polygon
+from core.inspect.plan.inspection_plan import InspectionPlan
+from core.inspect.plan.kinds import KINDS, results_of
+from core.inspect.shown.deviation_map import bounds, mark
+from core.inspect.shown.shown_features import ShownClass, ShownDeviations, ShownFeature, ShownInspection, ShownProfile
+from core.messages import plain
+from tests.inspect.plan.toy_kind import toy
 from tests.workbench.hand_lane import HandLane
 from tests.workbench.pages import inspect_cases as cases
-from workbench import jobs
-from workbench.pages import inspect_feature_values as fields
-from workbench.pages.inspect_feature_edit import LINE
-from workbench.pages.inspect_page import InspectPage
-from workbench.pages.inspect_surface import TOGETHER
+from workbench.pages.inspect import feature_values as fields
+from workbench.pages.inspect.features.edit import LINE
+from workbench.pages.inspect.page import InspectPage
+from workbench.pages.inspect.surface import TOGETHER
 from workbench.views import ask
-from workbench.views.scene_view_contents import Marks
+from workbench.views.scene.contents import Marks
+from workbench.work import jobs
+
+__all__ = ["toy"]
 
 CORNERS = [(10.0, 10.0), (30.0, 10.0), (20.0, 30.0)]
 
@@ -34,14 +40,14 @@ def shown_of(project):
     for spec in project.inspection.features:
         rows = tuple(
             Characteristic(f"{spec.name} {result}", result, 50.012, 0.012, limits=spec.limits_of(result))
-            for result in spec.results
+            for result in results_of(spec)
         )
-        lost = "no points there" if spec.name == "lost" else ""
+        lost = plain("no points there") if spec.name == "lost" else None
         places = np.zeros((0 if lost else 5, 3), np.float32)
         features.append(
             ShownFeature(spec.name, spec.kind, () if lost else rows, len(places), places, places[:, :2], lost)
         )
-    return ShownInspection(tuple(features), "", (), "cal-1")
+    return ShownInspection(tuple(features), Verdict.NONE, (), "cal-1")
 
 
 def with_drawn(project, **drawn):
@@ -74,7 +80,7 @@ def features(presenter):
 
 @pytest.fixture
 def page(presenter, qtbot, monkeypatch):
-    monkeypatch.setenv("TRISECT_NO_OPENGL", "painter")
+    monkeypatch.setenv("TRISECT_NO_OPENGL", "none")
     made = InspectPage(presenter)
     qtbot.addWidget(made)
     made.resize(1280, 800)
@@ -89,19 +95,19 @@ def measured(features, qtbot):
 
 
 def undo(features):
-    features.owner.model.undo_stack.undo()
+    features.model.undo_stack.undo()
 
 
 # ---- the plan
 
 
-def test_a_feature_is_added_changed_moved_and_removed_and_each_is_undone(features):
-    features.edit.add("plane")
-    features.edit.add("sphere")
+def test_a_feature_is_added_changed_moved_and_removed_and_each_is_undone(presenter, features):
+    presenter.feature.add("plane")
+    presenter.feature.add("sphere")
     assert features.plan.names == ("plane 1", "sphere 1") and features.chosen == "sphere 1"
     features.move("sphere 1", -1)
     assert features.plan.names == ("sphere 1", "plane 1")
-    features.edit.set_value("margin_mm", 0.5)
+    presenter.feature.set_value("margin_mm", 0.5)
     assert features.plan.feature("sphere 1").filters.margin_mm == 0.5
     features.remove("sphere 1")
     assert features.plan.names == ("plane 1",)
@@ -110,58 +116,58 @@ def test_a_feature_is_added_changed_moved_and_removed_and_each_is_undone(feature
         assert features.plan.names == names
 
 
-def test_others_follow_a_new_name(features):
-    features.edit.add("plane")
-    features.edit.add("plane")
-    features.edit.add("distance")
-    features.edit.add("plane")
-    features.edit.set_value("source 0", fields.OF + "plane 1")
+def test_others_follow_a_new_name(presenter, features):
+    presenter.feature.add("plane")
+    presenter.feature.add("plane")
+    presenter.feature.add("distance")
+    presenter.feature.add("plane")
+    presenter.feature.set_value("source 0", fields.OF + "plane 1")
     features.choose("plane 1")
-    features.edit.set_value("name", "top")
+    presenter.feature.set_value("name", "top")
     assert features.plan.feature("distance 1").of == ("top", "plane 2")
     assert features.plan.feature("plane 3").regions == (PointsOf("top"),)
     assert features.chosen == "top"
     features.plan.ordered()
 
 
-def test_a_feature_that_others_rest_on_stays(features):
+def test_a_feature_that_others_rest_on_stays(presenter, features):
     for kind in ("plane", "plane", "distance"):
-        features.edit.add(kind)
+        presenter.feature.add(kind)
     features.remove("plane 1")
     assert "plane 1" in features.plan.names
-    assert features.owner.bench.notices.all[-1].text == "plane 1 cannot be removed: distance 1 rests on it."
+    assert presenter.bench.notices.all[-1].text == "plane 1 cannot be removed: distance 1 rests on it."
 
 
-def test_what_cannot_be_stays_in_the_form_with_a_sentence(features):
-    features.edit.add("plane")
-    features.edit.add("plane")
-    features.edit.set_value("name", "plane 1")
-    assert "two features have this name" in features.edit.complaint("name")
-    assert features.edit.values()["name"] == "plane 1" and features.plan.names == ("plane 1", "plane 2")
-    features.edit.set_value("name", "top")
-    assert features.edit.complaint("name") == "" and features.plan.names == ("plane 1", "top")
+def test_what_cannot_be_stays_in_the_form_with_a_sentence(presenter, features):
+    presenter.feature.add("plane")
+    presenter.feature.add("plane")
+    presenter.feature.set_value("name", "plane 1")
+    assert "two features have this name" in presenter.feature.complaint("name")
+    assert presenter.feature.values()["name"] == "plane 1" and features.plan.names == ("plane 1", "plane 2")
+    presenter.feature.set_value("name", "top")
+    assert presenter.feature.complaint("name") == "" and features.plan.names == ("plane 1", "top")
 
 
-def test_limits_wait_for_their_other_half(features):
-    features.edit.add("sphere")
-    features.edit.set_value("limits nominal diameter", 50.0)
-    assert "lower or an upper deviation" in features.edit.complaint("limits nominal diameter")
+def test_limits_wait_for_their_other_half(presenter, features):
+    presenter.feature.add("sphere")
+    presenter.feature.set_value("limits nominal diameter", 50.0)
+    assert "lower or an upper deviation" in presenter.feature.complaint("limits nominal diameter")
     assert not features.plan.feature("sphere 1").limits
-    features.edit.set_value("limits upper diameter", 0.1)
+    presenter.feature.set_value("limits upper diameter", 0.1)
     assert features.plan.feature("sphere 1").limits == (("diameter", Limits(50.0, -math.inf, 0.1)),)
-    assert not features.edit.complaint("limits nominal diameter")
+    assert not presenter.feature.complaint("limits nominal diameter")
 
 
-def test_a_half_entered_value_is_not_taken_for_another_feature(features):
-    features.edit.add("sphere")
-    features.edit.set_value("limits nominal diameter", 50.0)
-    features.edit.add("sphere")
-    assert features.edit.values()["limits nominal diameter"] is None
+def test_a_half_entered_value_is_not_taken_for_another_feature(presenter, features):
+    presenter.feature.add("sphere")
+    presenter.feature.set_value("limits nominal diameter", 50.0)
+    presenter.feature.add("sphere")
+    assert presenter.feature.values()["limits nominal diameter"] is None
 
 
 def test_a_region_drawn_in_3d_is_outlined_and_taken(presenter, features, qtbot):
-    features.edit.add("sphere")
-    presenter.outline(features.edit.region_name(0), np.ones(cases.POINTS, bool))
+    presenter.feature.add("sphere")
+    presenter.outline(presenter.feature.region_name(0), np.ones(cases.POINTS, bool))
     qtbot.waitUntil(lambda: isinstance(features.plan.feature("sphere 1").regions[0], Polygon))
     assert features.plan.feature("sphere 1").regions == (Polygon(tuple(CORNERS)),)
     undo(features)
@@ -176,7 +182,7 @@ def test_why_nothing_can_be_measured_is_told(features):
 
 
 def test_the_plan_is_measured_and_stays_so_after_opening_again(presenter, features, measuring, qtbot):
-    features.edit.add("plane")
+    presenter.feature.add("plane")
     measured(features, qtbot)
     assert features.up_to_date and features.result("plane 1").rows[0].value == 50.012
     model = presenter.model
@@ -186,11 +192,11 @@ def test_the_plan_is_measured_and_stays_so_after_opening_again(presenter, featur
     assert measuring.ran[-1] == jobs.LOOK_AT_FEATURES
 
 
-def test_a_plan_measured_once_is_measured_anew_when_it_changes(features, measuring, qtbot):
-    features.edit.add("plane")
+def test_a_plan_measured_once_is_measured_anew_when_it_changes(presenter, features, measuring, qtbot):
+    presenter.feature.add("plane")
     assert jobs.MEASURE_FEATURES not in measuring.ran
     measured(features, qtbot)
-    features.edit.set_value("margin_mm", 0.5)
+    presenter.feature.set_value("margin_mm", 0.5)
     assert features.result("plane 1") is None
     qtbot.waitUntil(lambda: features.up_to_date and features.shown is not None)
     undo(features)
@@ -198,35 +204,35 @@ def test_a_plan_measured_once_is_measured_anew_when_it_changes(features, measuri
     assert measuring.ran.count(jobs.MEASURE_FEATURES) == 3
 
 
-def test_without_its_last_feature_nothing_old_stays_among_the_results(features, measuring, qtbot):
-    features.edit.add("plane")
+def test_without_its_last_feature_nothing_old_stays_among_the_results(presenter, features, measuring, qtbot):
+    presenter.feature.add("plane")
     measured(features, qtbot)
     features.remove("plane 1")
     qtbot.waitUntil(lambda: features.shown is not None and features.up_to_date)
     assert features.shown.features == () and measuring.ran.count(jobs.MEASURE_FEATURES) == 2
 
 
-def test_an_edit_while_measuring_is_measured_next_and_what_is_shown_is_of_the_plan(features, measuring, qtbot):
-    features.edit.add("plane")
+def test_an_edit_while_measuring_is_measured_next_and_shown_is_of_the_plan(presenter, features, measuring, qtbot):
+    presenter.feature.add("plane")
     measured(features, qtbot)
     measuring.held = {jobs.MEASURE_FEATURES}
-    features.edit.set_value("margin_mm", 0.5)
-    old = shown_of(features.owner.project)
-    features.edit.set_value("name", "top")
+    presenter.feature.set_value("margin_mm", 0.5)
+    old = shown_of(presenter.project)
+    presenter.feature.set_value("name", "top")
     measuring.finish(old)
     assert features.shown is None and features.measuring
-    measuring.finish(shown_of(features.owner.project))
+    measuring.finish(shown_of(presenter.project))
     assert features.result("top") is not None and not features.measuring
 
 
-def test_a_plan_that_cannot_be_measured_says_so_once(features, measuring, qtbot):
+def test_a_plan_that_cannot_be_measured_says_so_once(presenter, features, measuring, qtbot):
     def refuse(folder, project):
         raise InputError("the nominal surface is missing", where="part.stl")
 
-    features.edit.add("plane")
+    presenter.feature.add("plane")
     measured(features, qtbot)
     measuring.answers[jobs.MEASURE_FEATURES] = refuse
-    features.edit.set_value("margin_mm", 0.5)
+    presenter.feature.set_value("margin_mm", 0.5)
     qtbot.waitUntil(lambda: bool(features.problem) and not features.measuring)
     assert "nominal surface is missing" in features.problem
     assert measuring.ran.count(jobs.MEASURE_FEATURES) == 2
@@ -238,16 +244,16 @@ def test_a_plan_that_cannot_be_measured_says_so_once(features, measuring, qtbot)
 def test_a_template_is_taken_for_the_next_part_with_one_click_and_taken_back(presenter, features, tmp_path, qtbot):
     nominal = presenter.model.folder / "part.stl"
     nominal.write_bytes(b"")
-    features.edit.add("plane")
-    features.edit.add("deviation", nominal)
+    presenter.feature.add("plane")
+    presenter.feature.add("deviation", nominal)
     assert features.plan.feature("deviation 1").deviation.nominal == "part.stl"
-    features.templates.save(tmp_path / "block")
-    qtbot.waitUntil(lambda: features.templates.recent == [tmp_path / "block.toml"])
+    presenter.templates.save(tmp_path / "block")
+    qtbot.waitUntil(lambda: presenter.templates.recent == [tmp_path / "block.toml"])
     presenter.model.create(tmp_path / "next", cases.project())
     for step, done in cases.results(presenter.project).items():
         presenter.model.record(step, done)
     assert not features.plan.features
-    features.templates.take(features.templates.recent[0])
+    presenter.templates.take(presenter.templates.recent[0])
     qtbot.waitUntil(lambda: features.shown is not None)
     assert features.plan.names == ("plane 1", "deviation 1")
     assert features.plan.feature("deviation 1").deviation.nominal == nominal.as_posix()
@@ -255,28 +261,32 @@ def test_a_template_is_taken_for_the_next_part_with_one_click_and_taken_back(pre
     assert not features.plan.features
 
 
-def test_a_template_that_cannot_be_read_is_told_and_changes_nothing(features, tmp_path, qtbot):
+def test_a_template_that_cannot_be_read_is_told_and_changes_nothing(presenter, features, tmp_path, qtbot):
     path = tmp_path / "plan.toml"
     path.write_text("[[feature]]\nkind = 'plane'\n", encoding="utf-8")
-    features.templates.take(path)
-    qtbot.waitUntil(lambda: bool(features.owner.bench.notices.all))
-    assert "name" in features.owner.bench.notices.all[-1].text and not features.plan.features
-    assert features.templates.recent == []
+    presenter.templates.take(path)
+    qtbot.waitUntil(lambda: bool(presenter.bench.notices.all))
+    assert "name" in presenter.bench.notices.all[-1].text and not features.plan.features
+    assert presenter.templates.recent == []
 
 
-def test_the_templates_button_lists_the_ones_used_last(page, features, tmp_path, qtbot, monkeypatch):
+def test_the_templates_button_lists_the_ones_used_last(presenter, page, features, tmp_path, qtbot, monkeypatch):
     button = page.features.templates
+    page.refreshing.at_once()
     assert not button.save.isEnabled() and button.save.toolTip() == "Add a feature first."
-    features.edit.add("plane")
+    presenter.feature.add("plane")
     monkeypatch.setattr(ask, "choose_file_to_save", lambda *_: tmp_path / "block.toml")
+    page.refreshing.at_once()
     button.save.trigger()
     qtbot.waitUntil(lambda: [action.text() for action in button.recent] == ["block"])
     features.remove("plane 1")
     button.recent[0].trigger()
+    page.refreshing.at_once()
     qtbot.waitUntil(lambda: features.plan.names == ("plane 1",))
     features.remove("plane 1")
     monkeypatch.setattr(ask, "choose_file_to_open", lambda *_: tmp_path / "block.toml")
     button.open.trigger()
+    page.refreshing.at_once()
     qtbot.waitUntil(lambda: features.plan.names == ("plane 1",))
 
 
@@ -299,10 +309,12 @@ def test_the_list_shows_value_uncertainty_verdict_and_problem(page, features, qt
             FeatureSpec("lost", "plane"),
         )
     )
-    features.take_template(plan, "three")
+    features.put_plan(plan, "three")
+    page.refreshing.at_once()
     assert page.features.list.topLevelItem(0).text(1) == "not measured"
     measured(features, qtbot)
     ball, top, lost = (page.features.list.topLevelItem(row) for row in range(3))
+    page.refreshing.at_once()
     assert (ball.child(0).text(0), ball.child(0).text(1)) == ("diameter", "50.012 ± 0.024 mm")
     assert "Conformity is proven" in ball.child(0).toolTip(1) and not ball.icon(1).isNull()
     assert top.text(1) == "50.012 ± 0.024 mm" and top.icon(1).isNull()
@@ -311,106 +323,125 @@ def test_the_list_shows_value_uncertainty_verdict_and_problem(page, features, qt
     assert page.features.list.verticalScrollBar().maximum() == 0, "all rows are seen"
 
 
-def test_choosing_a_feature_shows_its_points_in_3d_and_in_the_picture(page, features, qtbot):
-    features.edit.add("plane")
-    features.edit.add("sphere")
+def test_choosing_a_feature_shows_its_points_in_3d_and_in_the_picture(presenter, page, features, qtbot):
+    presenter.feature.add("plane")
+    presenter.feature.add("sphere")
     measured(features, qtbot)
     page.features.list.setCurrentItem(page.features.list.topLevelItem(0))
+    page.refreshing.at_once()
     assert features.chosen == "plane 1" and (Marks, "feature") in page.surface.scene._scene.items
     page.tabs.setCurrentWidget(page.picture)
+    page.refreshing.at_once()
     assert "used by the feature" in page.picture.image.layer_names()
     features.choose("")
+    page.refreshing.at_once()
     assert "used by the feature" not in page.picture.image.layer_names()
     page.tabs.setCurrentWidget(page.surface)
+    page.refreshing.at_once()
     assert (Marks, "feature") not in page.surface.scene._scene.items
 
 
-def test_a_region_drawn_in_the_picture_is_the_features(page, features):
-    features.edit.add("plane")
+def test_a_region_drawn_in_the_picture_is_the_features(presenter, page, features):
+    presenter.feature.add("plane")
     page.tabs.setCurrentWidget(page.picture)
+    page.refreshing.at_once()
     page.features.form.tools[0, "polygon"].click()
-    page.picture.image.polygon_drawn.emit(features.edit.region_name(0), np.array(CORNERS))
+    page.refreshing.at_once()
+    page.picture.image.polygon_drawn.emit(presenter.feature.region_name(0), np.array(CORNERS))
+    page.refreshing.at_once()
     assert features.plan.feature("plane 1").regions == (Polygon(tuple(CORNERS)),)
-    assert features.edit.region_name(0) in page.picture.image.layer_names()
+    assert presenter.feature.region_name(0) in page.picture.image.layer_names()
     page.presenter.faces.set_region("upper", np.array(CORNERS))
+    page.refreshing.at_once()
     assert features.plan.feature("plane 1").regions == (Polygon(tuple(CORNERS)),)
 
 
-def test_the_cut_is_dragged_in_the_picture(page, features):
-    features.edit.add("section")
+def test_the_cut_is_dragged_in_the_picture(presenter, page, features):
+    presenter.feature.add("section")
     page.tabs.setCurrentWidget(page.picture)
     page.picture.image.polygon_edited.emit(LINE, np.array([(1.0, 2.0), (30.0, 40.0)]))
+    page.refreshing.at_once()
     assert features.plan.feature("section 1").section.line_px == ((1.0, 2.0), (30.0, 40.0))
     features.choose("")
+    page.refreshing.at_once()
     assert LINE not in page.picture.image.layer_names()
 
 
-def test_the_plot_shows_the_profile_of_the_chosen_section(page, features, measuring, qtbot):
+def test_the_plot_shows_the_profile_of_the_chosen_section(presenter, page, features, measuring, qtbot):
     profile = ShownProfile(np.arange(5.0), np.ones(5), np.arange(2.0), np.ones(2), np.zeros(2, np.int64))
     measuring.answers[jobs.MEASURE_FEATURES] = lambda folder, project: with_drawn(project, profile=profile)
+    page.refreshing.at_once()
     assert not page.tabs.isTabVisible(page.tabs.indexOf(page.plot))
-    features.edit.add("section")
-    features.edit.add_cut()
+    presenter.feature.add("section")
+    presenter.feature.add_cut()
     page.tabs.setCurrentWidget(page.plot)
+    page.refreshing.at_once()
     assert "Measure the features" in page.plot.chart.empty_state.message
     measured(features, qtbot)
+    page.refreshing.at_once()
     assert set(page.plot.chart._curves) == {"points", "mean"}
     assert page.plot.rows.text_of("height 1") == "50.012 ± 0.024 mm"
     features.choose("")
+    page.refreshing.at_once()
     assert "Choose a cross-section" in page.plot.chart.empty_state.message
 
 
-def test_a_new_measurement_in_a_section_begins_on_the_levels_of_its_profile(features, measuring, qtbot):
+def test_a_new_measurement_in_a_section_begins_on_the_levels_of_its_profile(presenter, features, measuring, qtbot):
     position = np.arange(0.5, 100.0)
     profile = ShownProfile(
         position, position, position, np.where(position < 40, 0.0, 10.0), np.zeros(len(position), np.int64)
     )
     measuring.answers[jobs.MEASURE_FEATURES] = lambda folder, project: with_drawn(project, profile=profile)
-    features.edit.add("section")
+    presenter.feature.add("section")
     measured(features, qtbot)
-    features.edit.add_cut()
+    presenter.feature.add_cut()
     (cut,) = features.plan.feature("section 1").section.cuts
     assert (cut.kind, cut.first, cut.second) == ("height", (8.3, 31.7), (52.3, 87.7))
 
 
-def test_deviations_are_drawn_by_class_and_their_shares_are_told(page, features, measuring, qtbot, tmp_path):
+def test_deviations_are_drawn_by_class_and_their_shares_are_told(presenter, page, features, measuring, qtbot, tmp_path):
     classes = tuple(
         ShownClass(mark(number), number, *bounds(number, 0.1), 0.125 * (number > -4), np.ones((int(number > -4), 3)))
         for number in range(-4, 5)
     )
     found = ShownDeviations(classes, np.linspace(-1, 1, 5), np.arange(4), 0.1)
     measuring.answers[jobs.MEASURE_FEATURES] = lambda folder, project: with_drawn(project, deviations=found)
-    features.edit.add("deviation", tmp_path / "part.stl")
+    presenter.feature.add("deviation", tmp_path / "part.stl")
     measured(features, qtbot)
     drawn = {name for kind, name in page.surface.scene._scene.items if kind is Marks}
+    page.refreshing.at_once()
     assert drawn == {f"deviation {number}" for number in range(-3, 5)}
     page.tabs.setCurrentWidget(page.plot)
+    page.refreshing.at_once()
     assert page.plot.rows.text_of("Deviation [mm]") == "share"
     assert page.plot.rows.text_of("++  +0.05 to +0.075") == "12.5 %"
     assert page.plot.rows.text_of("+!  over +0.1") == "12.5 %"
     assert page.plot.rows.text_of("−!  under −0.1") == "0.0 %"
     words = [part for part in page.plot.rows.findChildren(QLabel) if part.isVisible() and part.wordWrap()]
+    page.refreshing.at_once()
     assert {part.height() for part in words} == {words[0].fontMetrics().height()}, "no row wraps in a small window"
     page.tabs.setCurrentWidget(page.surface)
+    page.refreshing.at_once()
     assert page.surface.minimumSizeHint().width() < 690, "the legend leaves the side panel its width"
     assert all(
         f"</span>&nbsp;{TOGETHER.join(sign)}" in page.surface.line.text() for sign in ("−!", "−−−", "0", "++", "+!")
     )
     features.choose("")
+    page.refreshing.at_once()
     assert not {name for kind, name in page.surface.scene._scene.items if kind is Marks}
 
 
-@pytest.mark.parametrize("kind", fields.KINDS)
-def test_every_kind_has_a_form_in_which_all_is_named_and_helped(page, features, kind, tmp_path):
-    features.edit.add("plane")
-    features.edit.add("plane")
+@pytest.mark.parametrize("kind", [kind.name for kind in KINDS])
+def test_every_kind_has_a_form_in_which_all_is_named_and_helped(presenter, page, features, kind, tmp_path):
+    presenter.feature.add("plane")
+    presenter.feature.add("plane")
     if kind == "deviation":
-        features.edit.add(kind, tmp_path / "part.stl")
+        presenter.feature.add(kind, tmp_path / "part.stl")
     else:
-        features.edit.add(kind)
-    features.edit.add_cut()
+        presenter.feature.add(kind)
+    presenter.feature.add_cut()
     form = page.features.form
-    values = features.edit.values()
+    values = presenter.feature.values()
     held = set(form.where.values()) | set(form.what.values())
     assert held <= set(values)
     for one in (form.where, form.what):
@@ -419,21 +450,39 @@ def test_every_kind_has_a_form_in_which_all_is_named_and_helped(page, features, 
     assert all(button.toolTip() for button in greyed)
 
 
-def test_an_edit_in_the_form_is_an_edit_of_the_plan(page, features, qtbot):
-    features.edit.add("plane")
+def test_a_kind_that_is_registered_is_in_the_menu_has_a_form_and_is_measured(toy, presenter, page, features, qtbot):
+    assert toy.title in {action.text() for action in page.features.kinds.values()}
+    presenter.feature.add(toy.name)
+    qtbot.waitUntil(lambda: "limits upper spread" in page.features.form.what.values())
+    assert {"nominal_heights", "limits nominal slope"} <= set(page.features.form.what.values())
+    presenter.feature.set_value("limits upper spread", 60.0)
+    assert features.plan.features[0].limits_of("spread").upper == 60.0
+    measured(features, qtbot)
+    qtbot.waitUntil(lambda: page.features.list.topLevelItem(0).childCount() == 2)
+
+
+def test_an_edit_in_the_form_is_an_edit_of_the_plan(presenter, page, features, qtbot):
+    presenter.feature.add("plane")
+    page.refreshing.at_once()
     editor = page.features.form.what.editor("margin_mm")
     editor.setFocus()
     editor.selectAll()
+    page.refreshing.at_once()
     qtbot.keyClicks(editor, "0.75")
+    page.refreshing.at_once()
     qtbot.keyClick(editor, Qt.Key.Key_Return)
+    page.refreshing.at_once()
     assert features.plan.feature("plane 1").filters.margin_mm == 0.75
 
 
-def test_delete_and_alt_arrows_work_in_the_list(page, features, qtbot):
-    features.edit.add("plane")
-    features.edit.add("sphere")
+def test_delete_and_alt_arrows_work_in_the_list(presenter, page, features, qtbot):
+    presenter.feature.add("plane")
+    presenter.feature.add("sphere")
     page.features.list.setFocus()
+    page.refreshing.at_once()
     qtbot.keyClick(page.features.list, Qt.Key.Key_Up, Qt.KeyboardModifier.AltModifier)
+    page.refreshing.at_once()
     assert features.plan.names == ("sphere 1", "plane 1")
     qtbot.keyClick(page.features.list, Qt.Key.Key_Delete)
+    page.refreshing.at_once()
     assert features.plan.names == ("plane 1",)

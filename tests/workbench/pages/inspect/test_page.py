@@ -10,11 +10,12 @@ from PySide6.QtGui import QGuiApplication
 from PySide6.QtWidgets import QAbstractButton, QComboBox, QDoubleSpinBox, QSlider
 
 from core.errors import InputError
+from core.messages import plain
 from tests.workbench.hand_lane import HandLane
 from tests.workbench.pages import inspect_cases as cases
-from workbench import jobs
-from workbench.pages.inspect_page import InspectPage
-from workbench.pages.inspect_presenter import InspectPresenter, Stage
+from workbench.pages.inspect.page import InspectPage
+from workbench.pages.inspect.presenter import InspectPresenter, Stage
+from workbench.work import jobs
 
 LEFT = Qt.MouseButton.LeftButton
 OUTLINE = np.array([[10.0, 10.0], [30.0, 10.0], [20.0, 30.0]])
@@ -38,7 +39,7 @@ def quick(hand_bench):
 @pytest.fixture
 def page(hand_bench, measuring, quick, tmp_path, qtbot, monkeypatch):
     """The page of an open project without a scan."""
-    monkeypatch.setenv("TRISECT_NO_OPENGL", "painter")
+    monkeypatch.setenv("TRISECT_NO_OPENGL", "none")
     made = InspectPage(InspectPresenter(hand_bench))
     hand_bench.model.create(tmp_path / "project", cases.project(nominal_mm=50.0, tolerance_mm=0.2))
     qtbot.addWidget(made)
@@ -53,7 +54,7 @@ def scan(page, qtbot, *, inspected=True):
     p = page.presenter
     for step, done in cases.results(p.project, inspected=inspected).items():
         p.model.record(step, done)
-    qtbot.waitUntil(lambda: p.view is not None and not p.stale)
+    qtbot.waitUntil(lambda: p.scan.view is not None and not p.scan.stale)
 
 
 @pytest.fixture
@@ -140,7 +141,7 @@ def test_a_finished_scan_shows_its_thickness_and_verdict(shown):
 
 
 def test_notes_of_the_measurement_are_shown(page, quick, qtbot):
-    told = cases.gauge(notes=("The stated uncertainty does not hold that of the fan.",))
+    told = cases.gauge(notes=(plain("The stated uncertainty does not hold that of the fan."),))
     quick.answers[jobs.INSPECTION_VIEW] = lambda folder, project: cases.view(told)
     scan(page, qtbot)
     assert page.result.notes.text() == "The stated uncertainty does not hold that of the fan."
@@ -159,11 +160,15 @@ def test_a_scan_without_a_thickness_offers_to_measure_it(unmeasured):
 
 def test_measuring_by_the_button_shows_the_points_used(unmeasured, measuring, quick, qtbot):
     quick.answers[jobs.INSPECTION_VIEW] = lambda folder, project: cases.view(cases.gauge())
+    unmeasured.refreshing.at_once()
     press(qtbot, unmeasured.card.buttons["measure"])
+    unmeasured.refreshing.at_once()
     assert unmeasured.card.title.text() == "Measuring the thickness …"
     assert not unmeasured.card.buttons["measure"].isEnabled()
     measuring.finish(cases.gauge())
+    unmeasured.refreshing.at_once()
     qtbot.waitUntil(lambda: unmeasured.presenter.stage is Stage.MEASURED)
+    unmeasured.refreshing.at_once()
     assert unmeasured.surface.colour == "faces"
     assert "300 used on the upper face" in unmeasured.surface.line.text()
     assert unmeasured.card.buttons["measure"].text() == "Measure again"
@@ -172,17 +177,21 @@ def test_measuring_by_the_button_shows_the_points_used(unmeasured, measuring, qu
 def test_what_changed_since_is_said_and_the_verdict_is_taken_back(shown, qtbot):
     form = shown.faces.form
     form.edited.emit("tolerance_mm", 0.01)
+    shown.refreshing.at_once()
     assert "Out of date: changed since: nominal thickness" in shown.card.words.text()
     assert shown.result.verdict.text == "No verdict"
     assert shown.card.buttons["measure"].property("primary")
     undo(shown)
+    shown.refreshing.at_once()
     assert shown.result.verdict.text == "Conforming"
 
 
 def test_a_failed_measurement_keeps_no_old_verdict_up(shown, measuring, qtbot):
     shown.faces.form.edited.emit("tolerance_mm", 0.01)
+    shown.refreshing.at_once()
     press(qtbot, shown.card.buttons["measure"])
     measuring.fail(InputError("among 1 plane faces no two are parallel", where="point cloud"))
+    shown.refreshing.at_once()
     assert shown.card.title.text() == "No thickness was measured"
     assert "no two are parallel" in shown.card.words.text()
     assert shown.result.verdict.text == "No verdict"
@@ -190,8 +199,10 @@ def test_a_failed_measurement_keeps_no_old_verdict_up(shown, measuring, qtbot):
 
 def test_half_a_pair_of_numbers_is_complained_about(shown):
     shown.faces.form.edited.emit("tolerance_mm", None)
+    shown.refreshing.at_once()
     assert shown.faces.form.help_of("tolerance_mm").startswith("Enter the tolerance too")
     shown.faces.form.edited.emit("tolerance_mm", 0.2)
+    shown.refreshing.at_once()
     assert shown.faces.form.help_of("tolerance_mm").startswith("Largest permitted deviation")
 
 
@@ -235,12 +246,15 @@ def test_a_scan_without_a_mesh_shows_points_only(page, quick, qtbot):
 
 
 def test_the_sigma_limit_says_how_many_points_are_left(shown, qtbot):
+    shown.refreshing.at_once()
     assert shown.surface.line.text() == "600 of 600 points shown"
     shown.surface.choices.limit.setValue(0.03)
     left = shown.presenter.points_shown()
+    shown.refreshing.at_once()
     assert shown.surface.line.text() == f"{left} of 600 points shown" and 0 < left < 600
     qtbot.waitUntil(lambda: cloud(shown).given == left)
     shown.surface.choices.slider.setValue(shown.surface.choices.slider.maximum())
+    shown.refreshing.at_once()
     assert shown.surface.line.text() == "600 of 600 points shown"
     qtbot.waitUntil(lambda: cloud(shown).given == 600)
 
@@ -257,37 +271,49 @@ def test_points_used_stand_out_on_a_mesh(shown, qtbot):
 
 
 def test_picked_points_stand_in_the_list_and_in_the_view(shown, qtbot):
+    shown.refreshing.at_once()
     assert shown.picks.list.isHidden() and shown.picks.clear.isHidden(), "nothing is picked yet"
     press(qtbot, shown.picks.tools["point"])
+    shown.refreshing.at_once()
     assert shown.surface.hint.text().startswith("Click points of the surface")
-    shown.surface.scene.point_picked.emit(7, shown.presenter.view.points[7])
+    shown.surface.scene.point_picked.emit(7, shown.presenter.scan.view.points[7])
+    shown.refreshing.at_once()
     text = shown.picks.list.item(0).text()
     assert not shown.picks.list.isHidden()
     assert text.startswith("P1   x ") and " mm\n± 0.0" in text and "(sd)" in text and "px" in text
     assert "P1" in {name for _, name in shown.surface.scene._scene.items}
     shown.surface.scene.stop_drawing()
+    shown.refreshing.at_once()
     assert shown.presenter.picks.mode == "" and not shown.picks.tools["point"].isChecked()
     press(qtbot, shown.picks.remove)
+    shown.refreshing.at_once()
     assert shown.picks.list.count() == 0
     assert "P1" not in {name for _, name in shown.surface.scene._scene.items}
 
 
 def test_a_click_on_the_cloud_picks_the_point_under_it(shown, qtbot):
+    shown.refreshing.at_once()
     press(qtbot, shown.picks.tools["point"])
     scene = shown.surface.scene
-    spots = scene.screen_positions(shown.presenter.view.points)
+    spots = scene.screen_positions(shown.presenter.scan.view.points)
     x, y = spots[np.argmin(np.hypot(*(spots - spots.mean(axis=0)).T))]
-    qtbot.mouseClick(scene._overlay, LEFT, pos=QPoint(round(x), round(y)))
+    shown.refreshing.at_once()
+    qtbot.mouseClick(scene._canvas, LEFT, pos=QPoint(round(x), round(y)))
+    shown.refreshing.at_once()
     qtbot.waitUntil(lambda: shown.picks.list.count() == 1)
 
 
 def test_a_distance_is_drawn_between_its_ends(shown, qtbot):
+    shown.refreshing.at_once()
     press(qtbot, shown.picks.tools["distance"])
+    shown.refreshing.at_once()
     for point in (0, 1):
-        shown.surface.scene.point_picked.emit(point, shown.presenter.view.points[point])
+        shown.surface.scene.point_picked.emit(point, shown.presenter.scan.view.points[point])
+    shown.refreshing.at_once()
     assert ", u = 0.0" in shown.picks.list.item(0).text()
     assert "D1" in {name for _, name in shown.surface.scene._scene.items}
     press(qtbot, shown.picks.clear)
+    shown.refreshing.at_once()
     assert shown.picks.list.count() == 0
 
 
@@ -295,18 +321,25 @@ def test_a_distance_is_drawn_between_its_ends(shown, qtbot):
 
 
 def test_a_lasso_in_3d_becomes_a_region(shown, qtbot):
+    shown.refreshing.at_once()
     press(qtbot, shown.faces.tools["upper", "lasso"])
-    overlay = shown.surface.scene._overlay
-    size = shown.surface.scene._size()
+    overlay = shown.surface.scene._canvas
+    size = overlay.width(), overlay.height()
     corners = [QPoint(2, 2), QPoint(size[0] - 2, 2), QPoint(size[0] - 2, size[1] - 2), QPoint(2, size[1] - 2)]
+    shown.refreshing.at_once()
     qtbot.mousePress(overlay, LEFT, pos=corners[0])
+    shown.refreshing.at_once()
     for corner in corners[1:]:
         qtbot.mouseMove(overlay, corner)
+    shown.refreshing.at_once()
     qtbot.mouseRelease(overlay, LEFT, pos=corners[-1])
+    shown.refreshing.at_once()
     qtbot.waitUntil(lambda: shown.presenter.faces.own)
+    shown.refreshing.at_once()
     assert np.array_equal(shown.presenter.faces.region("upper"), OUTLINE)
     assert "own region, 3 corners" in shown.faces.states["upper"].text()
     undo(shown)
+    shown.refreshing.at_once()
     assert "found automatically" in shown.faces.states["upper"].text()
 
 
@@ -336,27 +369,34 @@ def test_drawing_by_keys_alone(shown, qtbot):
 
 def test_regions_are_dragged_in_the_picture_and_undone(shown, qtbot):
     shown.tabs.setCurrentWidget(shown.picture)
+    shown.refreshing.at_once()
     press(qtbot, shown.faces.own)
+    shown.refreshing.at_once()
     assert "Drag a corner" in shown.picture.line.text()
     moved = cases.UPPER_OUTLINE + [[2, 0], [0, 0], [0, 0], [0, 0]]
     shown.picture.image.polygon_edited.emit("upper", moved)
+    shown.refreshing.at_once()
     assert np.array_equal(shown.presenter.faces.region("upper"), moved)
     undo(shown)
+    shown.refreshing.at_once()
     assert np.array_equal(shown.picture.image._layers["upper"].uv, cases.UPPER_OUTLINE)
 
 
 def test_the_picture_shows_the_faces_and_the_points_used(shown):
     shown.tabs.setCurrentWidget(shown.picture)
+    shown.refreshing.at_once()
     assert shown.picture.image.has_picture
     assert set(shown.picture.image.layer_names()) == {"upper", "lower", "used upper", "used lower"}
     assert "upper face, found" in shown.picture.image.legend_titles
     shown.presenter.faces.take_found()
+    shown.refreshing.at_once()
     assert "upper face, own region" in shown.picture.image.legend_titles
 
 
 def test_a_waiting_region_asks_for_the_other_one(unmeasured):
     unmeasured.tabs.setCurrentWidget(unmeasured.picture)
     unmeasured.picture.image.polygon_drawn.emit("upper", OUTLINE)
+    unmeasured.refreshing.at_once()
     assert unmeasured.picture.line.text().startswith("Draw the lower face too")
     assert unmeasured.faces.words.text().startswith("Draw the lower face too")
     assert unmeasured.card.buttons["measure"].toolTip().startswith("Draw the lower face too")
@@ -372,17 +412,23 @@ def test_drawing_from_the_repeats_goes_to_the_picture(shown, qtbot):
 
 
 def test_a_repeat_is_added_shown_and_refused_twice(shown, qtbot):
+    shown.refreshing.at_once()
     press(qtbot, shown.card.buttons["repeat"])
+    shown.refreshing.at_once()
     qtbot.waitUntil(lambda: shown.tabs.currentWidget() is shown.series)
+    shown.refreshing.at_once()
     assert shown.tabs.tabText(2) == "Repeats (1)"
     table = shown.series.table.table
+    shown.refreshing.at_once()
     assert [table.item(0, column).text() for column in range(4)] == ["scan-1", "50.012", "± 0.024", "cal-1"]
     assert shown.series.rows.text_of("Mean") == "50.0120 mm"
     assert shown.series.rows.text_of("STD") == "needs two repeats"
     again = shown.card.buttons["repeat"]
+    shown.refreshing.at_once()
     assert not again.isEnabled() and again.toolTip().startswith("This scan is among the repeats already.")
     assert shown.series.add.toolTip() == again.toolTip()
     undo(shown)
+    shown.refreshing.at_once()
     assert shown.series.table.table.rowCount() == 0 and again.isEnabled()
 
 

@@ -8,14 +8,14 @@ import pytest
 
 from core.errors import InputError
 from core.files.pictures import write_picture
-from core.files.project import Accepted
-from core.files.project_keys import finished
+from core.files.project.data import Accepted
+from core.files.project.keys import finished
 from core.study.type1 import type1_study
 from tests.workbench.hand_lane import HandLane
 from tests.workbench.pages import inspect_cases as cases
-from workbench import jobs
-from workbench.pages.inspect_presenter import RELIEF, InspectPresenter, Stage
-from workbench.pages.inspect_words import repeats_tsv
+from workbench.pages.inspect.presenter import RELIEF, InspectPresenter, Stage
+from workbench.pages.inspect.words import repeats_tsv
+from workbench.work import jobs
 
 TRIANGLE = np.array([[10.0, 10.0], [20.0, 10.0], [15.0, 20.0]])
 
@@ -47,7 +47,7 @@ def empty(hand_bench, measuring, quick, tmp_path):
 def scanned(presenter, qtbot, *, inspected=True):
     for step, done in cases.results(presenter.project, inspected=inspected).items():
         presenter.model.record(step, done)
-    qtbot.waitUntil(lambda: presenter.view is not None and not presenter.stale)
+    qtbot.waitUntil(lambda: presenter.scan.view is not None and not presenter.scan.stale)
 
 
 @pytest.fixture
@@ -97,7 +97,7 @@ def test_a_finished_scan_is_read_when_the_page_is_first_shown(hand_bench, measur
     qtbot.wait(20)
     assert quick.ran == [] and made.stage is Stage.READING
     made.entered()
-    qtbot.waitUntil(lambda: made.view is not None)
+    qtbot.waitUntil(lambda: made.scan.view is not None)
     made.left()
     made.entered()
     qtbot.wait(20)
@@ -113,16 +113,16 @@ def test_a_scan_that_cannot_be_read_is_told_and_can_be_read_again(empty, quick, 
     for step, done in cases.results(empty.project).items():
         empty.model.record(step, done)
     qtbot.waitUntil(lambda: empty.stage is Stage.UNREADABLE)
-    assert empty.problem == "cloud.ply: this is no whole PLY file."
+    assert empty.scan.problem == "cloud.ply: this is no whole PLY file."
     assert empty.can_measure == "The scan cannot be read."
     quick.answers[jobs.INSPECTION_VIEW] = lambda folder, project: cases.view()
     empty.scan.read_again()
-    qtbot.waitUntil(lambda: empty.view is not None)
+    qtbot.waitUntil(lambda: empty.scan.view is not None)
 
 
 def test_another_project_forgets_the_scan(shown, tmp_path):
     shown.model.create(tmp_path / "other", cases.project())
-    assert shown.view is None and shown.stage is Stage.NO_SCAN
+    assert shown.scan.view is None and shown.stage is Stage.NO_SCAN
 
 
 # ---- measuring
@@ -133,13 +133,13 @@ def measured_again(presenter, measuring, qtbot):
     assert presenter.stage is Stage.MEASURING
     assert presenter.can_measure == "The thickness is being measured."
     measuring.finish(cases.gauge())
-    qtbot.waitUntil(lambda: not presenter.stale)
+    qtbot.waitUntil(lambda: not presenter.scan.stale)
 
 
 def test_measuring_records_the_thickness_and_shows_it(unmeasured, measuring, quick, qtbot):
     quick.answers[jobs.INSPECTION_VIEW] = lambda folder, project: cases.view(cases.gauge())
     told = []
-    unmeasured.measured.connect(lambda: told.append(unmeasured.gauge))
+    unmeasured.measured.connect(lambda: told.append(unmeasured.scan.gauge))
     measured_again(unmeasured, measuring, qtbot)
     done = unmeasured.model.results["inspect"]
     assert done.rests_on["scan"] == unmeasured.model.results["scan"].key
@@ -318,7 +318,7 @@ def test_points_chosen_in_3d_become_the_outline_of_their_face(shown, quick, qtbo
     assert shown.outlining == "upper"
     qtbot.waitUntil(lambda: shown.faces.own)
     assert shown.outlining == ""
-    assert asked[0][0] == "upper" and np.array_equal(asked[0][1], shown.view.number[[3, 5]])
+    assert asked[0][0] == "upper" and np.array_equal(asked[0][1], shown.scan.view.number[[3, 5]])
     assert np.array_equal(shown.faces.region("upper"), TRIANGLE)
     undo(shown)
     assert not shown.faces.own
@@ -346,7 +346,7 @@ def test_points_that_hold_no_face_are_told(shown, quick, qtbot):
 def test_the_view_is_cut_by_sigma_and_nothing_else_changes(shown):
     assert shown.points_shown() == cases.POINTS and shown.triangles_shown() == 2
     shown.clip(0.03)
-    assert shown.points_shown() == np.count_nonzero(shown.view.sigma <= np.float32(0.03))
+    assert shown.points_shown() == np.count_nonzero(shown.scan.view.sigma <= np.float32(0.03))
     assert shown.triangles_shown() == 1
     assert shown.stage is Stage.MEASURED and not shown.model.undo_stack.canUndo()
     shown.clip(None)
@@ -377,10 +377,10 @@ def test_picked_points_say_where_how_sure_and_in_which_frame(shown):
     shown.picks.start("point")
     shown.picks.pick(4)
     pick = shown.picks.items[0]
-    assert pick.name == "P1" and np.array_equal(pick.place, shown.view.points[4])
-    assert pick.sigma_mm == pytest.approx(float(shown.view.sigma[4]))
+    assert pick.name == "P1" and np.array_equal(pick.place, shown.scan.view.points[4])
+    assert pick.sigma_mm == pytest.approx(float(shown.scan.view.sigma[4]))
     assert pick.frame == cases.PICTURES[1]
-    assert pick.uv == pytest.approx(tuple(shown.view.uv[4]))
+    assert pick.uv == pytest.approx(tuple(shown.scan.view.uv[4]))
 
 
 def test_two_clicks_make_a_distance(shown):
@@ -393,7 +393,7 @@ def test_two_clicks_make_a_distance(shown):
     assert picks.items == []
     picks.pick(1)
     span = picks.items[0]
-    between = shown.view.points[1] - shown.view.points[0]
+    between = shown.scan.view.points[1] - shown.scan.view.points[0]
     assert span.name == "D1" and span.result.distance_mm == pytest.approx(np.linalg.norm(between))
     assert 0 < span.result.u_mm < 0.03
     assert picks.first is None and picks.mode == "distance"
@@ -418,7 +418,7 @@ def test_picks_stay_with_a_new_thickness_and_go_with_a_new_scan(shown, measuring
     other = replace(shown.project, sources=replace(shown.project.sources, scan="recordings/scan-2"))
     shown.model.edit("another scan", other)
     shown.model.record("scan", finished("scan", other, {}))
-    qtbot.waitUntil(lambda: not shown.stale)
+    qtbot.waitUntil(lambda: not shown.scan.stale)
     assert shown.picks.items == []
 
 

@@ -6,11 +6,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from core.files.inspection_plan_file import read_plan, write_plan
-from core.pipeline.inspect_step import inspect_step
+from core.files.plan.plan_file import read_plan, write_plan
+from core.pipeline.steps.inspect_step import inspect_step
 from tests.workbench.watchdog import Watchdog, slowness, too_long
 from workbench.bench import Bench
-from workbench.pages.inspect_presenter import InspectPresenter, Stage
+from workbench.pages.inspect.presenter import InspectPresenter, Stage
 from workbench.step_state import step_states
 
 
@@ -30,21 +30,21 @@ def settled(presenter, qtbot):
 
 
 def test_own_regions_are_measured_and_undone_in_full(presenter, qtbot):
-    before = presenter.gauge
-    height = presenter.view.height
+    before = presenter.scan.gauge
+    height = presenter.scan.view.height
     presenter.outline("upper", height > 40)
     qtbot.waitUntil(lambda: presenter.faces.own, timeout=20_000)
     assert presenter.stage is Stage.OUTDATED
     presenter.do_run()
     qtbot.waitUntil(lambda: presenter.stage is Stage.MEASURED, timeout=60_000)
-    assert presenter.gauge is not before
-    assert presenter.gauge.thickness_mm == pytest.approx(before.thickness_mm, abs=before.U_mm)
-    assert np.median(presenter.view.height[presenter.gauge.upper.indices]) > 40
+    assert presenter.scan.gauge is not before
+    assert presenter.scan.gauge.thickness_mm == pytest.approx(before.thickness_mm, abs=before.U_mm)
+    assert np.median(presenter.scan.view.height[presenter.scan.gauge.upper.indices]) > 40
     presenter.model.undo_stack.undo()
     assert presenter.stage is Stage.OUTDATED and not presenter.faces.own
     presenter.do_run()
     qtbot.waitUntil(lambda: presenter.stage is Stage.MEASURED, timeout=60_000)
-    assert presenter.gauge.thickness_mm == pytest.approx(before.thickness_mm, abs=1e-9)
+    assert presenter.scan.gauge.thickness_mm == pytest.approx(before.thickness_mm, abs=1e-9)
     assert not presenter.bench.notices.all
 
 
@@ -54,7 +54,7 @@ def test_exchanged_regions_are_told_and_nothing_is_lost(presenter, qtbot):
     presenter.do_run()
     qtbot.waitUntil(lambda: presenter.stage is Stage.FAILED, timeout=60_000)
     assert presenter.problem_of_measuring.endswith("exchange the two regions.")
-    assert presenter.gauge is not None
+    assert presenter.scan.gauge is not None
     presenter.faces.exchange()
     presenter.do_run()
     qtbot.waitUntil(lambda: presenter.stage is Stage.MEASURED, timeout=60_000)
@@ -71,11 +71,11 @@ def test_a_cancelled_measurement_leaves_the_thickness_as_it_was(presenter, qtbot
 
 def test_a_repeat_and_its_thickness_are_there_after_reopening(presenter, qtbot):
     presenter.repeats.add()
-    thickness = presenter.gauge.thickness_mm
+    thickness = presenter.scan.gauge.thickness_mm
     presenter.model.save()
     presenter.model.open(presenter.model.folder)
     qtbot.waitUntil(lambda: presenter.stage is Stage.MEASURED, timeout=60_000)
-    assert presenter.gauge.thickness_mm == thickness
+    assert presenter.scan.gauge.thickness_mm == thickness
     assert presenter.repeats.statistics().mean_mm == pytest.approx(thickness)
     assert presenter.repeats.can_add.startswith("This scan is among the repeats already.")
     assert step_states(presenter.project, presenter.model.results)["report"].sentence.startswith("Out of date")
@@ -84,10 +84,10 @@ def test_a_repeat_and_its_thickness_are_there_after_reopening(presenter, qtbot):
 def test_features_have_the_numbers_of_the_command_line_to_the_last_digit(presenter, qtbot, tmp_path):
     features = presenter.features
     for kind in ("plane", "plane", "distance", "section"):
-        features.edit.add(kind)
-    features.edit.add_cut()
+        presenter.feature.add(kind)
+    presenter.feature.add_cut()
     features.choose("plane 1")
-    features.edit.set_value("number 0", 2)
+    presenter.feature.set_value("number 0", 2)
     features.measure()
     qtbot.waitUntil(lambda: features.shown is not None, timeout=60_000)
     results = presenter.model.folder / "results"
@@ -103,15 +103,15 @@ def test_features_have_the_numbers_of_the_command_line_to_the_last_digit(present
 def test_a_recorded_picture_is_shown(presenter, qtbot):
     ready = []
     presenter.picture_ready.connect(lambda name, picture: ready.append((name, picture.shape)))
-    presenter.choose_picture(presenter.view.shown)
+    presenter.choose_picture(presenter.scan.view.shown)
     qtbot.waitUntil(lambda: bool(ready), timeout=20_000)
-    width, height = presenter.view.image_size
-    assert ready == [(presenter.view.shown, (height, width))]
+    width, height = presenter.scan.view.image_size
+    assert ready == [(presenter.scan.view.shown, (height, width))]
     settled(presenter, qtbot)
 
 
 def test_looking_and_measuring_never_stop_the_window(presenter, qtbot):
-    from workbench.pages.inspect_page import InspectPage
+    from workbench.pages.inspect.page import InspectPage
 
     page = InspectPage(presenter)
     qtbot.addWidget(page)
@@ -134,19 +134,19 @@ def test_looking_and_measuring_never_stop_the_window(presenter, qtbot):
 
 
 def test_features_and_their_plots_never_keep_the_window_waiting(presenter, qtbot, monkeypatch):
-    from workbench.pages.inspect_page import InspectPage
+    from workbench.pages.inspect.page import InspectPage
 
-    monkeypatch.setenv("TRISECT_NO_OPENGL", "painter")
+    monkeypatch.setenv("TRISECT_NO_OPENGL", "none")
     page = InspectPage(presenter)
     qtbot.addWidget(page)
     page.resize(1100, 700)
     page.show()
     page.tabs.setCurrentWidget(page.picture)
     qtbot.wait(300)
-    features, conditions = presenter.features, presenter.features.conditions
+    features, conditions = presenter.features, presenter.conditions
     with Watchdog(lambda: features.chosen) as watchdog:
         for kind in ("plane", "plane", "thickness", "distance", "section"):
-            features.edit.add(kind)
+            presenter.feature.add(kind)
             qtbot.wait(40)
         features.measure()
         qtbot.waitUntil(lambda: features.shown is not None and not features.measuring, timeout=60_000)

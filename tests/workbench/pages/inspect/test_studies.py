@@ -8,13 +8,13 @@ import pytest
 from PySide6.QtCore import Qt
 
 from core.errors import InputError
-from core.files.study_file import study_path
+from core.files.study.study_file import study_path
 from tests.study.grr_tables import AIAG
 from tests.workbench.hand_lane import HandLane
 from tests.workbench.pages import inspect_cases as cases
-from workbench import jobs
-from workbench.pages.inspect_page import InspectPage
+from workbench.pages.inspect.page import InspectPage
 from workbench.views import ask
+from workbench.work import jobs
 
 STUDIES = 4
 """Place of the tab."""
@@ -42,7 +42,7 @@ def studies(presenter):
 
 @pytest.fixture
 def tab(presenter, qtbot, monkeypatch):
-    monkeypatch.setenv("TRISECT_NO_OPENGL", "painter")
+    monkeypatch.setenv("TRISECT_NO_OPENGL", "none")
     made = InspectPage(presenter)
     qtbot.addWidget(made)
     made.resize(1280, 800)
@@ -63,37 +63,52 @@ def made(studies, qtbot):
 
 
 def test_a_gauge_rr_study_is_pasted_made_shown_and_undone(tab, studies, presenter, qtbot):
+    tab.window().refreshing.at_once()
     tab.buttons["grr"].click()
+    tab.window().refreshing.at_once()
     assert tab.stack.currentWidget() is tab.editor and tab.editor.text.toPlainText() == "part;operator;value\n"
     assert tab.editor.forms["grr"].values()["tolerance_mm"] == 0.2
     tab.editor.text.appendPlainText(ROWS)
     studies.set_value("tolerance_mm", None)
+    tab.window().refreshing.at_once()
     tab.editor.make.click()
     made(studies, qtbot)
+    tab.window().refreshing.at_once()
     assert tab.stack.currentIndex() == 0 and tab.list.topLevelItem(0).text(1) == "10 parts × 3 operators × 3 repeats"
     assert tab.rows.text_of("%GRR of the total") == "27.9 %" and tab.rows.text_of("ndc") == "4"
     assert tab.table.table.rowCount() == 7 and "gauge R&R" in tab.table.copied()
     undo(presenter)
+    tab.window().refreshing.at_once()
     assert studies.all == () and not tab.table.isVisible()
 
 
 def test_a_table_with_something_wrong_stays_with_a_sentence(tab, studies, qtbot):
+    tab.window().refreshing.at_once()
     tab.buttons["grr"].click()
+    tab.window().refreshing.at_once()
     tab.editor.text.setPlainText("part;operator;value\n1;A;2.0\n1;A;two\n")
+    tab.window().refreshing.at_once()
     tab.editor.make.click()
+    tab.window().refreshing.at_once()
     qtbot.waitUntil(lambda: not studies.working, timeout=60_000)
+    tab.window().refreshing.at_once()
     assert "line 3" in tab.editor.problem.text() and tab.editor.problem.isVisible()
     assert studies.all == () and "two" in tab.editor.text.toPlainText()
     tab.editor.cancel.click()
+    tab.window().refreshing.at_once()
     assert tab.stack.currentIndex() == 0 and studies.draft is None
 
 
 def test_an_acceptance_check_has_its_limits(tab, studies, qtbot):
+    tab.window().refreshing.at_once()
     tab.buttons["acceptance"].click()
+    tab.window().refreshing.at_once()
     tab.editor.text.appendPlainText("size;left;25.012;25.0;0.001\nsize;right;25.03;25.0;0.001")
     studies.set_value("size", 0.02)
+    tab.window().refreshing.at_once()
     tab.editor.make.click()
     made(studies, qtbot)
+    tab.window().refreshing.at_once()
     assert tab.rows.text_of("Decision") == "not conforming" and "not a certificate" in tab.notes.text()
     assert tab.table.copied().split("\n")[1].split("\t")[1:4] == ["2", "+0.0300", "right"]
 
@@ -120,30 +135,41 @@ def test_rows_of_other_projects_and_of_a_file_go_into_the_table(tab, studies, pr
 def test_the_type1_study_of_the_repeats_is_kept_ticked_unticked_removed_and_exported(
     tab, studies, presenter, qtbot, monkeypatch, tmp_path
 ):
+    tab.window().refreshing.at_once()
     tab.buttons["type1"].click()
     made(studies, qtbot)
     kept = studies.all[0]
+    tab.window().refreshing.at_once()
     assert (kept.kind, kept.included) == ("type1", True)
     item = tab.list.topLevelItem(0)
     item.setCheckState(0, Qt.CheckState.Unchecked)
+    tab.window().refreshing.at_once()
     assert tab.list.topLevelItem(0) is item, "an item that tells of its tick is not deleted meanwhile"
     assert not studies.all[0].included
     undo(presenter)
+    tab.window().refreshing.at_once()
     assert studies.all[0].included and tab.list.topLevelItem(0).checkState(0) is Qt.CheckState.Checked
     monkeypatch.setattr(ask, "choose_file_to_save", lambda *_: tmp_path / "mine.json")
+    tab.window().refreshing.at_once()
     tab.buttons["export"].click()
+    tab.window().refreshing.at_once()
     qtbot.waitUntil(lambda: (tmp_path / "mine.json").exists() and not studies.working)
+    tab.window().refreshing.at_once()
     assert json.loads((tmp_path / "mine.json").read_text())["n"] == 3
     tab.buttons["remove"].click()
+    tab.window().refreshing.at_once()
     assert studies.all == () and study_path(presenter.model.folder, kept.id).exists()
     undo(presenter)
+    tab.window().refreshing.at_once()
     assert [one.id for one in studies.all] == [kept.id]
 
 
 def test_every_button_says_what_it_does_or_why_it_cannot(tab, studies, presenter, qtbot):
     presenter.model.edit("no repeats", replace(presenter.project, repeats=()))
+    tab.window().refreshing.at_once()
     assert not tab.buttons["type1"].isEnabled() and "two repeats" in tab.buttons["type1"].toolTip()
     assert all(button.toolTip() for button in tab.buttons.values())
     studies.begin("acceptance")
     buttons = [tab.editor.open, tab.editor.add, tab.editor.make, tab.editor.cancel]
+    tab.window().refreshing.at_once()
     assert all(button.toolTip() for button in buttons) and "certificate" in tab.editor.help.text()

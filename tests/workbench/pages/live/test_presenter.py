@@ -6,12 +6,12 @@ from typing import cast
 
 import numpy as np
 import pytest
-from PySide6.QtCore import QTimer
 
-from core.acquire.source import Lasers, SourceInfo
-from core.files.project import Done
-from core.live.commands import Auto, Capture, Configure, Discard, Pause, Resume, Stop, Switch, TakeReference
-from core.live.events import (
+from core.acquire.source import SourceInfo
+from core.files.project.data import Done
+from core.messages import plain
+from core.pipeline.live.commands import Auto, Capture, Configure, Discard, Pause, Resume, Stop, TakeReference
+from core.pipeline.live.events import (
     LiveAdvice,
     LiveAnswered,
     LiveAsk,
@@ -23,11 +23,11 @@ from core.live.events import (
     LiveUnplugged,
     LiveView,
 )
-from core.scan.preflight import Check
+from core.scan.preview.preflight import Check
 from tests.workbench.hand_lane import HandLane
-from workbench import jobs
-from workbench.pages.live_presenter import LivePresenter
-from workbench.worker import Failure
+from workbench.pages.live.presenter import LivePresenter
+from workbench.work import jobs
+from workbench.work.worker import Failure
 
 
 @pytest.fixture
@@ -43,7 +43,7 @@ def live(camera_bench):
 @pytest.fixture
 def running(live, lane):
     live.start()
-    lane.current.told.emit(LiveStarted("Camera 1", (640, 480)))
+    lane.current.reported.emit(LiveStarted("Camera 1", (640, 480)))
     return live
 
 
@@ -75,7 +75,7 @@ def test_the_state_is_told_in_words(live, lane):
     assert live.state_text() == "The live source is off."
     live.start()
     assert live.state_text() == "Opening the source …" and not live.live
-    lane.current.told.emit(LiveStarted("Camera 1", (640, 480)))
+    lane.current.reported.emit(LiveStarted("Camera 1", (640, 480)))
     assert live.state_text() == "Live: Camera 1" and live.live
     live.pause(True)
     assert live.state_text() == "Paused: Camera 1"
@@ -89,11 +89,9 @@ def test_commands_go_to_the_source(running, lane):
     running.pause(True)
     running.pause(True)
     running.pause(False)
-    running.lasers(Lasers(fan=True, hand=False))
-    running.take_reference()
     running.discard("view02")
     sent = [type(command) for command in lane.sent]
-    assert sent == [Capture, Auto, Pause, Resume, Switch, TakeReference, Discard]
+    assert sent == [Capture, Auto, Pause, Resume, Discard]
 
 
 def test_nothing_is_taken_before_the_source_is_open(live, lane):
@@ -138,21 +136,21 @@ def test_views_and_poses_need_not_every_frame(running, lane):
 
 def test_what_is_asked_is_answered_with_its_own_command(running, lane, qtbot):
     with qtbot.waitSignal(running.asked) as asked:
-        lane.current.told.emit(LiveAsk("Switch the laser on.", "Continue", TakeReference()))
+        lane.current.reported.emit(LiveAsk(plain("Switch the laser on."), "Continue", TakeReference()))
     assert asked.args == ["Switch the laser on.", "Continue"]
     running.answer()
     assert lane.sent == [TakeReference()]
     with qtbot.waitSignal(running.asked) as asked:
-        lane.current.told.emit(LiveAnswered())
+        lane.current.reported.emit(LiveAnswered())
     assert asked.args == ["", ""] and running.question == ("", "")
 
 
 def test_an_unplugged_source_is_told_once_and_so_is_its_return(running, lane, qtbot):
     with qtbot.waitSignal(running.unplugged):
-        lane.current.told.emit(LiveUnplugged("Camera 1 is gone."))
+        lane.current.reported.emit(LiveUnplugged(plain("Camera 1 is gone.")))
     assert running.gone and running.state_text() == "Camera 1 is unplugged."
     with qtbot.waitSignal(running.back):
-        lane.current.told.emit(LiveBack())
+        lane.current.reported.emit(LiveBack())
     assert not running.gone
     texts = [notice.text for notice in running.bench.notices.all]
     assert texts == ["Camera 1 is gone.", "Camera 1 is back; the recording goes on."]
@@ -186,7 +184,7 @@ def test_a_recording_without_pictures_changes_nothing(running, lane):
 
 
 def test_why_a_recording_ended_by_itself_is_told(running, lane):
-    lane.finish(LiveEnded(request_of(lane).folder, 4, 0, "The disk is full."))
+    lane.finish(LiveEnded(request_of(lane).folder, 4, 0, plain("The disk is full.")))
     assert running.bench.notices.all[-1].text == "The disk is full."
     assert running.model.project.sources.camera
 
@@ -222,16 +220,19 @@ def test_another_pages_recording_is_stopped_only_after_asking(running, lane, cam
     assert request_of(lane).step == "scan"
 
 
-def test_leaving_the_project_ends_the_recording_and_keeps_it_in_the_project(running, lane):
+def test_leaving_the_project_ends_the_recording_and_keeps_it_in_the_project(running, lane, qtbot):
     folder = request_of(lane).folder
-    QTimer.singleShot(20, lambda: lane.finish(LiveEnded(folder, 8, 0)))
     running.model.leaving.emit()
-    assert not running.running
+    assert running.stopping and lane.sent == [Stop()]
+    assert running.model.is_recording
+    with qtbot.waitSignal(running.model.recordings_over):
+        lane.finish(LiveEnded(folder, 8, 0))
+    assert not running.running and not running.model.is_recording
     assert running.model.project.sources.camera == f"recordings/{folder.name}"
 
 
 def test_a_recording_of_another_project_does_not_change_this_one(running, lane, tmp_path):
-    from core.files.project import new_project
+    from core.files.project.data import new_project
 
     running.model.create(tmp_path / "second", new_project("second"))
     assert running.stopping
@@ -276,7 +277,7 @@ def test_devices_are_listed_in_the_quick_lane(live, camera_bench, qtbot):
 
 def test_pictures_taken_are_passed_on(running, lane, qtbot):
     with qtbot.waitSignal(running.taken) as taken:
-        lane.current.told.emit(LiveTaken("view00", np.zeros((4, 4), np.uint8)))
+        lane.current.reported.emit(LiveTaken("view00", np.zeros((4, 4), np.uint8)))
     assert taken.args[0].name == "view00"
 
 
@@ -318,13 +319,6 @@ def test_recordings_of_one_second_have_folders_of_their_own(live, lane):
     assert request_of(lane).folder != first
 
 
-def test_the_window_knows_every_kind_of_source_and_what_it_may_be_told():
-    from core.pipeline.sources import SOURCES
-    from workbench.pages.live_settings import SETTINGS
-
-    assert {kind: source.settings for kind, source in SOURCES.items()} == SETTINGS
-
-
 def test_each_step_and_each_source_keeps_its_own_settings(live, camera_bench):
     scan = LivePresenter(camera_bench, "scan")
     for presenter, exposure_ms in ((live, 40.0), (scan, 2.0)):
@@ -351,8 +345,8 @@ def test_a_request_says_how_old_the_calibrations_are_and_how_frames_are_written(
 
 
 def test_checks_and_advice_are_gone_with_the_recording(running, lane):
-    lane.current.told.emit(LiveChecks((Check("reference", "ok", "The reference holds."),)))
-    lane.current.told.emit(LiveAdvice("Too bright.", None))
-    assert running.checks[0].state == "ok" and running.advice.sentence == "Too bright."
+    lane.current.reported.emit(LiveChecks((Check("reference", "ok", plain("The reference holds.")),)))
+    lane.current.reported.emit(LiveAdvice(plain("Too bright.")))
+    assert running.checks[0].state == "ok" and str(running.advice.sentence) == "Too bright."
     lane.finish(LiveEnded(request_of(lane).folder, 0, 0))
-    assert running.checks == () and running.advice.sentence == ""
+    assert running.checks == () and running.advice.sentence is None

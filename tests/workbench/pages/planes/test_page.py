@@ -13,17 +13,18 @@ from PySide6.QtCore import QMimeData, QPoint, QPointF, Qt, QUrl
 from PySide6.QtGui import QDragEnterEvent, QDropEvent
 from PySide6.QtWidgets import QApplication, QWidget
 
-from core.files.project_keys import finished
-from core.live.commands import Stop
-from core.live.events import LiveAsk, LiveEnded, LiveStarted, LiveTaken, LiveView, PlanesDetail
+from core.files.project.keys import finished
+from core.messages import plain
+from core.pipeline.live.commands import Stop
+from core.pipeline.live.events import LiveAsk, LiveEnded, LiveStarted, LiveTaken, LiveView, PlanesDetail
 from tests.workbench.hand_lane import HandLane
 from tests.workbench.pages.planes_cases import NO_PLATE, Planes, folder_with_poses, project_with
-from workbench import jobs
 from workbench.bench import Bench
-from workbench.pages.planes_page import PlanesPage
-from workbench.pages.planes_presenter import PlanesPresenter
-from workbench.pages.planes_stage import Stage
+from workbench.pages.calibration.stage import Stage
+from workbench.pages.planes.page import PlanesPage
+from workbench.pages.planes.presenter import PlanesPresenter
 from workbench.views import ask
+from workbench.work import jobs
 
 LEFT = Qt.MouseButton.LeftButton
 
@@ -62,12 +63,14 @@ def solved(page: PlanesPage, pictures: Path, qtbot: Any) -> PlanesPage:
 
 def settled(qtbot: Any, page: PlanesPage) -> None:
     qtbot.waitUntil(lambda: not page.presenter.bench.quick.busy and not page.presenter.bench.measuring.busy)
+    page.refreshing.at_once()
 
 
 def click(qtbot: Any, widget: QWidget) -> None:
     where = widget.rect().center()
     where.setX(min(where.x(), 10))
     qtbot.mouseClick(widget, LEFT, pos=where)
+    QApplication.processEvents()  # the page is refreshed in the next turn
 
 
 def pose_row(page: PlanesPage, name: str) -> Any:
@@ -79,6 +82,7 @@ def check(qtbot: Any, page: PlanesPage, name: str) -> None:
     table = page.views.table
     place = table.visualRect(page.views.model.index(page.views.model.row_of(name), 0))
     qtbot.mouseClick(table.viewport(), LEFT, pos=QPoint(place.left() + 10, place.center().y()))
+    QApplication.processEvents()  # the page is refreshed in the next turn
 
 
 # ---- empty, failed, solved
@@ -99,11 +103,14 @@ def test_an_empty_page_says_what_to_do_next_and_offers_it(
 
 def test_without_a_camera_the_page_says_so_and_leads_there(page: PlanesPage, qtbot: Any) -> None:
     page.presenter.model.edit("reject", project_with(camera=""))
+    page.refreshing.at_once()
     assert page.card.title.text() == "The camera comes first"
     assert "seen through the camera" in page.pose.image.empty_state.message
     wanted: list[str] = []
     page.presenter.go_to.connect(wanted.append)
+    page.refreshing.at_once()
     click(qtbot, page.pose.image.empty_state.button)
+    page.refreshing.at_once()
     assert wanted == ["camera"]
     assert page.card.buttons["run"].toolTip() == "Accept a camera calibration first."
 
@@ -121,13 +128,17 @@ def test_a_folder_can_be_dropped_anywhere_on_the_page(page: PlanesPage, pictures
 
 def test_there_is_one_primary_button_and_it_is_the_next_thing_to_do(solved: PlanesPage, qtbot: Any) -> None:
     buttons = solved.card.buttons
+    solved.refreshing.at_once()
     assert [key for key, button in buttons.items() if button.property("primary")] == ["accept"]
     assert not solved.live.panel.start.property("primary")
     click(qtbot, buttons["accept"])
+    solved.refreshing.at_once()
     qtbot.waitUntil(lambda: solved.presenter.stage is Stage.ACCEPTED)
+    solved.refreshing.at_once()
     assert solved.card.title.text() == "Accepted"
     assert not any(button.property("primary") for button in buttons.values())
     click(qtbot, buttons["reject"])
+    solved.refreshing.at_once()
     assert solved.card.title.text() == "Rejected"
 
 
@@ -139,9 +150,11 @@ def test_greyed_buttons_say_why(page: PlanesPage) -> None:
 
 def test_the_result_takes_the_room_of_what_it_was_made_from(solved: PlanesPage) -> None:
     folds = (solved.pictures_fold, solved.target_fold, solved.laser_fold)
+    solved.refreshing.at_once()
     assert not any(fold.isExpanded() for fold in folds)
     assert solved.result_fold.isVisible()
     solved.presenter.model.undo_stack.undo()
+    solved.refreshing.at_once()
     assert all(fold.isExpanded() for fold in folds)
     assert not solved.result_fold.isVisible()
 
@@ -160,11 +173,13 @@ def test_a_problem_stands_where_the_next_step_is_told(page: PlanesPage, pictures
 def test_unchecking_a_pose_leaves_it_out_of_result_and_count(solved: PlanesPage, qtbot: Any) -> None:
     check(qtbot, solved, "pose01")
     settled(qtbot, solved)
+    solved.refreshing.at_once()
     assert solved.presenter.model.undo_stack.undoText() == "leave out pose01"
     assert (pose_row(solved, "pose01").used, pose_row(solved, "pose01").reason) == (False, "left out by hand")
     assert solved.result.quality.text_of("Poses") == "5 of 7"
     assert solved.result.left_out.text().splitlines() == ["1 × left out by hand: pose01", f"1 × {NO_PLATE}: pose06"]
     solved.presenter.model.undo_stack.undo()
+    solved.refreshing.at_once()
     assert pose_row(solved, "pose01").used
     assert solved.result.quality.text_of("Poses") == "6 of 7"
 
@@ -180,6 +195,7 @@ def test_several_chosen_poses_are_left_out_by_one_key_and_one_undo(solved: Plane
     assert solved.presenter.project.options.excluded == {"planes/pose01", "planes/pose02"}
     assert solved.presenter.model.undo_stack.count() == edits + 1
     solved.presenter.model.undo_stack.undo()
+    solved.refreshing.at_once()
     assert not solved.presenter.project.options.excluded
 
 
@@ -200,6 +216,7 @@ def test_a_pose_without_a_plate_says_why(solved: PlanesPage, qtbot: Any) -> None
 
 def test_a_click_on_a_bar_shows_its_pose(solved: PlanesPage) -> None:
     solved.bars.bar_clicked.emit("pose04")
+    solved.refreshing.at_once()
     assert solved.views.current() == "pose04"
     assert solved.pose.line.text().startswith("pose04")
 
@@ -219,6 +236,7 @@ def test_angles_are_shown_held_and_free_with_the_verdict(solved: PlanesPage, qtb
 
 def test_the_rig_is_drawn_in_3d_and_the_chosen_pose_stands_out(solved: PlanesPage, qtbot: Any) -> None:
     drawn: list[str] = []
+    solved.refreshing.at_once()
     for name in ("set_planes", "set_polylines", "set_labels", "set_camera_frustum"):
         real = getattr(solved.rig.scene, name)
 
@@ -228,27 +246,35 @@ def test_the_rig_is_drawn_in_3d_and_the_chosen_pose_stands_out(solved: PlanesPag
 
         setattr(solved.rig.scene, name, spy)
     solved.tabs.setCurrentWidget(solved.rig)
+    solved.refreshing.at_once()
     assert drawn == ["set_camera_frustum", "planes", "targets", "stripes", "poses", "chosen"]
     solved.rig.refresh()
+    solved.refreshing.at_once()
     assert len(drawn) == 6, "nothing is drawn again for nothing"
     solved.presenter.choose_pose("pose02")
+    solved.refreshing.at_once()
     assert drawn[6:] == ["chosen"]
 
 
 def test_planes_are_restored_from_the_history(solved: PlanesPage, qtbot: Any) -> None:
+    solved.refreshing.at_once()
     click(qtbot, solved.card.buttons["accept"])
     settled(qtbot, solved)
     first = solved.presenter.candidate
     check(qtbot, solved, "pose01")
     settled(qtbot, solved)
+    solved.refreshing.at_once()
     click(qtbot, solved.card.buttons["accept"])
     settled(qtbot, solved)
     solved.tabs.setCurrentWidget(solved.history)
+    solved.refreshing.at_once()
     assert solved.history.table.table.rowCount() == 2
     assert solved.history.restore.toolTip() == "Choose a calibration in the list first."
     assert solved.history.words.text() == "Choose a calibration in the list first."
     solved.history.table.set_current_row(1)
+    solved.refreshing.at_once()
     click(qtbot, solved.history.restore)
+    solved.refreshing.at_once()
     assert solved.presenter.project.accepted.fan == first
     assert solved.history.restore.toolTip() == solved.history.words.text() == "These laser planes are in use."
     assert not solved.bars.isVisible()
@@ -261,23 +287,31 @@ def test_the_laser_is_changed_in_its_form_and_undone(page: PlanesPage, qtbot: An
     lines = page.laser.editor("lines")
     lines.setFocus()
     lines.selectAll()  # type: ignore[attr-defined]
+    page.refreshing.at_once()
     qtbot.keyClicks(lines, "1")
+    page.refreshing.at_once()
     qtbot.keyClick(lines, Qt.Key.Key_Return)
+    page.refreshing.at_once()
     assert page.presenter.project.rig.lines == 1
+    page.refreshing.at_once()
     assert not page.laser.editor("angle").isEnabled()
     assert page.laser.editor("angle").toolTip() == "One line has no neighbour."
     page.presenter.model.undo_stack.undo()
+    page.refreshing.at_once()
     assert page.laser.values()["lines"] == 3
     assert page.laser.editor("angle").isEnabled()
     page.laser.edited.emit("angle", None)
+    page.refreshing.at_once()
     assert page.presenter.project.rig.angle == 0.0
     assert page.laser.values()["angle"] is None
 
 
 def test_the_plate_is_chosen_in_its_form(page: PlanesPage, qtbot: Any) -> None:
     page.target.form.edited.emit("kind", "circle_grid")
+    page.refreshing.at_once()
     qtbot.waitUntil(lambda: "asymmetric" in page.target.form.values())
     page.presenter.model.undo_stack.undo()
+    page.refreshing.at_once()
     assert page.target.form.values()["kind"] == "black_square"
 
 
@@ -293,7 +327,9 @@ def detail(uv: Any = None, stripes: int = 3) -> PlanesDetail:
     lines = tuple(np.array([[10.0, 10.0 + k], [60.0, 12.0 + k]]) for k in range(stripes))
     cells = np.eye(12, 16, dtype=bool)
     missing = ("Record at least 8 poses; there are 2.",)
-    return PlanesDetail(7, uv, lines, tuple(range(stripes)), "Hold still.", cells, missing, 2, True)
+    return PlanesDetail(
+        7, uv, lines, tuple(range(stripes)), plain("Hold still."), cells, tuple(map(plain, missing)), 2, True
+    )
 
 
 def live_view(*args: Any) -> LiveView:
@@ -303,26 +339,33 @@ def live_view(*args: Any) -> LiveView:
 def start_live(page: PlanesPage, lane: HandLane, qtbot: Any) -> None:
     page.source.set_mode("live")
     click(qtbot, page.live.panel.start)
-    lane.waiting[0][0].told.emit(LiveStarted("Camera 1", (640, 480)))
+    lane.waiting[0][0].reported.emit(LiveStarted("Camera 1", (640, 480)))
+    page.refreshing.at_once()
 
 
 def test_poses_are_taken_live_with_everything_drawn_and_each_picture_answered_once(
     page: PlanesPage, lane: HandLane, qtbot: Any
 ) -> None:
     start_live(page, lane, qtbot)
+    page.refreshing.at_once()
     assert page.card.title.text() == "Taking poses"
     task = lane.waiting[0][0]
     task.view.emit(live_view(np.array([[100.0, 120.0], [200.0, 130.0]])))
+    page.refreshing.at_once()
     assert set(page.pose.image.layer_names()) >= {"covered", "corners", "stripe 0", "stripe 2"}
     task.view.emit(live_view(None, 1))
+    page.refreshing.at_once()
     assert not {"corners", "stripe 1", "stripe 2"} & set(page.pose.image.layer_names())
     assert lane.sent.count("shown") == 2
     whole = replace(live_view(), detail=replace(detail(), missing=()))
     task.view.emit(whole)
+    page.refreshing.at_once()
     assert page.pose.hints._wanted == ("Hold still.", "Nothing is missing: press Stop, and it is calibrated.")
-    task.told.emit(LiveTaken("pose00", np.zeros((12, 16), np.uint8)))
+    task.reported.emit(LiveTaken("pose00", np.zeros((12, 16), np.uint8)))
+    page.refreshing.at_once()
     assert [row.name for row in page.views.rows()] == ["pose00"]
     check(qtbot, page, "pose00")
+    page.refreshing.at_once()
     assert page.views.rows() == ()
     assert not page.target.isEnabled()
 
@@ -331,7 +374,7 @@ def test_the_laser_is_asked_to_be_switched_and_the_answer_goes_back(
     page: PlanesPage, lane: HandLane, qtbot: Any
 ) -> None:
     start_live(page, lane, qtbot)
-    lane.waiting[0][0].told.emit(LiveAsk("Switch the three-line laser off.", "Continue", Stop()))
+    lane.waiting[0][0].reported.emit(LiveAsk(plain("Switch the three-line laser off."), "Continue", Stop()))
     assert page.strip.isVisible()
     click(qtbot, page.strip.answer)
     assert lane.sent[-1] == Stop()
@@ -339,9 +382,11 @@ def test_the_laser_is_asked_to_be_switched_and_the_answer_goes_back(
 
 def test_a_laser_that_cannot_be_switched_is_said_before_the_start(page: PlanesPage, lane: HandLane, qtbot: Any) -> None:
     page.source.set_mode("live")
+    page.refreshing.at_once()
     assert page.live.pairs.isChecked()
     click(qtbot, page.live.pairs)
     start_live(page, lane, qtbot)
+    page.refreshing.at_once()
     assert lane.waiting[0][2][0].pairs is False
     assert not page.live.pairs.isEnabled()
     assert page.live.pairs.toolTip() == "Stop the live source first."

@@ -11,18 +11,19 @@ from typing import Any, cast
 import pytest
 
 from core.errors import InputError
-from core.files.project import Accepted, read_project
-from core.files.project_keys import finished
-from core.live.events import LiveEnded, LiveStarted
+from core.files.project.data import Accepted
+from core.files.project.folder import read_project
+from core.files.project.keys import finished
+from core.pipeline.live.events import LiveEnded, LiveStarted
 from tests.calibrate.fan_scenes import CAMERA
 from tests.workbench.hand_lane import HandLane
 from tests.workbench.pages.planes_cases import NO_PLATE, Planes, folder_with_poses, project_with
-from workbench import jobs
 from workbench.bench import Bench
-from workbench.pages import planes_words as words
-from workbench.pages.planes_presenter import PlanesPresenter
-from workbench.pages.planes_stage import Stage
+from workbench.pages.calibration.stage import Stage
+from workbench.pages.planes import words
+from workbench.pages.planes.presenter import PlanesPresenter
 from workbench.step_state import State
+from workbench.work import jobs
 
 
 @pytest.fixture
@@ -91,14 +92,14 @@ def test_every_stage_before_a_calibration_says_what_is_missing(
         (Stage.FOUND, "Calibrate the laser planes from their pictures first."),
         (Stage.NO_CAMERA, "Accept a camera calibration first."),
     ]
-    assert page.can_measure == "Accept a camera calibration first."
+    assert page.can_search == "Accept a camera calibration first."
     assert page.can_accept == page.can_reject == "There is no calibration yet."
 
 
 def test_a_chosen_folder_is_measured_and_solved(page: PlanesPresenter, pictures: Path, qtbot: Any) -> None:
     page.use_folder(pictures)
-    assert (page.stage, page.blocker()) == (Stage.MEASURING, "The pictures are being measured.")
-    assert page.can_measure == "The pictures are being measured."
+    assert (page.stage, page.blocker()) == (Stage.SEARCHING, "The pictures are being measured.")
+    assert page.can_search == "The pictures are being measured."
     qtbot.waitUntil(lambda: page.stage is Stage.SOLVED)
     assert page.blocker() == "Accept the laser planes first."
     assert [pose.used for pose in page.poses()] == [True] * 6 + [False]
@@ -130,7 +131,7 @@ def test_cancelling_the_measurement_goes_back_to_where_it_was(
     planes.measuring.cancel_all()
     settled(qtbot, page)
     assert (page.stage, page.work.problem) == (Stage.FOUND, "")
-    assert page.can_measure == ""
+    assert page.can_search == ""
 
 
 def test_what_cannot_be_calibrated_says_why_in_the_words_of_the_window(
@@ -154,7 +155,7 @@ def test_measurements_of_a_project_that_was_left_do_not_end_those_of_the_next(
     page.work.search()
     assert left is not None
     left.cancelled.emit()  # a process takes its time to stop
-    assert page.stage is Stage.MEASURING
+    assert page.stage is Stage.SEARCHING
 
 
 # ---- poses
@@ -167,7 +168,7 @@ def test_a_pose_left_out_is_solved_without_at_once_and_undone_from_memory(found:
     settled(qtbot, found)
     ids.append(found.candidate)
     pose = found.pose_of("pose02")
-    assert pose is not None and pose.reason == "left out by hand"
+    assert pose is not None and pose.reason is not None and pose.reason.code == "set.left_out_by_hand"
     assert found.model.undo_stack.undoText() == "leave out pose02"
     found.model.undo_stack.undo()
     ids.append(found.candidate)
@@ -425,8 +426,8 @@ def test_live_poses_are_taken_with_or_without_the_laser_off_as_was_said_last(
     request = live.waiting[0][2][0]
     assert (request.step, request.pairs, request.camera) == ("planes", False, CAMERA)
     assert (page.stage, page.blocker()) == (Stage.LIVE, "Stop the live source when there are enough poses.")
-    assert page.can_measure == page.can_accept == page.can_reject == "Stop the live source first."
-    assert page.busy() == "A recording is running."
+    assert page.can_search == page.can_accept == page.can_reject == "Stop the live source first."
+    assert page.model.is_recording
     page.live.stop()
     live.finish(LiveEnded(request.folder, 0, 0))
     assert page.stage is Stage.NONE
@@ -436,7 +437,7 @@ def test_a_recording_becomes_the_source_and_is_measured(page: PlanesPresenter, q
     page.do_live()
     live = cast(HandLane, page.bench.live)
     task, _, (request,), _ = live.waiting[0]
-    task.told.emit(LiveStarted("Simulated rig", (320, 240)))
+    task.reported.emit(LiveStarted("Simulated rig", (320, 240)))
     folder_with_poses(request.folder)
     page.live.stop()
     live.finish(LiveEnded(request.folder, 7, 0))

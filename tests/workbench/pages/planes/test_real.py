@@ -7,10 +7,10 @@ from typing import Any
 
 import pytest
 
-from core.files.project import read_project
+from core.files.project.folder import read_project
 from workbench.bench import Bench
-from workbench.pages.planes_presenter import PlanesPresenter
-from workbench.pages.planes_stage import Stage
+from workbench.pages.calibration.stage import Stage
+from workbench.pages.planes.presenter import PlanesPresenter
 
 
 @pytest.fixture

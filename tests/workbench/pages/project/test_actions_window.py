@@ -10,7 +10,8 @@ from PySide6.QtCore import QMimeData, QPoint, QPointF, Qt, QUrl
 from PySide6.QtGui import QDragEnterEvent, QDropEvent
 from PySide6.QtWidgets import QApplication, QWidget
 
-from core.files.project import ProjectFile, new_project, write_project
+from core.files.project.data import ProjectFile, new_project
+from core.files.project.folder import write_project
 from tests.workbench.technician import Technician
 from workbench.app import _after_start
 from workbench.main_window import MainWindow
@@ -46,7 +47,7 @@ def test_a_project_dropped_on_a_page_that_takes_folders_is_opened_all_the_same(
     technician: Technician, project: Path, tmp_path: Path
 ) -> None:
     write_project(tmp_path / "first", ProjectFile(new_project("First")))
-    technician.window.doors.open_project(tmp_path / "first")
+    technician.window.projects.open_project(tmp_path / "first")
     technician.window.go_to("planes")
     technician.idle()
     drop(technician.window, project)

@@ -15,12 +15,13 @@ from xml.etree import ElementTree
 import pytest
 
 from core.errors import InputError
-from core.files.project import new_project, put_opener, write_project
-from core.files.project_data import ProjectFile
-from workbench import app, association
+from core.files.project.data import ProjectFile, new_project
+from core.files.project.folder import put_opener, write_project
+from workbench import app
 from workbench.bench import Bench
-from workbench.pages.double_click import choose_double_click
-from workbench.pages.project_doors import ProjectDoors
+from workbench.pages.project import double_click
+from workbench.pages.project.actions import ProjectActions
+from workbench.pages.project.double_click import choose_double_click
 from workbench.views import ask
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="freedesktop.org's files")
@@ -48,7 +49,7 @@ def entry(data: Path) -> configparser.SectionProxy:
 
 
 def test_the_entry_starts_the_program_with_the_file_and_names_the_kind_of_file(data: Path) -> None:
-    association.install(("/opt/tri sect/bin/trisect-workbench",))
+    double_click.install(("/opt/tri sect/bin/trisect-workbench",))
     desktop = entry(data)
     assert desktop["Type"] == "Application" and desktop["Terminal"] == "false"
     assert desktop["Exec"] == '"/opt/tri sect/bin/trisect-workbench" %f'
@@ -62,32 +63,32 @@ def test_the_entry_starts_the_program_with_the_file_and_names_the_kind_of_file(d
 
 
 def test_signs_that_mean_something_in_an_entry_are_escaped(data: Path) -> None:
-    association.install(('/a "b"/50%/$x', "-m"))
+    double_click.install(('/a "b"/50%/$x', "-m"))
     assert entry(data)["Exec"] == r'"/a \\"b\\"/50%%/\\$x" "-m" %f'
 
 
 def test_doing_it_twice_changes_nothing_and_taking_it_back_leaves_nothing_of_it(data: Path) -> None:
-    assert not association.installed()
+    assert not double_click.installed()
     (data / "applications").mkdir(parents=True)
     (data / "applications" / "other.desktop").write_text("[Desktop Entry]\n")
-    first = association.install()
+    first = double_click.install()
     once = contents(data)
     times = {path: path.stat().st_mtime_ns for path in first.files}
-    assert association.install() == first
+    assert double_click.install() == first
     assert contents(data) == once
     assert {path: path.stat().st_mtime_ns for path in first.files} == times
-    assert association.installed()
-    gone = association.uninstall()
+    assert double_click.installed()
+    gone = double_click.uninstall()
     assert set(gone.files) == set(first.files) and not any(path.exists() for path in first.files)
-    assert (data / "applications" / "other.desktop").exists() and not association.installed()
-    assert association.uninstall().files == ()
+    assert (data / "applications" / "other.desktop").exists() and not double_click.installed()
+    assert double_click.uninstall().files == ()
 
 
 @pytest.mark.skipif(not shutil.which("update-mime-database"), reason="shared-mime-info is not installed")
 def test_the_system_knows_the_kind_of_file_then(data: Path) -> None:
-    association.install()
+    double_click.install()
     assert "application/x-trisect-project:*.trisect" in (data / "mime" / "globs").read_text()
-    association.uninstall()
+    double_click.uninstall()
     globs = data / "mime" / "globs"
     assert not globs.exists() or "trisect" not in globs.read_text()
 
@@ -96,7 +97,7 @@ def test_where_the_systems_own_programs_are_missing_it_says_what_to_do(
     data: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(shutil, "which", lambda _: None)
-    assert "Log in again" in association.install().sentence
+    assert "Log in again" in double_click.install().sentence
 
 
 def test_a_folder_that_cannot_be_written_to_is_told_in_a_sentence(
@@ -134,7 +135,7 @@ def test_every_project_has_one_file_to_click_on_and_it_opens_the_project(
 
     window = QWidget()
     qtbot.addWidget(window)
-    ProjectDoors(hand_bench, window).open_dropped(folder / "renamed.trisect")
+    ProjectActions(hand_bench, window).open_dropped(folder / "renamed.trisect")
     assert hand_bench.model.folder == folder
 
 
@@ -146,7 +147,7 @@ def test_an_opener_in_a_folder_without_a_project_says_so(hand_bench: Bench, tmp_
     told: list[str] = []
     hand_bench.notices.added.connect(lambda notice: told.append(notice.text))
     (tmp_path / "lost.trisect").write_text("")
-    ProjectDoors(hand_bench, window).open_dropped(tmp_path / "lost.trisect")
+    ProjectActions(hand_bench, window).open_dropped(tmp_path / "lost.trisect")
     assert not hand_bench.model.is_open and "neither a project" in told[0]
 
 
@@ -158,7 +159,7 @@ def test_the_menu_asks_does_it_and_tells_what_it_did(
     hand_bench: Bench, data: Path, monkeypatch: pytest.MonkeyPatch, there: bool, answer: int, after: bool
 ) -> None:
     if there:
-        association.install()
+        double_click.install()
     asked: list[list[str]] = []
 
     def chosen(_parent: Any, _title: str, _text: str, answers: list[str]) -> int:
@@ -169,7 +170,7 @@ def test_the_menu_asks_does_it_and_tells_what_it_did(
     told: list[Any] = []
     hand_bench.notices.added.connect(told.append)
     choose_double_click(None, hand_bench.notices)  # type: ignore[arg-type]
-    assert association.installed() is after
+    assert double_click.installed() is after
     left = answer == len(asked[0]) - 1
     assert len(told) == (0 if left else 1)
     if not left:
@@ -177,10 +178,10 @@ def test_the_menu_asks_does_it_and_tells_what_it_did(
 
 
 def test_where_files_are_tied_to_bundles_it_says_what_to_do_instead(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(association, "PLATFORM", "darwin")
-    assert not association.installed()
+    monkeypatch.setattr(double_click, "PLATFORM", "darwin")
+    assert not double_click.installed()
     refused: Callable[[], object]
-    for refused in (association.install, association.uninstall):
+    for refused in (double_click.install, double_click.uninstall):
         with pytest.raises(InputError, match="bundles"):
             refused()
 
@@ -190,13 +191,13 @@ def test_on_windows_the_users_own_classes_name_the_program(tmp_path: Path, monke
     from PySide6.QtCore import QSettings
 
     file = tmp_path / "registry.ini"
-    monkeypatch.setattr(association, "PLATFORM", "win32")
-    monkeypatch.setattr(association, "_classes", lambda: QSettings(str(file), QSettings.Format.IniFormat))
-    association.install((r"C:\Trisect\trisect-workbench.exe",))
+    monkeypatch.setattr(double_click, "PLATFORM", "win32")
+    monkeypatch.setattr(double_click, "_classes", lambda: QSettings(str(file), QSettings.Format.IniFormat))
+    double_click.install((r"C:\Trisect\trisect-workbench.exe",))
     classes = QSettings(str(file), QSettings.Format.IniFormat)
     assert classes.value(".trisect/.") == "Trisect.Project"
     assert classes.value("Trisect.Project/shell/open/command/.") == '"C:\\Trisect\\trisect-workbench.exe" "%1"'
-    assert association.installed()
-    association.uninstall()
-    assert not association.installed()
+    assert double_click.installed()
+    double_click.uninstall()
+    assert not double_click.installed()
     assert QSettings(str(file), QSettings.Format.IniFormat).allKeys() == []

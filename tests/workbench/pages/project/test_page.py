@@ -12,11 +12,12 @@ import pytest
 from PySide6.QtCore import Qt, QUrl
 from PySide6.QtGui import QDesktopServices
 
-from core.files.project import ProjectInfo, new_project, read_project
-from core.files.project_keys import finished
+from core.files.project.data import ProjectInfo, new_project
+from core.files.project.folder import read_project
+from core.files.project.keys import finished
 from workbench.bench import Bench
-from workbench.pages.project_page import ProjectPage
-from workbench.pages.project_presenter import ProjectPresenter
+from workbench.pages.project.page import ProjectPage
+from workbench.pages.project.presenter import ProjectPresenter
 
 TEXTS = ("name", "part", "serial", "operator", "laboratory", "customer")
 
@@ -36,6 +37,7 @@ def page(hand_bench: Bench, tmp_path: Path, qtbot: Any) -> Iterator[ProjectPage]
 
 
 def editor(page: ProjectPage, key: str) -> Any:
+    page.refreshing.at_once()
     return next(form for form in (page.what, page.who) if key in form.values()).editor(key)
 
 
@@ -124,9 +126,11 @@ def test_how_far_the_work_is_and_what_comes_next(page: ProjectPage) -> None:
     assert page.next_words.text() == "Next: Camera. Ready to be done."
     for step in ("camera", "planes", "scan", "inspect", "report"):
         model.record(step, finished(step, model.project, model.results))
+    page.refreshing.at_once()
     assert page.rows.text_of("Report") == "done"
     assert page.next_words.text() == "All steps are done."
     page.presenter.set_field("operator", "Somebody")
+    page.refreshing.at_once()
     assert page.rows.text_of("Report") == "out of date"
     assert page.next_words.text() == "Next: Report. Out of date: changed since: project fields."
 

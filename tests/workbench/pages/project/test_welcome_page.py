@@ -10,20 +10,21 @@ import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QWidget
 
-from core.files.project import ProjectFile, new_project, write_project
+from core.files.project.data import ProjectFile, new_project
+from core.files.project.folder import write_project
 from tests.workbench.hand_lane import HandLane
-from workbench import jobs
 from workbench.bench import Bench
-from workbench.pages.project_doors import ProjectDoors
-from workbench.pages.welcome_page import WelcomePage
+from workbench.pages.project.actions import ProjectActions
+from workbench.pages.project.welcome_page import WelcomePage
 from workbench.views import ask
+from workbench.work import jobs
 
 
 @pytest.fixture
 def page(hand_bench: Bench, qtbot: Any) -> Iterator[WelcomePage]:
     window = QWidget()
     qtbot.addWidget(window)
-    made = WelcomePage(ProjectDoors(hand_bench, window))
+    made = WelcomePage(ProjectActions(hand_bench, window))
     qtbot.addWidget(made)
     made.resize(1280, 760)
     with qtbot.waitExposed(made):
@@ -33,13 +34,15 @@ def page(hand_bench: Bench, qtbot: Any) -> Iterator[WelcomePage]:
 
 
 def listed(page: WelcomePage) -> list[Path]:
+    page._refreshing.at_once()
     return [page.recent.item(row).data(Qt.ItemDataRole.UserRole) for row in range(page.recent.count())]
 
 
 def with_recent(page: WelcomePage, *folders: Path) -> None:
     for folder in folders:
         write_project(folder, ProjectFile(new_project(folder.name)))
-        page._doors.bench.settings.remember(folder)
+        page._projects.bench.settings.remember(folder)
+    page._refreshing.at_once()
 
 
 def click(qtbot: Any, widget: QWidget) -> None:
@@ -59,7 +62,7 @@ def test_recent_projects_are_listed_newest_first_and_open_by_one_click(
     assert listed(page) == [second, first]
     where = page.recent.visualItemRect(page.recent.item(1)).center()
     qtbot.mouseClick(page.recent.viewport(), Qt.MouseButton.LeftButton, pos=where)
-    qtbot.waitUntil(lambda: page._doors.model.folder == first)
+    qtbot.waitUntil(lambda: page._projects.model.folder == first)
     assert listed(page) == [first, second]
 
 
@@ -75,7 +78,7 @@ def test_enter_opens_and_delete_leaves_out(page: WelcomePage, qtbot: Any, tmp_pa
     assert (first / "project.json").exists(), "only the list forgets it"
     page.recent.setCurrentRow(0)
     qtbot.keyClick(page.recent, Qt.Key.Key_Return)
-    qtbot.waitUntil(lambda: page._doors.model.folder == second)
+    qtbot.waitUntil(lambda: page._projects.model.folder == second)
 
 
 def test_a_project_that_is_gone_is_not_listed(page: WelcomePage, tmp_path: Path) -> None:
@@ -86,7 +89,7 @@ def test_a_project_that_is_gone_is_not_listed(page: WelcomePage, tmp_path: Path)
 
 
 def test_the_sample_link_says_that_it_is_being_prepared(page: WelcomePage, qtbot: Any) -> None:
-    measuring = cast(HandLane, page._doors.bench.measuring)
+    measuring = cast(HandLane, page._projects.bench.measuring)
     measuring.held = {jobs.SAMPLE_PROJECT}
     click(qtbot, page.sample)
     assert not page.sample.isEnabled()
@@ -100,8 +103,8 @@ def test_the_sample_link_says_that_it_is_being_prepared(page: WelcomePage, qtbot
 def test_every_link_leads_somewhere(
     page: WelcomePage, qtbot: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    model, went = page._doors.model, list[str]()
-    page._doors.go_to.connect(went.append)
+    model, went = page._projects.model, list[str]()
+    page._projects.go_to.connect(went.append)
     click(qtbot, page.simulated)
     assert model.is_open
     assert went == ["camera"]

@@ -8,16 +8,16 @@ from typing import Any
 
 import pytest
 from PySide6.QtCore import Qt, QUrl
-from PySide6.QtGui import QDesktopServices
-from PySide6.QtWidgets import QWidget
+from PySide6.QtGui import QAction, QDesktopServices
+from PySide6.QtWidgets import QPushButton, QWidget
 
-from core.files.project import Project, new_project
-from core.files.project_keys import finished
-from tests.workbench.pages.test_report_presenter import PAGES, Drawing, measured
+from core.files.project.data import Project, new_project
+from core.files.project.keys import finished
+from tests.workbench.pages.report.test_presenter import PAGES, Drawing, measured
 from workbench.bench import Bench
-from workbench.pages.report_page import ReportPage
-from workbench.pages.report_presenter import ReportPresenter
-from workbench.pages.report_words import AT_HAND
+from workbench.pages.report.page import ReportPage
+from workbench.pages.report.presenter import ReportPresenter
+from workbench.pages.report.words import AT_HAND
 from workbench.views import ask
 from workbench.views.empty_state import EmptyState
 
@@ -47,11 +47,19 @@ def click(qtbot: Any, widget: QWidget) -> None:
     qtbot.mouseClick(widget, Qt.MouseButton.LeftButton, pos=where)
 
 
+def export_button(page: ReportPage, kind: str) -> QPushButton:
+    button = page.exports[kind]
+    assert isinstance(button, QPushButton)
+    return button
+
+
 def test_an_empty_project_says_what_comes_first_everywhere_and_leads_there(page: ReportPage, qtbot: Any) -> None:
     assert page.preview.message == "Scan the part first; then there is something to report."
     wanted: list[str] = []
     page.presenter.go_to.connect(wanted.append)
-    click(qtbot, page.preview.findChild(EmptyState).button)
+    empty = page.preview.findChild(EmptyState)
+    assert empty is not None
+    click(qtbot, empty.button)
     assert wanted == ["scan"]
     assert page.card.title.text() == "Nothing to report yet"
     assert not page.make.isEnabled()
@@ -66,29 +74,40 @@ def test_pages_come_are_dimmed_while_others_are_drawn_and_stay_if_that_is_all(
     page: ReportPage, drawing: Drawing, qtbot: Any
 ) -> None:
     measured(page.presenter)
+    page.refreshing.at_once()
     assert page.preview.message == "Drawing the pages …"
     drawing.done()
+    page.refreshing.at_once()
     assert (page.preview.count(), page.preview.note) == (1, "Drawing the pages …"), "the thickness came meanwhile"
     drawing.done(PAGES * 3)
+    page.refreshing.at_once()
     assert (page.preview.count(), page.preview.note) == (3, "")
     click(qtbot, page.boxes["maps"])
+    page.refreshing.at_once()
     assert (page.preview.count(), page.preview.note) == (3, "Drawing the pages …")
     drawing.done(PAGES * 2)
+    page.refreshing.at_once()
     assert (page.preview.count(), page.preview.note) == (2, "")
 
 
 def test_sections_and_paper_are_chosen_by_the_mouse_and_taken_back(page: ReportPage, qtbot: Any) -> None:
     stack, box = page.presenter.model.undo_stack, page.boxes["maps"]
+    page.refreshing.at_once()
     click(qtbot, box)
+    page.refreshing.at_once()
     assert page.presenter.project.report.hidden == {"maps"}
     page.paper.setFocus()
     qtbot.keyClick(page.paper, Qt.Key.Key_Down)
+    page.refreshing.at_once()
     assert page.presenter.project.report.paper == "Letter"
     stack.undo()
+    page.refreshing.at_once()
     assert page.paper.currentText() == "A4"
     stack.undo()
+    page.refreshing.at_once()
     assert box.isChecked()
     stack.redo()
+    page.refreshing.at_once()
     assert not box.isChecked()
 
 
@@ -99,14 +118,18 @@ def test_a_section_with_nothing_to_print_says_so(page: ReportPage) -> None:
 
 def test_the_button_makes_the_report_and_then_makes_it_again(page: ReportPage, drawing: Drawing, qtbot: Any) -> None:
     measured(page.presenter)
+    page.refreshing.at_once()
     assert page.make.property("primary")
     click(qtbot, page.make)
+    page.refreshing.at_once()
     assert page.card.title.text() == "Making the report …"
     assert not page.make.isEnabled()
     qtbot.waitUntil(lambda: page.card.title.text() == "The report is made")
+    page.refreshing.at_once()
     assert page.make.text() == "Make it again"
     assert not page.make.property("primary")
     click(qtbot, page.boxes["maps"])
+    page.refreshing.at_once()
     assert page.card.title.text() == "The report is out of date"
     assert page.card.words.text() == "Out of date: changed since: sections of the report."
     assert page.make.property("primary")
@@ -143,9 +166,11 @@ def test_each_kind_is_handed_over_by_its_button(
         return tmp_path / "copy"
 
     monkeypatch.setattr(ask, "choose_file_to_save", choose)
-    click(qtbot, page.exports[kind])
+    page.refreshing.at_once()
+    click(qtbot, export_button(page, kind))
     qtbot.waitUntil(lambda: bool(drawing.exported))
     (_, _, proposed, kinds) = wanted[0]
+    page.refreshing.at_once()
     assert f"*{proposed.suffix}" in kinds
     assert drawing.exported == [(kind, tmp_path / f"copy{proposed.suffix}")]
 
@@ -153,14 +178,18 @@ def test_each_kind_is_handed_over_by_its_button(
 def test_other_formats_are_in_a_menu(
     page: ReportPage, drawing: Drawing, qtbot: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    page.refreshing.at_once()
     assert page.more.toolTip() == "Scan the part first." and not page.more.isEnabled()
     measured(page.presenter)
     monkeypatch.setattr(ask, "choose_file_to_save", lambda *_: tmp_path / "copy")
     menu = page.more.menu()
+    page.refreshing.at_once()
     assert menu is not None and set(menu.actions()) | {page.exports[kind] for kind in AT_HAND} == set(
         page.exports.values()
     )
-    page.exports["e57"].trigger()  # type: ignore[union-attr]
+    action = page.exports["e57"]
+    assert isinstance(action, QAction)
+    action.trigger()
     qtbot.waitUntil(lambda: drawing.exported == [("e57", tmp_path / "copy.e57")])
 
 
@@ -169,7 +198,7 @@ def test_nothing_is_written_where_no_file_is_chosen(
 ) -> None:
     measured(page.presenter)
     monkeypatch.setattr(ask, "choose_file_to_save", lambda *_: None)
-    click(qtbot, page.exports["pdf"])
+    click(qtbot, export_button(page, "pdf"))
     assert not drawing.measuring.busy
 
 
@@ -186,7 +215,9 @@ def test_the_results_folder_is_opened_or_told_where_nothing_can_open_it(
         return False
 
     monkeypatch.setattr(QDesktopServices, "openUrl", nobody)
+    page.refreshing.at_once()
     click(qtbot, page.folder)
+    page.refreshing.at_once()
     assert [Path(url.toLocalFile()) for url in opened] == [folder]
     assert str(folder) in page.presenter.bench.notices.all[-1].text
 
@@ -195,6 +226,7 @@ def test_at_the_smallest_window_nothing_is_cut(page: ReportPage, drawing: Drawin
     page.resize(1024 - 182, 600)
     measured(page.presenter)
     page.presenter.model.record("report", finished("report", Project(), {}))
-    buttons = [page.exports[kind] for kind in AT_HAND] + [page.more, page.folder, page.template, page.no_template]
+    exports = [export_button(page, kind) for kind in AT_HAND]
+    buttons = (*exports, page.more, page.folder, page.template, page.no_template)
     for widget in (*page.boxes.values(), *buttons, page.make):
         assert widget.width() >= widget.minimumSizeHint().width(), widget.text()

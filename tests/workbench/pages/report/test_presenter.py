@@ -11,16 +11,16 @@ import numpy as np
 import pytest
 
 from core.errors import InputError
-from core.files.export_list import EXPORTS
-from core.files.project import KeptStudy, Project, Repeat, new_project
-from core.files.project_keys import finished
-from core.inspect.feature_spec import FeatureSpec
-from core.inspect.inspection_plan import InspectionPlan
+from core.files.project.data import KeptStudy, Project, Repeat, new_project
+from core.files.project.keys import finished
+from core.files.results.export_list import EXPORTS
+from core.inspect.plan.feature_spec import FeatureSpec
+from core.inspect.plan.inspection_plan import InspectionPlan
 from tests.workbench.hand_lane import HandLane
-from workbench import jobs
 from workbench.bench import Bench
-from workbench.pages.report_presenter import ReportPresenter, Stage
+from workbench.pages.report.presenter import ReportPresenter, Stage
 from workbench.step_state import State
+from workbench.work import jobs
 
 PAGES = (np.full((14, 10, 3), 250, np.uint8),)
 

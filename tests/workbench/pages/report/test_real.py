@@ -11,14 +11,14 @@ import numpy as np
 import pytest
 from pypdf import PdfReader
 
-from core.files.ply import read_cloud, read_mesh
+from core.files.results.ply import read_cloud, read_mesh
 from tests.workbench.technician import Technician
 from tests.workbench.watchdog import LIMIT_MS, Watchdog
 
 
 @pytest.fixture
 def page(technician: Technician, measured_project: Path) -> Any:
-    technician.window.doors.open_project(measured_project)
+    technician.window.projects.open_project(measured_project)
     technician.window.go_to("report")
     shown = technician.page()
     technician.until(lambda: shown.preview.count() > 0, "the pages", 60)
@@ -36,6 +36,7 @@ def test_the_preview_follows_what_is_chosen_typed_and_undone(technician: Technic
     whole = page.presenter.pages
     with Watchdog() as watchdog:
         t.press(page.boxes["surface"])
+        page.refreshing.at_once()
         assert page.preview.note == "Drawing the pages …"
         assert page.preview.count() == len(whole), "the old pages stay until the new ones are there"
         drawn(t, page)

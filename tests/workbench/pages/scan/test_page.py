@@ -9,25 +9,25 @@ from PySide6.QtCore import Qt
 
 from core.errors import InputError
 from core.files.pictures import write_picture
-from core.files.project_keys import finished
-from core.live.commands import Resume
-from core.live.events import LiveAsk, LiveChecks, LiveEnded, LiveStarted
-from core.scan.preflight import Check
+from core.files.project.keys import finished
+from core.messages import plain
+from core.pipeline.live.commands import Resume
+from core.pipeline.live.events import LiveAsk, LiveChecks, LiveEnded, LiveStarted
+from core.scan.preview.preflight import Check
 from tests.workbench.hand_lane import HandLane
 from tests.workbench.pages import scan_cases as cases
-from workbench import jobs
-from workbench.pages.scan_page import ScanPage
-from workbench.pages.scan_picture import View
-from workbench.pages.scan_presenter import ScanPresenter
-from workbench.pages.scan_stage import Stage
+from workbench.pages.scan.page import ScanPage
+from workbench.pages.scan.picture import View
+from workbench.pages.scan.presenter import ScanPresenter, Stage
 from workbench.views import ask
+from workbench.work import jobs
 
 LEFT = Qt.MouseButton.LeftButton
 
 
 @pytest.fixture
 def page(scan_bench, qtbot, monkeypatch):
-    monkeypatch.setenv("TRISECT_NO_OPENGL", "painter")
+    monkeypatch.setenv("TRISECT_NO_OPENGL", "none")
     made = ScanPage(ScanPresenter(scan_bench))
     made.presenter.opened()
     made._opened()
@@ -68,7 +68,7 @@ def start_live(page, lane, qtbot):
     qtbot.waitUntil(lambda: not page.presenter.bench.quick.busy)
     page.source.set_mode("live")
     qtbot.mouseClick(page.live_panel.start, LEFT)
-    lane.current.told.emit(LiveStarted("Camera 1", cases.SIZE))
+    lane.current.reported.emit(LiveStarted("Camera 1", cases.SIZE))
 
 
 # ---- what is seen when
@@ -116,18 +116,20 @@ def test_a_scan_without_thickness_says_so(recorded, measuring, qtbot):
     qtbot.mouseClick(recorded.stage.buttons["run"], LEFT)
     measuring.finish(cases.summary(gauge=None))
     qtbot.waitUntil(lambda: recorded.presenter.work.look is not None)
-    assert "No thickness: there are no two parallel faces" in recorded.result.notes.text()
+    assert "There are no two parallel faces" in recorded.result.notes.text()
 
 
 def test_the_cloud_is_shown_in_3d_coloured_by_sigma_up_to_the_cut(measured):
     scene = measured.cloud.scene
-    assert scene.state()["points"] == 1500
+    assert scene.state().points == 1500
     assert scene._scene.colouring.limits == (0.0, 0.05) and scene._scene.colouring.unit == "mm"
 
 
 def test_a_failed_measurement_is_told_on_the_page(recorded, measuring, qtbot):
+    recorded.refreshing.at_once()
     qtbot.mouseClick(recorded.stage.buttons["run"], LEFT)
     measuring.fail(InputError("no sweep can be located"))
+    recorded.refreshing.at_once()
     assert recorded.stage.title.text() == "Not measured"
     assert "no sweep can be located" in recorded.stage.words.text()
     assert recorded.stage.buttons["run"].property("primary")
@@ -173,12 +175,15 @@ def test_unchecking_a_frame_in_the_list_leaves_it_out_and_undo_lets_it_in(measur
     table = measured.frames.table
     table.scrollTo(measured.frames.model.index(1, 0))
     place = table.visualRect(measured.frames.model.index(1, 0))
+    measured.refreshing.at_once()
     qtbot.mouseClick(table.viewport(), LEFT, pos=place.topLeft() + type(place.topLeft())(12, place.height() // 2))
+    measured.refreshing.at_once()
     assert measured.presenter.project.options.excluded == {cases.name_of(1)}
     assert measured.stage.title.text() == "Measured, but out of date"
     assert measured.stage.words.text() == "Out of date: changed since: left-out frames. Measure again."
     assert measured.stage.buttons["run"].text() == "Measure again" and measured.stage.buttons["run"].property("primary")
     measured.presenter.model.undo_stack.undo()
+    measured.refreshing.at_once()
     assert measured.frames.rows()[1].used and measured.stage.title.text() == "Measured"
 
 
@@ -192,17 +197,23 @@ def test_the_box_by_the_slider_leaves_out_the_frame_that_is_shown(measured, qtbo
 def test_slider_buttons_list_and_arrows_go_through_the_frames_together(measured, qtbot):
     scrub = measured.presenter.scrub
     measured.bar.slider.setValue(0)
+    measured.refreshing.at_once()
     assert scrub.index == 0 and not measured.bar.back.isEnabled()
     qtbot.mouseClick(measured.bar.on, LEFT)
+    measured.refreshing.at_once()
     assert scrub.index == 1 and measured.frames.current() == cases.name_of(1)
     measured.picture.image.setFocus()
     qtbot.keyClick(measured.picture.image, Qt.Key.Key_Right)
+    measured.refreshing.at_once()
     assert scrub.index == 2 and measured.bar.slider.value() == 2
     qtbot.keyClick(measured.picture.image, Qt.Key.Key_Left)
+    measured.refreshing.at_once()
     assert scrub.index == 1
     measured.frames.table.setCurrentIndex(measured.frames.model.index(4, 0))
+    measured.refreshing.at_once()
     assert scrub.index == 4
     qtbot.waitUntil(lambda: scrub.up_to_date)
+    measured.refreshing.at_once()
     assert measured.bar.said.text().startswith(
         "Frame 5 of 6 (frame0004.png): 500 points, median σ 0.050 mm; 3 crossings"
     )
@@ -247,8 +258,10 @@ def test_settings_are_changed_in_the_form_and_undone(measured, qtbot):
     form = measured.settings.form
     form.edited.emit("sigma_cut_mm", 0.2)
     qtbot.waitUntil(lambda: measured.presenter.project.options.sigma_cut_mm == 0.2)
+    measured.refreshing.at_once()
     assert measured.stage.title.text() == "Measured, but out of date"
     measured.presenter.model.undo_stack.undo()
+    measured.refreshing.at_once()
     assert form.values()["sigma_cut_mm"] == 0.05
 
 
@@ -272,41 +285,54 @@ def test_every_setting_has_a_line_of_help(page):
 def test_a_recording_that_is_measured_shows_frames_marks_gauges_and_a_growing_cloud(recorded, measuring, qtbot):
     quick = cast(HandLane, recorded.presenter.bench.quick)
     quick.answers[jobs.DISPLAY_PICTURE] = lambda path, channel, width: (np.full((24, 32), 70, np.uint8), 2)
+    recorded.refreshing.at_once()
     qtbot.mouseClick(recorded.stage.buttons["run"], LEFT)
+    recorded.refreshing.at_once()
     assert recorded.bar.isHidden() and not recorded.running.isHidden()
     cancel = recorded.stage.buttons["cancel"]
+    recorded.refreshing.at_once()
     assert cancel.isEnabled() and not cancel.property("primary"), "to wait is what there is to do"
     assert recorded.running.hints._label.text() == "What could be better is said here."
-    measuring.current.told.emit(cases.detail(0, renewed=True, hints=("Tilt the laser more.",)))
+    measuring.current.reported.emit(cases.detail(0, renewed=True, hints=("Tilt the laser more.",)))
     qtbot.waitUntil(lambda: recorded.picture.image._picture.picture[0, 0] == 70)
+    recorded.refreshing.at_once()
     assert recorded.running.condition.said == "120 · good" and recorded.running.speed.said == "1 px/frame · good"
     assert recorded.running.covered.text() == "covered 63 % of what was lit"
     assert recorded.running.hints.text == "Tilt the laser more."
     titles = recorded.picture.image.legend_titles
+    recorded.refreshing.at_once()
     assert "sweep: σ 0 … 0.2 mm, else grey" in titles and "lit, no points yet" in titles
     for number in (1, 2):
-        measuring.current.told.emit(cases.detail(number))
-    qtbot.waitUntil(lambda: recorded.cloud.scene.state()["points"] == 90)
-    measuring.current.told.emit(cases.detail(3, renewed=True))
-    qtbot.waitUntil(lambda: recorded.cloud.scene.state()["points"] == 30)
+        measuring.current.reported.emit(cases.detail(number))
+    qtbot.waitUntil(lambda: recorded.cloud.scene.state().points == 90)
+    measuring.current.reported.emit(cases.detail(3, renewed=True))
+    qtbot.waitUntil(lambda: recorded.cloud.scene.state().points == 30)
     qtbot.waitUntil(lambda: recorded.frames.current() == cases.name_of(3))
+    recorded.refreshing.at_once()
     assert recorded.frames.rows()[0].reason == "30 points in the preview"
 
 
 def test_a_cancelled_measurement_shows_the_result_before_again(measured, measuring, qtbot):
     quick = cast(HandLane, measured.presenter.bench.quick)
     quick.answers[jobs.DISPLAY_PICTURE] = lambda path, channel, width: (np.full((24, 32), 70, np.uint8), 2)
+    measured.refreshing.at_once()
     qtbot.mouseClick(measured.stage.buttons["run"], LEFT)
-    assert measured.cloud.scene.state()["points"] == 1500
-    measuring.current.told.emit(cases.detail(0, renewed=True))
-    qtbot.waitUntil(lambda: measured.cloud.scene.state()["points"] == 30)
+    measured.refreshing.at_once()
+    assert measured.cloud.scene.state().points == 1500
+    measuring.current.reported.emit(cases.detail(0, renewed=True))
+    qtbot.waitUntil(lambda: measured.cloud.scene.state().points == 30)
+    measured.refreshing.at_once()
     qtbot.mouseClick(measured.stage.buttons["cancel"], LEFT)
-    assert measured.cloud.scene.state()["points"] == 1500
+    measured.refreshing.at_once()
+    assert measured.cloud.scene.state().points == 1500
 
 
 def test_cancel_leaves_the_recording_as_it_was(recorded, measuring, qtbot):
+    recorded.refreshing.at_once()
     qtbot.mouseClick(recorded.stage.buttons["run"], LEFT)
+    recorded.refreshing.at_once()
     qtbot.mouseClick(recorded.stage.buttons["cancel"], LEFT)
+    recorded.refreshing.at_once()
     assert recorded.presenter.stage is Stage.RECORDED and not measuring.busy
     assert not recorded.bar.isHidden()
 
@@ -317,24 +343,29 @@ def test_cancel_leaves_the_recording_as_it_was(recorded, measuring, qtbot):
 def test_a_live_scan_goes_from_the_reference_to_the_result(page, lane, measuring, scan_folder, qtbot):
     start_live(page, lane, qtbot)
     lane.current.view.emit(cases.live_view(0, stage="reference"))
+    page.refreshing.at_once()
     assert page.stage.title.text() == "Taking the reference"
     assert page.running.condition.said == "–"
-    lane.current.told.emit(LiveAsk("Switch the hand-held laser on, press Start.", "Start", Resume()))
+    lane.current.reported.emit(LiveAsk(plain("Switch the hand-held laser on, press Start."), "Start", Resume()))
+    page.refreshing.at_once()
     assert not page.strip.isHidden() and page.strip.answer.text() == "Start"
     qtbot.mouseClick(page.strip.answer, LEFT)
     page.presenter.do_capture()
+    page.refreshing.at_once()
     assert [type(sent) for sent in lane.sent[-2:]] == [Resume, Resume]
     lane.current.view.emit(cases.live_view(1, renewed=True, condition=np.inf))
+    page.refreshing.at_once()
     assert page.stage.title.text() == "Scanning"
     assert {"covered", "fan 3", "sweep", "good", "weak", "left out"} <= set(page.picture.image.layer_names())
     assert page.running.condition.said == "∞ · poor"
     assert "2 frames recorded" in page.live_panel.counts.text()
-    assert page.cloud.scene.state()["points"] == 30
+    assert page.cloud.scene.state().points == 30
     assert lane.sent.count("shown") == 2
     lane.finish(LiveEnded(scan_folder, cases.FRAMES, 0))
+    page.refreshing.at_once()
     assert page.stage.title.text() == "Measuring the recording …"
     assert "by itself" in page.stage.words.text()
-    assert page.picture.image.has_picture and page.cloud.scene.state()["points"] == 30
+    assert page.picture.image.has_picture and page.cloud.scene.state().points == 30
     measuring.finish(cases.summary())
     qtbot.waitUntil(lambda: page.presenter.stage is Stage.MEASURED and page.presenter.scrub.up_to_date)
 
@@ -356,21 +387,26 @@ def test_the_fan_s_lines_are_drawn_anew_when_they_have_changed_and_only_then(pag
 
 def test_checks_stand_there_until_the_scan_begins_and_those_that_failed_after_that(page, lane, qtbot):
     start_live(page, lane, qtbot)
-    good, bad = Check("reference", "ok", "It holds."), Check("lines", "failed", "Only 2 lines.")
-    lane.current.told.emit(LiveChecks((good, bad)))
+    good, bad = Check("reference", "ok", plain("It holds.")), Check("lines", "failed", plain("Only 2 lines."))
+    lane.current.reported.emit(LiveChecks((good, bad)))
     lane.current.view.emit(cases.live_view(0, stage="ready"))
+    page.refreshing.at_once()
     assert page.checks.sentences == ("It holds.", "Only 2 lines.") and not page.checks.isHidden()
     lane.current.view.emit(cases.live_view(1))
+    page.refreshing.at_once()
     assert page.checks.sentences == ("Only 2 lines.",)
-    lane.current.told.emit(LiveChecks((good,)))
+    lane.current.reported.emit(LiveChecks((good,)))
+    page.refreshing.at_once()
     assert page.checks.isHidden()
 
 
 def test_while_paused_no_sweep_and_no_crossings_are_shown(page, lane, qtbot):
     start_live(page, lane, qtbot)
     lane.current.view.emit(cases.live_view(0))
+    page.refreshing.at_once()
     assert "good" in page.picture.image.layer_names()
     lane.current.view.emit(cases.live_view(0, stage="paused"))
+    page.refreshing.at_once()
     assert "good" not in page.picture.image.layer_names()
     assert page.running.condition.said == "–" and page.stage.title.text() == "Paused"
 
@@ -426,4 +462,5 @@ def test_a_result_whose_calibration_is_out_of_date_is_not_told_to_be_measured_ag
     model = measured.presenter.model
     camera = finished("camera", measured.presenter.project, {})
     model.record("camera", replace(camera, rests_on={**camera.rests_on, "left-out views": "others"}))
+    measured.refreshing.at_once()
     assert measured.stage.words.text() == "Out of date, because this is: calibrate the camera."

@@ -8,15 +8,14 @@ import pytest
 
 from core.errors import InputError
 from core.files.pictures import write_picture
-from core.files.project import Accepted, new_project
-from core.files.project_keys import finished
-from core.live.events import LiveEnded, LiveStarted
+from core.files.project.data import Accepted, new_project
+from core.files.project.keys import finished
+from core.pipeline.live.events import LiveEnded, LiveStarted
 from tests.workbench.hand_lane import HandLane
 from tests.workbench.pages import scan_cases as cases
-from workbench import jobs
-from workbench.pages.scan_presenter import ScanPresenter
-from workbench.pages.scan_stage import Stage
+from workbench.pages.scan.presenter import ScanPresenter, Stage
 from workbench.step_state import State
+from workbench.work import jobs
 
 
 @pytest.fixture
@@ -122,7 +121,7 @@ def test_a_part_without_parallel_faces_takes_an_old_thickness_away(measured, mea
     measured.do_run()
     measuring.finish(cases.summary(gauge=None))
     assert "inspect" not in measured.model.results
-    assert measured.run.no_gauge == "there are no two parallel faces"
+    assert str(measured.run.no_gauge) == "There are no two parallel faces"
     assert measured.stage is Stage.MEASURED
 
 
@@ -169,16 +168,16 @@ def test_pictures_are_fetched_one_at_a_time_and_bring_all_points_since_the_last(
     )
     recorded.do_run()
     for number in range(cases.FRAMES):
-        measuring.current.told.emit(cases.detail(number))
+        measuring.current.reported.emit(cases.detail(number))
     qtbot.waitUntil(lambda: len(seen) == 1)
     qtbot.wait(30)
     assert seen == [(0, 2, 30 * cases.FRAMES, False)]
-    measuring.current.told.emit(cases.detail(1, renewed=True))
-    measuring.current.told.emit(cases.detail(2))
+    measuring.current.reported.emit(cases.detail(1, renewed=True))
+    measuring.current.reported.emit(cases.detail(2))
     recorded.run.shown()
     qtbot.waitUntil(lambda: len(seen) == 2)
     assert seen[1] == (2, 2, 60, True)
-    assert recorded.run.seen.keys() == set(recorded.work.names) and recorded.run.seen[cases.name_of(2)] == (30, "")
+    assert recorded.run.seen.keys() == set(recorded.work.names) and recorded.run.seen[cases.name_of(2)] == (30, None)
 
 
 def test_a_picture_that_cannot_be_read_does_not_stop_the_others(recorded, measuring, quick, qtbot):
@@ -191,8 +190,8 @@ def test_a_picture_that_cannot_be_read_does_not_stop_the_others(recorded, measur
     seen = []
     recorded.run.frame_seen.connect(lambda detail, *_: seen.append(detail.index))
     recorded.do_run()
-    measuring.current.told.emit(cases.detail(0))
-    measuring.current.told.emit(cases.detail(1))
+    measuring.current.reported.emit(cases.detail(0))
+    measuring.current.reported.emit(cases.detail(1))
     qtbot.waitUntil(lambda: seen == [1])
 
 
@@ -340,7 +339,7 @@ def lane(scan_bench):
 def record(presenter, lane, scan_folder, qtbot, frames=cases.FRAMES):
     qtbot.waitUntil(lambda: not presenter.bench.quick.busy)
     presenter.do_live()
-    lane.current.told.emit(LiveStarted("Camera 1", cases.SIZE))
+    lane.current.reported.emit(LiveStarted("Camera 1", cases.SIZE))
     assert presenter.stage is Stage.LIVE
     lane.finish(LiveEnded(scan_folder, frames, 0))
 
@@ -349,12 +348,12 @@ def test_a_recording_blocks_until_it_is_stopped(presenter, lane, qtbot):
     qtbot.waitUntil(lambda: not presenter.bench.quick.busy)
     presenter.do_live()
     assert presenter.blocker() == "Stop the recording first."
-    assert presenter.busy() == "A recording is running."
+    assert presenter.model.is_recording
     lane.current.view.emit(cases.live_view(0, stage="paused"))
     assert presenter.live_stage == "paused"
     presenter.live.stop()
     lane.finish(LiveEnded(presenter.model.folder / "recordings" / "none", 0, 0))
-    assert presenter.stage is Stage.NONE and presenter.busy() == ""
+    assert presenter.stage is Stage.NONE and not presenter.model.is_recording
 
 
 def test_the_calibrations_are_given_to_the_recording(presenter, lane, qtbot):
@@ -419,8 +418,8 @@ def test_leaving_the_project_while_scanning_keeps_the_recording_unmeasured(
 ):
     qtbot.waitUntil(lambda: not presenter.bench.quick.busy)
     presenter.do_live()
-    lane.current.told.emit(LiveStarted("Camera 1", cases.SIZE))
-    presenter._leave()
+    lane.current.reported.emit(LiveStarted("Camera 1", cases.SIZE))
+    presenter.model.leaving.emit()
     lane.finish(LiveEnded(scan_folder, cases.FRAMES, 0))
     assert presenter.folder == scan_folder and not measuring.busy
 

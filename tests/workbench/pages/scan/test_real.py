@@ -5,12 +5,12 @@ from pathlib import Path
 import pytest
 from PySide6.QtCore import Qt
 
+from core.calibrate.results import LEFT_OUT
 from tests.workbench.watchdog import LIMIT_MS, Watchdog
 from workbench.bench import Bench
-from workbench.pages.scan_page import ScanPage
-from workbench.pages.scan_picture import View
-from workbench.pages.scan_presenter import ScanPresenter
-from workbench.pages.scan_stage import Stage
+from workbench.pages.scan.page import ScanPage
+from workbench.pages.scan.picture import View
+from workbench.pages.scan.presenter import ScanPresenter, Stage
 
 
 @pytest.fixture
@@ -23,7 +23,7 @@ def page(bench: Bench, measured_project: Path, qtbot) -> ScanPage:
     made.presenter.entered()
     qtbot.waitUntil(lambda: made.presenter.scrub.up_to_date, timeout=60_000)
     qtbot.waitUntil(lambda: made.presenter.work.look is not None, timeout=20_000)
-    qtbot.waitUntil(lambda: made.cloud.scene.state()["complete"], timeout=60_000)  # its libraries are there, too
+    qtbot.waitUntil(lambda: made.cloud.scene.state().complete, timeout=60_000)  # its libraries are there, too
     return made
 
 
@@ -47,7 +47,7 @@ def test_a_finished_scan_is_shown_and_measured_again_without_stopping_the_window
     assert drawn
     assert dog.longest_ms < LIMIT_MS, [str(absence) for absence in dog.worst(3)]
     assert p.work.look.left_out[0][0] or p.work.look.frames_used
-    assert p.record_of(p.work.names[0]).reason == "left out by hand"
+    assert p.record_of(p.work.names[0]).reason == LEFT_OUT
     assert {"scan", "inspect"} <= set(p.model.results)
     assert [notice.text for notice in p.bench.notices.all if notice.level != "info"] == []
 
@@ -98,7 +98,7 @@ def test_a_live_scan_of_the_simulated_rig_becomes_a_measured_one(page, qtbot):
     with Watchdog() as dog:
         p.do_live()
         qtbot.waitUntil(lambda: p.live.recorded >= 30, timeout=90_000)
-        assert p.live_stage == "scanning" and page.cloud.scene.state()["points"] > 0
+        assert p.live_stage == "scanning" and page.cloud.scene.state().points > 0
         p.live.pause(True)
         qtbot.waitUntil(lambda: p.live_stage == "paused", timeout=5_000)
         p.live.pause(False)

@@ -3,7 +3,7 @@ from PySide6.QtCore import QPoint, QPointF, Qt
 from PySide6.QtGui import QKeySequence, QShortcut, QWheelEvent
 from PySide6.QtWidgets import QApplication
 
-from workbench.views.forms import SettingsForm
+from workbench.views.forms.form import SettingsForm
 
 
 @pytest.fixture

@@ -10,22 +10,22 @@ from PySide6.QtGui import QDragEnterEvent, QDropEvent
 from PySide6.QtWidgets import QApplication, QLabel
 
 from core.acquire.source import Capabilities, Region, SourceInfo, SourceSettings
-from core.files.project import new_project
-from core.live.commands import Auto, Capture, Pause, Resume, TakeReference
-from core.live.events import LiveAdvice, LiveAsk, LiveEnded, LiveStarted, LiveUnplugged, LiveView
-from core.scan.preflight import Check
+from core.files.project.data import new_project
+from core.messages import Message, plain
+from core.pipeline.live.commands import Auto, Capture, Pause, Resume, TakeReference
+from core.pipeline.live.events import LiveAdvice, LiveAsk, LiveEnded, LiveStarted, LiveUnplugged, LiveView
+from core.scan.preview.preflight import Check
 from tests.workbench.hand_lane import HandLane
-from workbench import jobs
 from workbench.bench import Bench
 from workbench.notices import Notices
-from workbench.pages.live_presenter import LivePresenter
+from workbench.pages.live.presenter import LivePresenter
 from workbench.project_model import ProjectModel
 from workbench.settings import AppSettings
 from workbench.views import ask
-from workbench.views.checks_card import ChecksCard
-from workbench.views.live_panel import LivePanel
-from workbench.views.live_strip import LiveStrip
-from workbench.views.source_chooser import SourceChooser
+from workbench.views.forms.live_panel import LivePanel, LiveStrip
+from workbench.views.forms.source_chooser import SourceChooser
+from workbench.views.lists.checks_card import ChecksCard
+from workbench.work import jobs
 
 LEFT = Qt.MouseButton.LeftButton
 
@@ -54,7 +54,7 @@ def panel(live, qtbot):
 
 def open_source(lane):
     can = Capabilities(exposure_ms=(0.1, 60.0), gain_db=(0.0, 24.0), rate_hz=(1.0, 60.0))
-    lane.current.told.emit(LiveStarted("Camera 1", (640, 480), can))
+    lane.current.reported.emit(LiveStarted("Camera 1", (640, 480), can))
 
 
 def test_start_becomes_stop(panel, live, lane, qtbot):
@@ -66,7 +66,7 @@ def test_start_becomes_stop(panel, live, lane, qtbot):
 
 
 def test_showing_the_panel_gets_the_process_ready(panel, lane, qtbot):
-    qtbot.waitUntil(lambda: lane.warmed)
+    qtbot.waitUntil(lambda: lane.prepared)
 
 
 def test_what_needs_pictures_says_so_until_they_come(panel, lane, qtbot):
@@ -116,7 +116,7 @@ def test_once_the_source_is_open_only_what_it_has_is_shown_within_its_limits(pan
     live.settings.set_kind("genicam")
     live.start()
     can = Capabilities(exposure_ms=(0.5, 40.0), pixel_formats=("Mono8", "Mono12"), sensor=(3840, 2748))
-    lane.current.told.emit(LiveStarted("Camera 1", (3840, 2748), can))
+    lane.current.reported.emit(LiveStarted("Camera 1", (3840, 2748), can))
     assert shown(panel) == ["exposure_ms", "pixel_format", "region"]
     panel.form.exposure.setValue(90.0)
     assert live.settings.values.exposure_ms == 40.0
@@ -148,7 +148,7 @@ def test_a_region_is_four_numbers_and_an_empty_one_leaves_it_to_the_camera(panel
 def test_a_driver_that_is_missing_is_told_in_one_sentence(panel, live, qtbot):
     quick = cast(HandLane, live.bench.quick)
     quick.answers[jobs.LIST_SOURCES] = lambda kind: ()
-    quick.answers[jobs.MISSING_DRIVER] = lambda kind: f"{kind} needs its driver."
+    quick.answers[jobs.MISSING_DRIVER] = lambda kind: Message("source.test", "{kind} needs its driver", kind=kind)
     assert panel.form.missing.isHidden()
     live.settings.set_kind("aravis")
     live.settings.look_for_devices()
@@ -175,16 +175,16 @@ def test_the_strip_advises_on_the_exposure_and_sets_it(live, lane, qtbot):
     qtbot.addWidget(strip)
     live.start()
     open_source(lane)
-    lane.current.told.emit(LiveAdvice("The stripe is faint: open the aperture.", None))
+    lane.current.reported.emit(LiveAdvice(plain("The stripe is faint: open the aperture."), None))
     assert not strip.isHidden() and strip.take_advice.isHidden()
-    lane.current.told.emit(LiveAdvice("Set 8 ms.", SourceSettings(exposure_ms=8.0)))
+    lane.current.reported.emit(LiveAdvice(plain("Set 8 ms."), SourceSettings(exposure_ms=8.0)))
     assert strip.advice.text() == "Set 8 ms."
     strip.show()
     qtbot.mouseClick(strip.take_advice, LEFT)
     assert lane.sent[-1].settings.exposure_ms == 8.0
     assert strip.isHidden()
-    lane.current.told.emit(LiveAdvice("Set 8 ms.", SourceSettings(exposure_ms=8.0)))
-    lane.current.told.emit(LiveAdvice("", None))
+    lane.current.reported.emit(LiveAdvice(plain("Set 8 ms."), SourceSettings(exposure_ms=8.0)))
+    lane.current.reported.emit(LiveAdvice())
     assert strip.isHidden()
 
 
@@ -194,13 +194,13 @@ def test_checks_have_a_tick_a_cross_or_a_question_mark_and_a_sentence_each(qtbot
     qtbot.addWidget(card)
     assert card.isHidden()
     checks = (
-        Check("reference", "ok", "The reference holds."),
-        Check("lines", "failed", "Only 2 of 3 lines are seen."),
-        Check("focus", "unknown", "Take the reference first."),
+        Check("reference", "ok", plain("The reference holds.")),
+        Check("lines", "failed", plain("Only 2 of 3 lines are seen.")),
+        Check("focus", "unknown", plain("Take the reference first.")),
     )
     card.show_checks(checks)
     theme(theme_name)
-    assert not card.isHidden() and card.sentences == tuple(check.sentence for check in checks)
+    assert not card.isHidden() and card.sentences == tuple(str(check.message) for check in checks)
     signs = [sign for sign, _, _ in card._rows]
     assert [sign.accessibleName() for sign in signs] == ["in order", "not in order", "not known"]
     assert len({sign.pixmap().cacheKey() for sign in signs}) == 3
@@ -275,7 +275,7 @@ def test_the_strip_asks_and_its_button_answers(live, lane, qtbot):
     assert strip.isHidden()
     live.start()
     open_source(lane)
-    lane.current.told.emit(LiveAsk("Switch the three-line laser on.", "Continue", TakeReference()))
+    lane.current.reported.emit(LiveAsk(plain("Switch the three-line laser on."), "Continue", TakeReference()))
     assert not strip.isHidden() and strip.question.text() == "Switch the three-line laser on."
     assert strip.answer.text() == "Continue"
     strip.show()
@@ -288,7 +288,7 @@ def test_a_strip_that_was_closed_is_not_opened_by_another_theme(live, lane, qtbo
     qtbot.addWidget(strip)
     live.start()
     open_source(lane)
-    lane.current.told.emit(LiveUnplugged("gone"))
+    lane.current.reported.emit(LiveUnplugged(plain("gone")))
     strip.close()
     for name in ("dark", "light"):
         theme(name)
@@ -300,7 +300,7 @@ def test_the_strip_says_that_the_source_is_unplugged(live, lane, qtbot):
     qtbot.addWidget(strip)
     live.start()
     open_source(lane)
-    lane.current.told.emit(LiveUnplugged("gone"))
+    lane.current.reported.emit(LiveUnplugged(plain("gone")))
     assert not strip.isHidden() and "is unplugged" in strip.gone.text()
 
 

@@ -7,7 +7,7 @@ from PySide6.QtGui import QColor, QWheelEvent
 from PySide6.QtWidgets import QApplication
 
 from workbench.views.colours import sigma_colours
-from workbench.views.image_view import ImageView
+from workbench.views.image.view import ImageView
 
 LEFT = Qt.MouseButton.LeftButton
 
@@ -211,7 +211,7 @@ def test_layers_are_replaced_hidden_and_listed(view):
 
 def test_the_menu_hides_and_shows_layers_with_a_title(view):
     view.set_points("corners", [(10, 10)], colour="red", title="Corners")
-    view.set_text("names", [(10, 10, "pose 1")])
+    view.set_points("nameless", [(10, 10)], colour="red")
     menu = view._layers_menu
     menu.fill()
     assert [action.text() for action in menu.actions() if action.text()] == ["Corners", "Legend"]
@@ -240,7 +240,7 @@ def test_lines_are_coloured_by_the_value_along_them(view):
 
 def test_a_gap_in_a_line_is_not_drawn_over(view):
     line = [(50, 150), (100, 150), (np.nan, np.nan), (300, 150), (350, 150)]
-    view.set_lines("sweep", [line, np.zeros((0, 2))], colours=["#ff0000", "#00ff00"], labels=["1", "2"], width=6)
+    view.set_lines("sweep", [line, np.zeros((0, 2))], colour=["#ff0000", "#00ff00"], labels=["1", "2"], width=6)
     assert colour_at(view, 75, 150) == QColor("#ff0000")
     assert colour_at(view, 200, 150).red() == 40
 
@@ -250,7 +250,6 @@ def test_every_kind_of_layer_draws_empty_and_full(view):
         view.set_points("points", uv, colour="#ff0000", tips=["a"] * len(uv))
         view.set_lines("lines", [uv] if len(uv) else [], values=[np.arange(len(uv))] if len(uv) else [])
         view.set_vectors("vectors", uv, uv, factor=2)
-        view.set_text("text", [(u, v, "pose 1") for u, v in uv if np.isfinite(u)])
         view.set_polygon("region", uv[np.isfinite(uv).all(axis=1)], editable=True)
         view.set_cells("cells", np.eye(len(uv) + 1, dtype=bool))
         view.canvas.grab()

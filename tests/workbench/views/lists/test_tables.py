@@ -3,7 +3,8 @@ import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtGui import QGuiApplication
 
-from workbench.views.tables import DataTable, ListRow, ViewList
+from workbench.views.lists.data_table import DataTable
+from workbench.views.lists.view_list import ListRow, ViewList
 
 LEFT = Qt.MouseButton.LeftButton
 

@@ -12,7 +12,7 @@ from PySide6.QtGui import QWheelEvent
 from PySide6.QtWidgets import QApplication
 
 from tests.workbench.watchdog import LIMIT_MS, Watchdog
-from workbench.views.page_scroll import MOST_ZOOM, NARROWEST_PX, WIDEST_PX, PageScroll
+from workbench.views.pages.page_scroll import MOST_ZOOM, NARROWEST_PX, WIDEST_PX, PageScroll
 
 
 def page(shade: int = 255, size: tuple[int, int] = (1980, 1400)) -> Any:

@@ -5,8 +5,12 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QScrollArea, QVBoxLayout, QWidget
 
 from workbench.theme import DARK, LIGHT
-from workbench.views.plot_base import written
-from workbench.views.plots import Bar, BarsWithThreshold, HeatMap, Histogram, LineChart, ResidualPlot, RunChart
+from workbench.views.plots.bars import Bar, BarsWithThreshold
+from workbench.views.plots.base import written
+from workbench.views.plots.lines import LineChart
+from workbench.views.plots.map import HeatMap
+from workbench.views.plots.residuals import ResidualPlot
+from workbench.views.plots.runs import Histogram, RunChart
 
 LEFT = Qt.MouseButton.LeftButton
 BARS = [Bar("view1", 0.1), Bar("view2", 0.4, tip="tilted"), Bar("view3", 0.2, used=False), Bar("view4", None)]

@@ -1,27 +1,27 @@
-"""The 3D view behaves the same whatever draws it: OpenGL in the window, rendered pictures, or numpy."""
+"""The 3D view: what it shows, from where, what is chosen in it, and what it does where there is no 3D."""
 
 from __future__ import annotations
 
 import logging
-import os
+import sys
 from collections.abc import Iterator
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 from PySide6.QtCore import QEvent, QPoint, QPointF, Qt
-from PySide6.QtGui import QColor, QMouseEvent, QPalette
+from PySide6.QtGui import QColor, QGuiApplication, QMouseEvent, QPalette
 from PySide6.QtWidgets import QApplication, QFileDialog, QMainWindow, QStackedWidget, QWidget
+from pyvistaqt import QtInteractor
 
 from core.errors import InputError
-from tests.workbench.views.test_scene_view_numbers import crossing_number
+from tests.workbench.views.scene.test_view_numbers import crossing_number
 from tests.workbench.watchdog import LIMIT_MS, Watchdog
-from workbench.views import scene_view_backing
-from workbench.views import scene_view_choice as choice
-from workbench.views.scene_view import SceneView
-from workbench.views.scene_view_contents import Scene
-from workbench.views.scene_view_painter import PainterSurface
+from workbench.views.scene import drawing
+from workbench.views.scene import ready as ready_module
+from workbench.views.scene.contents import Scene
+from workbench.views.scene.ready import Readiness, readiness
+from workbench.views.scene.view import Colouring, SceneView
 
 RED, LEFT = "#ff0000", Qt.MouseButton.LeftButton
 RNG = np.random.default_rng(3)
@@ -29,28 +29,27 @@ FLAT = np.column_stack([*(RNG.random((2, 4000)) * 100 - 50), np.full(4000, 500.0
 SPARSE = np.array([[x, y, 500.0] for y in (-30, -10, 10, 30) for x in (-40, -20, 0, 20, 40)])
 
 
-ON_SCREEN = bool(os.environ.get("DISPLAY")) and os.environ.get("QT_QPA_PLATFORM", "xcb") == "xcb"
-
-
-@pytest.fixture(scope="session")
-def pictures_work() -> bool:
-    return choice._pictures_can_be_rendered()
-
-
-@pytest.fixture(params=["embedded" if ON_SCREEN else "pictures", "painter"])
-def kind(request, qapp, monkeypatch) -> str:
-    """One way of drawing: without a screen there are pictures, with one there is OpenGL in the window."""
-    if request.param == "embedded" and not choice.opengl_in_windows():
-        pytest.skip("no OpenGL in windows here")
-    if request.param == "pictures" and not request.getfixturevalue("pictures_work"):
+@pytest.fixture
+def ready(qapp, qtbot) -> Readiness:
+    """3D can be drawn here, and its libraries are there."""
+    found = readiness()
+    found.find_out()
+    qtbot.waitUntil(lambda: found.kind is not None, timeout=30_000)
+    if found.kind == "none":
         pytest.skip("no off-screen rendering here")
-    monkeypatch.setattr(choice._Choice, "kind", request.param)
-    monkeypatch.setattr(choice._Choice, "told", frozenset())
-    return request.param
+    return found
 
 
 @pytest.fixture
-def view(kind, qtbot) -> Iterator[SceneView]:
+def unknown(qapp, monkeypatch) -> Readiness:
+    """Nothing is known yet about 3D."""
+    made = Readiness(qapp)
+    monkeypatch.setattr(ready_module, "_readiness", [made])
+    return made
+
+
+@pytest.fixture
+def view(ready, qtbot) -> Iterator[SceneView]:
     made = SceneView()
     qtbot.addWidget(made)
     made.resize(700, 520)
@@ -64,10 +63,10 @@ def view(kind, qtbot) -> Iterator[SceneView]:
 
 
 def complete(view: SceneView, qtbot) -> None:
-    qtbot.waitUntil(lambda: view.state()["complete"], timeout=20_000)
+    qtbot.waitUntil(lambda: view.state().complete, timeout=20_000)
 
 
-def test_a_cloud_given_before_the_view_is_first_shown_is_seen(kind, qtbot):
+def test_a_cloud_given_before_the_view_is_first_shown_is_seen(ready, qtbot):
     pages, view = QStackedWidget(), SceneView()
     qtbot.addWidget(pages)
     for page in (QWidget(), view):
@@ -79,7 +78,8 @@ def test_a_cloud_given_before_the_view_is_first_shown_is_seen(kind, qtbot):
     pages.setCurrentWidget(view)
     complete(view, qtbot)
     qtbot.wait(300)
-    shot = pages.screen().grabWindow(pages.winId()) if kind == "embedded" else pages.grab()
+    embedded = view.state().kind == "embedded"
+    shot = pages.screen().grabWindow(pages.winId()) if embedded else pages.grab()
     image = shot.toImage()
     reddish = [
         colour.red() - colour.blue() > 100
@@ -110,6 +110,7 @@ def click(view: SceneView, qtbot, at, button=LEFT) -> None:
 
 def drag(view: SceneView, qtbot, places, button=LEFT) -> None:
     canvas = view.focusProxy()
+    assert canvas is not None
     points = [QPoint(*(int(c) for c in place)) for place in places]
     qtbot.mousePress(canvas, button, pos=points[0])
     for point in points[1:]:
@@ -131,7 +132,7 @@ def drag(view: SceneView, qtbot, places, button=LEFT) -> None:
 
 def test_nothing_is_made_before_there_is_something_to_see(view, qtbot):
     qtbot.wait(20)
-    assert view.state()["kind"] == "none"
+    assert view.state().kind == "none"
 
 
 def test_an_empty_view_says_why_it_is_empty(view, qtbot):
@@ -141,11 +142,10 @@ def test_an_empty_view_says_why_it_is_empty(view, qtbot):
     assert view.grab().toImage() != blank
 
 
-def test_a_cloud_is_shown_whole_from_above_where_it_is(view, kind, qtbot):
+def test_a_cloud_is_shown_whole_from_above_where_it_is(view, qtbot):
     view.set_cloud(FLAT, colours=RED)
     view.view("top")
     complete(view, qtbot)
-    assert view.state()["kind"] == kind
     picture = view.picture()
     assert picture.dtype == np.uint8 and count(picture, RED) > 5000
     screen = view.screen_positions(FLAT).astype(int)
@@ -167,7 +167,7 @@ def test_values_have_a_colour_bar_with_name_and_unit_and_colours_of_ones_own_hav
     view.set_cloud(FLAT, colours=RED)
     complete(view, qtbot)
     plain = view.picture()[:, -110:]
-    view.set_cloud(FLAT, values=FLAT[:, 0], value_name="height", unit="mm")
+    view.set_cloud(FLAT, values=FLAT[:, 0], colouring=Colouring("height", "mm"))
     complete(view, qtbot)
     bar = view.picture()[:, -110:]
     inked = [(np.abs(part.astype(int) - ground(view)).max(axis=2) > 60).sum() for part in (plain, bar)]
@@ -175,14 +175,14 @@ def test_values_have_a_colour_bar_with_name_and_unit_and_colours_of_ones_own_hav
 
 
 def test_a_growing_cloud_shows_its_new_points(view, qtbot):
-    view.set_cloud(np.empty((0, 3)), values=np.empty(0), value_name="σ", unit="mm", limits=(0, 1))
+    view.set_cloud(np.empty((0, 3)), values=np.empty(0), colouring=Colouring("σ", "mm", (0, 1)))
     for k in range(0, len(FLAT), 500):
         view.add_points(FLAT[k : k + 500], np.ones(500))
         qtbot.wait(5)
     complete(view, qtbot)
     view.view("top")
     complete(view, qtbot)
-    assert view.state()["points"] == len(FLAT)
+    assert view.state().points == len(FLAT)
     assert count(view.picture(), "#fde725") > 5000
 
 
@@ -292,7 +292,7 @@ def test_wrong_shapes_are_refused_and_leave_what_was_shown(view):
         view.set_highlight("x", np.zeros((3, 2)), RED)
     with pytest.raises(ValueError, match="colour"):
         view.set_highlight("x", FLAT, "no colour at all")
-    assert view.state()["points"] == len(FLAT)
+    assert view.state().points == len(FLAT)
 
 
 # ---- from where
@@ -439,7 +439,7 @@ def test_escape_ends_choosing_without_a_result(view, qtbot, start):
 
 def test_a_large_cloud_is_thinned_in_motion_and_whole_when_still(view, qtbot):
     large = np.column_stack([*(RNG.random((2, 600_000)) * 100 - 50), np.full(600_000, 500.0)])
-    view.set_cloud(large, values=large[:, 0], value_name="x", unit="mm")
+    view.set_cloud(large, values=large[:, 0], colouring=Colouring("x", "mm"))
     complete(view, qtbot)
     for _ in range(12):  # it learns how much it can draw
         view.orbit(4, 0)
@@ -448,11 +448,11 @@ def test_a_large_cloud_is_thinned_in_motion_and_whole_when_still(view, qtbot):
         for _ in range(10):
             view.orbit(4, 1)
             qtbot.wait(5)
-        moving = view.state()["drawn_moving"]
+        moving = view.state().drawn_moving
         complete(view, qtbot)
     assert moving <= 600_000
     assert watchdog.longest_ms < LIMIT_MS
-    if max(view.state()["pass_ms"]) > 22:
+    if max(view.state().pass_ms) > 22:
         assert moving < 600_000
 
 
@@ -460,20 +460,20 @@ def test_nothing_is_drawn_while_nobody_sees_it(view, qtbot):
     view.set_cloud(FLAT)
     complete(view, qtbot)
     view.hide()
-    drawn = len(view.state()["pass_ms"])
+    drawn = len(view.state().pass_ms)
     view.set_highlight("a", FLAT[:100], RED)
     view.orbit(10, 10)
     qtbot.wait(300)
-    assert len(view.state()["pass_ms"]) == drawn
+    assert len(view.state().pass_ms) == drawn
     view.show()
     complete(view, qtbot)
-    assert len(view.state()["pass_ms"]) > drawn
+    assert len(view.state().pass_ms) > drawn
 
 
 # ---- pictures
 
 
-def test_a_view_that_was_never_seen_has_a_picture(kind, qtbot):
+def test_a_view_that_was_never_seen_has_a_picture(ready, qtbot):
     unseen = SceneView()
     qtbot.addWidget(unseen)
     unseen.resize(400, 300)
@@ -493,18 +493,27 @@ def test_the_picture_is_saved(view, qtbot, tmp_path, monkeypatch):
 # ---- beginning and end
 
 
-def test_a_sentence_is_said_once_when_there_is_no_opengl(view, kind, qtbot):
-    said = []
-    view.notice.connect(said.append)
-    view.set_cloud(FLAT)
-    complete(view, qtbot)
-    view.close()
-    view.show()
-    complete(view, qtbot)
-    assert len(said) == (0 if kind == "embedded" else 1)
+def test_where_there_is_no_3d_the_view_says_so_and_one_notice_tells_of_it(unknown, qtbot, monkeypatch):
+    monkeypatch.setenv(ready_module.VARIABLE, "none")
+    said, views = [], [SceneView(), SceneView()]
+    for made in views:
+        qtbot.addWidget(made)
+        made.resize(400, 300)
+        made.notice.connect(said.append)
+        made.show()
+        blank = made.grab().toImage()
+        made.set_cloud(SPARSE)
+        assert made.grab().toImage() != blank
+        assert made.picture().shape[2] == 3
+    assert len(said) == 1 and "3D" in said[0]
+    assert {made.state().kind for made in views} == {"none"}
+    views[0].view("top")
+    views[0].start_picking()
+    with qtbot.waitSignal(views[0].point_picked):  # what is chosen needs no picture
+        click(views[0], qtbot, views[0].screen_positions(SPARSE)[7])
 
 
-def test_it_closes_with_its_window_in_the_middle_of_drawing(kind, qtbot, caplog):
+def test_it_closes_with_its_window_in_the_middle_of_drawing(ready, qtbot, caplog):
     window, page = QMainWindow(), QWidget()
     inside = SceneView(page)
     inside.resize(500, 400)
@@ -515,68 +524,108 @@ def test_it_closes_with_its_window_in_the_middle_of_drawing(kind, qtbot, caplog)
     qtbot.waitExposed(window)
     with caplog.at_level(logging.WARNING):
         inside.set_cloud(RNG.random((300_000, 3)) * 100)
-        qtbot.waitUntil(lambda: bool(inside.state()["pass_ms"]), timeout=20_000)
+        qtbot.waitUntil(lambda: bool(inside.state().pass_ms), timeout=20_000)
         window.close()
         window.deleteLater()
         qtbot.wait(50)
     assert not caplog.records
 
 
-def test_the_libraries_come_while_the_view_waits(qapp, qtbot, monkeypatch, pictures_work):
-    monkeypatch.setattr(choice._Choice, "kind", None)
+def test_the_libraries_come_while_the_view_waits(ready, unknown, qtbot):
     view = SceneView()
     qtbot.addWidget(view)
     view.show()
     view.set_cloud(FLAT)
     complete(view, qtbot)
-    assert view.state()["kind"] == choice.known() != "none"
+    assert unknown.kind == view.state().kind != "none"
     view.close()
 
 
-def test_libraries_that_cannot_be_imported_leave_the_painter(qapp, qtbot, monkeypatch, caplog):
+def test_libraries_that_cannot_be_imported_leave_a_sentence(ready, unknown, qtbot, monkeypatch, caplog):
     def broken(name):
         raise ImportError(name)
 
-    monkeypatch.setattr(choice._Choice, "kind", None)
-    monkeypatch.setattr(choice, "_pictures_can_be_rendered", lambda: True)
-    monkeypatch.setattr(choice.importlib, "import_module", broken)
-    with qtbot.waitSignal(choice.herald().arrived):
-        choice.warm_up()
-    assert choice.known() == "painter"
+    monkeypatch.setattr(ready_module.importlib, "import_module", broken)
+    with qtbot.waitSignal(unknown.known, timeout=30_000):
+        unknown.find_out()
+    assert unknown.kind == "none"
     assert "cannot be imported" in caplog.text
 
 
-def test_opengl_that_shows_nothing_is_given_up(qapp, qtbot, monkeypatch):
-    def nothing(parent, draw_now):
-        dead = PainterSurface(parent, lambda: None)
-        monkeypatch.setattr(type(dead), "ready", property(lambda self: self is not dead))
-        return dead
+def test_it_is_embedded_where_a_window_has_opengl_and_else_a_picture_with_one_notice(ready, qtbot, monkeypatch):
+    monkeypatch.setattr(ready, "notified", frozenset())
+    said, views = [], [SceneView(), SceneView()]
+    for made in views:
+        qtbot.addWidget(made)
+        made.notice.connect(said.append)
+        made.resize(500, 400)
+        made.show()
+        made.set_cloud(FLAT, colours=RED)
+        complete(made, qtbot)
+    with_window = QGuiApplication.platformName() == "xcb" and ready.opengl_in_windows()
+    assert {made.state().kind for made in views} == {"embedded" if with_window else "pictures"}
+    assert [len(made.findChildren(QtInteractor)) for made in views] == ([1, 1] if with_window else [0, 0])
+    assert len(said) == (0 if with_window else 1)
+    for made in views:
+        assert count(made.picture(), RED) > 1000
+        made.close()
 
-    monkeypatch.setattr(choice._Choice, "kind", "embedded")
-    monkeypatch.setattr(choice._Choice, "opengl", choice._Choice.opengl)  # put back afterwards
-    monkeypatch.setattr(choice._Choice, "told", frozenset())
-    monkeypatch.setattr(scene_view_backing, "DOUBT_MS", 50)
-    monkeypatch.setattr(
-        scene_view_backing.importlib, "import_module", lambda name: SimpleNamespace(EmbeddedSurface=nothing)
-    )
+
+def test_opengl_that_cannot_be_made_or_shows_nothing_is_replaced_by_pictures(ready, unknown, qtbot, monkeypatch):
+    class Nothing:
+        ready = False
+        renderer = None
+
+        def __init__(self, canvas, draw):
+            pass
+
+        def fit(self, ground):
+            pass
+
+        def close(self):
+            pass
+
+    monkeypatch.setattr(unknown, "_kind", "embedded")
+    monkeypatch.setattr(drawing, "DOUBT_MS", 50)
+    monkeypatch.setattr(sys.modules[ready_module.SURFACES], "EmbeddedSurface", Nothing)
     view = SceneView()
     qtbot.addWidget(view)
     view.show()
-    with qtbot.waitSignal(view.notice):
+    with qtbot.waitSignal(view.notice, timeout=30_000):
         view.set_cloud(FLAT)
     complete(view, qtbot)
+    assert view.state().kind == "pictures"
     view.close()
 
 
-def test_a_driver_that_crashes_is_found_out_in_another_process(monkeypatch, caplog):
-    monkeypatch.setattr(choice.sys, "executable", "/bin/false")
-    assert not choice._pictures_can_be_rendered()
+def test_pictures_that_cannot_be_made_leave_a_sentence(ready, unknown, qtbot, monkeypatch, caplog):
+    def broken(self):
+        raise RuntimeError("no context")
+
+    monkeypatch.setattr(unknown, "_kind", "pictures")
+    monkeypatch.setattr(sys.modules[ready_module.SURFACES].PictureSurface, "__init__", broken)
+    view = SceneView()
+    qtbot.addWidget(view)
+    view.show()
+    view.set_cloud(FLAT)
+    qtbot.waitUntil(lambda: unknown.kind == "none")
+    assert "cannot be made" in caplog.text
+    view.close()
+
+
+@pytest.mark.parametrize("program", ["/bin/false", "/no/such/program"])
+def test_a_driver_that_crashes_is_found_out_in_another_process(unknown, qtbot, monkeypatch, caplog, program):
+    monkeypatch.setattr(ready_module.sys, "executable", program)
+    monkeypatch.setattr(unknown, "_opengl", False)
+    with qtbot.waitSignal(unknown.known):
+        unknown.find_out()
+    assert unknown.kind == "none"
     assert "does not work" in caplog.text
 
 
-def test_the_environment_can_forbid_opengl(qapp, monkeypatch):
-    monkeypatch.setattr(choice._Choice, "kind", None)
-    monkeypatch.setenv(choice.VARIABLE, "1")
-    assert not choice.opengl_in_windows() and choice.known() is None
-    monkeypatch.setenv(choice.VARIABLE, "painter")
-    assert choice.known() == "painter"
+def test_the_environment_can_forbid_opengl(unknown, monkeypatch):
+    assert unknown.kind is None
+    monkeypatch.setenv(ready_module.VARIABLE, "1")
+    assert not unknown.opengl_in_windows() and unknown.kind is None
+    monkeypatch.setenv(ready_module.VARIABLE, "none")
+    assert unknown.kind == "none"

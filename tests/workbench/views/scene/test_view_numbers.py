@@ -5,13 +5,13 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from core.model import Camera, LightPlane
-from workbench.views.scene_shapes import frustum, plane_patch
-from workbench.views.scene_view_camera import CAMERA_FRAME, Orientation, SceneCamera, from_origin
-from workbench.views.scene_view_choose import Outline, nearest_point, points_inside
-from workbench.views.scene_view_cloud import CHUNK, SceneCloud
-from workbench.views.scene_view_colours import UNKNOWN, Colouring, table, ticks
-from workbench.views.scene_view_contents import Scene, as_mesh
-from workbench.views.scene_view_pieces import TRIANGLES, Key, elements, fair_part, make, whole
+from workbench.views.scene.camera import CAMERA_FRAME, Orientation, SceneCamera, from_origin
+from workbench.views.scene.chooser import Outline, nearest_point, points_inside
+from workbench.views.scene.cloud import CHUNK, SceneCloud
+from workbench.views.scene.colours import UNKNOWN, Colouring, table, ticks
+from workbench.views.scene.contents import Scene, as_mesh
+from workbench.views.scene.passes import TRIANGLES, Part, all_parts, gather, quick_pass, size, whole_passes
+from workbench.views.scene.shapes import frustum, plane_patch
 
 SIZE = (800, 600)
 RNG = np.random.default_rng(7)
@@ -116,15 +116,21 @@ def cloud_of(count: int) -> SceneCloud:
     return SceneCloud(points, np.arange(count, dtype=float), Colouring("n", "mm"))
 
 
+def numbers(cloud: SceneCloud, chunk: int) -> np.ndarray:
+    """Which of the given points are in a chunk."""
+    return np.arange(cloud.given)[cloud.rows(chunk)]
+
+
 @pytest.mark.parametrize("count", [0, 1, 999, CHUNK, CHUNK + 1, 200_003])
 def test_every_point_is_in_one_chunk(count):
     cloud = cloud_of(count)
-    drawn = np.concatenate([np.empty(0, dtype=np.int64), *(cloud.indices(k) for k in range(cloud.chunks))])
+    drawn = np.concatenate([np.empty(0, dtype=np.int64), *(numbers(cloud, k) for k in range(cloud.chunks))])
     assert_array_equal(np.sort(drawn), np.arange(count))
+    assert all(len(numbers(cloud, k)) == cloud.size(k) <= CHUNK for k in range(cloud.chunks))
 
 
 def test_a_chunk_is_a_fair_sample_of_the_whole():
-    share = np.histogram(cloud_of(400_000).indices(3), bins=20, range=(0, 400_000))[0] / CHUNK
+    share = np.histogram(numbers(cloud_of(400_000), 3), bins=20, range=(0, 400_000))[0] / CHUNK
     assert_allclose(share, 1 / 20, atol=0.02)
 
 
@@ -132,19 +138,21 @@ def test_points_that_are_not_finite_are_never_drawn_and_keep_their_numbers():
     points = BOX.copy()
     points[[3, 77]] = np.nan
     cloud = SceneCloud(points, None, Colouring())
-    assert cloud.given == 500 and cloud.drawn == 498
-    assert_array_equal(np.sort(cloud.indices(0)), np.delete(np.arange(500), [3, 77]))
+    assert cloud.given == 500 and np.isfinite(cloud.corners).all()
+    assert_array_equal(cloud.chunk(0)[0], np.delete(BOX, [3, 77], axis=0).astype(np.float32))
+    assert len(cloud.chunk(0)[1]) == 498
+    assert not SceneCloud(np.full((3, 3), np.nan), None, Colouring()).drawable
 
 
 def test_a_growing_cloud_has_every_point_once_and_changes_only_its_last_chunk():
     cloud = SceneCloud(np.empty((0, 3)), np.empty(0), Colouring("σ", "mm", (0, 1)))
     for k in range(60):
         cloud.add(np.full((1000, 3), k), np.full(1000, 0.5))
-    generation, versions = cloud.generation, [cloud.version(k) for k in range(cloud.chunks)]
+    serial, sizes = cloud.serial, [cloud.size(k) for k in range(cloud.chunks)]
     cloud.add(np.ones((10, 3)), np.zeros(10))
-    assert cloud.generation == generation
-    assert [cloud.version(k) for k in range(cloud.chunks)][:-1] == versions[:-1]
-    drawn = np.concatenate([cloud.indices(k) for k in range(cloud.chunks)])
+    assert cloud.serial == serial
+    assert [cloud.size(k) for k in range(cloud.chunks)][:-1] == sizes[:-1]
+    drawn = np.concatenate([numbers(cloud, k) for k in range(cloud.chunks)])
     assert_array_equal(np.sort(drawn), np.arange(60_010))
     assert_allclose(cloud.corners, [[0, 0, 0], [59, 59, 59]])
 
@@ -253,7 +261,7 @@ def test_points_behind_the_viewer_are_in_no_region():
     )
 
 
-# ---- pieces
+# ---- passes
 
 
 def hills(side: int) -> Scene:
@@ -268,28 +276,52 @@ def hills(side: int) -> Scene:
     return scene
 
 
-def test_the_pieces_of_a_mesh_have_all_its_triangles():
+def test_the_parts_of_a_mesh_have_all_its_triangles():
     scene = hills(200)
     assert scene.mesh is not None
-    pieces = [make(scene, key) for key in whole(scene)]
-    centres = np.vstack([piece.points[piece.triangles].mean(axis=1) for piece in pieces])
+    parts = [gather(scene, part) for part in all_parts(scene)]
+    centres = np.vstack([part.points[part.triangles].mean(axis=1) for part in parts])
     assert_allclose(centres, scene.mesh.vertices[scene.mesh.triangles].mean(axis=1), atol=1e-3)
-    assert all(elements(scene, key) <= TRIANGLES for key in whole(scene))
+    assert all(size(scene, part) <= TRIANGLES for part in all_parts(scene))
 
 
 def test_in_motion_a_coarse_mesh_stands_for_a_large_one():
     scene = hills(200)
-    assert fair_part(scene, 30_000) == [Key("coarse", 0)]
-    coarse = make(scene, Key("coarse", 0))
+    assert quick_pass(scene, 30_000, made).parts == (Part("coarse", 0),)
+    coarse = gather(scene, Part("coarse", 0))
     assert 1000 < len(coarse.triangles) < 25_000
     assert_allclose(np.ptp(coarse.points, axis=0), np.ptp(scene.mesh.vertices, axis=0), atol=4)
-    assert fair_part(hills(50), 30_000) == whole(hills(50))
+    assert list(quick_pass(hills(50), 30_000, made).parts) == all_parts(hills(50))
+
+
+def made(part: Part) -> bool:
+    return True
+
+
+def test_the_passes_of_a_picture_hold_every_part_once_and_smooth_the_solid_ones():
+    scene = hills(200)
+    scene.cloud = cloud_of(150_000)
+    passes = whole_passes(scene, 60_000, made)
+    assert [part for one in passes for part in one.parts] == all_parts(scene)
+    assert [one.first for one in passes] == [True] + [False] * (len(passes) - 1)
+    assert [one.last for one in passes] == [False] * (len(passes) - 1) + [True]
+    (smooth,) = [one for one in passes if one.smooth]
+    assert all(part.kind == "mesh" for one in passes[: passes.index(smooth) + 1] for part in one.parts)
+    assert all(part.kind == "cloud" for one in passes[passes.index(smooth) + 1 :] for part in one.parts)
+    assert all(sum(size(scene, part) for part in one.parts) < 60_000 + CHUNK for one in passes)
+
+
+def test_a_pass_gathers_few_new_parts():
+    scene = Scene(cloud=cloud_of(500_000))
+    assert len(quick_pass(scene, 1e9, lambda _: False).parts) == 3
+    assert {len(one.parts) for one in whole_passes(scene, 1e9, lambda _: False)} <= {1, 2, 3}
+    assert len(whole_passes(scene, 1e9, made)) == 1
 
 
 def test_normals_are_perpendicular_to_the_surface():
     flat = hills(30)
     flat.mesh = as_mesh(flat.mesh.vertices * [1, 1, 0], flat.mesh.triangles, None, Colouring())
-    assert_allclose(np.abs(make(flat, whole(flat)[0]).normals), np.tile([0, 0, 1], (900, 1)), atol=1e-6)
+    assert_allclose(np.abs(gather(flat, all_parts(flat)[0]).normals), np.tile([0, 0, 1], (900, 1)), atol=1e-6)
 
 
 def test_a_mesh_whose_triangles_name_missing_vertices_is_refused():

@@ -1,0 +1,45 @@
+"""What the poses foretell of each other, by one step from the fit of all, against fits anew."""
+
+import time
+
+import numpy as np
+import pytest
+
+from core.calibrate.fan import calibration
+from core.calibrate.fan.bundle import solve
+from core.calibrate.fan.calibration import FanOptions, fit_fan
+from core.calibrate.fan.cross_validation import prediction_errors
+from core.calibrate.fan.stripe_distances import Stripes
+from tests.calibrate.fan_scenes import ALPHA, CAMERA, GRID, PAPER, Noise, features, poses
+
+
+@pytest.mark.parametrize(("count", "lines", "corner_px"), [(6, 3, 0.02), (7, 1, 0.02), (9, 3, 0.1)])
+def test_one_step_tells_what_fits_anew_tell(monkeypatch, count, lines, corner_px):
+    asked = {}
+
+    def remembered(used, on_poses, camera, plate=None):
+        asked.update(used=used, poses=on_poses)
+        return prediction_errors(used, on_poses, camera, plate)
+
+    monkeypatch.setattr(calibration, "prediction_errors", remembered)
+    seen = features(poses(count, 1), Noise(corner_px), 20, pis=PAPER[:lines], points=GRID)
+    result = fit_fan(seen, CAMERA, FanOptions(lines, ALPHA if lines > 1 else None))
+    anew = []
+    for index, pose in enumerate(asked["poses"]):
+        others = [other for number, other in enumerate(asked["poses"]) if number != index]
+        planes = solve(asked["used"].planes, others, CAMERA).planes
+        off = Stripes([pose.stripes], [pose.pose]).distances(planes, [pose.pose], np.zeros(10)).mm
+        anew.append(np.sqrt((off**2).mean()))
+    by_step = np.array([pose.prediction_mm for pose in result.poses])
+    scale = np.sqrt(np.mean(np.square(anew)))
+    assert result.cross_validation_mm == pytest.approx(scale, rel=0.05)
+    assert np.abs(by_step - anew).max() < 0.25 * scale
+
+
+def test_a_fit_of_many_poses_is_quick():
+    """Issue 14: 121 pictures took 250 to 300 s of processor time, 30 s are allowed."""
+    seen = features(poses(121, 1), Noise(), 1, points=GRID)
+    start = time.process_time()
+    result = fit_fan(seen, CAMERA, FanOptions(3, ALPHA))
+    assert time.process_time() - start < 30
+    assert all(pose.used for pose in result.poses)

@@ -1,0 +1,120 @@
+import json
+import pickle
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from core.errors import InputError
+from core.messages import ENGLISH, Command, Field, Language, Message, as_json, from_json, label, plain, plural_message
+
+GERMAN = Language(
+    "de",
+    {
+        "fan.bow": "Wölbung {bow_mm:.2f} mm",
+        "camera.left_out": ("{n} Ansicht fehlt", "{n} Ansichten fehlen"),
+        "camera.blurred": "unscharf",
+    },
+    {"Camera": "Kamera"},
+    decimal=",",
+    conjunction="{0} und {1}",
+)
+
+
+def bow(mm: float = -0.4):
+    return Message("fan.bow", "the bow is {bow_mm:.2f} mm", bow_mm=mm)
+
+
+def test_the_english_text_stands_in_the_message():
+    assert str(bow()) == "the bow is −0.40 mm"
+
+
+def test_another_language_writes_text_and_numbers_in_its_own_way():
+    assert GERMAN(bow()) == "Wölbung −0,40 mm"
+
+
+def test_a_language_that_lacks_a_message_tells_it_in_english_with_its_own_numbers():
+    assert GERMAN(Message("fan.other", "by {x:.1f}", x=1.5)) == "by 1,5"
+
+
+@pytest.mark.parametrize(
+    ("n", "english", "german"), [(1, "1 view is out", "1 Ansicht fehlt"), (3, "3 views are out", "3 Ansichten fehlen")]
+)
+def test_numbers_choose_the_plural_form(n, english, german):
+    message = plural_message("camera.left_out", "{n} view is out", "{n} views are out", n=n)
+    assert (str(message), GERMAN(message)) == (english, german)
+
+
+def test_a_message_within_a_message_is_told_in_the_same_language():
+    inner = Message("camera.blurred", "blurred")
+    assert GERMAN(Message("x.y", "{view}: {reason}", view="view01", reason=inner)) == "view01: unscharf"
+
+
+@pytest.mark.parametrize(
+    ("text", "said"), [("{names}", "a, b, c"), ("{names:and}", "a, b and c"), ("{names:;}", "a; b; c")]
+)
+def test_several_names_are_joined_as_the_text_says(text, said):
+    assert str(Message("x.y", text, names=["a", "b", "c"])) == said
+
+
+def test_fixed_words_in_a_message_are_told_in_the_readers_language_also_after_a_file():
+    message = Message("x.y", "the {thing} is off", thing=label("Camera"))
+    assert str(message) == "the Camera is off"
+    german = Language("de", {"x.y": "{thing} ist aus"}, {"Camera": "Kamera"})
+    kept = from_json(json.loads(json.dumps(as_json(message))))
+    assert [german(one) for one in (message, kept, pickle.loads(pickle.dumps(message)))] == ["Kamera ist aus"] * 3
+
+
+def test_a_message_that_begins_a_sentence_has_a_capital():
+    reason = Message("camera.blurred", "blurred")
+    assert str(Message("x.y", "{reason:capital}.", reason=reason)) == "Blurred."
+    assert GERMAN(Message("x.y", "{reason:capital}.", reason=reason)) == "Unscharf."
+
+
+def test_a_field_and_a_command_are_told_as_the_reader_knows_them():
+    message = Message(
+        "x.y", "check {field}{how}", field=Field("camera_target.inner_corners"), how=Command("trisect run")
+    )
+    window = Language(fields={"camera_target.inner_corners": "columns and rows of the target"}, commands=False)
+    assert str(message) == "check inner_corners in rig.toml: trisect run"
+    assert window(message) == "check columns and rows of the target"
+
+
+def test_a_file_keeps_code_values_and_english_text_and_gives_the_message_back():
+    inner = Message("camera.blurred", "blurred")
+    message = Message(
+        "x.y", "{a} {b:.2f} {c} {d}", a=Path("x"), b=np.float64(2.5), c=inner, d=[Field("k"), Command("t")]
+    )
+    kept = as_json(message)
+    assert (kept["code"], kept["text"], kept["values"]["b"]) == ("x.y", "x 2.50 blurred k in rig.toml, : t", 2.5)
+    back = from_json(kept)
+    assert str(back) == str(message)
+    assert dict(back.values) == dict(message.values)
+    assert as_json(back) == kept
+    assert Language("de", {"x.y": "{c}, {b:.1f}", "camera.blurred": "unscharf"}, decimal=",")(back) == "unscharf, 2,5"
+
+
+def test_a_plural_message_from_a_file_is_told_in_another_language():
+    kept = as_json(plural_message("camera.left_out", "{n} view is out", "{n} views are out", n=2))
+    assert GERMAN(from_json(kept)) == "2 Ansichten fehlen"
+
+
+def test_somebodys_own_words_are_told_as_they_are():
+    assert ENGLISH(plain("50 {mm} [/b]")) == GERMAN(from_json("50 {mm} [/b]")) == "50 {mm} [/b]"
+
+
+def test_messages_and_errors_travel_between_processes():
+    message = plural_message("camera.left_out", "{n} view is out", "{n} views are out", n=2)
+    error = InputError(message, where=Path("rig.toml"), todo=bow())
+    back = pickle.loads(pickle.dumps(error))
+    assert (str(back), back.code, back.what) == (str(error), "camera.left_out", message)
+    assert error.told(GERMAN) == "rig.toml: 2 Ansichten fehlen; Wölbung −0,40 mm."
+
+
+def test_a_message_cannot_be_changed():
+    with pytest.raises(AttributeError):
+        bow().code = "other"
+
+
+def test_fixed_words_have_no_code():
+    assert (ENGLISH.label("Camera"), GERMAN.label("Camera"), GERMAN.label("Fan")) == ("Camera", "Kamera", "Fan")

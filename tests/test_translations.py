@@ -1,0 +1,198 @@
+"""Every text that the code tells is in the catalogues, and none is told past them."""
+
+import ast
+import re
+from collections import Counter
+from string import Formatter
+
+import pytest
+
+from core.messages import Message, plural_message
+from core.report.wording import Words
+from core.translations import PSEUDO, language, languages, preferred, strange
+from tests import translations
+
+REPORTED = (
+    "core/report", "core/calibrate", "core/image", "core/scan", "core/inspect", "core/study",
+    "core/pipeline/steps/scan_step.py", "core/pipeline/steps/gauge_step.py", "core/files/exchange/imported.py",
+    "core/errors.py",
+)  # fmt: skip
+"""Rooms and steps whose messages a report may print: each language must have all of them."""
+WINDOW_ALONE = ("core/scan/preview", "core/calibrate/camera/capture.py", "core/calibrate/camera/missing.py")
+"""Modules in these rooms that only a window listens to."""
+FIXED_WORDS = ("core/report", "core/pipeline/steps/report_step.py")
+"""Where the fixed words of a report stand."""
+OTHERS = [name for name in languages() if name != "en"]
+
+
+def places(text):
+    """What stands in braces, in any order."""
+    return Counter((name, spec) for _, name, spec, _ in Formatter().parse(text) if name is not None)
+
+
+def forms(text):
+    return (text,) if isinstance(text, str) else tuple(text or ("",))
+
+
+def test_the_texts_of_the_code_are_found():
+    assert len(list(translations.texts("core/report"))) > 150
+
+
+def test_a_code_has_one_text():
+    told = {}
+    for text in translations.texts():
+        if text.code:
+            told.setdefault(text.code, {}).setdefault(text.english, f"{text.path}:{text.line}")
+    assert {code: where for code, where in told.items() if len(where) > 1} == {}
+
+
+def test_code_and_text_of_a_message_stand_in_the_call():
+    found = []
+    for path in sorted([*(translations.ROOT / "core").rglob("*.py"), *(translations.ROOT / "workbench").rglob("*.py")]):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Call) and translations.called(node) in translations.CODED:
+                given = node.args[: translations.CODED[translations.called(node)] + 1]
+                if not all(isinstance(one, ast.Constant) for one in given) and path.name != "messages.py":
+                    found.append(f"{path.relative_to(translations.ROOT)}:{node.lineno}")
+    assert found == [], "the catalogues cannot have what is put together"
+
+
+@pytest.mark.parametrize("name", OTHERS)
+def test_no_text_of_a_report_lacks_its_translation(name):
+    catalog = translations.catalogue(name)
+    lacking = []
+    for text in translations.texts(*REPORTED):
+        if text.path.startswith(WINDOW_ALONE if text.code else FIXED_WORDS) is bool(text.code):
+            continue
+        known = catalog.get(text.english if len(text.english) > 1 else text.english[0], text.code or None)
+        if known is None or known.fuzzy or not all(forms(known.string)):
+            lacking.append(f"{text.path}:{text.line}: {text.code} {text.english[0]}")
+    assert lacking == [], "make translations, then translate them"
+
+
+@pytest.mark.parametrize("name", OTHERS)
+def test_a_catalogue_has_nothing_that_no_code_tells(name):
+    told = {(entry.context, forms(entry.id)) for entry in translations.template()}
+    kept = {(entry.context, forms(entry.id)) for entry in translations.catalogue(name)}
+    assert kept - told == set(), "make translations"
+
+
+@pytest.mark.parametrize("name", OTHERS)
+def test_a_translation_has_the_places_of_the_english_text(name):
+    for entry in translations.catalogue(name):
+        for told in filter(None, forms(entry.string) if entry.id else ()):
+            assert {place for place, _ in places(told)} <= {place for place, _ in places(forms(entry.id)[-1])}, entry.id
+
+
+def test_a_text_that_changed_is_kept_to_be_looked_at():
+    old = translations.Catalog(locale="de")
+    old.add("old words {a}", "alte Worte {a}", context="x.y")
+    old.add("gone", "weg")
+    wanted = translations.Catalog()
+    wanted.add("new words {a}", context="x.y")
+    new = translations.updated(old, wanted)
+    entry = new.get("new words {a}", "x.y")
+    assert (entry.string, entry.fuzzy, "gone" in new) == ("alte Worte {a}", True, False)
+
+
+def test_texts_in_calls_within_calls_and_either_way_of_a_condition_are_found():
+    source = 'f(Message("a.b", "one {x}", x=[g(Message("a.c", "two")) for _ in y]), tr("three" if z else "four"))'
+    found = {(text.code, *text.english) for text in translations.texts_of(ast.parse(source))}
+    assert found == {("a.b", "one {x}"), ("a.c", "two"), ("", "three"), ("", "four")}
+
+
+def test_german_is_read_with_its_numbers_lists_and_plurals():
+    german = language("de")
+    assert german(Message("", "{x:.2f}; {names:and}", x=-0.5, names=["a", "b", "c"])) == "−0,50; a, b und c"
+    said = [german(plural_message("report.views", "{n:,} view", "{n:,} views", n=n)) for n in (1, 1204)]
+    assert said == ["1 Ansicht", "1\u00a0204 Ansichten"]
+    assert german.label("thickness") == "Dicke"
+
+
+def test_what_a_language_lacks_is_told_in_english():
+    assert Words.of("de")("no such words") == "no such words"
+    assert Words.of("de").known("no such words") == "no such words"
+
+
+def test_a_language_near_to_the_wanted_one_is_taken_and_english_where_there_is_none():
+    assert [preferred(wanted) for wanted in (["", "de_CH.UTF-8"], ["xx", "de"], ["xx"], [PSEUDO])] == [
+        "de", "de", "en", PSEUDO,
+    ]  # fmt: skip
+
+
+def test_the_pseudo_language_keeps_places_and_what_is_not_read():
+    assert strange("<b>{n:.2f}</b> {{of}} &amp; frames") == "⟦<b>{n:.2f}</b> {{óóf}} &amp; fŕáámééš⟧"
+    inner = Message("x.inner", "blurred")
+    told = language(PSEUDO)(Message("x.y", "view {name}: {reason}", name="view01", reason=inner))
+    assert told == "⟦vííééŵ view01: ⟦bļúúŕŕééd⟧⟧"
+
+
+TELLING = {*translations.CODED, *translations.WORDS_AT, "Command", "Field"}
+"""Calls whose texts the catalogues have, and those of what is typed, which is the same in every language."""
+FOR_PROGRAMMERS = {
+    "ValueError", "TypeError", "RuntimeError", "AssertionError", "KeyError", "NotImplementedError", "AttributeError",
+    "BufferError", "EOFError", "OSError", "LinAlgError",
+}  # fmt: skip
+"""Raised for wrong arguments: nobody who uses the program reads them; nor what is written to a `_log`."""
+ALLOWED = {
+    "core/cli": "help of commands, shown by typer",
+    "core/files/exchange/e57.py": "what the file says to other programs",
+    "core/files/exchange/opencv_calibration.py": "what the file says to other programs",
+    "core/files/results/mesh_export.py": "what the file says to other programs",
+    "core/files/results/ply.py": "what the file says to other programs",
+    "core/files/project/folder.py": "what the file says that a double click opens",
+}
+"""Where sentences may stand by themselves, and why."""
+UNCONVERTED: dict[str, int] = {
+    "core/scan": 1,
+    "workbench/pages": 6,
+    "workbench/views": 2,
+}
+"""Sentences that a room still tells past the catalogues: only ever fewer."""
+WORDS = 4
+"""So many words make a sentence."""
+
+
+def bypassing(tree):
+    """(line, text) of every sentence in a module that is told past the catalogues."""
+    skipped = set()
+    for node in ast.walk(tree):
+        body = getattr(node, "body", None)
+        for line in body if isinstance(body, list) else ():
+            if isinstance(line, ast.Expr) and isinstance(line.value, ast.Constant):
+                skipped.add(line.value)  # a docstring
+        if isinstance(node, ast.keyword) and node.arg == translations.DESCRIBED:
+            skipped.add(node.value)
+        called = node.func if isinstance(node, ast.Call) else None
+        logged = isinstance(called, ast.Attribute) and ast.unparse(called.value) == "_log"
+        if logged or isinstance(node, ast.Assert):
+            skipped |= set(ast.walk(node))
+        if isinstance(node, ast.Call) and translations.called(node) in TELLING | FOR_PROGRAMMERS:
+            skipped |= {one for argument in node.args for one in ast.walk(argument)}
+            if translations.called(node) in FOR_PROGRAMMERS:
+                skipped |= set(ast.walk(node))
+        if isinstance(node, ast.JoinedStr):
+            skipped |= set(node.values)
+    for node in ast.walk(tree):
+        if node in skipped:
+            continue
+        if isinstance(node, ast.JoinedStr):
+            text = "".join(part.value if isinstance(part, ast.Constant) else "_" for part in node.values)
+        elif isinstance(node, ast.Constant) and isinstance(node.value, str):
+            text = node.value
+        else:
+            continue
+        if len(re.findall(r"[A-Za-z]{2,}", text)) >= WORDS and len(re.findall(r"\b[A-Za-z]{2,}\b ", text)) >= WORDS - 1:
+            yield node.lineno, text
+
+
+def test_no_sentence_bypasses_the_catalogues():
+    found = {}
+    for path in sorted([*(translations.ROOT / "core").rglob("*.py"), *(translations.ROOT / "workbench").rglob("*.py")]):
+        where = path.relative_to(translations.ROOT).as_posix()
+        if not where.startswith(tuple(ALLOWED)):
+            tree = ast.parse(path.read_text(encoding="utf-8"))
+            sentences = [f"{where}:{line}: {text}" for line, text in bypassing(tree)]
+            found.setdefault(path.relative_to(translations.ROOT).parts[:2], []).extend(sentences)
+    past = {"/".join(room): sentences for room, sentences in found.items()}
+    assert {room: told for room, told in past.items() if len(told) > UNCONVERTED.get(room, 0)} == {}

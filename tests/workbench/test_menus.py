@@ -1,0 +1,36 @@
+"""The entries of the menus, triggered."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import shiboken6
+from PySide6.QtGui import QAction
+from PySide6.QtWidgets import QApplication
+
+from core.files.project.data import new_project
+from workbench.main_window import MainWindow
+
+
+def test_an_entry_of_the_recent_projects_outlives_its_own_signal(window: MainWindow, tmp_path: Path) -> None:
+    for name in ("one", "two"):
+        window.model.create(tmp_path / name, new_project(name))
+        window.bench.settings.remember(tmp_path / name)
+    QApplication.processEvents()
+    entries = window.menus._recent.actions()
+    assert [entry.text() for entry in entries] == ["two", "one"]
+    alive: list[bool] = []
+    entries[1].triggered.connect(lambda: alive.append(shiboken6.isValid(entries[1])))
+    entries[1].trigger()
+    assert alive == [True]
+    assert window.model.folder == tmp_path / "one"
+    QApplication.processEvents()
+    assert [entry.text() for entry in window.menus._recent.actions()] == ["one", "two"]
+
+
+def test_without_a_project_there_is_nothing_to_save(window: MainWindow, tmp_path: Path) -> None:
+    entries: dict[str, QAction] = window.menus.actions
+    assert not entries["save"].isEnabled() and not entries["step scan"].isEnabled() and entries["open"].isEnabled()
+    window.model.create(tmp_path / "one", new_project("one"))
+    QApplication.processEvents()
+    assert entries["save"].isEnabled() and entries["step scan"].isEnabled()

@@ -1,0 +1,48 @@
+import re
+
+import pytest
+from PySide6.QtCore import QUrl
+from pytestqt.qtbot import QtBot
+
+from workbench.views.manual import ManualWindow, manual_folder
+
+PAGES = sorted(path.stem for path in manual_folder().glob("*.md"))
+LINK = re.compile(r"\]\(([\w-]+)\.md\)")
+
+
+@pytest.fixture
+def manual(qtbot: QtBot) -> ManualWindow:
+    window = ManualWindow()
+    qtbot.addWidget(window)
+    return window
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_every_page_is_shown_with_its_title_and_without_what_is_for_the_builder(
+    manual: ManualWindow, name: str
+) -> None:
+    manual.pages.open_page(name)
+    text = manual.pages.toPlainText()
+    title = (manual_folder() / f"{name}.md").read_text(encoding="utf-8").partition("\n")[0]
+    assert text.startswith(title.removeprefix("# "))
+    assert "toctree" not in text
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_every_link_between_pages_leads_to_one(name: str) -> None:
+    links = LINK.findall((manual_folder() / f"{name}.md").read_text(encoding="utf-8"))
+    assert not set(links) - set(PAGES)
+
+
+def test_a_link_is_followed_and_back_returns(manual: ManualWindow) -> None:
+    manual.pages.open_page("index")
+    manual.pages.anchorClicked.emit(QUrl("scan.md"))
+    assert manual.pages.toPlainText().startswith("Scan")
+    manual.back.click()
+    assert manual.pages.toPlainText().startswith("Trisect")
+
+
+def test_pictures_of_a_page_are_found(manual: ManualWindow) -> None:
+    manual.pages.open_page("inspect")
+    source = manual.pages.source().resolved(QUrl("../pictures/inspect.png"))
+    assert manual.pages.loadResource(2, source) is not None
