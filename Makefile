@@ -9,18 +9,18 @@ OUT    ?= out
 # A test process that crashes ends the run at once: with these scopes a new one would wait for work for ever.
 # Modules are handed out in the order tests/conftest.py puts them into: long ones first.
 SIDE_BY_SIDE := -n 2 --dist loadscope --no-loadscope-reorder --max-worker-restart=0
-test quick: export OPENBLAS_NUM_THREADS = 1
-test quick: export OMP_NUM_THREADS = 1
+test quick proofs: export OPENBLAS_NUM_THREADS = 1
+test quick proofs: export OMP_NUM_THREADS = 1
 
 # On a virtual screen, with the real 3D view: what a technician does there. Most of it is tested there only, if there
 # is one; the whole job, the pages and the 3D view are also tested without a screen, where 3D is a picture.
 BOTH_WAYS := tests/workbench/test_whole_job.py tests/workbench/test_behaviour_pages.py \
-	$(wildcard tests/workbench/views/test_scene_view*.py)
+	$(wildcard tests/workbench/views/scene/test_*.py)
 SCREEN_ONLY := $(filter-out $(BOTH_WAYS),$(wildcard tests/workbench/test_behaviour_*.py tests/workbench/test_whole_job*.py))
 
 SCREEN := $(shell command -v xvfb-run >/dev/null && echo 'xvfb-run -a -s "-screen 0 1920x1080x24"')
 
-.PHONY: demo app test quick accuracy bench soak check screenshots pictures wheel compile clean
+.PHONY: demo app test quick proofs accuracy bench soak check docs translations screenshots pictures wheel compile clean
 
 demo: $(READY)            ## measure the embedded sample: cloud, mesh and report of a 50 mm gauge block in ./out
 	$(BIN)/trisect demo --out $(OUT)
@@ -29,22 +29,26 @@ app: $(READY)             ## open the workbench
 	$(BIN)/trisect-workbench
 
 compile: $(READY)         ## once, so that test processes do not all compile the same at the same time
-	$(BIN)/python -c 'from core.pipeline.warm_up import stages; [stage() for stage in stages()]'
+	$(BIN)/python -c 'from core.pipeline.live.warm_up import stages; [stage() for stage in stages()]'
 
-test: check compile       ## format, lint, types, rooms, and every test; windows offscreen and on a virtual screen
+test: check compile       ## format, lint, types, rooms, examples, every test; windows offscreen and on a virtual screen
+	$(BIN)/pytest -q --doctest-modules --doctest-glob='*.md' core resources/manual
 	@if command -v Xvfb >/dev/null; then set -x; \
 	QT_QPA_PLATFORM=offscreen $(BIN)/pytest $(SIDE_BY_SIDE) $(SCREEN_ONLY:%=--ignore=%) && \
 	TRISECT_VIRTUAL_SCREEN=1 $(BIN)/pytest $(SIDE_BY_SIDE) $(BOTH_WAYS) $(SCREEN_ONLY); \
 	else echo "Xvfb is not installed: windows are tested without a screen only"; \
 	QT_QPA_PLATFORM=offscreen $(BIN)/pytest $(SIDE_BY_SIDE); fi
 
-quick: check              ## the same without the slow proofs
-	QT_QPA_PLATFORM=offscreen $(BIN)/pytest $(SIDE_BY_SIDE) -m "not slow"
+quick: check              ## the same without what is slow
+	QT_QPA_PLATFORM=offscreen $(BIN)/pytest $(SIDE_BY_SIDE) -m "not slow and not accuracy"
+
+proofs: $(READY)          ## what many rendered and simulated measurements must keep: the short form of `make accuracy`
+	$(BIN)/pytest $(SIDE_BY_SIDE) -m accuracy
 
 accuracy: export OPENBLAS_NUM_THREADS = 1
 accuracy: export OMP_NUM_THREADS = 1
-accuracy: $(READY)        ## measure the README's accuracy table anew: about 80 scans, an hour or more; goes on where it was cut off
-	$(BIN)/python -m tests.accuracy --readme
+accuracy: proofs          ## measure the manual's accuracy table anew: about 80 scans, an hour or more; goes on where it was cut off
+	$(BIN)/python -m tests.accuracy --manual
 
 soak: export OPENBLAS_NUM_THREADS = 1
 soak: $(READY)            ## ten minutes of an emulated camera at full size through the live scan page: counts, memory, freezes
@@ -61,11 +65,17 @@ screenshots: $(READY)     ## pictures of every page, both sizes, both themes, in
 pictures: $(READY)        ## the four pictures of the README
 	$(SCREEN) $(BIN)/python -m tests.workbench.screenshots resources/pictures --readme
 
+translations: $(READY)    ## every text of the code into the catalogues of all languages, resources/translations/*.po
+	$(BIN)/python -m tests.translations
+
 check: $(READY)
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+
+docs: $(READY)            ## the manual as pages for a browser, in build/manual; dead links are errors
+	$(BIN)/sphinx-build -n -W --keep-going -q -b html resources/manual build/manual
 
 wheel: $(READY)           ## build the wheel and try it in an empty environment
 	rm -rf build/wheel && mkdir -p build/wheel
