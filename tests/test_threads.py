@@ -41,7 +41,7 @@ def test_who_cancels_while_waiting_does_not_wait_for_the_job():
         list(ordered_map(job, range(100), workers=2, idle=stop))
     waited = time.perf_counter() - start
     finish.set()
-    assert waited < 1
+    assert waited < 8  # the job ends after ten
     assert len(begun) <= 2
 
 

@@ -120,8 +120,10 @@ class Monkey(QObject):
         blocking = QApplication.activePopupWidget() or QApplication.activeModalWidget()
         if blocking is not None:
             blocking.close()
-        elif not self._depth:
-            QApplication.quit()
+        elif self._depth:
+            QDrag.cancel()
+        else:
+            QApplication.exit()  # not `quit`: a window that asks what becomes of a recording would refuse it
 
     def _turn(self) -> None:
         if not self._playing:
@@ -398,7 +400,9 @@ def main() -> int:
     begun = time.monotonic()
     with tempfile.TemporaryDirectory(prefix="trisect-monkey-", ignore_cleanup_errors=True) as folder:
         print(f"deeds: {folder}/deeds.txt", file=sys.stderr, flush=True)
-        played = play(given.seconds, given.seed, Path(folder), given.project)
+        project = given.project.resolve() if given.project is not None else None
+        os.chdir(folder)  # what is saved under a name alone goes there
+        played = play(given.seconds, given.seed, Path(folder), project)
     print(*(f"WRONG: {one}" for one in played.wrong), sep="\n")
     print(played, f"in {time.monotonic() - begun:.0f} s")
     if server is not None:

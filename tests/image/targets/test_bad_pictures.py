@@ -1,6 +1,4 @@
-"""Pictures that show no target: each gets its sentence, quickly."""
-
-import time
+"""Pictures that show no target: each gets its sentence."""
 
 import cv2
 import numpy as np
@@ -39,14 +37,12 @@ def test_a_black_sixteen_bit_picture_is_black_and_a_twelve_bit_one_is_not():
 
 
 @pytest.mark.parametrize("target", TARGETS, ids=lambda target: type(target).__name__)
-def test_noise_and_blotches_hold_no_target_and_that_is_known_soon(target):
+def test_noise_and_blotches_hold_no_target(target):
     random = np.random.default_rng(1)
     blotches = cv2.GaussianBlur(random.normal(128, 1500, SHAPE), (0, 0), 12).clip(0, 255).astype(np.uint8)
     for picture in (random.normal(110, 25, SHAPE).clip(0, 255).astype(np.uint8), blotches):
-        start = time.process_time()
         with pytest.raises(TargetNotFound, match=r"^view03.png: .*(no |No ).*;"):
             detect(target, picture, "view03.png")
-        assert time.process_time() - start < 6  # a second or so on an idle machine
 
 
 def test_pictures_of_the_wrong_kind_are_a_programming_error():

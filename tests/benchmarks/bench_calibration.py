@@ -1,0 +1,64 @@
+"""Calibrations, and pictures without a target: processor time, as ratios to OpenCV."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+
+from core.calibrate.camera.calibration import calibrate_camera
+from core.calibrate.fan.calibration import FanOptions, fit_fan
+from core.image.targets import Checkerboard, TargetNotFound, detect
+from tests.benchmarks.conftest import processor_ms, table
+from tests.calibrate.camera_views import TRUTH, synthetic_views
+from tests.calibrate.fan_scenes import ALPHA, CAMERA, GRID, Noise, features, poses
+
+
+def test_the_camera_from_fourteen_views(benchmark, capsys):
+    views = synthetic_views(15)
+    points = [np.c_[view.xy, np.zeros(len(view.xy))].astype(np.float32) for view in views]
+    seen = [view.uv.astype(np.float32) for view in views]
+    ours = processor_ms(lambda: calibrate_camera(views, TRUTH.image_size), 2)
+    theirs = processor_ms(lambda: cv2.calibrateCamera(points, seen, TRUTH.image_size, None, None), 2)
+    benchmark(lambda: None)
+    rows = {
+        "camera, with covariance and cross-validation": f"{ours / 1e3:6.2f} s",
+        "OpenCV's calibrateCamera": f"{theirs / 1e3:6.2f} s   ({ours / theirs:.1f} x)",
+    }
+    table(capsys, "The camera from 14 views", rows)
+
+
+def test_the_light_planes_from_121_poses(benchmark, capsys):
+    """121 pictures took 250 to 300 s of processor time once; 30 s are allowed."""
+    seen = features(poses(121, 1), Noise(), 1, points=GRID)
+    few = features(poses(14, 1), Noise(), 1, points=GRID)
+    many_ms, few_ms = (
+        processor_ms(lambda each=each: fit_fan(each, CAMERA, FanOptions(3, ALPHA)), 1) for each in (seen, few)
+    )
+    benchmark(lambda: None)
+    rows = {
+        "121 poses": f"{many_ms / 1e3:6.2f} s   (allowed: 30 s; {many_ms / few_ms / 121 * 14:.1f} x for each pose)",
+        "14 poses": f"{few_ms / 1e3:6.2f} s",
+    }
+    table(capsys, "The light planes", rows)
+
+
+def test_a_picture_of_noise_without_a_board(benchmark, capsys):
+    random = np.random.default_rng(1)
+    noise = random.normal(110, 25, (1374, 1920)).clip(0, 255).astype(np.uint8)
+    board = Checkerboard(17, 12, 10.0)
+
+    def search():
+        try:
+            detect(board, noise, "noise.png")
+        except TargetNotFound:
+            return
+        raise AssertionError("a board in noise")
+
+    ours = processor_ms(search, 1)
+    theirs = processor_ms(lambda: cv2.findChessboardCornersSB(noise, (16, 11)), 1)
+    benchmark(lambda: None)
+    rows = {
+        "no board is known": f"{ours:6.0f} ms",
+        "OpenCV's SB detector": f"{theirs:6.0f} ms   ({ours / theirs:.1f} x)",
+    }
+    table(capsys, "A picture of noise, 1920 × 1374 px", rows)
