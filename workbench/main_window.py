@@ -98,6 +98,7 @@ class MainWindow(QMainWindow):
         if self._current:
             self.presenters[self._current].left()
         self._current = name
+        self.pages[name].prepare()
         self._pages.setCurrentWidget(self.pages[name])
         self.rail.set_current(name)
         step = next(step for step in STEPS if step.name == name)

@@ -80,11 +80,20 @@ def test_a_page_may_delete_the_button_that_was_clicked(bench: Bench, qtbot: Any,
     assert page.button is not button
 
 
-def test_a_hidden_page_is_refreshed_when_it_is_shown(bench: Bench, qtbot: Any, qapp: QApplication) -> None:
+def test_a_hidden_page_is_refreshed_before_it_is_shown_or_soon_after_but_not_while(
+    bench: Bench, qtbot: Any, qapp: QApplication
+) -> None:
     page = Page(StepPresenter(bench))
     qtbot.addWidget(page)
     page.presenter.changed.emit()
     qapp.processEvents()
     assert page.refreshes == 0
-    page.show()
+    page.prepare()
     assert page.refreshes == 1
+    page.hide()
+    page.presenter.changed.emit()
+    qapp.processEvents()
+    page.show()  # by somebody who did not prepare it: Qt is not to meet widgets that come and go
+    assert page.refreshes == 1
+    qapp.processEvents()
+    assert page.refreshes == 2

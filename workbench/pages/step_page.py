@@ -22,7 +22,8 @@ class StepPage(QWidget):
     """A page of the wizard.
 
     `refresh` is called once in the turn of the event loop after its presenter has changed, however often it did, and
-    only while the page is visible; a page that was hidden meanwhile is refreshed when it is shown.
+    only while the page is visible. A page that was hidden meanwhile is refreshed before it is shown, by whoever shows
+    it with `prepare`; never while Qt is showing it, widget by widget.
     """
 
     def __init__(self, presenter: StepPresenter, parent: QWidget | None = None) -> None:
@@ -90,11 +91,16 @@ class StepPage(QWidget):
         if event.type() == QEvent.Type.PaletteChange:
             self.refreshing.soon()  # icons and colours are the theme's
 
-    def showEvent(self, event: Any) -> None:
-        super().showEvent(event)
+    def prepare(self) -> None:
+        """The page is about to be shown: let it show what the presenter says now."""
         if self._stale:
             self._stale = False
             self.refresh()
+
+    def showEvent(self, event: Any) -> None:
+        super().showEvent(event)
+        if self._stale:
+            self.refreshing.soon()
 
     def _refresh_if_seen(self) -> None:
         self._stale = not self.isVisible()

@@ -16,6 +16,7 @@ from workbench.pages.inspect import words
 from workbench.pages.inspect.choices import Shape, SurfaceChoices
 from workbench.pages.inspect.picks import Pick, Span
 from workbench.pages.inspect.presenter import InspectPresenter, Stage
+from workbench.refresh import Refresh
 from workbench.views.colours import DEVIATIONS, FACE_LOWER, FACE_UPPER, FEATURE, to_rgba
 from workbench.views.scene.view import Colouring, SceneView
 
@@ -43,6 +44,7 @@ class SurfaceTab(QWidget):
     def __init__(self, presenter: InspectPresenter, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._presenter = presenter
+        self._refreshing = Refresh(self.refresh, self)
         self._face = ""
         self._drawn: tuple[object, ...] = ()
         self._marked: list[str] = []
@@ -118,7 +120,7 @@ class SurfaceTab(QWidget):
 
     def showEvent(self, event: QShowEvent) -> None:
         super().showEvent(event)
-        self.refresh()
+        self._refreshing.soon()  # not now: Qt is in the middle of showing what would change
 
     def hideEvent(self, event: QHideEvent) -> None:
         self._later.stop()

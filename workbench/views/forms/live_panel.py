@@ -19,6 +19,7 @@ from PySide6.QtWidgets import (
 )
 
 from workbench.language import text_of
+from workbench.refresh import Refresh
 from workbench.theme import icon
 from workbench.views import ask
 from workbench.views.forms.live_form import SourceForm
@@ -33,6 +34,7 @@ class LivePanel(QWidget):
     def __init__(self, live: Any, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.live = live
+        self._refreshing = Refresh(self.refresh, self)
         self.form = SourceForm(live)
         self.start, self.pause, self.take = QPushButton(), QPushButton(), QPushButton()
         self.auto = QCheckBox(self.tr("Take pictures automatically"))
@@ -96,7 +98,7 @@ class LivePanel(QWidget):
 
     def showEvent(self, event: Any) -> None:
         super().showEvent(event)
-        self.refresh()
+        self._refreshing.soon()  # not now: Qt is in the middle of showing what would change
         QTimer.singleShot(0, self.live.get_ready)
 
     def changeEvent(self, event: QEvent) -> None:

@@ -12,6 +12,7 @@ from core.inspect.plan.inspection_plan import InspectionPlan
 from workbench.pages.inspect.features import conditions as fields
 from workbench.pages.inspect.features.conditions import InspectConditions
 from workbench.pages.step_page import muted
+from workbench.refresh import Refresh
 from workbench.theme import icon, shades
 from workbench.views import ask
 from workbench.views.common import dress
@@ -25,6 +26,7 @@ class ConditionsPanel(QWidget):
 
     def __init__(self, conditions: InspectConditions, parent: QWidget | None = None) -> None:
         super().__init__(parent)
+        self._refreshing = Refresh(self.refresh, self)
         self._conditions = conditions
         self._made: object = None
         self._inside = QWidget()
@@ -67,7 +69,7 @@ class ConditionsPanel(QWidget):
 
     def showEvent(self, event: QShowEvent) -> None:
         super().showEvent(event)
-        self.refresh()
+        self._refreshing.soon()  # not now: Qt is in the middle of showing what would change
 
     # ---- making it
 
