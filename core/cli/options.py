@@ -29,6 +29,13 @@ class Which(str, Enum):  # noqa: UP042
     plane = "plane"
 
 
+class OrderBy(str, Enum):  # noqa: UP042
+    """What puts imported pictures in a row."""
+
+    name = "name"
+    time = "time"
+
+
 Set = Annotated[Path, typer.Argument(metavar="SET", help="The recording set: a folder with rig.toml and pictures.")]
 Out = Annotated[Path, typer.Option("--out", "-o", metavar="DIR", help="Folder of the results; made if need be.")]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object for machines instead of a table.")]

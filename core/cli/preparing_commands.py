@@ -1,4 +1,4 @@
-"""What comes before a measurement: targets to print, and what a rig would measure. Light to import."""
+"""What comes before a measurement: targets to print, what a rig would measure, pictures to import. Light to import."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from core.cli.bars import bars
-from core.cli.options import Json, SigmaCut, Which
+from core.cli.options import Json, OrderBy, SigmaCut, Which
 
 commands = typer.Typer()
 
@@ -76,3 +76,36 @@ def plan(
             rig, out, scans=scans, changes=not no_changes, sigma_cut=sigma_cut, bounds=bounds, progress=progress
         )
     shown.show(as_json=json)
+
+
+@commands.command("import")
+def import_(
+    folder: Annotated[Path, typer.Argument(metavar="SET", help="The recording set to make, or to add parts to.")],
+    camera: Annotated[
+        str, typer.Option(metavar="WHERE", help="Views of the camera's target: a folder, or 'FOLDER/PATTERN'.")
+    ] = "",
+    planes: Annotated[str, typer.Option(metavar="WHERE", help="Poses of the plane target, the fan on.")] = "",
+    planes_off: Annotated[
+        str,
+        typer.Option("--planes-off", metavar="WHERE", help="The same poses, the fan off; else NAME_off beside NAME."),
+    ] = "",
+    scan: Annotated[str, typer.Option(metavar="WHERE", help="Frames of a scan.")] = "",
+    reference: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="The scan's picture with the fan alone.")
+    ] = None,
+    order: Annotated[
+        OrderBy, typer.Option(help="name: numbers in names count as numbers. time: when each was taken (EXIF).")
+    ] = OrderBy.name,
+    rig: Annotated[Path | None, typer.Option(metavar="FILE", help="A rig.toml to copy into the set.")] = None,
+    dry_run: Annotated[bool, typer.Option("--dry-run", help="Show what was understood, and write nothing.")] = False,
+    json: Json = False,
+) -> None:
+    """Make a recording set of pictures that lie anywhere: linked, not copied; on and off pictures find each other.
+
+    Put a pattern in quotes: --planes 'shots/laser_*.jpg' --planes-off 'shots/board_*.jpg' pairs what the stars
+    stand for. Without patterns, equal names pair, then equal numbers in the names, then the order alone.
+    """
+    from core.cli import importing
+
+    plan = importing.understood(camera, planes, planes_off, scan, reference, order.value)
+    importing.show(plan, folder, rig, dry_run=dry_run, as_json=json)

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import os
 import re
-import shutil
 from pathlib import Path
 
 from core.files.atomic import cannot_write
+from core.files.linking import link
 from core.files.recording.set_listing import pictures_in
 from core.progress import Progress, silent
 
@@ -33,7 +32,7 @@ def add_recording(before: Path, recorded: Path, progress: Progress = silent) -> 
         for path, name in new.items():
             path.rename(path.with_name(name))
         for number, path in enumerate(old, start=1):
-            _link(path, recorded / path.name)
+            link(path, recorded / path.name)
             progress("adding pictures", number, len(old))
     except OSError as error:
         raise cannot_write(recorded, error) from error
@@ -66,10 +65,3 @@ def _free(name: str, used: set[str]) -> str:
     while (candidate := f"{stem}{number:0{width}d}") in used:
         number += 1
     return candidate
-
-
-def _link(source: Path, target: Path) -> None:
-    try:
-        os.link(source, target)
-    except OSError:  # another disk, or one that knows no links
-        shutil.copy2(source, target)

@@ -1,0 +1,87 @@
+"""`trisect import`: what was understood of somebody's folders, and what was made of it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from rich.table import Table
+
+from core.cli import output
+from core.cli.bars import bars
+from core.files.recording.import_pictures import IMPORTED, Imported, import_pictures, require_free
+from core.files.recording.import_plan import ImportedPicture, ImportPlan, ImportRequest, Order, Where, plan_import
+from core.messages import Message
+from core.report.wording import count
+
+_COLUMNS = ("name in the set", "picture", "fan off", "taken at")
+
+
+def understood(camera: str, planes: str, planes_off: str, scan: str, reference: Path | None, order: str) -> ImportPlan:
+    """The plan of what was typed; '' is what there is none of."""
+    views, on, off, frames = (Where.typed(text) if text else None for text in (camera, planes, planes_off, scan))
+    return plan_import(ImportRequest(views, on, off, frames, reference, Order(order)))
+
+
+def show(plan: ImportPlan, target: Path, rig: Path | None, *, dry_run: bool, as_json: bool) -> None:
+    """Write the set unless it is a dry run, and tell."""
+    if dry_run:
+        require_free(plan, target, rig)
+        imported = None
+    else:
+        with bars() as progress:
+            imported = import_pictures(plan, target, rig, progress)
+    notes = plan.notes if imported is None else imported.notes
+    if as_json:
+        output.print_json(_values(plan, imported, notes))
+        return
+    if imported is None:
+        _print_pictures(plan.pictures)
+    rows = [(part, _part_in_words(plan, part)) for part in plan.parts]
+    if imported is not None:
+        ways = ", ".join(f"{count} as {way}" for way, count in imported.ways.items())
+        rows += [("files", ways), ("written", f"{target}: {', '.join(plan.parts)}, {IMPORTED}")]
+    output.print_rows(rows, notes if imported is not None else (*notes, _NOTHING_WRITTEN))
+
+
+_NOTHING_WRITTEN = Message("import.dry_run", "Nothing is written; the same without --dry-run writes the set.")
+
+
+def _print_pictures(pictures: Sequence[ImportedPicture]) -> None:
+    columns = [name for name in _COLUMNS if name not in _empty_columns(pictures)]
+    table = Table(box=None, padding=(0, 2, 0, 0))
+    for name in columns:
+        table.add_column(name, overflow="fold")
+    for one in pictures:
+        values = dict(zip(_COLUMNS, _row(one), strict=True))
+        table.add_row(*(values[name] for name in columns))
+    output.console().print(table)
+
+
+def _row(one: ImportedPicture) -> tuple[str, str, str, str]:
+    on, _ = one.files()[0]
+    taken = "" if one.taken_at is None else str(one.taken_at)
+    return on, one.source.name, "" if one.off is None else one.off.name, taken
+
+
+def _empty_columns(pictures: Sequence[ImportedPicture]) -> set[str]:
+    columns = zip(_COLUMNS, zip(*map(_row, pictures), strict=True), strict=True)
+    return {name for name, values in columns if not any(values)}
+
+
+def _part_in_words(plan: ImportPlan, part: str) -> str:
+    pictures = plan.parts[part]
+    pairs = sum(one.off is not None for one in pictures)
+    counted = count(len(pictures), "picture") if part != "planes" else f"{count(len(pictures), 'pose')}, {pairs} paired"
+    folders = dict.fromkeys(str(path.parent) for one in pictures for _, path in one.files())
+    return f"{counted}, {plan.rules[part]}; from {' and '.join(folders)}"
+
+
+def _values(plan: ImportPlan, imported: Imported | None, notes: Sequence[Message]) -> dict[str, object]:
+    return {
+        "set": None if imported is None else str(imported.folder),
+        "files": {} if imported is None else dict(imported.ways),
+        "rules": {part: str(rule) for part, rule in plan.rules.items()},
+        "pictures": [{"name": name, "from": str(path)} for one in plan.pictures for name, path in one.files()],
+        "notes": [str(note) for note in notes],
+    }

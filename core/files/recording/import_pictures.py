@@ -1,0 +1,184 @@
+"""The pictures of an `ImportPlan` into a recording set, as links, with a record of where each came from."""
+
+from __future__ import annotations
+
+import secrets
+import shutil
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+from core import __version__
+from core.errors import InputError
+from core.files.atomic import cannot_write, make_folder, remove_leftovers, write_bytes
+from core.files.json_text import write_json
+from core.files.linking import Way, link
+from core.files.reading import MISSING, read_bytes, read_json
+from core.files.recording.import_plan import ImportPlan
+from core.files.recording.recording_set import PARTS, RIG
+from core.files.recording.rig import read_rig
+from core.files.recording.set_listing import check_sizes, pictures_in
+from core.messages import Message, as_json, plural_message
+from core.progress import Progress, silent
+
+IMPORTED = "import.json"
+"""In the set: what was imported, when, from where and by which rule; the latest last."""
+
+
+@dataclass(frozen=True, slots=True)
+class Imported:
+    """What was written: the set, how many files in which way, and what deserves a word."""
+
+    folder: Path
+    ways: Mapping[Way, int]
+    notes: tuple[Message, ...]
+
+
+def import_pictures(plan: ImportPlan, target: Path, rig: Path | None = None, progress: Progress = silent) -> Imported:
+    """Put the pictures into the set `target`, which is made if need be; each part appears whole or not at all.
+
+    Parameters
+    ----------
+    plan
+        Which pictures, under which names.
+    target
+        The set. It may have other parts already, and a rig.toml.
+    rig
+        A rig.toml to copy into it.
+    progress
+        Told how many files are linked.
+
+    Raises
+    ------
+    InputError
+        If a part is there already, pictures differ in size from those that are, rig.toml is wrong, or the set cannot
+        be written.
+    """
+    parts = plan.parts
+    require_free(plan, target, rig)
+    log = _log(target)
+    make_folder(target)
+    ways: dict[str, Way] = {}
+    total = sum(len(one.files()) for one in plan.pictures)
+    made: dict[Path, Path] = {}
+    try:
+        for part, pictures in parts.items():
+            remove_leftovers(target / part)
+            beside = target / f".{part}.{secrets.token_hex(4)}"
+            beside.mkdir()
+            made[beside] = target / part
+            for one in pictures:
+                for name, source in one.files():
+                    if not source.is_file():
+                        raise InputError(MISSING, where=source)
+                    ways[name] = link(source, beside / name.partition("/")[2], symbolic=True)
+                    progress("importing", len(ways), total)
+        for beside, place in made.items():
+            if place.is_dir():
+                place.rmdir()  # empty: looked at before
+            beside.rename(place)
+    except OSError as error:
+        raise cannot_write(target, error) from error
+    finally:
+        for beside in made:
+            shutil.rmtree(beside, ignore_errors=True)
+    if rig is not None:
+        write_bytes(target / RIG, read_bytes(rig))
+    counts: Counter[Way] = Counter(ways.values())
+    notes = (*plan.notes, *_notes(target, counts))
+    write_json(target / IMPORTED, {"imports": [*log, _record(plan, ways, notes)]})
+    return Imported(target, dict(counts), notes)
+
+
+def require_free(plan: ImportPlan, target: Path, rig: Path | None) -> None:
+    """InputError if the plan and a rig.toml cannot go into `target`; nothing is written."""
+    if target.exists() and not target.is_dir():
+        raise InputError(Message("set.file_not_folder", "is a file, not a folder"), where=target)
+    for part in plan.parts:
+        place = target / part
+        if place.exists() and not (place.is_dir() and not any(place.iterdir())):
+            raise InputError(
+                Message("import.part_is_there", "the set has its {part} pictures already", part=part),
+                where=place,
+                todo=Message("import.advice_other_set", "name another set, or remove this folder first"),
+            )
+    kept = [path for part in PARTS for path in pictures_in(target / part)]
+    check_sizes([*kept, *(path for one in plan.pictures for _, path in one.files())])
+    if rig is not None:
+        read_rig(rig)
+        if (target / RIG).exists() and not (target / RIG).samefile(rig):
+            raise InputError(
+                Message("import.rig_is_there", "the set has a rig.toml already"),
+                where=target / RIG,
+                todo=Message("import.advice_one_rig", "keep one of the two"),
+            )
+
+
+def _log(target: Path) -> list[Any]:
+    """What was imported before."""
+    path = target / IMPORTED
+    if not path.exists():
+        return []
+    kept = read_json(path)
+    try:
+        return list(kept["imports"])
+    except (KeyError, TypeError) as error:
+        raise InputError(
+            Message("import.log_damaged", "this is no record of imported pictures"),
+            where=path,
+            todo=Message("import.advice_log", "move it away; no picture needs it"),
+        ) from error
+
+
+def _notes(target: Path, ways: Mapping[Way, int]) -> tuple[Message, ...]:
+    notes = []
+    if "symbolic link" in ways:
+        notes.append(
+            plural_message(
+                "import.linked_by_name",
+                "{n} file is linked by its name, since it lies on another disk: it must stay where it is.",
+                "{n} files are linked by their names, since they lie on another disk: they must stay where they are.",
+                n=ways["symbolic link"],
+            )
+        )
+    if "copy" in ways:
+        notes.append(
+            plural_message(
+                "import.copied",
+                "{n} file was copied: this disk takes no links to it.",
+                "{n} files were copied: this disk takes no links to them.",
+                n=ways["copy"],
+            )
+        )
+    if not (target / RIG).exists():
+        notes.append(
+            Message(
+                "import.no_rig",
+                "The set has no rig.toml yet; it says what the targets and the laser are, and is written by hand.",
+            )
+        )
+    return tuple(notes)
+
+
+def _record(plan: ImportPlan, ways: Mapping[str, Way], notes: tuple[Message, ...]) -> dict[str, Any]:
+    """One import as the log keeps it; every file with its place, so that nobody needs to guess later."""
+    taken = {name: one.taken_at for one in plan.pictures for name, _ in one.files()[:1]}
+    request = plan.request
+    asked = {"camera": request.camera, "planes": request.planes, "planes_off": request.planes_off, "scan": request.scan}
+    return {
+        "imported_at": datetime.now(UTC).astimezone().isoformat(timespec="seconds"),
+        "version": __version__,
+        "from": {name: str(where.folder.resolve() / where.pattern) for name, where in asked.items() if where},
+        "order": request.order.value,
+        "rules": {part: as_json(rule) for part, rule in plan.rules.items()},
+        "pictures": [
+            {"name": name, "from": str(path.resolve()), "as": ways[name]}
+            | ({"taken_at": at.isoformat()} if (at := taken.get(name)) else {})
+            for one in plan.pictures
+            for name, path in one.files()
+        ],
+        "notes": [as_json(note) for note in notes],
+    }

@@ -1,0 +1,504 @@
+"""Pictures of somebody else's folders as a recording set: what lies where, in which order, and which belong together.
+
+Nothing is written here; `core.files.recording.import_pictures` does that, once a person has seen the plan.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from enum import StrEnum
+from pathlib import Path
+from typing import TypeAlias
+
+import cv2
+import numpy as np
+from PIL import Image, UnidentifiedImageError
+
+from core.errors import InputError
+from core.files.pictures import read_picture
+from core.files.reading import cannot_read
+from core.files.recording.set_listing import check_sizes, pictures_in
+from core.messages import Message, plural_message
+
+_OFF = "_off"
+_REFERENCE = "reference"
+_EXIF_TABLE, _TAKEN_AT, _TAKEN_AT_PART, _WRITTEN_AT = 0x8769, 0x9003, 0x9291, 0x0132
+_NAMES_SHOWN = 3
+_SWAPPED = 1.5
+"""Pairs whose light is so many times stronger in the off picture are told as exchanged. In 44 real pairs of three
+cameras the strongest light was 1.1 to 30 times stronger in the on picture."""
+
+
+class Order(StrEnum):
+    """What puts pictures in a row: their names, numbers counted as numbers, or when they were taken."""
+
+    NAME = "name"
+    TIME = "time"
+
+
+@dataclass(frozen=True, slots=True)
+class Where:
+    """The pictures in `folder` whose names fit `pattern`: ``*`` stands for any text, ``?`` for one character."""
+
+    folder: Path
+    pattern: str = "*"
+
+    @classmethod
+    def typed(cls, text: str) -> Where:
+        """A folder, or a folder and a pattern of names: ``shots`` or ``shots/laser_*.jpg``."""
+        path = Path(text)
+        if set("*?") & set(path.name) and not path.is_dir():
+            return cls(path.parent, path.name)
+        return cls(path)
+
+    def __str__(self) -> str:
+        return str(self.folder if self.pattern == "*" else self.folder / self.pattern)
+
+
+@dataclass(frozen=True, slots=True)
+class ImportRequest:
+    """Which pictures are to be what; None for what there is none of.
+
+    `planes` are the poses of the plane target with the fan on, `planes_off` the same with it off; `scan` are frames,
+    `reference` is the picture of the fan alone.
+    """
+
+    camera: Where | None = None
+    planes: Where | None = None
+    planes_off: Where | None = None
+    scan: Where | None = None
+    reference: Path | None = None
+    order: Order = Order.NAME
+
+
+@dataclass(frozen=True, slots=True)
+class ImportedPicture:
+    """One view, pose or frame: its `name` in the `part` of the set, where it lies, its off picture, when it was taken.
+
+    `taken_at` is None unless pictures are ordered by time.
+    """
+
+    part: str
+    name: str
+    source: Path
+    off: Path | None = None
+    taken_at: datetime | None = None
+
+    def files(self) -> tuple[tuple[str, Path], ...]:
+        """(name within the set, where it lies) of each file: "planes/07_off.png"."""
+        on = (f"{self.part}/{self.name}{self.source.suffix}", self.source)
+        return (on,) if self.off is None else (on, (f"{self.part}/{self.name}{_OFF}{self.off.suffix}", self.off))
+
+
+@dataclass(frozen=True, slots=True)
+class ImportPlan:
+    """What was understood: every picture in its order, by which rule, for each part, and what deserves a word."""
+
+    request: ImportRequest
+    pictures: tuple[ImportedPicture, ...]
+    rules: Mapping[str, Message] = field(default_factory=dict)
+    notes: tuple[Message, ...] = ()
+
+    @property
+    def parts(self) -> dict[str, tuple[ImportedPicture, ...]]:
+        """The pictures of each part that has any."""
+        names = dict.fromkeys(one.part for one in self.pictures)
+        return {part: tuple(one for one in self.pictures if one.part == part) for part in names}
+
+
+def plan_import(request: ImportRequest) -> ImportPlan:
+    """Understand which pictures are which; looks at the files' heads, and at three pairs.
+
+    Raises
+    ------
+    InputError
+        If nothing is asked for, a folder or its pictures are not there, the pictures are not all of one size, or
+        nothing says which pictures have the fan on.
+    """
+    asked = (request.camera, request.planes, request.planes_off, request.scan, request.reference)
+    if all(one is None for one in asked):
+        raise InputError(
+            Message("import.nothing", "nothing says which pictures to import"),
+            todo=Message("import.advice_folders", "name a folder for camera, planes or scan"),
+        )
+    if request.planes is None and request.planes_off is not None:
+        raise InputError(
+            Message("import.off_without_on", "these have the fan off, and nothing says which have it on"),
+            where=request.planes_off,
+            todo=Message("import.advice_planes", "name those, too: the poses are measured in them"),
+        )
+    if request.scan is None and request.reference is not None:
+        raise InputError(
+            Message("import.reference_without_frames", "this is a reference, and nothing says which are its frames"),
+            where=request.reference,
+            todo=Message("import.advice_scan", "name the folder of the scan, too"),
+        )
+    found = [
+        _views(request.camera, request.order) if request.camera else None,
+        _poses(request.planes, request.planes_off, request.order) if request.planes else None,
+        _frames(request.scan, request.reference, request.order) if request.scan else None,
+    ]
+    parts = [part for part in found if part is not None]
+    pictures = tuple(one for part in parts for one in part.pictures)
+    check_sizes(list(dict.fromkeys(path for one in pictures for _, path in one.files())))
+    rules = {part.pictures[0].part: part.rule for part in parts}
+    return ImportPlan(request, pictures, rules, tuple(note for part in parts for note in part.notes))
+
+
+@dataclass(frozen=True, slots=True)
+class _Part:
+    pictures: tuple[ImportedPicture, ...]
+    rule: Message
+    notes: tuple[Message, ...] = ()
+
+
+def _views(where: Where, order: Order) -> _Part:
+    files, notes = _listed(where)
+    ordered, rule, more = _in_order(files, order)
+    names = _set_names([path for path, _ in ordered])
+    pictures = [
+        ImportedPicture("camera", name, path, taken_at=at) for name, (path, at) in zip(names, ordered, strict=True)
+    ]
+    return _Part(tuple(pictures), rule, (*notes, *more))
+
+
+def _frames(where: Where, reference: Path | None, order: Order) -> _Part:
+    files, notes = _listed(where)
+    if reference is None:
+        reference = next((path for path in files if path.stem.lower() == _REFERENCE), None)
+    elif not reference.is_file():
+        raise InputError(Message("import.no_reference", "there is no such picture"), where=reference)
+    frames = [path for path in files if reference is None or path.resolve() != reference.resolve()]
+    if not frames:
+        raise InputError(Message("import.no_frames", "there are no frames beside the reference"), where=where)
+    ordered, rule, more = _in_order(frames, order)
+    names = _set_names([path for path, _ in ordered], taken=(_REFERENCE,))
+    pictures = [
+        ImportedPicture("scan", name, path, taken_at=at) for name, (path, at) in zip(names, ordered, strict=True)
+    ]
+    if reference is not None:
+        pictures.insert(0, ImportedPicture("scan", _REFERENCE, reference))
+    return _Part(tuple(pictures), rule, (*notes, *more))
+
+
+def _poses(on: Where, off: Where | None, order: Order) -> _Part:
+    files, notes = _listed(on)
+    if off is None:
+        offs = {path.stem.removesuffix(_OFF): path for path in files if path.stem.endswith(_OFF)}
+        files = [path for path in files if not path.stem.endswith(_OFF)]
+        if not offs:
+            _refuse_two_kinds(on, files)
+        partners, left = {path: offs.pop(path.stem) for path in files if path.stem in offs}, list(offs.values())
+        how = (
+            Message("import.pairs_by_off", "each NAME with its NAME_off")
+            if partners
+            else Message("import.no_off", "each by itself, without a picture with the fan off")
+        )
+    else:
+        off_files, more = _listed(off)
+        partners, left, how = _paired(on, files, off, off_files, order)
+        notes = (*notes, *more)
+    ordered, rule, more = _in_order(files, order)
+    names = _set_names([path for path, _ in ordered], ends_with_off=True)
+    pictures = tuple(
+        ImportedPicture("planes", name, path, partners.get(path), at)
+        for name, (path, at) in zip(names, ordered, strict=True)
+    )
+    told = (*notes, *more, *_without_partner(pictures, left), *_exchanged(pictures))
+    return _Part(pictures, Message("import.order_and_pairs", "{order}; {pairs}", order=rule, pairs=how), told)
+
+
+def _listed(where: Where) -> tuple[list[Path], tuple[Message, ...]]:
+    """The pictures that fit, and a note on files that look like pictures of a kind that is not read."""
+    folder = where.folder
+    if not folder.is_dir():
+        what = (
+            Message("import.file_not_folder", "is a file, not a folder or a pattern of names")
+            if folder.exists()
+            else Message("source.no_such_folder", "there is no such folder")
+        )
+        raise InputError(what, where=folder)
+    pictures = pictures_in(folder)
+    fitting = [path for path in pictures if _matched(where.pattern, path.name) is not None]
+    if not fitting:
+        raise InputError(
+            plural_message(
+                "import.none_fits",
+                "no picture fits; there is one other: {names}",
+                "no picture fits; there are {n} others, as {names}",
+                n=len(pictures),
+                names=tuple(path.name for path in pictures[:_NAMES_SHOWN]),
+            )
+            if pictures
+            else Message("import.no_pictures", "there are no pictures in this folder"),
+            where=where,
+            todo=Message("import.advice_formats", "pictures are png, tif, bmp, jpg and pgm"),
+        )
+    return fitting, _unread(folder, where.pattern)
+
+
+_PICTURES_NOT_READ = frozenset(
+    {".webp", ".gif", ".heic", ".heif", ".avif", ".jp2", ".raw", ".dng", ".cr2", ".cr3", ".nef", ".arw", ".ppm", ".pnm"}
+    | {".mp4", ".avi", ".mov"}
+)
+"""Endings (lower case) of pictures and films that a camera or a telephone may have written beside them."""
+
+
+def _unread(folder: Path, pattern: str) -> tuple[Message, ...]:
+    try:
+        names = [path.name for path in folder.iterdir() if path.suffix.lower() in _PICTURES_NOT_READ]
+    except OSError as error:
+        raise cannot_read(folder, error) from error
+    names = sorted(name for name in names if _matched(pattern, name) is not None)
+    if not names:
+        return ()
+    return (
+        plural_message(
+            "import.not_read",
+            "{n} file in {folder} is of a kind that is not read ({names}): convert it to png.",
+            "{n} files in {folder} are of a kind that is not read ({names}): convert them to png.",
+            n=len(names),
+            folder=folder.name,
+            names=tuple(names[:_NAMES_SHOWN]),
+        ),
+    )
+
+
+def _matched(pattern: str, name: str) -> tuple[str, ...] | None:
+    """What the stars and question marks of a pattern stand for in a name, or None if it does not fit."""
+    parts = {"*": "(.*)", "?": "(.)"}
+    rule = "".join(parts.get(one, re.escape(one)) for one in pattern)
+    found = re.fullmatch(rule, name, re.IGNORECASE)
+    return None if found is None else found.groups()
+
+
+_Key: TypeAlias = tuple[tuple[int, int, str], ...]
+
+
+def natural_key(text: str) -> _Key:
+    """What to sort names by so that "view2" comes before "view10", and "02" is the same number as "2"."""
+    return tuple((0, int(part), "") if part.isdecimal() else (1, 0, part.lower()) for part in re.split(r"(\d+)", text))
+
+
+def _in_order(
+    files: Sequence[Path], order: Order
+) -> tuple[list[tuple[Path, datetime | None]], Message, tuple[Message, ...]]:
+    """Files in their order with the time each was taken, the rule in words, and what is to be told of it."""
+    by_name = sorted(files, key=lambda path: (natural_key(path.name), path.name))
+    if order is Order.NAME:
+        return [(path, None) for path in by_name], Message("import.by_name", "in the order of their names"), ()
+    taken = {path: _taken_at(path) for path in by_name}
+    notes: list[Message] = []
+    without = [path for path, at in taken.items() if at is None]
+    if without:
+        taken = {path: _changed_at(path) for path in by_name}
+        notes.append(
+            plural_message(
+                "import.no_time_in_picture",
+                "{n} picture does not say when it was taken ({names}): the times of the files order all of them, "
+                "and a copied file may have a new one.",
+                "{n} pictures do not say when they were taken ({names}): the times of the files order all of them, "
+                "and a copied file may have a new one.",
+                n=len(without),
+                names=tuple(path.name for path in without[:_NAMES_SHOWN]),
+            )
+        )
+    ties = sum(count - 1 for count in Counter(taken.values()).values())
+    if ties:
+        notes.append(
+            plural_message(
+                "import.same_time",
+                "{n} picture has the same time as another one: their names order these.",
+                "{n} pictures have the same time as another one: their names order these.",
+                n=ties,
+            )
+        )
+    rule = (
+        Message("import.by_file_time", "in the order of their files' times")
+        if without
+        else Message("import.by_time", "in the order in which they were taken")
+    )
+    ordered = sorted(by_name, key=lambda path: taken[path] or datetime.max)
+    return [(path, taken[path]) for path in ordered], rule, tuple(notes)
+
+
+def _taken_at(path: Path) -> datetime | None:
+    """When the camera says it took a picture (EXIF 2.32: DateTimeOriginal, else DateTime); None if it does not."""
+    try:
+        with Image.open(path) as picture:
+            head = picture.getexif()
+            own = head.get_ifd(_EXIF_TABLE)
+            text = str(own.get(_TAKEN_AT) or head.get(_WRITTEN_AT) or "")
+            part = str(own.get(_TAKEN_AT_PART) or "").strip() if own.get(_TAKEN_AT) else ""
+        at = datetime.strptime(text.strip("\0 "), "%Y:%m:%d %H:%M:%S")  # the camera's clock: no zone
+    except (OSError, SyntaxError, ValueError, UnidentifiedImageError, Image.DecompressionBombError):
+        return None
+    return at.replace(microsecond=int(f"{part:0<6}"[:6])) if part.isdecimal() else at
+
+
+def _changed_at(path: Path) -> datetime:
+    try:
+        return datetime.fromtimestamp(path.stat().st_mtime, UTC).replace(tzinfo=None)
+    except OSError as error:
+        raise cannot_read(path, error) from error
+
+
+def _set_names(files: Sequence[Path], *, taken: Iterable[str] = (), ends_with_off: bool = False) -> list[str]:
+    """Names (without ending) by which files keep their order when sorted: their own where these do, else numbered."""
+    stems = [path.stem for path in files]
+    lowered = [stem.lower() for stem in stems]
+    clash = len({*lowered, *taken}) < len(lowered) + len(tuple(taken))
+    off = ends_with_off and any(stem.endswith(_OFF) for stem in stems)
+    names = [path.name for path in files]
+    if names == sorted(names) and not clash and not off:
+        return stems
+    digits = len(str(len(files) - 1))
+    bare = [stem.removesuffix(_OFF) if ends_with_off else stem for stem in stems]
+    return [f"{place:0{digits}d}-{stem}" for place, stem in enumerate(bare)]
+
+
+def _paired(
+    on: Where, on_files: Sequence[Path], off: Where, off_files: Sequence[Path], order: Order
+) -> tuple[dict[Path, Path], list[Path], Message]:
+    """The off picture of each on picture that has one, the off pictures left over, and by which rule."""
+    if same := sorted(set(on_files) & set(off_files)):
+        raise InputError(
+            Message("import.on_and_off", "the picture is to have the fan on and off at once"),
+            where=same[0],
+            todo=Message("import.advice_patterns", "give both as FOLDER/PATTERN, as shots/laser_* and shots/board_*"),
+        )
+    rules: list[tuple[Message, Callable[[Path], object], Callable[[Path], object]]] = [
+        (Message("import.pairs_by_name", "pairs of the same name"), lambda p: p.stem.lower(), lambda p: p.stem.lower()),
+        (Message("import.pairs_by_number", "pairs of the same number in the name"), _number, _number),
+    ]
+    if "*" in on.pattern and on.pattern.count("*") == off.pattern.count("*") and {on.pattern, off.pattern} != {"*"}:
+        how = Message(
+            "import.pairs_by_pattern", "pairs by what the stars in {on} and {off} stand for", on=on.pattern,
+            off=off.pattern,
+        )  # fmt: skip
+        rules.insert(0, (how, _star_key(on.pattern), _star_key(off.pattern)))
+    for how, key, off_key in rules:
+        ons, offs = _by_key(on_files, key), _by_key(off_files, off_key)
+        if ons is not None and offs is not None and (common := ons.keys() & offs.keys()):
+            partners = {ons[one]: offs[one] for one in common}
+            return partners, [path for one, path in offs.items() if one not in common], how
+    if len(on_files) != len(off_files):
+        raise InputError(
+            Message(
+                "import.cannot_pair",
+                "nothing in the names says which picture belongs to which, and there are {on} with the fan on but "
+                "{off} with it off",
+                on=len(on_files),
+                off=len(off_files),
+            ),
+            where=off,
+            todo=Message("import.advice_patterns", "give both as FOLDER/PATTERN, as shots/laser_* and shots/board_*"),
+        )
+    first, second = (_in_order(files, order)[0] for files in (on_files, off_files))
+    partners = {a: b for (a, _), (b, _) in zip(first, second, strict=True)}
+    return partners, [], Message("import.pairs_by_order", "pairs by their order alone: look at them")
+
+
+def _star_key(pattern: str) -> Callable[[Path], object]:
+    def key(path: Path) -> object:
+        stars = _matched(pattern, path.name) or ()
+        # A star at the end holds the file's ending, and the two need not be of one kind.
+        return tuple(natural_key(Path(star).stem if star.endswith(path.suffix) else star) for star in stars)
+
+    return key
+
+
+def _number(path: Path) -> int | None:
+    """The last number in a name."""
+    found = re.findall(r"\d+", path.stem)
+    return int(found[-1]) if found else None
+
+
+def _by_key(files: Sequence[Path], key: Callable[[Path], object]) -> dict[object, Path] | None:
+    """Files by a key, or None if it does not tell them apart."""
+    keyed = {key(path): path for path in files}
+    return None if None in keyed or len(keyed) < len(files) else keyed
+
+
+def _refuse_two_kinds(where: Where, files: Sequence[Path]) -> None:
+    """InputError if the names are of two kinds with the same numbers: one of them probably has the fan off."""
+    if where.pattern != "*":
+        return
+    kinds: dict[str, set[int | None]] = {}
+    for path in files:
+        kinds.setdefault(re.sub(r"\d+(?!.*\d)", "*", path.stem), set()).add(_number(path))
+    if len(kinds) != 2:
+        return
+    (one, numbers), (other, others) = sorted(kinds.items())
+    if None not in numbers and numbers == others:
+        raise InputError(
+            Message(
+                "import.two_kinds", "there are pictures {one} and {other}, and nothing says which have the fan on",
+                one=one, other=other,
+            ),
+            where=where,
+            todo=Message(
+                "import.advice_two_kinds", "name those with the fan on and those with it off as patterns, "
+                "{folder}/{one} and {folder}/{other}", folder=where.folder.name, one=one, other=other,
+            ),
+        )  # fmt: skip
+
+
+def _without_partner(pictures: Sequence[ImportedPicture], left: Sequence[Path]) -> tuple[Message, ...]:
+    notes = []
+    alone = [one.source.name for one in pictures if one.off is None]
+    if alone and len(alone) < len(pictures):
+        notes.append(
+            plural_message(
+                "import.no_partner",
+                "{n} pose has no picture with the fan off ({names}).",
+                "{n} poses have no picture with the fan off ({names}).",
+                n=len(alone),
+                names=tuple(alone[:_NAMES_SHOWN]),
+            )
+        )
+    if left:
+        notes.append(
+            plural_message(
+                "import.off_left_over",
+                "{n} picture with the fan off belongs to no pose and is left out ({names}).",
+                "{n} pictures with the fan off belong to no pose and are left out ({names}).",
+                n=len(left),
+                names=tuple(path.name for path in left[:_NAMES_SHOWN]),
+            )
+        )
+    return tuple(notes)
+
+
+def _exchanged(pictures: Sequence[ImportedPicture]) -> tuple[Message, ...]:
+    """A note if the light is in the off pictures: by the median of three pairs."""
+    pairs = [one for one in pictures if one.off is not None]
+    if not pairs:
+        return ()
+    tried = [pairs[place] for place in sorted({0, len(pairs) // 2, len(pairs) - 1})]
+    try:
+        if np.median([_light_off_over_on(one.source, one.off) for one in tried if one.off]) <= _SWAPPED:
+            return ()
+    except InputError:
+        return ()  # a damaged picture is told by name when it is measured
+    return (
+        Message(
+            "import.exchanged",
+            "In {name} the light is in the picture that is to have the fan off: are on and off exchanged?",
+            name=tried[0].name,
+        ),
+    )
+
+
+def _light_off_over_on(on: Path, off: Path) -> float:
+    """How many times stronger the strongest light that only the off picture has is than that of the on picture."""
+    first, second = (read_picture(path).astype(np.float32) for path in (on, off))
+    if first.shape != second.shape:
+        return 0.0
+    light = cv2.blur(first - second, (5, 5))
+    light -= np.median(light[::4, ::4])
+    return float(-light.min() / max(float(light.max()), 1e-9))
