@@ -42,6 +42,11 @@ class ViewQuality:
     reason: Message | None = None
     counted: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, dtype=np.bool_))
 
+    @property
+    def name(self) -> str:
+        """The picture's, as `TargetView.name`."""
+        return self.view.name
+
 
 @dataclass(frozen=True, eq=False, slots=True)
 class CameraCalibration:

@@ -175,7 +175,7 @@ def camera_json(calibration: CameraCalibration) -> dict[str, Any]:
         "distortion": calibration.camera.distortion,
         "views_used": sum(view.used for view in calibration.views),
         "views_left_out": [
-            {"name": view.view.name, "reason": str(view.reason or "")} for view in calibration.views if not view.used
+            {"name": view.name, "reason": str(view.reason or "")} for view in calibration.views if not view.used
         ],
     }
 

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
 
-from workbench.language import tr
 from workbench.theme import icon
 
 
@@ -61,23 +60,3 @@ class StageCard(QFrame):
                 button.setProperty("primary", main)
                 button.style().unpolish(button)
                 button.style().polish(button)
-
-
-class CalibrationCard(StageCard):
-    """The card of what is calibrated, looked at, and accepted or rejected."""
-
-    def __init__(
-        self,
-        run: Callable[[], object],
-        accept: Callable[[], object],
-        reject: Callable[[], object],
-        parent: QWidget | None = None,
-    ) -> None:
-        super().__init__(
-            [
-                CardButton("run", tr("Calibrate"), "mdi6.play", run),
-                CardButton("accept", tr("Accept"), "mdi6.check-bold", accept),
-                CardButton("reject", tr("Reject"), "mdi6.close-thick", reject),
-            ],
-            parent,
-        )

@@ -203,4 +203,4 @@ def _worse_views(used: list[ViewQuality]) -> list[Message]:
 
 
 def _name(quality: ViewQuality) -> str | Message:
-    return quality.view.name or Message("camera.nameless_view", "A view without a name")
+    return quality.name or Message("camera.nameless_view", "A view without a name")

@@ -67,7 +67,7 @@ def seen_again(calibration: CameraCalibration, where: str) -> SeenViews:
     size = calibration.camera.image_size
     return SeenViews(
         tuple(
-            SeenView(quality.view.name, quality.view if len(quality.view.uv) else None, quality.reason, size)
+            SeenView(quality.name, quality.view if len(quality.view.uv) else None, quality.reason, size)
             for quality in calibration.views
         ),
         where,

@@ -190,7 +190,7 @@ def board_shape(table: BoardTable | None) -> BoardShape:
 def _view(quality: ViewQuality) -> dict[str, Any]:
     vector = quality.pose.vector
     return {
-        "name": quality.view.name,
+        "name": quality.name,
         "used": quality.used,
         "reason": kept(quality.reason),
         "rms_px": quality.rms_px,

@@ -69,7 +69,7 @@ def accept_camera(folder: Path, project: Project, calibration: CameraCalibration
     """
     progress("keeping the calibration", 0, 1)
     found = project_set(folder, project)
-    names = {view.view.name for view in calibration.views}
+    names = {view.name for view in calibration.views}
     inputs = _hashes(found, (path for path in found.camera if found.name_of(path) in names))
     return keep_camera(folder, calibration, project.options, inputs)
 

@@ -171,7 +171,7 @@ def left_out_of_calibration(content: ReportContent) -> list[LeftOut]:
     reasons: dict[Message | str, list[str]] = {}
     for view in content.camera.views:
         if not view.used:
-            reasons.setdefault(view.reason or NO_REASON, []).append(view.view.name or "view without a name")
+            reasons.setdefault(view.reason or NO_REASON, []).append(view.name or "view without a name")
     for pose in content.fan.poses:
         if not pose.used:
             reasons.setdefault(pose.reason or NO_REASON, []).append(pose.name)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from dataclasses import replace
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Literal
 
 from PySide6.QtCore import QObject, Signal
 
@@ -13,15 +13,16 @@ from core.calibrate.results import CameraCalibration
 from core.files.project.keys import finished
 from workbench.bench import Bench
 from workbench.language import tr
+from workbench.project_model import CALIBRATIONS
 from workbench.work import jobs
 
 
 class StoredCalibrations(QObject):
-    """`entries` are StoredCalibration of `KIND`, the newest first."""
+    """`entries` are StoredCalibration of one step, the newest first; `chosen` is the id of one of them, or ""."""
 
     changed = Signal()
 
-    KIND: ClassVar[str]
+    STEP: ClassVar[Literal["camera", "planes"]]
 
     def __init__(self, bench: Bench, parent: QObject | None = None) -> None:
         super().__init__(parent)
@@ -31,6 +32,7 @@ class StoredCalibrations(QObject):
     def forget(self) -> None:
         """Nothing is known yet."""
         self.entries: tuple[Any, ...] = ()
+        self.chosen = ""
 
     def refresh(self) -> None:
         """Read the list again."""
@@ -40,67 +42,81 @@ class StoredCalibrations(QObject):
 
         def read(entries: tuple[Any, ...]) -> None:
             if folder == self._model.folder:
-                self.entries = tuple(entry for entry in entries if entry.kind == self.KIND)
-                self._listed()
+                self.entries = tuple(entry for entry in entries if entry.kind == CALIBRATIONS[self.STEP])
+                if self.chosen not in {entry.id for entry in self.entries}:
+                    self.chosen = ""
+                    self._choice_changed()
                 self.changed.emit()
 
         # the label tells the camera's from the laser planes': only the newest of each is wanted
         self._bench.run_quick(
-            self, jobs.HISTORY, folder, label=self._label(), on_done=read, offers={}, replace_waiting=True
+            self, jobs.HISTORY, folder, label=self._labels()[0], on_done=read, offers={}, replace_waiting=True
         )
 
-    @abstractmethod
-    def _label(self) -> str:
-        """What reading the list is called."""
+    def choose(self, id_: str) -> None:
+        """Speak of this one."""
+        if id_ != self.chosen:
+            self.chosen = id_
+            self._choice_changed()
+            self.changed.emit()
 
-    def _listed(self) -> None:
-        """Another list is there."""
+    @property
+    def accepted(self) -> str:
+        """The id of the one in use, or ""."""
+        return str(getattr(self._model.project.accepted, CALIBRATIONS[self.STEP]))
+
+    @abstractmethod
+    def why_not_restore(self) -> str:
+        """Why the chosen one cannot be accepted again, or ""."""
+
+    def restore(self) -> None:
+        """Accept the chosen one again; undoable."""
+        if self.why_not_restore():
+            return
+        project, changed = self._model.project, {CALIBRATIONS[self.STEP]: self.chosen}
+        self._model.edit(self._labels()[1], replace(project, accepted=replace(project.accepted, **changed)))
+        self._model.record(self.STEP, finished(self.STEP, self._model.project, self._model.results))
+
+    @abstractmethod
+    def _labels(self) -> tuple[str, str]:
+        """What reading the list, and restoring one, are called."""
+
+    def _choice_changed(self) -> None:
+        """Another one is chosen, or none."""
 
 
 class CameraHistory(StoredCalibrations):
     """The camera's; `changes` are those from the chosen one to the one shown."""
 
-    KIND = "camera"
+    STEP = "camera"
 
     def forget(self) -> None:
         super().forget()
-        self.chosen = ""
         self.changes: CameraChanges | None = None
         self._shown: CameraCalibration | None = None
 
-    def _label(self) -> str:
-        return tr("Reading the history")
-
-    def _listed(self) -> None:
-        if self.chosen not in {entry.id for entry in self.entries}:
-            self.chosen, self.changes = "", None
-
-    def choose(self, id_: str) -> None:
-        """Compare this one with the calibration shown."""
-        if id_ != self.chosen:
-            self.chosen = id_
-            self._compare()
+    def _labels(self) -> tuple[str, str]:
+        return tr("Reading the history"), tr("restore a camera calibration")
 
     def shown_is(self, calibration: CameraCalibration | None) -> None:
         """Another calibration is shown."""
         if calibration is not self._shown:
             self._shown = calibration
             if self.chosen:
-                self._compare()
+                self._choice_changed()
+                self.changed.emit()
 
-    def restore(self) -> None:
-        """Accept the chosen one again; undoable."""
-        project = self._model.project
-        if not self.chosen or self.chosen == project.accepted.camera:
-            return
-        after = replace(project, accepted=replace(project.accepted, camera=self.chosen))
-        self._model.edit(tr("restore a camera calibration"), after)
-        self._model.record("camera", finished("camera", self._model.project, self._model.results))
+    def why_not_restore(self) -> str:
+        if not self.entries:
+            return tr("No calibration has been accepted yet; accepted ones are listed here.")
+        if not self.chosen:
+            return tr("Choose a calibration above to compare it with the one shown.")
+        return tr("This calibration is in use.") if self.chosen == self.accepted else ""
 
-    def _compare(self) -> None:
+    def _choice_changed(self) -> None:
         self.changes = None
         folder, chosen = self._model.folder, self.chosen
-        against = self._shown or self._model.project.accepted.camera
+        against = self._shown or self.accepted
         if folder is not None and chosen and against:
 
             def compared(changes: CameraChanges) -> None:
@@ -118,35 +134,24 @@ class CameraHistory(StoredCalibrations):
                 on_done=compared,
                 replace_waiting=True,
             )
-        self.changed.emit()
 
 
 class PlanesHistory(StoredCalibrations):
     """The laser planes'."""
 
-    KIND = "fan"
+    STEP = "planes"
 
-    def _label(self) -> str:
-        return tr("Reading the laser planes' history")
+    def _labels(self) -> tuple[str, str]:
+        return tr("Reading the laser planes' history"), tr("restore laser planes")
 
-    def why_not_restore(self, id_: str) -> str:
-        """Why these planes cannot be accepted again, or ""."""
-        accepted = self._model.project.accepted
-        entry = next((entry for entry in self.entries if entry.id == id_), None)
+    def why_not_restore(self) -> str:
+        entry = next((entry for entry in self.entries if entry.id == self.chosen), None)
         if not self.entries:
             return tr("No laser planes have been accepted yet; accepted ones are listed here.")
         if entry is None:
             return tr("Choose a calibration in the list first.")
-        if id_ == accepted.fan:
+        if entry.id == self.accepted:
             return tr("These laser planes are in use.")
-        if entry.camera_id != accepted.camera:
+        if entry.camera_id != self._model.project.accepted.camera:
             return tr("They rest on another camera calibration; restore that one first.")
         return ""
-
-    def restore(self, id_: str) -> None:
-        """Accept planes of the history again; undoable."""
-        if self.why_not_restore(id_):
-            return
-        project = self._model.project
-        self._model.edit(tr("restore laser planes"), replace(project, accepted=replace(project.accepted, fan=id_)))
-        self._model.record("planes", finished("planes", self._model.project, self._model.results))

@@ -8,12 +8,14 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, ClassVar, Literal
 
+from core.files.project.data import Project
 from core.image.targets.target_view import TargetView
 from core.pipeline.live.events import LiveEnded, LiveTaken
 from workbench.bench import Bench
 from workbench.language import tr
 from workbench.pages.calibration.acceptance import Acceptance
 from workbench.pages.calibration.history import StoredCalibrations
+from workbench.pages.calibration.look import Look
 from workbench.pages.calibration.stage import Facts, Stage, stage_of
 from workbench.pages.calibration.target import TargetChoice
 from workbench.pages.calibration.work import CalibrationWork
@@ -27,14 +29,15 @@ from workbench.work.jobs import Job
 class CalibrationPresenter(StepPresenter):
     """Pictures found, solved and judged; what is accepted.
 
-    A subclass says in `KEEP` which job keeps an accepted one, brings its `work`, `history` and `target`, and says
-    what differs in words.
+    A subclass says in `KEEP` which job keeps an accepted one, brings its `work`, `look`, `history` and `target`, and
+    says what differs in words.
     """
 
     step: Literal["camera", "planes"]
     KEEP: ClassVar[Job]
 
     work: CalibrationWork[Any, Any]
+    look: Look
     history: StoredCalibrations
     target: TargetChoice
 
@@ -52,17 +55,12 @@ class CalibrationPresenter(StepPresenter):
         self.acceptance.changed.connect(self.changed)
 
     def _connect(self) -> None:
-        """To be called by a subclass once its `work` and `history` are there."""
+        """To be called by a subclass once its `work`, `look` and `history` are there."""
         self.work.changed.connect(self._work_changed)
         self.history.changed.connect(self.changed)
         self.acceptance.kept.connect(self.history.refresh)
 
     # ---- what differs
-
-    @property
-    @abstractmethod
-    def current(self) -> str:
-        """The picture that is looked at."""
 
     @property
     @abstractmethod
@@ -82,10 +80,6 @@ class CalibrationPresenter(StepPresenter):
         """Why the accepted calibration cannot be accepted."""
 
     @abstractmethod
-    def _stored(self, name: str) -> str:
-        """What the project calls a picture of the list."""
-
-    @abstractmethod
     def _names(self, count: int) -> str:
         """So many pictures, in words."""
 
@@ -98,14 +92,19 @@ class CalibrationPresenter(StepPresenter):
         """What keeping the calibration takes."""
 
     @abstractmethod
+    def views(self) -> tuple[Any, ...]:
+        """The views (or poses) as the calibration shown judges them."""
+
+    @abstractmethod
     def views_that_count(self) -> tuple[TargetView, ...]:
         """What the target shows in the pictures there are, without those left out by hand."""
 
-    @abstractmethod
-    def _work_changed(self) -> None:
-        """Something else was found or solved."""
-
     # ---- state
+
+    @property
+    def current(self) -> str:
+        """The picture that is looked at."""
+        return self.look.current
 
     @property
     def stage(self) -> Stage:
@@ -170,6 +169,25 @@ class CalibrationPresenter(StepPresenter):
 
     # ---- pictures
 
+    def choose(self, name: str) -> None:
+        """Look at this picture."""
+        if name != self.current:
+            self.look.current = name
+            self.look.refresh()
+            self.changed.emit()
+
+    def quality_of(self, name: str) -> Any:
+        """A view as the calibration shown judges it; None if it is not among them."""
+        return next((view for view in self.views() if view.name == name), None)
+
+    def short(self, name: str) -> str:
+        """What a picture is called within its folder."""
+        return name.removeprefix(f"{self.step}/")
+
+    def stored(self, name: str) -> str:
+        """What the project calls a picture."""
+        return f"{self.step}/{self.short(name)}"
+
     @property
     def folder(self) -> Path | None:
         """The folder of the pictures."""
@@ -186,15 +204,15 @@ class CalibrationPresenter(StepPresenter):
         if self.live.running:
             if not used:
                 for name in names:
-                    self.live.discard(name.removeprefix(f"{self.step}/"))
+                    self.live.discard(self.short(name))
                 self.live_views = [view for view in self.live_views if view[0] not in names]
                 self.changed.emit()
             return
-        stored = {self._stored(name) for name in names}
+        stored = {self.stored(name) for name in names}
         excluded = self.project.options.excluded
-        what = names[0].removeprefix(f"{self.step}/") if len(names) == 1 else self._names(len(names))
-        label = tr("let {0} count") if used else tr("leave out {0}")
-        self._exclude(excluded - stored if used else excluded | stored, label.format(what))
+        what = self.short(names[0]) if len(names) == 1 else self._names(len(names))
+        label = tr("let {what} count", what=what) if used else tr("leave out {what}", what=what)
+        self._exclude(excluded - stored if used else excluded | stored, label)
 
     def _exclude(self, excluded: frozenset[str], label: str, merge_key: str = "") -> None:
         options = replace(self.project.options, excluded=frozenset(excluded))
@@ -231,11 +249,27 @@ class CalibrationPresenter(StepPresenter):
 
     # ---- what happens elsewhere
 
+    def opened(self) -> None:
+        self.look.forget()
+        self.acceptance.forget()
+        self.work.opened()
+        self.history.forget()
+        self.history.refresh()
+
+    def project_changed(self, before: Project, after: Project) -> None:
+        if getattr(before.sources, self.step) != getattr(after.sources, self.step):
+            self.look.forget()
+        self.work.follow()
+
+    def _work_changed(self) -> None:
+        self.look.follow()
+        self.changed.emit()
+
     def _live_started(self) -> None:
         self.live_views.clear()
 
     def _live_taken(self, taken: LiveTaken) -> None:
-        name = taken.name if self.step == "planes" else self._stored(taken.name)
+        name = taken.name if self.step == "planes" else self.stored(taken.name)
         self.live_views.append((name, taken.thumbnail))
 
     def _live_ended(self, ended: LiveEnded) -> None:

@@ -12,6 +12,7 @@ from PySide6.QtCore import QObject, Signal
 
 from core.files.project.data import Project
 from core.files.project.keys import rests_on
+from core.messages import Message
 from workbench.bench import Bench
 from workbench.language import text_of, tr
 from workbench.pages.sources import folder_of
@@ -113,6 +114,8 @@ class CalibrationWork(QObject, Generic[Found, Solution]):
     ACCEPTED: str
     FIND: Job
     SOLVE: Job
+    FOUND: Job
+    """Says what was found in the pictures when they were searched last."""
 
     def __init__(self, bench: Bench, parent: QObject | None = None) -> None:
         super().__init__(parent)
@@ -149,6 +152,10 @@ class CalibrationWork(QObject, Generic[Found, Solution]):
     @abstractmethod
     def _labels(self) -> tuple[str, str]:
         """What the tasks that find and solve are called."""
+
+    @abstractmethod
+    def left_out(self) -> dict[str, Message]:
+        """Pictures in which nothing was found that can be used, by name, and why."""
 
     def _in_words(self, problem: Any) -> str:
         return text_of(problem)
@@ -248,6 +255,18 @@ class CalibrationWork(QObject, Generic[Found, Solution]):
         if key == self._found_key:
             self.problem = problem
         self.changed.emit()
+
+    def _ask_what_was_found(self, folder: Path, project: Project) -> None:
+        """What was found in the pictures when they were searched last, though nothing made of it was accepted."""
+        if self._can_search(project) and folder == self._model.folder:
+            self._bench.quick.run(
+                self,
+                self.FOUND,
+                folder,
+                project,
+                label=tr("Reading what was found"),
+                on_done=lambda found: self._take_up(folder, project, found),
+            )
 
     def _take_up(
         self, folder: Path, project: Project, found: Found | None, calibration: Solution | None = None

@@ -1,13 +1,18 @@
-"""How far the camera is and what to do next, with the buttons for it."""
+"""What stands at the side of the camera page: how far it is, the camera model, the result."""
 
 from __future__ import annotations
 
 from PySide6.QtWidgets import QWidget
 
+from workbench.language import text_of, tr
+from workbench.pages.calibration.card import CalibrationCard
+from workbench.pages.calibration.page import Result
 from workbench.pages.calibration.stage import Stage
+from workbench.pages.camera import words
 from workbench.pages.camera.presenter import CameraPresenter
+from workbench.pages.step_page import heading, muted
 from workbench.views.forms.form import SettingsForm
-from workbench.views.stage_card import CalibrationCard
+from workbench.views.lists.value_rows import ValueRows
 
 TARGETS = ("checkerboard", "charuco", "circle_grid")
 """Kinds of targets a camera can be calibrated with."""
@@ -16,66 +21,57 @@ TARGETS = ("checkerboard", "charuco", "circle_grid")
 class CameraCard(CalibrationCard):
     """The stage; the next thing to do is the primary button."""
 
-    def __init__(self, presenter: CameraPresenter, parent: QWidget | None = None) -> None:
-        self._presenter = p = presenter
-        super().__init__(p.do_run, p.accept, p.reject, parent)
-
-    def refresh(self) -> None:
-        """Show the stage."""
-        p, stage = self._presenter, self._presenter.stage
-        next_one = {Stage.SOLVED: "accept", Stage.FOUND: "run", Stage.OUTDATED: "run"}
-        if p.work.seen is None:  # else searching again would help nothing
-            next_one[Stage.FAILED] = "run"
-        self.show_stage(
-            *self._words()[stage],
-            {
-                "run": (p.can_search, self.tr("Find the target in all pictures and solve the camera (Ctrl+R)")),
-                "accept": (p.can_accept, self.tr("Measure with this calibration from now on (Ctrl+Return)")),
-                "reject": (p.can_reject, self.tr("Do not measure with this calibration")),
-            },
-            next_one.get(stage, ""),
-        )
-
-    def _words(self) -> dict[Stage, tuple[str, str]]:
-        p = self._presenter
-        pictures = len(p.work.pictures or ())
+    def _titles(self) -> dict[Stage, str]:
         return {
-            Stage.NONE: (
-                self.tr("No pictures yet"),
-                self.tr("Choose a folder of pictures of the target, or take them with a live source."),
-            ),
-            Stage.EMPTY: (self.tr("No pictures there"), self.tr("The folder holds no pictures; choose another one.")),
-            Stage.FOUND: (
-                self.tr("{0} pictures, not searched yet").format(pictures),
-                self.tr("Check the target below, then press Calibrate."),
-            ),
-            Stage.LIVE: (
-                self.tr("Taking views"),
-                self.tr("Show the target from many sides. Stop when nothing is missing; then it is calibrated."),
-            ),
-            Stage.SEARCHING: (
-                self.tr("Searching the pictures …"),
-                self.tr("The target is looked for in each picture."),
-            ),
-            Stage.SOLVING: (self.tr("Solving …"), self.tr("The camera is being solved anew.")),
-            Stage.FAILED: (self.tr("No calibration"), p.work.problem),
-            Stage.SOLVED: (
-                self.tr("Calibrated, not accepted yet"),
-                self.tr("Look at the views and the residuals; leave out what is bad, then accept."),
-            ),
-            Stage.REJECTED: (
-                self.tr("Rejected"),
-                self.tr("Leave out bad views, or take other pictures; or accept it after all."),
-            ),
-            Stage.ACCEPTED: (self.tr("Accepted"), p.state.sentence),
-            Stage.OTHER: (
-                self.tr("Another calibration is in use"),
-                self.tr(
-                    "The accepted one is listed under History. What is shown here is not in use; accept it to use it."
-                ),
-            ),
-            Stage.OUTDATED: (self.tr("Accepted, but out of date"), p.state.sentence),
+            Stage.FOUND: tr("{count} pictures, not searched yet", count=len(self._presenter.work.pictures or ())),
+            Stage.LIVE: tr("Taking views"),
+            Stage.SEARCHING: tr("Searching the pictures …"),
+            Stage.OTHER: tr("Another calibration is in use"),
         }
+
+    def _sentences(self) -> dict[Stage, str]:
+        return {
+            Stage.NONE: tr("Choose a folder of pictures of the target, or take them with a live source."),
+            Stage.FOUND: tr("Check the target below, then press Calibrate."),
+            Stage.LIVE: tr("Show the target from many sides. Stop when nothing is missing; then it is calibrated."),
+            Stage.SEARCHING: tr("The target is looked for in each picture."),
+            Stage.SOLVING: tr("The camera is being solved anew."),
+            Stage.SOLVED: tr("Look at the views and the residuals; leave out what is bad, then accept."),
+            Stage.REJECTED: tr("Leave out bad views, or take other pictures; or accept it after all."),
+            Stage.OTHER: tr(
+                "The accepted one is listed under History. What is shown here is not in use; accept it to use it."
+            ),
+            Stage.OUTDATED: self._presenter.state.sentence,
+        }
+
+    def _tips(self) -> dict[str, str]:
+        return {
+            "run": tr("Find the target in all pictures and solve the camera (Ctrl+R)"),
+            "accept": tr("Measure with this calibration from now on (Ctrl+Return)"),
+            "reject": tr("Do not measure with this calibration"),
+        }
+
+    def _next(self, stage: Stage) -> str:
+        if stage is Stage.FAILED:  # searching again would help nothing where it is known what the pictures show
+            return "run" if self._presenter.work.seen is None else ""
+        return {Stage.SOLVED: "accept", Stage.FOUND: "run", Stage.OUTDATED: "run"}.get(stage, "")
+
+
+class CameraResult(Result):
+    """How good the calibration is, its parameters, and what is to be noted."""
+
+    def __init__(self, presenter: CameraPresenter, parent: QWidget | None = None) -> None:
+        super().__init__(presenter, parent)
+        self.quality, self.parameters, self.notes = ValueRows(), ValueRows(), muted()
+        self._add(self.quality, heading(tr("Parameters ± sd")), self.parameters, self.notes)
+
+    def refresh(self) -> bool:
+        work = self._presenter.work
+        calibration = work.calibration
+        self.quality.set_rows(words.quality_rows(calibration, work.judgement))
+        self.parameters.set_rows(words.parameter_rows(calibration))
+        self._say(self.notes, "\n".join(map(text_of, calibration.notes)) if calibration is not None else "")
+        return calibration is not None
 
 
 class CameraModelForm(SettingsForm):

@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from PySide6.QtCore import Signal
-
 from core.calibrate.results import LEFT_OUT, ViewQuality
 from core.files.project.data import Project
 from core.files.results.camera_file import camera_id
@@ -15,13 +13,12 @@ from core.model.arrays import Array
 from workbench.bench import Bench
 from workbench.language import tr
 from workbench.pages.calibration.history import CameraHistory
+from workbench.pages.calibration.look import Look
 from workbench.pages.calibration.presenter import CalibrationPresenter
 from workbench.pages.calibration.stage import Stage
 from workbench.pages.calibration.target import TargetChoice
 from workbench.pages.camera.work import CameraWork
 from workbench.work import jobs
-
-PART = "camera/"
 
 
 class CameraPresenter(CalibrationPresenter):
@@ -32,25 +29,16 @@ class CameraPresenter(CalibrationPresenter):
     work: CameraWork
     history: CameraHistory
 
-    picture_ready = Signal(str, object)
-    """Name of a view and its picture."""
-
     def __init__(self, bench: Bench) -> None:
         super().__init__(bench)
         self.work = CameraWork(bench, self)
+        self.look = Look(bench, self.work, tr("Reading a picture"), self)
         self.history = CameraHistory(bench, self)
         self.target = TargetChoice(bench, "camera_target", tr("change the camera's target"), self)
-        self._current = ""
         self.threshold: float | None = None
-        self._read = ""
         self._connect()
 
     # ---- state
-
-    @property
-    def current(self) -> str:
-        """The view that is looked at."""
-        return self._current
 
     @property
     def candidate(self) -> str:
@@ -78,11 +66,8 @@ class CameraPresenter(CalibrationPresenter):
     def _accepted_already(self) -> str:
         return tr("This calibration is accepted already.")
 
-    def _stored(self, name: str) -> str:
-        return f"{PART}{short(name)}"
-
     def _names(self, count: int) -> str:
-        return tr("{0} views").format(count)
+        return tr("{count} views", count=count)
 
     def _source_label(self) -> str:
         return tr("choose the camera's pictures")
@@ -113,23 +98,12 @@ class CameraPresenter(CalibrationPresenter):
     def set_threshold(self, limit: float) -> None:
         """Leave out the views above a limit in px, and let those count that only the last limit left out."""
         before, self.threshold = self.threshold, limit
-        judged = {view.view.name: view.rms_px for view in self.views() if view.used or view.reason == LEFT_OUT}
+        judged = {view.name: view.rms_px for view in self.views() if view.used or view.reason == LEFT_OUT}
         above = {name for name, rms in judged.items() if rms > limit}
         freed = {name for name, rms in judged.items() if before is not None and before < rms <= limit}
         excluded = (self.project.options.excluded | above) - freed
-        self._exclude(excluded, tr("leave out views above {0} px").format(f"{limit:.2f}"), "camera threshold")
+        self._exclude(excluded, tr("leave out views above {limit:.2f} px", limit=limit), "camera threshold")
         self.changed.emit()
-
-    def choose_view(self, name: str) -> None:
-        """Show this view."""
-        if name != self.current:
-            self._current = name
-            self._read_picture()
-            self.changed.emit()
-
-    def quality_of(self, name: str) -> ViewQuality | None:
-        """A view as the calibration shown judges it."""
-        return next((view for view in self.views() if view.view.name == name), None)
 
     def corners_of(self, name: str) -> Array | None:
         """Where the target's corners (N, 2) were found in a view; None if they were not, or nobody has looked."""
@@ -137,24 +111,16 @@ class CameraPresenter(CalibrationPresenter):
             return None
         return next((view.uv for view in self.work.seen.found if view.name == name), None)
 
-    def read_again(self) -> None:
-        """The picture of the current view is wanted again."""
-        self._read = ""
-        self._read_picture()
-
     # ---- what happens elsewhere
 
     def opened(self) -> None:
-        self._current, self.threshold, self._read = "", None, ""
-        self.acceptance.forget()
-        self.work.opened()
-        self.history.forget()
-        self.history.refresh()
+        self.threshold = None
+        super().opened()
 
     def project_changed(self, before: Project, after: Project) -> None:
         if before.sources.camera != after.sources.camera:
-            self._current, self.threshold, self._read = "", None, ""
-        self.work.follow()
+            self.threshold = None
+        super().project_changed(before, after)
 
     def views_that_count(self) -> tuple[TargetView, ...]:
         """What the target shows in the pictures there are, without those left out by hand."""
@@ -163,29 +129,4 @@ class CameraPresenter(CalibrationPresenter):
 
     def _work_changed(self) -> None:
         self.history.shown_is(self.work.calibration)
-        names = [f"{PART}{path.name}" for path in self.work.pictures or ()]
-        if self.current not in names:
-            self._current = names[0] if names else ""
-        self._read_picture()
-        self.changed.emit()
-
-    def _read_picture(self) -> None:
-        name, folder = self.current, self.folder
-        if not name or folder is None or self._read == name:
-            return
-        self._read = name
-        self.bench.run_quick(
-            self,
-            jobs.READ_PICTURE,
-            folder / short(name),
-            self.project.rig.channel,
-            label=tr("Reading a picture"),
-            on_done=lambda picture: self.picture_ready.emit(name, picture) if name == self.current else None,
-            offers={},
-            replace_waiting=True,
-        )
-
-
-def short(name: str) -> str:
-    """The name of a picture within its folder."""
-    return name.removeprefix(PART)
+        super()._work_changed()

@@ -10,6 +10,7 @@ from core.calibrate.camera.expected_error import ExpectedError
 from core.calibrate.camera.views import ViewsJudgement
 from core.calibrate.results import CAMERA_PARAMETERS, CameraCalibration, ViewQuality
 from workbench.language import text_of, tr
+from workbench.pages.calibration.words import history_row, mm, px, used_row
 from workbench.views.lists.value_rows import ValueRow
 
 
@@ -17,7 +18,6 @@ def quality_rows(calibration: CameraCalibration | None, judgement: ViewsJudgemen
     """How good the calibration is: label, value with unit, tip, level."""
     if calibration is None:
         return []
-    used, total = sum(view.used for view in calibration.views), len(calibration.views)
     rows: list[ValueRow] = [
         (
             tr("RMS"),
@@ -26,7 +26,7 @@ def quality_rows(calibration: CameraCalibration | None, judgement: ViewsJudgemen
             "",
         ),
         (tr("Mean"), px(calibration.mean_px), tr("Mean distance of the corners from where they should be"), ""),
-        (tr("Views"), tr("{0} of {1}").format(used, total), tr("Views used, and all there are"), ""),
+        used_row(tr("Views"), calibration.views, tr("Views used, and all there are")),
         (
             tr("Coverage"),
             f"{100 * calibration.coverage:.0f} %",
@@ -45,10 +45,11 @@ def quality_rows(calibration: CameraCalibration | None, judgement: ViewsJudgemen
         rows.append((tr("Halves differ"), mm(calibration.cross_validation_mm), tip, ""))
     if judgement is not None and judgement.expected:
         expected = judgement.expected[1]
-        tip = tr("Standard uncertainty (k = 1) of where a point lies, from the camera alone, at depth {0}").format(
-            mm(expected.depth_mm, 0)
+        tip = tr(
+            "Standard uncertainty (k = 1) of where a point lies, from the camera alone, at depth {depth}",
+            depth=mm(expected.depth_mm, 0),
         )
-        text = tr("{0}, worst {1}").format(mm(expected.median_mm), mm(expected.worst_mm))
+        text = tr("{median}, worst {worst}", median=mm(expected.median_mm), worst=mm(expected.worst_mm))
         rows.append((tr("Expected error"), text, tip, ""))
     return rows
 
@@ -94,13 +95,7 @@ def change_rows(changes: CameraChanges | None) -> list[tuple[str, ...]]:
 def history_rows(entries: tuple[Any, ...], accepted: str) -> list[tuple[str, ...]]:
     """The kept calibrations: when, RMS, views, id, whether in use."""
     return [
-        (
-            entry.kept_at.astimezone().strftime("%Y-%m-%d %H:%M"),
-            f"{entry.rms_px:.3f}",
-            f"{entry.used}/{entry.total}",
-            entry.id,
-            tr("in use") if entry.id == accepted else "",
-        )
+        history_row(entry, accepted, f"{entry.rms_px:.3f}", f"{entry.used}/{entry.total}", entry.id)
         for entry in entries
     ]
 
@@ -111,21 +106,29 @@ def view_sentence(name: str, quality: ViewQuality | None) -> str:
         return name
     if quality.used:
         left = int((~quality.counted).sum())
-        more = tr(", {0} corners left out").format(left) if left else ""
-        return tr("{0}: RMS {1}, tilt {2}°, {3} corners{4}").format(
-            name, px(quality.rms_px), f"{math.degrees(quality.tilt):.0f}", len(quality.view.uv), more
+        return tr(
+            "{name}: RMS {rms}, tilt {tilt:.0f}°, {count} corners{more}",
+            name=name,
+            rms=px(quality.rms_px),
+            tilt=math.degrees(quality.tilt),
+            count=len(quality.view.uv),
+            more=tr(", {count} corners left out", count=left) if left else "",
         )
+    reason = text_of(quality.reason or "")
     if math.isnan(quality.rms_px):
-        return tr("{0}: {1}").format(name, text_of(quality.reason or ""))
-    return tr("{0}: {1}; RMS {2}").format(name, text_of(quality.reason or ""), px(quality.rms_px))
+        return f"{name}: {reason}"
+    return tr("{name}: {reason}; RMS {rms}", name=name, reason=reason, rms=px(quality.rms_px))
 
 
 def expected_sentence(expected: ExpectedError) -> str:
     """What the map of expected errors shows."""
     return tr(
-        "Standard uncertainty (k = 1) of where a point at depth {0} is seen, from the camera's calibration alone: "
-        "{1} over half of the picture, {2} at worst. Where no corner was seen, the camera is extrapolated."
-    ).format(mm(expected.depth_mm, 0), mm(expected.median_mm), mm(expected.worst_mm))
+        "Standard uncertainty (k = 1) of where a point at depth {depth} is seen, from the camera's calibration alone: "
+        "{median} over half of the picture, {worst} at worst. Where no corner was seen, the camera is extrapolated.",
+        depth=mm(expected.depth_mm, 0),
+        median=mm(expected.median_mm),
+        worst=mm(expected.worst_mm),
+    )
 
 
 def missing_sentence(judgement: ViewsJudgement | None) -> str:
@@ -133,16 +136,6 @@ def missing_sentence(judgement: ViewsJudgement | None) -> str:
     if judgement is None:
         return ""
     return "\n".join(map(text_of, judgement.missing)) or tr("Nothing is missing: the views cover enough.")
-
-
-def px(value: float) -> str:
-    """A length in pixels."""
-    return "–" if math.isnan(value) else f"{value:.3f} px"
-
-
-def mm(value: float, digits: int = 3) -> str:
-    """A length in millimetres."""
-    return "–" if math.isnan(value) else f"{value:.{digits}f} mm"
 
 
 def with_sd(value: float, sd: float, unit: str) -> str:

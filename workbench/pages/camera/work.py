@@ -9,6 +9,7 @@ from core.calibrate.camera.views import RecalledCamera, SeenViews, ViewsJudgemen
 from core.calibrate.results import CameraCalibration
 from core.errors import InputError
 from core.files.project.data import Project
+from core.messages import Message
 from workbench.pages.calibration.work import CalibrationWork, Key
 from workbench.work import jobs
 
@@ -22,7 +23,7 @@ class CameraWork(CalibrationWork[SeenViews, CameraCalibration]):
     STEP = "camera"
     FOUND_BY = ("pictures of the camera target", "camera target", "colour channel")
     ACCEPTED = "accepted camera calibration"
-    FIND, SOLVE = jobs.FIND_VIEWS, jobs.SOLVE_VIEWS
+    FIND, SOLVE, FOUND = jobs.FIND_VIEWS, jobs.SOLVE_VIEWS, jobs.FOUND_VIEWS
 
     judgement: ViewsJudgement | None = None
 
@@ -30,6 +31,9 @@ class CameraWork(CalibrationWork[SeenViews, CameraCalibration]):
     def seen(self) -> SeenViews | None:
         """What the pictures show; None as long as nobody has looked."""
         return self.found
+
+    def left_out(self) -> dict[str, Message]:
+        return {view.name: view.reason for view in self.seen.lost if view.reason} if self.seen is not None else {}
 
     def _forget(self) -> None:
         super()._forget()
@@ -73,18 +77,6 @@ class CameraWork(CalibrationWork[SeenViews, CameraCalibration]):
             self._ask_what_was_found(folder, project)
         else:
             self._take_up(folder, project, recalled.seen, recalled.calibration if recalled.as_it_is else None)
-
-    def _ask_what_was_found(self, folder: Path, project: Project) -> None:
-        """What was found in the pictures when they were searched last, though nothing made of it was accepted."""
-        if project.sources.camera and folder == self._model.folder:
-            self._bench.quick.run(
-                self,
-                jobs.FOUND_VIEWS,
-                folder,
-                project,
-                label=self.tr("Reading what was found"),
-                on_done=lambda seen: self._take_up(folder, project, seen),
-            )
 
     def _calibration_changed(self) -> None:
         if self.seen is None:

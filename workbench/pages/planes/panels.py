@@ -7,6 +7,9 @@ from typing import Any
 
 from PySide6.QtWidgets import QCheckBox, QVBoxLayout, QWidget
 
+from workbench.language import tr
+from workbench.pages.calibration.card import CalibrationCard
+from workbench.pages.calibration.page import Result
 from workbench.pages.calibration.stage import Stage
 from workbench.pages.planes import words
 from workbench.pages.planes.presenter import PlanesPresenter
@@ -14,7 +17,6 @@ from workbench.pages.step_page import heading, muted
 from workbench.views.forms.form import SettingsForm
 from workbench.views.forms.live_panel import LivePanel
 from workbench.views.lists.value_rows import ValueRows
-from workbench.views.stage_card import CalibrationCard
 
 PLATES = ("black_square", "checkerboard", "charuco", "circle_grid")
 """Kinds of targets the laser planes can be calibrated with."""
@@ -23,76 +25,47 @@ PLATES = ("black_square", "checkerboard", "charuco", "circle_grid")
 class PlanesCard(CalibrationCard):
     """The stage; the next thing to do is the primary button."""
 
-    def __init__(self, presenter: PlanesPresenter, parent: QWidget | None = None) -> None:
-        self._presenter = p = presenter
-        super().__init__(p.do_run, p.accept, p.reject, parent)
+    def _titles(self) -> dict[Stage, str]:
+        return {
+            Stage.NO_CAMERA: tr("The camera comes first"),
+            Stage.FOUND: tr("{count} poses, not measured yet", count=len(self._presenter.work.pictures or ())),
+            Stage.LIVE: tr("Taking poses"),
+            Stage.SEARCHING: tr("Measuring the pictures …"),
+            Stage.OTHER: tr("Others are in use"),
+        }
 
-    def refresh(self) -> None:
-        """Show the stage."""
-        p, stage = self._presenter, self._presenter.stage
-        next_one = {Stage.SOLVED: "accept", Stage.FOUND: "run", Stage.FAILED: "run"}.get(stage, "")
-        if stage is Stage.OUTDATED:
-            next_one = "accept" if p.candidate and not p.can_accept else "run"
-        self.show_stage(
-            *self._words()[stage],
-            {
-                "run": (p.can_search, self.tr("Measure all pictures and solve the planes (Ctrl+R)")),
-                "accept": (p.can_accept, self.tr("Measure with these laser planes from now on (Ctrl+Return)")),
-                "reject": (p.can_reject, self.tr("Do not measure with these laser planes")),
-            },
-            next_one,
-        )
-
-    def _words(self) -> dict[Stage, tuple[str, str]]:
+    def _sentences(self) -> dict[Stage, str]:
         p = self._presenter
         return {
-            Stage.NO_CAMERA: (
-                self.tr("The camera comes first"),
-                self.tr("The planes are seen through the camera: accept its calibration, then come back."),
+            Stage.NO_CAMERA: tr("The planes are seen through the camera: accept its calibration, then come back."),
+            Stage.NONE: tr("Choose a folder of pictures of the plate under the fan, or take them with a live source."),
+            Stage.FOUND: tr("Check plate and laser below, then press Calibrate."),
+            Stage.LIVE: tr(
+                "Hold the plate into the fan at different distances and tilts. Stop when nothing is missing; "
+                "then the planes are calibrated."
             ),
-            Stage.NONE: (
-                self.tr("No pictures yet"),
-                self.tr("Choose a folder of pictures of the plate under the fan, or take them with a live source."),
+            Stage.SEARCHING: tr("Target and stripes are found in each pose."),
+            Stage.SOLVING: tr("Planes and poses are adjusted together."),
+            Stage.SOLVED: tr("Look at the poses and the angles; leave out what is bad, then accept."),
+            Stage.REJECTED: tr("Leave out bad poses, or take other pictures; or accept it after all."),
+            Stage.OTHER: tr(
+                "You measure with laser planes kept earlier. Those shown are of these pictures and settings; "
+                "accept them to measure with them."
             ),
-            Stage.EMPTY: (self.tr("No pictures there"), self.tr("The folder holds no pictures; choose another one.")),
-            Stage.FOUND: (
-                self.tr("{0} poses, not measured yet").format(len(p.work.pictures or ())),
-                self.tr("Check plate and laser below, then press Calibrate."),
-            ),
-            Stage.LIVE: (
-                self.tr("Taking poses"),
-                self.tr(
-                    "Hold the plate into the fan at different distances and tilts. Stop when nothing is missing; "
-                    "then the planes are calibrated."
-                ),
-            ),
-            Stage.SEARCHING: (
-                self.tr("Measuring the pictures …"),
-                self.tr("Target and stripes are found in each pose."),
-            ),
-            Stage.SOLVING: (self.tr("Solving …"), self.tr("Planes and poses are adjusted together.")),
-            Stage.FAILED: (self.tr("No calibration"), p.work.problem),
-            Stage.SOLVED: (
-                self.tr("Calibrated, not accepted yet"),
-                self.tr("Look at the poses and the angles; leave out what is bad, then accept."),
-            ),
-            Stage.REJECTED: (
-                self.tr("Rejected"),
-                self.tr("Leave out bad poses, or take other pictures; or accept it after all."),
-            ),
-            Stage.ACCEPTED: (self.tr("Accepted"), p.state.sentence),
-            Stage.OTHER: (
-                self.tr("Others are in use"),
-                self.tr(
-                    "You measure with laser planes kept earlier. Those shown are of these pictures and settings; "
-                    "accept them to measure with them."
-                ),
-            ),
-            Stage.OUTDATED: (
-                self.tr("Accepted, but out of date"),
-                " ".join(part for part in (p.state.sentence, p.work.problem) if part),
-            ),
+            Stage.OUTDATED: " ".join(part for part in (p.state.sentence, p.work.problem) if part),
         }
+
+    def _tips(self) -> dict[str, str]:
+        return {
+            "run": tr("Measure all pictures and solve the planes (Ctrl+R)"),
+            "accept": tr("Measure with these laser planes from now on (Ctrl+Return)"),
+            "reject": tr("Do not measure with these laser planes"),
+        }
+
+    def _next(self, stage: Stage) -> str:
+        if stage is Stage.OUTDATED:
+            return "accept" if self._presenter.candidate and not self._presenter.can_accept else "run"
+        return {Stage.SOLVED: "accept", Stage.FOUND: "run", Stage.FAILED: "run"}.get(stage, "")
 
 
 class PlanesLive(QWidget):
@@ -159,31 +132,19 @@ class LaserForm(SettingsForm):
         self._presenter.set_laser(key, math.radians(value) if key == "angle" and value is not None else value)
 
 
-class PlanesResult(QWidget):
+class PlanesResult(Result):
     """How good the calibration shown is, and whether the laser is what it is said to be."""
 
     def __init__(self, presenter: PlanesPresenter, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
-        self._presenter = presenter
+        super().__init__(presenter, parent)
         self.quality, self.angles = ValueRows(), ValueRows()
         self.left_out, self.verdict, self.notes = muted(), muted(), muted()
-        self._left_out_heading, self._angles_heading = heading(self.tr("Left out")), heading(self.tr("Angles"))
-        self._angles_heading.setToolTip(self.tr("Between neighbouring light planes"))
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
-        for widget in (
-            self.quality,
-            self._left_out_heading,
-            self.left_out,
-            self._angles_heading,
-            self.angles,
-            self.verdict,
-            self.notes,
-        ):
-            column.addWidget(widget)
+        self._left_out_heading, self._angles_heading = heading(tr("Left out")), heading(tr("Angles"))
+        self._angles_heading.setToolTip(tr("Between neighbouring light planes"))
+        self._add(self.quality, self._left_out_heading, self.left_out)
+        self._add(self._angles_heading, self.angles, self.verdict, self.notes)
 
     def refresh(self) -> bool:
-        """Show the calibration; whether there is anything to say."""
         work = self._presenter.work
         calibration = work.calibration
         self.quality.set_rows(words.quality_rows(calibration))
@@ -195,7 +156,3 @@ class PlanesResult(QWidget):
         self._left_out_heading.setVisible(bool(lines))
         self._angles_heading.setVisible(calibration is not None and len(calibration.free_angles) > 0)
         return calibration is not None or bool(lines)
-
-    def _say(self, label: Any, text: str) -> None:
-        label.setText(text)
-        label.setVisible(bool(text))

@@ -21,8 +21,6 @@ from workbench.pages.planes.look import PlanesLook
 from workbench.pages.planes.work import PlanesCamera, PlanesWork
 from workbench.work import jobs
 
-PART = "planes/"
-
 PAIRS = "live/planes/pairs"
 """The setting whether poses are taken with the laser on and off."""
 
@@ -33,13 +31,15 @@ class PlanesPresenter(CalibrationPresenter):
     step = "planes"
     KEEP = jobs.ACCEPT_FAN
     work: PlanesWork
+    look: PlanesLook
     history: PlanesHistory
 
     def __init__(self, bench: Bench) -> None:
         super().__init__(bench)
         self.live.pairs = bench.settings.text(PAIRS, "yes") == "yes"
         self.work = PlanesWork(bench, self)
-        self.look, self.seen_by = PlanesLook(bench, self.work, self), PlanesCamera(bench, self)
+        self.look = PlanesLook(bench, self.work, tr("Reading a pose"), self)
+        self.seen_by = PlanesCamera(bench, self)
         self.history = PlanesHistory(bench, self)
         self.target = TargetChoice(bench, "plane_target", tr("change the plate"), self)
         self.live.calibration = self._known
@@ -76,11 +76,8 @@ class PlanesPresenter(CalibrationPresenter):
     def _accepted_already(self) -> str:
         return tr("These laser planes are accepted already.")
 
-    def _stored(self, name: str) -> str:
-        return f"{PART}{name}"
-
     def _names(self, count: int) -> str:
-        return tr("{0} poses").format(count)
+        return tr("{count} poses", count=count)
 
     def _source_label(self) -> str:
         return tr("choose the laser planes' pictures")
@@ -108,42 +105,20 @@ class PlanesPresenter(CalibrationPresenter):
 
     # ---- poses
 
-    @property
-    def current(self) -> str:
-        """The pose that is looked at."""
-        return self.look.current
-
-    def poses(self) -> tuple[PlanePose, ...]:
+    def views(self) -> tuple[PlanePose, ...]:
         """The poses as the calibration shown judges them."""
         return self.work.calibration.poses if self.work.calibration is not None else ()
-
-    def choose_pose(self, name: str) -> None:
-        """Show this pose."""
-        if name != self.current:
-            self.look.current = name
-            self.look.refresh()
-            self.changed.emit()
-
-    def pose_of(self, name: str) -> PlanePose | None:
-        """A pose as the calibration shown judges it."""
-        return next((pose for pose in self.poses() if pose.name == name), None)
 
     # ---- what happens elsewhere
 
     def opened(self) -> None:
-        self.look.forget()
-        self.acceptance.forget()
         self.seen_by.forget()
         self.seen_by.follow()
-        self.work.opened()
-        self.history.forget()
-        self.history.refresh()
+        super().opened()
 
     def project_changed(self, before: Project, after: Project) -> None:
-        if before.sources.planes != after.sources.planes:
-            self.look.forget()
         self.seen_by.follow()
-        self.work.follow()
+        super().project_changed(before, after)
 
     def _known(self) -> tuple[Camera | None, Fan | None]:
         return self.seen_by.camera, self.work.calibration.fan if self.work.calibration is not None else None
@@ -151,7 +126,7 @@ class PlanesPresenter(CalibrationPresenter):
     def views_that_count(self) -> tuple[TargetView, ...]:
         """What the plate shows in the pictures there are, without those left out by hand."""
         excluded = self.project.options.excluded
-        counting = (pose.view for pose in self.work.poses or () if PART + pose.name not in excluded)
+        counting = (pose.view for pose in self.work.poses or () if self.stored(pose.name) not in excluded)
         return tuple(view for view in counting if view is not None)
 
     def _cannot_record(self) -> str:
@@ -163,9 +138,8 @@ class PlanesPresenter(CalibrationPresenter):
         return ""
 
     def _work_changed(self) -> None:
-        self.look.follow()
         self._recognise()
-        self.changed.emit()
+        super()._work_changed()
 
     def _recognise(self) -> None:
         """Where pictures and settings give just what is accepted, it is not out of date, whatever was changed since."""

@@ -4,16 +4,15 @@ from __future__ import annotations
 
 from typing import Any
 
-from PySide6.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QVBoxLayout, QWidget
 
 from core.calibrate.results import FanCalibration, PlanePose
 from core.model import Camera
+from workbench.language import tr
+from workbench.pages.calibration.history_tab import HistoryTab
 from workbench.pages.planes import words
 from workbench.pages.planes.presenter import PlanesPresenter
-from workbench.pages.step_page import muted
-from workbench.theme import icon
 from workbench.views.colours import EXCLUDED, fan_colour
-from workbench.views.lists.data_table import DataTable
 from workbench.views.scene import shapes as scene_shapes
 from workbench.views.scene.view import SceneView
 
@@ -62,7 +61,7 @@ class RigTab(QWidget):
 
     def _empty(self) -> None:
         self._drawn, self._chosen = (None, None), ""
-        self.scene.clear(self.tr("Calibrate the laser planes: then camera, planes and poses are drawn here."))
+        self.scene.clear(tr("Calibrate the laser planes: then camera, planes and poses are drawn here."))
 
     def _draw(self, calibration: FanCalibration, camera: Camera) -> None:
         outlines = self._outlines(calibration)
@@ -97,52 +96,15 @@ class RigTab(QWidget):
         ]
 
 
-class HistoryTab(QWidget):
-    """Laser planes accepted before; any can be restored."""
+class PlanesHistoryTab(HistoryTab):
+    """Laser planes accepted before."""
 
     def __init__(self, presenter: PlanesPresenter, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
-        self._presenter = presenter
-        self._row = -1
-        self.table, self.restore = DataTable(), QPushButton(self.tr("Restore"))
-        self.table.set_headers(
-            [
-                (self.tr("Accepted"), ""),
-                (self.tr("RMS of each line"), "mm"),
-                (self.tr("Poses"), ""),
-                (self.tr("Id"), ""),
-                (self.tr("Camera"), ""),
-                ("", ""),
-            ]
-        )
-        self.table.current_row_changed.connect(self._chosen)
-        self.restore.clicked.connect(lambda: presenter.history.restore(self._id()))
-        self.words = muted()
-        row = QHBoxLayout()
-        row.addWidget(self.words, 1)
-        row.addWidget(self.restore)
-        column = QVBoxLayout(self)
-        column.setContentsMargins(6, 6, 6, 6)
-        column.addWidget(self.table, 1)
-        column.addLayout(row)
+        titles = ((tr("Accepted"), ""), (tr("RMS of each line"), "mm"), (tr("Poses"), ""), (tr("Id"), ""))
+        super().__init__(presenter, [*titles, (tr("Camera"), ""), ("", "")], parent)
 
-    def refresh(self) -> None:
-        """Show the list."""
-        p = self._presenter
-        self.table.set_rows(words.history_rows(p.history.entries, p.project.accepted.fan))
-        self._refresh_button()
+    def _listed(self) -> list[tuple[str, ...]]:
+        return words.history_rows(self._presenter.history.entries, self._presenter.history.accepted)
 
-    def _chosen(self, row: int) -> None:
-        self._row = row
-        self._refresh_button()
-
-    def _refresh_button(self) -> None:
-        why = self._presenter.history.why_not_restore(self._id())
-        self.words.setText(why)
-        self.restore.setEnabled(not why)
-        self.restore.setIcon(icon("mdi6.restore"))
-        self.restore.setToolTip(why or self.tr("Measure with these laser planes again; undoable"))
-
-    def _id(self) -> str:
-        entries = self._presenter.history.entries
-        return entries[self._row].id if 0 <= self._row < len(entries) else ""
+    def _tip(self) -> str:
+        return tr("Measure with these laser planes again; undoable")

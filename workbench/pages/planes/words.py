@@ -9,6 +9,7 @@ from typing import Any
 from core.calibrate.fan.pose_features import PoseFeatures
 from core.calibrate.results import FanCalibration, PlanePose
 from workbench.language import text_of, tr
+from workbench.pages.calibration.words import history_row, mm, px, used_row
 from workbench.views.colours import Level
 from workbench.views.lists.value_rows import ValueRow
 
@@ -17,17 +18,16 @@ def quality_rows(calibration: FanCalibration | None) -> list[ValueRow]:
     """How well the stripes lie on their planes."""
     if calibration is None:
         return []
-    used, total = sum(pose.used for pose in calibration.poses), len(calibration.poses)
     rows: list[ValueRow] = [
         (
-            tr("Line {0}, RMS").format(line),
+            tr("Line {line}, RMS", line=line),
             mm(rms),
             tr("Root mean square distance of the points on this line from its plane"),
             "",
         )
         for line, rms in enumerate(calibration.rms_mm, start=1)
     ]
-    rows.append((tr("Poses"), tr("{0} of {1}").format(used, total), tr("Poses used, and all there are"), ""))
+    rows.append(used_row(tr("Poses"), calibration.poses, tr("Poses used, and all there are")))
     if not math.isnan(calibration.stripe_sd_mm):
         tip = tr("How far a whole stripe is off its plane beyond its own noise: flatness of the plate, the lens")
         off = calibration.stripe_sd_mm
@@ -42,7 +42,7 @@ def left_out_lines(poses: Sequence[PlanePose | PoseFeatures]) -> list[str]:
         if pose.reason:
             reasons.setdefault(text_of(pose.reason), []).append(pose.name)
     return [
-        tr("{0} × {1}: {2}").format(len(names), text_of(reason), ", ".join(names))
+        f"{len(names)} × {reason}: {', '.join(names)}"
         for reason, names in sorted(reasons.items(), key=lambda entry: -len(entry[1]))
     ]
 
@@ -75,8 +75,8 @@ def angle_rows(calibration: FanCalibration | None) -> list[ValueRow]:
     suits: Level = "" if calibration.constraint_suits is None else "good" if calibration.constraint_suits else "warn"
     rows: list[ValueRow] = []
     for line, (held, free) in enumerate(zip(calibration.angles, calibration.free_angles, strict=True), start=1):
-        name = tr("Angle {0}–{1}").format(line, line + 1)
-        text = tr("{0} held, {1} free").format(degrees(held), degrees(free))
+        name = tr("Angle {line}–{next}", line=line, next=line + 1)
+        text = tr("{held} held, {free} free", held=degrees(held), free=degrees(free))
         tip = tr("Between neighbouring planes: held to one pencil, and each plane calibrated on its own")
         rows.append((name, text, tip, suits))
     if not math.isnan(calibration.pencil_gap_mm):
@@ -88,40 +88,29 @@ def angle_rows(calibration: FanCalibration | None) -> list[ValueRow]:
 def pose_sentence(name: str, pose: PlanePose | None, reason: str = "") -> str:
     """What is to be said of one pose."""
     if pose is None:
-        return tr("{0}: left out ({1})").format(name, text_of(reason)) if reason else name
+        return tr("{name}: left out ({reason})", name=name, reason=reason) if reason else name
+    if not pose.used:
+        reason = text_of(pose.reason or "") or tr("no reason recorded")
+        return tr("{name}: left out ({reason})", name=name, reason=reason)
     seen = sum(len(points) > 0 for points in pose.points)
-    lines = tr("1 line seen") if seen == 1 else tr("{0} lines seen").format(seen)
-    figures = tr("stripes RMS {0} from their planes, target RMS {1}, {2}").format(
-        mm(pose.rms_mm), px(pose.target_rms_px), lines
+    return tr(
+        "{name}: stripes RMS {rms} from their planes, target RMS {target}, {lines}",
+        name=name,
+        rms=mm(pose.rms_mm),
+        target=px(pose.target_rms_px),
+        lines=tr("1 line seen") if seen == 1 else tr("{count} lines seen", count=seen),
     )
-    if pose.used:
-        return tr("{0}: {1}").format(name, figures)
-    return tr("{0}: left out ({1})").format(name, text_of(pose.reason or "") or tr("no reason recorded"))
 
 
 def history_rows(entries: tuple[Any, ...], accepted: str) -> list[tuple[str, ...]]:
     """The kept planes: when, RMS of each line, poses, id, camera, whether in use."""
     return [
-        (
-            entry.kept_at.astimezone().strftime("%Y-%m-%d %H:%M"),
-            ", ".join(f"{rms:.3f}" for rms in entry.rms_mm),
-            f"{entry.used}/{entry.total}",
-            entry.id,
-            entry.camera_id,
-            tr("in use") if entry.id == accepted else "",
+        history_row(
+            entry, accepted, ", ".join(f"{rms:.3f}" for rms in entry.rms_mm), f"{entry.used}/{entry.total}",
+            entry.id, entry.camera_id,
         )
         for entry in entries
-    ]
-
-
-def mm(value: float, digits: int = 3) -> str:
-    """A length in millimetres."""
-    return "–" if math.isnan(value) else f"{value:.{digits}f} mm"
-
-
-def px(value: float) -> str:
-    """A length in pixels."""
-    return "–" if math.isnan(value) else f"{value:.3f} px"
+    ]  # fmt: skip
 
 
 def degrees(value: float) -> str:

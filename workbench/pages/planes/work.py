@@ -11,6 +11,7 @@ from core.calibrate.fan.pose_features import PoseFeatures
 from core.calibrate.results import FanCalibration
 from core.files.project.data import Project
 from core.files.project.keys import rests_on
+from core.messages import Message
 from core.model import Camera
 from workbench.bench import Bench
 from workbench.language import tr
@@ -29,12 +30,15 @@ class PlanesWork(CalibrationWork[Poses, FanCalibration]):
     STEP = "planes"
     FOUND_BY = ("camera calibration", "pictures of the plane target", "plane target", "colour channel")
     ACCEPTED = "accepted laser planes"
-    FIND, SOLVE = jobs.FIND_POSES, jobs.SOLVE_POSES
+    FIND, SOLVE, FOUND = jobs.FIND_POSES, jobs.SOLVE_POSES, jobs.FOUND_POSES
 
     @property
     def poses(self) -> Poses | None:
         """What the pictures show; None as long as nobody has looked."""
         return self.found
+
+    def left_out(self) -> dict[str, Message]:
+        return {pose.name: pose.reason for pose in self.poses or () if pose.reason}
 
     @staticmethod
     def name_of(path: Path) -> str:
@@ -57,15 +61,8 @@ class PlanesWork(CalibrationWork[Poses, FanCalibration]):
                 label=tr("Reading the laser planes"),
                 on_done=lambda recalled: self._take_up(folder, project, *recalled),
             )
-        elif self._can_search(project):
-            self._bench.quick.run(
-                self,
-                jobs.FOUND_POSES,
-                folder,
-                project,
-                label=tr("Reading what was found"),
-                on_done=lambda poses: self._take_up(folder, project, poses),
-            )
+        else:
+            self._ask_what_was_found(folder, project)
 
     def _accepted_is_of_these_pictures(self, project: Project) -> bool:
         done, keys = self._model.results.get("planes"), rests_on("planes", project, {})

@@ -99,7 +99,7 @@ def test_a_click_on_a_bar_shows_the_view_with_corners_and_residuals(solved, qtbo
 
 
 def test_a_view_without_target_says_why(solved, qtbot):
-    solved.presenter.choose_view("camera/view08.png")
+    solved.presenter.choose("camera/view08.png")
     qtbot.waitUntil(lambda: "no checkerboard" in solved.picture.line.text())
     qtbot.waitUntil(lambda: "corners" not in solved.picture.image.layer_names())
 
@@ -126,7 +126,7 @@ def test_what_is_missing_is_told_in_words(solved):
 
 
 def test_parameters_are_shown_with_their_standard_deviation_and_unit(solved):
-    focal = solved.parameters.text_of("α (fx)")
+    focal = solved.result.parameters.text_of("α (fx)")
     assert "±" in focal and focal.endswith(" px")
 
 

@@ -120,7 +120,7 @@ def test_a_view_left_out_is_solved_without_at_once_and_undone_from_memory(solved
 
 
 def test_too_few_views_left_are_told_and_undone(solved, qtbot):
-    solved.set_used([view.view.name for view in solved.views()][:-2], False)
+    solved.set_used([view.name for view in solved.views()][:-2], False)
     settled(qtbot, solved)
     assert solved.stage is Stage.FAILED
     assert "are not left out by hand" in solved.work.problem

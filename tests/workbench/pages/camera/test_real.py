@@ -23,7 +23,7 @@ def test_a_recorded_set_is_calibrated_accepted_and_there_again_after_reopening(p
     qtbot.waitUntil(lambda: presenter.work.judgement is not None, timeout=60_000)
     assert presenter.stage is Stage.SOLVED
     assert presenter.work.judgement.expected[1].median_mm < 0.1
-    presenter.set_used([presenter.views()[0].view.name], False)
+    presenter.set_used([presenter.views()[0].name], False)
     qtbot.waitUntil(lambda: not presenter.work.solving, timeout=10_000)
     presenter.do_accept()
     qtbot.waitUntil(lambda: presenter.stage is Stage.ACCEPTED, timeout=20_000)

@@ -91,7 +91,7 @@ def check(qtbot: Any, page: PlanesPage, name: str) -> None:
 def test_an_empty_page_says_what_to_do_next_and_offers_it(
     page: PlanesPage, pictures: Path, qtbot: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    empty = page.pose.image.empty_state
+    empty = page.picture.image.empty_state
     assert empty.message.startswith("Take pictures of the plate under the laser")
     assert page.card.title.text() == "No pictures yet"
     assert page.live.panel.start.property("primary")
@@ -105,11 +105,11 @@ def test_without_a_camera_the_page_says_so_and_leads_there(page: PlanesPage, qtb
     page.presenter.model.edit("reject", project_with(camera=""))
     page.refreshing.at_once()
     assert page.card.title.text() == "The camera comes first"
-    assert "seen through the camera" in page.pose.image.empty_state.message
+    assert "seen through the camera" in page.picture.image.empty_state.message
     wanted: list[str] = []
     page.presenter.go_to.connect(wanted.append)
     page.refreshing.at_once()
-    click(qtbot, page.pose.image.empty_state.button)
+    click(qtbot, page.picture.image.empty_state.button)
     page.refreshing.at_once()
     assert wanted == ["camera"]
     assert page.card.buttons["run"].toolTip() == "Accept a camera calibration first."
@@ -120,7 +120,7 @@ def test_a_folder_can_be_dropped_anywhere_on_the_page(page: PlanesPage, pictures
     data.setUrls([QUrl.fromLocalFile(str(pictures))])
     action, keys = Qt.DropAction.CopyAction, Qt.KeyboardModifier.NoModifier
     enter = QDragEnterEvent(QPoint(5, 5), action, data, LEFT, keys)
-    QApplication.sendEvent(page.pose.image.canvas, enter)
+    QApplication.sendEvent(page.picture.image.canvas, enter)
     assert enter.isAccepted()
     QApplication.sendEvent(page, QDropEvent(QPointF(5, 5), action, data, LEFT, keys))
     qtbot.waitUntil(lambda: page.presenter.stage is Stage.SOLVED)
@@ -149,7 +149,7 @@ def test_greyed_buttons_say_why(page: PlanesPage) -> None:
 
 
 def test_the_result_takes_the_room_of_what_it_was_made_from(solved: PlanesPage) -> None:
-    folds = (solved.pictures_fold, solved.target_fold, solved.laser_fold)
+    folds = (solved.pictures_fold, solved.target_fold, solved.setup_folds[1])
     solved.refreshing.at_once()
     assert not any(fold.isExpanded() for fold in folds)
     assert solved.result_fold.isVisible()
@@ -202,30 +202,30 @@ def test_several_chosen_poses_are_left_out_by_one_key_and_one_undo(solved: Plane
 def test_a_pose_shows_its_plate_stripes_and_line_numbers(solved: PlanesPage, qtbot: Any) -> None:
     solved.views.table.setCurrentIndex(solved.views.model.index(3, 0))
     settled(qtbot, solved)
-    assert set(solved.pose.image.layer_names()) >= {"corners", "stripe 0", "stripe 1", "stripe 2"}
-    assert solved.pose.line.text().startswith("pose03: stripes RMS 0.0")
-    assert solved.pose.line.text().endswith("3 lines seen")
+    assert set(solved.picture.image.layer_names()) >= {"corners", "stripe 0", "stripe 1", "stripe 2"}
+    assert solved.picture.line.text().startswith("pose03: stripes RMS 0.0")
+    assert solved.picture.line.text().endswith("3 lines seen")
 
 
 def test_a_pose_without_a_plate_says_why(solved: PlanesPage, qtbot: Any) -> None:
-    solved.presenter.choose_pose("pose06")
+    solved.presenter.choose("pose06")
     settled(qtbot, solved)
-    assert f"left out ({NO_PLATE})" in solved.pose.line.text()
-    assert not [name for name in solved.pose.image.layer_names() if name.startswith(("corners", "stripe"))]
+    assert f"left out ({NO_PLATE})" in solved.picture.line.text()
+    assert not [name for name in solved.picture.image.layer_names() if name.startswith(("corners", "stripe"))]
 
 
 def test_a_click_on_a_bar_shows_its_pose(solved: PlanesPage) -> None:
     solved.bars.bar_clicked.emit("pose04")
     solved.refreshing.at_once()
     assert solved.views.current() == "pose04"
-    assert solved.pose.line.text().startswith("pose04")
+    assert solved.picture.line.text().startswith("pose04")
 
 
 def test_angles_are_shown_held_and_free_with_the_verdict(solved: PlanesPage, qtbot: Any) -> None:
     assert solved.result.angles.text_of("Angle 1–2") == "5.000° held, 5.001° free"
     assert solved.result.angles.text_of("Off one pencil").endswith(" mm")
     assert solved.result.verdict.text().startswith("One common axis and angles of 5°: this suits the laser")
-    solved.laser_fold.expand(animate=False)
+    solved.setup_folds[1].expand(animate=False)
     click(qtbot, solved.laser.editor("constrain"))
     settled(qtbot, solved)
     assert "the freely fitted planes are used, as asked" in solved.result.verdict.text()
@@ -251,7 +251,7 @@ def test_the_rig_is_drawn_in_3d_and_the_chosen_pose_stands_out(solved: PlanesPag
     solved.rig.refresh()
     solved.refreshing.at_once()
     assert len(drawn) == 6, "nothing is drawn again for nothing"
-    solved.presenter.choose_pose("pose02")
+    solved.presenter.choose("pose02")
     solved.refreshing.at_once()
     assert drawn[6:] == ["chosen"]
 
@@ -352,15 +352,15 @@ def test_poses_are_taken_live_with_everything_drawn_and_each_picture_answered_on
     task = lane.waiting[0][0]
     task.view.emit(live_view(np.array([[100.0, 120.0], [200.0, 130.0]])))
     page.refreshing.at_once()
-    assert set(page.pose.image.layer_names()) >= {"covered", "corners", "stripe 0", "stripe 2"}
+    assert set(page.picture.image.layer_names()) >= {"covered", "corners", "stripe 0", "stripe 2"}
     task.view.emit(live_view(None, 1))
     page.refreshing.at_once()
-    assert not {"corners", "stripe 1", "stripe 2"} & set(page.pose.image.layer_names())
+    assert not {"corners", "stripe 1", "stripe 2"} & set(page.picture.image.layer_names())
     assert lane.sent.count("shown") == 2
     whole = replace(live_view(), detail=replace(detail(), missing=()))
     task.view.emit(whole)
     page.refreshing.at_once()
-    assert page.pose.hints._wanted == ("Hold still.", "Nothing is missing: press Stop, and it is calibrated.")
+    assert page.picture.hints._wanted == ("Hold still.", "Nothing is missing: press Stop, and it is calibrated.")
     task.reported.emit(LiveTaken("pose00", np.zeros((12, 16), np.uint8)))
     page.refreshing.at_once()
     assert [row.name for row in page.views.rows()] == ["pose00"]
@@ -401,8 +401,8 @@ def test_a_recording_that_ends_is_measured_and_shown(page: PlanesPage, lane: Han
     lane.finish(LiveEnded(request.folder, 7, 0))
     qtbot.waitUntil(lambda: page.presenter.stage is Stage.SOLVED)
     settled(qtbot, page)
-    assert page.pose.line.text().startswith("pose00: stripes RMS")
-    assert "covered" not in page.pose.image.layer_names()
+    assert page.picture.line.text().startswith("pose00: stripes RMS")
+    assert "covered" not in page.picture.image.layer_names()
 
 
 def test_the_page_is_drawn_no_more_often_than_something_changes(solved: PlanesPage, planes: Planes, qtbot: Any) -> None:

@@ -102,7 +102,7 @@ def test_a_chosen_folder_is_measured_and_solved(page: PlanesPresenter, pictures:
     assert page.can_search == "The pictures are being measured."
     qtbot.waitUntil(lambda: page.stage is Stage.SOLVED)
     assert page.blocker() == "Accept the laser planes first."
-    assert [pose.used for pose in page.poses()] == [True] * 6 + [False]
+    assert [pose.used for pose in page.views()] == [True] * 6 + [False]
     assert len(page.work.pictures or ()) == 7, "pictures with the laser off are no poses of their own"
 
 
@@ -114,7 +114,7 @@ def test_pictures_are_seen_before_they_are_measured_and_not_read_again_and_again
     sources = replace(page.project.sources, planes=pictures.as_posix())
     page.model.edit("choose", replace(page.project, sources=sources))
     settled(qtbot, page)
-    page.choose_pose("pose03")
+    page.choose("pose03")
     settled(qtbot, page)
     for _ in range(3):
         page.work.changed.emit()
@@ -167,7 +167,7 @@ def test_a_pose_left_out_is_solved_without_at_once_and_undone_from_memory(found:
     assert stage(found) is Stage.SOLVING
     settled(qtbot, found)
     ids.append(found.candidate)
-    pose = found.pose_of("pose02")
+    pose = found.quality_of("pose02")
     assert pose is not None and pose.reason is not None and pose.reason.code == "set.left_out_by_hand"
     assert found.model.undo_stack.undoText() == "leave out pose02"
     found.model.undo_stack.undo()
@@ -190,7 +190,7 @@ def test_several_poses_are_left_out_by_one_edit(found: PlanesPresenter, qtbot: A
 def test_the_poses_left_out_are_counted_by_reason(found: PlanesPresenter, qtbot: Any) -> None:
     found.set_used(["pose01", "pose03"], False)
     settled(qtbot, found)
-    assert words.left_out_lines(found.poses()) == ["2 × left out by hand: pose01, pose03", f"1 × {NO_PLATE}: pose06"]
+    assert words.left_out_lines(found.views()) == ["2 × left out by hand: pose01, pose03", f"1 × {NO_PLATE}: pose06"]
     assert "left out" not in words.notes(found.work.calibration), "said once"
     rows = {row[0]: row[1] for row in words.quality_rows(found.work.calibration)}
     assert rows["Poses"] == "4 of 7"
@@ -215,7 +215,7 @@ def test_the_pose_shown_gets_the_numbers_of_its_lines_once_they_are_solved(
         found.work.changed.emit()
     settled(qtbot, found)
     assert len(planes.shown) == count, "what is shown is not read again and again"
-    found.choose_pose("pose04")
+    found.choose("pose04")
     settled(qtbot, found)
     assert planes.shown[-1] == ("pose04", True)
 
@@ -363,14 +363,15 @@ def test_another_camera_puts_the_planes_out_of_date_and_says_so(accepted: Planes
 
 def test_planes_of_the_history_are_restored_and_undone(accepted: PlanesPresenter, qtbot: Any) -> None:
     first = accepted.candidate
-    assert accepted.history.why_not_restore("") == "Choose a calibration in the list first."
-    assert accepted.history.why_not_restore(first) == "These laser planes are in use."
+    assert accepted.history.why_not_restore() == "Choose a calibration in the list first."
+    accepted.history.choose(first)
+    assert accepted.history.why_not_restore() == "These laser planes are in use."
     accepted.set_used(["pose02"], False)
     settled(qtbot, accepted)
     accepted.accept()
     settled(qtbot, accepted)
     assert [entry.id for entry in accepted.history.entries] == [accepted.candidate, first]
-    accepted.history.restore(first)
+    accepted.history.restore()
     assert accepted.project.accepted.fan == first
     assert accepted.model.undo_stack.undoText() == "restore laser planes"
     assert (stage(accepted), accepted.blocker()) == (Stage.OTHER, ""), "measured with on purpose"
@@ -397,8 +398,9 @@ def test_settings_that_give_what_is_accepted_are_not_out_of_date_however_they_ca
 def test_planes_that_rest_on_another_camera_are_not_restored(accepted: PlanesPresenter) -> None:
     first = accepted.candidate
     accepted.model.edit("x", replace(accepted.project, accepted=Accepted(camera="c2")))
-    assert "another camera" in accepted.history.why_not_restore(first)
-    accepted.history.restore(first)
+    accepted.history.choose(first)
+    assert "another camera" in accepted.history.why_not_restore()
+    accepted.history.restore()
     assert accepted.project.accepted.fan == ""
 
 

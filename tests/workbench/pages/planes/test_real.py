@@ -32,7 +32,7 @@ def settled(qtbot: Any, page: PlanesPresenter, seconds: float = 60) -> None:
 
 def test_a_finished_project_shows_what_it_was_made_from_and_can_be_changed(page: PlanesPresenter, qtbot: Any) -> None:
     assert stage(page) is Stage.ACCEPTED
-    accepted, first = page.candidate, page.poses()[0].name
+    accepted, first = page.candidate, page.views()[0].name
     assert page.seen_by.camera is not None
     kept = [entry.id for entry in page.history.entries]
     page.set_used([first], False)
@@ -42,7 +42,8 @@ def test_a_finished_project_shows_what_it_was_made_from_and_can_be_changed(page:
     qtbot.waitUntil(lambda: page.stage is Stage.ACCEPTED, timeout=20_000)
     settled(qtbot, page)
     assert [entry.id for entry in page.history.entries] == [page.candidate, *kept]
-    page.history.restore(accepted)
+    page.history.choose(accepted)
+    page.history.restore()
     assert page.project.accepted.fan == accepted
     page.do_run()
     settled(qtbot, page)
@@ -76,4 +77,4 @@ def test_poses_of_the_simulated_rig_are_taken_with_or_without_the_laser_off_and_
     names = sorted(path.stem for path in page.folder.glob("*.png"))
     assert any(name.endswith("_off") for name in names) == pairs
     assert page.stage is Stage.SOLVED, page.work.problem
-    assert sum(pose.used for pose in page.poses()) >= 5
+    assert sum(pose.used for pose in page.views()) >= 5

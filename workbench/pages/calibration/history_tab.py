@@ -1,0 +1,67 @@
+"""The calibrations that were accepted; any can be restored."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Sequence
+from typing import Any
+
+from PySide6.QtCore import QSignalBlocker
+from PySide6.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout, QWidget
+
+from workbench.language import tr
+from workbench.pages.step_page import muted
+from workbench.theme import icon
+from workbench.views.lists.data_table import DataTable
+
+
+class HistoryTab(QWidget):
+    """A list of them, what is to be said of the chosen one, and the button that restores it."""
+
+    def __init__(self, presenter: Any, headers: Sequence[tuple[str, str]], parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._presenter = presenter
+        self.table, self.restore, self.words = DataTable(), QPushButton(tr("Restore")), muted()
+        self.table.set_headers(headers)
+        self.restore.clicked.connect(lambda: presenter.history.restore())
+        self.table.current_row_changed.connect(self._chosen)
+        row = QHBoxLayout()
+        row.addWidget(self.words, 1)
+        row.addWidget(self.restore)
+        self.column = QVBoxLayout(self)
+        self.column.setContentsMargins(6, 6, 6, 6)
+        self.column.addWidget(self.table, 1)
+        self.column.addLayout(row)
+        self._rows: Any = None
+
+    @abstractmethod
+    def _listed(self) -> list[tuple[str, ...]]:
+        """A row for each of the history."""
+
+    @abstractmethod
+    def _tip(self) -> str:
+        """What the button does."""
+
+    def _sentence(self) -> str:
+        """What is said where the chosen one can be restored."""
+        return ""
+
+    def refresh(self) -> None:
+        """Show what the presenter says now."""
+        history, rows = self._presenter.history, self._listed()
+        if rows != self._rows:
+            self._rows = rows
+            ids = [entry.id for entry in history.entries]
+            with QSignalBlocker(self.table):
+                self.table.set_rows(rows)
+                self.table.set_current_row(ids.index(history.chosen) if history.chosen in ids else -1)
+        why = history.why_not_restore()
+        self.words.setText(why or self._sentence())
+        self.restore.setEnabled(not why)
+        self.restore.setIcon(icon("mdi6.backup-restore"))
+        self.restore.setToolTip(why or self._tip())
+
+    def _chosen(self, row: int) -> None:
+        entries = self._presenter.history.entries
+        if 0 <= row < len(entries):
+            self._presenter.history.choose(entries[row].id)

@@ -1,0 +1,68 @@
+"""The picture that is looked at."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from PySide6.QtCore import QObject, Signal
+
+from workbench.bench import Bench
+from workbench.pages.calibration.work import CalibrationWork
+from workbench.work import jobs
+
+
+class Look(QObject):
+    """Reads the `current` picture, once: again only where another one is chosen.
+
+    `label` names the reading; of those of one label only the newest is wanted.
+    """
+
+    picture = Signal(str, object)
+    """Name of the current picture, and the picture."""
+
+    def __init__(
+        self, bench: Bench, work: CalibrationWork[Any, Any], label: str, parent: QObject | None = None
+    ) -> None:
+        super().__init__(parent)
+        self._bench, self._model, self._work, self._label = bench, bench.model, work, label
+        self.forget()
+
+    def forget(self) -> None:
+        """Look at nothing."""
+        self.current = ""
+        self._read: tuple[Any, ...] = ()
+
+    def again(self) -> None:
+        """What was looked at is wanted again."""
+        self._read = ()
+        self.refresh()
+
+    def names(self) -> Sequence[str]:
+        """The pictures there are."""
+        return [self._work.name_of(path) for path in self._work.pictures or ()]
+
+    def follow(self) -> None:
+        """Pictures or their calibration are others; look at the first one where the current one is gone."""
+        names = self.names()
+        if self.current not in names:
+            self.current = names[0] if names else ""
+        self.refresh()
+
+    def refresh(self) -> None:
+        """Have the current picture read."""
+        name = self.current
+        path = next((path for path in self._work.pictures or () if self._work.name_of(path) == name), None)
+        if not name or path is None or self._read == (name,):
+            return
+        self._read = (name,)
+        self._bench.run_quick(
+            self,
+            jobs.READ_PICTURE,
+            path,
+            self._model.project.rig.channel,
+            label=self._label,
+            on_done=lambda found: self.picture.emit(name, found) if name == self.current else None,
+            offers={},
+            replace_waiting=True,
+        )
