@@ -226,6 +226,7 @@ class MainWindow(QMainWindow):
             "new": projects.new_project,
             "open": projects.choose_project,
             "open set": projects.choose_set,
+            "import": projects.import_pictures,
             "sample": projects.open_sample,
             "simulated": projects.try_simulated,
             "save": projects.save,

@@ -95,6 +95,7 @@ class Menus(QObject):
         self._add(file, "open", tr("&Open project …"))
         file.addMenu(self._recent)
         self._add(file, "open set", tr("New project from a recording &set …"))
+        self._add(file, "import", tr("&Import pictures …"))
         file.addSeparator()
         self._add(file, "sample", tr("Open sam&ple"))
         self._add(file, "simulated", tr("&Try with the simulated rig"))

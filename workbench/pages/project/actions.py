@@ -1,4 +1,4 @@
-"""What is done with projects as a whole: new, open, from a recording set, the sample, the simulated rig, close."""
+"""What is done with projects as a whole: new, open, from a set or other pictures, sample, simulated rig, close."""
 
 from __future__ import annotations
 
@@ -9,12 +9,14 @@ from pathlib import Path
 from PySide6.QtCore import QObject, Qt, Signal
 from PySide6.QtWidgets import QWidget
 
+from core.acquire.source import Step
 from core.errors import InputError
 from core.files.project.data import Project, ProjectFile, new_project
 from core.files.project.folder import OPENER, can_be_saved, is_project, project_from_set, read_project, rescues
 from core.files.recording.unfinished import Unfinished, forget_recording, unfinished_recording
 from workbench.bench import Bench
 from workbench.pages.project.copying import ProjectCopy
+from workbench.pages.project.import_dialog import ImportDialog
 from workbench.pages.project.sample import SampleProject
 from workbench.pages.project.states import wanted_state
 from workbench.pages.sources import put_source
@@ -54,6 +56,37 @@ class ProjectActions(QObject):
         )
         if folder is not None:
             self.open_dropped(folder)
+
+    def import_pictures(self) -> None:
+        """Ask where pictures of another program lie, and make a recording set of them.
+
+        The open project measures its parts then; without one, a project that does is made.
+        """
+        folder = self.model.folder
+        base, name = (folder, "imported") if folder is not None else (self.bench.settings.projects_folder, "set")
+        names = (name + (f" {number}" if number > 1 else "") for number in range(1, 1000))
+        dialog = ImportDialog(self.bench, next(base / one for one in names if not (base / one).exists()), self._window)
+        dialog.imported.connect(lambda imported, plan: self._use_imported(imported.folder, tuple(plan.parts), folder))
+        dialog.open()
+
+    def _use_imported(self, imported: Path, parts: tuple[str, ...], asked_in: Path | None) -> None:
+        if asked_in != self.model.folder:
+            self.bench.notices.info(self.tr("The pictures are in {0}.").format(imported))
+            return
+        if self.model.folder is not None:
+            self._put_parts(imported, parts)
+        elif (imported / SET).exists():
+            self.open_set(imported)
+        else:
+            name = self.tr("New project from {0}").format(imported.name)
+            self._make(name, imported.name, new_project, then=lambda: self._put_parts(imported, parts))
+
+    def _put_parts(self, imported: Path, parts: tuple[str, ...]) -> None:
+        steps: tuple[Step, ...] = ("camera", "planes", "scan")
+        for step in steps:
+            if step in parts:
+                put_source(self.model, step, imported / step, self.tr("use imported pictures"))
+        self.go_to.emit(parts[0])
 
     def open_dropped(self, path: Path) -> None:
         """Open what `path` is: a project, its project.json or NAME.trisect, an earlier version, or a recording set."""
@@ -241,13 +274,19 @@ class ProjectActions(QObject):
         except InputError as error:
             self.bench.notices.failed(error)
 
-    def _make(self, title: str, name: str, project: Callable[[str], Project]) -> None:
+    def _make(
+        self,
+        title: str,
+        name: str,
+        project: Callable[[str], Project],
+        then: Callable[[], object] = lambda: None,
+    ) -> None:
         answer = ask.ask_name_and_folder(self._window, title, name, self.bench.settings.projects_folder)
         if answer is None:
             return
         name, folder = answer
         self.bench.settings.projects_folder = folder
-        self._create(folder / ask.file_name(name), project, name)
+        self._create(folder / ask.file_name(name), project, name, then)
 
     def _create(
         self, folder: Path, project: Callable[[str], Project], name: str, then: Callable[[], object] = lambda: None

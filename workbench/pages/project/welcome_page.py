@@ -76,7 +76,14 @@ class WelcomePage(QWidget):
             self.tr("Measure pictures that are there already: a folder with rig.toml."),
             projects.choose_set,
         )
-        for place, link in enumerate((self.sample, self.simulated, self.new, self.open, self.from_set)):
+        self.from_pictures = self._link(
+            "mdi6.image-multiple-outline",
+            self.tr("Import pictures"),
+            self.tr("Make a recording set of folders of another program; nothing is copied where it can be linked."),
+            projects.import_pictures,
+        )
+        ways = (self.sample, self.simulated, self.new, self.open, self.from_set, self.from_pictures)
+        for place, link in enumerate(ways):
             grid.addWidget(link, place, 0)
         self.recent = self._recent_list()
         heading = QLabel(self.tr("Recent projects"))

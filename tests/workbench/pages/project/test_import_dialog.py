@@ -1,0 +1,70 @@
+"""Import pictures in the window: preview first, then the set, then the project that measures it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+
+from core.files.project.data import ProjectFile, new_project
+from core.files.project.folder import write_project
+from tests.workbench.technician import Technician
+from workbench.pages.project.import_dialog import ImportDialog
+from workbench.pages.sources import folder_of
+
+
+@pytest.fixture
+def shots(tmp_path: Path) -> Path:
+    folder = tmp_path / "shots"
+    folder.mkdir()
+    for number in (1, 2, 10):
+        for kind, light in (("laser", 200), ("board", 40)):
+            picture = np.full((48, 64), 40, np.uint8)
+            picture[:, 30:34] = light
+            cv2.imwrite(str(folder / f"{kind}_{number}.png"), picture)
+    return folder
+
+
+def dialog_of(technician: Technician) -> ImportDialog:
+    technician.window.projects.import_pictures()
+    return technician.window.findChildren(ImportDialog)[-1]
+
+
+def cells(dialog: ImportDialog) -> list[tuple[str, ...]]:
+    table = dialog.table.table
+    return [tuple(table.item(row, k).text() for k in range(3)) for row in range(table.rowCount())]  # type: ignore[union-attr]
+
+
+def test_what_was_understood_is_shown_before_the_project_measures_it(
+    technician: Technician, shots: Path, tmp_path: Path
+) -> None:
+    write_project(tmp_path / "block", ProjectFile(new_project("Block")))
+    technician.window.projects.open_project(tmp_path / "block")
+    dialog = dialog_of(technician)
+    assert not dialog.do_import.isEnabled()
+    dialog.planes.setText(f"{shots}/laser_*")
+    dialog.planes_off.setText(f"{shots}/board_*")
+    technician.until(dialog.do_import.isEnabled, "the preview")
+    assert cells(dialog) == [
+        (f"planes/{place}-laser_{number}.png", f"laser_{number}.png", f"board_{number}.png")
+        for place, number in enumerate((1, 2, 10))
+    ]
+    assert "what the stars in laser_* and board_* stand for" in dialog.words.text()
+    assert not (tmp_path / "block" / "imported").exists()
+    dialog.do_import.click()
+    technician.until(lambda: technician.window.current == "planes", "the page of the poses")
+    folder = folder_of(technician.model, "planes")
+    assert folder is not None
+    assert (folder / "0-laser_1_off.png").samefile(shots / "board_1.png")
+    technician.idle()
+
+
+def test_what_cannot_be_understood_is_told_in_the_dialog(technician: Technician, shots: Path) -> None:
+    dialog = dialog_of(technician)
+    dialog.planes.setText(str(shots))
+    technician.until(lambda: "laser_*" in dialog.words.text(), "the sentence")
+    assert not dialog.do_import.isEnabled()
+    dialog.reject()
+    technician.idle()
