@@ -12,7 +12,7 @@ JCGM 100:2008, Guide to the expression of uncertainty in measurement, 5.2 (corre
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -23,7 +23,9 @@ from core.calibrate.results import CameraCalibration, FanCalibration
 from core.model import Camera, Fan, LightPlane
 from core.model.arrays import Array
 
-Source = Literal["camera", "fan", "scale"]
+Source = Literal["camera", "fan", "bend", "scale"]
+UNEXPLAINED: Source = "bend"
+"""The source of errors that were seen, but not why: they are uncertain by all of what was seen."""
 
 NEGLIGIBLE = 1e-12
 """Share of the largest variance below which a direction is left out: rounding."""
@@ -34,7 +36,8 @@ class Deviation:
     """A camera and a fan displaced together by one standard uncertainty in one direction.
 
     `source` says whose error it is: "camera" (the fan moves along with it, as it would have been calibrated through
-    such a camera), "fan" (the camera is as calibrated), "scale" (the plane target is larger than stated).
+    such a camera), "fan" (the camera is as calibrated), "bend" (its light is off its planes),
+    "scale" (the plane target is larger than stated).
     """
 
     source: Source
@@ -59,8 +62,8 @@ def calibration_deviations(camera: CameraCalibration, fan: FanCalibration) -> tu
 
     Returns
     -------
-    At most 10 deviations of the camera, 3N of the fan and one of the scale, largest first within each source; none
-    where there is no covariance.
+    At most 10 deviations of the camera, 3N of the fan, one of how its light is bent, and one of the scale, largest
+    first within each source; none where there is no covariance.
     """
     return (*_of_camera(camera, fan), *_of_fan(camera.camera, fan), *_of_scale(camera.camera, fan))
 
@@ -87,6 +90,8 @@ def _of_fan(camera: Camera, fan: FanCalibration) -> Iterator[Deviation]:
     for value, vector in zip(values[::-1], vectors.T[::-1], strict=True):
         if value > NEGLIGIBLE * values[-1]:
             yield Deviation("fan", camera, moved_fan(fan.fan, np.sqrt(value) * vector))
+    if fan.bends is not None:
+        yield Deviation("bend", camera, replace(fan.fan, bends=fan.bends))
 
 
 def _of_scale(camera: Camera, fan: FanCalibration) -> Iterator[Deviation]:

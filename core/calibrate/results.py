@@ -122,7 +122,8 @@ class FanCalibration:
     no picture shows it, and all lengths have it in common. `cross_validation_mm` is the RMS of the poses' prediction
     errors. `camera` and `camera_covariance` are the camera that the target's poses have corrected, which belongs to
     this fan; None where it was left as it is. `board` is the shape of the plane target where its flatness was said to
-    be uncertain; else it is flat.
+    be uncertain; else it is flat. `bends` (N, 3, 3) are how the light was seen to be off its planes, as in `Fan`: one
+    standard uncertainty, for what bends it is not known; None where it is straight.
     """
 
     fan: Fan
@@ -144,6 +145,7 @@ class FanCalibration:
     camera: Camera | None = None
     camera_covariance: Array | None = None
     board: BoardShape = field(default_factory=BoardShape)
+    bends: Array | None = None
 
     @property
     def minority(self) -> Message | None:

@@ -213,6 +213,7 @@ def _digest(cloud: Cloud, mesh: Mesh | None, errors: PointErrors | None) -> str:
         arrays += [] if errors.speckle is None else [errors.speckle.covariance, errors.speckle.shares]
         arrays += [] if errors.sweep_covariance is None else [errors.sweep_covariance]
         arrays += [] if errors.common is None else [errors.common.sweeps, errors.common.cameras, errors.common.fans]
+        arrays += [] if errors.common is None or errors.common.bends is None else [errors.common.bends]
     return _sum_of(arrays)
 
 

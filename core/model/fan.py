@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 
 from core.model.arrays import Array, frozen_array, set_field
 from core.model.light_plane import LightPlane, angle_between
@@ -21,10 +22,14 @@ class Fan:
         N ≥ 1 planes.
     covariance
         (3N, 3N) of the stacked π in 1/mm²; common to every point of a scan. Zero when it is not known.
+    bends
+        (N, 3, 3) symmetric forms Q of light that lies in no planes: that of line k is XᵀQX mm off its plane at X. None
+        for planes.
     """
 
     planes: tuple[LightPlane, ...]
     covariance: Array | None = None
+    bends: Array | None = None
 
     def __post_init__(self) -> None:
         set_field(self, "planes", tuple(self.planes))
@@ -33,6 +38,8 @@ class Fan:
         size = 3 * len(self.planes)
         covariance = np.zeros((size, size)) if self.covariance is None else self.covariance
         set_field(self, "covariance", frozen_array(covariance, (size, size), "covariance"))
+        if self.bends is not None:
+            set_field(self, "bends", frozen_array(self.bends, (len(self.planes), 3, 3), "bends"))
 
     @property
     def lines(self) -> int:
@@ -44,7 +51,21 @@ class Fan:
         """All π stacked, (N, 3) in 1/mm."""
         return np.array([plane.pi for plane in self.planes])
 
+    def pis_at(self, line: NDArray[np.int64], rays: Array) -> Array:
+        """π (M, 3) of planes that meet `rays` (M, 3) at the depth of the light of `line` (M,): its own, if not bent."""
+        pis: Array = self.pis[line]
+        return pis if self.bends is None else bent_pis(pis, self.bends[line], rays)
+
     @property
     def angles(self) -> tuple[float, ...]:
         """Angles between neighbouring planes, in rad; N − 1 of them."""
         return tuple(angle_between(a, b) for a, b in pairwise(self.planes))
+
+
+def bent_pis(pis: Array, bends: Array, rays: Array) -> Array:
+    """π (M, 3) of planes that meet `rays` (M, 3) where light does that is XᵀQX mm off `pis` (M, 3) at X.
+
+    `bends` (M, 3, 3) are the Q. On X = z r the light has π·r − 1/z = ‖π‖ z rᵀQr; with z of the plane, to first order.
+    """
+    off = np.linalg.norm(pis, axis=1) * np.einsum("mi,mij,mj->m", rays, bends, rays) / np.einsum("mi,mi->m", pis, rays)
+    return np.asarray(pis - off[:, None] * np.array([0.0, 0.0, 1.0]), dtype=np.float64)

@@ -17,12 +17,13 @@ from core.calibrate.camera.reprojection import camera_of, parameters_of
 from core.calibrate.deviations import Deviation, Source
 from core.model import Camera, Fan
 from core.model.arrays import Array, frozen_array, set_field
+from core.model.fan import bent_pis
 from core.progress import Progress, StepProgress, silent
 from core.scan.features.crossings import Index
 from core.scan.features.extraction import ScanFeatures
 from core.scan.method import Method
 from core.scan.results import ScanResult
-from core.scan.surface.cloud import Cloud
+from core.scan.surface.cloud import FAN, Cloud
 from core.scan.sweeps.locate import locate_each, locate_together, numbered
 
 
@@ -42,6 +43,8 @@ class CommonErrors:
         (1 + K, L, 3) light planes of the fan in 1/mm, first those calibrated.
     sweeps
         (1 + K, S, 3) light planes of the sweeps, numbered as in the cloud, in 1/mm; first those of the scan itself.
+    bends
+        (1 + K, L, 3, 3) of the fan's light as in `core.model.Fan`; None where it lies in planes each time.
     """
 
     image_size: tuple[int, int]
@@ -49,11 +52,14 @@ class CommonErrors:
     cameras: Array
     fans: Array
     sweeps: Array
+    bends: Array | None = None
 
     def __post_init__(self) -> None:
         count = 1 + len(self.sources)
         for name, shape in (("cameras", (count, 10)), ("fans", (count, None, 3)), ("sweeps", (count, None, 3))):
             set_field(self, name, frozen_array(getattr(self, name), shape, name))
+        if self.bends is not None:
+            set_field(self, "bends", frozen_array(self.bends, (count, self.fans.shape[1], 3, 3), "bends"))
 
     def changes(self, uv: Array, sweep: Index) -> Iterator[Array]:
         """Yield the changes (N, 3) in mm of the points seen at `uv` (N, 2) px in `sweep` (N,) by each displacement."""
@@ -76,7 +82,11 @@ class CommonErrors:
 
     def _points(self, row: int, uv: Array, sweep: Index) -> Array:
         rays = camera_of(self.cameras[row], self.image_size).rays(uv)
-        points: Array = rays / np.einsum("ni,ni->n", rays, self.planes(sweep, row))[:, None]
+        pis = self.planes(sweep, row)
+        if self.bends is not None and self.bends[row].any():
+            mine = sweep < 0
+            pis[mine] = bent_pis(pis[mine], self.bends[row][FAN - sweep[mine]], rays[mine])
+        points: Array = rays / np.einsum("ni,ni->n", rays, pis)[:, None]
         return points
 
 
@@ -114,4 +124,13 @@ def solve_common(
         np.array([parameters_of(camera), *(parameters_of(one.camera) for one in deviations)]),
         np.array([fan.pis, *(one.fan.pis for one in deviations)]),
         np.array(sweeps),
+        _bends(fan, deviations),
     )
+
+
+def _bends(fan: Fan, deviations: Sequence[Deviation]) -> Array | None:
+    forms = [one.fan.bends for one in deviations]
+    if all(form is None for form in forms):
+        return None
+    flat = np.zeros((fan.lines, 3, 3))
+    return np.array([flat, *(flat if form is None else form for form in forms)])

@@ -115,7 +115,9 @@ def _render(scenario: Scenario, rig: Rig, made: Path, hidden: Path, progress: Pr
 def scenario_rig(scenario: Scenario) -> Rig:
     """The rig of a scenario."""
     optics = replace(Optics(), speckle_contrast=scenario.speckle)
-    return paper_rig(scenario.scale, published_planes=scenario.published_planes, optics=optics)
+    return paper_rig(
+        scenario.scale, published_planes=scenario.published_planes, optics=optics, fan_bow=scenario.fan_bow
+    )
 
 
 def scan_of(scenario: Scenario, rig: Rig | None = None) -> tuple[ScanStage, list[Sheet], dict[str, object]]:

@@ -88,6 +88,9 @@ class Beam:
         Angle in rad from the middle of the sheet at which the light has fallen to 1/e².
     peak_grey
         8-bit grey levels at the crest at the focus, on a white surface facing the laser, before the lens blurs it.
+    bow
+        Of a line lens that makes no plane: the light φ rad beside the camera's viewing direction, seen from the
+        emitter, leaves the plane by ½ · bow · φ² rad (its "smile"); 0 for a plane.
     """
 
     sigma_mm: float = 0.22
@@ -95,6 +98,7 @@ class Beam:
     wavelength_mm: float = 650e-6
     half_angle: float = np.radians(60.0)
     peak_grey: float = 300.0
+    bow: float = 0.0
 
     @property
     def rayleigh_mm(self) -> float:
@@ -161,7 +165,9 @@ def pencil_fan() -> Fan:
     return Fan(tuple(planes))
 
 
-def paper_rig(scale: float = 1.0, *, published_planes: bool = False, optics: Optics | None = None) -> Rig:
+def paper_rig(
+    scale: float = 1.0, *, published_planes: bool = False, optics: Optics | None = None, fan_bow: float = 0.0
+) -> Rig:
     """Make the paper's rig with pictures resized by `scale` (0.5 gives 1920 × 1374).
 
     Parameters
@@ -172,10 +178,13 @@ def paper_rig(scale: float = 1.0, *, published_planes: bool = False, optics: Opt
         Take eq. (6) as printed (4.929°, 4.919°) instead of the exact 5° pencil nearest to it.
     optics
         Lens, speckle and noise; the default is a usual industrial camera.
+    fan_bow
+        Bow of the fan's sheets, see `Beam`.
     """
     camera = Camera(FULL_SIZE, np.array(FULL_MATRIX), np.array(DISTORTION)).scaled(scale)
     fan = published_fan() if published_planes else pencil_fan()
     point, direction = fan_axis(fan)
     emitter = point + direction * (FAN_EMITTER_X_MM / direction[0])
     beam = Beam(focus_mm=FAN_FOCUS_MM)
-    return Rig(camera, fan, emitter, scale, optics or Optics(), beam, replace(beam, focus_mm=SWEEP_FOCUS_MM))
+    swept = replace(beam, focus_mm=SWEEP_FOCUS_MM)
+    return Rig(camera, fan, emitter, scale, optics or Optics(), replace(beam, bow=fan_bow), swept)

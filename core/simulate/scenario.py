@@ -51,6 +51,9 @@ class Scenario:
         Kinds of plates, as in rig.toml.
     published_planes
         Take the paper's eq. (6) as printed, angles 4.929° and 4.919°, instead of an exact 5° pencil.
+    fan_bow
+        How the fan's sheets leave their planes: `core.simulate.rig.Beam.bow`. At 0.05 its lines are bent by about
+        0.3 mm over the objects.
     reference
         Write scan/reference.png, the fan alone.
     yaw_deg, right_mm, away_mm
@@ -72,6 +75,7 @@ class Scenario:
     camera_target: str = "checkerboard"
     plane_target: str = "black_square"
     published_planes: bool = False
+    fan_bow: float = 0.0
     reference: bool = True
     stl_path: str = ""
     yaw_deg: float = YAW_DEG
@@ -107,6 +111,7 @@ class Scenario:
             ("speckle", 0.0, 2.0),
             ("ambient_grey", 0.0, 250.0),
             ("texture", 0.0, 0.3),
+            ("fan_bow", -0.5, 0.5),
             ("yaw_deg", -180.0, 180.0),
             ("right_mm", -60.0, 60.0),
             ("away_mm", -60.0, 60.0),

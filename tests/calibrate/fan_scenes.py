@@ -66,8 +66,12 @@ def stripe(
     rng: np.random.Generator,
     reach: float = 70.0,
     shape: BoardShape | None = None,
+    bow: float = 0.0,
 ) -> Centreline:
-    """The centreline of a light plane on the target, points about one pixel apart, within `reach` mm of its middle."""
+    """The centreline of a light plane on the target, points about one pixel apart, within `reach` mm of its middle.
+
+    Light with a `bow` in 1/mm leaves its plane by bow · x² mm.
+    """
     normal = pose.rotation[:, 2]
     direction = np.cross(pi, normal)
     direction /= np.linalg.norm(direction)
@@ -77,10 +81,13 @@ def stripe(
     system = np.array([pi, normal, direction])
     foot = np.linalg.solve(system, [1.0, normal @ pose.translation, direction @ middle])
     points = foot + np.linspace(-reach, reach, int(2 * reach * CAMERA.focal / foot[2]))[:, None] * direction
-    if shape is not None:
+    if shape is not None or bow:
         for _ in range(4):
-            height = shape.shaped(pose.inverse().apply(points) * [1, 1, 0])[:, 2]
-            known = np.column_stack([np.ones(len(points)), normal @ pose.translation + height, points @ direction])
+            height = 0.0 if shape is None else shape.shaped(pose.inverse().apply(points) * [1, 1, 0])[:, 2]
+            lit = 1 + np.linalg.norm(pi) * bow * points[:, 0] ** 2
+            known = np.column_stack(
+                [lit, np.broadcast_to(normal @ pose.translation + height, len(points)), points @ direction]
+            )
             points = np.linalg.solve(system, known.T).T
     uv = CAMERA.project(points)
     inside = ((uv > 4) & (uv < np.array(CAMERA.image_size) - 5)).all(axis=1)
@@ -112,11 +119,12 @@ def features(
     flatness_mm: float = 0.0,
     shape: BoardShape | None = None,
     scatter_mm: float = 0.0,
+    bow: float = 0.0,
 ) -> list[PoseFeatures]:
     """What pictures of the poses would show; the stripes in an order that tells nothing.
 
     `flatness_mm` is how far each stripe's place on the plate is off its plane, `scatter_mm` how far the plate itself is
-    from where its points say, in the middle and by either tilt at its edges.
+    from where its points say, in the middle and by either tilt at its edges. `bow` is the light's, as of `stripe`.
     """
     rng = np.random.default_rng(seed)
     found = []
@@ -128,7 +136,7 @@ def features(
         truly = displaced(pose, *rng.normal(0, scatter_mm, 3)) if scatter_mm else pose
         for pi in pis:
             bent = Pose(truly.rotation, truly.translation + truly.rotation[:, 2] * rng.normal(0, flatness_mm))
-            lines.append(stripe(pi, bent, noise, rng, shape=shape))
+            lines.append(stripe(pi, bent, noise, rng, shape=shape, bow=bow))
         rng.shuffle(lines)
         found.append(PoseFeatures(f"p{number}", view, tuple(lines)))
     return found

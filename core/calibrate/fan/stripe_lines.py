@@ -40,7 +40,8 @@ class StripeLine:
     A straight-line fit to many points weighs exactly as two points one standard deviation of the spread either side
     of the centroid, each with half of all weight. `pivots` (2, 3) are these two rays and `sigma` is the standard
     uncertainty of each across the line, in ray units (mm per mm of depth), from the scatter of the data, grain of
-    the speckle included. `across` (2,) is the unit normal of the line in (x, y). `rays` (N, 3) are all its points,
+    the speckle included; `noise` is that of a single point, as it was stated (RMS). `across` (2,) is the unit
+    normal of the line in (x, y). `rays` (N, 3) are all its points,
     `uv` (N, 2) where they were seen in pixels. `saturated` is the share of points whose section is saturated.
     `moments` (3, N) are the weights with which the points' offsets across the line give its offset, slope and bend, in
     standard deviations of the spread: of these a straight line has but the first two, and `bend` in ray units is what
@@ -57,6 +58,7 @@ class StripeLine:
     moments: Array
     bend: float
     by_camera: Array
+    noise: float
 
     def __len__(self) -> int:
         return len(self.rays)
@@ -185,7 +187,8 @@ def _fit(chunks: _Chunks, members: NDArray[np.intp], camera: Camera) -> StripeLi
     moved, turned, bent = moments @ shifts
     by_camera = np.array([moved - turned, moved + turned, bent])
     bend = float(moments[2] @ ((xy - centre) @ across))
-    return StripeLine(pivots, sigma_of_pivots, across, rays, uv, saturated, moments, bend, by_camera)
+    noise = float(np.sqrt(np.mean(sigma**2)))
+    return StripeLine(pivots, sigma_of_pivots, across, rays, uv, saturated, moments, bend, by_camera, noise)
 
 
 def _offset_slope_and_bend(t: Array, weight: Array) -> Array:

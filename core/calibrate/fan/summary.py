@@ -11,6 +11,7 @@ import numpy as np
 from core.calibrate.board_shape import BoardShape
 from core.calibrate.fan.bundle import SCATTERED, Bundle
 from core.calibrate.fan.located_pose import LocatedPose
+from core.calibrate.fan.straightness import bends_of, judge_lines, notes_on_lines, off_planes_mm
 from core.calibrate.fan.target_plane import on_target
 from core.calibrate.fan.verdict import Verdict, fan_of
 from core.calibrate.results import LEFT_OUT, FanCalibration, PlanePose
@@ -48,6 +49,13 @@ def summarise(
         else replace(_plane_pose(pose, None, pis, used.shape), rms_mm=_distance_left_out(pose, pis))
         for pose in located
     )
+    lines = judge_lines(located, used.poses, pis, used.shape)
+    bends, bent_mm = None, 0.0
+    if lines.systematic:
+        points = [np.concatenate([pose.points[line] for pose in poses]) for line in range(len(pis))]
+        distances = [np.concatenate([pose.distances[line] for pose in poses]) for line in range(len(pis))]
+        bends = bends_of(points, distances, pis)
+        bent_mm = off_planes_mm(points, bends)
     free_fan = fan_of(free.planes, free.covariance)
     return FanCalibration(
         fan=fan_of(used.planes, used.covariance),
@@ -62,7 +70,8 @@ def summarise(
         notes=(
             *notes,
             *_notes(located, poses),
-            *_notes_on_scatter(prediction_errors, used.expected_mm),
+            *notes_on_lines(lines),
+            *_notes_on_scatter(prediction_errors, max(used.expected_mm, bent_mm)),
             *_notes_on_predictions(poses),
             *_notes_on_bow(used.shape),
         ),
@@ -72,6 +81,7 @@ def summarise(
         by_camera=used.by_camera,
         cross_validation_mm=float(np.sqrt(np.mean(prediction_errors**2))),
         board=used.shape,
+        bends=bends,
     )
 
 

@@ -78,6 +78,7 @@ class _PlanesFile(ResultFile):
     cross_validation_mm: OrNan = math.nan
     camera: _Camera | None = None
     board: BoardTable | None = None
+    bends: list[Annotated[list[Row3], Field(min_length=3, max_length=3)]] | None = None
     pencil_gap_mm: OrNan = math.nan
     constraint_suits: bool | None = None
     verdict: OptionalMessage = None
@@ -106,6 +107,16 @@ class _PlanesFile(ResultFile):
                     "is not {size} × {parameters} numbers, as {planes} planes need",
                     size=size,
                     parameters=_PARAMETERS,
+                    planes=len(self.planes),
+                ),
+            )
+        if self.bends is not None and len(self.bends) != len(self.planes):
+            raise Clash(
+                "bends",
+                Message(
+                    "fan.bends_count",
+                    "has {bends} matrices for {planes} planes",
+                    bends=len(self.bends),
                     planes=len(self.planes),
                 ),
             )
@@ -155,6 +166,7 @@ def write_fan(path: Path, calibration: FanCalibration, camera: Camera) -> None:
             "scale_sd": calibration.scale_sd,
             "camera": _corrected_camera(calibration),
             "board": board_table(calibration.board) if calibration.board.values.any() else None,
+            "bends": calibration.bends,
             "poses": [_pose(pose) for pose in calibration.poses],
         },
     )
@@ -216,6 +228,7 @@ def read_fan(path: Path, camera: Camera) -> FanCalibration:
         camera=_camera(path, file.camera, camera.image_size),
         camera_covariance=None if file.camera is None else np.array(file.camera.covariance),
         board=board_shape(file.board),
+        bends=None if file.bends is None else np.array(file.bends),
     )
 
 

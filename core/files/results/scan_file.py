@@ -108,6 +108,7 @@ def write_scan(path: Path, scan: ScanFile) -> None:
         "notes": pack_messages(features.notes),
         "stripes": _stripes(features.fan_stripe, features.sweep_stripe),
         **({f"common_{name}": np.asarray(getattr(common, name)) for name in _COMMON} if common else {}),
+        **({} if common is None or common.bends is None else {"common_bends": common.bends}),
         **({f"speckle_{name}": getattr(speckle, name) for name in _SPECKLE} if speckle else {}),
         **{f"crossing_{name}": np.asarray(getattr(crossings, name)) for name in _CROSSINGS},
         **pack_centrelines("fan", [features.fan]),
@@ -180,7 +181,7 @@ def _common(arrays: Arrays, image_size: tuple[int, int]) -> CommonErrors | None:
         return None
     cameras, fans, sweeps = (arrays[f"common_{name}"] for name in _COMMON[1:])
     sources = tuple(_OLDER_SOURCES.get(name, name) for name in arrays["common_sources"].tolist())
-    common = CommonErrors(image_size, sources, cameras, fans, sweeps)
+    common = CommonErrors(image_size, sources, cameras, fans, sweeps, arrays.get("common_bends"))
     if common.sweeps.shape[1] != len(arrays["sweep_frames"]):
         raise ValueError(f"common_sweeps holds {common.sweeps.shape[1]} sweeps, not {len(arrays['sweep_frames'])}")
     return common

@@ -62,7 +62,7 @@ class Generalised:
 
 def generalised_fit(design: Array, misfit: Array, sources: Sources) -> Generalised:
     """Robust generalised least squares of `misfit` (J,) = `design` (J, p) · β with the errors of `sources`."""
-    effects = np.hstack([sources.speckle, sources.sweeps, sources.common, sources.form])
+    effects = np.hstack([sources.speckle, sources.sweeps, sources.explained, sources.form])
     fixed, first_form = design.shape[1], effects.shape[1] - sources.form.shape[1]
     weights, factor = np.ones(len(misfit)), np.ones(2)
     group = sources.of_fan.astype(np.int64)

@@ -15,6 +15,7 @@ SAMPLING = Message("inspection.cause_sampling", "which stripes were scanned (ran
 
 CAMERA = Message("inspection.cause_camera", "camera calibration")
 FAN_CALIBRATION = Message("inspection.cause_fan", "fan calibration")
+BENT_LIGHT = Message("inspection.cause_bent_light", "light of the fan that lies in no planes")
 SCALE = Message("inspection.cause_scale", "scale of the targets")
 
 PART_TEMPERATURE = Message("inspection.cause_part_temperature", "temperature of the part")
@@ -30,7 +31,7 @@ REPEATABILITY = Message("study.cause_repeatability", "repeatability of the scans
 STATED = Message("study.cause_stated", "uncertainty stated by each scan, as if common to all")
 GIVEN = Message("study.cause_given", "common to all scans, as given")
 
-CALIBRATIONS: Mapping[str, Message] = {"camera": CAMERA, "fan": FAN_CALIBRATION, "scale": SCALE}
+CALIBRATIONS: Mapping[str, Message] = {"camera": CAMERA, "fan": FAN_CALIBRATION, "bend": BENT_LIGHT, "scale": SCALE}
 """By the sources of `core.calibrate.deviations`: what errs in all points of a scan at once."""
 
 _ALL = [one for one in list(globals().values()) if isinstance(one, Message)]

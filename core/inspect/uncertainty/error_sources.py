@@ -21,6 +21,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from core.calibrate.deviations import UNEXPLAINED
 from core.inspect.uncertainty.point_errors import PointErrors
 from core.model.arrays import Array
 from core.scan.network.fan_speckle import FanSpeckle
@@ -50,6 +51,12 @@ class Sources:
     sweeps: Array  # (J, 3S)
     common: Array  # (J, K)
     form: Array  # (J, patches)
+    unexplained: NDArray[np.bool_]  # (K,) common errors whose law is not known: a fit must not take them out
+
+    @property
+    def explained(self) -> Array:
+        """(J, K′) effects of the common errors that a fit may estimate from the points."""
+        return np.asarray(self.common[:, ~self.unexplained])
 
     @classmethod
     def of(
@@ -117,6 +124,7 @@ class Sources:
             sweeps,
             _of_common(cloud, direction, mean, errors, count),
             form,
+            np.array([source == UNEXPLAINED for source in errors.sources], dtype=np.bool_),
         )
 
     def mean(self, values: Array) -> Array:

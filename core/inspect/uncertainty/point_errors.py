@@ -75,7 +75,12 @@ class PointErrors:
     @property
     def calibrations(self) -> tuple[Message, ...]:
         """(K,) which calibration each of the common errors comes from; none where they are not known."""
-        return () if self.common is None else tuple(CALIBRATIONS[source] for source in self.common.sources)
+        return tuple(CALIBRATIONS[source] for source in self.sources)
+
+    @property
+    def sources(self) -> tuple[Source, ...]:
+        """(K,) the same as `core.calibrate.deviations` names them."""
+        return () if self.common is None else self.common.sources
 
     def knows(self, source: Source) -> bool:
         """Whether the errors of that calibration are among them."""

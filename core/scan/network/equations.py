@@ -216,7 +216,7 @@ class Adjustment:
         return np.asarray(pis[table.a] - other)
 
     def _fan_pis(self) -> Array:
-        return self.fan.pis[np.maximum(self.line, 0)]
+        return self.fan.pis_at(np.maximum(self.line, 0), self.geometry.rays)
 
 
 def _within(offsets: Array, variances: Array) -> Array:

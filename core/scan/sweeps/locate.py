@@ -181,7 +181,7 @@ def locate_each(
         rows = np.flatnonzero((crossings.a == frame) & crossings.with_fan)
         if len(rows) < 3:
             continue
-        fan_pis = fan.pis[line[rows]]
+        fan_pis = fan.pis_at(line[rows], geometry.rays[rows])
         inverse_depths = np.einsum("mi,mi->m", geometry.rays[rows], fan_pis)
         # The sweep's own plane is not known yet; half the fan's gradient stands for the difference of the two.
         gradient = inverse_depth_gradient(fan_pis, geometry.jacobians[rows])

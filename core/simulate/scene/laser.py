@@ -27,6 +27,8 @@ REACH_SIGMAS = 4.5
 """σ from the sheet's middle beyond which light is left out: 4e-5 of the crest."""
 FARTHEST_FROM_FOCUS_MM = 400.0
 """Distance from its focus at which a sheet is rendered at most; its width there is looked at."""
+BOW_SEEN_TO = 0.6
+"""Angle in rad beside the camera's viewing direction to which the light of a bowed sheet is rendered."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -46,6 +48,18 @@ class Sheet:
         set_field(self, "emitter", frozen_array(emitter, (3,), "emitter"))
         set_field(self, "axis", frozen_array(axis / np.linalg.norm(axis), (3,), "axis"))
 
+    def off_light(self, points: Array) -> Array:
+        """Signed distances (N,) in mm of `points` (N, 3) from the middle of the light, bowed or in its plane."""
+        off = self.plane.distances(points)
+        if not self.beam.bow:
+            return off
+        normal = self.plane.normal
+        ahead = np.array([0.0, 0.0, 1.0]) - normal[2] * normal
+        ahead /= np.linalg.norm(ahead)
+        towards = points - self.emitter
+        angle = np.arctan2(towards @ np.cross(normal, ahead), towards @ ahead)
+        return np.asarray(off - 0.5 * self.beam.bow * angle**2 * np.linalg.norm(towards, axis=1), dtype=np.float64)
+
 
 def fan_sheets(rig: Rig, aim: Array) -> tuple[Sheet, ...]:
     """Make the sheets of the rig's fan, line 1 … N, their middles turned towards the point `aim` (3,) in mm."""
@@ -60,22 +74,28 @@ def laser_light(sheet: Sheet, scene: Scene, maps: SurfaceMaps, out: Map | None =
     light = np.zeros(maps.albedo.shape, np.float32) if out is None else out
     beam = sheet.beam
     widest = beam.sigma_mm * np.hypot(1, max(1.0, FARTHEST_FROM_FOCUS_MM / beam.rayleigh_mm))
-    v, u = _near(maps, sheet.plane, REACH_SIGMAS * widest)
+    reach = REACH_SIGMAS * widest + _largest_bow(beam)
+    v, u = _near(maps, sheet.plane, reach)
     points = maps.points[v, u].astype(np.float64)
     towards = points - sheet.emitter
     rho = np.linalg.norm(towards, axis=1)
     cosine = -np.einsum("ni,ni->n", towards, maps.normals[v, u]) / rho
     lit = cosine > 0
     v, u, points, towards, rho, cosine = v[lit], u[lit], points[lit], towards[lit], rho[lit], cosine[lit]
-    caster = ShadowCaster.near_plane(scene, sheet.plane, sheet.emitter, sheet.axis, REACH_SIGMAS * widest)
+    caster = ShadowCaster.near_plane(scene, sheet.plane, sheet.emitter, sheet.axis, reach)
     open_sky = caster.sees(points)
     sigma = beam.sigma_mm * np.hypot(1, (rho - beam.focus_mm) / beam.rayleigh_mm)
-    off = sheet.plane.distances(points)
+    off = sheet.off_light(points)
     angle = np.arccos(np.clip(towards @ sheet.axis / rho, -1, 1))
     strength = beam.peak_grey * beam.focus_mm * beam.sigma_mm / (rho * sigma)
     profile = np.exp(-0.5 * (off / sigma) ** 2 - 2 * (angle / beam.half_angle) ** 2)
     light[v, u] += (strength * profile * cosine * maps.albedo[v, u] * open_sky).astype(np.float32)
     return light
+
+
+def _largest_bow(beam: Beam) -> float:
+    """How far in mm the light of a beam leaves its plane at most, where anything is looked at."""
+    return 0.5 * abs(beam.bow) * BOW_SEEN_TO**2 * (beam.focus_mm + FARTHEST_FROM_FOCUS_MM)
 
 
 def _near(maps: SurfaceMaps, plane: LightPlane, reach: float) -> tuple[NDArray[np.intp], NDArray[np.intp]]:

@@ -1,0 +1,164 @@
+"""Judgement of what a fit leaves over, in one way for every fit of the program.
+
+Three questions are asked of residuals. Are they as large as their stated uncertainty (χ²)? Do neighbours along a line
+or in a picture err together (runs of one sign)? And have all groups that err on their own (stripes, views, sweeps) one
+pattern in common, along the line or over the picture, which no noise has? The last is what a model that is wrong leaves
+and what more of the same pictures never averages out.
+
+Whether a pattern is there is tested by turning the signs of whole groups round: without one, each group might as well
+have come out the other way. That asks for no law of the noise, and neighbours within a group may err together.
+
+References
+----------
+Winkler, A. M. et al., Permutation inference for the general linear model, NeuroImage 92 (2014) 381–397,
+doi:10.1016/j.neuroimage.2014.01.060 (sign flipping).
+Wald, A. & Wolfowitz, J., Ann. Math. Statist. 11 (1940) 147–162, doi:10.1214/aoms/1177731909 (runs).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.model.arrays import Array
+
+SIGNIFICANT = 0.01
+"""A pattern that turned signs show more often than this is chance."""
+_FLIPS = 1999
+"""Random turns of the groups' signs; with few groups there are no more than 2^(groups − 1)."""
+_INDEPENDENT_RUN = 2.0
+"""Mean number of independent residuals in a row that have one sign."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Residuals:
+    """N residuals of one fit, observed − predicted, in any one unit.
+
+    Parameters
+    ----------
+    values
+        (N,) signed.
+    expected
+        (N,) their standard uncertainty as stated.
+    group
+        (N,) number of the stripe, view or sweep each is of: what errs on its own. Rows of a group stand in their order
+        along it.
+    cell
+        (N,) number of the place along the line or in the picture, from 0.
+    """
+
+    values: Array
+    expected: Array
+    group: NDArray[np.intp]
+    cell: NDArray[np.intp]
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Judgement:
+    """What residuals say of their fit.
+
+    Parameters
+    ----------
+    rms, expected
+        Root mean squares of the residuals and of their stated uncertainty, in their unit.
+    run_length
+        Mean number in a row of one sign, 2 where neighbours err on their own.
+    profile
+        (C,) mean of all groups in each cell, NaN where nothing is.
+    p
+        Probability of so strong a pattern by chance alone; 1 with too few groups to tell.
+    systematic
+        RMS of the pattern that groups have in common, less what chance adds to it, in the residuals' unit; 0 where
+        chance explains it.
+    """
+
+    rms: float
+    expected: float
+    run_length: float
+    profile: Array
+    p: float
+    systematic: float
+
+    @property
+    def times(self) -> float:
+        """How many times as large as stated the residuals are, √(χ²/N)."""
+        return self.rms / max(self.expected, 1e-300)
+
+    @property
+    def together(self) -> float:
+        """How many neighbours err as one: 1 where each errs on its own."""
+        return self.run_length / _INDEPENDENT_RUN
+
+
+def judge_residuals(residuals: Residuals, seed: int = 0) -> Judgement:
+    """Compare residuals with their stated uncertainty and look for runs and for a pattern common to all groups."""
+    values, group = residuals.values, np.unique(residuals.group, return_inverse=True)[1]
+    if not len(values):
+        return Judgement(np.nan, np.nan, np.nan, np.zeros(0), 1.0, 0.0)
+    groups, cells = int(group.max()) + 1, int(residuals.cell.max()) + 1
+    sums = np.zeros((groups, cells))
+    np.add.at(sums, (group, residuals.cell), values)
+    count = np.bincount(residuals.cell, minlength=cells)
+    scaled = sums / np.sqrt(np.maximum(count, 1))
+    seen = float((scaled.sum(axis=0) ** 2).sum())
+    p = _chance(scaled, seen, np.random.default_rng(seed))
+    by_chance = float((scaled**2).sum())
+    square = (seen - by_chance) / len(values) / (1 - 1 / max(groups, 2))
+    return Judgement(
+        rms=_rms(values),
+        expected=_rms(residuals.expected),
+        run_length=_run_length(values, group),
+        profile=np.where(count > 0, sums.sum(axis=0) / np.maximum(count, 1), np.nan),
+        p=p,
+        systematic=float(np.sqrt(max(square, 0.0))) if p < SIGNIFICANT else 0.0,
+    )
+
+
+def along_line(place: Array, cells: int) -> NDArray[np.intp]:
+    """Number the places (N,) along one line by equal parts from its first to its last."""
+    low, high = float(place.min()), float(place.max())
+    return _cell((place - low) / max(high - low, 1e-300), cells)
+
+
+def without_line(place: Array, values: Array) -> Array:
+    """Residuals (N,) along a line less their own offset and slope by `place` (N,): how the line is bent."""
+    off = place - place.mean()
+    slope = float(off @ values) / max(float(off @ off), 1e-300)
+    return np.asarray(values - values.mean() - slope * off, dtype=np.float64)
+
+
+def over_picture(uv: Array, size: tuple[int, int], grid: tuple[int, int]) -> NDArray[np.intp]:
+    """Number the cells of a `grid` (columns, rows) over a picture of `size` (width, height) that `uv` (N, 2) are in."""
+    columns = _cell((uv[:, 0] + 0.5) / size[0], grid[0])
+    return columns + grid[0] * _cell((uv[:, 1] + 0.5) / size[1], grid[1])
+
+
+def _cell(share: Array, cells: int) -> NDArray[np.intp]:
+    return np.asarray(np.clip(np.floor(share * cells), 0, cells - 1), dtype=np.intp)
+
+
+def _chance(scaled: Array, seen: float, rng: np.random.Generator) -> float:
+    """Share of turned signs of the groups (G, C) that show as strong a pattern as was seen."""
+    groups = len(scaled)
+    if 2.0 ** (1 - groups) >= SIGNIFICANT:
+        return 1.0
+    if 2 ** (groups - 1) <= _FLIPS:
+        signs = 1.0 - 2.0 * ((np.arange(2 ** (groups - 1))[:, None] >> np.arange(groups)) & 1)
+        extra = 0
+    else:
+        signs = rng.choice([-1.0, 1.0], (_FLIPS, groups))
+        extra = 1  # the signs as they were seen
+    strength = ((signs @ scaled) ** 2).sum(axis=1)
+    return float((np.count_nonzero(strength >= seen * (1 - 1e-9)) + extra) / (len(signs) + extra))
+
+
+def _run_length(values: Array, group: NDArray[np.intp]) -> float:
+    positive = values > 0
+    breaks = (positive[1:] != positive[:-1]) | (group[1:] != group[:-1])
+    return len(values) / (1 + int(np.count_nonzero(breaks)))
+
+
+def _rms(values: Array) -> float:
+    return float(np.sqrt(np.mean(values**2)))

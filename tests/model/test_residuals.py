@@ -1,0 +1,66 @@
+"""Judgement of residuals: noise is called noise, however long its grain, and a common pattern is found."""
+
+import numpy as np
+import pytest
+from scipy.ndimage import gaussian_filter1d
+
+from core.model.residuals import Judgement, Residuals, along_line, judge_residuals, over_picture, without_line
+
+T = np.linspace(-1, 1, 140)
+
+
+def judged(seed: int, groups: int = 12, bend: float = 0.0, grain: float = 0.0) -> Judgement:
+    """Of lines with noise of 0.1 mm, half of which is stated, and a common bend in mm."""
+    rng = np.random.default_rng(seed)
+    noise = rng.normal(size=(groups, len(T)))
+    if grain:
+        noise = gaussian_filter1d(noise, grain, axis=1) * np.sqrt(2 * np.sqrt(np.pi) * grain)
+    values = np.array([without_line(T, 0.1 * own + bend * (T**2 - 1 / 3)) for own in noise])
+    return judge_residuals(
+        Residuals(
+            values.ravel(),
+            np.full(values.size, 0.05),
+            np.repeat(np.arange(groups), len(T)),
+            np.tile(along_line(T, 7), groups),
+        )
+    )
+
+
+def test_residuals_twice_as_large_as_stated_are_told_as_that():
+    assert judged(1).times == pytest.approx(2, rel=0.05)
+    assert judged(1).together == pytest.approx(1, rel=0.1)
+
+
+def test_neighbours_that_err_together_are_seen_as_runs_and_not_as_a_pattern():
+    found = judged(2, grain=6.0)
+    assert found.together > 3
+    assert found.systematic == 0
+
+
+def test_chance_is_called_a_pattern_as_rarely_as_stated():
+    accused = sum(judged(seed, grain=6.0).p < 0.05 for seed in range(200))
+    assert 1 <= accused <= 22
+
+
+def test_a_common_bend_is_found_with_its_size():
+    found = judged(3, bend=0.1, grain=2.0)
+    assert found.p < 0.005
+    assert found.systematic == pytest.approx(0.1 * np.sqrt(4 / 45), rel=0.25)
+    assert found.profile[0] > 0 > found.profile[3]
+
+
+def test_a_bend_with_another_sign_in_each_group_is_no_common_pattern():
+    rng = np.random.default_rng(4)
+    values = np.array([sign * (T**2 - 1 / 3) for sign in rng.choice([-1.0, 1.0], 14)])
+    group, cell = np.repeat(np.arange(14), len(T)), np.tile(along_line(T, 7), 14)
+    assert judge_residuals(Residuals(values.ravel(), np.ones(values.size), group, cell)).systematic == 0
+
+
+def test_few_groups_accuse_nobody():
+    assert judged(5, groups=5, bend=1.0).p == 1
+    assert judged(5, groups=8, bend=1.0).p < 0.01
+
+
+def test_places_in_a_picture_are_numbered_row_by_row():
+    uv = np.array([[0.0, 0.0], [99.0, 0.0], [0.0, 49.0], [99.0, 49.0], [40.0, 24.0]])
+    assert over_picture(uv, (100, 50), (4, 2)).tolist() == [0, 3, 4, 7, 1]
