@@ -14,7 +14,8 @@ from core.model.arrays import Array, frozen_array, set_field
 class Centreline:
     """One unbroken run of stripe points, in order along the stripe, about one pixel apart.
 
-    A stripe cut by a depth edge or a dark gap gives several centrelines.
+    A stripe cut by a depth edge or a dark gap gives several centrelines. Neighbouring points are further apart only
+    across dark grains and where another stripe crosses (`core.image.stripes.holes`); each lies ahead of the one before.
 
     Parameters
     ----------

@@ -41,6 +41,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.image.stripes.centreline import Centreline
+from core.image.stripes.holes import unbroken_parts
 from core.image.stripes.joining import joined_at_crossings
 from core.image.stripes.likelihood.influence import REACH
 from core.image.stripes.likelihood.refinement import Refined
@@ -122,10 +123,15 @@ def extract_centrelines(
     placed = estimate_positions(picture, state, pieces, clear, settings, noise)
     correlation = max([line.correlation_px for line in placed], default=correlation_length_px(settings))
     excess = roughness([p.judged(line.run, line.sigma) for p, line in zip(pieces, placed, strict=True)], correlation)
+    enough = [k for k, near in enumerate(apart) if np.count_nonzero(near > pulled) >= shortest]
+    lines = [placed[k].run[apart[k] > pulled] for k in enough]
     found = [
-        _centreline(piece, line, extra, near > pulled)
-        for piece, line, extra, near in zip(pieces, placed, excess, apart, strict=True)
-        if np.count_nonzero(near > pulled) >= shortest
+        _centreline(pieces[k], placed[k], excess[k], part)
+        for n, k in enumerate(enough)
+        for part in unbroken_parts(
+            placed[k].run, apart[k] > pulled, settings.filter_px, state, lines[:n] + lines[n + 1 :]
+        )
+        if len(part) >= shortest
     ]
     return tuple(sorted(found, key=len, reverse=True))
 
@@ -180,9 +186,8 @@ def _smooth_pieces(
     return pieces
 
 
-def _centreline(piece: Piece, line: Refined, extra: float, keep: NDArray[np.bool_]) -> Centreline:
-    """The points of a placed piece that are to be kept; `extra` is their scatter in px beyond the law."""
-    part = slice(None) if keep.all() else keep
+def _centreline(piece: Piece, line: Refined, extra: float, part: NDArray[np.intp]) -> Centreline:
+    """A `part` of the points of a placed piece; `extra` is their scatter in px beyond the law."""
     return Centreline(
         line.run[part, :2],
         line.run[part, 2:4],

@@ -148,10 +148,10 @@ def _crosses_light(gap: _Gap, gaps: list[_Gap], pieces: list[Piece], hole: float
     own = {end.piece for end in gap.ends}
     others = [piece.run for k, piece in enumerate(pieces) if k not in own]
     others += [other.bridge for other in gaps if not own & {end.piece for end in other.ends}]
-    return any(_cross(gap.bridge, other, hole) for other in others)
+    return any(crosses(gap.bridge, other, hole) for other in others)
 
 
-def _cross(bridge: Array, line: Array, hole: float) -> bool:
+def crosses(bridge: Array, line: Array, hole: float) -> bool:
     """Whether a line (M, ≥ 2) passes from one side of a `bridge`, nearly straight, to the other; `hole` px are none."""
     start, chord = bridge[0, :2], bridge[-1, :2] - bridge[0, :2]
     x = line[:, :2] - start

@@ -27,6 +27,10 @@ at once) and all points stay Steger's. Held by tests/image/stripes/likelihood/te
 _UNUSABLE_WEIGHT = 0.02
 """Of saturated points in the smooth curve, 1 for the others: enough to hold it where all are saturated. Set by rendered
 plates, where a curve without them swung up to 4 px astray; tests/image/test_rendered_lines.py holds it."""
+_LARGEST_MOVE = 1.0
+"""Stripe σ between a point of Steger's and the likeliest one: beyond, that is on something else, and Steger's stays."""
+_LARGEST_BEND_PULL = 0.5
+"""Filter σ of the correction for a bend: beyond, the bend is tighter than the filter, and is none of a stripe."""
 _SIGNIFICANT_SLOPE = 3.0  # standard uncertainties: smaller slopes of the background are not corrected for
 _LARGEST_SLOPE_PULL_PX = 0.5  # of such a correction: more is no pull on a line but another line
 
@@ -129,13 +133,22 @@ def _disagreement_px(differences: list[tuple[int, float, float]], correlation: f
 
 def _joined(piece: Piece, line: Refined, better: Refined) -> Refined:
     """The better line, and the other one, as rough as it is, where that has no points."""
-    there = np.isfinite(better.sigma)
+    there = np.isfinite(better.sigma) & _is_near(line.run, better.run, piece.profiles.width)
     sigma = added_in_squares(better.sigma, FLOOR_PX)
     if there.all():
         return Refined(better.run, sigma, better.correlation_px)
     (extra,) = roughness([piece.judged(line.run, line.sigma)], line.correlation_px)
     run = np.where(there[:, None], better.run, line.run)
     return Refined(run, np.where(there, sigma, added_in_squares(line.sigma, extra)), better.correlation_px)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _is_near(run: Array, better: Array, width: Array) -> NDArray[np.bool_]:
+    """Whether points (N, ≥ 2) of two lines are the same place of a stripe of σ `width` (N,)."""
+    near = np.empty(len(run), dtype=np.bool_)
+    for k in range(len(run)):
+        near[k] = math.hypot(better[k, 0] - run[k, 0], better[k, 1] - run[k, 1]) <= _LARGEST_MOVE * width[k]
+    return near
 
 
 def _steger_line(piece: Piece, curve: Array, settings: StripeSettings, noise: NoiseModel) -> Refined:
@@ -152,6 +165,7 @@ def _bias_corrected(points: Array, curve: Array, light: tuple[Array, Array, Arra
     run, square = curve.copy(), filter_px * filter_px
     for k in range(len(run)):
         shift = run[k, 4] * (square + PIXEL_VARIANCE) / 2
+        shift = min(max(shift, -_LARGEST_BEND_PULL * filter_px), _LARGEST_BEND_PULL * filter_px)
         if height[k] > 0 and abs(slope[k]) > _SIGNIFICANT_SLOPE * slope_sigma[k]:
             both = width[k] * width[k] + square
             tilt = slope[k] * both * math.sqrt(both) / (height[k] * width[k])

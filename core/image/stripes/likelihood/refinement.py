@@ -52,6 +52,7 @@ from core.model.arrays import Array
 _CORE = 1.6  # stripe σ on either side in which speckle is measured
 _ENOUGH = 0.3  # of a window's cuts must be usable, or a point is not refined
 _NEAR = 0.2  # stripe σ: one step from there errs by less than a hundredth of its length, so one is enough
+_FARTHEST = 1.0  # stripe σ: a longer step leads out of the flanks that it is worked out from, to no place of any light
 _HEIGHT_CLASS = 0.1  # logarithm of the height: sections within this step of it use one weight
 _SECTION_SAMPLE = 8  # points: every so many tell a median over sections, which change slowly; saves time
 
@@ -67,7 +68,7 @@ _WINDOW = np.exp(-0.5 * (np.arange(3 * _WINDOW_STEPS + 2) / _WINDOW_STEPS) ** 2)
 class Refined(NamedTuple):
     """Refined points of a stripe (N, 5): u, v, n_u, n_v, curvature in 1/px; their σ (N,) and correlation length in px.
 
-    σ is infinite where too few pixels could be used.
+    σ is infinite where too few pixels could be used, or what they say leads astray.
     """
 
     run: Array
@@ -146,6 +147,8 @@ def _likeliest(
         found = averages(arc, cuts[:, 0], sums, filter_px)
         near = True
         for k in range(len(curve)):
+            if abs(found[k, 0]) > _FARTHEST * light.sections[k, 1]:
+                found[k, 0], found[k, 1] = 0.0, np.inf
             curve[k, 0] += found[k, 0] * curve[k, 2]
             curve[k, 1] += found[k, 0] * curve[k, 3]
             near &= abs(found[k, 0]) < _NEAR * light.sections[k, 1]
