@@ -22,7 +22,7 @@ from typing import Any
 import platformdirs
 from PySide6.QtCore import QMessageLogContext, QObject, QtMsgType, Signal, qInstallMessageHandler
 
-from workbench.language import text_of
+from workbench.language import text_of, tr
 from workbench.work.worker import Failure
 
 log = logging.getLogger("trisect.workbench")
@@ -88,7 +88,7 @@ class Notices(QObject):
     def raised(self, kind: type[BaseException], value: BaseException, trace: TracebackType | None) -> None:
         """An exception nobody caught, on whatever thread: one notice, and the program goes on."""
         details = "".join(traceback.format_exception(kind, value, trace))
-        text = self.tr("Something went wrong in the program; your work is kept. Details: {0}").format(kind.__name__)
+        text = tr("Something went wrong in the program; your work is kept. Details: {details}", details=kind.__name__)
         self._raised.emit(Level.ERROR, text, details)
 
     def catch_everything(self) -> None:

@@ -105,11 +105,11 @@ class _NameAndFolder(QDialog):
         if not name:
             problem = self.tr("Give the project a name.")
         elif target.exists():
-            problem = self.tr("{0} exists already; choose another name.").format(target)
+            problem = tr("{folder} exists already; choose another name.", folder=target)
         else:
             problem = ""
         ok.setEnabled(not problem)
-        self._will.setText(problem or self.tr("The project will be the folder {0}.").format(target))
+        self._will.setText(problem or tr("The project will be the folder {folder}.", folder=target))
 
 
 def file_name(name: str) -> str:

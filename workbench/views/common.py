@@ -15,6 +15,16 @@ def dress(widget: QWidget, sheet: str) -> None:
         widget.setStyleSheet(sheet)
 
 
+def dress_edged(widget: QWidget, colour: str) -> None:
+    """A panel with an edge at its left in one of the theme's colours."""
+    s = shades()
+    dress(
+        widget,
+        f"{type(widget).__name__} {{ background: {s.panel}; border: 1px solid {s.line};"
+        f" border-left: 4px solid {getattr(s, colour)}; border-radius: 4px; }}",
+    )
+
+
 def draw_focus(widget: QWidget) -> None:
     """Frame a widget that has the focus; to be called while it is painted. It leaves a margin of a pixel for it."""
     if widget.hasFocus():

@@ -63,6 +63,21 @@ def finished(step: str, project: Project, results: Mapping[str, Done], at: datet
     return Done(_digest(keys), keys, at or datetime.now().astimezone())
 
 
+FOUND_BY: Mapping[str, tuple[str, ...]] = {
+    "camera": (label("pictures of the camera target"), label("camera target"), label("colour channel")),
+    "planes": (
+        label("camera calibration"), label("pictures of the plane target"), label("plane target"),
+        label("colour channel"),
+    ),
+}  # fmt: skip
+"""Of what a calibration rests on, that which decides what is found in its pictures."""
+
+ACCEPTED: Mapping[str, str] = {
+    "camera": label("accepted camera calibration"), "planes": label("accepted laser planes"),
+}  # fmt: skip
+"""Of what a calibration rests on, that which decides only whether it is accepted."""
+
+
 def _camera(project: Project) -> dict[str, str]:
     camera = project.options.camera
     return {

@@ -126,6 +126,6 @@ class TargetChoice(QObject):
             self._model.project.info.name,
             label=tr("Drawing the target"),
             on_done=lambda done: self._bench.notices.info(
-                tr("The target was written to {0}. Print it at 100 % and measure its rulers.").format(done)
+                tr("The target was written to {path}. Print it at 100 % and measure its rulers.", path=done)
             ),
         )

@@ -21,8 +21,6 @@ class CameraWork(CalibrationWork[SeenViews, CameraCalibration]):
     """
 
     STEP = "camera"
-    FOUND_BY = ("pictures of the camera target", "camera target", "colour channel")
-    ACCEPTED = "accepted camera calibration"
     FIND, SOLVE, FOUND = jobs.FIND_VIEWS, jobs.SOLVE_VIEWS, jobs.FOUND_VIEWS
 
     judgement: ViewsJudgement | None = None

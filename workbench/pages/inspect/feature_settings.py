@@ -17,7 +17,7 @@ def add_limits(form: SettingsForm, spec: FeatureSpec) -> None:
     """Nominal value and permitted deviations of each result."""
     for result, kind in results_of(spec).items():
         unit = "°" if kind.quantity == "angle" else "mm"
-        form.add_section(tr("Asked of the {0}").format(result) if spec.section is None else result)
+        form.add_section(tr("Asked of the {result}", result=result) if spec.section is None else result)
         if kind.one_sided:
             _limit(form, "upper", result, tr("Tolerance"), unit, tr("It may be so large at most; empty: no verdict."))
             continue
@@ -83,7 +83,7 @@ def add_cuts(form: SettingsForm, section: Section) -> None:
     """What is measured in the section."""
     kinds = [("height", tr("height")), ("distance", tr("distance")), ("radius", tr("radius"))]
     for place, cut in enumerate(section.cuts):
-        form.add_section(tr("Measurement {0}").format(place + 1))
+        form.add_section(tr("Measurement {number}", number=place + 1))
         form.add_text(f"cut {place} name", tr("Name"), tr("As it is called in the list and in the report."))
         form.add_choice(f"cut {place} kind", tr("What"), kinds, tr("Of what lies over the stretches below."))
         stretches = ("first",) if cut.kind == "radius" else ("first", "second")

@@ -48,7 +48,7 @@ def tip(row: Characteristic) -> str:
     if row.verdict:
         lines.append(decision_sentence(row))
     if row.rule:
-        lines.append(tr("Rule: {0}.").format(text_of(row.rule)))
+        lines.append(tr("Rule: {rule}.", rule=text_of(row.rule)))
     return "\n".join([*lines, *map(text_of, row.notes)])
 
 
@@ -73,11 +73,11 @@ def class_rows(found: ShownDeviations) -> list[ValueRow]:
     rows: list[ValueRow] = [(tr("Deviation [mm]"), tr("share"), share, "")]
     for one in reversed(found.classes):
         if math.isinf(one.high_mm):
-            span = tr("over {0}").format(f"{one.low_mm:+g}")
+            span = tr("over {low:+g}", low=one.low_mm)
         elif math.isinf(one.low_mm):
-            span = tr("under {0}").format(f"{one.high_mm:+g}".replace("-", "−"))
+            span = tr("under {high:+g}", high=one.high_mm)
         else:
-            span = tr("{0} to {1}").format(*(f"{end:+g}".replace("-", "−") for end in (one.low_mm, one.high_mm)))
+            span = tr("{low:+g} to {high:+g}", low=one.low_mm, high=one.high_mm)
         name = f"{one.mark}  {span}" if one.mark else span
         rows.append((name, f"{100 * one.share:.1f} %", share, ""))
     return rows
@@ -85,4 +85,4 @@ def class_rows(found: ShownDeviations) -> list[ValueRow]:
 
 def used(feature: ShownFeature) -> str:
     """How many points it rests on."""
-    return tr("{0} points used").format(grouped(feature.used)) if feature.used else ""
+    return tr("{count} points used", count=grouped(feature.used)) if feature.used else ""

@@ -7,6 +7,7 @@ from typing import Any
 from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QTabWidget, QWidget
 
+from workbench.language import tr
 from workbench.pages.inspect import words
 from workbench.pages.inspect.features.conditions_panel import ConditionsPanel
 from workbench.pages.inspect.features.panel import FeaturesPanel
@@ -80,12 +81,12 @@ class InspectPage(StepPage):
         self.conditions_fold.setVisible(bool(p.features.plan.features))
         said = p.conditions.in_short
         self.conditions_fold.setText(
-            self.tr("Conditions and frame ({0})").format(said) if said else self.tr("Conditions and frame")
+            tr("Conditions and frame ({said})", said=said) if said else self.tr("Conditions and frame")
         )
         for panel in (self.result, self.faces, self.features, self.conditions, self.picks):
             panel.refresh()
         count = len(p.repeats.all)
-        self.tabs.setTabText(REPEATS, self.tr("Repeats ({0})").format(count) if count else self.tr("Repeats"))
+        self.tabs.setTabText(REPEATS, tr("Repeats ({count})", count=count) if count else self.tr("Repeats"))
         self.tabs.setTabVisible(PLOT, bool(p.features.plan.features))
         self._refresh_tab()
 

@@ -89,7 +89,7 @@ class FacesPanel(QWidget):
             elif region is None:
                 state = self.tr("found automatically")
             else:
-                state = self.tr("own region, {0} corners").format(len(region))
+                state = tr("own region, {count} corners", count=len(region))
             colour = FACE_UPPER if face == "upper" else FACE_LOWER
             label.setText(f"<span style='color:{colour}'>■</span> {names[face]}: {state}")
         why_not = "" if self._presenter.scan.view is not None else self.tr("There is no surface to draw on yet.")
@@ -137,10 +137,11 @@ class FacesPanel(QWidget):
             ("upper", "lasso"): self.tr("Draw round the upper face with the button held down."),
             ("lower", "lasso"): self.tr("Draw round the lower face with the button held down."),
         }[face, kind]
-        return self.tr(
-            "{0} In the picture the region is what you draw. In 3D it becomes the outline, in the picture, of the "
-            "plane face you draw round; what is seen behind it does not count. A region may reach over the face's edge."
-        ).format(first)
+        more = tr(
+            "In the picture the region is what you draw. In 3D it becomes the outline, in the picture, of the plane "
+            "face you draw round; what is seen behind it does not count. A region may reach over the face's edge."
+        )
+        return f"{first} {more}"
 
     def _enable(self, button: QPushButton | QToolButton, why_not: str, tip: str) -> None:
         button.setEnabled(not why_not)
@@ -182,7 +183,7 @@ class ResultPanel(QWidget):
         self._shown = (p.scan.serial, outdated)
         self._show_verdict(gauge, outdated)
         self.rows.set_rows(words.result_rows(gauge))
-        self.rule.setText("" if gauge.rule is None else tr("Rule: {0}.").format(text_of(gauge.rule)))
+        self.rule.setText("" if gauge.rule is None else tr("Rule: {rule}.", rule=text_of(gauge.rule)))
         self.budget.set_rows(words.budget_rows(gauge))
         self.notes.setText("\n".join(map(text_of, gauge.notes)))
         for widget in (self.notes, self.notes_title):

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
 from core.inspect.plan.feature_spec import Polygon
+from workbench.language import tr
 from workbench.pages.inspect.faces import FACES
 from workbench.pages.inspect.features.edit import LINE
 from workbench.pages.inspect.presenter import RELIEF, InspectPresenter, Stage
@@ -17,7 +18,7 @@ from workbench.views.image.view import ImageView
 if TYPE_CHECKING:
     from core.inspect.shown.shown_scan import InspectionView
 
-USED = "used by the feature"
+USED = "feature points"
 """The layer of the points that the chosen feature used."""
 
 COLOURS = {"upper": FACE_UPPER, "lower": FACE_LOWER}
@@ -101,7 +102,7 @@ class PictureTab(QWidget):
             self.pictures.addItem(self.tr("the measured surface"), RELIEF)
             for name in view.pictures:
                 text = name.rpartition("/")[2]
-                self.pictures.addItem(self.tr("{0} (shows most)").format(text) if name == view.shown else text, name)
+                self.pictures.addItem(tr("{name} (shows most)", name=text) if name == view.shown else text, name)
         self.pictures.setCurrentIndex(names.index(self._presenter.picture))
 
     def _lay_faces(self, view: InspectionView) -> None:
@@ -154,14 +155,14 @@ class PictureTab(QWidget):
         self._regions = len(regions)
         section = None if spec is None else spec.section
         if section is not None and section.line_px is not None:
-            title = self.tr("cut of {0}").format(spec.name if spec is not None else "")
+            title = tr("cut of {name}", name=spec.name if spec is not None else "")
             self.image.set_polygon(LINE, section.line_px, editable=True, colour=FEATURE, title=title)
         else:
             self.image.remove_layer(LINE)
         if result is None or not len(result.uv):
             self.image.remove_layer(USED)
         else:
-            title = self.tr("points used, {0}").format(result.name)
+            title = tr("points used, {name}", name=result.name)
             self.image.set_points(USED, result.uv, colour=FEATURE, symbol=".", size=3, title=title)
 
     def _words(self) -> str:

@@ -12,6 +12,7 @@ from PySide6.QtWidgets import QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
 from core.inspect.shown.shown_scan import DEPTH
 from core.report.wording import grouped
+from workbench.language import tr
 from workbench.pages.inspect import words
 from workbench.pages.inspect.choices import Shape, SurfaceChoices
 from workbench.pages.inspect.picks import Pick, Span
@@ -231,17 +232,17 @@ class SurfaceTab(QWidget):
         result = features.result(features.chosen)
         if result is None or not result.used:
             return ""
-        dot = "<span style='color:{0}'>●</span>&nbsp;{1}"
         name = escape(result.name)
         if result.deviations is None:
-            return self.tr("; {0}").format(dot.format(FEATURE, self.tr("used for {0}").format(name)))
+            return "; " + _dot(FEATURE, tr("used for {name}", name=name))
         middle = len(DEVIATIONS) // 2
-        signs = [
-            dot.format(DEVIATIONS[one.number + middle], TOGETHER.join(one.mark or "0"))
-            for one in result.deviations.classes
-        ]
-        return self.tr("; {0} in quarters of ±{1} mm: {2}").format(
-            name, f"{result.deviations.tolerance_mm:g}", " ".join(signs)
+        classes = result.deviations.classes
+        signs = [_dot(DEVIATIONS[one.number + middle], TOGETHER.join(one.mark or "0")) for one in classes]
+        return tr(
+            "; {name} in quarters of ±{tolerance:g} mm: {marks}",
+            name=name,
+            tolerance=result.deviations.tolerance_mm,
+            marks=" ".join(signs),
         )
 
     def _highlight(self, name: str, places: Any, colour: str) -> None:
@@ -291,14 +292,23 @@ class SurfaceTab(QWidget):
 
     def _show_words(self, view: InspectionView) -> None:
         p = self._presenter
-        shown = self.tr("{0} of {1} points shown").format(grouped(p.points_shown()), grouped(len(view)))
+        shown = tr("{shown} of {total} points shown", shown=grouped(p.points_shown()), total=grouped(len(view)))
         if self.shape == "mesh":
             triangles = len(view.mesh.triangles) if view.mesh is not None else 0
-            shown = self.tr("{0} of {1} triangles shown").format(grouped(p.triangles_shown()), grouped(triangles))
+            shown = tr(
+                "{shown} of {total} triangles shown", shown=grouped(p.triangles_shown()), total=grouped(triangles)
+            )
         if self.colour == "faces" and view.gauge is not None:
             upper, lower = (len(used) for used in view.used_up_to(p.points_shown()))
-            shown += self.tr(": <span style='color:{0}'>●</span> {1} used on the upper face, ").format(
-                FACE_UPPER, grouped(upper)
-            ) + self.tr("<span style='color:{0}'>●</span> {1} on the lower").format(FACE_LOWER, grouped(lower))
+            shown += tr(
+                ": {upper} used on the upper face, {lower} on the lower",
+                upper=_dot(FACE_UPPER, grouped(upper)),
+                lower=_dot(FACE_LOWER, grouped(lower)),
+            )
         self.line.setText(shown + self._legend())
         self.hint.setText(self.tr("Outlining …") if p.outlining else p.picks.hint())
+
+
+def _dot(colour: str, text: str) -> str:
+    """A text of a legend, with its colour before it."""
+    return f"<span style='color:{colour}'>●</span>&nbsp;{text}"

@@ -35,14 +35,14 @@ def result_rows(gauge: GaugeResult) -> list[ValueRow]:
     rows: list[ValueRow] = [
         (tr("Thickness"), f"{value} mm", tr("Distance of the two parallel planes fitted to both faces"), ""),
         (
-            tr("U (k = {0})").format(f"{gauge.k:g}"),
+            tr("U (k = {k:g})", k=gauge.k),
             f"± {expanded} mm",
             tr("Expanded uncertainty: k times the standard uncertainty u"),
             "",
         ),
     ]
     if gauge.deviation_mm is not None:
-        nominal = tr("Measured thickness less the nominal value of {0} mm").format(f"{gauge.nominal_mm:g}")
+        nominal = tr("Measured thickness less the nominal value of {nominal:g} mm", nominal=gauge.nominal_mm)
         rows.append((tr("Deviation"), f"{fixed(gauge.deviation_mm, decimals, signed=True)} mm", nominal, ""))
     flatness = tr("Spread that holds 95 % of the points used about their plane, the points' noise included")
     upper, lower = gauge.points_used
@@ -88,7 +88,7 @@ def statistics_rows(statistics: RepeatStatistics, nominal_mm: float | None) -> l
             mm(statistics.error_mm, signed=True),
             tr("Mean less the nominal value")
             if nominal_mm is None
-            else tr("Mean less the nominal value of {0} mm").format(f"{nominal_mm:g}"),
+            else tr("Mean less the nominal value of {nominal:g} mm", nominal=nominal_mm),
             "",
         ),
         (tr("RMSE"), mm(statistics.rmse_mm), tr("Root mean square of the single errors"), ""),
@@ -107,7 +107,7 @@ def type1_rows(study: Type1Study) -> list[ValueRow]:
     return [
         (tr("Type-1 study"), verdict, tr("Capable if Cg and Cgk are 1.33 or more"), level),
         (tr("Tolerance T"), f"{study.tolerance:g} mm", tr("Full width: twice the ± tolerance of the thickness"), ""),
-        (tr("Cg"), fixed(study.cg, 2), tr("0.2 T / (6 s); 95 % interval {0} to {1}").format(low, high), ""),
+        (tr("Cg"), fixed(study.cg, 2), tr("0.2 T / (6 s); 95 % interval {low} to {high}", low=low, high=high), ""),
         (tr("Cgk"), fixed(study.cgk, 2), tr("(0.1 T − |bias|) / (3 s)"), ""),
         (tr("Bias"), f"{fixed(study.bias, 4, signed=True)} mm", tr("Mean less the reference value"), ""),
         (tr("p of the bias"), f"{study.p:.2g}", tr("t-test: how probable a bias as large is without any"), ""),
@@ -126,7 +126,7 @@ def repeats_tsv(
     repeats: tuple[Repeat, ...], statistics: RepeatStatistics | None, study: Type1Study | None = None
 ) -> str:
     """The series as text with tabs, all digits kept, for a spreadsheet."""
-    lines = [["scan", "thickness [mm]", "U [mm]", "k", "calibration", "measured at"]]
+    lines = [[tr("scan"), tr("thickness [mm]"), "U [mm]", "k", tr("calibration"), tr("measured at")]]
     lines += [
         [
             repeat.scan,
@@ -140,17 +140,17 @@ def repeats_tsv(
     ]
     if statistics is not None:
         named = (
-            ("mean [mm]", statistics.mean_mm),
-            ("error of the mean [mm]", statistics.error_mm),
+            (tr("mean [mm]"), statistics.mean_mm),
+            (tr("error of the mean [mm]"), statistics.error_mm),
             ("RMSE [mm]", statistics.rmse_mm),
             ("STD [mm]", statistics.std_mm),
-            ("largest error [mm]", statistics.largest_error_mm),
+            (tr("largest error [mm]"), statistics.largest_error_mm),
         )
         lines += [[]] + [[name, f"{value:.6f}"] for name, value in named if value is not None and not math.isnan(value)]
     if study is not None:
-        lines += [[], ["type-1 study", study.verdict], ["tolerance T [mm]", f"{study.tolerance:.6f}"]]
+        lines += [[], [tr("type-1 study"), study.verdict], [tr("tolerance T [mm]"), f"{study.tolerance:.6f}"]]
         lines += [["Cg", f"{study.cg:.6f}"], ["Cgk", f"{study.cgk:.6f}"]]
-        lines += [["bias [mm]", f"{study.bias:.6f}"], ["p of the bias", f"{study.p:.6g}"]]
+        lines += [[tr("bias [mm]"), f"{study.bias:.6f}"], [tr("p of the bias"), f"{study.p:.6g}"]]
     return "\n".join("\t".join(line) for line in lines) + "\n"
 
 
@@ -169,27 +169,31 @@ def pick_lines(pick: Pick) -> tuple[str, str]:
     """Where a picked point is, and where it was seen."""
     decimals = max(decimals_of(pick.sigma_mm), 0)
     x, y, z = (fixed(float(value), decimals) for value in pick.place)
-    place = tr("{name}   x {x}   y {y}   z {z} mm").format(name=pick.name, x=x, y=y, z=z)
+    place = tr("{name}   x {x}   y {y}   z {z} mm", name=pick.name, x=x, y=y, z=z)
     u, v = pick.uv
     frame = PurePosixPath(pick.frame).name or tr("fan, no frame")
-    return place, tr("± {sigma} mm (sd), {frame}, u {u} v {v} px").format(
-        sigma=fixed(pick.sigma_mm, decimals), frame=frame, u=fixed(u, 1), v=fixed(v, 1)
+    return place, tr(
+        "± {sigma} mm (sd), {frame}, u {u} v {v} px",
+        sigma=fixed(pick.sigma_mm, decimals),
+        frame=frame,
+        u=fixed(u, 1),
+        v=fixed(v, 1),
     )
 
 
 def span_lines(span: Span) -> tuple[str, str]:
     """A distance with its standard uncertainty, and its ends."""
-    text = tr("{name}   {value} mm, u = {u} mm").format(name=span.name, **_span(span))
+    text = tr("{name}   {value} mm, u = {u} mm", name=span.name, **_span(span))
     ends = []
     for pick in (span.a, span.b):
         x, y, z = (fixed(float(value), 1) for value in pick.place)
         ends.append(f"({x}, {y}, {z})")
-    return text, tr("from {0} to {1} mm").format(*ends)
+    return text, tr("from {start} to {end} mm", start=ends[0], end=ends[1])
 
 
 def span_label(span: Span) -> str:
     """What stands at the dimension line."""
-    return tr("{name}: {value} mm (u = {u} mm)").format(name=span.name, **_span(span))
+    return tr("{name}: {value} mm (u = {u} mm)", name=span.name, **_span(span))
 
 
 def _span(span: Span) -> dict[str, str]:

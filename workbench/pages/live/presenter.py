@@ -181,10 +181,10 @@ class LivePresenter(QObject):
         if not self.name:
             return tr("Opening the source …")
         if self.gone:
-            return tr("{0} is unplugged.").format(self.name)
+            return tr("{camera} is unplugged.", camera=self.name)
         if self.paused:
-            return tr("Paused: {0}").format(self.name)
-        return tr("Live: {0}").format(self.name)
+            return tr("Paused: {camera}", camera=self.name)
+        return tr("Live: {camera}", camera=self.name)
 
     def counts_text(self) -> str:
         """Recorded and lost pictures and the rate, with their units."""
@@ -192,9 +192,9 @@ class LivePresenter(QObject):
             return ""
         parts = [self._recorded_text()]
         if self.rate_hz > 0:
-            parts.append(tr("{0} frames/s").format(f"{self.rate_hz:.0f}"))
+            parts.append(tr("{rate:.0f} frames/s", rate=self.rate_hz))
         if self.step == "scan":
-            parts.append(tr("{0} lost").format(self.dropped))
+            parts.append(tr("{count} lost", count=self.dropped))
         return " · ".join(parts)
 
     def lost_text(self) -> str:
@@ -202,21 +202,25 @@ class LivePresenter(QObject):
         total = self.recorded + self.dropped
         if self.step != "scan" or not self.dropped or self.dropped < LOST_SHARE * total:
             return ""
-        text = tr("{0} of {1} pictures were lost on the way").format(self.dropped, total)
+        text = tr("{lost} of {total} pictures were lost on the way", lost=self.dropped, total=total)
         if not self.rate_hz > 0:
-            return tr("{0}: choose a lower rate.").format(text)
+            return tr("{text}: choose a lower rate.", text=text)
         lower = f"{int(self.rate_hz)}" if self.rate_hz >= 1 else f"{0.9 * self.rate_hz:.1f}"
-        return tr("{0}; {1} a second are taken: choose a rate of {2}/s or lower.").format(
-            text, f"{self.rate_hz:.1f}", lower
+        return tr(
+            "{text}; {rate:.1f} a second are taken: choose a rate of {lower}/s or lower.",
+            text=text,
+            rate=self.rate_hz,
+            lower=lower,
         )
 
     def _recorded_text(self) -> str:
-        words = {
-            "camera": tr("{0} views taken"),
-            "planes": tr("{0} poses taken"),
-            "scan": tr("{0} frames recorded"),
-        }
-        return words[self.step].format(self.recorded)
+        n = self.recorded
+        match self.step:
+            case "camera":
+                return tr("{count} views taken", count=n)
+            case "planes":
+                return tr("{count} poses taken", count=n)
+        return tr("{count} frames recorded", count=n)
 
     # ---- start and stop
 
@@ -403,7 +407,7 @@ class LivePresenter(QObject):
                 self.bench.notices.info(text_of(event.sentence))  # the page says it, as long as it is so
                 self.unplugged.emit(text_of(event.sentence))
             case LiveBack():
-                self.bench.notices.info(tr("{0} is back; the recording goes on.").format(self.name))
+                self.bench.notices.info(tr("{camera} is back; the recording goes on.", camera=self.name))
                 self.back.emit()
         self.changed.emit()
 

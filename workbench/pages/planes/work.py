@@ -10,7 +10,7 @@ from PySide6.QtCore import QObject, Signal
 from core.calibrate.fan.pose_features import PoseFeatures
 from core.calibrate.results import FanCalibration
 from core.files.project.data import Project
-from core.files.project.keys import rests_on
+from core.files.project.keys import FOUND_BY, rests_on
 from core.messages import Message
 from core.model import Camera
 from workbench.bench import Bench
@@ -28,8 +28,6 @@ class PlanesWork(CalibrationWork[Poses, FanCalibration]):
     """
 
     STEP = "planes"
-    FOUND_BY = ("camera calibration", "pictures of the plane target", "plane target", "colour channel")
-    ACCEPTED = "accepted laser planes"
     FIND, SOLVE, FOUND = jobs.FIND_POSES, jobs.SOLVE_POSES, jobs.FOUND_POSES
 
     @property
@@ -67,7 +65,7 @@ class PlanesWork(CalibrationWork[Poses, FanCalibration]):
     def _accepted_is_of_these_pictures(self, project: Project) -> bool:
         done, keys = self._model.results.get("planes"), rests_on("planes", project, {})
         known = {} if done is None else done.rests_on
-        return bool(project.accepted.fan) and all(keys.get(name) == known.get(name) for name in self.FOUND_BY)
+        return bool(project.accepted.fan) and all(keys.get(name) == known.get(name) for name in FOUND_BY["planes"])
 
 
 class PlanesCamera(QObject):

@@ -15,6 +15,7 @@ from core.files.project.data import Project, ProjectFile, new_project
 from core.files.project.folder import OPENER, can_be_saved, is_project, project_from_set, read_project, rescues
 from core.files.recording.unfinished import Unfinished, forget_recording, unfinished_recording
 from workbench.bench import Bench
+from workbench.language import tr
 from workbench.pages.project.copying import ProjectCopy
 from workbench.pages.project.import_dialog import ImportDialog
 from workbench.pages.project.sample import SampleProject
@@ -71,14 +72,14 @@ class ProjectActions(QObject):
 
     def _use_imported(self, imported: Path, parts: tuple[str, ...], asked_in: Path | None) -> None:
         if asked_in != self.model.folder:
-            self.bench.notices.info(self.tr("The pictures are in {0}.").format(imported))
+            self.bench.notices.info(tr("The pictures are in {folder}.", folder=imported))
             return
         if self.model.folder is not None:
             self._put_parts(imported, parts)
         elif (imported / SET).exists():
             self.open_set(imported)
         else:
-            name = self.tr("New project from {0}").format(imported.name)
+            name = tr("New project from {name}", name=imported.name)
             self._make(name, imported.name, new_project, then=lambda: self._put_parts(imported, parts))
 
     def _put_parts(self, imported: Path, parts: tuple[str, ...]) -> None:
@@ -101,7 +102,7 @@ class ProjectActions(QObject):
             self.open_set(path.parent if path.name == SET else path)
         else:
             self.bench.notices.error(
-                self.tr("{0}: is neither a project (project.json) nor a recording set (rig.toml).").format(path)
+                tr("{path}: is neither a project (project.json) nor a recording set (rig.toml).", path=path)
             )
 
     def open_project(self, path: Path) -> None:
@@ -130,7 +131,7 @@ class ProjectActions(QObject):
     def open_set(self, folder: Path) -> None:
         """Make a project that measures a recording set where it lies."""
         self._make(
-            self.tr("New project from {0}").format(folder.name),
+            tr("New project from {name}", name=folder.name),
             folder.resolve().name,
             lambda name: project_from_set(folder, name),
         )
@@ -202,10 +203,10 @@ class ProjectActions(QObject):
         job = self.bench.measuring.current
         running = [self.tr("A recording is running.")] if self.model.is_recording else []
         if job is not None:
-            running.append(self.tr("A job is not finished yet: {0}.").format(job.label))
+            running.append(tr("A job is not finished yet: {job}.", job=job.label))
         if not running:
             return True
-        text = self.tr("{0} What is recorded is kept. Stop it and leave?").format(" ".join(running))
+        text = tr("{running} What is recorded is kept. Stop it and leave?", running=" ".join(running))
         answers = [self.tr("Stop and leave"), self.tr("Stay")]
         return ask.ask(self._window, self.tr("Leave the project"), text, answers) == 0
 
@@ -254,17 +255,15 @@ class ProjectActions(QObject):
 
     def _offer(self, folder: Path, unfinished: Unfinished) -> None:
         """A recording was cut short by a crash: its pictures are whole, and may be used."""
-        words = {
-            "camera": self.tr("Views of the camera's target were being recorded when the program ended: {0} pictures."),
-            "planes": self.tr("Poses of the plate were being recorded when the program ended: {0} pictures."),
-            "scan": self.tr("A scan was being recorded when the program ended: {0} pictures."),
-        }
-        text = " ".join(
-            [
-                words[unfinished.step].format(unfinished.pictures),
-                self.tr("They are kept in {0}. Use them?").format(unfinished.folder),
-            ]
+        what = {
+            "camera": tr("Views of the camera's target were being recorded when the program ended."),
+            "planes": tr("Poses of the plate were being recorded when the program ended."),
+            "scan": tr("A scan was being recorded when the program ended."),
+        }[unfinished.step]
+        kept = tr(
+            "{count} pictures are kept in {folder}. Use them?", count=unfinished.pictures, folder=unfinished.folder
         )
+        text = f"{what} {kept}"
         answers = [self.tr("Use them"), self.tr("Leave them there")]
         if ask.ask(self._window, self.tr("Interrupted recording"), text, answers) == 0:
             put_source(self.model, unfinished.step, unfinished.folder, self.tr("use an interrupted recording"))

@@ -10,6 +10,7 @@ from PySide6.QtWidgets import QWidget
 
 from core.files.project.folder import can_be_saved
 from workbench.bench import Bench
+from workbench.language import tr
 from workbench.views import ask
 from workbench.work import jobs
 
@@ -37,13 +38,13 @@ class ProjectCopy(QObject):
     def offer(self) -> None:
         """The project that was opened cannot be saved: offer a copy at once."""
         folder = self._model.folder
-        why = self.tr("{0} is read-only: what is changed or measured here cannot be saved.").format(folder)
+        why = tr("{folder} is read-only: what is changed or measured here cannot be saved.", folder=folder)
         answers = [self.tr("Save a copy …"), self.tr("Look at it as it is")]
-        text = self.tr("{0} Go on in a copy?").format(why)
+        text = tr("{why} Go on in a copy?", why=why)
         if ask.ask(self._window, self.tr("Read-only project"), text, answers) == 0:
             self.save_copy()
         else:
-            self._bench.notices.warning(self.tr("{0} File, Save a copy, goes on in a copy.").format(why))
+            self._bench.notices.warning(tr("{why} File, Save a copy, goes on in a copy.", why=why))
 
     def save_copy(self) -> None:
         """Ask for a place, copy the project there, and open the copy."""
@@ -53,7 +54,7 @@ class ProjectCopy(QObject):
         if self._model.is_recording:
             notices.error(self.tr("Stop the recording first; then the project can be copied."))
             return
-        name = self.tr("{0} copy").format(self._model.project.info.name or folder.name)
+        name = tr("{name} copy", name=self._model.project.info.name or folder.name)
         answer = ask.ask_name_and_folder(
             self._window, self.tr("Save a copy"), name, self._bench.settings.projects_folder
         )
@@ -71,10 +72,10 @@ class ProjectCopy(QObject):
 
     def _go_on_in(self, copy: Path, folder: Path) -> None:
         if folder != self._model.folder:
-            self._bench.notices.info(self.tr("The copy is {0}: File, Open project.").format(copy))
+            self._bench.notices.info(tr("The copy is {folder}: File, Open project.", folder=copy))
             return
         state = self._model.file if self._model.is_modified else None
-        text = self.tr("This is the copy in {0}.").format(copy)
+        text = tr("This is the copy in {folder}.", folder=copy)
 
         def go_on() -> None:
             self._open_copy(copy, state, then=lambda: self._bench.notices.info(text))

@@ -6,6 +6,7 @@ from PySide6.QtCore import Qt, QUrl
 from PySide6.QtGui import QDesktopServices
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QPushButton, QScrollArea, QVBoxLayout, QWidget
 
+from workbench.language import tr
 from workbench.pages.project.presenter import ProjectPresenter
 from workbench.pages.step_page import StepPage, heading, muted
 from workbench.theme import icon
@@ -89,7 +90,7 @@ class ProjectPage(StepPage):
     def _open_folder(self) -> None:
         place = self.presenter.place()
         if place and not QDesktopServices.openUrl(QUrl.fromLocalFile(place)):
-            self.presenter.bench.notices.warning(self.tr("Nothing here opens folders: {0}").format(place))
+            self.presenter.bench.notices.warning(tr("Nothing here opens folders: {folder}", folder=place))
 
 
 def _card(title: QLabel, form: QWidget) -> QFrame:

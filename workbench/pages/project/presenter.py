@@ -6,6 +6,7 @@ from dataclasses import fields, replace
 from typing import Any, Literal
 
 from core.files.project.data import ProjectInfo
+from workbench.language import tr
 from workbench.pages.presenter import StepPresenter
 from workbench.step_state import ORDER, State
 
@@ -27,7 +28,7 @@ class ProjectPresenter(StepPresenter):
         if isinstance(value, str):
             value = value.strip()
         info = replace(self.project.info, **{name: value})
-        label = self.tr("change {0}").format(self.label(name).lower())
+        label = tr("change {name}", name=self.label(name).lower())
         self.model.edit(label, replace(self.project, info=info))
 
     def blocker(self) -> str:
@@ -54,7 +55,7 @@ class ProjectPresenter(StepPresenter):
         states = self.model.states
         for step in ORDER:
             if states[step].state is not State.DONE:
-                return self.tr("Next: {0}. {1}").format(self._titles()[step], states[step].sentence)
+                return tr("Next: {step}. {sentence}", step=self._titles()[step], sentence=states[step].sentence)
         return self.tr("All steps are done.")
 
     def place(self) -> str:

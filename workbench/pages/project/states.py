@@ -50,23 +50,27 @@ def wanted_state(parent: QWidget, folder: Path) -> Wanted | None:
 
 def _ask_for_version(parent: QWidget, folder: Path, error: InputError, versions: tuple[Version, ...]) -> Wanted | None:
     text = tr(
-        "{0} cannot be read: {1}. There are earlier states of the project; the damaged file is kept in backups."
-    ).format(folder / "project.json", error.what)
+        "{path} cannot be read: {why}. There are earlier states of the project; the damaged file is kept in backups.",
+        path=folder / "project.json",
+        why=error.what,
+    )
     answers = [_in_words(version) for version in versions]
     chosen = ask.ask(parent, tr("Damaged project"), text, [*answers, tr("Do not open")])
     return Wanted(version=versions[chosen].file) if chosen < len(versions) else None
 
 
 def _ask_for_recovery(parent: QWidget, folder: Path, recovered: ProjectFile) -> Wanted | None:
-    text = tr("{0} was not closed properly: there are unsaved changes of {1}.").format(folder.name, _time(recovered))
+    text = tr(
+        "{name} was not closed properly: there are unsaved changes of {time}.", name=folder.name, time=_time(recovered)
+    )
     answers = [tr("Recover the changes"), tr("Open the saved state"), tr("Do not open")]
     chosen = ask.ask(parent, tr("Recover the project"), text, answers)
     return Wanted(recover=chosen == 0) if chosen < 2 else None
 
 
 def _in_words(version: Version) -> str:
-    words = tr("Unsaved changes of {0}") if version.autosaved else tr("Backup of {0}")
-    return words.format(_time(version.file))
+    time = _time(version.file)
+    return tr("Unsaved changes of {time}", time=time) if version.autosaved else tr("Backup of {time}", time=time)
 
 
 def _time(file: ProjectFile) -> str:

@@ -20,6 +20,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from workbench.language import tr
 from workbench.pages.project.actions import ProjectActions
 from workbench.refresh import Refresh
 from workbench.theme import icon
@@ -135,7 +136,7 @@ class WelcomePage(QWidget):
         for path in self._projects.bench.settings.recent:
             item = QListWidgetItem(f"{path.name}\n{path.parent}")
             item.setData(Qt.ItemDataRole.UserRole, path)
-            item.setToolTip(self.tr("Open {0}").format(path))
+            item.setToolTip(tr("Open {path}", path=path))
             self.recent.addItem(item)
         self.recent.setVisible(self.recent.count() > 0)
         self._none.setVisible(self.recent.count() == 0)

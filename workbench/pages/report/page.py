@@ -8,6 +8,7 @@ from PySide6.QtWidgets import QCheckBox, QComboBox, QGridLayout, QLabel, QMenu, 
 
 from core.files.results.export_list import EXPORTS
 from core.report.template import PAPERS
+from workbench.language import tr
 from workbench.pages.report.presenter import ReportPresenter, Stage
 from workbench.pages.report.words import AT_HAND, export_words
 from workbench.pages.step_page import StepPage, muted
@@ -54,8 +55,8 @@ class ReportPage(StepPage):
             box, why = self.boxes[name], p.empty_section(name)
             box.setChecked(shown)
             short = title.partition(",")[0]
-            box.setText(self.tr("{0} (nothing yet)").format(short) if why else short)
-            box.setToolTip(why or self.tr("{0}. What is left out is named on the last page.").format(title))
+            box.setText(tr("{title} (nothing yet)", title=short) if why else short)
+            box.setToolTip(why or tr("{title}. What is left out is named on the last page.", title=title))
         self._show_looks()
         for kind, button in self.exports.items():
             missing = p.export_missing(kind)
@@ -216,4 +217,4 @@ class ReportPage(StepPage):
     def _open_folder(self) -> None:
         folder = self.presenter.results_folder()
         if folder is not None and not QDesktopServices.openUrl(QUrl.fromLocalFile(str(folder))):
-            self.presenter.bench.notices.warning(self.tr("Nothing here opens folders: {0}").format(folder))
+            self.presenter.bench.notices.warning(tr("Nothing here opens folders: {folder}", folder=folder))

@@ -13,7 +13,7 @@ from core.files.project.keys import changed, finished, rests_on
 from core.files.results.export_list import EXPORTS
 from core.report.template import SECTIONS
 from workbench.bench import Bench
-from workbench.language import text_of
+from workbench.language import text_of, tr
 from workbench.pages.presenter import StepPresenter
 from workbench.step_state import State
 from workbench.work import jobs
@@ -73,14 +73,15 @@ class ReportPresenter(StepPresenter):
     def choose_section(self, name: str, shown: bool) -> None:
         """Put a section in or leave it out; undoable."""
         hidden = self.project.report.hidden - {name} if shown else self.project.report.hidden | {name}
-        label = self.tr("put in “{0}”") if shown else self.tr("leave out “{0}”")
+        title = SECTIONS[name]
+        label = tr("put in “{title}”", title=title) if shown else tr("leave out “{title}”", title=title)
         report = replace(self.project.report, hidden=frozenset(hidden))
-        self.model.edit(label.format(SECTIONS[name]), replace(self.project, report=report))
+        self.model.edit(label, replace(self.project, report=report))
 
     def choose_paper(self, paper: Any) -> None:
         """A4 or Letter; undoable."""
         report = replace(self.project.report, paper=paper)
-        self.model.edit(self.tr("print on {0}").format(paper), replace(self.project, report=report))
+        self.model.edit(tr("print on {paper}", paper=paper), replace(self.project, report=report))
 
     def choose_language(self, language: Any) -> None:
         """English or German; undoable."""
@@ -133,8 +134,10 @@ class ReportPresenter(StepPresenter):
         titles = {"scan": self.tr("Scan"), "inspect": self.tr("Inspect")}
         for step, title in titles.items():
             if states[step].state is State.OUTDATED:
-                return self.tr("{0}: {1} The report prints what was measured then.").format(
-                    title, states[step].sentence
+                return tr(
+                    "{step}: {sentence} The report prints what was measured then.",
+                    step=title,
+                    sentence=states[step].sentence,
                 )
         features = self.model.results.get("features")
         if features is not None and changed(features.rests_on, rests_on("features", self.project, self.model.results)):
@@ -217,7 +220,7 @@ class ReportPresenter(StepPresenter):
             self._making = None
             if folder == self.model.folder:
                 self.model.record("report", finished("report", project, results))
-                self.bench.notices.info(self.tr("The report is {0}.").format(path))
+                self.bench.notices.info(tr("The report is {path}.", path=path))
                 if isinstance(then_copy_to, Path):
                     self._export("pdf", then_copy_to)
             self.changed.emit()
@@ -248,8 +251,8 @@ class ReportPresenter(StepPresenter):
             self.project,
             kind,
             path,
-            label=self.tr("Writing {0}").format(path.name),
-            on_done=lambda written: self.bench.notices.info(self.tr("Written: {0}").format(written)),
+            label=tr("Writing {name}", name=path.name),
+            on_done=lambda written: self.bench.notices.info(tr("Written: {path}", path=written)),
         )
 
     # ---- preview

@@ -42,7 +42,7 @@ def show_fan(image: ImageView, lines: Sequence[Sequence[Centreline]], *, numbere
         if not pieces:
             continue
         names.append(f"fan {place}")
-        title = tr("fan, line {0}").format(place) if numbered else tr("fan")
+        title = tr("fan, line {number}", number=place) if numbered else tr("fan")
         image.set_lines(names[-1], [piece.uv for piece in pieces], colour=fan_colour(place), width=1.6, title=title)
     _remove_others(image, "fan ", names)
 
@@ -62,7 +62,7 @@ def show_sweep(
     """The hand-held laser's centrelines, coloured by σ where it is given."""
     lines = [piece.uv for piece in pieces]
     if len(sigma) == len(lines):
-        title = tr("sweep: σ 0 … {0} mm, else grey").format(f"{limit_mm:g}")
+        title = tr("sweep: σ 0 … {limit:g} mm, else grey", limit=limit_mm)
         image.set_lines("sweep", lines, values=sigma, limits=(0.0, limit_mm), width=2.4, title=title)
     else:
         image.set_lines("sweep", lines, colour=SWEEP, width=1.6, title=tr("sweep"))
@@ -93,7 +93,7 @@ def show_points(
     ends = np.flatnonzero(np.hypot(*np.diff(uv, axis=0).T) > GAP_PX) + 1
     image.set_lines(
         "points", np.split(uv, ends), values=np.split(sigma, ends), limits=(0.0, limit_mm), width=4.0,
-        title=tr("points: σ 0 … {0} mm").format(f"{limit_mm:g}"),
+        title=tr("points: σ 0 … {limit:g} mm", limit=limit_mm),
     )  # fmt: skip
 
 

@@ -10,6 +10,7 @@ from PySide6.QtGui import QKeyEvent, QKeySequence, QShortcut
 from PySide6.QtWidgets import QSizePolicy, QStackedWidget, QWidget
 
 from core.pipeline.live.events import LiveView, ScanDetail
+from workbench.language import tr
 from workbench.pages.scan import words
 from workbench.pages.scan.bar import FrameBar
 from workbench.pages.scan.cloud import ScanCloud
@@ -177,7 +178,7 @@ class ScanPage(StepPage):
         if self.presenter.folder is None or work.frames is None:
             return ""
         reference = self.tr("with a reference") if work.reference is not None else self.tr("without a reference")
-        return self.tr("{0} frames, {1}").format(len(work.frames), reference)
+        return tr("{count} frames, {reference}", count=len(work.frames), reference=reference)
 
     def _fold(self, stage: Stage) -> None:
         """Once there is a result, it takes the room of what it was made from; the user may unfold that again."""

@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QGridLayout, QLabel, QVBoxLayout, QWidget
 from core.pipeline.live.events import ScanDetail
 from core.scan.method import Method
 from core.scan.preview.hints import HintLimits
-from workbench.language import text_of
+from workbench.language import text_of, tr
 from workbench.pages.scan import words
 from workbench.pages.scan.presenter import ScanPresenter, Stage
 from workbench.pages.step_page import heading, muted
@@ -70,7 +70,7 @@ class ScanCard(StageCard):
             case Stage.LIVE:
                 return self._live_words()
             case Stage.RECORDED:
-                title = self.tr("{0} frames, not measured yet").format(len(p.work.names))
+                title = tr("{count} frames, not measured yet", count=len(p.work.names))
                 return title, p.cannot_measure or self.tr("Press Measure; no setting is needed.")
             case Stage.MEASURING if p.run.by_itself:
                 return self.tr("Measuring the recording …"), self.tr(
@@ -83,14 +83,14 @@ class ScanCard(StageCard):
             case Stage.MEASURED:
                 return self.tr("Measured"), p.state.sentence
             case Stage.OUTDATED:
-                why = self.tr("{0} Measure again.") if p.changed_since() else "{0}"
-                return self.tr("Measured, but out of date"), why.format(p.state.sentence)
+                again = self.tr("Measure again.") if p.changed_since() else ""
+                return self.tr("Measured, but out of date"), f"{p.state.sentence} {again}".strip()
 
     def _how_to_begin(self) -> str:
         begin = self.tr("Sweep the part with a live source, or choose the folder of a recording.")
         if self._presenter.calibrated:
             return begin
-        return self.tr("{0} It can be measured once camera and laser planes are accepted.").format(begin)
+        return tr("{begin} It can be measured once camera and laser planes are accepted.", begin=begin)
 
     def _live_words(self) -> tuple[str, str]:
         tips = {

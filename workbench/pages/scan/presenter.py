@@ -173,9 +173,9 @@ class ScanPresenter(StepPresenter):
         """Let frames count, or leave them out; undoable."""
         excluded = self.project.options.excluded
         after = excluded - set(names) if used else excluded | set(names)
-        what = short(names[0]) if len(names) == 1 else tr("{0} frames").format(len(names))
-        label = tr("let {0} count") if used else tr("leave out {0}")
-        self._set_options(label.format(what), replace(self.project.options, excluded=after))
+        what = short(names[0]) if len(names) == 1 else tr("{count} frames", count=len(names))
+        label = tr("let {what} count", what=what) if used else tr("leave out {what}", what=what)
+        self._set_options(label, replace(self.project.options, excluded=after))
 
     def points_of_frame(self) -> tuple[Any, Any]:
         """Pixels (N, 2) and σ (N,) in mm of the measured points of the frame whose stages are shown."""

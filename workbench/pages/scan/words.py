@@ -22,7 +22,7 @@ def quality_rows(look: ShownScan | None) -> list[ValueRow]:
         (tr("Triangles"), count(look.triangles), tr("Of the mesh made from the points"), ""),
         (
             tr("Frames used"),
-            tr("{0} of {1}").format(look.frames_used, len(look.frames)),
+            tr("{used} of {total}", used=look.frames_used, total=len(look.frames)),
             tr("Frames that gave points, and all there are"),
             "",
         ),
@@ -35,7 +35,7 @@ def quality_rows(look: ShownScan | None) -> list[ValueRow]:
         (tr("95 % of σ"), mm(look.sigma_95_mm), tr("95 % of the points have a smaller σ"), ""),
         (
             tr("Covered"),
-            tr("{0} of what was lit").format(percent(look.share)),
+            tr("{share} of what was lit", share=percent(look.share)),
             tr("Share of the picture between all laser light in which there are points"),
             "",
         ),
@@ -57,37 +57,44 @@ def frame_line(record: FrameRecord | None, seen: tuple[int, Message | None] | No
     if record is not None:
         if not record.used:
             return text_of(record.reason or NO_REASON)
-        return tr("{0} points").format(count(record.points))
+        return tr("{count} points", count=count(record.points))
     if seen is not None:
         points, reason = seen
-        return text_of(reason) if reason else tr("{0} points in the preview").format(count(points))
+        return text_of(reason) if reason else tr("{count} points in the preview", count=count(points))
     return ""
 
 
 def frame_sentence(place: int, total: int, name: str, record: FrameRecord | None, stages: FrameStages | None) -> str:
     """What is to be said of one frame."""
-    start = tr("Frame {0} of {1} ({2})").format(place + 1, total, name)
+    start = tr("Frame {number} of {total} ({name})", number=place + 1, total=total, name=name)
     if stages is not None and stages.left_out and (record is None or record.used):
-        start = tr("{0}, left out by hand").format(start)
+        start = tr("{frame}, left out by hand", frame=start)
     if record is not None and record.used:
         return tr(
-            "{0}: {1} points, median σ {2}; {3} crossings with {4} fan lines, {5} with other sweeps, {6} left out."
-        ).format(
-            start, count(record.points), mm(record.sigma_mm), record.fan_crossings, record.fan_lines_met,
-            record.sweep_crossings, record.left_out,
-        )  # fmt: skip
+            "{frame}: {points} points, median σ {sigma}; {crossings} crossings with {lines} fan lines, {sweeps} with "
+            "other sweeps, {left_out} left out.",
+            frame=start,
+            points=count(record.points),
+            sigma=mm(record.sigma_mm),
+            crossings=record.fan_crossings,
+            lines=record.fan_lines_met,
+            sweeps=record.sweep_crossings,
+            left_out=record.left_out,
+        )
     if record is not None:
-        return tr("{0}: no points; {1}.").format(start, text_of(record.reason or NO_REASON))
+        return tr("{frame}: no points; {reason}.", frame=start, reason=text_of(record.reason or NO_REASON))
     if stages is not None and stages.reason:
-        return tr("{0}: {1}.").format(start, text_of(stages.reason))
+        return f"{start}: {text_of(stages.reason)}."
     if stages is not None and stages.seen is not None:
-        return tr("{0}: {1} crossings by itself; not measured yet.").format(start, len(stages.seen.crossing_uv))
-    return tr("{0}: not measured yet.").format(start)
+        return tr(
+            "{frame}: {count} crossings by itself; not measured yet.", frame=start, count=len(stages.seen.crossing_uv)
+        )
+    return tr("{frame}: not measured yet.", frame=start)
 
 
 def covered_sentence(share: float) -> str:
     """How much of the surface there is."""
-    return tr("covered {0} of what was lit").format(percent(share))
+    return tr("covered {share} of what was lit", share=percent(share))
 
 
 def condition_text(condition: float) -> str:
@@ -102,7 +109,7 @@ def condition_text(condition: float) -> str:
 
 def speed_text(speed_px: float) -> str:
     """How far the stripe moves from frame to frame."""
-    return "" if math.isnan(speed_px) else tr("{0} px/frame").format(f"{speed_px:.0f}")
+    return "" if math.isnan(speed_px) else tr("{speed:.0f} px/frame", speed=speed_px)
 
 
 def sentence(reason: str) -> str:

@@ -11,6 +11,7 @@ from PySide6.QtCore import QEvent, QPoint, QPointF, QRectF, Qt, Signal
 from PySide6.QtGui import QContextMenuEvent, QCursor, QFocusEvent, QKeyEvent, QPaintEvent
 from PySide6.QtWidgets import QLabel, QMenu, QToolTip, QVBoxLayout, QWidget
 
+from workbench.language import number, tr
 from workbench.theme import is_dark
 from workbench.views.colours import COVERED, REGION, RESIDUAL, ColourLike, Symbol
 from workbench.views.common import copy_picture, draw_focus, save_picture
@@ -407,8 +408,8 @@ class ImageView(QWidget):
             return
         u, v = place.x(), place.y()
         value = self._picture.value_at(u, v)
-        text = self.tr("u {u:.1f}  v {v:.1f}  grey {grey}") if value else self.tr("u {u:.1f}  v {v:.1f}")
-        self._strip.readout.setText(text.format(u=u, v=v, grey=value))
+        grey = tr("grey {value}", value=value) if value else ""
+        self._strip.readout.setText(f"u {number(u, '.1f')}  v {number(v, '.1f')}  {grey}".rstrip())
         tip = "" if self._drawing.draft is not None else self._layers.tip_at(u, v)
         if tip:
             QToolTip.showText(QCursor.pos() + QPoint(12, 8), tip, self._canvas)

@@ -18,8 +18,8 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from workbench.theme import icon, shades
-from workbench.views.common import dress
+from workbench.theme import icon
+from workbench.views.common import dress_edged
 
 SYMBOLS = {
     "info": ("mdi6.information-outline", "accent"),
@@ -129,10 +129,5 @@ class Banner(QFrame):
 
     def _dress(self) -> None:
         symbol, colour = SYMBOLS[self._level]
-        s = shades()
-        dress(
-            self,
-            f"Banner {{ background: {s.panel}; border: 1px solid {s.line};"
-            f" border-left: 4px solid {getattr(s, colour)}; }}",
-        )
+        dress_edged(self, colour)
         self._symbol.setPixmap(icon(symbol, colour=colour).pixmap(QSize(18, 18)))

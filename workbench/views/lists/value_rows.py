@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QLabel, QVBoxLay
 
 from workbench.theme import icon, shades
 from workbench.views.colours import Level
-from workbench.views.common import dress
+from workbench.views.common import dress, dress_edged
 
 LEVEL_ICONS: dict[Level, tuple[str, str]] = {
     "good": ("mdi6.check-circle-outline", "good"),
@@ -146,14 +146,8 @@ class Verdict(QFrame):
             "not conforming": self.tr("Not conforming"),
             "not proven": self.tr("Not proven"),
         }
-        s = shades()
-        edge = getattr(s, colour)
         self._sign.setPixmap(icon(symbol, colour=colour).pixmap(QSize(28, 28)))
         self._word.setText(words[self._kind])
-        dress(self._word, f"color: {edge}; font-size: 16px; font-weight: 600;")
+        dress(self._word, f"color: {getattr(shades(), colour)}; font-size: 16px; font-weight: 600;")
         self.setAccessibleName(words[self._kind])
-        dress(
-            self,
-            f"Verdict {{ background: {s.panel}; border: 1px solid {s.line}; border-left: 4px solid {edge};"
-            " border-radius: 4px; }",
-        )
+        dress_edged(self, colour)

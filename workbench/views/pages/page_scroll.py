@@ -16,6 +16,7 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QScrollArea, QStackedLayout, QToolButton, QVBoxLayout, QWidget
 
+from workbench.language import tr
 from workbench.theme import icon, shades
 from workbench.views.common import dress
 from workbench.views.empty_state import EmptyState
@@ -172,7 +173,7 @@ class PageScroll(QWidget):
     def _say_place(self) -> None:
         seen = self._in_sight()
         number = self.sheets.index(seen[len(seen) // 2 if len(seen) > 2 else 0]) + 1 if seen else 1
-        self._place.setText(self.tr("Page {0} of {1}").format(number, max(len(self.sheets), 1)))
+        self._place.setText(tr("Page {number} of {total}", number=number, total=max(len(self.sheets), 1)))
 
     def _place_note(self) -> None:
         self._note.adjustSize()

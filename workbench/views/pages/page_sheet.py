@@ -8,6 +8,7 @@ from PySide6.QtCore import QSize, Qt
 from PySide6.QtGui import QColor, QImage, QPainter, QPaintEvent, QPixmap
 from PySide6.QtWidgets import QWidget
 
+from workbench.language import tr
 from workbench.theme import shades
 
 DIM = 0.45
@@ -24,7 +25,7 @@ class PageSheet(QWidget):
         self._image = QImage(self._page.data, width, height, 3 * width, QImage.Format.Format_RGB888)
         self._sharp: QPixmap | None = None
         self._dim = False
-        self.setAccessibleName(self.tr("Page {0}").format(number))
+        self.setAccessibleName(tr("Page {number}", number=number))
 
     @property
     def is_sharp(self) -> bool:

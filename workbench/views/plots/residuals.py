@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 from PySide6.QtCore import QRectF, QSignalBlocker
 from PySide6.QtWidgets import QComboBox, QGraphicsEllipseItem, QGraphicsRectItem, QHBoxLayout, QLabel, QWidget
 
+from workbench.language import tr
 from workbench.theme import shades
 from workbench.views.plots.base import Plot, written
 from workbench.views.scene.colours import nice_step
@@ -93,7 +94,7 @@ class ResidualPlot(Plot):
         self.factor.setEnabled(not scatter)
         self._box.setAspectLocked(True)
         self._box.invertY(True)
-        self._enlarged.setText("" if scatter else self.tr("enlarged × {factor}").format(factor=self.factor_used))
+        self._enlarged.setText("" if scatter else tr("enlarged × {factor}", factor=self.factor_used))
         if scatter:
             self._draw_scatter()
         else:

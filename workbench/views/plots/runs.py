@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QWidget
 
+from workbench.language import tr
 from workbench.theme import shades
 from workbench.views.plots.base import Plot, tinted, written
 
@@ -75,7 +76,7 @@ class RunChart(Plot):
         assert runs is not None
         count = len(runs.values)
         self._set_axis("bottom", self.tr("scan"))
-        self._set_axis("left", self.tr("thickness, U (k = {k:g})").format(k=runs.k), runs.unit)
+        self._set_axis("left", tr("thickness, U (k = {k:g})", k=runs.k), runs.unit)
         every = max(1, count // 12)
         self._item.getAxis("bottom").setTicks([[(i + 1, str(i + 1)) for i in range(0, count, every)]])
         at = np.arange(1, count + 1)
@@ -190,6 +191,6 @@ class Histogram(Plot):
             return ""
         step = float(self._edges[1] - self._edges[0]) / 10
         low, high = (written(float(edge), step) for edge in self._edges[place : place + 2])
-        return self.tr("{low} to {high} {unit}: {count}").format(
-            low=low, high=high, unit=self._unit, count=int(self._counts[place])
+        return tr(
+            "{low} to {high} {unit}: {count}", low=low, high=high, unit=self._unit, count=int(self._counts[place])
         )

@@ -332,10 +332,10 @@ def test_choosing_a_feature_shows_its_points_in_3d_and_in_the_picture(presenter,
     assert features.chosen == "plane 1" and (Marks, "feature") in page.surface.scene._scene.items
     page.tabs.setCurrentWidget(page.picture)
     page.refreshing.at_once()
-    assert "used by the feature" in page.picture.image.layer_names()
+    assert "feature points" in page.picture.image.layer_names()
     features.choose("")
     page.refreshing.at_once()
-    assert "used by the feature" not in page.picture.image.layer_names()
+    assert "feature points" not in page.picture.image.layer_names()
     page.tabs.setCurrentWidget(page.surface)
     page.refreshing.at_once()
     assert (Marks, "feature") not in page.surface.scene._scene.items

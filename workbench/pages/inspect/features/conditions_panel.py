@@ -9,6 +9,7 @@ from PySide6.QtGui import QShowEvent
 from PySide6.QtWidgets import QLabel, QPushButton, QVBoxLayout, QWidget
 
 from core.inspect.plan.inspection_plan import InspectionPlan
+from workbench.language import tr
 from workbench.pages.inspect.features import conditions as fields
 from workbench.pages.inspect.features.conditions import InspectConditions
 from workbench.pages.step_page import muted
@@ -167,7 +168,7 @@ class ConditionsPanel(QWidget):
             self.tr("Then what camera and laser get wrong cancels."),
         )  # fmt: skip
         for name in fields.comparable(plan):
-            form.add_check(fields.COMPARED + name, self.tr("Compare {0}").format(name))
+            form.add_check(fields.COMPARED + name, tr("Compare {name}", name=name))
         if not fields.comparable(plan):
             form.add_section(self.tr("There is no feature with a length yet: add one first."))
 

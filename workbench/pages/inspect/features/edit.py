@@ -18,8 +18,8 @@ from workbench.pages.inspect import feature_values as fields
 from workbench.pages.inspect.features.plan import InspectFeatures
 from workbench.pages.inspect.scan import InspectScan
 
-LINE = "line of the section"
-REGION = "region of the feature"
+LINE = "section line"
+REGION = "feature region"
 
 NO_PICTURE = (1280, 960)
 """The picture's size in pixels where none is known yet."""

@@ -107,7 +107,7 @@ class FeatureForm(QWidget):
         if isinstance(region, InSphere | InBox):
             choices.append((fields.PLACED, self.tr("as in the plan file")))
         choices += [
-            (fields.OF + one.name, self.tr("points of {0}").format(one.name))
+            (fields.OF + one.name, tr("points of {name}", name=one.name))
             for one in plan.features
             if one.name != spec.name and not kind_of(one).made_of
         ]
@@ -125,14 +125,14 @@ class FeatureForm(QWidget):
         titles = kind_of(spec).region_titles
         if len(titles) == len(spec.regions):
             return tr(titles[place])
-        return self.tr("Level {0}").format(place + 1) if len(spec.regions) > 1 else self.tr("Region")
+        return tr("Level {number}", number=place + 1) if len(spec.regions) > 1 else self.tr("Region")
 
     def _drawing_tools(self, spec: FeatureSpec) -> QGridLayout:
         grid = QGridLayout()
         grid.setContentsMargins(0, 0, 0, 0)
         grid.setColumnStretch(0, 1)
         for place in range(len(spec.regions)):
-            several = self.tr("Draw “{0}”").format(self._region_title(spec, place))
+            several = tr("Draw “{name}”", name=self._region_title(spec, place))
             title = several if len(spec.regions) > 1 else self.tr("Draw the region")
             grid.addWidget(QLabel(title), place, 0)
             for column, kind in enumerate(("polygon", "lasso"), start=1):
@@ -204,8 +204,8 @@ class FeatureForm(QWidget):
                 else self.tr("Draw round the region with the button held down.")
             )
             button.setEnabled(not why_not)
-            tip = self.tr("{0} In the picture, or in 3D: what is drawn round there is outlined in the picture.")
-            button.setToolTip(why_not or tip.format(first))
+            more = tr("In the picture, or in 3D: what is drawn round there is outlined in the picture.")
+            button.setToolTip(why_not or f"{first} {more}")
 
     def _dress(self) -> None:
         for (_, kind), button in self.tools.items():

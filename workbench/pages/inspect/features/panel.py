@@ -311,7 +311,7 @@ class TemplatesButton(QPushButton):
         self.recent = []
         for path in paths:
             action = menu.addAction(path.stem)
-            action.setToolTip(self.tr("Measure these features on this part: {0}").format(path))
+            action.setToolTip(tr("Measure these features on this part: {plan}", plan=path))
             action.triggered.connect(lambda _=False, path=path: self._templates.take(path))
             self.recent.append(action)
         self._line.setVisible(bool(paths))

@@ -66,7 +66,7 @@ class InspectFeatures(QObject):
     def put(self, spec: FeatureSpec, instead_of: str = "") -> None:
         """Add a feature, or change the one called `instead_of`; undoable. Others follow when it is given a new name."""
         plan = self._with(spec, instead_of)
-        label = tr("change {0}").format(spec.name) if instead_of else tr("add {0}").format(spec.name)
+        label = tr("change {name}", name=spec.name) if instead_of else tr("add {name}", name=spec.name)
         self.chosen = spec.name
         self.put_plan(plan, label)
 
@@ -80,7 +80,7 @@ class InspectFeatures(QObject):
         master = self.plan.master
         if master is not None:
             master = replace(master, features=tuple(one for one in master.features if one != name))
-        self.put_plan(replace(self.plan, features=kept, master=master), tr("remove {0}").format(name))
+        self.put_plan(replace(self.plan, features=kept, master=master), tr("remove {name}", name=name))
 
     def cannot_remove(self, name: str) -> str:
         """Why a feature cannot be taken out, or ""."""
@@ -93,7 +93,7 @@ class InspectFeatures(QObject):
         if self.plan.master is not None and self.plan.master.features == (name,):
             resting.append(tr("the comparison with the master"))
         if resting:
-            return tr("{0} cannot be removed: {1} rests on it.").format(name, ", ".join(resting))
+            return tr("{name} cannot be removed: {others} rests on it.", name=name, others=", ".join(resting))
         return ""
 
     def move(self, name: str, by: int) -> None:
@@ -103,7 +103,7 @@ class InspectFeatures(QObject):
             return
         features = list(self.plan.features)
         features.insert(names.index(name) + by, features.pop(names.index(name)))
-        self.put_plan(replace(self.plan, features=tuple(features)), tr("move {0}").format(name))
+        self.put_plan(replace(self.plan, features=tuple(features)), tr("move {name}", name=name))
 
     def put_plan(self, plan: InspectionPlan, label: str) -> None:
         """Measure this plan from now on; undoable."""

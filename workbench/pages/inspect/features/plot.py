@@ -9,7 +9,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
 from core.inspect.plan.kinds import kind_of
-from workbench.language import text_of
+from workbench.language import text_of, tr
 from workbench.pages.inspect import feature_words as words
 from workbench.pages.inspect.features.edit import InspectFeatureEdit
 from workbench.pages.inspect.features.plan import InspectFeatures
@@ -73,8 +73,9 @@ class PlotTab(QWidget):
         self.chart.set_curve("points", profile.position, profile.height, colour=FEATURE, title=title, points=True)
         self.chart.set_curve("mean", *profile.mean_line, title=self.tr("their median over each step"))
         self.words.setText(
-            self.tr("{0}: positions count from where the cut begins; measurements lie between positions.").format(
-                result.name
+            tr(
+                "{name}: positions count from where the cut begins; measurements lie between positions.",
+                name=result.name,
             )
         )
         self.rows.set_rows(words.result_rows(result))
@@ -84,8 +85,10 @@ class PlotTab(QWidget):
         self.chart.set_axes(self.tr("measured − nominal"), "mm", self.tr("places"), "", from_zero=True)
         self.chart.set_curve("histogram", np.repeat(found.edges, 2)[1:-1], np.repeat(found.counts, 2))
         self.words.setText(
-            self.tr("{0}: the outermost bars hold all beyond. Marks are quarters of ±{1} mm, ! is beyond it.").format(
-                result.name, f"{found.tolerance_mm:g}"
+            tr(
+                "{name}: the outermost bars hold all beyond. Marks are quarters of ±{tolerance:g} mm, ! is beyond it.",
+                name=result.name,
+                tolerance=found.tolerance_mm,
             )
         )
         self.rows.set_rows([*words.result_rows(result), *words.class_rows(found)])

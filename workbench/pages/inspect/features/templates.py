@@ -51,7 +51,7 @@ class InspectTemplates:
 
         def done(_: Any) -> None:
             self._remember(path)
-            self._bench.notices.info(tr("The template is {0}.").format(path))
+            self._bench.notices.info(tr("The template is {path}.", path=path))
 
         self._bench.run_quick(
             self._features, jobs.WRITE_PLAN, path, plan, label=tr("Writing the template"), on_done=done, offers={}
@@ -67,7 +67,7 @@ class InspectTemplates:
             if folder == self._model.folder:
                 self._remember(path)
                 plan = _with_nominals(plan, lambda name: stored_source(folder, path.parent / name))
-                self._features.put_plan(plan, tr("take the plan {0}").format(path.stem))
+                self._features.put_plan(plan, tr("take the plan {name}", name=path.stem))
                 self._features.measure()
 
         self._bench.run_quick(

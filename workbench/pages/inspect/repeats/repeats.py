@@ -81,7 +81,7 @@ class InspectRepeats(QObject):
         """Take repeats out of the series; undoable."""
         kept = tuple(repeat for row, repeat in enumerate(self.all) if row not in set(rows))
         count = len(self.all) - len(kept)
-        label = tr("remove a repeat") if count == 1 else tr("remove {0} repeats").format(count)
+        label = tr("remove a repeat") if count == 1 else tr("remove {count} repeats", count=count)
         self._put(kept, label)
 
     def statistics(self) -> RepeatStatistics | None:

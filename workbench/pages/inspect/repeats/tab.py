@@ -7,7 +7,7 @@ from PySide6.QtGui import QGuiApplication
 from PySide6.QtWidgets import QHBoxLayout, QPushButton, QSplitter, QTabWidget, QVBoxLayout, QWidget
 
 from core.files.project.data import Repeat
-from workbench.language import text_of
+from workbench.language import text_of, tr
 from workbench.pages.inspect import words
 from workbench.pages.inspect.repeats.repeats import InspectRepeats
 from workbench.pages.step_page import muted
@@ -150,13 +150,16 @@ class RepeatsTab(QWidget):
                 "No repeats yet: measure a scan, add it here, then scan the part again. Each scan counts once."
             )
         if repeats.calibrations() > 1:
-            return self.tr(
-                "Measured with {0} different calibrations: their differences are part of the scatter."
-            ).format(repeats.calibrations())
+            return tr(
+                "Measured with {count} different calibrations: their differences are part of the scatter.",
+                count=repeats.calibrations(),
+            )
         return ""
 
     def _tip(self, repeat: Repeat) -> str:
-        return self.tr("Recording {0}, calibration {1}").format(repeat.scan, repeat.calibration_id)
+        return tr(
+            "Recording {recording}, calibration {calibration}", recording=repeat.scan, calibration=repeat.calibration_id
+        )
 
     def _copy(self) -> None:
         repeats = self._repeats

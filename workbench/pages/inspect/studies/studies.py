@@ -107,8 +107,8 @@ class InspectStudies(QObject):
         """Write a copy of a study: its table if the name ends in .csv, else study.json."""
         path = path if path.suffix.lower() in (".csv", ".json") else path.with_name(path.name + ".json")
         self._run(
-            jobs.EXPORT_STUDY, id_, path, label=tr("Writing {0}").format(path.name), offers={},
-            on_done=lambda written: self.bench.notices.info(tr("Written: {0}").format(written)),
+            jobs.EXPORT_STUDY, id_, path, label=tr("Writing {name}", name=path.name), offers={},
+            on_done=lambda written: self.bench.notices.info(tr("Written: {path}", path=written)),
         )  # fmt: skip
 
     # ---- a new one
@@ -167,7 +167,7 @@ class InspectStudies(QObject):
 
         self._run(
             jobs.PROJECT_ROWS, draft.kind, folder, values.get("artefact", "plane"), *settings,
-            label=tr("Reading {0}").format(folder.name), on_done=done, of_project=False,
+            label=tr("Reading {name}", name=folder.name), on_done=done, of_project=False,
         )  # fmt: skip
 
     def finish(self) -> None:

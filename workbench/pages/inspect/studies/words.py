@@ -72,10 +72,13 @@ def _grr_rows(study: GrrStudy) -> list[ValueRow]:
     of_total, of_tolerance = study.component("gauge R&R").of_total, study.component("gauge R&R").of_tolerance
     said: list[ValueRow] = [verdict_row(study.verdict)]
     if of_tolerance is not None and study.tolerance is not None:
-        tip = tr("6 s of gauge R&R over T = {0} mm; up to 10 % is good, above 30 % is not acceptable")
-        said.append((tr("%GRR of T"), _percent(of_tolerance), tip.format(f"{study.tolerance:g}"), ""))
+        tip = tr(
+            "6 s of gauge R&R over T = {tolerance:g} mm; up to 10 % is good, above 30 % is not acceptable",
+            tolerance=study.tolerance,
+        )
+        said.append((tr("%GRR of T"), _percent(of_tolerance), tip, ""))
     low, high = (_percent(end) for end in study.grr_interval)
-    tip = tr("s of gauge R&R over the whole scatter; 95 % interval {0} to {1}").format(low, high)
+    tip = tr("s of gauge R&R over the whole scatter; 95 % interval {low} to {high}", low=low, high=high)
     said.append((tr("%GRR of the total"), _percent(of_total), tip, ""))
     categories = "∞" if study.categories is None else str(study.categories)
     tip = tr("Number of distinct categories: how many groups of parts it can tell apart; 5 or more are wanted")
@@ -83,7 +86,7 @@ def _grr_rows(study: GrrStudy) -> list[ValueRow]:
     interaction = next((row for row in study.anova if row.source == "interaction"), None)
     if interaction is not None and interaction.p is not None:
         pooled = tr("pooled") if study.pooled else tr("kept")
-        tip = tr("p = {0}: pooled with the error above 0.05").format(f"{interaction.p:.2g}")
+        tip = tr("p = {p:.2g}: pooled with the error above 0.05", p=interaction.p)
         said.append((tr("Interaction"), pooled, tip, ""))
     return said
 
