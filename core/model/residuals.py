@@ -67,6 +67,8 @@ class Judgement:
         Mean number in a row of one sign, 2 where neighbours err on their own.
     profile
         (C,) mean of all groups in each cell, NaN where nothing is.
+    count
+        (C,) residuals in each cell.
     p
         Probability of so strong a pattern by chance alone; 1 with too few groups to tell.
     systematic
@@ -78,6 +80,7 @@ class Judgement:
     expected: float
     run_length: float
     profile: Array
+    count: NDArray[np.intp]
     p: float
     systematic: float
 
@@ -85,6 +88,11 @@ class Judgement:
     def times(self) -> float:
         """How many times as large as stated the residuals are, √(χ²/N)."""
         return self.rms / max(self.expected, 1e-300)
+
+    @property
+    def strongest(self) -> int:
+        """The cell whose mean is furthest from zero for its number of residuals."""
+        return int(np.nanargmax(np.abs(self.profile) * np.sqrt(self.count)))
 
     @property
     def together(self) -> float:
@@ -96,7 +104,7 @@ def judge_residuals(residuals: Residuals, seed: int = 0) -> Judgement:
     """Compare residuals with their stated uncertainty and look for runs and for a pattern common to all groups."""
     values, group = residuals.values, np.unique(residuals.group, return_inverse=True)[1]
     if not len(values):
-        return Judgement(np.nan, np.nan, np.nan, np.zeros(0), 1.0, 0.0)
+        return Judgement(np.nan, np.nan, np.nan, np.zeros(0), np.zeros(0, np.intp), 1.0, 0.0)
     groups, cells = int(group.max()) + 1, int(residuals.cell.max()) + 1
     sums = np.zeros((groups, cells))
     np.add.at(sums, (group, residuals.cell), values)
@@ -111,6 +119,7 @@ def judge_residuals(residuals: Residuals, seed: int = 0) -> Judgement:
         expected=_rms(residuals.expected),
         run_length=_run_length(values, group),
         profile=np.where(count > 0, sums.sum(axis=0) / np.maximum(count, 1), np.nan),
+        count=count,
         p=p,
         systematic=float(np.sqrt(max(square, 0.0))) if p < SIGNIFICANT else 0.0,
     )

@@ -17,6 +17,11 @@ from core.calibrate.board_shape import Board, BoardShape, BoardTolerance
 from core.calibrate.camera.bundle import Bundle, Normal, Observed, normal_equations
 from core.calibrate.camera.covariance import Widening, free_covariance
 from core.model.arrays import Array
+from core.model.residuals import over_picture
+
+PICTURE_CELLS = (8, 6)
+"""Columns and rows of the parts of a picture in which all views may err alike: many against the camera's parameters,
+and each with corners of several views."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -53,7 +58,8 @@ class BoardFit:
         """
         normal = self._normal(bundle, flat, free)
         precision = self._precision(normal.cost / max(freedom, 1), len(free))
-        return free_covariance(normal, [view.points for view in flat], freedom, precision)
+        cells = [over_picture(view.uv, bundle.camera.image_size, PICTURE_CELLS) for view in flat]
+        return free_covariance(normal, [view.points for view in flat], cells, freedom, precision)
 
     def shape(self, covariance: Array, camera_parameters: int) -> BoardShape:
         """The shape with its part of such a covariance."""

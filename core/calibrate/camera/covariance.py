@@ -13,6 +13,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from core.calibrate.camera.bundle import Normal
 from core.calibrate.camera.reprojection import camera_of, parameters_of
@@ -35,29 +36,37 @@ class Widening:
         For errors common to the corners of one view: blur, a detector's bias, a target that is not flat.
     across_views
         For errors that a corner of the target repeats in every view: a print that is not true.
+    over_picture
+        For errors that a part of the picture repeats in every view: a lens that the model does not have.
     chance
         How far above 1 either comes by chance, as a standard deviation.
     """
 
     within_views: float
     across_views: float
+    over_picture: float
     chance: float
 
     @property
     def total(self) -> float:
-        """The factor applied: both are variances on top of the independent one."""
-        return float(np.sqrt(self.within_views**2 + self.across_views**2 - 1))
+        """The factor applied: all are variances on top of the independent one."""
+        return float(np.sqrt(self.within_views**2 + self.across_views**2 + self.over_picture**2 - 2))
 
 
 def free_covariance(
-    normal: Normal, points: Sequence[Array], degrees_of_freedom: int, precision: Array | None = None
+    normal: Normal,
+    points: Sequence[Array],
+    cells: Sequence[NDArray[np.intp]],
+    degrees_of_freedom: int,
+    precision: Array | None = None,
 ) -> tuple[Array, Widening]:
     """Compute the covariance (F, F) of the free parameters, widened for errors that corners share.
 
     The scale of the residuals is measured, not assumed. Where corners of a view err together, the views' gradients g
     scatter more than independent corners would make them: for these E[Σ gᵀ S⁻¹ g] = σ² (F − Σ tr(S⁻¹ S_v S⁻¹ S_v)).
     The ratio of both, where above 1, widens the covariance. The same is done over the target's corners, known by
-    their `points` (N, 3) in each view (clusters in two ways). `precision` (F,) is what is known of the parameters
+    their `points` (N, 3) in each view, and over parts of the picture, their `cells` (N,) in each view, less what they
+    have of the views' (clusters in three ways). `precision` (F,) is what is known of the parameters
     beforehand, as in the information's diagonal.
 
     Raises
@@ -83,15 +92,27 @@ def free_covariance(
     within = _scatter(of_views, inverse) / max(variance * independent, 1e-300)
 
     corner = np.unique(np.round(np.concatenate(points), 6), axis=0, return_inverse=True)[1].ravel()
-    of_corners = np.zeros((corner.max() + 1, len(inverse)))
-    np.add.at(of_corners, corner, np.concatenate(normal.gradients))
-    across = _scatter(of_corners, inverse) / max(variance * free * (1 - 1 / len(of_corners)), 1e-300)
+    joined = np.concatenate(normal.gradients)
+    across = _excess(joined, corner, inverse, variance * free)
+    cell = np.concatenate(cells)
+    view = np.repeat(np.arange(views), [len(own) for own in cells])
+    in_views = _excess(joined, cell + (cell.max() + 1) * view, inverse, variance * free)
+    over_picture = _excess(joined, cell, inverse, variance * free) - in_views + 1
     widening = Widening(
         float(np.sqrt(max(1.0, within))),
         float(np.sqrt(max(1.0, across))),
+        float(np.sqrt(max(1.0, over_picture))),
         float(np.sqrt(1 / (2 * free * max(views - 1, 1)))),
     )
     return variance * widening.total**2 * inverse, widening
+
+
+def _excess(gradients: Array, cluster: NDArray[np.intp], inverse: Array, independent: float) -> float:
+    """Σ gᵀ S⁻¹ g over sums of corners' `gradients` (N, F) in each `cluster` (N,), over what it is if independent."""
+    names, own = np.unique(cluster, return_inverse=True)
+    sums = np.zeros((len(names), len(inverse)))
+    np.add.at(sums, own.ravel(), gradients)
+    return _scatter(sums, inverse) / max(independent * (1 - 1 / len(names)), 1e-300)
 
 
 def _scatter(gradients: Array, inverse: Array) -> float:

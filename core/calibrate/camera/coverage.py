@@ -20,7 +20,7 @@ _COLUMNS = 8
 """Cells across the picture in the share that is covered: coarser, for a board has gaps between its corners."""
 _GRID, _DEPTHS = (16, 12), 3
 """Pixels across and down, and depths, at which two cameras are compared; a few hundred points of a smooth field."""
-_REGIONS = (
+REGIONS = (
     Message("picture.upper_left", "upper left"),
     Message("picture.top", "top"),
     Message("picture.upper_right", "upper right"),
@@ -53,7 +53,7 @@ def coverage(uv: Array, image_size: tuple[int, int]) -> float:
 def empty_regions(uv: Array, image_size: tuple[int, int]) -> tuple[Message, ...]:
     """Name those ninths of the picture that hold no point of `uv` (N, 2): "upper left", "middle", …"""
     cells = picture_cells(uv, image_size, 3, 3)
-    return tuple(region for region, seen in zip(_REGIONS, cells.ravel(), strict=True) if not seen)
+    return tuple(region for region, seen in zip(REGIONS, cells.ravel(), strict=True) if not seen)
 
 
 def tilt(pose: Pose) -> float:

@@ -11,6 +11,7 @@ from core.calibrate.board_shape import BoardShape
 from core.calibrate.camera.bundle import NO_PARAMETERS, Bundle, Observed, refine, refine_robustly
 from core.calibrate.camera.covariance import Widening
 from core.calibrate.camera.coverage import disagreement_mm, empty_regions, tilt
+from core.calibrate.camera.picture_residuals import notes_on_picture
 from core.calibrate.camera.screening import Verdict, screen
 from core.calibrate.camera.zhang import pose_from_homography
 from core.calibrate.results import CameraCalibration, ViewQuality
@@ -163,6 +164,7 @@ def notes_on(calibration: CameraCalibration, widening: Widening) -> tuple[Messag
                 bow=shape.departure_mm,
             )
         )
+    notes += notes_on_picture(calibration)
     limit = max(_MUCH_WIDER, 1 + _CHANCE_SDS * widening.chance)
     if widening.within_views > limit:
         notes.append(

@@ -1,0 +1,113 @@
+"""What a camera's residuals say: their size, and a pattern over the picture that all views have in common.
+
+The lens does the same in every view. What its model does not have is left in every view at the same place in the
+picture, and more views of the kind do not average it out.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.calibrate.camera.coverage import REGIONS
+from core.calibrate.camera.expected_error import residual_field
+from core.calibrate.results import CameraCalibration
+from core.messages import Message
+from core.model.arrays import Array
+from core.model.residuals import Judgement, Residuals, judge_residuals, over_picture
+
+GRID = (3, 3)
+"""Columns and rows in which residuals of all views are compared: the parts of a picture that have names."""
+RINGS = 8
+"""About the principal point, equally wide."""
+BAD_PX, BAD_TIMES, LITTLE_PX = 0.5, 15.0, 0.3
+"""RMS of residual vectors from which a calibration is called bad, and already from LITTLE_PX where that is BAD_TIMES
+what the corners were found to. On pictures of others sharp corners of true boards fit to 0.05 … 0.07 px, 2 to 4 times
+that; JPEGs of a webcam to 0.28 px and 13 times, OpenCV's pictures of 2001 to 0.40 px and 11 times, a curled sheet to
+0.45 px and 20 times."""
+WORTH_A_NOTE_PX = 0.01
+"""Patterns below this are in the covariance, and not told."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class PictureResiduals:
+    """Judgement of the residuals, u and v by the cells of GRID, and of their part away from the principal point."""
+
+    over_picture: Judgement
+    outwards: Judgement
+
+
+def judge_picture(calibration: CameraCalibration) -> PictureResiduals:
+    """Judge the residuals in pixels of all corners that count."""
+    field, camera = residual_field(calibration), calibration.camera
+    sigma = np.concatenate([view.view.sigma[view.counted] for view in calibration.views if view.used])
+    cell = over_picture(field.uv, camera.image_size, GRID)
+    cells = GRID[0] * GRID[1]
+    both = Residuals(
+        field.residual.T.ravel(), np.tile(sigma, 2), np.tile(field.view, 2), np.concatenate([cell, cell + cells])
+    )
+    off = field.uv - camera.matrix[:2, 2]
+    radius = np.linalg.norm(off, axis=1)
+    outwards = (field.residual * off).sum(axis=1) / np.maximum(radius, 1e-9)
+    ring = np.minimum((RINGS * radius / radius.max()).astype(np.intp), RINGS - 1)
+    return PictureResiduals(judge_residuals(both), judge_residuals(Residuals(outwards, sigma, field.view, ring)))
+
+
+def notes_on_picture(calibration: CameraCalibration) -> tuple[Message, ...]:
+    """What is wrong with the residuals, and in which direction."""
+    found = judge_picture(calibration)
+    notes = []
+    times = found.over_picture.times
+    if calibration.rms_px > BAD_PX or (calibration.rms_px > LITTLE_PX and times > BAD_TIMES):
+        notes.append(
+            Message(
+                "camera.bad_fit",
+                "The calibration is bad: corners fit to {rms:.2f} px only, {times:.0f} times what they were found to. "
+                "Look for views with blur or a moved target, check the target's corners and how flat it is, or take "
+                "the views again.",
+                rms=calibration.rms_px,
+                times=times,
+            )
+        )
+    if found.outwards.systematic > max(found.over_picture.systematic / 2, WORTH_A_NOTE_PX):
+        notes.append(_on_rings(found.outwards))
+    elif found.over_picture.systematic > WORTH_A_NOTE_PX:
+        notes.append(_on_regions(found.over_picture))
+    return tuple(notes)
+
+
+def _on_rings(outwards: Judgement) -> Message:
+    ring = outwards.strongest
+    px = float(outwards.profile[ring])
+    return Message(
+        "camera.pattern_outwards",
+        "In all views corners lie too far {direction} by {px:.2f} px at {share:.0%} of the way from the picture's "
+        "centre to its farthest corner: the lens is not fully described, see whether k3 helps. The standard deviations "
+        "contain it.",
+        direction=_INWARDS if px < 0 else _OUTWARDS,
+        px=abs(px),
+        share=(ring + 0.5) / RINGS,
+    )
+
+
+def _on_regions(found: Judgement) -> Message:
+    region = found.strongest % (GRID[0] * GRID[1])
+    u, v = found.profile.reshape(2, -1)[:, region]
+    return Message(
+        "camera.pattern_in_region",
+        "In all views corners in the {place} of the picture lie too far {direction} by {px:.2f} px: the lens or the "
+        "print is not fully described, or corners are drawn aside by blur. The standard deviations contain it.",
+        place=REGIONS[region],
+        direction=_direction(u, v),
+        px=float(np.hypot(u, v)),
+    )
+
+
+_OUTWARDS, _INWARDS = Message("camera.outwards", "outwards"), Message("camera.inwards", "inwards")
+
+
+def _direction(u: Array, v: Array) -> Message:
+    if abs(u) > abs(v):
+        return Message("camera.to_the_right", "to the right") if u > 0 else Message("camera.to_the_left", "to the left")
+    return Message("camera.downwards", "downwards") if v > 0 else Message("camera.upwards", "upwards")
