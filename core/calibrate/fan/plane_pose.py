@@ -3,7 +3,8 @@
 With a picture of the same pose without laser, the stripes come from the difference and the target from the picture
 without; without one, both come from the only picture, and only the light plate around the marks counts. Where the
 plate's own brightness changes across a stripe, at the edge of a mark, the stripe's centre is pulled to the lighter
-side: those points are left out.
+side: those points are left out. Light beside the plate, and what does not look like the laser's lines on it, is left
+out as well (`core.calibrate.fan.plate`).
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import map_coordinates
 
+from core.calibrate.fan.plate import Plate, without_clutter
 from core.calibrate.fan.pose_features import PoseFeatures
 from core.image.stripes.centreline import Centreline
 from core.image.stripes.extraction import StripeSettings, choose_settings, extract_centrelines
@@ -48,6 +50,7 @@ def measure_plane_pose(
     target: Target,
     camera: Camera | None = None,
     settings: StripeSettings | None = None,
+    margin_mm: float | None = None,
 ) -> PoseFeatures:
     """Find the target and the stripes of one pose. A pose that cannot be used says so in its `reason`.
 
@@ -63,6 +66,8 @@ def measure_plane_pose(
         Helps finding straight edges under distortion.
     settings
         Width and contrast of the stripes; chosen from the picture if not given.
+    margin_mm
+        How far the plate goes on beyond what is printed on it; None: not known.
 
     Raises
     ------
@@ -84,11 +89,13 @@ def measure_plane_pose(
             shift_px=moved,
         )
         return PoseFeatures(name, view, (), reason)
-    centrelines = _stripes(on, off, view, settings)
+    carrier = Plate(target, view, camera, margin_mm)
+    centrelines = _stripes(on, off, view, carrier.outside(on.shape), settings)
     if not centrelines:
         return PoseFeatures(name, view, (), Message("fan.no_stripe", "no stripe was found: is the fan on?"))
     level = DARK * _plate_level(plate, view)
-    centrelines = _on_even_plate(centrelines, plate, level, laser_off=off is not None)
+    centrelines = _on_even_plate(centrelines, plate, level, carrier, laser_off=off is not None)
+    centrelines = without_clutter(centrelines, camera)
     notes: tuple[Message, ...] = ()
     if off is not None and moved is None:
         note = Message(
@@ -101,9 +108,9 @@ def measure_plane_pose(
 
 
 def _stripes(
-    on: Picture, off: Picture | None, view: TargetView, settings: StripeSettings | None
+    on: Picture, off: Picture | None, view: TargetView, outside: NDArray[np.bool_], settings: StripeSettings | None
 ) -> tuple[Centreline, ...]:
-    """Centrelines of the laser in the difference of two pictures, or in the only one."""
+    """Centrelines of the laser in the difference of two pictures, or in the only one, but not `outside` the plate."""
     picture = on.astype(np.float32)
     saturated = on >= np.iinfo(on.dtype).max
     if off is None:
@@ -115,7 +122,9 @@ def _stripes(
         picture = picture - without
     around = picture[_window(view, picture.shape, margin=1.0)]
     chosen = settings or choose_settings(np.ascontiguousarray(around), float(np.iinfo(on.dtype).max))
-    return () if chosen is None else extract_centrelines(picture, chosen, noise=noise, saturated=saturated)
+    if chosen is None:
+        return ()
+    return extract_centrelines(picture, chosen, noise=noise, saturated=saturated, ignore=outside)
 
 
 def _movement(on: Picture, off: Picture, view: TargetView, target: Target, camera: Camera | None) -> float | None:
@@ -146,9 +155,9 @@ def _plate_level(plate: Picture, view: TargetView) -> float:
 
 
 def _on_even_plate(
-    centrelines: Sequence[Centreline], plate: Picture, level: float, *, laser_off: bool
+    centrelines: Sequence[Centreline], plate: Picture, level: float, carrier: Plate, *, laser_off: bool
 ) -> tuple[Centreline, ...]:
-    """The points on light plate, brighter than `level`, of even brightness.
+    """The points on the plate that is their `carrier`, brighter than `level`, and of even brightness there.
 
     The centre of a stripe of σ = s on a plate whose brightness changes as exp(g n) across it moves by s² g. The plate
     is looked at where the stripe is if the laser is off there, else just beside it.
@@ -164,7 +173,7 @@ def _on_even_plate(
     low, high = np.minimum(*sides), np.maximum(*sides)
     pull = width**2 * np.log(np.maximum(high, 1.0) / np.maximum(low, 1.0)) / (2 * reach)
     # brightness beside the stripe says less of what is under it: only steps count there
-    even = (low > level) & (pull < (PULL_PX if laser_off else 2 * PULL_PX))
+    even = carrier.holds(uv) & (low > level) & (pull < (PULL_PX if laser_off else 2 * PULL_PX))
     kept, first = [], 0
     for line in centrelines:
         kept.extend(_runs(line, even[first : first + len(line)]))

@@ -20,7 +20,7 @@ class PoseFeatures:
     view
         The target's points; None if it was not found.
     centrelines
-        All stripes in the picture, on the target or not.
+        The stripes on the plate around the target.
     reason
         Why the pose cannot be used; None if it can.
     notes

@@ -47,6 +47,7 @@ class _Printed(Table):
         0.0, ge=0, le=0.1, allow_inf_nan=False, description="a standard uncertainty as a share of the size, 0 to 0.1"
     )
     flatness_mm: float | None = Field(None, ge=0, le=100, allow_inf_nan=False, description="a length in mm, 0 to 100")
+    margin_mm: float | None = Field(None, ge=0, le=5000, allow_inf_nan=False, description="a length in mm, 0 to 5000")
 
 
 class _Checkerboard(_Printed):
@@ -245,7 +246,8 @@ class GaugeSpec:
 class Rig:
     """What rig.toml says. `angle` between neighbouring lines is in rad (0 with one line).
 
-    `camera_board` and `plane_board` say how true the two targets are. `unstated` are the tables that rig.toml does not
+    `camera_board` and `plane_board` say how true the two targets are, `plane_margin_mm` how far the plate of the second
+    goes on beyond what is printed on it, None if that is not known. `unstated` are the tables that rig.toml does not
     have: what they would say is as in the paper's rig, and no step may rest on it (:func:`require_tables`).
     """
 
@@ -257,6 +259,7 @@ class Rig:
     channel: Channel | None = None
     camera_board: BoardTolerance = field(default_factory=BoardTolerance)
     plane_board: BoardTolerance = field(default_factory=BoardTolerance)
+    plane_margin_mm: float | None = None
     unstated: frozenset[str] = frozenset()
 
 
@@ -307,6 +310,7 @@ def rig_of(tables: RigTables, path: Path, within: str = "") -> Rig:
     if tables.plane_target is not None:
         stated["plane_target"] = _target(path, f"{within}plane_target", tables.plane_target)
         stated["plane_board"] = _tolerance(tables.plane_target)
+        stated["plane_margin_mm"] = tables.plane_target.margin_mm
     if tables.laser_fan is not None:
         stated |= {"lines": tables.laser_fan.lines, "angle": math.radians(tables.laser_fan.angle_deg or 0.0)}
     unstated = frozenset(name for name in STEP_TABLES if getattr(tables, name) is None)
@@ -320,7 +324,9 @@ def rig_tables(rig: Rig) -> dict[str, Any]:
     tables = {
         "channel": rig.channel,
         "camera_target": _target_table(rig.camera_target) | _tolerance_table(rig.camera_board),
-        "plane_target": _target_table(rig.plane_target) | _tolerance_table(rig.plane_board),
+        "plane_target": _target_table(rig.plane_target)
+        | _tolerance_table(rig.plane_board)
+        | _present({"margin_mm": rig.plane_margin_mm}),
         "laser_fan": _present({"lines": rig.lines, "angle_deg": _in_degrees(rig.angle) if rig.angle else None}),
         "gauge": None if rig.gauge is None else _gauge_table(rig.gauge),
     }

@@ -195,7 +195,8 @@ class LivePlanes:
 
     def _measure(self, pending: _Pending, off: Picture | None) -> None:
         name, on = self._name(), pending.on.picture
-        self._desk.worker.start(measure_pair, name, on, off, self._target, self._camera, self._settings)
+        margin_mm = self._desk.request.rig.plane_margin_mm
+        self._desk.worker.start(measure_pair, name, on, off, self._target, self._camera, self._settings, margin_mm)
 
     def _finish_pair(self, pending: _Pending, pair: MeasuredPair, judge: CaptureJudge) -> None:
         """Keep the pose, try another picture, or say why it is of no use."""

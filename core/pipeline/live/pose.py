@@ -96,10 +96,16 @@ class MeasuredPair:
 
 
 def measure_pair(
-    name: str, on: Picture, off: Picture | None, target: Target, camera: Camera | None, settings: StripeSettings | None
+    name: str,
+    on: Picture,
+    off: Picture | None,
+    target: Target,
+    camera: Camera | None,
+    settings: StripeSettings | None,
+    margin_mm: float | None,
 ) -> MeasuredPair:
     """Read a pose as its calibration will."""
-    return MeasuredPair(measure_plane_pose(name, on, off, target, camera, settings), off)
+    return MeasuredPair(measure_plane_pose(name, on, off, target, camera, settings, margin_mm), off)
 
 
 def _numbered_stripes(

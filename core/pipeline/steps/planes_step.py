@@ -89,7 +89,8 @@ def measure_poses(
         if off is not None and off.dtype != on.dtype:
             reason = Message("fan.depths_differ", "the pictures with the fan on and off differ in depth (8 or 16 bit)")
             return PoseFeatures(pair.name, None, (), reason)
-        return measure_plane_pose(pair.name, on, off, found.rig.plane_target, camera, stripe)
+        rig = found.rig
+        return measure_plane_pose(pair.name, on, off, rig.plane_target, camera, stripe, rig.plane_margin_mm)
 
     features: list[PoseFeatures] = []
     total = len(found.planes)
