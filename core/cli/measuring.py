@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
@@ -23,6 +24,7 @@ from core.pipeline.steps.camera_step import camera_step
 from core.pipeline.steps.executors import executor_of
 from core.pipeline.steps.gauge_step import gauge_step
 from core.pipeline.steps.planes_step import planes_step
+from core.pipeline.steps.profile_step import StatedTilt, profile_step
 from core.pipeline.steps.run import RunResult, run
 from core.pipeline.steps.scan_step import scan_step
 from core.pipeline.steps.workspace import Workspace
@@ -161,6 +163,24 @@ def run_gauge(folder: Path, out: Path, progress: Progress) -> tuple[GaugeResult,
     work = _open(folder, out)
     gauge = gauge_step(work, progress)
     return gauge, _shown(work, "gauge", output.gauge_rows(gauge), output.gauge_json(gauge), "gauge")
+
+
+def run_profile(
+    folder: Path, out: Path, chosen: Options, stage: str, tilt_sd_deg: float, progress: Progress
+) -> tuple[GaugeResult, Shown]:
+    """Profile step."""
+    if not 0 <= tilt_sd_deg < 10:
+        raise InputError(
+            Message("profile.tilt_sd_range", "{given:g}° is not between 0 and 10", given=tilt_sd_deg),
+            where="--tilt-sd",
+        )
+    tilt = StatedTilt(stage, math.radians(tilt_sd_deg) or None) if stage or tilt_sd_deg else None
+    work = Workspace.open(open_set(folder), out, chosen.part)
+    measured = profile_step(work, chosen, tilt, progress)
+    gauge, pictures = measured.gauge, measured.pictures
+    rows = [*output.gauge_rows(gauge), *output.picture_rows(pictures)]
+    values = {**output.gauge_json(gauge), **output.pictures_json(pictures)}
+    return gauge, _shown(work, "profile", rows, values, "profile", "profile_table", "profiles", "gauge")
 
 
 def _open(folder: Path, out: Path) -> Workspace:

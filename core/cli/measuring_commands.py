@@ -151,6 +151,42 @@ def scan(
 
 
 @commands.command(epilog=EPILOG)
+def profile(
+    folder: Set,
+    out: Out,
+    stage: Annotated[
+        str,
+        typer.Option(
+            metavar="NAME", help="One line only: the pose whose plane target lay on the stage, as planes/pose03."
+        ),
+    ] = "",
+    tilt_sd: Annotated[
+        float,
+        typer.Option(
+            "--tilt-sd",
+            metavar="DEG",
+            help="One line only: standard uncertainty of how the faces are tilted; without --stage the light plane "
+            "is taken to stand at right angles on them.",
+        ),
+    ] = 0.0,
+    stripe_width: StripeWidth = 0.0,
+    contrast: Contrast = 0.0,
+    part: Part = "",
+    exclude: Exclude = None,
+    json: Json = False,
+) -> None:
+    """Measure a thickness with the fixed lines alone, no hand-held laser: by the step in each picture of SET/scan."""
+    from core.cli import measuring
+
+    options = measuring.options(Method.NETWORK, 0.05, part=part, stripe_width=stripe_width, contrast=contrast)
+    options = measuring.leaving_out(options, folder, exclude)
+    with bars() as progress:
+        result, shown = measuring.run_profile(folder, out, options, stage, tilt_sd, progress)
+    shown.show(as_json=json)
+    raise typer.Exit(measuring.exit_code(result.verdict))
+
+
+@commands.command(epilog=EPILOG)
 def gauge(folder: Set, out: Out, json: Json = False) -> None:
     """Measure the thickness of the cloud in DIR as SET/rig.toml asks; writes gauge.json."""
     from core.cli import measuring

@@ -14,6 +14,7 @@ from rich.table import Table
 from core.calibrate.results import CAMERA_PARAMETERS, CameraCalibration, FanCalibration
 from core.files.json_text import to_json
 from core.files.results.gauge_file import gauge_summary
+from core.files.results.profile_file import PictureStep
 from core.inspect.results import GaugeResult
 from core.messages import Message
 from core.report.wording import count, decimals_of, fixed, grouped, thickness_line, with_uncertainty
@@ -143,6 +144,25 @@ def frame_rows(frames: Sequence[FrameRecord], points: int) -> Rows:
         others = ", …" if len(names) > _NAMES_SHOWN else ""
         rows.append(("", f"{len(names)} left out: {reason} ({', '.join(names[:_NAMES_SHOWN])}{others})"))
     return [*rows, ("points", grouped(points))]
+
+
+def picture_rows(pictures: Sequence[PictureStep]) -> Rows:
+    """The step of each picture of the fan alone, or why it gave none."""
+    rows = [("pictures", f"{sum(one.reason is None for one in pictures)} of {count(len(pictures), 'picture')} used")]
+    for one in pictures:
+        step = f"{one.thickness_mm:.3f} mm, own u {one.own_mm:.3f} mm" if one.reason is None else str(one.reason)
+        rows.append(("", f"{one.name}: {step}"))
+    return rows
+
+
+def pictures_json(pictures: Sequence[PictureStep]) -> dict[str, Any]:
+    """The same for machines."""
+    return {
+        "pictures": [
+            {"name": one.name, "thickness_mm": one.thickness_mm, "own_mm": one.own_mm, "reason": str(one.reason or "")}
+            for one in pictures
+        ]
+    }
 
 
 def gauge_json(gauge: GaugeResult | None) -> dict[str, Any]:

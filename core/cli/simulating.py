@@ -53,6 +53,13 @@ def simulate(
         bool, typer.Option("--published-planes", help="The paper's printed planes instead of an exact 5° pencil.")
     ] = False,
     no_reference: Annotated[bool, typer.Option("--no-reference", help="Leave scan/reference.png out.")] = False,
+    fan_lines: Annotated[int, typer.Option(help="Lines of the fan: 3, or 1.")] = SCENARIO.fan_lines,
+    no_hand_laser: Annotated[
+        bool, typer.Option("--no-hand-laser", help="Frames of the fan alone, for `trisect profile`.")
+    ] = False,
+    travel: Annotated[
+        float, typer.Option(metavar="MM", help="Without the hand-held laser: the object is moved so far each frame.")
+    ] = SCENARIO.travel_mm,
     json: Json = False,
 ) -> None:
     """Render a recording set as the paper's rig would record it; its truth is written beside it, never inside."""
@@ -77,6 +84,9 @@ def simulate(
         plane_target=plane_target,
         published_planes=published_planes,
         reference=not no_reference,
+        fan_lines=fan_lines,
+        hand_laser=not no_hand_laser,
+        travel_mm=travel,
     )
     with bars() as progress:
         simulate_set(scenario, out, progress)

@@ -115,6 +115,33 @@ class Deviations:
     tolerance_mm: float
 
 
+@dataclass(frozen=True, eq=False, slots=True)
+class LightProfiles:
+    """What the fan alone showed of a part, without any sweep.
+
+    Parameters
+    ----------
+    name
+        The picture whose profiles are drawn.
+    lines
+        For each line its number, and position and height over the lower face (N,) in mm of its points.
+    step_mm
+        Height of the upper face in that picture.
+    thickness_mm, own_mm
+        (P,) what each picture gives, with the standard uncertainty that is its own.
+    mean_mm, U_mm
+        Of all pictures together.
+    """
+
+    name: str
+    lines: tuple[tuple[int, Array, Array], ...]
+    step_mm: float
+    thickness_mm: Array
+    own_mm: Array
+    mean_mm: float
+    U_mm: float
+
+
 class LeftOut(NamedTuple):
     """A reason, and the names of the pictures left out for it."""
 
@@ -203,6 +230,7 @@ class ReportContent:
     calibrations: tuple[CalibrationMark, ...] = ()
     rig_id: str = ""
     overlay: Overlay | None = None
+    profiles: LightProfiles | None = None
     frames: tuple[FrameRecord, ...] = ()
     settings: Mapping[str, Message | str] = field(default_factory=dict)
     notes: tuple[Message, ...] = ()
@@ -301,6 +329,7 @@ class ReportContent:
         """Name and heading of those SECTIONS that this content has something for, hidden or not."""
         missing = {
             "frame": self.overlay is None,
+            "profiles": self.profiles is None,
             "points": not self.points_used or not len(self.cloud),
             "maps": self.gauge is None and not len(self.cloud),
             "deviation": not self.deviations,

@@ -20,10 +20,11 @@ from core.report.plots import charts as plots
 from core.report.plots import figures
 from core.report.plots.charts import deviation_figure, points_figure
 from core.report.plots.overlay_plot import overlay_figure
+from core.report.plots.profile_plot import profiles_figure
 from core.report.plots.run_chart import repeats_figure, run_chart_figure
 from core.report.sections.studies import study_lines, study_values
 
-SURFACE_MM, OVERLAY_MM, POINTS_MM, FACES_MM, CLOUD_MM, CHART_MM, DEVIATION_MM = (
+SURFACE_MM, OVERLAY_MM, POINTS_MM, FACES_MM, CLOUD_MM, CHART_MM, DEVIATION_MM, PROFILES_MM = (
     104.0,
     116.0,
     78.0,
@@ -31,6 +32,7 @@ SURFACE_MM, OVERLAY_MM, POINTS_MM, FACES_MM, CLOUD_MM, CHART_MM, DEVIATION_MM = 
     58.0,
     42.0,
     80.0,
+    62.0,
 )
 """Heights of the pictures at scale 1."""
 
@@ -47,6 +49,8 @@ def drawings(look: Look, content: ReportContent, progress: Progress) -> dict[str
         )
     if overlay is not None:
         drawings["frame"] = lambda: overlay_figure(look, overlay, width, OVERLAY_MM)
+    if (profiles := content.profiles) is not None:
+        drawings["profiles"] = lambda: profiles_figure(look, profiles, width, PROFILES_MM)
     if content.points_used and len(content.cloud):
         named = {look.words.known(name): indices for name, indices in content.points_used.items()}
         drawings["points"] = lambda: points_figure(look, content.cloud, named, size, width, POINTS_MM)

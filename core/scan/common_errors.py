@@ -89,6 +89,17 @@ class CommonErrors:
         points: Array = rays / np.einsum("ni,ni->n", rays, pis)[:, None]
         return points
 
+    @classmethod
+    def of_fan(cls, camera: Camera, fan: Fan, deviations: Sequence[Deviation]) -> CommonErrors:
+        """What displaced calibrations do where there is no sweep: points of the fan alone."""
+        return cls(
+            camera.image_size,
+            tuple(one.source for one in deviations),
+            np.array([parameters_of(camera), *(parameters_of(one.camera) for one in deviations)]),
+            np.array([fan.pis, *(one.fan.pis for one in deviations)]),
+            np.zeros((1 + len(deviations), 0, 3)),
+        )
+
 
 def solve_common(
     features: ScanFeatures,

@@ -5,16 +5,20 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
+import numpy as np
+
 from core.files.recording.rig import GaugeSpec, rig_to_toml
 from core.files.recording.rig import Rig as StatedRig
 from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid, Target
 from core.model import Pose
+from core.model.arrays import Array
 from core.simulate.poses import camera_poses, plane_poses
 from core.simulate.rig import Rig
 from core.simulate.scenario import Scenario
 from core.simulate.scene.boards import printed
 from core.simulate.scene.image import Picture, Sensor, generator
 from core.simulate.scene.rays import Map
+from core.simulate.scene.stage import table_pose
 from core.simulate.scene.targets import RenderContext, camera_picture, fan_centres, plane_pictures
 
 CAMERA_GREY, PLANE_GREY = 230.0, 75.0
@@ -41,7 +45,11 @@ def rig_toml(scenario: Scenario) -> str:
         else None
     )
     targets = PLATES[scenario.camera_target], PLATES[scenario.plane_target]
-    return rig_to_toml(StatedRig(*targets, lines=3, angle=math.radians(5.0), gauge=gauge))
+    return rig_to_toml(
+        StatedRig(
+            *targets, lines=scenario.fan_lines, angle=math.radians(5.0) if scenario.fan_lines > 1 else 0.0, gauge=gauge
+        )
+    )
 
 
 class CalibrationPictures:
@@ -60,6 +68,8 @@ class CalibrationPictures:
             fan_centres(rig, scenario.plane_poses), self._plane_plate.outline, generator(self._seed, "plane poses")
         )
         self.plane_poses = {f"pose{i:02d}": pose for i, pose in enumerate(shown)}
+        if not scenario.hand_laser:
+            self.plane_poses["stage"] = _on_table(rig, self._plane_plate.outline)
 
     def render(self, name: str) -> Iterator[tuple[str, Picture]]:
         """Render the pictures of one view or pose, each with its path within the set."""
@@ -75,3 +85,13 @@ class CalibrationPictures:
     def _view(self, name: str, pose: Pose) -> Picture:
         rng = generator(self._seed, "camera", list(self.camera_poses).index(name))
         return camera_picture(self._context, self._camera_plate, pose, CAMERA_GREY, rng)
+
+
+def _on_table(rig: Rig, outline: Array) -> Pose:
+    """The plate flat on the table, its middle under the fan's middle line."""
+    table = table_pose()
+    pi = rig.fan.planes[rig.fan.lines // 2].pi
+    along = table.rotation[:, 1]
+    middle = table.translation + along * (1 - pi @ table.translation) / (pi @ along)
+    rotation = table.rotation @ np.diag([1.0, -1.0, -1.0])  # a plate's z points away from the camera
+    return Pose(rotation, middle - rotation @ outline.mean(axis=0))

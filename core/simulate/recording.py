@@ -14,7 +14,7 @@ from core.errors import InputError
 from core.files.atomic import cannot_write, make_folder, write_text
 from core.files.pictures import write_picture
 from core.messages import Message
-from core.model import LightPlane, Pose
+from core.model import Fan, LightPlane, Pose
 from core.progress import Progress, silent, steps
 from core.simulate.calibration import CalibrationPictures, rig_toml
 from core.simulate.rig import Optics, Rig, paper_rig
@@ -100,13 +100,16 @@ def _render(scenario: Scenario, rig: Rig, made: Path, hidden: Path, progress: Pr
     def shoot(name: str) -> Iterator[tuple[str, Picture]]:
         if name == "reference":
             yield "scan/reference.png", stage.reference()
-        else:
+        elif scenario.hand_laser:
             yield f"scan/{name}.png", stage.frame(*shots[name])
+        else:
+            yield f"scan/{name}.png", profile_picture(scenario, shots[name][0], rig)
 
-    first = ["reference"] if scenario.reference else []
+    first = ["reference"] if scenario.reference and scenario.hand_laser else []
     _write_all(made, shoot, [*first, *shots], progress, "frames")
     write_text(made / "rig.toml", rig_toml(scenario), sync=False)
-    sweeps: dict[str, LightPlane] = {name: sheet.plane for name, (_, sheet) in shots.items()}
+    swept = shots if scenario.hand_laser else {}
+    sweeps: dict[str, LightPlane] = {name: sheet.plane for name, (_, sheet) in swept.items()}
     maps = stage.maps
     truth = Truth(rig.camera, rig.fan, sweeps, camera_poses, plane_poses, figures, maps.depth, maps.table)
     save_truth(hidden, truth, asdict(scenario))
@@ -115,9 +118,21 @@ def _render(scenario: Scenario, rig: Rig, made: Path, hidden: Path, progress: Pr
 def scenario_rig(scenario: Scenario) -> Rig:
     """The rig of a scenario."""
     optics = replace(Optics(), speckle_contrast=scenario.speckle)
-    return paper_rig(
-        scenario.scale, published_planes=scenario.published_planes, optics=optics, fan_bow=scenario.fan_bow
-    )
+    rig = paper_rig(scenario.scale, published_planes=scenario.published_planes, optics=optics, fan_bow=scenario.fan_bow)
+    return rig if scenario.fan_lines == rig.fan.lines else replace(rig, fan=Fan((rig.fan.planes[1],)))
+
+
+def profile_picture(scenario: Scenario, index: int, rig: Rig | None = None) -> Picture:
+    """Picture number `index` of the fan alone, the object moved on by `travel_mm` each time about where it stands.
+
+    A moved object shows other speckle; of one that stands still only the camera's noise is new.
+    """
+    rig = rig or scenario_rig(scenario)
+    moved = scenario.travel_mm * (index - (scenario.frames - 1) / 2)
+    seed = scenario.seed if scenario.travel_mm == 0 else (scenario.seed + 7919 * (index + 1)) % 2**63
+    there = replace(scenario, away_mm=scenario.away_mm + moved, seed=seed)
+    stage, _, _ = scan_of(replace(there, frames=0), rig)
+    return stage.sensor.expose(stage.still, generator(scenario.seed, "profile", index))
 
 
 def scan_of(scenario: Scenario, rig: Rig | None = None) -> tuple[ScanStage, list[Sheet], dict[str, object]]:

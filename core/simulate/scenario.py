@@ -58,6 +58,12 @@ class Scenario:
         Write scan/reference.png, the fan alone.
     yaw_deg, right_mm, away_mm
         Where the object stands: turned about the table's normal, and moved over the table, from its middle.
+    fan_lines
+        3, or 1: the fan's middle line alone.
+    hand_laser
+        False: frames of the fan alone, and a pose of the plane target on the table, planes/stage.
+    travel_mm
+        Without the hand-held laser: how far the object is moved away from frame to frame; 0: it stands still.
     """
 
     object: str = "block"
@@ -81,6 +87,9 @@ class Scenario:
     yaw_deg: float = YAW_DEG
     right_mm: float = 0.0
     away_mm: float = 0.0
+    fan_lines: int = 3
+    hand_laser: bool = True
+    travel_mm: float = 0.0
 
     def __post_init__(self) -> None:
         choices = (
@@ -88,6 +97,7 @@ class Scenario:
             ("camera_target", CAMERA_TARGETS),
             ("plane_target", PLANE_TARGETS),
             ("bits", (8, 16)),
+            ("fan_lines", (1, 3)),
         )
         for name, allowed in choices:
             if getattr(self, name) not in allowed:
@@ -115,6 +125,7 @@ class Scenario:
             ("yaw_deg", -180.0, 180.0),
             ("right_mm", -60.0, 60.0),
             ("away_mm", -60.0, 60.0),
+            ("travel_mm", 0.0, 60.0),
         )
         for name, low, high in ranges:
             if not low <= getattr(self, name) <= high:

@@ -202,3 +202,16 @@ def test_the_sample_is_rendered_once_and_then_found(tmp_path, monkeypatch):
 def test_the_sample_is_the_50_mm_block_at_half_resolution():
     scenario = sample.sample_scenario()
     assert (scenario.object, scenario.height_mm, scenario.scale, scenario.frames) == ("block", 50.0, 0.5, 48)
+
+
+def test_without_the_hand_held_laser_frames_show_the_fan_alone_and_the_plate_lies_on_the_table(tmp_path):
+    scenario = replace(SMALL, hand_laser=False, fan_lines=1, travel_mm=2.0, frames=2)
+    simulate_set(scenario, tmp_path / "set")
+    found, truth = open_set(tmp_path / "set"), load_truth(tmp_path / "set")
+    assert found.reference is None
+    assert found.rig.lines == truth.fan.lines == 1
+    assert [path.name for path in found.frames] == ["frame0000.png", "frame0001.png"]
+    assert truth.sweeps == {}
+    assert abs(truth.plane_poses["stage"].rotation[:, 2] @ truth.thing["table_normal"]) == pytest.approx(1.0)
+    first, second = (read_picture(path).astype(float) for path in found.frames)
+    assert np.abs(first - second).mean() > 0.5

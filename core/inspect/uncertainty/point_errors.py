@@ -72,6 +72,11 @@ class PointErrors:
         width = float(np.median(np.concatenate([piece.width for piece in swept]))) if swept else 0.0
         return cls(sweep_covariance, common, *lengths, speckle, width)
 
+    @classmethod
+    def of_fan(cls, pieces: Sequence[Centreline], common: CommonErrors) -> PointErrors:
+        """Of the points of the fan alone: `pieces` are its centrelines, averaged along themselves."""
+        return cls(common=common, speckle_px=_correlation_px(pieces))
+
     @property
     def calibrations(self) -> tuple[Message, ...]:
         """(K,) which calibration each of the common errors comes from; none where they are not known."""

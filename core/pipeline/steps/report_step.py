@@ -24,6 +24,7 @@ from core.files.results.fan_file import fan_id
 from core.files.results.gauge_file import read_gauge
 from core.files.results.inspection_file import NAME, InspectionFile, read_inspection
 from core.files.results.ply import read_cloud, read_mesh
+from core.files.results.profile_file import read_profiles_file
 from core.files.results.run_file import RunRecord, read_run
 from core.files.results.scan_file import ScanFile, read_scan
 from core.files.study.study_file import NAME as STUDY
@@ -31,16 +32,19 @@ from core.files.study.study_file import read_study, study_values
 from core.image.display import in_8_bit
 from core.image.stripes.centreline import Centreline
 from core.inspect.plan.feature_spec import Deviation
+from core.inspect.results import GaugeResult
 from core.messages import Command, Message, label
 from core.model import Camera
 from core.model.arrays import Array
+from core.pipeline.steps.profile_step import profile_axes
 from core.pipeline.steps.workspace import FILES, Calibration, Workspace, check_calibration, read_calibration
 from core.progress import Progress, silent
-from core.report.content import CalibrationMark, Deviations, Overlay, ReportContent
+from core.report.content import CalibrationMark, Deviations, LightProfiles, Overlay, ReportContent
 from core.report.pdf import build_report
 from core.report.wording import Words, target_in_words
 from core.scan.method import Method
-from core.scan.surface.cloud import Cloud
+from core.scan.surface.cloud import FAN, Cloud
+from core.scan.surface.fused_surface import Mesh
 
 METHOD_IN_WORDS: dict[str, str] = {
     Method.NETWORK: label(
@@ -50,6 +54,7 @@ METHOD_IN_WORDS: dict[str, str] = {
         "each sweep located from its own crossings with the fan (Sun et al. 2023, section 4)"
     ),
 }
+WITHOUT_SWEEPS = label("no sweeps: steps on the light profiles of the fixed fan alone")
 METHODS = (label("network"), label("three-crossings"))
 """As the settings name them."""
 RIG_ID = 12
@@ -79,10 +84,11 @@ def report_content(work: Workspace, progress: Progress = silent, said: Said | No
     progress("report", 0, 1)
     content = results_content(work.out, work.part, work.record())
     rig = work.found.rig
+    scan = None if content.profiles else read_scan(work.path("scan"))
     content = replace(
         content,
         rig_id=content.rig_id or hashlib.sha256(rig_to_toml(rig).encode()).hexdigest()[:RIG_ID],
-        overlay=_overlay(work.found, read_scan(work.path("scan")), content.cloud),
+        overlay=_overlay(work.found, scan, content.cloud) if scan else None,
     )
     content = said(content) if said else content
     return replace(content, rig=_rig_in_words(rig, content.camera.camera.image_size, Words.of(content.language)))
@@ -99,31 +105,71 @@ def results_content(out: Path, part: str = "", record: RunRecord | None = None) 
         If a result is missing, damaged, or was measured with another calibration.
     """
     calibration = read_calibration(out)
-    cloud_file = read_cloud(out / FILES["cloud"])
-    check_calibration(out / FILES["cloud"], cloud_file.calibration_id, calibration)
-    scan = read_scan(out / FILES["scan"])
-    check_calibration(out / FILES["scan"], scan.calibration_id, calibration)
     record = record or read_run(out / FILES["run"])
     gauge_path = out / FILES["gauge"]
+    profiled = (out / FILES["profile"]).exists()
+    cloud, mesh = _profiled(out, calibration) if profiled else _scanned(out, calibration)
+    gauge = read_gauge(gauge_path, cloud) if gauge_path.exists() else None
+    method = str(record.settings.get("scan", {}).get("method"))
     content = ReportContent(
         part=part or record.part,
         rig={},
         camera=calibration.camera,
         fan=calibration.fan,
-        cloud=cloud_file.cloud,
-        mesh=read_mesh(out / FILES["mesh"]),
-        gauge=read_gauge(gauge_path, cloud_file.cloud) if gauge_path.exists() else None,
+        cloud=cloud,
+        mesh=mesh,
+        gauge=gauge,
         calibrations=_marks(out, record, calibration),
         rig_id=record.inputs.get(RIG, "")[:RIG_ID],
         frames=record.frames,
         hashes=record.inputs,
-        settings=_settings_in_words(record),
+        settings=_settings_in_words(record, profiled=profiled),
         notes=record.all_notes,
-        method=METHOD_IN_WORDS.get(str(record.settings.get("scan", {}).get("method")), ""),
+        method=WITHOUT_SWEEPS if profiled else METHOD_IN_WORDS.get(method, ""),
         version=__version__,
         timestamp=record.measured_at,
+        profiles=_light_profiles(out, cloud, gauge) if profiled and gauge else None,
     )
     return with_inspection(content, out)
+
+
+def _scanned(out: Path, calibration: Calibration) -> tuple[Cloud, Mesh]:
+    cloud_file = read_cloud(out / FILES["cloud"])
+    check_calibration(out / FILES["cloud"], cloud_file.calibration_id, calibration)
+    scan = read_scan(out / FILES["scan"])
+    check_calibration(out / FILES["scan"], scan.calibration_id, calibration)
+    return cloud_file.cloud, read_mesh(out / FILES["mesh"])
+
+
+def _profiled(out: Path, calibration: Calibration) -> tuple[Cloud, Mesh]:
+    """The points of the picture that is shown, which stand first in the file, and no mesh."""
+    file = read_cloud(out / FILES["profiles"])
+    check_calibration(out / FILES["profiles"], file.calibration_id, calibration)
+    none = np.zeros((0, 3))
+    shown = file.cloud.select(file.cloud.frame == file.cloud.frame[0])
+    return shown, Mesh(none, none, np.zeros(0), none.astype(np.int64))
+
+
+def _light_profiles(out: Path, cloud: Cloud, gauge: GaugeResult) -> LightProfiles | None:
+    file = read_profiles_file(out / FILES["profile"])
+    normal = gauge.normal
+    if normal is None:
+        return None
+    along, up = profile_axes(normal, cloud)
+    foot = float(np.mean(cloud.points[gauge.lower.indices] @ up))
+    position, height = cloud.points @ along, cloud.points @ up - foot
+    numbers = FAN + 1 - cloud.sweep
+    given = [one for one in file.pictures if one.reason is None]
+    shown = next(one for one in given if one.index == file.shown)
+    return LightProfiles(
+        shown.name,
+        tuple((int(n), position[numbers == n], height[numbers == n]) for n in np.unique(numbers)),
+        shown.thickness_mm,
+        np.array([one.thickness_mm for one in given]),
+        np.array([one.own_mm for one in given]),
+        file.thickness_mm,
+        file.U_mm,
+    )
 
 
 def _marks(out: Path, record: RunRecord, calibration: Calibration) -> tuple[CalibrationMark, ...]:
@@ -154,9 +200,10 @@ def _rig_in_words(rig: Rig, image_size: tuple[int, int], words: Words) -> Mappin
     return said
 
 
-def _settings_in_words(record: RunRecord) -> Mapping[str, Message | str]:
+def _settings_in_words(record: RunRecord, *, profiled: bool) -> Mapping[str, Message | str]:
     words: dict[str, Message | str] = {}
-    scan, camera = record.settings.get("scan", {}), record.settings.get("camera", {})
+    scan = {} if profiled else record.settings.get("scan", {})
+    camera = record.settings.get("camera", {})
     if "method" in scan:
         words[label("Method")] = str(scan["method"])
     if "sigma_cut_mm" in scan:

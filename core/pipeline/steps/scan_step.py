@@ -165,7 +165,7 @@ def _shown_to(watch: Callable[[FramePreview], None], preview: Preview) -> Callab
 def _write(work: Workspace, scan: ScanResult, mesh: Mesh, file: ScanFile) -> None:
     """All results at once, after all the work: who cancels keeps the old ones, and old and new never mix."""
     before = work.digest("cloud")
-    work.clear(("cloud", "scan", "mesh"))
+    work.clear(("cloud", "scan", "mesh", "profiles", "profile", "profile_table"))
     write_cloud(work.path("cloud"), scan.cloud, file.calibration_id)
     write_scan(work.path("scan"), file)
     write_mesh(work.path("mesh"), mesh, file.calibration_id)

@@ -40,6 +40,7 @@ def story(look: Look, content: ReportContent, pictures: Pictures, limits: Limits
     parts: list[tuple[str, Callable[[], list[Flowable]]]] = [
         ("surface", lambda: _surface(look, content, pictures, limits)),
         ("frame", lambda: _frame(look, content, pictures, limits)),
+        ("profiles", lambda: _profiles(look, content, pictures, limits)),
         ("points", lambda: _points(look, pictures, limits)),
         ("maps", lambda: _maps(look, content, pictures, limits)),
         ("deviation", lambda: _deviations(look, content, pictures, limits)),
@@ -131,6 +132,19 @@ def _frame(look: Look, content: ReportContent, pictures: Pictures, limits: Limit
     )
     body = [Picture(pictures["frame"], limits.picture_scale), look.text(caption, "caption")]
     return [section(look, "frame", "One frame of the scan", body)]
+
+
+def _profiles(look: Look, content: ReportContent, pictures: Pictures, limits: Limits) -> list[Flowable]:
+    profiles = content.profiles
+    if profiles is None or "profiles" not in pictures:
+        return []
+    caption = look.words(
+        "Points on the lines of {name}, by their height over the lower face; dashed: the two faces. Beside: what each "
+        "picture gives, with ±2u of its own noise and form, and the mean with its U.",
+        name=profiles.name,
+    )
+    body = [Picture(pictures["profiles"], limits.picture_scale), look.text(caption, "caption")]
+    return [section(look, "profiles", "Light profiles", body)]
 
 
 def _points(look: Look, pictures: Pictures, limits: Limits) -> list[Flowable]:

@@ -46,6 +46,7 @@ __all__ = [
     "extract_features",
     "gather",
     "read_reference",
+    "refined",
 ]
 
 Frame = tuple[str, Picture | Message]
@@ -142,15 +143,15 @@ def gather(
         straight = [straightened(pieces, camera) for pieces in lines]
         crossings = bent_back(all_crossings(straightened(fan, camera), straight, window, progress), camera)
     if smoothed:
-        fan = _refined(fan)
+        fan = refined(fan)
         frames = [
-            replace(frame, centrelines=_refined(frame.centrelines))
+            replace(frame, centrelines=refined(frame.centrelines))
             for frame in steps(frames, progress, "smoothing", len(frames))
         ]
     return ScanFeatures(image_size, fan, tuple(frames), crossings, stripes[1], stripes[0], notes_on(frames))
 
 
-def _refined(pieces: tuple[Centreline, ...]) -> tuple[Centreline, ...]:
+def refined(pieces: tuple[Centreline, ...]) -> tuple[Centreline, ...]:
     """Averaged along themselves, and as uncertain as uneven brightness makes them."""
     smoothed = (smooth(piece) for piece in pieces)
     return tuple(replace(piece, sigma=np.hypot(piece.sigma, shading_sigma(piece))) for piece in smoothed)

@@ -1,0 +1,132 @@
+"""profile.json: the step that each picture of the fan alone gives; profiles.csv: all profiles, point by point."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from pydantic import Field
+
+from core import __version__
+from core.files.atomic import write_bytes
+from core.files.complaints import checked
+from core.files.json_text import write_json
+from core.files.reading import read_json
+from core.files.results.gauge_file import gauge_summary
+from core.files.tables import Finite, OptionalMessage, OrNan, ResultFile, kept
+from core.inspect.results import GaugeResult
+from core.messages import Command, Message
+from core.model.arrays import Array
+from core.scan.surface.cloud import FAN, Cloud
+
+_TODO = Message(
+    "advice.measure_profiles_first",
+    "measure the profiles first{command}",
+    command=Command("trisect profile SET --out DIR"),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class PictureStep:
+    """What one picture gave: its thickness and the standard uncertainty that is its own, in mm; or why it gave none."""
+
+    index: int
+    name: str
+    thickness_mm: float = float("nan")
+    own_mm: float = float("nan")
+    points: tuple[int, int] = (0, 0)
+    reason: Message | None = None
+
+
+class _Picture(ResultFile):
+    index: int
+    name: str
+    thickness_mm: OrNan
+    own_mm: OrNan
+    points: list[int] = Field(min_length=2, max_length=2)
+    reason: OptionalMessage = None
+
+
+class _ProfileFile(ResultFile):
+    thickness_mm: Finite
+    U_mm: Finite
+    pictures: list[_Picture]
+    shown: int
+    calibration_id: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class ProfileFile:
+    """What profile.json says: the thickness with its U in mm, each picture's step, and which picture is shown."""
+
+    thickness_mm: float
+    U_mm: float
+    pictures: tuple[PictureStep, ...]
+    shown: int
+    calibration_id: str
+
+
+def write_profiles(path: Path, gauge: GaugeResult, pictures: Sequence[PictureStep], shown: int, of: str) -> None:
+    """Write profile.json; `shown` is the index of the picture whose faces gauge.json has, `of` the calibration's id.
+
+    Raises
+    ------
+    InputError
+        If it cannot be written.
+    """
+    rows = [
+        {
+            "index": one.index,
+            "name": one.name,
+            "thickness_mm": one.thickness_mm,
+            "own_mm": one.own_mm,
+            "points": list(one.points),
+            "reason": kept(one.reason),
+        }
+        for one in pictures
+    ]
+    summary = gauge_summary(gauge)
+    told = {"rule": kept(gauge.rule), "notes": [kept(note) for note in gauge.notes]}
+    rest = {"pictures": rows, "shown": shown, "calibration_id": of, "version": __version__}
+    write_json(path, {**summary, **told, **rest})
+
+
+def read_profiles_file(path: Path) -> ProfileFile:
+    """Read profile.json; InputError if it is missing, no JSON, or a value is wrong."""
+    file = checked(_ProfileFile, read_json(path, todo=_TODO), path)
+    pictures = tuple(
+        PictureStep(one.index, one.name, one.thickness_mm, one.own_mm, (one.points[0], one.points[1]), one.reason)
+        for one in file.pictures
+    )
+    return ProfileFile(file.thickness_mm, file.U_mm, pictures, file.shown, file.calibration_id)
+
+
+_COLUMNS = {
+    "picture": "%d",
+    "line": "%d",
+    "position_mm": "%.4f",
+    "height_mm": "%.4f",
+    "sigma_mm": "%.4f",
+    "x_mm": "%.4f",
+    "y_mm": "%.4f",
+    "z_mm": "%.4f",
+    "image_u_px": "%.3f",
+    "image_v_px": "%.3f",
+}
+
+
+def write_profiles_csv(path: Path, cloud: Cloud, position: Array, height: Array) -> None:
+    """Write one line a point: picture and line (from 1), where it lies along and above, σ of its depth, its place.
+
+    `position` and `height` (N,) are in mm. InputError if it cannot be written.
+    """
+    columns = np.column_stack(
+        [cloud.frame, FAN + 1 - cloud.sweep, position, height, cloud.sigma, cloud.points, cloud.uv]
+    )
+    text = io.StringIO()
+    text.write(",".join(_COLUMNS) + "\n")
+    np.savetxt(text, columns, fmt=list(_COLUMNS.values()), delimiter=",")
+    write_bytes(path, text.getvalue().encode())

@@ -1,0 +1,281 @@
+"""Profile step: pictures of the fan alone → profiles.ply, profiles.csv, profile.json, gauge.json."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from core.calibrate.deviations import calibration_deviations
+from core.errors import InputError
+from core.files.recording.options import Options
+from core.files.recording.recording_set import RecordingSet
+from core.files.recording.rig import GaugeSpec
+from core.files.results.gauge_file import write_gauge
+from core.files.results.ply import write_cloud
+from core.files.results.profile_file import PictureStep, write_profiles, write_profiles_csv
+from core.inspect.results import GaugeResult
+from core.inspect.step_height import KnownTilt, Step, measure_steps, step_of
+from core.inspect.uncertainty.point_errors import PointErrors
+from core.messages import Message, as_json, from_json
+from core.model.arrays import Array
+from core.pipeline.steps.scan_step import feature_options, taken_frames
+from core.pipeline.steps.workspace import Calibration, Workspace, check_size
+from core.progress import Progress, silent
+from core.scan.common_errors import CommonErrors
+from core.scan.features.frames import FrameRecord
+from core.scan.profiles import Profiles, read_profiles
+from core.scan.surface.cloud import Cloud
+from core.scan.surface.triangulate import join
+
+STAGE_SD = float(np.radians(0.1))
+"""Standard uncertainty in rad of a stage's normal that a plate lying on it shows: thickness of its paper, burrs under
+it; its pose itself is known ten times better."""
+_REPLACED = ("cloud", "scan", "mesh", "gauge", "faces", "inspection", "inspected", "report")
+"""Results of a scan, which would not be of the part that these profiles are of."""
+
+
+@dataclass(frozen=True, slots=True)
+class StatedTilt:
+    """How the faces stand, where one line does not show it.
+
+    `stage` is the pose of the plane target ("planes/pose03") that lay on what the part stands on; "": the light plane
+    stands at right angles on the faces. `sd` is the standard uncertainty in rad; None: STAGE_SD for a stage.
+    """
+
+    stage: str = ""
+    sd: float | None = None
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class MeasuredProfiles:
+    """What the step gives in memory; the same is in its files."""
+
+    gauge: GaugeResult
+    pictures: tuple[PictureStep, ...]
+    cloud: Cloud
+
+
+def profile_step(
+    work: Workspace,
+    options: Options | None = None,
+    tilt: StatedTilt | None = None,
+    progress: Progress = silent,
+) -> MeasuredProfiles:
+    """Measure a thickness by the step on the fan's profiles, with the calibration in camera.json and planes.json.
+
+    Every picture of the set's scan shows the fan alone and the part; with a reference, that is the one picture.
+
+    Parameters
+    ----------
+    work, options, progress
+        What is measured, how, and who is told.
+    tilt
+        Of the faces, for a fan of one line; others show it themselves.
+
+    Raises
+    ------
+    InputError
+        If a calibration is missing, a fan of one line is not told how the faces stand, or no picture gives a step.
+    """
+    options, found = options or Options(), work.found
+    paths = _pictures(found, options)
+    calibration = work.calibration()
+    camera, fan = calibration.camera.camera, calibration.fan.fan
+    known = _known(calibration, tilt)
+    if fan.lines == 1 and known is None:
+        raise InputError(
+            Message("profile.one_line", "the fan has one line, which does not show how the faces are tilted"),
+            where="profile",
+            todo=Message(
+                "profile.advice_tilt",
+                "name the pose of the plane target that lay on the stage (--stage planes/NAME), or say how well the "
+                "light plane stands at right angles on the faces (--tilt-sd DEGREES)",
+            ),
+        )
+    with work.step("profile") as log:
+        log.settings.update({**options.scan_settings, **_tilt_settings(tilt)})
+        common = CommonErrors.of_fan(camera, fan, calibration_deviations(calibration.camera, calibration.fan))
+        seen, steps, pictures = [], [], []
+        stream = found.stream(paths)
+        for index, (name, picture) in enumerate(stream):
+            progress("profiles", index, len(paths))
+            if isinstance(picture, str):
+                pictures.append(PictureStep(index, name, reason=from_json(picture)))
+                continue
+            check_size(paths[index], picture, camera)
+            try:
+                profiles = read_profiles(picture, index, camera, fan, feature_options(options))
+            except InputError as error:
+                pictures.append(PictureStep(index, name, reason=error.what))
+                continue
+            seen.append(profiles)
+            step = step_of(profiles.cloud, PointErrors.of_fan(profiles.pieces, common), known)
+            pictures.append(_row(index, name, step))
+            steps += [] if isinstance(step, Message) else [step]
+        progress("profiles", len(paths), len(paths))
+        if not steps:
+            raise _nothing(pictures)
+        spec = found.rig.gauge or GaugeSpec()
+        gauge = measure_steps(
+            steps,
+            one_line=not steps[0].faces.planes.tilt_determined,
+            nominal_mm=spec.nominal_mm,
+            tolerance_mm=spec.tolerance_mm,
+        )
+        shown = next(one for one in steps if one.faces.planes.normal is gauge.normal)
+        cloud = _cloud(seen, shown.frame, common)
+        notes = (*gauge.notes, *_assumed(fan.lines, tilt, shown))
+        gauge = replace(gauge, notes=notes)
+        log.frames.extend(_records(pictures, seen))
+        log.notes.extend(notes)
+        rule = None if gauge.rule is None else as_json(gauge.rule)
+        log.settings.update({"nominal_mm": spec.nominal_mm, "tolerance_mm": spec.tolerance_mm, "rule": rule})
+        _write(work, gauge, pictures, shown, cloud, calibration)
+    return MeasuredProfiles(gauge, tuple(pictures), cloud)
+
+
+def profile_axes(step_normal: Array, cloud: Cloud) -> tuple[Array, Array]:
+    """Unit vectors (3,) along the profiles, to the right in the picture, and up, against the faces' normal."""
+    points = cloud.points - cloud.points.mean(axis=0)
+    flat = points - np.outer(points @ step_normal, step_normal)
+    along = np.linalg.svd(flat, full_matrices=False)[2][0]
+    return np.asarray(along if along[0] > 0 else -along), -np.asarray(step_normal)
+
+
+def _pictures(found: RecordingSet, options: Options) -> list[Path]:
+    if found.reference is not None:
+        return [found.reference]
+    taken = taken_frames(found, options)
+    if taken:
+        return taken
+    raise InputError(
+        Message("profile.no_pictures", "there are no pictures of the part under the fan"),
+        where=found.where("scan"),
+        todo=Message("profile.advice_record", "record one or more, the hand-held laser off"),
+    )
+
+
+def _known(calibration: Calibration, tilt: StatedTilt | None) -> KnownTilt | None:
+    """What is stated of the tilt, with the stage's normal from its pose."""
+    if tilt is None:
+        return None
+    if not tilt.stage:
+        return None if tilt.sd is None else KnownTilt(None, tilt.sd)
+    name = tilt.stage.removeprefix("planes/")
+    pose = next((one for one in calibration.fan.poses if one.name.removeprefix("planes/") == name and one.used), None)
+    if pose is None:
+        raise InputError(
+            Message("profile.no_such_pose", "planes.json has no pose {name} that was used", name=name),
+            where="--stage",
+            todo=Message(
+                "profile.advice_stage",
+                "name one of {poses}",
+                poses=tuple(one.name for one in calibration.fan.poses if one.used),
+            ),
+        )
+    x, y, z = pose.pose.rotation[:, 2]
+    return KnownTilt((float(x), float(y), float(z)), STAGE_SD if tilt.sd is None else tilt.sd)
+
+
+def _tilt_settings(tilt: StatedTilt | None) -> dict[str, object]:
+    if tilt is None:
+        return {}
+    return {"stage": tilt.stage, "tilt_sd_deg": None if tilt.sd is None else float(np.degrees(tilt.sd))}
+
+
+def _row(index: int, name: str, step: Step | Message) -> PictureStep:
+    if isinstance(step, Message):
+        return PictureStep(index, name, reason=step)
+    points = len(step.pair.upper), len(step.pair.lower)
+    return PictureStep(index, name, step.thickness_mm, step.own_mm, points)
+
+
+def _nothing(pictures: Sequence[PictureStep]) -> InputError:
+    reasons = [one.reason for one in pictures if one.reason is not None]
+    return InputError(
+        Message(
+            "profile.nothing",
+            "none of {n} pictures gives a step; the most common reason: {reason}",
+            n=len(pictures),
+            reason=max(reasons, key=lambda one: [str(other) for other in reasons].count(str(one))),
+        ),
+        where="profile",
+        todo=Message(
+            "profile.advice_both_faces",
+            "let at least one line of the fan run over both faces, a few millimetres on each",
+        ),
+    )
+
+
+def _cloud(seen: Sequence[Profiles], shown: int, common: CommonErrors) -> Cloud:
+    """All points, those of the picture shown first, as gauge.json counts them."""
+    ordered = sorted(seen, key=lambda one: int(one.cloud.frame[0]) != shown)
+    cloud = join([one.cloud for one in ordered])
+    return replace(cloud, sigma_common=common.sigma(cloud))
+
+
+def _assumed(lines: int, tilt: StatedTilt | None, shown: Step) -> tuple[Message, ...]:
+    """What the thickness takes for granted."""
+    resting = Message(
+        "profile.assumes_rest",
+        "The part is taken to have been at rest during each exposure, and its two faces to be parallel.",
+    )
+    if shown.faces.planes.tilt_determined or tilt is None:
+        return (resting,)
+    sd = float(np.degrees(STAGE_SD if tilt.sd is None else tilt.sd))
+    if tilt.stage:
+        how = Message(
+            "profile.assumes_stage",
+            "The faces are taken to be parallel to the plate of {stage}, to a standard uncertainty of {sd_deg:.2g}°.",
+            stage=tilt.stage,
+            sd_deg=sd,
+        )
+    else:
+        how = Message(
+            "profile.assumes_square",
+            "The light plane is taken to stand at right angles on the faces, to a standard uncertainty of "
+            "{sd_deg:.2g}°; no picture shows whether it does.",
+            sd_deg=sd,
+        )
+    return resting, how
+
+
+def _records(pictures: Sequence[PictureStep], seen: Sequence[Profiles]) -> list[FrameRecord]:
+    of_frame = {int(one.cloud.frame[0]): one for one in seen if len(one.cloud)}
+    records = []
+    for one in pictures:
+        profiles = of_frame.get(one.index)
+        records.append(
+            FrameRecord(
+                one.index,
+                one.name,
+                one.reason is None,
+                one.reason,
+                stripes=len(profiles.pieces) if profiles else 0,
+                stripe_px=sum(map(len, profiles.pieces)) if profiles else 0,
+                points=len(profiles.cloud) if profiles else 0,
+                sigma_mm=float(np.median(profiles.cloud.sigma)) if profiles else float("nan"),
+            )
+        )
+    return records
+
+
+def _write(
+    work: Workspace,
+    gauge: GaugeResult,
+    pictures: Sequence[PictureStep],
+    shown: Step,
+    cloud: Cloud,
+    calibration: Calibration,
+) -> None:
+    """All results at once: old and new never mix."""
+    work.clear((*_REPLACED, "profiles", "profile", "profile_table"))
+    write_cloud(work.path("profiles"), cloud, calibration.id)
+    along, up = profile_axes(shown.faces.planes.normal, shown.cloud)
+    foot = -shown.faces.planes.lower_distance
+    write_profiles_csv(work.path("profile_table"), cloud, cloud.points @ along, cloud.points @ up - foot)
+    write_profiles(work.path("profile"), gauge, pictures, shown.frame, calibration.id)
+    write_gauge(work.path("gauge"), gauge, calibration.id)

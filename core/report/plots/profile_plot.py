@@ -1,0 +1,63 @@
+"""The light profiles of one picture, and the thickness that each picture of the fan alone gives."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+
+from core.report.content import LightProfiles
+from core.report.layout.style import MUTED, Look
+from core.report.plots.figures import mixed, new_figure, plot_style
+
+FORMS = ("o", "^", "s", "v", "D")
+"""Marks of the lines: told apart without colour."""
+_LEFT_MM, _FOOT_MM, _HEAD_MM, _BESIDE_MM, _BETWEEN_MM = 13.0, 9.0, 2.0, 44.0, 17.0
+_MOST_MARKS = 120
+"""Points of a line that are drawn: more lie over each other."""
+
+
+def profiles_figure(look: Look, profiles: LightProfiles, width_mm: float, height_mm: float) -> Figure:
+    """Heights over the lower face along the lines of one picture; beside them each picture's thickness with ±2u."""
+    with plot_style():
+        figure = new_figure(width_mm, height_mm)
+        foot, height = _FOOT_MM / height_mm, (height_mm - _FOOT_MM - _HEAD_MM) / height_mm
+        beside = _BESIDE_MM if len(profiles.thickness_mm) > 1 else 0.0
+        room = width_mm - _LEFT_MM - (beside + _BETWEEN_MM if beside else 2.0)
+        _heights(look, profiles, figure.add_axes((_LEFT_MM / width_mm, foot, room / width_mm, height)))
+        if beside:
+            left = (width_mm - beside - 1) / width_mm
+            _of_each(look, profiles, figure.add_axes((left, foot, beside / width_mm, height)))
+    return figure
+
+
+def _heights(look: Look, profiles: LightProfiles, axes: Axes) -> None:
+    for place, (number, position, height) in enumerate(profiles.lines):
+        some = np.linspace(0, len(position) - 1, min(len(position), _MOST_MARKS)).astype(np.int64)
+        tone = mixed(look.accent, 1 - 0.28 * (place % 3))
+        form = FORMS[place % len(FORMS)]
+        name = look.words("line {n}", n=number)
+        axes.plot(position[some], height[some], form, color=tone, ms=1.8, mew=0, label=name, zorder=3)
+    for level in (0.0, profiles.step_mm):
+        axes.axhline(level, color=MUTED, lw=0.6, ls="--", zorder=2)
+    axes.set_xlabel(look.words("position along the profile, mm"), labelpad=1)
+    axes.set_ylabel(look.words("height, mm"), labelpad=2)
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.legend(frameon=False, fontsize=6.5, markerscale=2, loc="center left")
+
+
+def _of_each(look: Look, profiles: LightProfiles, axes: Axes) -> None:
+    numbers = np.arange(1, len(profiles.thickness_mm) + 1)
+    low, high = (profiles.mean_mm + sign * profiles.U_mm for sign in (-1, 1))
+    axes.axhspan(low, high, color=mixed(look.accent, 0.15), lw=0)
+    axes.axhline(profiles.mean_mm, color=look.accent, lw=0.7)
+    bars = 2 * profiles.own_mm
+    axes.errorbar(numbers, profiles.thickness_mm, bars, fmt="o", color=look.accent, ms=3, elinewidth=0.8, capsize=2)
+    axes.set_xlim(0.5, len(numbers) + 0.5)
+    axes.set_xlabel(look.words("number of the picture"), labelpad=1)
+    axes.set_ylabel(look.words("thickness, mm"), labelpad=2)
+    axes.ticklabel_format(axis="y", useOffset=False)
+    axes.xaxis.set_major_locator(MaxNLocator(4, integer=True))
+    axes.yaxis.set_major_locator(MaxNLocator(5))
+    axes.spines[["top", "right"]].set_visible(False)

@@ -1,0 +1,36 @@
+"""A thickness by the fixed lines alone against hidden truth: own calibration, a part that is moved between pictures."""
+
+import numpy as np
+import pytest
+
+from core.files.recording.recording_set import open_set
+from core.pipeline.steps.camera_step import camera_step
+from core.pipeline.steps.planes_step import planes_step
+from core.pipeline.steps.profile_step import StatedTilt, profile_step
+from core.pipeline.steps.workspace import Workspace
+from core.simulate.recording import simulate_set
+from core.simulate.scenario import Scenario
+
+HEIGHTS = (50.0, 30.0, 20.0)
+
+
+@pytest.mark.accuracy
+@pytest.mark.parametrize("lines", [3, 1])
+def test_thicknesses_are_as_sure_as_they_say(tmp_path, lines):
+    relative = []
+    for seed in range(6):
+        height, folder = HEIGHTS[seed % 3], tmp_path / f"{seed}"
+        scenario = Scenario(
+            scale=0.25, frames=4, camera_views=10, plane_poses=8, seed=seed, fan_lines=lines, hand_laser=False,
+            travel_mm=3.0, height_mm=height,
+        )  # fmt: skip
+        simulate_set(scenario, folder)
+        work = Workspace.open(open_set(folder), tmp_path / f"{seed}-out")
+        camera_step(work)
+        planes_step(work)
+        gauge = profile_step(work, tilt=StatedTilt("stage") if lines == 1 else None).gauge
+        error = gauge.thickness_mm - height
+        print(f"{lines} lines, seed {seed}, {height:g} mm: error {error:+.4f} mm, U {gauge.U_mm:.4f} mm")
+        assert abs(error) < 1.5 * gauge.U_mm
+        relative.append(error / gauge.u_mm)
+    assert 0.3 < np.sqrt(np.mean(np.square(relative))) < 1.6

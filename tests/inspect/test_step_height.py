@@ -1,0 +1,114 @@
+"""Thickness by the step on light profiles: faces found, tilt told or taken, uncertainty as large as the errors."""
+
+import numpy as np
+import pytest
+
+from core.inspect.profile_faces import faces_of, stretches
+from core.inspect.step_height import NO_FACES, NO_TILT, KnownTilt, Step, measure_steps, step_of
+from core.messages import Message
+from tests.inspect.profile_pictures import NORMAL, RIG, errors, fan_of, picture
+
+BLOCK = ((-150.0, -40.0, 0.0), (-20.0, 30.0, 20.0), (60.0, 150.0, 0.0))
+"""A table, a block of 20 mm on it, and the table again behind a shadow."""
+ONE = fan_of([0])
+KNOWN = KnownTilt(tuple(NORMAL.tolist()), np.radians(0.1))
+
+
+def step(cloud, tilt=None, fan=RIG.fan) -> Step:
+    found = step_of(cloud, errors(fan), tilt)
+    assert not isinstance(found, Message), str(found)
+    return found
+
+
+def test_straight_stretches_end_at_gaps_and_bends_and_keep_off_the_edges():
+    found = stretches(picture(BLOCK, fan=ONE))
+    assert [one.length_mm for one in found] == pytest.approx([107, 47, 87], abs=1.0)
+
+
+def test_both_sides_of_the_table_are_one_face():
+    cloud = picture(BLOCK, noise_px=0.05)
+    pair = faces_of(cloud, stretches(cloud), None)
+    heights = -cloud.points @ NORMAL + 560.0
+    assert heights[pair.upper].min() > 19.5
+    assert np.ptp(cloud.points[pair.lower, 0]) > 250
+    assert heights[pair.lower].max() < 0.5
+
+
+def test_exact_profiles_give_the_exact_step_and_the_tilt_by_themselves():
+    found = step(picture(BLOCK))
+    assert found.faces.planes.tilt_determined
+    assert found.thickness_mm == pytest.approx(20.0, abs=1e-4)
+    assert found.faces.planes.normal == pytest.approx(NORMAL, abs=1e-5)
+
+
+def test_one_line_says_nothing_of_the_tilt_and_takes_it_from_elsewhere():
+    cloud = picture(BLOCK, fan=ONE)
+    assert step_of(cloud, errors(ONE)) == NO_TILT
+    found = step(cloud, KNOWN, ONE)
+    assert found.thickness_mm == pytest.approx(20.0, abs=1e-4)
+    assert found.by_tilt_mm > 0
+
+
+def test_the_share_of_a_given_tilt_is_what_a_wrong_tilt_does():
+    cloud, sd = picture(BLOCK, fan=ONE), np.radians(0.1)
+    along = stretches(cloud)[0].along
+    turned = NORMAL + sd * np.cross(along, NORMAL)
+    wrong = step(cloud, KnownTilt(tuple((turned / np.linalg.norm(turned)).tolist()), sd), ONE)
+    assert abs(wrong.thickness_mm - 20.0) == pytest.approx(step(cloud, KNOWN, ONE).by_tilt_mm, rel=0.05)
+
+
+def test_a_light_plane_taken_to_be_square_on_the_faces_measures_within_itself():
+    found = step(picture(BLOCK, fan=ONE), KnownTilt(None, np.radians(1.0)), ONE)
+    slant = abs(float(ONE.planes[0].normal @ NORMAL))
+    assert found.thickness_mm == pytest.approx(20.0 / np.sqrt(1 - slant**2), rel=1e-3)
+
+
+def test_a_single_level_gives_no_step():
+    assert step_of(picture(((-150.0, 150.0, 0.0),)), errors()) == NO_FACES
+
+
+@pytest.mark.parametrize(("fan", "tilt"), [(RIG.fan, None), (ONE, KNOWN)])
+def test_thicknesses_scatter_as_they_state(fan, tilt):
+    found = [step(picture(BLOCK, fan=fan, noise_px=0.1, seed=seed), tilt, fan) for seed in range(20)]
+    relative = [(one.thickness_mm - 20.0) / one.own_mm for one in found]
+    assert 0.6 < np.sqrt(np.mean(np.square(relative))) < 1.4
+
+
+def moved(count, *, still=False):
+    """Steps of pictures of a part that is moved between them, or stands still: the same noise again."""
+    parts = [tuple((a + 3 * i, b + 3 * i, h) for a, b, h in BLOCK) for i in range(count)]
+    return [
+        step(picture(BLOCK if still else part, noise_px=0.1, seed=0 if still else i, frame=i))
+        for i, part in enumerate(parts)
+    ]
+
+
+def test_pictures_of_a_moved_part_make_the_mean_surer():
+    steps = moved(4)
+    result = measure_steps(steps, nominal_mm=20.0, tolerance_mm=0.5)
+    assert result.u_mm < 0.7 * steps[0].own_mm
+    assert abs(result.thickness_mm - 20.0) < result.U_mm
+    assert result.verdict == "conforming"
+    assert [note.code for note in result.notes] == ["profile.mean_of"]
+
+
+def test_pictures_of_a_part_at_rest_are_no_surer_together_and_this_is_told():
+    steps = moved(4, still=True)
+    result = measure_steps(steps)
+    assert result.u_mm > 0.95 * steps[0].own_mm
+    assert "profile.stood_still" in [note.code for note in result.notes]
+
+
+def test_pictures_that_disagree_widen_the_uncertainty():
+    steps = moved(4)
+    other = step(
+        picture(((-150.0, -40.0, 0.0), (-20.0, 30.0, 20.3), (60.0, 150.0, 0.0)), noise_px=0.1, seed=9, frame=9)
+    )
+    result = measure_steps([*steps, other])
+    assert "study.cause_observed" in [row.source.code for row in result.budget]
+    assert result.U_mm > 3 * measure_steps(steps).U_mm
+
+
+def test_a_step_too_small_to_be_told_from_noise_gives_none():
+    flat = ((-150.0, -40.0, 0.0), (-20.0, 30.0, 0.05), (60.0, 150.0, 0.0))
+    assert step_of(picture(flat, noise_px=0.1), errors()) == NO_FACES
