@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from core.acquire.grey import Channel, to_grey
 from core.errors import InputError
+from core.files import jpeg
 from core.files.atomic import write_bytes
 from core.files.reading import read_bytes
 from core.messages import Message
@@ -80,6 +81,8 @@ SUFFIXES = frozenset({".png", ".tif", ".tiff", ".bmp", ".jpg", ".jpeg", ".pgm"})
 """Endings (lower case) of the files that count as pictures."""
 
 _ENDS_EARLY = Message("picture.ends_early", "ends early")
+_TABLES_WITHIN = 1 << 17
+"""Bytes in which a JPEG's tables are: they may stand behind a thumbnail of up to 64 kB."""
 _PNG = b"\x89PNG\r\n\x1a\n"
 _QUICKLY = [cv2.IMWRITE_PNG_COMPRESSION, 1, cv2.IMWRITE_PNG_STRATEGY, cv2.IMWRITE_PNG_STRATEGY_HUFFMAN_ONLY]
 """Noise has no repeats worth looking for: half the time of run lengths, and no larger."""
@@ -146,6 +149,18 @@ def decode_picture(data: bytes, path: Path, channel: Channel | None = None) -> P
     return to_grey(picture, channel)
 
 
+def compression_grey(path: Path) -> float:
+    """How far compression leaves the grey values of a picture file off, see :func:`core.files.jpeg.compression_grey`.
+
+    0 for a file that is lossless or cannot be read.
+    """
+    try:
+        with path.open("rb") as file:
+            return jpeg.compression_grey(file.read(_TABLES_WITHIN))
+    except OSError:
+        return 0.0
+
+
 def write_picture(path: Path, picture: Picture) -> None:
     """Write (height, width) uint8 or uint16 grey levels, lossless, quickly, whole or not at all.
 
@@ -185,8 +200,8 @@ def _damage(data: bytes) -> Message | None:
         return Message("picture.empty", "is empty (0 bytes)")
     if data.startswith(_PNG):
         return _png_damage(data)
-    if data.startswith(b"\xff\xd8"):
-        return _jpeg_damage(data)
+    if data.startswith(jpeg.START):
+        return jpeg.jpeg_damage(data)
     if data.startswith(b"BM") and len(data) >= 6:
         return None if len(data) >= int.from_bytes(data[2:6], "little") else _ENDS_EARLY
     if data.startswith(MAGIC):
@@ -207,20 +222,4 @@ def _png_damage(data: bytes) -> Message | None:
         if data[at + 4 : at + 8] == b"IEND":
             return None
         at = end + 4
-    return _ENDS_EARLY
-
-
-def _jpeg_damage(data: bytes) -> Message | None:
-    """Walk the segments of a JPEG up to its scan, then look for the end marker; a thumbnail may hold another."""
-    at = 2
-    while at + 4 <= len(data):
-        if data[at] != 0xFF:
-            return Message("picture.marker_missing", "is damaged (a marker is missing)")
-        marker = data[at + 1]
-        if marker == 0xFF:  # a fill byte
-            at += 1
-            continue
-        at += 2 + int.from_bytes(data[at + 2 : at + 4], "big")
-        if marker == 0xDA:
-            return None if data.find(b"\xff\xd9", at) >= 0 else _ENDS_EARLY
     return _ENDS_EARLY

@@ -10,6 +10,7 @@ out as well (`core.calibrate.fan.plate`).
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import cv2
@@ -51,6 +52,7 @@ def measure_plane_pose(
     camera: Camera | None = None,
     settings: StripeSettings | None = None,
     margin_mm: float | None = None,
+    compression_grey: float = 0.0,
 ) -> PoseFeatures:
     """Find the target and the stripes of one pose. A pose that cannot be used says so in its `reason`.
 
@@ -68,6 +70,8 @@ def measure_plane_pose(
         Width and contrast of the stripes; chosen from the picture if not given.
     margin_mm
         How far the plate goes on beyond what is printed on it; None: not known.
+    compression_grey
+        Of the noise of each picture, see :class:`core.image.stripes.noise.NoiseModel`.
 
     Raises
     ------
@@ -90,7 +94,7 @@ def measure_plane_pose(
         )
         return PoseFeatures(name, view, (), reason)
     carrier = Plate(target, view, camera, margin_mm)
-    centrelines = _stripes(on, off, view, carrier.outside(on.shape), settings)
+    centrelines = _stripes(on, off, view, carrier.outside(on.shape), settings, compression_grey)
     if not centrelines:
         return PoseFeatures(name, view, (), Message("fan.no_stripe", "no stripe was found: is the fan on?"))
     level = DARK * _plate_level(plate, view)
@@ -108,17 +112,22 @@ def measure_plane_pose(
 
 
 def _stripes(
-    on: Picture, off: Picture | None, view: TargetView, outside: NDArray[np.bool_], settings: StripeSettings | None
+    on: Picture,
+    off: Picture | None,
+    view: TargetView,
+    outside: NDArray[np.bool_],
+    settings: StripeSettings | None,
+    compression_grey: float,
 ) -> tuple[Centreline, ...]:
     """Centrelines of the laser in the difference of two pictures, or in the only one, but not `outside` the plate."""
     picture = on.astype(np.float32)
     saturated = on >= np.iinfo(on.dtype).max
     if off is None:
-        noise = estimate_noise(picture)
+        noise = replace(estimate_noise(picture), compression_grey=compression_grey)
     else:
         without = off.astype(np.float32)
         common = _plate_level(without, view)  # the stripes lie on the plate; the rest of the picture may be dark
-        noise = estimate_noise(without).of_difference(common)
+        noise = replace(estimate_noise(without), compression_grey=compression_grey).of_difference(common)
         picture = picture - without
     around = picture[_window(view, picture.shape, margin=1.0)]
     chosen = settings or choose_settings(np.ascontiguousarray(around), float(np.iinfo(on.dtype).max))

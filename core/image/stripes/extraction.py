@@ -23,6 +23,8 @@ border of the picture              points nearer than 4 g are never found; cuts 
 skewed section, halo               0.1 to 0.2 px for flanks that differ by 10 %, whatever the estimator, and twice
                                    that with the weights that speckle asks for; so where they disagree by more than
                                    0.03 px on the whole all points of the picture stay Steger's, as below
+compression                        JPEG takes the noise away and bends lines block by block: σ is at least what its
+                                   own table says (`core.image.stripes.precision`)
 saturation                         height and place from the pixels left: below 0.003 px; flagged
 =================================  ==========================================================================
 
@@ -48,7 +50,15 @@ from core.image.stripes.likelihood.refinement import Refined
 from core.image.stripes.neighbours import NEIGHBOUR_DISTANCE, distances_to_neighbours
 from core.image.stripes.noise import NoiseModel
 from core.image.stripes.positions import Piece, estimate_positions
-from core.image.stripes.precision import added_in_squares, noise_sigma, response_noise, roughness, saturated_points
+from core.image.stripes.precision import (
+    BLOCK_PX,
+    added_in_squares,
+    compression_sigma,
+    noise_sigma,
+    response_noise,
+    roughness,
+    saturated_points,
+)
 from core.image.stripes.profile import fit_profiles, profiles_along
 from core.image.stripes.runs import arc_length, correlation_length, cut_ends, fully_lit
 from core.image.stripes.settings import choose_settings
@@ -126,7 +136,7 @@ def extract_centrelines(
     enough = [k for k, near in enumerate(apart) if np.count_nonzero(near > pulled) >= shortest]
     lines = [placed[k].run[apart[k] > pulled] for k in enough]
     found = [
-        _centreline(pieces[k], placed[k], excess[k], part)
+        _centreline(pieces[k], placed[k], excess[k], part, noise)
         for n, k in enumerate(enough)
         for part in unbroken_parts(
             placed[k].run, apart[k] > pulled, settings.filter_px, state, lines[:n] + lines[n + 1 :]
@@ -186,14 +196,19 @@ def _smooth_pieces(
     return pieces
 
 
-def _centreline(piece: Piece, line: Refined, extra: float, part: NDArray[np.intp]) -> Centreline:
+def _centreline(piece: Piece, line: Refined, extra: float, part: NDArray[np.intp], noise: NoiseModel) -> Centreline:
     """A `part` of the points of a placed piece; `extra` is their scatter in px beyond the law."""
+    height, sigma = piece.profiles.height[part], added_in_squares(line.sigma[part], extra)
+    correlation = line.correlation_px
+    if noise.compression_grey > 0:
+        sigma = np.maximum(sigma, compression_sigma(height, noise))
+        correlation = max(correlation, BLOCK_PX)
     return Centreline(
         line.run[part, :2],
         line.run[part, 2:4],
         piece.profiles.width[part],
-        piece.profiles.height[part],
-        added_in_squares(line.sigma[part], extra),
+        height,
+        sigma,
         piece.saturated[part],
-        line.correlation_px,
+        correlation,
     )

@@ -45,16 +45,22 @@ class NoiseModel:
         pictures also the shot noise of whatever light both have in common.
     grey_per_electron
         Shot noise: variance per grey level of signal. 0 when it is not known.
+    compression_grey
+        What compression leaves each term of a block of the picture off, as a standard deviation; 0 for none. It takes
+        noise away and shifts what is left, all along a block alike, so no scatter shows it.
     """
 
     read_grey: float
     grey_per_electron: float = 0.0
+    compression_grey: float = 0.0
 
     def __post_init__(self) -> None:
         if not (np.isfinite(self.read_grey) and self.read_grey > 0):
             raise ValueError(f"read_grey is {self.read_grey}, not positive")
         if not (np.isfinite(self.grey_per_electron) and self.grey_per_electron >= 0):
             raise ValueError(f"grey_per_electron is {self.grey_per_electron}, not zero or positive")
+        if not (np.isfinite(self.compression_grey) and self.compression_grey >= 0):
+            raise ValueError(f"compression_grey is {self.compression_grey}, not zero or positive")
 
     def variance(self, level: Array) -> Array:
         """Variance in grey levels² at grey values `level` (any shape)."""
@@ -66,6 +72,7 @@ class NoiseModel:
         return NoiseModel(
             float(np.sqrt(2 * self.read_grey**2 + 2 * self.grey_per_electron * max(common_grey, 0.0))),
             self.grey_per_electron,
+            float(np.sqrt(2)) * self.compression_grey,
         )
 
 

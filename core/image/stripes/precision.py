@@ -5,6 +5,9 @@ filter σ g, stripe σ s and height A over background B:
 
     var f' = [σ² + k·B + k·A·(1 + g²/2s²)^(−3/2)] / (8π g⁴)        f'' = −A s / (s² + g²)^(3/2)
 
+That holds for pixels whose noise is their own. Compressed ones have lost it, and are off by what rounding the terms of
+a block leaves, together: c/A px for terms that are off by c grey levels, whatever the width of the stripe.
+
 Speckle is not in it. It shows as roughness of the line beyond that law, is the same at any height of the stripe, and
 so is added in squares, one figure a piece.
 """
@@ -26,6 +29,11 @@ from core.model.arrays import Array
 FLOOR_PX = 0.001
 """Standard uncertainty in px left of all biases on a clean stripe; phase errors are below it
 (tests/image/stripes/likelihood/test_refinement.py, places within a pixel)."""
+COMPRESSION_SHARE = 0.75
+"""Px by which a line is off per grey level that compression leaves the terms of a block off, times its height in grey
+levels: 0.55 to 1.0 for stripes of σ 1.2 to 5 px in qualities of 50 to 95, tests/image/stripes/test_compression.py."""
+BLOCK_PX = 8.0
+"""Side of the blocks of a JPEG: points within one share what compression does."""
 _SATURATED_SHARE = 0.01  # of the filter's weight: with more on saturated pixels a point is flagged
 _SATURATED_REACH = 2.5  # filter σ looked at for them: the rest has 4 % of the weight
 _TESTED_TOGETHER = 8  # points whose pixels are tested at once for saturation; chosen by speed
@@ -53,6 +61,11 @@ def noise_sigma(profiles: Profiles, noise: NoiseModel, filter_px: float) -> Arra
     read, shot = noise.read_grey**2, noise.grey_per_electron
     sigma: Array = _noise_sigma(profiles.height, profiles.width, profiles.background, read, shot, filter_px)
     return sigma
+
+
+def compression_sigma(height: Array, noise: NoiseModel) -> Array:
+    """Standard uncertainty (N,) in px that compression leaves at least, of stripes of this height in grey levels."""
+    return np.asarray(COMPRESSION_SHARE * noise.compression_grey / np.maximum(height, 1.0))
 
 
 @njit(cache=True, nogil=True, error_model="numpy", fastmath=True)

@@ -10,6 +10,7 @@ from core.calibrate.fan.pose_features import PoseFeatures
 from core.calibrate.fan.verdict import Constrained
 from core.calibrate.results import FanCalibration
 from core.errors import InputError
+from core.files.pictures import compression_grey
 from core.files.recording.features_file import write_poses
 from core.files.recording.options import Options
 from core.files.recording.recording_set import RecordingSet, require_planes
@@ -90,7 +91,8 @@ def measure_poses(
             reason = Message("fan.depths_differ", "the pictures with the fan on and off differ in depth (8 or 16 bit)")
             return PoseFeatures(pair.name, None, (), reason)
         rig = found.rig
-        return measure_plane_pose(pair.name, on, off, rig.plane_target, camera, stripe, rig.plane_margin_mm)
+        lost = compression_grey(pair.on)
+        return measure_plane_pose(pair.name, on, off, rig.plane_target, camera, stripe, rig.plane_margin_mm, lost)
 
     features: list[PoseFeatures] = []
     total = len(found.planes)

@@ -11,7 +11,7 @@ import numpy as np
 from core.calibrate.deviations import calibration_deviations
 from core.calibrate.results import LEFT_OUT
 from core.errors import InputError
-from core.files.pictures import Picture
+from core.files.pictures import Picture, compression_grey
 from core.files.recording.options import Options
 from core.files.recording.recording_log import lost_frames, read_log
 from core.files.recording.recording_set import RecordingSet, require_scan
@@ -142,7 +142,8 @@ def _look(
     """What the reference and all frames show."""
     times = progress if isinstance(progress, StageTimes) else None
     camera = calibration.camera.camera
-    looking = replace(feature_options(options), camera=camera)
+    lost = compression_grey(found.frames[0]) if found.frames else 0.0
+    looking = replace(feature_options(options), camera=camera, compression_grey=lost)
     progress("reference", 0, 1)
     picture, note = reference_picture(found, camera, options, progress)
     reference = read_reference(picture, looking)

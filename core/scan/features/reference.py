@@ -7,7 +7,7 @@ no reference picture, the per-pixel low quantile over a sample of the scan is on
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import cv2
 import numpy as np
@@ -137,7 +137,8 @@ class FeatureOptions:
     """How pictures become features; None means chosen from the pictures.
 
     A frame in which a stretch of the fan has moved by more than `move_limit_px` since the reference is left out. With
-    a `camera`, centrelines are crossed as they would be without its distortion.
+    a `camera`, centrelines are crossed as they would be without its distortion. `compression_grey` is that of the noise
+    of each picture, see :class:`core.image.stripes.noise.NoiseModel`.
     """
 
     sweep_stripe: StripeSettings | None = None
@@ -145,6 +146,7 @@ class FeatureOptions:
     window: CrossingWindow = field(default_factory=CrossingWindow)
     move_limit_px: float = 0.3
     camera: Camera | None = None
+    compression_grey: float = 0.0
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -190,7 +192,7 @@ def read_reference(picture: Picture, options: FeatureOptions | None = None) -> R
     options = options or FeatureOptions()
     full_scale = float(np.iinfo(picture.dtype).max)
     base = picture.astype(np.float32)
-    noise = estimate_noise(base)
+    noise = replace(estimate_noise(base), compression_grey=options.compression_grey)
     stripe, fan = _fan_centrelines(base, full_scale, noise, options)
     return ReferenceFeatures(picture, full_scale, noise.of_difference(float(np.median(base))), fan, stripe)
 

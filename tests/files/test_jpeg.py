@@ -1,0 +1,35 @@
+import cv2
+import numpy as np
+import pytest
+
+from core.files.pictures import compression_grey
+
+
+@pytest.fixture
+def picture() -> np.ndarray:
+    return np.random.default_rng(0).integers(0, 255, (40, 40), dtype=np.uint8)
+
+
+@pytest.mark.parametrize(("quality", "grey"), [(50, 3.84), (75, 1.94), (95, 0.38), (100, 0.29)])
+def test_the_quantisation_table_says_what_compression_leaves(tmp_path, picture, quality, grey):
+    """Quality 50 is the standard's own table, T.81 annex K.1: its first terms are 16, 11, 12, 14, 12, 10, …"""
+    path = tmp_path / "a.jpg"
+    cv2.imwrite(str(path), picture, [cv2.IMWRITE_JPEG_QUALITY, quality])
+    assert compression_grey(path) == pytest.approx(grey, abs=0.02)
+
+
+def test_colour_counts_by_its_brightness(tmp_path, picture):
+    path = tmp_path / "a.jpg"
+    cv2.imwrite(str(path), np.dstack([picture] * 3), [cv2.IMWRITE_JPEG_QUALITY, 50])
+    assert compression_grey(path) == pytest.approx(3.84, abs=0.02)
+
+
+def test_lossless_missing_and_broken_files_have_lost_nothing(tmp_path, picture):
+    path = tmp_path / "a.png"
+    cv2.imwrite(str(path), picture)
+    assert compression_grey(path) == 0.0
+    assert compression_grey(tmp_path / "none.jpg") == 0.0
+    broken = tmp_path / "broken.jpg"
+    for data in (b"\xff\xd8", b"\xff\xd8\xff\xdb\x00\x43\x00\x10", b"\xff\xd8nothing at all", b""):
+        broken.write_bytes(data)
+        assert compression_grey(broken) == 0.0
