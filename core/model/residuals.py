@@ -47,12 +47,15 @@ class Residuals:
         along it.
     cell
         (N,) number of the place along the line or in the picture, from 0.
+    cells
+        How many places there are, seen or not.
     """
 
     values: Array
     expected: Array
     group: NDArray[np.intp]
     cell: NDArray[np.intp]
+    cells: int
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -105,7 +108,7 @@ def judge_residuals(residuals: Residuals, seed: int = 0) -> Judgement:
     values, group = residuals.values, np.unique(residuals.group, return_inverse=True)[1]
     if not len(values):
         return Judgement(np.nan, np.nan, np.nan, np.zeros(0), np.zeros(0, np.intp), 1.0, 0.0)
-    groups, cells = int(group.max()) + 1, int(residuals.cell.max()) + 1
+    groups, cells = int(group.max()) + 1, residuals.cells
     sums = np.zeros((groups, cells))
     np.add.at(sums, (group, residuals.cell), values)
     count = np.bincount(residuals.cell, minlength=cells)

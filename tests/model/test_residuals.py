@@ -22,6 +22,7 @@ def judged(seed: int, groups: int = 12, bend: float = 0.0, grain: float = 0.0) -
             np.full(values.size, 0.05),
             np.repeat(np.arange(groups), len(T)),
             np.tile(along_line(T, 7), groups),
+            7,
         )
     )
 
@@ -53,7 +54,7 @@ def test_a_bend_with_another_sign_in_each_group_is_no_common_pattern():
     rng = np.random.default_rng(4)
     values = np.array([sign * (T**2 - 1 / 3) for sign in rng.choice([-1.0, 1.0], 14)])
     group, cell = np.repeat(np.arange(14), len(T)), np.tile(along_line(T, 7), 14)
-    assert judge_residuals(Residuals(values.ravel(), np.ones(values.size), group, cell)).systematic == 0
+    assert judge_residuals(Residuals(values.ravel(), np.ones(values.size), group, cell, 7)).systematic == 0
 
 
 def test_few_groups_accuse_nobody():
@@ -64,3 +65,12 @@ def test_few_groups_accuse_nobody():
 def test_places_in_a_picture_are_numbered_row_by_row():
     uv = np.array([[0.0, 0.0], [99.0, 0.0], [0.0, 49.0], [99.0, 49.0], [40.0, 24.0]])
     assert over_picture(uv, (100, 50), (4, 2)).tolist() == [0, 3, 4, 7, 1]
+
+
+def test_places_where_nothing_is_keep_their_number():
+    group, cell = np.repeat(np.arange(10), 20), np.tile(np.repeat([0, 2], 10), 10)
+    found = judge_residuals(Residuals(np.where(cell == 2, 1.0, -1.0), np.ones(200), group, cell, 5))
+    assert found.profile.tolist()[::2][:2] == [-1.0, 1.0]
+    assert np.isnan(found.profile[[1, 3, 4]]).all()
+    assert found.strongest in (0, 2)
+    assert found.systematic == pytest.approx(1.0)

@@ -45,13 +45,17 @@ def judge_picture(calibration: CameraCalibration) -> PictureResiduals:
     cell = over_picture(field.uv, camera.image_size, GRID)
     cells = GRID[0] * GRID[1]
     both = Residuals(
-        field.residual.T.ravel(), np.tile(sigma, 2), np.tile(field.view, 2), np.concatenate([cell, cell + cells])
+        field.residual.T.ravel(),
+        np.tile(sigma, 2),
+        np.tile(field.view, 2),
+        np.concatenate([cell, cell + cells]),
+        2 * cells,
     )
     off = field.uv - camera.matrix[:2, 2]
     radius = np.linalg.norm(off, axis=1)
     outwards = (field.residual * off).sum(axis=1) / np.maximum(radius, 1e-9)
     ring = np.minimum((RINGS * radius / radius.max()).astype(np.intp), RINGS - 1)
-    return PictureResiduals(judge_residuals(both), judge_residuals(Residuals(outwards, sigma, field.view, ring)))
+    return PictureResiduals(judge_residuals(both), judge_residuals(Residuals(outwards, sigma, field.view, ring, RINGS)))
 
 
 def notes_on_picture(calibration: CameraCalibration) -> tuple[Message, ...]:

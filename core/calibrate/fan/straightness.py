@@ -48,6 +48,7 @@ def judge_lines(located: Sequence[LocatedPose], adjusted: Sequence[Pose], pis: A
             np.concatenate([expected for _, expected, _ in of_stripes]),
             np.repeat(np.arange(len(of_stripes)), [len(off) for off, _, _ in of_stripes]),
             np.concatenate([cell for _, _, cell in of_stripes]),
+            CELLS,
         )
     )
 
