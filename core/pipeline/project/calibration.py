@@ -20,7 +20,7 @@ from core.model import Camera
 from core.pipeline.project.workspace import project_set
 from core.pipeline.steps.camera_step import see_views, solve_camera
 from core.pipeline.steps.kept_features import keep_poses, keep_views, kept_poses, kept_views
-from core.pipeline.steps.planes_step import measure_poses, planes_settings, solve_planes
+from core.pipeline.steps.planes_step import check_agreement, measure_poses, planes_settings, solve_planes
 from core.progress import Progress, silent
 
 
@@ -109,15 +109,20 @@ def accept_fan(
     project: Project,
     calibration: FanCalibration,
     poses: Sequence[PoseFeatures],
+    accept_few_poses: bool = False,
     progress: Progress = silent,
 ) -> str:
     """Keep a fan's calibration in the project and return its id: the caller makes it the accepted one.
 
+    With `accept_few_poses` somebody has decided that it may rest on fewer than half of the poses.
+
     Raises
     ------
     InputError
-        If the accepted camera is not the one it was solved with, or nothing can be written.
+        If the accepted camera is not the one it was solved with, fewer than half of the poses agree and nobody has
+        decided that they may, or nothing can be written.
     """
+    check_agreement(calibration, accept_few_poses or project.options.accept_few_poses)
     if fan_id(solve_poses(folder, project, poses, progress).fan) != fan_id(calibration.fan):
         raise InputError(
             Message(
@@ -131,6 +136,8 @@ def accept_fan(
     names = {pose.name for pose in poses}
     pictures = (path for pair in found.planes if pair.name in names for path in (pair.on, pair.off) if path is not None)
     settings = planes_settings(project.rig, project.options)
+    if calibration.minority is not None:
+        settings["accept_few_poses"] = True
     return keep_fan(folder, calibration, accepted_camera(folder, project), poses, settings, _hashes(found, pictures))
 
 

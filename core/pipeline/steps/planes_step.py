@@ -46,7 +46,7 @@ def planes_step(work: Workspace, options: Options | None = None, progress: Progr
         log.settings.update(planes_settings(work.found.rig, options))
         poses = measure_poses(work.found, camera, progress, options.plane_stripe)
         calibration = solve_planes(poses, camera, work.found.rig, options, progress, given.covariance)
-        _check_agreement(calibration, options)
+        check_agreement(calibration, options.accept_few_poses)
         log.notes.extend(note for pose in poses for note in pose.notes)
         log.notes.extend(calibration.notes)
         write_fan(work.path("planes"), calibration, camera)
@@ -54,9 +54,9 @@ def planes_step(work: Workspace, options: Options | None = None, progress: Progr
     return read_fan(work.path("planes"), camera)
 
 
-def _check_agreement(calibration: FanCalibration, options: Options) -> None:
-    """InputError if a minority of the poses stands for all and nobody has decided that it may."""
-    if calibration.minority is not None and not options.accept_few_poses:
+def check_agreement(calibration: FanCalibration, decided: bool) -> None:
+    """InputError if a minority of the poses stands for all and nobody has `decided` that it may."""
+    if calibration.minority is not None and not decided:
         raise InputError(
             calibration.minority,
             where="planes",

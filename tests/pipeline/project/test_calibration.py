@@ -8,6 +8,7 @@ import pytest
 from core.calibrate.results import LEFT_OUT
 from core.errors import InputError
 from core.files.project.data import Accepted
+from core.messages import plain
 from core.pipeline.project.calibration import accept_fan, find_poses, solve_poses, solve_views
 from core.pipeline.project.measuring import measure_scan
 from tests.simulated import contents, copy_of
@@ -69,3 +70,13 @@ def test_a_fan_need_not_be_a_pencil(done, tmp_path):
     project = replace(project, accepted=replace(project.accepted, fan=accept_fan(folder, project, free, done.poses)))
     summary = measure_scan(folder, project)
     assert summary.gauge.thickness_mm == pytest.approx(50.0, abs=3 * summary.gauge.U_mm)
+
+
+def test_a_fan_of_a_minority_of_poses_is_kept_only_by_a_decision(done, tmp_path):
+    folder = copy_of(done.folder, tmp_path / "project")
+    reason = plain("it disagrees")
+    poses = (replace(one, used=i < 2, reason=reason if i > 1 else None) for i, one in enumerate(done.fan.poses))
+    few = replace(done.fan, poses=tuple(poses))
+    with pytest.raises(InputError, match="only 2 of"):
+        accept_fan(folder, done.project, few, done.poses)
+    assert accept_fan(folder, done.project, few, done.poses, accept_few_poses=True)

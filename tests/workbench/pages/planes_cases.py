@@ -90,7 +90,8 @@ class Planes:
         left_out = frozenset(name for name in options.excluded if name.startswith("planes/"))
         return solved(left_out, options.constrain_fan, rig.lines, rig.angle)
 
-    def accept(self, folder: Path, project: Project, calibration: FanCalibration, found: Any) -> str:
+    def accept(self, folder: Path, project: Project, calibration: FanCalibration, found: Any, few: bool) -> str:
+        assert few or calibration.minority is None
         id_ = fan_id(calibration.fan)
         used, total = sum(pose.used for pose in calibration.poses), len(calibration.poses)
         camera = project.accepted.camera

@@ -7,7 +7,8 @@ from typing import Any
 
 from PySide6.QtWidgets import QWidget
 
-from workbench.language import tr
+from core.messages import Message
+from workbench.language import text_of, tr
 from workbench.pages.calibration.page import CalibrationPage
 from workbench.pages.calibration.target_panel import TargetPanel
 from workbench.pages.planes import words
@@ -15,6 +16,7 @@ from workbench.pages.planes.panels import PLATES, LaserForm, PlanesCard, PlanesL
 from workbench.pages.planes.picture import PoseTab
 from workbench.pages.planes.presenter import PlanesPresenter
 from workbench.pages.planes.tabs import PlanesHistoryTab, RigTab
+from workbench.views import ask
 
 
 class PlanesPage(CalibrationPage):
@@ -42,6 +44,16 @@ class PlanesPage(CalibrationPage):
             tr("Poses"),
             tr("Pose"),
         )
+
+        presenter.decide = self._decide
+
+    def _decide(self, minority: Message) -> bool:
+        """Ask whether planes of a minority of the poses are to be used."""
+        text = tr(
+            "{minority}. Look at the poses left out, the plate's size and the camera first. Use these laser planes?",
+            minority=text_of(minority)[:1].upper() + text_of(minority)[1:],
+        )
+        return ask.ask(self, tr("Few poses agree"), text, (tr("Use them"), tr("Do not use them"))) == 0
 
     def refresh(self) -> None:
         self.live.refresh()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -10,6 +11,7 @@ from core.files.project.data import Project
 from core.files.project.keys import finished
 from core.files.results.fan_file import fan_id
 from core.image.targets.target_view import TargetView
+from core.messages import Message
 from core.model import Camera, Fan
 from workbench.bench import Bench
 from workbench.language import tr
@@ -36,6 +38,8 @@ class PlanesPresenter(CalibrationPresenter):
 
     def __init__(self, bench: Bench) -> None:
         super().__init__(bench)
+        self.decide: Callable[[Message], bool] = lambda _: False
+        """Ask whether planes that only a minority of the poses agrees on are to be used; the page's question."""
         self.live.pairs = bench.settings.text(PAIRS, "yes") == "yes"
         self.work = PlanesWork(bench, self)
         self.look = PlanesLook(bench, self.work, tr("Reading a pose"), self)
@@ -83,7 +87,19 @@ class PlanesPresenter(CalibrationPresenter):
         return tr("choose the laser planes' pictures")
 
     def _made(self) -> tuple[Any, ...]:
-        return self.work.calibration, self.work.poses
+        return self.work.calibration, self.work.poses, self._minority() is not None
+
+    def _minority(self) -> Message | None:
+        """What is to be decided before the planes that are shown can be accepted."""
+        if self.work.calibration is None or self.project.options.accept_few_poses:
+            return None
+        return self.work.calibration.minority
+
+    def accept(self) -> None:
+        """Measure with the planes that are shown, from now on; undoable. A minority of poses needs a decision."""
+        minority = None if self.can_accept else self._minority()
+        if minority is None or self.decide(minority):
+            super().accept()
 
     # ---- laser
 

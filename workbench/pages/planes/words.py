@@ -91,6 +91,13 @@ def pose_sentence(name: str, pose: PlanePose | None, reason: str = "") -> str:
         return tr("{name}: left out ({reason})", name=name, reason=reason) if reason else name
     if not pose.used:
         reason = text_of(pose.reason or "") or tr("no reason recorded")
+        if math.isfinite(pose.rms_mm):
+            return tr(
+                "{name}: left out ({reason}); its stripes are {rms} off the planes",
+                name=name,
+                reason=reason,
+                rms=mm(pose.rms_mm),
+            )
         return tr("{name}: left out ({reason})", name=name, reason=reason)
     seen = sum(len(points) > 0 for points in pose.points)
     return tr(

@@ -14,6 +14,7 @@ from core.errors import InputError
 from core.files.project.data import Accepted
 from core.files.project.folder import read_project
 from core.files.project.keys import finished
+from core.messages import Message, plain
 from core.pipeline.live.events import LiveEnded, LiveStarted
 from tests.calibrate.fan_scenes import CAMERA
 from tests.workbench.hand_lane import HandLane
@@ -462,3 +463,27 @@ def test_no_poses_are_taken_while_the_camera_is_read_or_pictures_are_measured(
     assert page.live.cannot_start() == "The camera calibration is being read."
     page.do_live()
     assert not page.live.running
+
+
+def test_planes_of_a_minority_are_accepted_only_by_a_decision(found: PlanesPresenter, planes: Planes, qtbot: Any):
+    calibration = found.work.calibration
+    assert calibration is not None
+    poses = tuple(
+        replace(pose, used=place < 2, reason=None if place < 2 else plain("it disagrees"))
+        for place, pose in enumerate(calibration.poses)
+    )
+    found.work.calibration = replace(calibration, poses=poses)
+    asked: list[Message] = []
+
+    def yes(minority: Message) -> bool:
+        asked.append(minority)
+        return True
+
+    found.accept()
+    assert stage(found) is Stage.SOLVED
+    found.decide = yes
+    found.accept()
+    qtbot.waitUntil(lambda: found.stage is Stage.ACCEPTED)
+    settled(qtbot, found)
+    assert [one.code for one in asked] == ["fan.minority"]
+    assert len(planes.kept) == 1
