@@ -7,17 +7,15 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from PySide6.QtCore import QEvent, QSize, Qt, QTimer, QUrl
+from PySide6.QtCore import QSize, Qt, QTimer, QUrl
 from PySide6.QtGui import QCloseEvent, QDesktopServices, QDragEnterEvent, QDropEvent
 from PySide6.QtWidgets import (
     QApplication,
     QDockWidget,
-    QHBoxLayout,
     QLabel,
     QMainWindow,
     QPushButton,
     QStackedWidget,
-    QVBoxLayout,
     QWidget,
 )
 
@@ -33,6 +31,7 @@ from workbench.pages.step_page import StepPage
 from workbench.refresh import Refresh
 from workbench.steps import STEPS
 from workbench.theme import apply_theme, icon
+from workbench.views.layouts import STRETCH, in_column, in_row
 from workbench.views.lists.notice_list import Banner, NoticeList
 from workbench.views.lists.step_rail import StepRail
 from workbench.views.manual import ManualWindow
@@ -81,7 +80,7 @@ class MainWindow(QMainWindow):
         self.manual = ManualWindow(self)
         self.menus = Menus(self, bench.settings, self.model.undo_stack, self._commands(), self.projects.open_project)
         self._connect()
-        self._dress()
+        self.back.setIcon(icon("mdi6.chevron-left"))
         if layout := bench.settings.layout("window"):
             self.restoreGeometry(layout)
         self._project_opened()
@@ -159,11 +158,6 @@ class MainWindow(QMainWindow):
         if not self._left:
             QTimer.singleShot(0, self, self.leave)
 
-    def changeEvent(self, event: QEvent) -> None:
-        super().changeEvent(event)
-        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "menus"):
-            self._dress()
-
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:
         if _dropped(event):
             event.acceptProposedAction()
@@ -174,30 +168,11 @@ class MainWindow(QMainWindow):
             self.projects.open_dropped(path)
 
     def _wizard(self) -> QWidget:
-        head = QVBoxLayout()
-        head.setContentsMargins(14, 8, 14, 2)
-        head.setSpacing(1)
-        head.addWidget(self._title)
-        head.addWidget(self._help)
-        foot = QHBoxLayout()
-        foot.setContentsMargins(14, 6, 14, 8)
-        foot.addWidget(self.back)
-        foot.addStretch(1)
-        foot.addWidget(self.missing)
-        foot.addWidget(self.next)
-        column = QVBoxLayout()
-        column.setContentsMargins(0, 0, 0, 0)
-        column.setSpacing(2)
-        column.addLayout(head)
-        column.addWidget(self.banner)
-        column.addWidget(self._pages, 1)
-        column.addLayout(foot)
+        head = in_column(self._title, self._help, margins=(14, 8, 14, 2), spacing=1)
+        foot = in_row(self.back, STRETCH, self.missing, self.next, margins=(14, 6, 14, 8))
+        column = in_column(head, self.banner, (self._pages, 1), foot, spacing=2)
         whole = QWidget()
-        row = QHBoxLayout(whole)
-        row.setContentsMargins(0, 0, 0, 0)
-        row.setSpacing(0)
-        row.addWidget(self.rail)
-        row.addLayout(column, 1)
+        in_row(self.rail, (column, 1), on=whole, spacing=0)
         return whole
 
     def _messages_dock(self) -> QDockWidget:
@@ -208,16 +183,13 @@ class MainWindow(QMainWindow):
         self.addDockWidget(Qt.DockWidgetArea.BottomDockWidgetArea, dock)
         dock.hide()
         self._messages_button = QPushButton(tr("Messages"))
+        self._messages_button.setIcon(icon("mdi6.message-text-outline"))
         self._messages_button.setFlat(True)
         self._messages_button.setIconSize(QSize(14, 14))
         self._messages_button.clicked.connect(self._toggle_messages)
         self.statusBar().addPermanentWidget(self.task_bar)
         self.statusBar().addPermanentWidget(self._messages_button)
         return dock
-
-    def _dress(self) -> None:
-        self._messages_button.setIcon(icon("mdi6.message-text-outline"))
-        self.back.setIcon(icon("mdi6.chevron-left"))
 
     def _commands(self) -> Mapping[str, Callable[[], object]]:
         """What the entries of the menus do, by their names."""

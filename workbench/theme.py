@@ -92,31 +92,34 @@ def apply_sheet(app: QApplication) -> None:
         polish_again(app)
 
 
-def icon(name: str, *, colour: str = "") -> QIcon:
-    """An icon by its qtawesome name, in the text colour of the theme or in `colour` (a field of Shades)."""
-    shade = shades()
-    return _drawn(name, getattr(shade, colour or "text"), shade.line)
-
-
 @lru_cache(maxsize=512)
-def _drawn(name: str, colour: str, disabled: str) -> QIcon:
-    return QIcon(_RememberedIcon(qtawesome.icon(name, color=colour, color_disabled=disabled)))
+def icon(name: str, *, colour: str = "") -> QIcon:
+    """An icon by its qtawesome name, in the text colour of the theme or in `colour` (a field of Shades).
+
+    It is drawn in the colours of the theme in use whenever it is drawn: nobody need set it anew when that changes.
+    """
+    return QIcon(_ThemedIcon(name, colour or "text"))
 
 
-class _RememberedIcon(QIconEngine):
-    """Draws an icon once a size: qtawesome's own are drawn by Python each time anything near them is painted."""
+class _ThemedIcon(QIconEngine):
+    """Draws an icon once a size and theme: qtawesome's own are drawn by Python each time anything near is painted."""
 
-    def __init__(self, drawn: QIcon) -> None:
+    def __init__(self, name: str, colour: str) -> None:
         super().__init__()
-        self._drawn = drawn
-        self._pixmaps: dict[tuple[int, int, QIcon.Mode, QIcon.State], QPixmap] = {}
+        self._name, self._colour = name, colour
+        self._drawn: dict[bool, QIcon] = {}
+        self._pixmaps: dict[tuple[bool, int, int, QIcon.Mode, QIcon.State], QPixmap] = {}
 
     def pixmap(self, size: QSize, mode: QIcon.Mode, state: QIcon.State) -> QPixmap:
         if size.isEmpty():
             return QPixmap()  # a button without room; qtawesome would try to paint it
-        key = size.width(), size.height(), mode, state
+        dark = is_dark()
+        key = dark, size.width(), size.height(), mode, state
         if key not in self._pixmaps:
-            self._pixmaps[key] = self._drawn.pixmap(size, 1.0, mode, state)
+            if dark not in self._drawn:
+                s = shades()
+                self._drawn[dark] = qtawesome.icon(self._name, color=getattr(s, self._colour), color_disabled=s.line)
+            self._pixmaps[key] = self._drawn[dark].pixmap(size, 1.0, mode, state)
         return self._pixmaps[key]
 
     def paint(self, painter: QPainter, rect: QRect, mode: QIcon.Mode, state: QIcon.State) -> None:

@@ -6,12 +6,13 @@ from typing import Any
 
 from PySide6.QtCore import QEvent, QSize, Qt
 from PySide6.QtGui import QResizeEvent
-from PySide6.QtWidgets import QFrame, QLabel, QScrollArea, QSizePolicy, QSplitter, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QFrame, QScrollArea, QSizePolicy, QSplitter, QVBoxLayout, QWidget
 from superqt import QCollapsible
 
 from workbench.pages.presenter import StepPresenter
 from workbench.refresh import Refresh
 from workbench.theme import icon
+from workbench.views.layouts import holding, in_column
 
 SIDE_WIDTH, NARROWEST_SIDE = 380, 300
 LIST_HEIGHT, LIST_SHARE = 240, 0.36
@@ -34,18 +35,14 @@ class StepPage(QWidget):
         self._lists: list[QWidget] = []
         self.centre = QVBoxLayout()
         self.centre.setContentsMargins(8, 8, 8, 8)
-        self.side = QVBoxLayout()
-        self.side.setContentsMargins(10, 8, 10, 8)
-        self.side.setSpacing(8)
+        self.side = in_column(margins=(10, 8, 10, 8), spacing=8)
         self.splitter = QSplitter(Qt.Orientation.Horizontal)
-        self.splitter.addWidget(_holding(self.centre))
+        self.splitter.addWidget(holding(self.centre))
         self.splitter.addWidget(self._side_panel())
         self.splitter.setStretchFactor(0, 1)
         self.splitter.setCollapsible(0, False)
         self.splitter.setSizes([900, SIDE_WIDTH])
-        outer = QVBoxLayout(self)
-        outer.setContentsMargins(0, 0, 0, 0)
-        outer.addWidget(self.splitter)
+        in_column(self.splitter, on=self)
         presenter.changed.connect(self.refreshing.soon)
 
     def refresh(self) -> None:
@@ -109,7 +106,7 @@ class StepPage(QWidget):
 
     def _side_panel(self) -> QWidget:
         self.side.addStretch(1)
-        inside = _holding(self.side)
+        inside = holding(self.side)
         inside.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Preferred)
         scroll = _SidePanel()
         scroll.setWidget(inside)
@@ -135,24 +132,3 @@ class _SidePanel(QScrollArea):
         if event.type() == QEvent.Type.LayoutRequest and watched is self.widget():
             self.updateGeometry()
         return super().eventFilter(watched, event)
-
-
-def heading(text: str) -> QLabel:
-    """A small title within a panel."""
-    label = QLabel(text)
-    label.setObjectName("heading")
-    return label
-
-
-def muted(text: str = "") -> QLabel:
-    """An explaining sentence, wrapped."""
-    label = QLabel(text)
-    label.setObjectName("muted")
-    label.setWordWrap(True)
-    return label
-
-
-def _holding(layout: QVBoxLayout) -> QWidget:
-    widget = QWidget()
-    widget.setLayout(layout)
-    return widget

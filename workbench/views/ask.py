@@ -10,7 +10,6 @@ from PySide6.QtWidgets import (
     QDialogButtonBox,
     QFileDialog,
     QFormLayout,
-    QHBoxLayout,
     QLabel,
     QLineEdit,
     QMessageBox,
@@ -19,6 +18,7 @@ from PySide6.QtWidgets import (
 )
 
 from workbench.language import tr
+from workbench.views.layouts import in_row
 
 
 def ask(parent: QWidget | None, title: str, text: str, answers: Sequence[str]) -> int:
@@ -69,9 +69,7 @@ class _NameAndFolder(QDialog):
         self._name.selectAll()
         browse = QPushButton(self.tr("Browse …"))
         browse.clicked.connect(self._browse)
-        place = QHBoxLayout()
-        place.addWidget(self._folder, 1)
-        place.addWidget(browse)
+        place = in_row((self._folder, 1), browse)
         self._will = QLabel()
         self._will.setObjectName("muted")
         self._will.setWordWrap(True)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from PySide6.QtGui import QColor, QGuiApplication, QPainter
-from PySide6.QtWidgets import QFileDialog, QWidget
+from PySide6.QtCore import QRect, QSize
+from PySide6.QtGui import QColor, QGuiApplication, QPainter, QPaintEvent
+from PySide6.QtWidgets import QFileDialog, QLabel, QWidget
 
 from workbench.language import tr
-from workbench.theme import shades
+from workbench.theme import icon, shades
 
 
 def dress(widget: QWidget, sheet: str) -> None:
@@ -23,6 +24,38 @@ def dress_edged(widget: QWidget, colour: str) -> None:
         f"{type(widget).__name__} {{ background: {s.panel}; border: 1px solid {s.line};"
         f" border-left: 4px solid {getattr(s, colour)}; border-radius: 4px; }}",
     )
+
+
+class IconLabel(QLabel):
+    """An icon of so many pixels that follows the theme."""
+
+    def __init__(self, side: int, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._side = side
+        self.shown = ("", "")
+        """Name and colour of the icon, as `theme.icon` takes them; "" for none."""
+        self.setFixedWidth(side)
+
+    def show_icon(self, name: str, colour: str = "") -> None:
+        """Show this one; without one it takes no height."""
+        if (name, colour) != self.shown:
+            self.shown = name, colour
+            self.updateGeometry()
+            self.update()
+
+    def sizeHint(self) -> QSize:
+        return QSize(self._side, self._side if self.shown[0] else 0)
+
+    def minimumSizeHint(self) -> QSize:
+        return self.sizeHint()
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        name, colour = self.shown
+        if name:
+            place = QRect(0, (self.height() - self._side) // 2, self._side, self._side)
+            painter = QPainter(self)
+            icon(name, colour=colour).paint(painter, place)
+            painter.end()
 
 
 def draw_focus(widget: QWidget) -> None:

@@ -8,6 +8,8 @@ from PySide6.QtCore import QSize, Qt
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QLabel, QPushButton, QVBoxLayout, QWidget
 
+from workbench.views.layouts import say
+
 _WIDEST, _MARGIN = 440, 12
 
 
@@ -33,8 +35,7 @@ class EmptyState(QWidget):
     def say(self, message: str, button: str = "", on_button: Callable[[], None] | None = None) -> None:
         """Show a sentence; the button only if it is named."""
         self._label.setText(message)
-        self.button.setText(button)
-        self.button.setVisible(bool(button))
+        say(self.button, button)
         self._on_button = on_button
 
     @property

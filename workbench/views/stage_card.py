@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
-from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QPushButton, QWidget
 
 from workbench.theme import icon
+from workbench.views.layouts import enable, in_column
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,11 +42,7 @@ class StageCard(QFrame):
             button.clicked.connect(lambda _=False, do=entry.do: do())
             row.addWidget(button, 1)
             self.buttons[entry.key] = button
-        column = QVBoxLayout(self)
-        column.setContentsMargins(10, 8, 10, 10)
-        column.addWidget(self.title)
-        column.addWidget(self.words)
-        column.addLayout(row)
+        in_column(self.title, self.words, row, on=self, margins=(10, 8, 10, 10))
 
     def show_stage(self, title: str, words: str, tips: Mapping[str, tuple[str, str]], primary: str = "") -> None:
         """Say how far it is; `tips` has for each button why it cannot be pressed ("" if it can) and what it does."""
@@ -53,8 +50,7 @@ class StageCard(QFrame):
         self.words.setText(words)
         for key, (why_not, tip) in tips.items():
             button, main = self.buttons[key], key == primary
-            button.setEnabled(not why_not)
-            button.setToolTip(why_not or tip)
+            enable(button, why_not, tip)
             button.setIcon(icon(self._symbols[key], colour="on_accent" if main and not why_not else ""))
             if button.property("primary") != main:
                 button.setProperty("primary", main)

@@ -9,9 +9,10 @@ import pytest
 import shiboken6
 from PySide6.QtCore import QRect, QSize
 from PySide6.QtGui import QColor, QPainter, QPixmap
-from PySide6.QtWidgets import QApplication, QFrame, QHBoxLayout, QWidget
+from PySide6.QtWidgets import QApplication, QFrame, QHBoxLayout, QToolButton, QWidget
 
 from workbench.theme import DARK, LIGHT, Shades, icon
+from workbench.views.common import IconLabel
 
 
 def card_in(parent: QWidget) -> QFrame:
@@ -69,6 +70,18 @@ def test_an_icon_has_the_colour_of_the_theme_and_is_drawn_once_a_size(qtbot: Any
         drawn[name] = pixmap.cacheKey()
         assert icon("mdi6.square").pixmap(QSize(24, 24)).cacheKey() == drawn[name]
     assert drawn["light"] != drawn["dark"]
+
+
+def test_an_icon_that_is_set_once_follows_the_theme(qtbot: Any, theme: Callable[[str], None]) -> None:
+    button, sign = QToolButton(), IconLabel(24)
+    for widget in (button, sign):
+        qtbot.addWidget(widget)
+    button.setIcon(icon("mdi6.square"))
+    sign.show_icon("mdi6.square", "good")
+    for name, shades in (("light", LIGHT), ("dark", DARK), ("light", LIGHT)):
+        theme(name)
+        assert button.icon().pixmap(QSize(24, 24)).toImage().pixelColor(12, 12) == QColor(shades.text)
+        assert sign.grab().toImage().pixelColor(12, 12) == QColor(shades.good)
 
 
 def test_an_icon_without_room_is_not_drawn(qtbot: Any, theme: Callable[[str], None]) -> None:

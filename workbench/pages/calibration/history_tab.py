@@ -7,11 +7,11 @@ from collections.abc import Sequence
 from typing import Any
 
 from PySide6.QtCore import QSignalBlocker
-from PySide6.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QPushButton, QWidget
 
 from workbench.language import tr
-from workbench.pages.step_page import muted
 from workbench.theme import icon
+from workbench.views.layouts import enable, in_column, in_row, muted
 from workbench.views.lists.data_table import DataTable
 
 
@@ -21,17 +21,13 @@ class HistoryTab(QWidget):
     def __init__(self, presenter: Any, headers: Sequence[tuple[str, str]], parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._presenter = presenter
-        self.table, self.restore, self.words = DataTable(), QPushButton(tr("Restore")), muted()
+        self.table, self.words = DataTable(), muted()
+        self.restore = QPushButton(icon("mdi6.backup-restore"), tr("Restore"))
         self.table.set_headers(headers)
         self.restore.clicked.connect(lambda: presenter.history.restore())
         self.table.current_row_changed.connect(self._chosen)
-        row = QHBoxLayout()
-        row.addWidget(self.words, 1)
-        row.addWidget(self.restore)
-        self.column = QVBoxLayout(self)
-        self.column.setContentsMargins(6, 6, 6, 6)
-        self.column.addWidget(self.table, 1)
-        self.column.addLayout(row)
+        row = in_row((self.words, 1), self.restore)
+        self.column = in_column((self.table, 1), row, on=self, margins=(6, 6, 6, 6))
         self._rows: Any = None
 
     @abstractmethod
@@ -57,9 +53,7 @@ class HistoryTab(QWidget):
                 self.table.set_current_row(ids.index(history.chosen) if history.chosen in ids else -1)
         why = history.why_not_restore()
         self.words.setText(why or self._sentence())
-        self.restore.setEnabled(not why)
-        self.restore.setIcon(icon("mdi6.backup-restore"))
-        self.restore.setToolTip(why or self._tip())
+        enable(self.restore, why, self._tip())
 
     def _chosen(self, row: int) -> None:
         entries = self._presenter.history.entries

@@ -10,7 +10,7 @@ from abc import abstractmethod
 from collections.abc import Sequence
 from typing import Any, ClassVar
 
-from PySide6.QtWidgets import QLabel, QTabWidget, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QTabWidget, QVBoxLayout, QWidget
 
 from workbench.language import text_of
 from workbench.pages.calibration.card import CalibrationCard
@@ -231,11 +231,6 @@ class Result(QWidget):
     def _add(self, *widgets: QWidget) -> None:
         for widget in widgets:
             self.column.addWidget(widget)
-
-    def _say(self, label: QLabel, text: str) -> None:
-        """A sentence where there is one."""
-        label.setText(text)
-        label.setVisible(bool(text))
 
     @abstractmethod
     def refresh(self) -> bool:

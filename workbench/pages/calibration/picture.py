@@ -7,13 +7,14 @@ from collections.abc import Callable
 from typing import Any, ClassVar
 
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QLabel, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QLabel, QWidget
 
 from core.model.arrays import Array
 from core.pipeline.live.events import CameraDetail, LiveView, PlanesDetail
 from workbench.language import text_of, tr
 from workbench.views.colours import CORNER
 from workbench.views.image.view import ImageView
+from workbench.views.layouts import in_column
 from workbench.views.plots.meters import HintBar
 
 LIVE = "live"
@@ -34,11 +35,7 @@ class PictureTab(QWidget):
         self.image, self.line, self.hints = ImageView(), QLabel(), HintBar()
         self.line.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
         self.line.setWordWrap(True)
-        column = QVBoxLayout(self)
-        column.setContentsMargins(6, 6, 6, 6)
-        column.addWidget(self.line)
-        column.addWidget(self.image, 1)
-        column.addWidget(self.hints)
+        in_column(self.line, (self.image, 1), self.hints, on=self, margins=(6, 6, 6, 6))
         presenter.look.picture.connect(self._show_picture)
         presenter.live.show_by(self._draw_live)
         presenter.live.started.connect(self._live_started)

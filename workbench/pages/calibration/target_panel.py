@@ -6,12 +6,13 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from PySide6.QtCore import QCoreApplication, Qt, SignalInstance
-from PySide6.QtWidgets import QComboBox, QHBoxLayout, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QComboBox, QPushButton, QVBoxLayout, QWidget
 
 from workbench.pages.calibration.target import DICTIONARIES, PAPERS
 from workbench.theme import icon
 from workbench.views import ask
 from workbench.views.forms.form import SettingsForm
+from workbench.views.layouts import in_column, in_row
 
 
 class HasTarget(Protocol):
@@ -36,7 +37,7 @@ class TargetPanel(QWidget):
         self._holder.setContentsMargins(0, 0, 0, 0)
         self.form = SettingsForm()
         self._holder.addWidget(self.form)
-        self.paper, self.print = QComboBox(), QPushButton(self.tr("Printable PDF …"))
+        self.paper, self.print = QComboBox(), QPushButton(icon("mdi6.printer-outline"), self.tr("Printable PDF …"))
         for paper in PAPERS:
             self.paper.addItem(paper, paper)
         self.paper.setCurrentText("A4")
@@ -44,13 +45,8 @@ class TargetPanel(QWidget):
         self.paper.setAccessibleName(self.tr("Paper"))
         self.print.setToolTip(self.tr("Write this target to scale as a PDF, with rulers to check the print"))
         self.print.clicked.connect(lambda: self._print())
-        row = QHBoxLayout()
-        row.addWidget(self.paper)
-        row.addWidget(self.print, 1)
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.addLayout(self._holder)
-        column.addLayout(row)
+        row = in_row(self.paper, (self.print, 1))
+        in_column(self._holder, row, on=self)
         presenter.target_refused.connect(self._complain)
 
     def _complain(self, field: str, why: str) -> None:
@@ -58,7 +54,6 @@ class TargetPanel(QWidget):
 
     def refresh(self) -> None:
         """Show the target."""
-        self.print.setIcon(icon("mdi6.printer-outline"))
         values = self._presenter.target_values()
         if values["kind"] != self._kind:
             self._build(values["kind"])

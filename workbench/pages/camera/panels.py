@@ -10,8 +10,8 @@ from workbench.pages.calibration.page import Result
 from workbench.pages.calibration.stage import Stage
 from workbench.pages.camera import words
 from workbench.pages.camera.presenter import CameraPresenter
-from workbench.pages.step_page import heading, muted
 from workbench.views.forms.form import SettingsForm
+from workbench.views.layouts import heading, muted, say
 from workbench.views.lists.value_rows import ValueRows
 
 TARGETS = ("checkerboard", "charuco", "circle_grid")
@@ -70,7 +70,7 @@ class CameraResult(Result):
         calibration = work.calibration
         self.quality.set_rows(words.quality_rows(calibration, work.judgement))
         self.parameters.set_rows(words.parameter_rows(calibration))
-        self._say(self.notes, "\n".join(map(text_of, calibration.notes)) if calibration is not None else "")
+        say(self.notes, "\n".join(map(text_of, calibration.notes)) if calibration is not None else "")
         return calibration is not None
 
 

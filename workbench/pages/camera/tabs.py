@@ -5,15 +5,15 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from PySide6.QtWidgets import QComboBox, QHBoxLayout, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QComboBox, QWidget
 
 from workbench.language import tr
 from workbench.pages.calibration.history_tab import HistoryTab
 from workbench.pages.camera import words
 from workbench.pages.camera.presenter import CameraPresenter
-from workbench.pages.step_page import heading, muted
 from workbench.views.colours import CORNER
 from workbench.views.image.view import ImageView
+from workbench.views.layouts import heading, in_column, in_row, muted
 from workbench.views.lists.data_table import DataTable
 from workbench.views.plots.map import HeatMap
 from workbench.views.plots.residuals import ResidualPlot
@@ -27,11 +27,7 @@ class CoverageTab(QWidget):
         self._presenter = presenter
         self._drawn: Any = None
         self.image, self.missing = ImageView(), muted()
-        column = QVBoxLayout(self)
-        column.setContentsMargins(6, 6, 6, 6)
-        column.addWidget(heading(tr("What is missing")))
-        column.addWidget(self.missing)
-        column.addWidget(self.image, 1)
+        in_column(heading(tr("What is missing")), self.missing, (self.image, 1), on=self, margins=(6, 6, 6, 6))
         self.refresh()
 
     def refresh(self) -> None:
@@ -63,10 +59,7 @@ class ResidualTab(QWidget):
         self._presenter = presenter
         self._drawn: Any = None
         self.plot, self.words = ResidualPlot(), muted()
-        column = QVBoxLayout(self)
-        column.setContentsMargins(6, 6, 6, 6)
-        column.addWidget(self.words)
-        column.addWidget(self.plot, 1)
+        in_column(self.words, (self.plot, 1), on=self, margins=(6, 6, 6, 6))
         self.refresh()
 
     def refresh(self) -> None:
@@ -107,13 +100,8 @@ class ExpectedTab(QWidget):
         self.at_depth.setToolTip(tr("Depth in the work volume: from the nearest to the farthest corner seen"))
         self.at_depth.setAccessibleName(tr("Depth"))
         self.at_depth.currentIndexChanged.connect(lambda _: self.refresh())
-        row = QHBoxLayout()
-        row.addWidget(self.words, 1)
-        row.addWidget(self.at_depth)
-        column = QVBoxLayout(self)
-        column.setContentsMargins(6, 6, 6, 6)
-        column.addLayout(row)
-        column.addWidget(self.map, 1)
+        row = in_row((self.words, 1), self.at_depth)
+        in_column(row, (self.map, 1), on=self, margins=(6, 6, 6, 6))
         self.refresh()
 
     def refresh(self) -> None:

@@ -19,6 +19,7 @@ from PySide6.QtWidgets import (
 
 from core.inspect.shown.shown_scan import DEPTH
 from workbench.theme import icon
+from workbench.views.layouts import in_row
 
 if TYPE_CHECKING:
     from core.inspect.shown.shown_scan import InspectionView
@@ -48,15 +49,12 @@ class SurfaceChoices(QWidget):
         super().__init__(parent)
         self.shapes: dict[Shape, QPushButton] = {}
         self.colours, self.limit, self.slider = QComboBox(), QDoubleSpinBox(), QSlider(Qt.Orientation.Horizontal)
-        bar = QHBoxLayout(self)
-        bar.setContentsMargins(0, 0, 0, 0)
-        bar.setSpacing(4)
+        bar = in_row(on=self, spacing=4)
         self._make_shapes(bar)
         bar.addSpacing(8)
         self._make_colours(bar)
         bar.addStretch(1)
         self._make_limit(bar)
-        self._dress()
 
     @property
     def shape(self) -> Shape:
@@ -74,7 +72,6 @@ class SurfaceChoices(QWidget):
 
     def show_view(self, view: InspectionView | None, clip_mm: float | None) -> None:
         """Offer what there is to choose for a scan; nothing without one."""
-        self._dress()
         for widget in (*self.shapes.values(), self.colours, self.limit, self.slider):
             widget.setEnabled(view is not None)
         if view is None:
@@ -99,6 +96,7 @@ class SurfaceChoices(QWidget):
             button.setCheckable(True)
             group.addButton(button)
             bar.addWidget(button)
+            button.setIcon(icon(SYMBOLS[name]))
             self.shapes[name] = button
         self.shapes["points"].setChecked(True)
         group.buttonToggled.connect(lambda _, on: self.changed.emit() if on else None)
@@ -173,10 +171,6 @@ class SurfaceChoices(QWidget):
 
     def _slid(self, step: int) -> None:
         self.limited.emit(None if step >= STEPS else self.limit.maximum() * step / STEPS)
-
-    def _dress(self) -> None:
-        for name, button in self.shapes.items():
-            button.setIcon(icon(SYMBOLS[name]))
 
 
 def _up(value: float, decimals: int) -> float:

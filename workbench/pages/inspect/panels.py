@@ -7,11 +7,9 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QSize, Qt, Signal
 from PySide6.QtWidgets import (
     QGridLayout,
-    QHBoxLayout,
     QLabel,
     QPushButton,
     QToolButton,
-    QVBoxLayout,
     QWidget,
 )
 
@@ -20,11 +18,11 @@ from workbench.language import text_of, tr
 from workbench.pages.inspect import words
 from workbench.pages.inspect.faces import FACES, NUMBERS
 from workbench.pages.inspect.presenter import InspectPresenter
-from workbench.pages.step_page import heading, muted
 from workbench.step_state import State
 from workbench.theme import icon
 from workbench.views.colours import FACE_LOWER, FACE_UPPER
 from workbench.views.forms.form import SettingsForm
+from workbench.views.layouts import enable, heading, in_column, in_row, muted
 from workbench.views.lists.value_rows import ValueRows, Verdict, VerdictKind
 
 if TYPE_CHECKING:
@@ -57,26 +55,19 @@ class FacesPanel(QWidget):
         self.own.setText(self.tr("Edit those found"))
         self.automatic.setText(self.tr("Automatic"))
         self.exchange = QToolButton()
+        self.own.setIcon(icon("mdi6.vector-square-edit"))
+        self.automatic.setIcon(icon("mdi6.auto-fix"))
+        self.exchange.setIcon(icon("mdi6.swap-vertical"))
+        self.exchange.setAccessibleName(self.tr("Exchange the upper and the lower region"))
         self.own.clicked.connect(lambda: presenter.faces.take_found())
         self.automatic.clicked.connect(lambda: presenter.faces.find_automatically())
         self.exchange.clicked.connect(lambda: presenter.faces.exchange())
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.setSpacing(4)
-        column.addWidget(self.form)
-        column.addWidget(heading(self.tr("Faces")))
-        column.addLayout(self._rows())
-        column.addWidget(self.words)
-        row = QHBoxLayout()
-        row.addWidget(self.own, 1)
-        row.addWidget(self.automatic, 1)
-        row.addWidget(self.exchange)
+        column = in_column(self.form, heading(self.tr("Faces")), self._rows(), self.words, on=self, spacing=4)
+        row = in_row((self.own, 1), (self.automatic, 1), self.exchange)
         column.addLayout(row)
-        self._dress()
 
     def refresh(self) -> None:
         """Show what the presenter says now."""
-        self._dress()
         faces = self._presenter.faces
         self.form.set_values(faces.values())
         for key in NUMBERS:
@@ -94,19 +85,16 @@ class FacesPanel(QWidget):
             label.setText(f"<span style='color:{colour}'>■</span> {names[face]}: {state}")
         why_not = "" if self._presenter.scan.view is not None else self.tr("There is no surface to draw on yet.")
         for (face, kind), button in self.tools.items():
-            button.setEnabled(not why_not)
-            button.setToolTip(why_not or self._tip(face, kind))
+            enable(button, why_not, self._tip(face, kind))
         self.words.setText(faces.missing())
         self.words.setVisible(bool(faces.missing()))
-        self._enable(
-            self.own, faces.can_take_found, self.tr("Make the outlines of the faces found regions you can change")
-        )
-        self._enable(
+        enable(self.own, faces.can_take_found, self.tr("Make the outlines of the faces found regions you can change"))
+        enable(
             self.automatic,
             faces.can_find,
             self.tr("Remove the regions: the two largest parallel faces are looked for again"),
         )
-        self._enable(
+        enable(
             self.exchange,
             "" if faces.own else self.tr("The faces are found automatically: there is nothing to exchange."),
             self.tr("Exchange the upper and the lower region"),
@@ -124,6 +112,7 @@ class FacesPanel(QWidget):
                 button = QToolButton()
                 button.setAutoRaise(True)
                 button.setIconSize(QSize(20, 20))
+                button.setIcon(icon("mdi6.vector-polygon" if kind == "polygon" else "mdi6.lasso"))
                 button.setAccessibleName(self._tip(face, kind).partition(".")[0])
                 button.clicked.connect(lambda _=False, face=face, kind=kind: self.draw.emit(face, kind))
                 self.tools[face, kind] = button
@@ -143,18 +132,6 @@ class FacesPanel(QWidget):
         )
         return f"{first} {more}"
 
-    def _enable(self, button: QPushButton | QToolButton, why_not: str, tip: str) -> None:
-        button.setEnabled(not why_not)
-        button.setToolTip(why_not or tip)
-
-    def _dress(self) -> None:
-        for (_, kind), button in self.tools.items():
-            button.setIcon(icon("mdi6.vector-polygon" if kind == "polygon" else "mdi6.lasso"))
-        self.own.setIcon(icon("mdi6.vector-square-edit"))
-        self.automatic.setIcon(icon("mdi6.auto-fix"))
-        self.exchange.setIcon(icon("mdi6.swap-vertical"))
-        self.exchange.setAccessibleName(self.tr("Exchange the upper and the lower region"))
-
 
 class ResultPanel(QWidget):
     """The thickness with all that belongs to it."""
@@ -166,9 +143,7 @@ class ResultPanel(QWidget):
         self.verdict, self.rows, self.rule = Verdict(), ValueRows(), muted()
         self.budget, self.notes = ValueRows(), muted()
         self.budget_title, self.notes_title = heading(self.tr("Uncertainty budget")), heading(self.tr("Notes"))
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.setSpacing(6)
+        column = in_column(on=self, spacing=6)
         for widget in (
             self.verdict, self.rows, self.rule, self.budget_title, self.budget, self.notes_title, self.notes,
         ):  # fmt: skip

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QHBoxLayout, QListWidget, QListWidgetItem, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QListWidget, QListWidgetItem, QPushButton, QWidget
 
 from workbench.pages.inspect import words
 from workbench.pages.inspect.picks import Mode, Pick
 from workbench.pages.inspect.presenter import InspectPresenter
-from workbench.pages.step_page import muted
 from workbench.theme import icon
+from workbench.views.layouts import in_column, muted
 
 
 class PicksPanel(QWidget):
@@ -22,15 +22,16 @@ class PicksPanel(QWidget):
         super().__init__(parent)
         self._presenter = presenter
         self._names: list[str] = []
-        self.tools: dict[Mode, QPushButton] = {"point": QPushButton(), "distance": QPushButton()}
-        self.tools["point"].setText(self.tr("Pick points"))
-        self.tools["distance"].setText(self.tr("Measure distance"))
-        self.list, self.remove, self.clear = QListWidget(), QPushButton(), QPushButton()
+        self.tools: dict[Mode, QPushButton] = {
+            "point": QPushButton(icon("mdi6.crosshairs-gps"), self.tr("Pick points")),
+            "distance": QPushButton(icon("mdi6.ruler"), self.tr("Measure distance")),
+        }
+        self.list = QListWidget()
+        self.remove = QPushButton(icon("mdi6.playlist-remove"), self.tr("Remove"))
+        self.clear = QPushButton(icon("mdi6.close"), self.tr("Remove all"))
         self.list.setAccessibleName(self.tr("Picked points and distances"))
         self.list.setWordWrap(True)
         self.list.setFixedHeight(120)
-        self.remove.setText(self.tr("Remove"))
-        self.clear.setText(self.tr("Remove all"))
         above, below = QHBoxLayout(), QHBoxLayout()
         for mode, button in self.tools.items():
             button.setCheckable(True)
@@ -45,20 +46,13 @@ class PicksPanel(QWidget):
             )
         )
         self.help.setObjectName("help")
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.addLayout(above)
-        column.addWidget(self.list)
-        column.addLayout(below)
-        column.addWidget(self.help)
+        in_column(above, self.list, below, self.help, on=self)
         self.remove.clicked.connect(self._remove)
         self.clear.clicked.connect(lambda: presenter.picks.clear())
         self.list.currentRowChanged.connect(lambda _: self._show_buttons())
-        self._dress()
 
     def refresh(self) -> None:
         """Show what the presenter says now."""
-        self._dress()
         picks, ready = self._presenter.picks, self._presenter.scan.view is not None
         tips: dict[Mode, str] = {
             "point": self.tr("Click points in 3D: x, y, z in mm in the camera's frame, with frame and pixel"),
@@ -93,12 +87,3 @@ class PicksPanel(QWidget):
         row = self.list.currentRow()
         if 0 <= row < len(self._names):
             self._presenter.picks.remove(self._names[row])
-
-    def _dress(self) -> None:
-        for button, symbol in (
-            (self.tools["point"], "mdi6.crosshairs-gps"),
-            (self.tools["distance"], "mdi6.ruler"),
-            (self.remove, "mdi6.playlist-remove"),
-            (self.clear, "mdi6.close"),
-        ):
-            button.setIcon(icon(symbol))

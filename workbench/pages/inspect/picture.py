@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Literal
 
-from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLabel, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QComboBox, QLabel, QWidget
 
 from core.inspect.plan.feature_spec import Polygon
 from workbench.language import tr
 from workbench.pages.inspect.faces import FACES
 from workbench.pages.inspect.features.edit import LINE
 from workbench.pages.inspect.presenter import RELIEF, InspectPresenter, Stage
-from workbench.pages.step_page import muted
 from workbench.views.colours import FACE_LOWER, FACE_UPPER, FEATURE
 from workbench.views.image.view import ImageView
+from workbench.views.layouts import in_column, in_row, muted
 
 if TYPE_CHECKING:
     from core.inspect.shown.shown_scan import InspectionView
@@ -40,15 +40,8 @@ class PictureTab(QWidget):
         self.pictures.setMinimumContentsLength(22)
         label = QLabel(self.tr("Picture"))
         label.setBuddy(self.pictures)
-        bar = QHBoxLayout()
-        bar.addWidget(label)
-        bar.addWidget(self.pictures)
-        bar.addWidget(self.line, 1)
-        column = QVBoxLayout(self)
-        column.setContentsMargins(6, 6, 6, 4)
-        column.setSpacing(4)
-        column.addLayout(bar)
-        column.addWidget(self.image, 1)
+        bar = in_row(label, self.pictures, (self.line, 1))
+        in_column(bar, (self.image, 1), on=self, margins=(6, 6, 6, 4), spacing=4)
         self.pictures.activated.connect(lambda _: presenter.choose_picture(str(self.pictures.currentData())))
         self.image.polygon_drawn.connect(presenter.set_region)
         self.image.polygon_edited.connect(presenter.set_region)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from PySide6.QtCore import Qt, QTimer, Signal
 from PySide6.QtGui import QHideEvent, QShowEvent
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QWidget
 
 from core.inspect.shown.shown_scan import DEPTH
 from core.report.wording import grouped
@@ -19,6 +19,7 @@ from workbench.pages.inspect.picks import Pick, Span
 from workbench.pages.inspect.presenter import InspectPresenter, Stage
 from workbench.refresh import Refresh
 from workbench.views.colours import DEVIATIONS, FACE_LOWER, FACE_UPPER, FEATURE, to_rgba
+from workbench.views.layouts import in_column
 from workbench.views.scene.view import Colouring, SceneView
 
 if TYPE_CHECKING:
@@ -67,12 +68,7 @@ class SurfaceTab(QWidget):
         self.line.setWordWrap(True)  # else the legend of a deviation would widen the page and narrow what is beside it
         foot.addWidget(self.line, 1)
         foot.addWidget(self.hint)
-        column = QVBoxLayout(self)
-        column.setContentsMargins(6, 6, 6, 4)
-        column.setSpacing(4)
-        column.addWidget(self.choices)
-        column.addWidget(self.scene, 1)
-        column.addLayout(foot)
+        in_column(self.choices, (self.scene, 1), foot, on=self, margins=(6, 6, 6, 4), spacing=4)
         self.scene.point_picked.connect(lambda point, _: presenter.picks.pick(point))
         self.scene.region_selected.connect(self._selected)
         self.scene.drawing_cancelled.connect(self._cancelled)

@@ -13,9 +13,9 @@ from workbench.pages.calibration.page import Result
 from workbench.pages.calibration.stage import Stage
 from workbench.pages.planes import words
 from workbench.pages.planes.presenter import PlanesPresenter
-from workbench.pages.step_page import heading, muted
 from workbench.views.forms.form import SettingsForm
 from workbench.views.forms.live_panel import LivePanel
+from workbench.views.layouts import heading, in_column, muted, say
 from workbench.views.lists.value_rows import ValueRows
 
 PLATES = ("black_square", "checkerboard", "charuco", "circle_grid")
@@ -80,9 +80,7 @@ class PlanesLive(QWidget):
         inside = self.panel.layout()
         assert isinstance(inside, QVBoxLayout)
         inside.insertWidget(inside.indexOf(self.panel.state), self.pairs)
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.addWidget(self.panel)
+        in_column(self.panel, on=self)
 
     def refresh(self) -> None:
         """Show how poses are taken."""
@@ -149,10 +147,10 @@ class PlanesResult(Result):
         calibration = work.calibration
         self.quality.set_rows(words.quality_rows(calibration))
         self.angles.set_rows(words.angle_rows(calibration))
-        self._say(self.verdict, words.verdict_sentence(calibration))
-        self._say(self.notes, words.notes(calibration))
+        say(self.verdict, words.verdict_sentence(calibration))
+        say(self.notes, words.notes(calibration))
         lines = words.left_out_lines(calibration.poses if calibration is not None else work.poses or ())
-        self._say(self.left_out, "\n".join(lines))
+        say(self.left_out, "\n".join(lines))
         self._left_out_heading.setVisible(bool(lines))
         self._angles_heading.setVisible(calibration is not None and len(calibration.free_angles) > 0)
         return calibration is not None or bool(lines)

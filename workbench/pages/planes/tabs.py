@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from PySide6.QtWidgets import QVBoxLayout, QWidget
+from PySide6.QtWidgets import QWidget
 
 from core.calibrate.results import FanCalibration, PlanePose
 from core.model import Camera
@@ -13,6 +13,7 @@ from workbench.pages.calibration.history_tab import HistoryTab
 from workbench.pages.planes import words
 from workbench.pages.planes.presenter import PlanesPresenter
 from workbench.views.colours import EXCLUDED, fan_colour
+from workbench.views.layouts import in_column
 from workbench.views.scene import shapes as scene_shapes
 from workbench.views.scene.view import SceneView
 
@@ -35,9 +36,7 @@ class RigTab(QWidget):
         self._chosen = ""
         self.scene = SceneView()
         self.scene.notice.connect(presenter.bench.notices.info)
-        column = QVBoxLayout(self)
-        column.setContentsMargins(6, 6, 6, 6)
-        column.addWidget(self.scene)
+        in_column(self.scene, on=self, margins=(6, 6, 6, 6))
         self._empty()
 
     def refresh(self) -> None:

@@ -29,6 +29,7 @@ from workbench.language import text_of
 from workbench.views import ask
 from workbench.views.image.side_by_side import SideBySide
 from workbench.views.image.view import ImageView
+from workbench.views.layouts import in_row
 from workbench.views.lists.data_table import DataTable
 from workbench.work import jobs
 
@@ -124,10 +125,7 @@ class ImportDialog(QDialog):
                 field.setText(str(chosen))
 
         browse.clicked.connect(choose)
-        row = QHBoxLayout()
-        row.addWidget(field, 1)
-        row.addWidget(browse)
-        return row
+        return in_row((field, 1), browse)
 
     def _changed(self, *_: Any) -> None:
         """Something else is asked for: what was understood no longer counts."""

@@ -8,10 +8,11 @@ from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QPushButton, QScrollA
 
 from workbench.language import tr
 from workbench.pages.project.presenter import ProjectPresenter
-from workbench.pages.step_page import StepPage, heading, muted
+from workbench.pages.step_page import StepPage
 from workbench.theme import icon
 from workbench.views.common import breakable
 from workbench.views.forms.form import SettingsForm
+from workbench.views.layouts import STRETCH, heading, in_column, muted
 from workbench.views.lists.value_rows import ValueRows
 
 
@@ -47,7 +48,8 @@ class ProjectPage(StepPage):
         self.rows, self.next_words = ValueRows(), muted()
         self.add_panel(self.tr("How far the work is"), self.rows)
         self.add_to_side(self.next_words)
-        self.place, self.folder = muted(), QPushButton(self.tr("Open the project folder"))
+        self.place = muted()
+        self.folder = QPushButton(icon("mdi6.folder-open-outline"), self.tr("Open the project folder"))
         self.add_panel(self.tr("Where it is kept"), self._kept())
 
     def refresh(self) -> None:
@@ -57,7 +59,6 @@ class ProjectPage(StepPage):
         self.rows.set_rows(self.presenter.progress_rows())
         self.next_words.setText(self.presenter.next_words())
         self.place.setText(breakable(self.presenter.place()))
-        self.folder.setIcon(icon("mdi6.folder-open-outline"))
 
     def _columns(self) -> QWidget:
         inside = QWidget()
@@ -96,9 +97,5 @@ class ProjectPage(StepPage):
 def _card(title: QLabel, form: QWidget) -> QFrame:
     card = QFrame()
     card.setObjectName("card")
-    column = QVBoxLayout(card)
-    column.setContentsMargins(16, 12, 16, 14)
-    column.addWidget(title)
-    column.addWidget(form)
-    column.addStretch(1)
+    in_column(title, form, STRETCH, on=card, margins=(16, 12, 16, 14))
     return card

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from PySide6.QtCore import QEvent, QSize, Qt, QTimer
+from PySide6.QtCore import QSize, Qt, QTimer
 from PySide6.QtGui import QAction, QKeySequence
 from PySide6.QtWidgets import (
     QApplication,
@@ -16,7 +16,6 @@ from PySide6.QtWidgets import (
     QListWidget,
     QListWidgetItem,
     QSizePolicy,
-    QVBoxLayout,
     QWidget,
 )
 
@@ -24,14 +23,12 @@ from workbench.language import tr
 from workbench.pages.project.actions import ProjectActions
 from workbench.refresh import Refresh
 from workbench.theme import icon
+from workbench.views.layouts import STRETCH, in_column, in_row
 from workbench.views.lists.notice_list import Banner
 
 
 class WelcomePage(QWidget):
     """New, open, recent, sample, simulated rig."""
-
-    _links: tuple[tuple[QCommandLinkButton, str], ...] = ()
-    """The ways in, each with its icon."""
 
     def __init__(self, projects: ProjectActions, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -93,36 +90,21 @@ class WelcomePage(QWidget):
         self._none = QLabel(self.tr("Projects you open appear here."))
         self._none.setObjectName("muted")
         self._none.setAlignment(Qt.AlignmentFlag.AlignTop)
-        right = QVBoxLayout()
-        right.setSpacing(6)
-        right.addWidget(heading)
-        right.addWidget(self._none, 1)
-        right.addWidget(self.recent, 1)
+        right = in_column(heading, (self._none, 1), (self.recent, 1), spacing=6)
         card = QFrame()
         card.setObjectName("card")
         card.setMaximumWidth(1080)
         card.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Maximum)
-        inside = QVBoxLayout(card)
-        inside.setContentsMargins(36, 28, 36, 28)
-        inside.addLayout(_with_mark(title))
-        inside.addWidget(claim)
+        inside = in_column(_with_mark(title), claim, on=card, margins=(36, 28, 36, 28))
         inside.addSpacing(18)
         columns = QHBoxLayout()
         columns.setSpacing(28)
-        left = QVBoxLayout()
-        left.addLayout(grid)
-        left.addStretch(1)
+        left = in_column(grid, STRETCH)
         columns.addLayout(left, 3)
         columns.addLayout(right, 2)
         inside.addLayout(columns, 1)
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(24, 12, 24, 24)
-        layout.addWidget(self.banner)
-        layout.addStretch(1)
-        row = QHBoxLayout()
-        row.addStretch(1)
-        row.addWidget(card, 20)
-        row.addStretch(1)
+        layout = in_column(self.banner, STRETCH, on=self, margins=(24, 12, 24, 24))
+        row = in_row(STRETCH, (card, 20), STRETCH)
         layout.addLayout(row)
         layout.addStretch(1)
         projects.sample.changed.connect(self._show_sample)
@@ -140,12 +122,6 @@ class WelcomePage(QWidget):
             self.recent.addItem(item)
         self.recent.setVisible(self.recent.count() > 0)
         self._none.setVisible(self.recent.count() == 0)
-
-    def changeEvent(self, event: QEvent) -> None:
-        super().changeEvent(event)
-        if event.type() == QEvent.Type.PaletteChange:
-            for link, symbol in self._links:
-                link.setIcon(icon(symbol, colour="accent"))
 
     def _show_sample(self) -> None:
         preparing = self._projects.sample.preparing
@@ -186,7 +162,6 @@ class WelcomePage(QWidget):
         link.setIcon(icon(symbol, colour="accent"))
         link.setIconSize(QSize(26, 26))
         link.clicked.connect(lambda: do())
-        self._links = (*self._links, (link, symbol))
         return link
 
 
@@ -194,8 +169,4 @@ def _with_mark(title: QLabel) -> QHBoxLayout:
     """The program's name after its icon."""
     mark = QLabel()
     mark.setPixmap(QApplication.windowIcon().pixmap(QSize(40, 40)))
-    row = QHBoxLayout()
-    row.setSpacing(14)
-    row.addWidget(mark)
-    row.addWidget(title, 1)
-    return row
+    return in_row(mark, (title, 1), spacing=14)

@@ -11,9 +11,10 @@ from core.report.template import PAPERS
 from workbench.language import tr
 from workbench.pages.report.presenter import ReportPresenter, Stage
 from workbench.pages.report.words import AT_HAND, export_words
-from workbench.pages.step_page import StepPage, muted
+from workbench.pages.step_page import StepPage
 from workbench.theme import icon
 from workbench.views import ask
+from workbench.views.layouts import enable, muted, say
 from workbench.views.pages.page_scroll import PageScroll
 from workbench.views.stage_card import CardButton, StageCard
 
@@ -43,14 +44,11 @@ class ReportPage(StepPage):
         self.folder = QPushButton(self.tr("Results folder"))
         self.add_panel(self.tr("Hand over"), self._hand_over())
         self._shown: object = None
-        self._dress()
 
     def refresh(self) -> None:
         p = self.presenter
-        self._dress()
         self._show_stage(p.stage)
-        self.warning.setText(p.warning())
-        self.warning.setVisible(bool(self.warning.text()))
+        say(self.warning, p.warning())
         for name, title, shown in p.sections():
             box, why = self.boxes[name], p.empty_section(name)
             box.setChecked(shown)
@@ -60,16 +58,14 @@ class ReportPage(StepPage):
         self._show_looks()
         for kind, button in self.exports.items():
             missing = p.export_missing(kind)
-            button.setEnabled(not missing)
-            button.setToolTip(missing or self._export_help(kind))
+            enable(button, missing, self._export_help(kind))
         nothing = all(p.export_missing(kind) for kind in self.exports)
         self.more.setEnabled(not nothing)
         self.more.setToolTip(
             p.export_missing("pdf") if nothing else self.tr("Other programs' formats: E57, 3MF, DFQ, QIF and more")
         )
         why = "" if p.results_folder() is not None else self.tr("There are no results yet.")
-        self.folder.setEnabled(not why)
-        self.folder.setToolTip(why or str(p.results_folder()))
+        enable(self.folder, why, str(p.results_folder()))
         self._show_pages()
 
     def _show_stage(self, stage: Stage) -> None:
@@ -180,18 +176,19 @@ class ReportPage(StepPage):
         menu.setToolTipsVisible(True)
         place = 0
         for kind in EXPORTS:
-            title, _, _ = export_words(kind)
+            title, _, symbol = export_words(kind)
             if kind in AT_HAND:
-                button = QPushButton(title)
+                button = QPushButton(icon(symbol), title)
                 button.clicked.connect(lambda _=False, k=kind: self._export(k))
                 grid.addWidget(button, place // 2, place % 2)
                 self.exports[kind] = button
                 place += 1
             else:
-                action = menu.addAction(title)
+                action = menu.addAction(icon(symbol), title)
                 action.triggered.connect(lambda _=False, k=kind: self._export(k))
                 self.exports[kind] = action
         self.more.setMenu(menu)
+        self.folder.setIcon(icon("mdi6.folder-open-outline"))
         self.folder.clicked.connect(self._open_folder)
         grid.addWidget(self.more, 3, 0)
         grid.addWidget(self.folder, 3, 1)
@@ -201,11 +198,6 @@ class ReportPage(StepPage):
         if kind == "pdf" and self.presenter.stage is not Stage.MADE:
             return self.tr("Make the report as it is shown here, and write a copy where you want it")
         return export_words(kind)[1]
-
-    def _dress(self) -> None:
-        for kind, button in self.exports.items():
-            button.setIcon(icon(export_words(kind)[2]))
-        self.folder.setIcon(icon("mdi6.folder-open-outline"))
 
     def _export(self, kind: str) -> None:
         ending = EXPORTS[kind].ending

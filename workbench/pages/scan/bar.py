@@ -10,7 +10,6 @@ from PySide6.QtWidgets import (
     QPushButton,
     QSlider,
     QToolButton,
-    QVBoxLayout,
     QWidget,
 )
 
@@ -18,8 +17,8 @@ from workbench.pages.scan import words
 from workbench.pages.scan.picture import View
 from workbench.pages.scan.presenter import ScanPresenter
 from workbench.pages.scan.run import short
-from workbench.pages.step_page import muted
 from workbench.theme import icon
+from workbench.views.layouts import in_column, muted
 
 
 class FrameBar(QWidget):
@@ -36,7 +35,6 @@ class FrameBar(QWidget):
         self.stages: dict[View, QPushButton] = {}
         self._group = QButtonGroup(self)
         self._lay_out()
-        self._dress()
         self.slider.valueChanged.connect(presenter.scrub.go_to)
         self.back.clicked.connect(lambda: presenter.scrub.step(-1))
         self.on.clicked.connect(lambda: presenter.scrub.step(1))
@@ -44,7 +42,6 @@ class FrameBar(QWidget):
 
     def refresh(self) -> None:
         """Show which frame it is."""
-        self._dress()
         p = self._presenter
         names, scrub = p.work.names, p.scrub
         self.slider.blockSignals(True)
@@ -87,7 +84,11 @@ class FrameBar(QWidget):
             self._group.addButton(button)
             self.stages[view] = button
             row.addWidget(button, 1)
-        for tool, tip in ((self.back, self.tr("The frame before (←)")), (self.on, self.tr("The next frame (→)"))):
+        for tool, symbol, tip in (
+            (self.back, "mdi6.chevron-left", self.tr("The frame before (←)")),
+            (self.on, "mdi6.chevron-right", self.tr("The next frame (→)")),
+        ):
+            tool.setIcon(icon(symbol))
             tool.setAutoRaise(True)
             tool.setAutoRepeat(True)
             tool.setIconSize(QSize(18, 18))
@@ -102,11 +103,7 @@ class FrameBar(QWidget):
         along.setSpacing(4)
         for widget, stretch in ((self.back, 0), (self.slider, 1), (self.on, 0), (self.used, 0)):
             along.addWidget(widget, stretch)
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 4, 0, 0)
-        column.setSpacing(4)
-        column.addLayout(row)
-        column.addLayout(along)
+        column = in_column(row, along, on=self, margins=(0, 4, 0, 0), spacing=4)
         self.said.setFixedHeight(2 * self.said.fontMetrics().lineSpacing())
         self.said.setAlignment(Qt.AlignmentFlag.AlignTop)
         column.addWidget(self.said)
@@ -120,7 +117,3 @@ class FrameBar(QWidget):
             View.CROSSINGS: self.tr("Where sweep and fan cross: good, weak or left out; hover for the reason"),
             View.POINTS: self.tr("The measured points of this frame, coloured by σ"),
         }
-
-    def _dress(self) -> None:
-        self.back.setIcon(icon("mdi6.chevron-left"))
-        self.on.setIcon(icon("mdi6.chevron-right"))

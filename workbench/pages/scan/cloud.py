@@ -5,11 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from PySide6.QtWidgets import QVBoxLayout, QWidget
+from PySide6.QtWidgets import QWidget
 
 from core.pipeline.live.events import LiveView, ScanDetail
 from workbench.pages.scan.overlays import PREVIEW_SIGMA_MM
 from workbench.pages.scan.presenter import ScanPresenter, Stage
+from workbench.views.layouts import in_column
 from workbench.views.scene.view import Colouring, SceneView
 
 _NOTHING = np.zeros((0, 3), np.float32), np.zeros(0, np.float32)
@@ -26,9 +27,7 @@ class ScanCloud(QWidget):
         self._limit = 0.0
         self.scene = SceneView()
         self.scene.setAccessibleName(self.tr("Measured points in 3D"))
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.addWidget(self.scene)
+        in_column(self.scene, on=self)
         self.scene.clear(self._message())
 
     def refresh(self) -> None:

@@ -14,8 +14,8 @@ from core.scan.preview.hints import HintLimits
 from workbench.language import text_of, tr
 from workbench.pages.scan import words
 from workbench.pages.scan.presenter import ScanPresenter, Stage
-from workbench.pages.step_page import heading, muted
 from workbench.views.forms.form import SettingsForm
+from workbench.views.layouts import heading, in_column, muted
 from workbench.views.lists.value_rows import ValueRows
 from workbench.views.plots.meters import HintBar, Meter
 from workbench.views.stage_card import CardButton, StageCard
@@ -145,9 +145,7 @@ class SettingsPanel(QWidget):
             minimum=1.0, maximum=65535.0, decimals=0, step=5.0,
         )  # fmt: skip
         form.edited.connect(presenter.set_setting, Qt.ConnectionType.QueuedConnection)
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.addWidget(form)
+        in_column(form, on=self)
 
     def refresh(self) -> None:
         """Show the settings."""

@@ -7,13 +7,14 @@ from enum import StrEnum
 from typing import Any
 
 import numpy as np
-from PySide6.QtWidgets import QVBoxLayout, QWidget
+from PySide6.QtWidgets import QWidget
 
 from core.image.stripes.centreline import Centreline
 from core.pipeline.live.events import LiveView, ScanDetail
 from workbench.pages.scan import overlays
 from workbench.pages.scan.presenter import ScanPresenter
 from workbench.views.image.view import ImageView
+from workbench.views.layouts import in_column
 
 
 class View(StrEnum):
@@ -39,9 +40,7 @@ class ScanPicture(QWidget):
         self._fan: tuple[Any, bool] | None = None
         self.image, self.wanted = ImageView(), View.CROSSINGS
         self.image.setAccessibleName(self.tr("Picture of the scan"))
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.addWidget(self.image)
+        in_column(self.image, on=self)
         nothing = np.zeros((1, 1), np.bool_)
         overlays.show_coverage(self.image, nothing, nothing)  # the first layers are the lowest
         self._empty()

@@ -11,11 +11,9 @@ from PySide6.QtWidgets import (
     QComboBox,
     QDoubleSpinBox,
     QFormLayout,
-    QHBoxLayout,
     QLabel,
     QLineEdit,
     QToolButton,
-    QVBoxLayout,
     QWidget,
 )
 
@@ -25,6 +23,7 @@ from core.pipeline.live.sources import SOURCES
 from workbench.language import text_of
 from workbench.theme import icon
 from workbench.views import ask
+from workbench.views.layouts import in_column, in_row, say
 
 
 class DeviceField(QWidget):
@@ -42,11 +41,7 @@ class DeviceField(QWidget):
         self.box.setMinimumContentsLength(8)
         self.box.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
         self.setFocusProxy(self.box)
-        row = QHBoxLayout(self)
-        row.setContentsMargins(0, 0, 0, 0)
-        row.setSpacing(4)
-        row.addWidget(self.box, 1)
-        row.addWidget(self.button)
+        in_row((self.box, 1), self.button, on=self, spacing=4)
         self.box.activated.connect(lambda _: self.chosen.emit(str(self.box.currentData() or "")))
         edit = self.box.lineEdit()
         assert edit is not None
@@ -231,8 +226,7 @@ class SourceForm(QWidget):
         self._form.setRowVisible(self.files, live.step == "scan")
         self.files.setCurrentIndex(max(self.files.findData(settings.ending), 0))
         for label, sentence in ((self.missing, settings.missing), (self.complaint, settings.complaint)):
-            label.setText(sentence)
-            label.setVisible(bool(sentence))
+            say(label, sentence)
 
     def _numbers(self) -> dict[str, NumberField]:
         return {"exposure_ms": self.exposure, "gain_db": self.gain, "rate_hz": self.rate}
@@ -258,10 +252,7 @@ class SourceForm(QWidget):
         ):
             label.setBuddy(field)
             self._form.addRow(label, field)
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.setSpacing(6)
-        column.addLayout(self._form)
+        column = in_column(self._form, on=self, spacing=6)
         for label in (self.missing, self.complaint):
             label.setObjectName("muted")
             label.setWordWrap(True)

@@ -4,17 +4,15 @@ from __future__ import annotations
 
 from typing import Any
 
-from PySide6.QtCore import QEvent, Qt, QTimer
+from PySide6.QtCore import Qt, QTimer
 from PySide6.QtWidgets import (
     QCheckBox,
     QFrame,
     QGridLayout,
-    QHBoxLayout,
     QLabel,
     QPushButton,
     QSizePolicy,
     QToolButton,
-    QVBoxLayout,
     QWidget,
 )
 
@@ -23,6 +21,7 @@ from workbench.refresh import Refresh
 from workbench.theme import icon
 from workbench.views import ask
 from workbench.views.forms.live_form import SourceForm
+from workbench.views.layouts import in_column, in_row
 
 
 class LivePanel(QWidget):
@@ -63,7 +62,6 @@ class LivePanel(QWidget):
         )
         self.pause.setText(self.tr("Resume") if live.paused else self.tr("Pause"))
         self.pause.setIcon(icon("mdi6.record" if live.paused else "mdi6.pause"))
-        self.take.setIcon(icon("mdi6.camera-iris"))
         why_not = "" if going else self.tr("Start the live source first.")
         for button, does in (
             (self.pause, self.tr("Record nothing for a while")),
@@ -101,13 +99,9 @@ class LivePanel(QWidget):
         self._refreshing.soon()  # not now: Qt is in the middle of showing what would change
         QTimer.singleShot(0, self.live.get_ready)
 
-    def changeEvent(self, event: QEvent) -> None:
-        super().changeEvent(event)
-        if event.type() == QEvent.Type.PaletteChange:
-            self.refresh()
-
     def _dress(self) -> None:
         self.take.setText(self.tr("Take picture"))
+        self.take.setIcon(icon("mdi6.camera-iris"))
         self.auto.setToolTip(self.tr("Takes a picture when it is still, sharp, and unlike those taken before"))
         self.add.setToolTip(self.tr("Keep the pictures in use and add the new ones; else the new ones replace them"))
         self.auto.setVisible(self.live.step != "scan")
@@ -123,15 +117,7 @@ class LivePanel(QWidget):
         buttons.addWidget(self.start, 0, 0)
         buttons.addWidget(self.pause, 0, 1)
         buttons.addWidget(self.take, 1, 0, 1, 2)
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.setSpacing(6)
-        column.addWidget(self.form)
-        column.addLayout(buttons)
-        column.addWidget(self.auto)
-        column.addWidget(self.add)
-        column.addWidget(self.state)
-        column.addWidget(self.counts)
+        in_column(self.form, buttons, self.auto, self.add, self.state, self.counts, on=self, spacing=6)
 
     def _connect(self) -> None:
         live = self.live
@@ -172,15 +158,12 @@ class LiveStrip(QWidget):
         self.take_advice.setText(self.tr("Set it"))
         self.take_advice.setToolTip(self.tr("Tell the camera so"))
         self.take_advice.clicked.connect(lambda: live.take_advice())
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 4)
-        column.setSpacing(4)
+        column = in_column(on=self, margins=(0, 0, 0, 4), spacing=4)
         for card in self._cards():
             column.addWidget(card)
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Maximum)
         live.changed.connect(self.refresh)
         live.view.connect(self._on_view)
-        self._dress()
         self.refresh()
 
     def refresh(self) -> None:
@@ -196,15 +179,6 @@ class LiveStrip(QWidget):
         )
         self._gone.say(unplugged if self.live.gone else "")
         self._show_lost()
-
-    def changeEvent(self, event: QEvent) -> None:
-        super().changeEvent(event)
-        if event.type() == QEvent.Type.PaletteChange:
-            self._dress()
-
-    def _dress(self) -> None:
-        for card in self._cards():
-            card.dress()
 
     def _cards(self) -> tuple[_Card, ...]:
         return self._gone, self._lost, self._advice, self._ask
@@ -224,15 +198,13 @@ class _Card(QFrame):
     def __init__(self, symbol: str, *, button: bool = False) -> None:
         super().__init__()
         self.setObjectName("card")
-        self._symbol, self._sign = symbol, QToolButton()
+        self._sign = QToolButton()
+        self._sign.setIcon(icon(symbol, colour="warn"))
         self.label, self.button = QLabel(), QPushButton()
         self._sign.setAutoRaise(True)
         self._sign.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self.label.setWordWrap(True)
-        row = QHBoxLayout(self)
-        row.setContentsMargins(8, 6, 8, 6)
-        row.addWidget(self._sign)
-        row.addWidget(self.label, 1)
+        row = in_row(self._sign, (self.label, 1), on=self, margins=(8, 6, 8, 6))
         if button:
             row.addWidget(self.button)
         self.hide()
@@ -241,6 +213,3 @@ class _Card(QFrame):
         if sentence != self.label.text():
             self.label.setText(sentence)
         self.setVisible(bool(sentence))
-
-    def dress(self) -> None:
-        self._sign.setIcon(icon(self._symbol, colour="warn"))

@@ -9,16 +9,15 @@ from PySide6.QtCore import QEvent, Qt, Signal
 from PySide6.QtGui import QDragEnterEvent, QDropEvent
 from PySide6.QtWidgets import (
     QButtonGroup,
-    QHBoxLayout,
     QLabel,
     QPushButton,
-    QVBoxLayout,
     QWidget,
 )
 
 from workbench.theme import icon
 from workbench.views import ask
 from workbench.views.common import breakable
+from workbench.views.layouts import in_column, in_row
 
 
 class SourceChooser(QWidget):
@@ -41,9 +40,7 @@ class SourceChooser(QWidget):
         self.recorded.setToolTip(self.tr("Measure pictures that are there already"))
         self.live.setToolTip(self.tr("Take the pictures now, with a camera or the simulated rig"))
         self._modes = QButtonGroup(self)
-        modes = QHBoxLayout()
-        modes.setContentsMargins(0, 0, 0, 0)
-        modes.setSpacing(0)
+        modes = in_row(spacing=0)
         for place, button in enumerate((self.recorded, self.live)):
             button.setCheckable(True)
             self._modes.addButton(button, place)
@@ -51,9 +48,7 @@ class SourceChooser(QWidget):
         self.path, self.detail, self.browse = QLabel(), QLabel(), QPushButton(self.tr("Choose folder …"))
         self.browse.setToolTip(self.tr("Choose a folder of pictures, or drop one here"))
         self._parts = (self._folder_part(), live_panel)
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.addLayout(modes)
+        column = in_column(modes, on=self)
         for part in self._parts:  # no stack of widgets: that is always as high as the highest of them
             column.addWidget(part)
         live_panel.hide()
@@ -61,7 +56,9 @@ class SourceChooser(QWidget):
         self.browse.clicked.connect(lambda: self.choose())
         self.recorded.setChecked(True)
         self.accept_drops_on(self)
-        self._dress()
+        self.recorded.setIcon(icon("mdi6.folder-image"))
+        self.live.setIcon(icon("mdi6.video-outline"))
+        self.browse.setIcon(icon("mdi6.folder-open-outline"))
         self.set_folder(None)
 
     @property
@@ -103,28 +100,14 @@ class SourceChooser(QWidget):
                 return True
         return super().eventFilter(watched, event)
 
-    def changeEvent(self, event: QEvent) -> None:
-        super().changeEvent(event)
-        if event.type() == QEvent.Type.PaletteChange:
-            self._dress()
-
     def _folder_part(self) -> QWidget:
         self.path.setWordWrap(True)
         self.path.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
         self.detail.setObjectName("muted")
         self.detail.setWordWrap(True)
         part = QWidget()
-        column = QVBoxLayout(part)
-        column.setContentsMargins(0, 4, 0, 0)
-        column.addWidget(self.path)
-        column.addWidget(self.detail)
-        column.addWidget(self.browse)
+        in_column(self.path, self.detail, self.browse, on=part, margins=(0, 4, 0, 0))
         return part
-
-    def _dress(self) -> None:
-        self.recorded.setIcon(icon("mdi6.folder-image"))
-        self.live.setIcon(icon("mdi6.video-outline"))
-        self.browse.setIcon(icon("mdi6.folder-open-outline"))
 
     def _toggled(self, place: int, on: bool) -> None:
         if on:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QEvent, QSize, Qt, Signal
+from PySide6.QtCore import QSize, Qt, Signal
 from PySide6.QtGui import QMouseEvent
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QSplitter, QToolButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QLabel, QSplitter, QToolButton, QWidget
 
 from workbench.theme import icon
+from workbench.views.layouts import STRETCH, in_column, in_row
 
 NARROWEST = 160
 """No view is made narrower than so many pixels."""
@@ -29,12 +30,7 @@ class PaneTitle(QWidget):
         self.button.setAutoRaise(True)
         self.button.setIconSize(QSize(16, 16))
         self.button.clicked.connect(self.wanted)
-        self._row = QHBoxLayout(self)
-        self._row.setContentsMargins(2, 0, 0, 0)
-        self._row.setSpacing(6)
-        self._row.addWidget(self.label)
-        self._row.addStretch(1)
-        self._row.addWidget(self.button)
+        self._row = in_row(self.label, STRETCH, self.button, on=self, margins=(2, 0, 0, 0), spacing=6)
         self.show_maximised(maximised=False)
 
     def add(self, widget: QWidget) -> None:
@@ -50,20 +46,11 @@ class PaneTitle(QWidget):
         )
         self.button.setToolTip(tip)
         self.button.setAccessibleName(f"{self.label.text()}: {tip}")
-        self.button.setProperty("symbol", "mdi6.arrow-collapse" if maximised else "mdi6.arrow-expand")
-        self._dress()
+        self.button.setIcon(icon("mdi6.arrow-collapse" if maximised else "mdi6.arrow-expand"))
 
     def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
         if event.button() == Qt.MouseButton.LeftButton:
             self.wanted.emit()
-
-    def changeEvent(self, event: QEvent) -> None:
-        super().changeEvent(event)
-        if event.type() == QEvent.Type.PaletteChange:
-            self._dress()
-
-    def _dress(self) -> None:
-        self.button.setIcon(icon(str(self.button.property("symbol"))))
 
 
 class SideBySide(QSplitter):
@@ -78,11 +65,7 @@ class SideBySide(QSplitter):
     def add_view(self, title: str, view: QWidget) -> PaneTitle:
         """Put a view at the right end."""
         head, pane = PaneTitle(title), QWidget()
-        column = QVBoxLayout(pane)
-        column.setContentsMargins(0 if not self._panes else GAP, 0, GAP, 0)
-        column.setSpacing(3)
-        column.addWidget(head)
-        column.addWidget(view, 1)
+        in_column(head, (view, 1), on=pane, margins=(0 if not self._panes else GAP, 0, GAP, 0), spacing=3)
         place = len(self._panes)
         self._panes.append((head, pane))
         self.addWidget(pane)

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QEvent, QSize, Qt, Signal
+from PySide6.QtCore import QSize, Qt, Signal
 from PySide6.QtGui import QFontDatabase
 from PySide6.QtWidgets import (
     QFrame,
     QGridLayout,
-    QHBoxLayout,
     QLabel,
     QMenu,
     QPushButton,
@@ -18,6 +17,7 @@ from PySide6.QtWidgets import (
 )
 
 from workbench.theme import icon
+from workbench.views.layouts import in_row
 
 _STEPS = 20
 """Slider steps for a factor of two."""
@@ -40,26 +40,16 @@ class ToolStrip(QFrame):
         self.layers = self._button("mdi6.layers-outline", self.tr("Show or hide what is drawn on the picture"))
         for button in (self.tone, self.layers):
             button.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
-        self._row = QHBoxLayout(self)
-        self._row.setContentsMargins(6, 1, 2, 1)
-        self._row.setSpacing(2)
-        self._row.addWidget(self.readout, 1)
-        self._row.addWidget(self.zoom)
+        self._row = in_row((self.readout, 1), self.zoom, on=self, margins=(6, 1, 2, 1), spacing=2)
         self._row.addSpacing(6)
         self._place_for_tools = self._row.count()
         for button in (self.fit, self.one, self.tone, self.layers):
             self._row.addWidget(button)
-        self._dress()
 
     def add_tool(self, widget: QWidget) -> None:
         """A widget before the buttons."""
         self._row.insertWidget(self._place_for_tools, widget)
         self._place_for_tools += 1
-
-    def changeEvent(self, event: QEvent) -> None:
-        super().changeEvent(event)
-        if event.type() == QEvent.Type.PaletteChange:
-            self._dress()
 
     def _button(self, symbol: str, tip: str) -> QToolButton:
         button = QToolButton()
@@ -67,12 +57,8 @@ class ToolStrip(QFrame):
         button.setIconSize(QSize(18, 18))
         button.setToolTip(tip)
         button.setAccessibleName(tip)
-        button.setProperty("symbol", symbol)
+        button.setIcon(icon(symbol))
         return button
-
-    def _dress(self) -> None:
-        for button in (self.fit, self.one, self.tone, self.layers):
-            button.setIcon(icon(str(button.property("symbol"))))
 
 
 class ToneMenu(QMenu):

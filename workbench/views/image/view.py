@@ -9,7 +9,7 @@ import pyqtgraph as pg
 from numpy.typing import ArrayLike
 from PySide6.QtCore import QEvent, QPoint, QPointF, QRectF, Qt, Signal
 from PySide6.QtGui import QContextMenuEvent, QCursor, QFocusEvent, QKeyEvent, QPaintEvent
-from PySide6.QtWidgets import QLabel, QMenu, QToolTip, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QLabel, QMenu, QToolTip, QWidget
 
 from workbench.language import number, tr
 from workbench.theme import is_dark
@@ -28,6 +28,7 @@ from workbench.views.image.overlays import (
 )
 from workbench.views.image.picture import ZOOM_STEP, PictureBox, PictureItem
 from workbench.views.image.tools import ToneMenu, ToolStrip
+from workbench.views.layouts import in_column
 
 GROUND = {True: "#12151A", False: "#DDE1E6"}
 """Round the picture, in the dark and in the light theme."""
@@ -79,11 +80,7 @@ class ImageView(QWidget):
         self._fitted = True
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setAccessibleName(self.tr("Picture"))
-        column = QVBoxLayout(self)
-        column.setContentsMargins(1, 1, 1, 1)
-        column.setSpacing(0)
-        column.addWidget(self._canvas, 1)
-        column.addWidget(self._strip)
+        in_column((self._canvas, 1), self._strip, on=self, margins=(1, 1, 1, 1), spacing=0)
         self._connect()
         self._dress()
         self.clear()

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from PySide6.QtCore import QEvent, QSize, Qt
+from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QFrame, QGridLayout, QLabel, QWidget
 
 from core.scan.preview.preflight import Check, Name, State
 from workbench.language import text_of
-from workbench.theme import icon
+from workbench.views.common import IconLabel
 
 _SIGNS: dict[State, tuple[str, str]] = {
     "ok": ("mdi6.check-circle-outline", "good"),
@@ -28,7 +28,7 @@ class ChecksCard(QFrame):
         super().__init__(parent)
         self.setObjectName("card")
         self._checks: tuple[Check, ...] = ()
-        self._rows: list[tuple[QLabel, QLabel, QLabel]] = []
+        self._rows: list[tuple[IconLabel, QLabel, QLabel]] = []
         title = QLabel(self.tr("Before the scan"))
         title.setObjectName("heading")
         self._grid = QGridLayout(self)
@@ -51,11 +51,6 @@ class ChecksCard(QFrame):
         """What is said of each check."""
         return tuple(said.text() for _, _, said in self._rows[: len(self._checks)])
 
-    def changeEvent(self, event: QEvent) -> None:
-        super().changeEvent(event)
-        if event.type() == QEvent.Type.PaletteChange:
-            self._show()
-
     def _show(self) -> None:
         titles = self._titles()
         states = {"ok": self.tr("in order"), "failed": self.tr("not in order"), "unknown": self.tr("not known")}
@@ -66,14 +61,14 @@ class ChecksCard(QFrame):
                 label.setVisible(place < len(self._checks))
         for check, (sign, name, said) in zip(self._checks, self._rows, strict=False):
             symbol, colour = _SIGNS[check.state]
-            sign.setPixmap(icon(symbol, colour=colour).pixmap(QSize(16, 16)))
+            sign.show_icon(symbol, colour)
             sign.setAccessibleName(states[check.state])
             sign.setToolTip(states[check.state])
             name.setText(titles[check.name])
             said.setText(text_of(check.message))
 
     def _add_row(self) -> None:
-        sign, name, said = QLabel(), QLabel(), QLabel()
+        sign, name, said = IconLabel(16), QLabel(), QLabel()
         said.setObjectName("muted")
         said.setWordWrap(True)
         place = len(self._rows) + 1

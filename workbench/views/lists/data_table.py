@@ -12,9 +12,10 @@ from PySide6.QtWidgets import (
     QMenu,
     QTableWidget,
     QTableWidgetItem,
-    QVBoxLayout,
     QWidget,
 )
+
+from workbench.views.layouts import in_column
 
 _NUMBER_SIGNS = set("0123456789.,+-−–±×e%° ")
 
@@ -61,9 +62,7 @@ class DataTable(QWidget):
         self.table.currentCellChanged.connect(self._moved)
         self.table.cellActivated.connect(lambda row, _: self.row_activated.emit(row))
         self.setFocusProxy(self.table)
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.addWidget(self.table)
+        in_column(self.table, on=self)
 
     def set_headers(self, headers: Sequence[tuple[str, str]]) -> None:
         """(title, unit) of each column; rows shown before are gone."""

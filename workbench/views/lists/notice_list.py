@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QEvent, QSize, Qt
+from PySide6.QtCore import QEvent, Qt
 from PySide6.QtGui import QGuiApplication
 from PySide6.QtWidgets import (
     QFrame,
-    QHBoxLayout,
     QLabel,
     QListWidget,
     QListWidgetItem,
@@ -14,12 +13,12 @@ from PySide6.QtWidgets import (
     QPushButton,
     QSplitter,
     QToolButton,
-    QVBoxLayout,
     QWidget,
 )
 
 from workbench.theme import icon
-from workbench.views.common import dress_edged
+from workbench.views.common import IconLabel, dress_edged
+from workbench.views.layouts import STRETCH, in_column, in_row
 
 SYMBOLS = {
     "info": ("mdi6.information-outline", "accent"),
@@ -45,18 +44,12 @@ class NoticeList(QWidget):
         clear = QPushButton(self.tr("Clear"))
         clear.setToolTip(self.tr("Empty this list; the log file keeps everything"))
         clear.clicked.connect(self._clear)
-        buttons = QVBoxLayout()
-        buttons.addWidget(copy)
-        buttons.addWidget(clear)
-        buttons.addStretch(1)
+        buttons = in_column(copy, clear, STRETCH)
         split = QSplitter(Qt.Orientation.Horizontal)
         split.addWidget(self._list)
         split.addWidget(self._details)
         split.setSizes([600, 300])
-        row = QHBoxLayout(self)
-        row.setContentsMargins(6, 4, 6, 4)
-        row.addWidget(split, 1)
-        row.addLayout(buttons)
+        in_row((split, 1), buttons, on=self, margins=(6, 4, 6, 4))
         self._list.currentItemChanged.connect(lambda item, _: self._show(item))
 
     def add(self, level: str, text: str, details: str, when: str) -> None:
@@ -91,7 +84,7 @@ class Banner(QFrame):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._level, self._text, self._more = "info", "", ""
-        self._symbol = QLabel()
+        self._symbol = IconLabel(18)
         self._label = QLabel()
         self._label.setWordWrap(True)
         self._label.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
@@ -102,12 +95,7 @@ class Banner(QFrame):
         close.setAutoRaise(True)
         close.setToolTip(self.tr("Close this message; it stays in the messages panel"))
         close.clicked.connect(self.hide)
-        row = QHBoxLayout(self)
-        row.setContentsMargins(10, 5, 6, 5)
-        row.addWidget(self._symbol)
-        row.addWidget(self._label, 1)
-        row.addWidget(self._copy)
-        row.addWidget(close)
+        in_row(self._symbol, (self._label, 1), self._copy, close, on=self, margins=(10, 5, 6, 5))
         self.hide()
 
     def show_notice(self, level: str, text: str, details: str) -> None:
@@ -130,4 +118,4 @@ class Banner(QFrame):
     def _dress(self) -> None:
         symbol, colour = SYMBOLS[self._level]
         dress_edged(self, colour)
-        self._symbol.setPixmap(icon(symbol, colour=colour).pixmap(QSize(18, 18)))
+        self._symbol.show_icon(symbol, colour)

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from PySide6.QtWidgets import QDialog, QDialogButtonBox, QGridLayout, QLabel, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QDialog, QDialogButtonBox, QGridLayout, QLabel, QWidget
+
+from workbench.views.layouts import in_column
 
 
 class ShortcutList(QDialog):
@@ -24,7 +26,4 @@ class ShortcutList(QDialog):
             grid.addWidget(QLabel(meaning), row, column + 1)
         buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close)
         buttons.rejected.connect(self.reject)
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(18, 16, 18, 12)
-        layout.addLayout(grid)
-        layout.addWidget(buttons)
+        in_column(grid, buttons, on=self, margins=(18, 16, 18, 12))

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 
-from PySide6.QtCore import QEvent, QSize, Qt, Signal
-from PySide6.QtWidgets import QButtonGroup, QFrame, QHBoxLayout, QLabel, QToolButton, QVBoxLayout, QWidget
+from PySide6.QtCore import QSize, Qt, Signal
+from PySide6.QtWidgets import QButtonGroup, QFrame, QLabel, QToolButton, QWidget
 
 from workbench.theme import icon
+from workbench.views.common import IconLabel
+from workbench.views.layouts import in_column, in_row
 
 BADGES = {
     "todo": ("mdi6.circle-outline", "line"),
@@ -26,18 +28,16 @@ class StepRail(QFrame):
     def __init__(self, steps: Sequence[tuple[str, str, str]], parent: QWidget | None = None) -> None:
         """`steps`: name, title and icon of each."""
         super().__init__(parent)
-        self._icons = {name: symbol for name, _, symbol in steps}
-        self._states: dict[str, str] = dict.fromkeys(self._icons, "todo")
+        self._states: dict[str, str] = dict.fromkeys((name for name, _, _ in steps), "todo")
         self._buttons: dict[str, QToolButton] = {}
-        self._badges: dict[str, QLabel] = {}
+        self._badges: dict[str, IconLabel] = {}
         self._words: dict[str, QLabel] = {}
         group = QButtonGroup(self)
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(6, 10, 6, 10)
-        layout.setSpacing(4)
-        for number, (name, title, _) in enumerate(steps, start=1):
+        layout = in_column(on=self, margins=(6, 10, 6, 10), spacing=4)
+        for number, (name, title, symbol) in enumerate(steps, start=1):
             button = QToolButton()
             button.setText(f"{number}  {title}")
+            button.setIcon(icon(symbol))
             button.setCheckable(True)
             button.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
             button.setIconSize(QSize(20, 20))
@@ -46,16 +46,13 @@ class StepRail(QFrame):
             button.setMinimumWidth(150)
             button.setMinimumHeight(36)
             group.addButton(button)
-            badge, words = QLabel(), QLabel()
+            badge, words = IconLabel(16), QLabel()
             words.setObjectName("help")
-            row = QHBoxLayout()
-            row.setSpacing(4)
-            row.addWidget(button, 1)
-            row.addWidget(badge)
+            row = in_row((button, 1), badge, spacing=4)
             layout.addLayout(row)
             self._buttons[name], self._badges[name], self._words[name] = button, badge, words
         layout.addStretch(1)
-        self._dress()
+        self._show_badges(self._badges)
 
     def set_current(self, name: str) -> None:
         """Mark the step whose page is shown."""
@@ -75,17 +72,7 @@ class StepRail(QFrame):
         """The state shown for a step."""
         return self._states[name]
 
-    def changeEvent(self, event: QEvent) -> None:
-        super().changeEvent(event)
-        if event.type() == QEvent.Type.PaletteChange and self._buttons:
-            self._dress()
-
-    def _dress(self) -> None:
-        for name, button in self._buttons.items():
-            button.setIcon(icon(self._icons[name]))
-        self._show_badges(self._badges)
-
     def _show_badges(self, names: Iterable[str]) -> None:
         for name in names:
             symbol, colour = BADGES[self._states[name]]
-            self._badges[name].setPixmap(icon(symbol, colour=colour).pixmap(QSize(16, 16)))
+            self._badges[name].show_icon(symbol, colour)

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Literal
 
-from PySide6.QtCore import QEvent, QSize, Qt
-from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QLabel, QVBoxLayout, QWidget
+from PySide6.QtCore import QEvent, Qt
+from PySide6.QtWidgets import QFrame, QGridLayout, QLabel, QWidget
 
-from workbench.theme import icon, shades
+from workbench.theme import shades
 from workbench.views.colours import Level
-from workbench.views.common import dress, dress_edged
+from workbench.views.common import IconLabel, dress, dress_edged
+from workbench.views.layouts import in_column, in_row, say
 
 LEVEL_ICONS: dict[Level, tuple[str, str]] = {
     "good": ("mdi6.check-circle-outline", "good"),
@@ -38,7 +39,7 @@ class ValueRows(QWidget):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._rows: tuple[ValueRow, ...] = ()
-        self._labels: list[tuple[QLabel, QLabel, QLabel]] = []
+        self._labels: list[tuple[QLabel, QLabel, IconLabel]] = []
         self._grid = QGridLayout(self)
         self._grid.setContentsMargins(0, 0, 0, 0)
         self._grid.setHorizontalSpacing(8)
@@ -65,12 +66,11 @@ class ValueRows(QWidget):
             self._show()
 
     def _add_row(self) -> None:
-        name, value, sign = QLabel(), QLabel(), QLabel()
+        name, value, sign = QLabel(), QLabel(), IconLabel(15)
         name.setObjectName("muted")
         name.setWordWrap(True)
         value.setAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
         value.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
-        sign.setFixedWidth(16)
         place = len(self._labels)
         for column, label in enumerate((name, value, sign)):
             self._grid.addWidget(label, place, column)
@@ -94,10 +94,10 @@ class ValueRows(QWidget):
             value.setAccessibleDescription(said)
             if level:
                 symbol, colour = LEVEL_ICONS[level]
-                sign.setPixmap(icon(symbol, colour=colour).pixmap(QSize(15, 15)))
+                sign.show_icon(symbol, colour)
                 dress(value, f"color: {getattr(shades(), colour)}; font-weight: 600;")
             else:
-                sign.clear()
+                sign.show_icon("")
                 dress(value, "")
 
 
@@ -107,16 +107,11 @@ class Verdict(QFrame):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._kind: VerdictKind = ""
-        self._sign, self._word, self._detail = QLabel(), QLabel(), QLabel()
+        self._sign, self._word, self._detail = IconLabel(28), QLabel(), QLabel()
         self._detail.setWordWrap(True)
         self._detail.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
-        words = QVBoxLayout()
-        words.setSpacing(1)
-        words.addWidget(self._word)
-        words.addWidget(self._detail)
-        row = QHBoxLayout(self)
-        row.setContentsMargins(12, 8, 12, 8)
-        row.setSpacing(10)
+        words = in_column(self._word, self._detail, spacing=1)
+        row = in_row(on=self, margins=(12, 8, 12, 8), spacing=10)
         row.addWidget(self._sign, 0, Qt.AlignmentFlag.AlignTop)
         row.addLayout(words, 1)
         self.set_verdict("")
@@ -124,8 +119,7 @@ class Verdict(QFrame):
     def set_verdict(self, kind: VerdictKind, detail: str = "") -> None:
         """Show a verdict; "" is none: no tolerance, or nothing measured yet."""
         self._kind = kind
-        self._detail.setText(detail)
-        self._detail.setVisible(bool(detail))
+        say(self._detail, detail)
         self._show()
 
     @property
@@ -146,7 +140,7 @@ class Verdict(QFrame):
             "not conforming": self.tr("Not conforming"),
             "not proven": self.tr("Not proven"),
         }
-        self._sign.setPixmap(icon(symbol, colour=colour).pixmap(QSize(28, 28)))
+        self._sign.show_icon(symbol, colour)
         self._word.setText(words[self._kind])
         dress(self._word, f"color: {getattr(shades(), colour)}; font-size: 16px; font-weight: 600;")
         self.setAccessibleName(words[self._kind])

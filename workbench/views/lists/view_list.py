@@ -29,11 +29,11 @@ from PySide6.QtWidgets import (
     QStyledItemDelegate,
     QStyleOptionViewItem,
     QTableView,
-    QVBoxLayout,
     QWidget,
 )
 
 from workbench.theme import shades
+from workbench.views.layouts import in_column
 
 _Index = QModelIndex | QPersistentModelIndex
 
@@ -362,9 +362,7 @@ class ViewList(QWidget):
         self._set_up_table()
         self.set_headers(self.tr("View"), self.tr("Error"))
         self.setFocusProxy(self.table)
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.addWidget(self.table)
+        in_column(self.table, on=self)
 
     def set_headers(self, what: str, value: str) -> None:
         """Name both columns: what is listed, and the value with its unit."""

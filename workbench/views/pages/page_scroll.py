@@ -14,12 +14,13 @@ from PySide6.QtGui import (
     QShowEvent,
     QWheelEvent,
 )
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QScrollArea, QStackedLayout, QToolButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QLabel, QScrollArea, QStackedLayout, QToolButton, QVBoxLayout, QWidget
 
 from workbench.language import tr
 from workbench.theme import icon, shades
 from workbench.views.common import dress
 from workbench.views.empty_state import EmptyState
+from workbench.views.layouts import STRETCH, in_column, in_row, say
 from workbench.views.pages.page_sheet import PageSheet
 
 WIDEST_PX, NARROWEST_PX = 1000, 300
@@ -54,11 +55,7 @@ class PageScroll(QWidget):
         self.smaller, self.fit, self.larger = QToolButton(), QToolButton(), QToolButton()
         self._tools = self._strip()
         shown = QWidget()
-        column = QVBoxLayout(shown)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.setSpacing(0)
-        column.addWidget(self._scroll, 1)
-        column.addWidget(self._tools)
+        in_column((self._scroll, 1), self._tools, on=shown, spacing=0)
         self._stack = QStackedLayout(self)
         self._stack.addWidget(self._empty)
         self._stack.addWidget(shown)
@@ -93,8 +90,7 @@ class PageScroll(QWidget):
     def set_note(self, text: str) -> None:
         """Say over the pages why they are not what they should be, and dim them; "" when they are."""
         if text != self._note.text() or bool(text) == self._note.isHidden():
-            self._note.setText(text)
-            self._note.setVisible(bool(text))
+            say(self._note, text)
             self._place_note()
             for sheet in self.sheets:
                 sheet.set_dim(bool(text))
@@ -182,16 +178,13 @@ class PageScroll(QWidget):
 
     def _strip(self) -> QWidget:
         strip = QWidget()
-        row = QHBoxLayout(strip)
-        row.setContentsMargins(6, 3, 2, 1)
-        row.setSpacing(2)
-        row.addWidget(self._place)
-        row.addStretch(1)
-        for button, factor, tip in (
-            (self.smaller, 1 / ZOOM_STEP, self.tr("Smaller (−)")),
-            (self.fit, 0.0, self.tr("As wide as there is room (0)")),
-            (self.larger, ZOOM_STEP, self.tr("Larger (+)")),
+        row = in_row(self._place, STRETCH, on=strip, margins=(6, 3, 2, 1), spacing=2)
+        for button, factor, symbol, tip in (
+            (self.smaller, 1 / ZOOM_STEP, "mdi6.magnify-minus-outline", self.tr("Smaller (−)")),
+            (self.fit, 0.0, "mdi6.fit-to-page-outline", self.tr("As wide as there is room (0)")),
+            (self.larger, ZOOM_STEP, "mdi6.magnify-plus-outline", self.tr("Larger (+)")),
         ):
+            button.setIcon(icon(symbol))
             button.setAutoRaise(True)
             button.setToolTip(tip)
             button.setAccessibleName(tip)
@@ -200,12 +193,6 @@ class PageScroll(QWidget):
         return strip
 
     def _dress(self) -> None:
-        for button, symbol in (
-            (self.smaller, "mdi6.magnify-minus-outline"),
-            (self.fit, "mdi6.fit-to-page-outline"),
-            (self.larger, "mdi6.magnify-plus-outline"),
-        ):
-            button.setIcon(icon(symbol))
         s = shades()
         dress(
             self._note,

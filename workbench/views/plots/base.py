@@ -7,11 +7,12 @@ from typing import Any
 import pyqtgraph as pg
 from PySide6.QtCore import QEvent, QPointF, Qt
 from PySide6.QtGui import QColor, QContextMenuEvent, QCursor, QFont, QGuiApplication, QPen, QResizeEvent, QWheelEvent
-from PySide6.QtWidgets import QMenu, QToolTip, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QMenu, QToolTip, QWidget
 
 from workbench.theme import shades
 from workbench.views.common import copy_picture, save_picture
 from workbench.views.empty_state import EmptyState
+from workbench.views.layouts import in_column
 
 _TICK_PIXELS = 11
 
@@ -47,10 +48,7 @@ class Plot(QWidget):
         self._box: Any = self._item.getViewBox()
         self._item.setContentsMargins(4, 6, 10, 2)
         self._empty = EmptyState(self._canvas)
-        self._column = QVBoxLayout(self)
-        self._column.setContentsMargins(0, 0, 0, 0)
-        self._column.setSpacing(2)
-        self._column.addWidget(self._canvas, 1)
+        self._column = in_column((self._canvas, 1), on=self, spacing=2)
         self._labels: dict[str, str] = {}
         self._canvas.scene().sigMouseMoved.connect(self._moved)
         self._canvas.sigDeviceRangeChanged.connect(self._resized)

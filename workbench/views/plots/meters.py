@@ -9,11 +9,12 @@ from itertools import pairwise
 
 from PySide6.QtCore import QEvent, QPointF, QRectF, QSize, Qt, QTimer
 from PySide6.QtGui import QColor, QHideEvent, QPainter, QPaintEvent, QPolygonF
-from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QSizePolicy, QWidget
+from PySide6.QtWidgets import QFrame, QLabel, QSizePolicy, QWidget
 
-from workbench.theme import icon, shades
+from workbench.theme import shades
 from workbench.views.colours import Level
-from workbench.views.common import dress
+from workbench.views.common import IconLabel, dress
+from workbench.views.layouts import in_row
 from workbench.views.plots.base import tinted
 
 STAYS_MS = 1000
@@ -136,12 +137,10 @@ class HintBar(QFrame):
         self._shown: tuple[str, ...] = ()
         self._wanted: tuple[str, ...] = ()
         self._since = -math.inf
-        self._sign, self._label = QLabel(), QLabel()
+        self._sign, self._label = IconLabel(18), QLabel()
         self._label.setWordWrap(True)
         self._label.setAccessibleName(self.tr("Hint"))
-        row = QHBoxLayout(self)
-        row.setContentsMargins(10, 6, 10, 6)
-        row.setSpacing(8)
+        row = in_row(on=self, margins=(10, 6, 10, 6), spacing=8)
         row.addWidget(self._sign, 0, Qt.AlignmentFlag.AlignTop)
         row.addWidget(self._label, 1)
         self._clock = QTimer(self)
@@ -187,5 +186,5 @@ class HintBar(QFrame):
         dress(self._label, "" if self._shown else f"color: {s.muted};")
         colour = "accent" if self._shown else "muted"
         symbol = "mdi6.lightbulb-on-outline" if self._shown else "mdi6.lightbulb-outline"
-        self._sign.setPixmap(icon(symbol, colour=colour).pixmap(QSize(18, 18)))
+        self._sign.show_icon(symbol, colour)
         dress(self, f"HintBar {{ background: {s.panel}; border: 1px solid {s.line}; border-radius: 5px; }}")

@@ -6,10 +6,11 @@ import numpy as np
 import pyqtgraph as pg
 from numpy.typing import ArrayLike, NDArray
 from PySide6.QtCore import QRectF, QSignalBlocker
-from PySide6.QtWidgets import QComboBox, QGraphicsEllipseItem, QGraphicsRectItem, QHBoxLayout, QLabel, QWidget
+from PySide6.QtWidgets import QComboBox, QGraphicsEllipseItem, QGraphicsRectItem, QLabel, QWidget
 
 from workbench.language import tr
 from workbench.theme import shades
+from workbench.views.layouts import in_row
 from workbench.views.plots.base import Plot, written
 from workbench.views.scene.colours import nice_step
 
@@ -39,10 +40,7 @@ class ResidualPlot(Plot):
         self.factor.setToolTip(self.tr("How much the residuals are enlarged"))
         self._enlarged = QLabel()
         self._enlarged.setObjectName("muted")
-        row = QHBoxLayout()
-        row.addWidget(self.kind)
-        row.addWidget(self.factor)
-        row.addWidget(self._enlarged, 1)
+        row = in_row(self.kind, self.factor, (self._enlarged, 1))
         self._column.insertLayout(0, row)
         self.kind.currentIndexChanged.connect(self._redraw)
         self.factor.currentIndexChanged.connect(self._redraw)

@@ -15,12 +15,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from PySide6.QtCore import QBuffer, QEvent, QIODevice, QPointF, Signal
 from PySide6.QtGui import QCloseEvent, QColor, QImage, QPainter
-from PySide6.QtWidgets import QFileDialog, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QFileDialog, QWidget
 
 from core.errors import InputError
 from core.files import atomic
 from core.model.arrays import Array
 from workbench.language import text_of
+from workbench.views.layouts import in_column
 from workbench.views.scene.buttons import SceneButtons, ViewName
 from workbench.views.scene.camera import SceneCamera
 from workbench.views.scene.canvas import Canvas, as_image, as_pixels
@@ -115,11 +116,7 @@ class SceneView(QWidget):
         self._drawing = Drawing(self._scene, lambda: self._navigator.camera, self._canvas)
         self._buttons = SceneButtons(self)
         self._buttons.setVisible(tools)
-        rows = QVBoxLayout(self)
-        rows.setContentsMargins(0, 0, 0, 0)
-        rows.setSpacing(0)
-        rows.addWidget(self._buttons)
-        rows.addWidget(self._canvas, 1)
+        in_column(self._buttons, (self._canvas, 1), on=self, spacing=0)
         self._buttons.view_asked.connect(self.view)
         self._buttons.fit_asked.connect(self.fit)
         self._buttons.parallel_asked.connect(self._navigator.set_parallel)

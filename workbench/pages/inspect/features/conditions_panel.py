@@ -12,12 +12,12 @@ from core.inspect.plan.inspection_plan import InspectionPlan
 from workbench.language import tr
 from workbench.pages.inspect.features import conditions as fields
 from workbench.pages.inspect.features.conditions import InspectConditions
-from workbench.pages.step_page import muted
 from workbench.refresh import Refresh
 from workbench.theme import icon, shades
 from workbench.views import ask
 from workbench.views.common import dress
 from workbench.views.forms.form import SettingsForm
+from workbench.views.layouts import in_column, muted, say
 
 LONGEST = 5000.0
 
@@ -65,8 +65,7 @@ class ConditionsPanel(QWidget):
         for form in self.forms.values():
             form.set_values(values)
         for group, label in self.complaints.items():
-            label.setText(conditions.complaint(group))
-            label.setVisible(bool(label.text()))
+            say(label, conditions.complaint(group))
 
     def showEvent(self, event: QShowEvent) -> None:
         super().showEvent(event)
@@ -79,14 +78,12 @@ class ConditionsPanel(QWidget):
         self._inside.hide()
         self._inside.deleteLater()  # its editors may be telling of the very edit that ends them
         self._inside, self.forms, self.complaints = QWidget(), {}, {}
-        column = QVBoxLayout(self._inside)
-        column.setContentsMargins(0, 4, 0, 0)
-        column.setSpacing(4)
+        column = in_column(on=self._inside, margins=(0, 4, 0, 0), spacing=4)
         for group, add in (("frame", self._add_frame), ("temperature", self._add_temperature)):
             self._add_group(column, group, add, plan)
         self._add_group(column, "master", self._add_master, plan)
         if self._conditions.master_is_on:
-            self.take = QPushButton(self.tr("Take from its results"))
+            self.take = QPushButton(icon("mdi6.folder-open-outline"), self.tr("Take from its results"))
             self.take.setToolTip(self.tr("The project, or folder of results, in which the master was measured"))
             self.take.clicked.connect(self._take)
             column.addWidget(self.take)
@@ -178,6 +175,5 @@ class ConditionsPanel(QWidget):
             self._conditions.take_master(folder)
 
     def _dress(self) -> None:
-        self.take.setIcon(icon("mdi6.folder-open-outline"))
         for label in self.complaints.values():
             dress(label, f"font-size: 11px; color: {shades().bad};")

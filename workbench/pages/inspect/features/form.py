@@ -17,10 +17,10 @@ from workbench.pages.inspect.feature_settings import add_cuts, add_fields, add_f
 from workbench.pages.inspect.features.edit import InspectFeatureEdit
 from workbench.pages.inspect.features.plan import InspectFeatures
 from workbench.pages.inspect.scan import InspectScan
-from workbench.pages.step_page import heading
 from workbench.theme import icon
 from workbench.views import ask
 from workbench.views.forms.form import SettingsForm
+from workbench.views.layouts import heading, in_column
 
 
 class FeatureForm(QWidget):
@@ -39,9 +39,7 @@ class FeatureForm(QWidget):
         self.where, self.what = SettingsForm(), SettingsForm()
         self.tools: dict[tuple[int, str], QToolButton] = {}
         self.buttons: dict[str, QPushButton] = {}
-        self._column = QVBoxLayout(self)
-        self._column.setContentsMargins(0, 0, 0, 0)
-        self._column.addWidget(self._inside)
+        self._column = in_column(self._inside, on=self)
 
     def refresh(self) -> None:
         """Show what the presenter says now."""
@@ -59,7 +57,6 @@ class FeatureForm(QWidget):
             for key in form.values():
                 form.set_complaint(key, self._edit.complaint(key))
         self._show_tools()
-        self._dress()
 
     # ---- making it
 
@@ -69,10 +66,7 @@ class FeatureForm(QWidget):
         self._inside.deleteLater()  # its editors may be telling of the very edit that ends them
         self._inside, self.where, self.what = QWidget(), SettingsForm(), SettingsForm()
         self.tools, self.buttons = {}, {}
-        column = QVBoxLayout(self._inside)
-        column.setContentsMargins(0, 6, 0, 0)
-        column.setSpacing(4)
-        column.addWidget(heading(tr(kind_of(spec).title)))
+        column = in_column(heading(tr(kind_of(spec).title)), on=self._inside, margins=(0, 6, 0, 0), spacing=4)
         self._add_where(spec, plan)
         column.addWidget(self.where)
         if fields.own_regions(spec):
@@ -83,7 +77,6 @@ class FeatureForm(QWidget):
         self._column.addWidget(self._inside)
         self.where.edited.connect(self._edited)
         self.what.edited.connect(self._edited)
-        self._dress()
 
     def _add_where(self, spec: FeatureSpec, plan: InspectionPlan) -> None:
         form = self.where
@@ -138,6 +131,7 @@ class FeatureForm(QWidget):
             for column, kind in enumerate(("polygon", "lasso"), start=1):
                 button = QToolButton()
                 button.setAutoRaise(True)
+                button.setIcon(icon("mdi6.vector-polygon" if kind == "polygon" else "mdi6.lasso"))
                 button.setIconSize(QSize(20, 20))
                 button.setAccessibleName(f"{title}, {kind}")
                 button.clicked.connect(lambda _=False, place=place, kind=kind: self._draw(place, kind))
@@ -157,17 +151,18 @@ class FeatureForm(QWidget):
             add_filters(form)
 
     def _add_buttons(self, spec: FeatureSpec, column: QVBoxLayout) -> None:
-        wanted: list[tuple[str, str, Any]] = []
+        wanted: list[tuple[str, str, str, Any]] = []
         if spec.deviation is not None:
-            wanted.append(("nominal", self.tr("Choose another nominal surface"), self._choose_nominal))
+            title = self.tr("Choose another nominal surface")
+            wanted.append(("nominal", "mdi6.folder-open-outline", title, self._choose_nominal))
         if spec.section is not None:
-            wanted.append(("cut", self.tr("Add measurement"), self._edit.add_cut))
+            wanted.append(("cut", "mdi6.plus", self.tr("Add measurement"), self._edit.add_cut))
             if spec.section.cuts:
                 last = len(spec.section.cuts) - 1
-                wanted.append(("uncut", self.tr("Remove the last"), lambda: self._edit.remove_cut(last)))
+                wanted.append(("uncut", "mdi6.minus", self.tr("Remove the last"), lambda: self._edit.remove_cut(last)))
         row = QHBoxLayout()
-        for name, text, does in wanted:
-            button = QPushButton(text)
+        for name, symbol, text, does in wanted:
+            button = QPushButton(icon(symbol), text)
             button.clicked.connect(lambda _=False, does=does: does())
             self.buttons[name] = button
             row.addWidget(button, 1)
@@ -206,13 +201,6 @@ class FeatureForm(QWidget):
             button.setEnabled(not why_not)
             more = tr("In the picture, or in 3D: what is drawn round there is outlined in the picture.")
             button.setToolTip(why_not or f"{first} {more}")
-
-    def _dress(self) -> None:
-        for (_, kind), button in self.tools.items():
-            button.setIcon(icon("mdi6.vector-polygon" if kind == "polygon" else "mdi6.lasso"))
-        for name, symbol in (("nominal", "mdi6.folder-open-outline"), ("cut", "mdi6.plus"), ("uncut", "mdi6.minus")):
-            if name in self.buttons:
-                self.buttons[name].setIcon(icon(symbol))
 
 
 def _fields_of(spec: FeatureSpec, plan: InspectionPlan) -> object:

@@ -16,7 +16,6 @@ from PySide6.QtWidgets import (
     QToolButton,
     QTreeWidget,
     QTreeWidgetItem,
-    QVBoxLayout,
     QWidget,
 )
 
@@ -31,9 +30,9 @@ from workbench.pages.inspect.features.form import FeatureForm
 from workbench.pages.inspect.features.plan import InspectFeatures
 from workbench.pages.inspect.features.templates import InspectTemplates
 from workbench.pages.inspect.scan import InspectScan
-from workbench.pages.step_page import muted
-from workbench.theme import icon, is_dark
+from workbench.theme import icon
 from workbench.views import ask
+from workbench.views.layouts import enable, in_column, in_row, muted, say
 from workbench.views.lists.value_rows import VERDICT_ICONS
 
 if TYPE_CHECKING:
@@ -67,28 +66,21 @@ class FeaturesPanel(QWidget):
         self.kinds: dict[str, QAction] = {}
         self._make_list()
         self._make_menu()
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.setSpacing(4)
-        column.addWidget(self.list)
+        column = in_column(self.list, on=self, spacing=4)
         row = QHBoxLayout()
         row.addWidget(self.add, 1)
         for button in (self.remove, self.up, self.down):
             button.setAutoRaise(True)
             row.addWidget(button)
         column.addLayout(row)
-        row = QHBoxLayout()
-        row.addWidget(self.templates, 1)
-        row.addWidget(self.measure, 1)
+        row = in_row((self.templates, 1), (self.measure, 1))
         column.addLayout(row)
         column.addWidget(self.state)
         column.addWidget(self.form)
         self.form.draw.connect(self.draw)
-        self._dress()
 
     def refresh(self) -> None:
         """Show what the presenter says now."""
-        self._dress()
         features = self._features
         some = bool(features.plan.features)
         for widget in (self.list, self.remove, self.up, self.down, self.measure):
@@ -96,8 +88,7 @@ class FeaturesPanel(QWidget):
         self._show_list()
         self._show_buttons()
         self.templates.refresh()
-        self.state.setText(self._sentence())
-        self.state.setVisible(bool(self.state.text()))
+        say(self.state, self._sentence())
         self.form.refresh()
 
     # ---- the list
@@ -126,7 +117,7 @@ class FeaturesPanel(QWidget):
     def _show_list(self) -> None:
         """All items anew where anything in them has changed; the one chosen stays chosen."""
         features = self._features
-        shown = (features.plan, features.shown, features.measuring, is_dark())
+        shown = (features.plan, features.shown, features.measuring)
         if shown != self._shown:
             self._shown = shown
             self.list.blockSignals(True)
@@ -202,7 +193,16 @@ class FeaturesPanel(QWidget):
         for kind in kinds.KINDS:
             action = menu.addAction(words.title(kind))
             action.triggered.connect(lambda _=False, kind=kind: self._add(kind))
+            action.setIcon(icon(kind.icon))
             self.kinds[kind.name] = action
+        for button, symbol in (
+            (self.add, "mdi6.plus"),
+            (self.measure, "mdi6.ruler-square"),
+            (self.remove, "mdi6.delete-outline"),
+            (self.up, "mdi6.arrow-up"),
+            (self.down, "mdi6.arrow-down"),
+        ):
+            button.setIcon(icon(symbol))
         self.add.setText(self.tr("Add feature"))
         self.add.setMenu(menu)
         self.measure.setText(self.tr("Measure all"))
@@ -215,12 +215,10 @@ class FeaturesPanel(QWidget):
         features, plan = self._features, self._features.plan
         for name, action in self.kinds.items():
             why_not = fields.why_not(name, plan)
-            action.setEnabled(not why_not)
-            action.setToolTip(why_not or tr(kind_named(name).help))
+            enable(action, why_not, tr(kind_named(name).help))
         self.add.setToolTip(self.tr("Measure something beside the thickness"))
         why_not = features.cannot_measure
-        self.measure.setEnabled(not why_not)
-        self.measure.setToolTip(why_not or self.tr("Measure all features on this scan"))
+        enable(self.measure, why_not, self.tr("Measure all features on this scan"))
         place = plan.names.index(features.chosen) if features.chosen in plan.names else -1
         choose = self.tr("Choose a feature first.")
         for button, why_not, tip in (
@@ -230,8 +228,7 @@ class FeaturesPanel(QWidget):
             (self.down, choose if place < 0 else self.tr("It is the last.") if place == len(plan.names) - 1 else "",
              self.tr("Move the chosen feature down (Alt+Down)")),
         ):  # fmt: skip
-            button.setEnabled(not why_not)
-            button.setToolTip(why_not or tip)
+            enable(button, why_not, tip)
             button.setAccessibleName(tip)
 
     def _sentence(self) -> str:
@@ -261,18 +258,6 @@ class FeaturesPanel(QWidget):
         if self._features.chosen:
             self._features.remove(self._features.chosen)
 
-    def _dress(self) -> None:
-        for button, symbol in (
-            (self.add, "mdi6.plus"),
-            (self.measure, "mdi6.ruler-square"),
-            (self.remove, "mdi6.delete-outline"),
-            (self.up, "mdi6.arrow-up"),
-            (self.down, "mdi6.arrow-down"),
-        ):
-            button.setIcon(icon(symbol))
-        for name, action in self.kinds.items():
-            action.setIcon(icon(kind_named(name).icon))
-
 
 class TemplatesButton(QPushButton):
     """A menu: save the plan as a template, take one from a file, or one of those used last."""
@@ -282,25 +267,23 @@ class TemplatesButton(QPushButton):
         self._templates = templates
         self._paths: list[Path] | None = None
         self.setText(self.tr("Templates"))
+        self.setIcon(icon("mdi6.playlist-plus"))
         self.setToolTip(self.tr("Keep these features for the next part, or take those of another"))
         menu = QMenu(self)
         menu.setToolTipsVisible(True)
-        self.save = menu.addAction(self.tr("Save as template …"))
-        self.open = menu.addAction(self.tr("Take from file …"))
+        self.save = menu.addAction(icon("mdi6.content-save-outline"), self.tr("Save as template …"))
+        self.open = menu.addAction(icon("mdi6.folder-open-outline"), self.tr("Take from file …"))
         self.open.setToolTip(self.tr("Measure the features of a plan.toml from now on, instead of these"))
         self._line = menu.addSeparator()
         self.recent: list[QAction] = []
         self.save.triggered.connect(lambda: self._save())
         self.open.triggered.connect(lambda: self._open())
         self.setMenu(menu)
-        self._dress()
 
     def refresh(self) -> None:
         """Show what the presenter says now."""
-        self._dress()
         why_not, paths = self._templates.cannot_save, self._templates.recent
-        self.save.setEnabled(not why_not)
-        self.save.setToolTip(why_not or self.tr("Write these features, their regions and limits to a file"))
+        enable(self.save, why_not, self.tr("Write these features, their regions and limits to a file"))
         if paths == self._paths:
             return
         self._paths = paths
@@ -329,8 +312,3 @@ class TemplatesButton(QPushButton):
         )
         if path is not None:
             self._templates.take(path)
-
-    def _dress(self) -> None:
-        self.setIcon(icon("mdi6.playlist-plus"))
-        self.save.setIcon(icon("mdi6.content-save-outline"))
-        self.open.setIcon(icon("mdi6.folder-open-outline"))

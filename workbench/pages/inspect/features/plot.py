@@ -6,15 +6,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QWidget
 
 from core.inspect.plan.kinds import kind_of
 from workbench.language import text_of, tr
 from workbench.pages.inspect import feature_words as words
 from workbench.pages.inspect.features.edit import InspectFeatureEdit
 from workbench.pages.inspect.features.plan import InspectFeatures
-from workbench.pages.step_page import muted
 from workbench.views.colours import FEATURE
+from workbench.views.layouts import in_column, in_row, muted
 from workbench.views.lists.value_rows import ValueRows
 from workbench.views.plots.lines import LineChart
 
@@ -30,12 +30,8 @@ class PlotTab(QWidget):
         self._features, self._edit = features, edit
         self._shown: object = None
         self.chart, self.rows, self.words = LineChart(), ValueRows(), muted()
-        column = QVBoxLayout(self)
-        column.setContentsMargins(6, 6, 6, 4)
-        column.addWidget(self.words)
-        row = QHBoxLayout()
-        row.setSpacing(14)
-        row.addWidget(self.chart, 1)
+        column = in_column(self.words, on=self, margins=(6, 6, 6, 4))
+        row = in_row((self.chart, 1), spacing=14)
         row.addWidget(self.rows, 0, Qt.AlignmentFlag.AlignTop)
         self.rows.setMinimumWidth(320)
         column.addLayout(row, 1)

@@ -10,8 +10,8 @@ from core.files.project.data import Repeat
 from workbench.language import text_of, tr
 from workbench.pages.inspect import words
 from workbench.pages.inspect.repeats.repeats import InspectRepeats
-from workbench.pages.step_page import muted
 from workbench.theme import icon
+from workbench.views.layouts import enable, in_column, in_row, muted, say
 from workbench.views.lists.data_table import DataTable
 from workbench.views.lists.value_rows import ValueRows
 from workbench.views.plots.runs import Histogram, RunChart
@@ -35,10 +35,9 @@ class RepeatsTab(QWidget):
                 (self.tr("Scanned"), ""),
             ]
         )
-        self.add, self.remove, self.copy = QPushButton(), QPushButton(), QPushButton()
-        self.add.setText(self.tr("Add this scan"))
-        self.remove.setText(self.tr("Remove"))
-        self.copy.setText(self.tr("Copy all"))
+        self.add = QPushButton(icon("mdi6.playlist-plus"), self.tr("Add this scan"))
+        self.remove = QPushButton(icon("mdi6.playlist-remove"), self.tr("Remove"))
+        self.copy = QPushButton(icon("mdi6.content-copy"), self.tr("Copy all"))
         self.add.clicked.connect(lambda: repeats.add())
         self.remove.clicked.connect(lambda: repeats.remove([self.table.current_row()]))
         self.copy.clicked.connect(self._copy)
@@ -48,15 +47,9 @@ class RepeatsTab(QWidget):
             buttons.addWidget(button)
         buttons.addStretch(1)
         above = QWidget()
-        column = QVBoxLayout(above)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.addWidget(self.words)
-        column.addWidget(self.table, 1)
-        column.addLayout(buttons)
+        in_column(self.words, (self.table, 1), buttons, on=above)
         below = QWidget()
-        row = QHBoxLayout(below)
-        row.setContentsMargins(0, 6, 0, 0)
-        row.setSpacing(14)
+        row = in_row(on=below, margins=(0, 6, 0, 0), spacing=14)
         self.charts = QTabWidget()
         self.charts.addTab(self.chart, self.tr("In their order"))
         self.charts.addTab(self.histogram, self.tr("Histogram"))
@@ -72,20 +65,15 @@ class RepeatsTab(QWidget):
         split.addWidget(below)
         split.setSizes([300, 320])
         split.setChildrenCollapsible(False)
-        outer = QVBoxLayout(self)
-        outer.setContentsMargins(6, 6, 6, 4)
-        outer.addWidget(split)
-        self._dress()
+        in_column(split, on=self, margins=(6, 6, 6, 4))
 
     def refresh(self) -> None:
         """Show what the presenter says now."""
-        self._dress()
         repeats, spec = self._repeats, self._repeats.spec
         wanted = (repeats.all, spec.nominal_mm, spec.tolerance_mm)
         self._show_buttons()
         self._show_type1()
-        self.words.setText(self._sentence())
-        self.words.setVisible(bool(self.words.text()))
+        say(self.words, self._sentence())
         if wanted == self._shown:
             return
         self._shown = wanted
@@ -121,14 +109,12 @@ class RepeatsTab(QWidget):
         study = repeats.type1
         self.type1.set_rows([] if study is None else words.type1_rows(study))
         said = repeats.no_type1 if study is None else "\n".join(map(text_of, study.notes))
-        self.type1_words.setText(said if repeats.all else "")
-        self.type1_words.setVisible(bool(self.type1_words.text()))
+        say(self.type1_words, said if repeats.all else "")
 
     def _show_buttons(self) -> None:
         repeats = self._repeats
         why_not = repeats.can_add
-        self.add.setEnabled(not why_not)
-        self.add.setToolTip(why_not or self.tr("Add the thickness of this scan to the series"))
+        enable(self.add, why_not, self.tr("Add the thickness of this scan to the series"))
         chosen = 0 <= self.table.current_row() < len(repeats.all)
         self.remove.setEnabled(chosen)
         self.remove.setToolTip(
@@ -164,11 +150,3 @@ class RepeatsTab(QWidget):
     def _copy(self) -> None:
         repeats = self._repeats
         QGuiApplication.clipboard().setText(words.repeats_tsv(repeats.all, repeats.statistics(), repeats.type1))
-
-    def _dress(self) -> None:
-        for button, symbol in (
-            (self.add, "mdi6.playlist-plus"),
-            (self.remove, "mdi6.playlist-remove"),
-            (self.copy, "mdi6.content-copy"),
-        ):
-            button.setIcon(icon(symbol))

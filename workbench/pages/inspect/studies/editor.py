@@ -7,11 +7,11 @@ from PySide6.QtWidgets import QHBoxLayout, QLabel, QPlainTextEdit, QPushButton, 
 
 from workbench.pages.inspect.studies import words
 from workbench.pages.inspect.studies.studies import LIMITS, Draft, InspectStudies
-from workbench.pages.step_page import heading, muted
 from workbench.theme import icon, shades
 from workbench.views import ask
 from workbench.views.common import dress
 from workbench.views.forms.form import SettingsForm
+from workbench.views.layouts import heading, in_column, in_row, muted, say
 
 FORM_WIDTH = 300
 LONGEST = 5000.0
@@ -31,8 +31,10 @@ class StudyEditor(QWidget):
         self.text.setTabChangesFocus(True)
         self.text.textChanged.connect(lambda: self._studies.write(self.text.toPlainText()))
         self.forms = {"grr": self._grr_form(), "acceptance": self._acceptance_form()}
-        self.open, self.add = QPushButton(self.tr("Open a table …")), QPushButton(self.tr("Add a project …"))
-        self.make, self.cancel = QPushButton(self.tr("Make the study")), QPushButton(self.tr("Cancel"))
+        self.open = QPushButton(icon("mdi6.table-arrow-left"), self.tr("Open a table …"))
+        self.add = QPushButton(icon("mdi6.folder-plus-outline"), self.tr("Add a project …"))
+        self.make = QPushButton(icon("mdi6.check"), self.tr("Make the study"))
+        self.cancel = QPushButton(self.tr("Cancel"))
         self.make.setObjectName("primary")
         self.open.setToolTip(self.tr("A CSV file with these columns, in any order"))
         self.cancel.setToolTip(self.tr("Make no study; the table is given up"))
@@ -40,9 +42,7 @@ class StudyEditor(QWidget):
         self.add.clicked.connect(self._add)
         self.make.clicked.connect(lambda: self._studies.finish())
         self.cancel.clicked.connect(lambda: self._studies.give_up())
-        row = QHBoxLayout()
-        row.setSpacing(14)
-        row.addWidget(self.text, 1)
+        row = in_row((self.text, 1), spacing=14)
         side = QVBoxLayout()
         for form in self.forms.values():
             form.setFixedWidth(FORM_WIDTH)
@@ -55,13 +55,7 @@ class StudyEditor(QWidget):
         buttons.addStretch(1)
         for button in (self.cancel, self.make):
             buttons.addWidget(button)
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.addWidget(self.title)
-        column.addWidget(self.help)
-        column.addLayout(row, 1)
-        column.addWidget(self.problem)
-        column.addLayout(buttons)
+        in_column(self.title, self.help, (row, 1), self.problem, buttons, on=self)
         self._dress()
 
     def refresh(self) -> None:
@@ -77,8 +71,7 @@ class StudyEditor(QWidget):
         for kind, form in self.forms.items():
             form.setVisible(kind == draft.kind)
         self.forms[draft.kind].set_values(draft.values)
-        self.problem.setText(studies.problem)
-        self.problem.setVisible(bool(studies.problem))
+        say(self.problem, studies.problem)
         busy = self.tr("Something is being read.") if studies.working else ""
         for button in (self.open, self.add, self.make):
             button.setEnabled(not busy)
@@ -153,9 +146,3 @@ class StudyEditor(QWidget):
 
     def _dress(self) -> None:
         dress(self.problem, f"color: {shades().bad};")
-        for button, symbol in (
-            (self.open, "mdi6.table-arrow-left"),
-            (self.add, "mdi6.folder-plus-outline"),
-            (self.make, "mdi6.check"),
-        ):
-            button.setIcon(icon(symbol))

@@ -11,7 +11,6 @@ from PySide6.QtWidgets import (
     QStackedWidget,
     QTreeWidget,
     QTreeWidgetItem,
-    QVBoxLayout,
     QWidget,
 )
 
@@ -20,9 +19,9 @@ from workbench.language import text_of
 from workbench.pages.inspect.studies import words
 from workbench.pages.inspect.studies.editor import StudyEditor
 from workbench.pages.inspect.studies.studies import InspectStudies
-from workbench.pages.step_page import muted
 from workbench.theme import icon
 from workbench.views import ask
+from workbench.views.layouts import in_column, in_row, muted
 from workbench.views.lists.data_table import DataTable
 from workbench.views.lists.value_rows import ValueRows
 
@@ -45,14 +44,10 @@ class StudiesTab(QWidget):
         self.stack = QStackedWidget()
         self.stack.addWidget(self._kept())
         self.stack.addWidget(self.editor)
-        outer = QVBoxLayout(self)
-        outer.setContentsMargins(6, 6, 6, 4)
-        outer.addWidget(self.stack)
-        self._dress()
+        in_column(self.stack, on=self, margins=(6, 6, 6, 4))
 
     def refresh(self) -> None:
         """Show what the presenter says now."""
-        self._dress()
         studies = self._studies
         self.stack.setCurrentIndex(0 if studies.draft is None else 1)
         if studies.draft is not None:
@@ -66,13 +61,12 @@ class StudiesTab(QWidget):
 
     def _kept(self) -> QWidget:
         inside = QWidget()
-        column = QVBoxLayout(inside)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.addWidget(self.words)
+        column = in_column(self.words, on=inside)
         column.addLayout(self._row((
-            ("grr", self.tr("Gauge R&&R …"), lambda: self._studies.begin("grr")),
-            ("acceptance", self.tr("Acceptance check …"), lambda: self._studies.begin("acceptance")),
-            ("type1", self.tr("Keep type-1 of the repeats"), self._studies.keep_type1),
+            ("grr", "mdi6.account-group-outline", self.tr("Gauge R&&R …"), lambda: self._studies.begin("grr")),
+            ("acceptance", "mdi6.clipboard-check-outline", self.tr("Acceptance check …"),
+             lambda: self._studies.begin("acceptance")),
+            ("type1", "mdi6.chart-bell-curve", self.tr("Keep type-1 of the repeats"), self._studies.keep_type1),
         )))  # fmt: skip
         self.list.setColumnCount(2)
         self.list.setHeaderLabels([self.tr("In the report"), self.tr("Made of")])
@@ -87,23 +81,21 @@ class StudiesTab(QWidget):
         )
         column.addWidget(self.list)
         column.addLayout(self._row((
-            ("remove", self.tr("Remove"), lambda: self._studies.remove(self._studies.chosen)),
-            ("export", self.tr("Export …"), self._export),
+            ("remove", "mdi6.delete-outline", self.tr("Remove"), lambda: self._studies.remove(self._studies.chosen)),
+            ("export", "mdi6.export", self.tr("Export …"), self._export),
         )))  # fmt: skip
         column.addWidget(self.title)
-        row = QHBoxLayout()
-        row.setSpacing(14)
-        row.addWidget(self.table, 1)
+        row = in_row((self.table, 1), spacing=14)
         row.addWidget(self.rows, 0, Qt.AlignmentFlag.AlignTop)
         self.rows.setMinimumWidth(250)
         column.addLayout(row, 1)
         column.addWidget(self.notes)
         return inside
 
-    def _row(self, wanted: tuple[tuple[str, str, object], ...]) -> QHBoxLayout:
+    def _row(self, wanted: tuple[tuple[str, str, str, object], ...]) -> QHBoxLayout:
         row = QHBoxLayout()
-        for key, text, does in wanted:
-            button = QPushButton(text)
+        for key, symbol, text, does in wanted:
+            button = QPushButton(icon(symbol), text)
             button.clicked.connect(lambda _=False, does=does: does())
             self.buttons[key] = button
             row.addWidget(button)
@@ -186,16 +178,6 @@ class StudiesTab(QWidget):
         path = ask.choose_file_to_save(self, self.tr("Write a copy"), folder.parent / f"{kept.kind}.json", kinds)
         if path is not None:
             self._studies.export(kept.id, path)
-
-    def _dress(self) -> None:
-        for key, symbol in (
-            ("grr", "mdi6.account-group-outline"),
-            ("acceptance", "mdi6.clipboard-check-outline"),
-            ("type1", "mdi6.chart-bell-curve"),
-            ("remove", "mdi6.delete-outline"),
-            ("export", "mdi6.export"),
-        ):
-            self.buttons[key].setIcon(icon(symbol))
 
 
 def _id(item: QTreeWidgetItem | None) -> str:

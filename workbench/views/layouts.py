@@ -1,0 +1,85 @@
+"""How widgets are put together: rows and columns, titles, explaining sentences, buttons that say why they are grey."""
+
+from __future__ import annotations
+
+from typing import Final, TypeVar
+
+from PySide6.QtGui import QAction
+from PySide6.QtWidgets import QAbstractButton, QBoxLayout, QHBoxLayout, QLabel, QLayout, QVBoxLayout, QWidget
+
+NO_MARGINS = (0, 0, 0, 0)
+STRETCH: Final = None
+"""A part that is nothing but room."""
+
+Box = TypeVar("Box", bound=QBoxLayout)
+Part = QWidget | QLayout | tuple[QWidget | QLayout, int] | None
+"""What stands in a row or column; with a number, it takes that share of the room that is left."""
+
+
+def in_column(
+    *parts: Part,
+    on: QWidget | None = None,
+    margins: tuple[int, int, int, int] = NO_MARGINS,
+    spacing: int | None = None,
+) -> QVBoxLayout:
+    """Parts one below the other; `on` is the widget that they are laid out on."""
+    return _filled(QVBoxLayout(on) if on is not None else QVBoxLayout(), parts, margins, spacing)
+
+
+def in_row(
+    *parts: Part,
+    on: QWidget | None = None,
+    margins: tuple[int, int, int, int] = NO_MARGINS,
+    spacing: int | None = None,
+) -> QHBoxLayout:
+    """Parts side by side; `on` is the widget that they are laid out on."""
+    return _filled(QHBoxLayout(on) if on is not None else QHBoxLayout(), parts, margins, spacing)
+
+
+def holding(layout: QLayout) -> QWidget:
+    """A widget with this layout and nothing else."""
+    widget = QWidget()
+    widget.setLayout(layout)
+    return widget
+
+
+def heading(text: str) -> QLabel:
+    """A small title within a panel."""
+    label = QLabel(text)
+    label.setObjectName("heading")
+    return label
+
+
+def muted(text: str = "") -> QLabel:
+    """An explaining sentence, wrapped."""
+    label = QLabel(text)
+    label.setObjectName("muted")
+    label.setWordWrap(True)
+    return label
+
+
+def say(label: QLabel | QAbstractButton, text: str) -> None:
+    """Show a text; nothing takes no room."""
+    label.setText(text)
+    label.setVisible(bool(text))
+
+
+def enable(button: QAbstractButton | QAction, why_not: str, tip: str) -> None:
+    """Let it be pressed unless something says why not; its tip says that, or what it does."""
+    button.setEnabled(not why_not)
+    button.setToolTip(why_not or tip)
+
+
+def _filled(box: Box, parts: tuple[Part, ...], margins: tuple[int, int, int, int], spacing: int | None) -> Box:
+    box.setContentsMargins(*margins)
+    if spacing is not None:
+        box.setSpacing(spacing)
+    for part in parts:
+        what, share = part if isinstance(part, tuple) else (part, 0)
+        if what is None:
+            box.addStretch(1)
+        elif isinstance(what, QWidget):
+            box.addWidget(what, share)
+        else:
+            box.addLayout(what, share)
+    return box
