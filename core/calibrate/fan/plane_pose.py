@@ -22,7 +22,7 @@ from core.calibrate.fan.plate import Plate, without_clutter
 from core.calibrate.fan.pose_features import PoseFeatures
 from core.image.stripes.centreline import Centreline
 from core.image.stripes.extraction import StripeSettings, choose_settings, extract_centrelines
-from core.image.stripes.noise import estimate_noise
+from core.image.stripes.noise import estimate_noise, estimate_noise_of_pair, free_of_structure
 from core.image.targets import Target, TargetNotFound, camera_shift, detect, picture_shift
 from core.image.targets.target_view import TargetView
 from core.messages import Message
@@ -127,7 +127,8 @@ def _stripes(
     else:
         without = off.astype(np.float32)
         common = _plate_level(without, view)  # the stripes lie on the plate; the rest of the picture may be dark
-        noise = replace(estimate_noise(without), compression_grey=compression_grey).of_difference(common)
+        one = free_of_structure(estimate_noise(without), estimate_noise_of_pair(picture, without, outside), common)
+        noise = replace(one, compression_grey=compression_grey).of_difference(common)
         picture = picture - without
     around = picture[_window(view, picture.shape, margin=1.0)]
     chosen = settings or choose_settings(np.ascontiguousarray(around), float(np.iinfo(on.dtype).max))

@@ -29,6 +29,8 @@ _TILE = 16  # px: side of a tile
 _MOST_TILES = 4000  # tiles looked at, about; more take time and tell nothing new
 _LEAST_PER_LEVEL, _MOST_LEVELS = 20, 16  # tiles of one grey level; levels of the photon transfer line
 _QUIET_QUANTILE = 0.4  # of the variances at one level: texture can only add to them
+_QUARTER = 0.3186  # standard deviations that the quieter quarter of Gaussian noise is within
+_STRUCTURED = 1.5  # times another estimate's variance: noise alone never reaches 1.2 over a picture's tiles
 _LEAST_CONTRAST = 20.0  # times the noise between darkest and brightest level; with less no slope is fitted
 _LEAST_APART = 0.05  # share of that range between two levels that give a slope
 _BACKGROUND_PX = 15  # side of the mean that a difference of two pictures is freed of
@@ -79,13 +81,22 @@ class NoiseModel:
 def estimate_noise(picture: NDArray[np.float32], ignore: NDArray[np.bool_] | None = None) -> NoiseModel:
     """Estimate the noise of one picture (H, W) from its quiet tiles.
 
-    Texture can only add to what is measured, so the quieter half of the tiles of each grey level is believed.
+    Texture can only add to what is measured, so the quieter half of the tiles of each grey level is believed. Where
+    structure is in every tile (small squares, edges all over) it still rules their mean squares; then the quieter
+    quarter of each tile's pixels is believed instead, which is less exact for noise alone.
     Where the picture has too few levels for a slope (a difference picture), the shot noise comes out as zero and
     `read_grey` is the scatter of the background.
     """
     residual = np.asarray(cv2.filter2D(picture, cv2.CV_32F, _MASK), dtype=np.float32)
-    level, variance = _tile_statistics(picture, residual, ignore)
-    return _photon_transfer(level, variance)
+    level, variance, quiet = _tile_statistics(picture, residual, ignore)
+    noise, least = _photon_transfer(level, variance), _photon_transfer(level, quiet)
+    return free_of_structure(noise, least, float(np.median(level)) if level.size else 0.0)
+
+
+def free_of_structure(noise: NoiseModel, other: NoiseModel, level: float) -> NoiseModel:
+    """`noise`, or the `other` estimate of it where that is so much less at a grey `level` that structure is in it."""
+    at = np.array([level])
+    return other if noise.variance(at)[0] > _STRUCTURED * other.variance(at)[0] else noise
 
 
 def estimate_noise_of_pair(
@@ -99,17 +110,17 @@ def estimate_noise_of_pair(
         raise ValueError(f"the pictures of a pair differ in size: {first.shape} and {second.shape}")
     difference = (first - second) / np.float32(np.sqrt(2))
     residual = np.asarray(difference - cv2.blur(difference, (_BACKGROUND_PX, _BACKGROUND_PX)), dtype=np.float32)
-    level, variance = _tile_statistics((first + second) / np.float32(2), residual, ignore)
+    level, variance, _ = _tile_statistics((first + second) / np.float32(2), residual, ignore)
     return _photon_transfer(level, variance)
 
 
 def _tile_statistics(
     picture: NDArray[np.float32], residual: NDArray[np.float32], ignore: NDArray[np.bool_] | None
-) -> tuple[Array, Array]:
-    """Mean level and robust variance of the residual, one value a tile."""
+) -> tuple[Array, Array, Array]:
+    """Mean level, variance of the residual, and that by its quieter quarter, one value a tile."""
     rows, columns = (size // _TILE for size in picture.shape)
     if rows == 0 or columns == 0:
-        return np.zeros(1), np.array([float(np.var(residual))])
+        return np.zeros(1), np.array([float(np.var(residual))]), np.array([float(np.var(residual))])
 
     def tiles(values: NDArray[np.generic]) -> NDArray[np.generic]:
         whole = values[: rows * _TILE, : columns * _TILE].reshape(rows, _TILE, columns, _TILE)
@@ -120,7 +131,11 @@ def _tile_statistics(
     keep &= np.arange(keep.size) % stride == 0
     level = np.asarray(tiles(picture)[keep], dtype=np.float64).mean(axis=1)
     deviation = np.asarray(tiles(residual)[keep], dtype=np.float64)
-    return level, (deviation**2).mean(axis=1)
+    if not len(deviation):
+        return level, np.zeros(0), np.zeros(0)
+    quarter = deviation.shape[1] // 4
+    quiet = np.partition(np.abs(deviation), quarter, axis=1)[:, quarter] / _QUARTER
+    return level, (deviation**2).mean(axis=1), quiet**2
 
 
 def _photon_transfer(level: Array, variance: Array) -> NoiseModel:

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from typing import Any
 
+import cv2
 import numpy as np
 import pytest
 
 from core.image.stripes.centreline import Centreline
 from core.image.stripes.extraction import StripeSettings, choose_settings, correlation_length_px, extract_centrelines
-from core.image.stripes.noise import NoiseModel, estimate_noise, estimate_noise_of_pair
+from core.image.stripes.noise import NoiseModel, estimate_noise, estimate_noise_of_pair, free_of_structure
 from core.image.stripes.tracing.ridge import kernel_radius
 from tests.image.synthetic_stripes import Distance, circle, draw, expose, speckle, straight
 
@@ -368,6 +369,20 @@ def test_noise_is_estimated() -> None:
     dark = expose(np.zeros((480, 640)), rng, 1.5, 0.0).astype(np.float32)
     assert estimate_noise(dark).read_grey == pytest.approx(1.5, rel=0.05)
     assert NoiseModel(1.5).of_difference().read_grey == pytest.approx(1.5 * np.sqrt(2))
+
+
+@pytest.mark.parametrize(("cell_px", "most"), [(40.0, 1.15), (20.0, 1.6), (8.0, 3.5)])
+def test_structure_does_not_pass_for_noise(cell_px: float, most: float) -> None:
+    """Small squares fill the picture; a pair of pictures of them is free of structure."""
+    rng = np.random.default_rng(1)
+    v, u = np.indices((480, 640))
+    x, y = 0.94 * u + 0.34 * v, 0.94 * v - 0.34 * u
+    board = np.where((np.floor(x / cell_px) + np.floor(y / cell_px)) % 2 == 0, 200.0, 30.0)
+    board = cv2.GaussianBlur(board, (0, 0), 0.8)
+    one, other = (np.round(board + rng.normal(0, 1.0, board.shape)).astype(np.float32) for _ in range(2))
+    assert 0.9 < estimate_noise(one).read_grey < most
+    pair = estimate_noise_of_pair(one, other)
+    assert 0.9 < free_of_structure(estimate_noise(one), pair, 100.0).read_grey < 1.15
 
 
 def test_settings_and_noise_refuse_nonsense() -> None:
