@@ -5,8 +5,13 @@ import pytest
 
 from core.inspect.profile_faces import faces_of, stretches
 from core.inspect.step_height import NO_FACES, NO_TILT, KnownTilt, Step, measure_steps, step_of
+from core.inspect.uncertainty.point_errors import PointErrors
 from core.messages import Message
+from core.scan.surface.cloud import FAN, Cloud
 from tests.inspect.profile_pictures import NORMAL, RIG, errors, fan_of, picture
+from tests.shared import REAL_SETS
+
+REAL = REAL_SETS / "gaugeblock"
 
 BLOCK = ((-150.0, -40.0, 0.0), (-20.0, 30.0, 20.0), (60.0, 150.0, 0.0))
 """A table, a block of 20 mm on it, and the table again behind a shadow."""
@@ -112,3 +117,25 @@ def test_pictures_that_disagree_widen_the_uncertainty():
 def test_a_step_too_small_to_be_told_from_noise_gives_none():
     flat = ((-150.0, -40.0, 0.0), (-20.0, 30.0, 0.05), (60.0, 150.0, 0.0))
     assert step_of(picture(flat, noise_px=0.1), errors()) == NO_FACES
+
+
+@pytest.mark.skipif(not REAL.exists(), reason="needs the real profile of a gauge block")
+def test_a_real_profile_of_a_block_gives_the_published_height():
+    upper, lower = (
+        np.genfromtxt(REAL / f"frame_000974_{part}_points.csv", delimiter=",", names=True)
+        for part in ("height", "baseline")
+    )
+    table = np.concatenate([upper, lower])
+    points = np.column_stack([table[name] for name in ("Xc_mm", "Yc_mm", "Zc_mm")])
+    # Its heights over the calibrated ground are affine in the place: their gradient is the ground's normal.
+    gradient = np.linalg.lstsq(np.column_stack([points, np.ones(len(points))]), table["Zg_mm"], rcond=None)[0][:3]
+    normal = -gradient / np.linalg.norm(gradient)
+    count = len(table)
+    cloud = Cloud(
+        points, np.column_stack([table["u"], table["v"]]), np.full(count, 0.02), np.ones(count), np.zeros(count),
+        np.full(count, FAN), np.zeros((count, 3)),
+    )  # fmt: skip
+    found = step_of(cloud, PointErrors(speckle_px=8.0), KnownTilt(tuple(normal.tolist()), np.radians(0.1)))
+    assert isinstance(found, Step)
+    assert found.thickness_mm == pytest.approx(19.876, abs=0.05)  # published; 19.835 to 20.070 by choice of baseline
+    assert 0.01 < found.own_mm < 0.1
