@@ -45,6 +45,9 @@ _ADVICE = {
     "advice.another_out": _ELSEWHERE,
     "advice.results_into_set": Message("window.another_folder", "choose another folder"),
     "advice.name_results_folder": Message("window.results_folder", "choose the folder of its results"),
+    "profile.advice_tilt": Message(
+        "window.profile_tilt", "name the plate's pose on the stage, or say to how many degrees the tilt is known"
+    ),
     "advice.another_characteristic": Message("window.another_result", "choose another result"),
 }
 """What the window advises in place of an option of the command line, by the code of that advice."""

@@ -14,7 +14,7 @@ from core.calibrate.camera.adjustment import CameraOptions
 from core.cli import output
 from core.cli.options import ExitCode
 from core.errors import InputError
-from core.files.recording.options import Options
+from core.files.recording.options import Options, StatedTilt
 from core.files.recording.recording_set import excluded_names, open_set
 from core.image.stripes.stripe import StripeSettings
 from core.inspect.results import GaugeResult
@@ -24,7 +24,7 @@ from core.pipeline.steps.camera_step import camera_step
 from core.pipeline.steps.executors import executor_of
 from core.pipeline.steps.gauge_step import gauge_step
 from core.pipeline.steps.planes_step import planes_step
-from core.pipeline.steps.profile_step import StatedTilt, profile_step
+from core.pipeline.steps.profile_step import profile_step
 from core.pipeline.steps.run import RunResult, run
 from core.pipeline.steps.scan_step import scan_step
 from core.pipeline.steps.workspace import Workspace

@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
+from core.files.recording.options import StatedTilt
 from core.files.recording.recording_set import open_set
 from core.pipeline.steps.camera_step import camera_step
 from core.pipeline.steps.planes_step import planes_step
-from core.pipeline.steps.profile_step import StatedTilt, profile_step
+from core.pipeline.steps.profile_step import profile_step
 from core.pipeline.steps.workspace import Workspace
 from core.simulate.recording import simulate_set
 from core.simulate.scenario import Scenario

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from core.calibrate.results import CameraCalibration, FanCalibration
+from core.files.results.profile_file import PictureStep
 from core.inspect.results import GaugeResult
 from core.messages import Message
 from core.scan.features.frames import FrameRecord
@@ -78,3 +79,13 @@ class ProjectResults:
     calibration_id: str = ""
     files: Mapping[str, Path] = field(default_factory=dict)
     problems: tuple[Message, ...] = ()
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class ProfilesSummary:
+    """What came of it: the thickness, what each picture gave, what is to be told, and the report."""
+
+    gauge: GaugeResult
+    pictures: tuple[PictureStep, ...]
+    notes: tuple[Message, ...]
+    report: Path

@@ -103,3 +103,15 @@ class Options:
         """For run.json what is left out by hand of one part; nothing if nothing is."""
         names = self.excluded_in(part)
         return {"excluded": names} if names else {}
+
+
+@dataclass(frozen=True, slots=True)
+class StatedTilt:
+    """How the faces stand, where one line does not show it.
+
+    `stage` is the pose of the plane target ("planes/pose03") that lay on what the part stands on; "": the light plane
+    stands at right angles on the faces. `sd` is the standard uncertainty in rad; None: as usual for a stage.
+    """
+
+    stage: str = ""
+    sd: float | None = None

@@ -63,7 +63,7 @@ def measure_scan(
     with staged(results, _OF_A_SCAN) as beside:
         put_in_place(folder, project.accepted, beside)
         work = Workspace.open(found, beside, part_name(project))
-        _record_calibrations(work, folder, project)
+        record_calibrations(work, folder, project)
         measured = scan_step(work, project.options, progress, watch, earlier=_earlier(found, results, project))
         gauge, no_gauge = gauge_if_possible(work, progress)
         notes, calibration_id = work.record().all_notes, work.calibration().id
@@ -105,7 +105,7 @@ def _earlier(found: RecordingSet, results: Path, project: Project) -> Path | Non
     return None if same else before.path("scan")
 
 
-def _record_calibrations(work: Workspace, folder: Path, project: Project) -> None:
+def record_calibrations(work: Workspace, folder: Path, project: Project) -> None:
     """Write into run.json how the calibrations came about, as if they had been made with the scan."""
     calibration, record = work.calibration(), work.record()
     solved = {"camera": {"skew": solved_for_skew(calibration.camera)}}

@@ -27,7 +27,7 @@ def make_report(folder: Path, project: Project, progress: Progress = silent) -> 
         If there is no scan among the results.
     """
     work = project_workspace(folder, project)
-    return report_step(work, progress, lambda content: _with_words(content, folder, project))
+    return report_step(work, progress, lambda content: with_words(content, folder, project))
 
 
 def report_bytes(folder: Path, project: Project, progress: Progress = silent) -> bytes:
@@ -38,10 +38,10 @@ def report_bytes(folder: Path, project: Project, progress: Progress = silent) ->
 def project_content(folder: Path, project: Project, progress: Progress = silent) -> ReportContent:
     """All that is reported and handed over of a project; InputError if there is no scan among the results."""
     work = Workspace(project_set(folder, project), results_folder(folder), part_name(project))  # only read from
-    return report_content(work, progress, lambda content: _with_words(content, folder, project))
+    return report_content(work, progress, lambda content: with_words(content, folder, project))
 
 
-def _with_words(content: ReportContent, folder: Path, project: Project) -> ReportContent:
+def with_words(content: ReportContent, folder: Path, project: Project) -> ReportContent:
     """The report's content with what people say of the job and of the report.
 
     Raises

@@ -10,7 +10,7 @@ import numpy as np
 
 from core.calibrate.deviations import calibration_deviations
 from core.errors import InputError
-from core.files.recording.options import Options
+from core.files.recording.options import Options, StatedTilt
 from core.files.recording.recording_set import RecordingSet
 from core.files.recording.rig import GaugeSpec
 from core.files.results.gauge_file import write_gauge
@@ -35,18 +35,6 @@ STAGE_SD = float(np.radians(0.1))
 it; its pose itself is known ten times better."""
 _REPLACED = ("cloud", "scan", "mesh", "gauge", "faces", "inspection", "inspected", "report")
 """Results of a scan, which would not be of the part that these profiles are of."""
-
-
-@dataclass(frozen=True, slots=True)
-class StatedTilt:
-    """How the faces stand, where one line does not show it.
-
-    `stage` is the pose of the plane target ("planes/pose03") that lay on what the part stands on; "": the light plane
-    stands at right angles on the faces. `sd` is the standard uncertainty in rad; None: STAGE_SD for a stage.
-    """
-
-    stage: str = ""
-    sd: float | None = None
 
 
 @dataclass(frozen=True, eq=False, slots=True)

@@ -17,6 +17,7 @@ from workbench.pages.scan.cloud import ScanCloud
 from workbench.pages.scan.panels import ResultPanel, RunningPanel, ScanCard, SettingsPanel
 from workbench.pages.scan.picture import ScanPicture, View
 from workbench.pages.scan.presenter import ScanPresenter, Stage
+from workbench.pages.scan.profiles import ProfilesPanel
 from workbench.pages.scan.run import short
 from workbench.pages.step_page import StepPage
 from workbench.views.forms.live_panel import LivePanel, LiveStrip
@@ -67,6 +68,8 @@ class ScanPage(StepPage):
         self.frames_fold = self.add_list(self.tr("Frames"), self.frames)
         self.settings = SettingsPanel(presenter)
         self.settings_fold = self.add_panel(self.tr("Settings"), self.settings, collapsed=True)
+        self.profiles = ProfilesPanel(presenter.bench)
+        self.profiles_fold = self.add_panel(self.tr("Fixed lines alone"), self.profiles, collapsed=True)
         self._rows: Any = None
         self._folded = ""
         self._connect()
@@ -89,6 +92,8 @@ class ScanPage(StepPage):
             self.bar.refresh()
         self.settings.refresh()
         self.settings.setEnabled(not live)
+        self.profiles.refresh(p.cannot_measure)
+        self.profiles_fold.setVisible(bool(p.work.names) and not busy)
         self.result.refresh()
         self.result_fold.setVisible(p.work.look is not None and not busy)
         self.frames_fold.setVisible(bool(p.work.names) and not live)

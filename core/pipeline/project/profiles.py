@@ -1,0 +1,43 @@
+"""A thickness by the fixed lines alone, of a project: beside its scan, never in its place."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from core.files.project.calibration_store import put_in_place
+from core.files.project.data import Project
+from core.files.project.results import ProfilesSummary
+from core.files.recording.options import StatedTilt
+from core.pipeline.project.measuring import record_calibrations, staged
+from core.pipeline.project.report import with_words
+from core.pipeline.project.workspace import part_name, project_set
+from core.pipeline.steps.profile_step import profile_step
+from core.pipeline.steps.report_step import report_step
+from core.pipeline.steps.workspace import FILES, Workspace
+from core.progress import Progress, silent
+
+PROFILES = "profiles"
+"""The folder in the project that its results go to."""
+
+
+def measure_profiles(
+    folder: Path, project: Project, tilt: StatedTilt | None = None, progress: Progress = silent
+) -> ProfilesSummary:
+    """Measure the step in the project's pictures of the fan alone with the accepted calibrations, and report it.
+
+    New results take the place of old ones in PROFILES when all is done; those of the scan stay as they are.
+
+    Raises
+    ------
+    InputError
+        If no calibration is accepted, or as `core.pipeline.steps.profile_step.profile_step`.
+    """
+    found, results = project_set(folder, project), folder / PROFILES
+    with staged(results, tuple(FILES.values())) as beside:
+        put_in_place(folder, project.accepted, beside)
+        work = Workspace.open(found, beside, part_name(project))
+        record_calibrations(work, folder, project)
+        measured = profile_step(work, project.options, tilt, progress)
+        report_step(work, progress, lambda content: with_words(content, folder, project))
+        notes = work.record().all_notes
+    return ProfilesSummary(measured.gauge, measured.pictures, notes, results / FILES["report"])

@@ -1,0 +1,119 @@
+"""Fixed lines alone: a thickness from pictures without the hand-held laser, beside the scan."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+from PySide6.QtCore import QUrl
+from PySide6.QtGui import QDesktopServices
+from PySide6.QtWidgets import QPushButton, QVBoxLayout, QWidget
+
+from core.files.project.results import ProfilesSummary
+from core.files.recording.options import StatedTilt
+from core.report.wording import thickness_line
+from workbench.bench import Bench
+from workbench.language import text_of, tr
+from workbench.views.forms.form import SettingsForm
+from workbench.views.layouts import muted
+from workbench.work import jobs
+from workbench.work.tasks import Task
+
+
+class ProfilesPanel(QWidget):
+    """Asks how the faces stand where one line does not show it, measures, and says what came of it."""
+
+    def __init__(self, bench: Bench, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._bench, self._model = bench, bench.model
+        self._task: Task | None = None
+        self._report: Path | None = None
+        self._stage, self._sd_deg = "", 0.0
+        self.form, self.said = SettingsForm(), muted()
+        self.form.add_text(
+            "stage", tr("Plate on the stage"), tr("The pose whose plate lay on what the part stands on, as pose03.")
+        )
+        self.form.add_number(
+            "tilt_sd", tr("Tilt known to"), "°",
+            tr("Standard uncertainty of how the faces are tilted; without a pose the light plane is taken to stand at "
+               "right angles on them."),
+            minimum=0.0, maximum=9.9, decimals=2, step=0.1, none_text=tr("not stated"), first=0.5,
+        )  # fmt: skip
+        self.form.edited.connect(self._edited)
+        self.measure = QPushButton(tr("Measure by the fixed lines"))
+        self.measure.setToolTip(tr("Each picture shows the fan alone and the part; no hand-held laser is needed"))
+        self.measure.clicked.connect(self._measure)
+        self.open = QPushButton(tr("Open its report"))
+        self.open.clicked.connect(self._open)
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 4, 0, 4)
+        for widget in (self.form, self.measure, self.said, self.open):
+            column.addWidget(widget)
+        self._model.opened.connect(self._forget)
+        self._forget()
+
+    def refresh(self, cannot: str) -> None:
+        """Show it for the project in force; `cannot` says why nothing can be measured now."""
+        one = self._model.project.rig.lines == 1
+        self.form.setVisible(one)
+        self.form.set_values({"stage": self._stage, "tilt_sd": self._sd_deg or None})
+        self.measure.setEnabled(not cannot and self._task is None)
+
+    def tilt(self) -> StatedTilt | None:
+        """What is stated of how the faces stand."""
+        if self._model.project.rig.lines > 1 or not (self._stage or self._sd_deg):
+            return None
+        return StatedTilt(self._stage, math.radians(self._sd_deg) or None)
+
+    def _edited(self, key: str, value: object) -> None:
+        if key == "stage":
+            self._stage = str(value).strip()
+        else:
+            self._sd_deg = value if isinstance(value, float) else 0.0
+
+    def _measure(self) -> None:
+        if self._model.folder is None:
+            return
+        self._say(tr("The pictures are being measured …"))
+        self.measure.setEnabled(False)
+        self._task = self._bench.run_long(
+            self,
+            jobs.MEASURE_PROFILES,
+            self._model.folder,
+            self._model.project,
+            self.tilt(),
+            label=tr("Measuring by the fixed lines"),
+            on_done=self._done,
+            on_failed=lambda _: self._ended(),
+            on_cancelled=self._ended,
+        )
+
+    def _done(self, summary: ProfilesSummary) -> None:
+        self._ended()
+        used = [one for one in summary.pictures if one.reason is None]
+        lines = [
+            thickness_line(summary.gauge),
+            tr("{n} of {m} pictures used", n=len(used), m=len(summary.pictures)),
+            *(f"{one.name}: {text_of(one.reason)}" for one in summary.pictures if one.reason is not None),
+            *(text_of(note) for note in summary.gauge.notes),
+        ]
+        self._say("\n".join(lines), summary.report)
+
+    def _ended(self) -> None:
+        self._task = None
+        self.measure.setEnabled(True)
+        self._say("")
+
+    def _forget(self) -> None:
+        self._stage, self._sd_deg = "", 0.0
+        self._say("")
+
+    def _say(self, text: str, report: Path | None = None) -> None:
+        self._report = report
+        self.said.setText(text)
+        self.said.setVisible(bool(text))
+        self.open.setVisible(report is not None)
+
+    def _open(self) -> None:
+        if self._report is not None and not QDesktopServices.openUrl(QUrl.fromLocalFile(str(self._report))):
+            self._bench.notices.warning(tr("Nothing here opens folders: {folder}", folder=self._report))
