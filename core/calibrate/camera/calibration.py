@@ -34,7 +34,7 @@ from core.calibrate.camera.covariance import Widening
 from core.calibrate.camera.coverage import coverage, tilt_range
 from core.calibrate.camera.quality import cross_validation_mm, notes_on, rms_and_mean, view_qualities, view_without_part
 from core.calibrate.camera.screening import screen
-from core.calibrate.camera.skew import skew_helps
+from core.calibrate.camera.skew import SKEW, skew_helps
 from core.calibrate.camera.zhang import centred_matrix, intrinsic_matrix, pose_from_homography, radial_start
 from core.calibrate.results import LEFT_OUT, CameraCalibration, ViewQuality
 from core.errors import InputError
@@ -114,8 +114,13 @@ def _calibrated(
     options: CameraOptions,
     tolerance: BoardTolerance,
     progress: Progress,
+    *,
+    skew_left_out: bool = False,
 ) -> CameraCalibration:
-    """The camera from those of `views` that fit together."""
+    """The camera from those of `views` that fit together.
+
+    `skew_left_out`: γ was tried and does not help, but nobody has said that it is 0.
+    """
     progress(_STEP, 0, _STAGES)
     screened = [screen(view) for view in views]
     reasons = {index: found for index, found in enumerate(screened) if isinstance(found, Message)}
@@ -133,7 +138,7 @@ def _calibrated(
     if options.skew is None:
         used, counted = counted_observations(observed, verdicts)
         if not skew_helps(bundle.of_views(used), counted, options.free):
-            return _calibrated(views, image_size, replace(options, skew=False), tolerance, progress)
+            return _calibrated(views, image_size, replace(options, skew=False), tolerance, progress, skew_left_out=True)
     fit, bundle, verdicts = with_shape(bundle, verdicts, observed, options, tolerance)
     reasons |= {index: v.reason for index, v in zip(usable, verdicts, strict=True) if v.reason is not None}
     _require_views(views, [index for index in usable if index not in reasons], reasons)
@@ -142,6 +147,8 @@ def _calibrated(
     used, counted = counted_observations(observed, verdicts)
     solved = bundle.of_views(used)
     covariance, shape, widening = _covariance(solved, counted, options.free, fit)
+    if skew_left_out:
+        covariance = _with_skew(covariance, solved, counted, options.free, fit)
     progress(_STEP, 4, _STAGES)
     fits = {index: (pose, verdict) for index, pose, verdict in zip(usable, bundle.poses, verdicts, strict=True)}
     qualities = view_qualities(views, reasons, bundle.camera, fits, shape)
@@ -200,6 +207,23 @@ def _covariance(
             todo=_MORE_VIEWS,
         )
     return covariance, fit.shape(both, len(free)), widening
+
+
+def _with_skew(
+    covariance: Array, bundle: Bundle, counted: Sequence[Observed], free: NDArray[np.intp], fit: BoardFit
+) -> Array:
+    """The covariance (10, 10) if γ were `free` as well: that it is left at 0 is the model's choice, not knowledge.
+
+    As it is where the views do not determine γ, of which nothing then is known.
+    """
+    known = np.union1d(free, [SKEW])
+    try:
+        both, _ = fit.covariance(bundle, counted, known, freedom_of(counted, known))
+    except np.linalg.LinAlgError:
+        return covariance
+    wider = np.zeros_like(covariance)
+    wider[np.ix_(known, known)] = both[: len(known), : len(known)]
+    return wider
 
 
 def _summary(
