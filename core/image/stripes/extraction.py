@@ -134,14 +134,12 @@ def extract_centrelines(
     correlation = max([line.correlation_px for line in placed], default=correlation_length_px(settings))
     excess = roughness([p.judged(line.run, line.sigma) for p, line in zip(pieces, placed, strict=True)], correlation)
     enough = [k for k, near in enumerate(apart) if np.count_nonzero(near > pulled) >= shortest]
-    lines = [placed[k].run[apart[k] > pulled] for k in enough]
+    runs, keep = [placed[k].run for k in enough], [apart[k] > pulled for k in enough]
     found = [
         _centreline(pieces[k], placed[k], excess[k], part, noise)
-        for n, k in enumerate(enough)
-        for part in unbroken_parts(
-            placed[k].run, apart[k] > pulled, settings.filter_px, state, lines[:n] + lines[n + 1 :]
-        )
-        if len(part) >= shortest
+        for own, k in enumerate(enough)
+        for part in unbroken_parts(runs, keep, own, settings.filter_px, state)
+        if isinstance(part, slice) or len(part) >= shortest
     ]
     return tuple(sorted(found, key=len, reverse=True))
 
@@ -196,7 +194,9 @@ def _smooth_pieces(
     return pieces
 
 
-def _centreline(piece: Piece, line: Refined, extra: float, part: NDArray[np.intp], noise: NoiseModel) -> Centreline:
+def _centreline(
+    piece: Piece, line: Refined, extra: float, part: NDArray[np.intp] | slice, noise: NoiseModel
+) -> Centreline:
     """A `part` of the points of a placed piece; `extra` is their scatter in px beyond the law."""
     height, sigma = piece.profiles.height[part], added_in_squares(line.sigma[part], extra)
     correlation = line.correlation_px

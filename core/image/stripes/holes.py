@@ -30,22 +30,26 @@ def longest_hole_px(filter_px: float) -> float:
 
 
 def unbroken_parts(
-    run: Array, keep: NDArray[np.bool_], filter_px: float, state: NDArray[np.uint8], others: Sequence[Array]
-) -> list[NDArray[np.intp]]:
-    """Indices of the points of a run (N, ≥ 4) that are to be kept, those of each unbroken part in an array of its own.
+    lines: Sequence[Array], keep: Sequence[NDArray[np.bool_]], own: int, filter_px: float, state: NDArray[np.uint8]
+) -> list[NDArray[np.intp] | slice]:
+    """Choose the points that are to be kept of the line `own` among `lines`, those of each unbroken part on their own.
 
-    `state` (H, W) are the bits of the picture's pixels, `others` (M, ≥ 2) its other lines.
+    `lines` are the runs (N, ≥ 4) of all lines of the picture, `keep` (N,) which of their points are to be kept; the
+    others may cross this one. `state` (H, W) are the bits of the picture's pixels.
     """
-    kept = np.flatnonzero(keep)
-    longest = longest_hole_px(filter_px)
-    ends = _suspects(run, kept, longest)
+    run, kept = lines[own], np.flatnonzero(keep[own])
+    ends = _suspects(run, kept, longest_hole_px(filter_px))
+    if not len(ends):
+        return [slice(None) if len(kept) == len(run) else kept]
+    others = [line[at] for k, (line, at) in enumerate(zip(lines, keep, strict=True)) if k != own]
     broken = [end for end in ends.tolist() if not _is_hidden(run[kept[end - 1 : end + 1]], state, others)]
-    return np.split(kept, broken) if broken else [kept]
+    return [*np.split(kept, broken)]
 
 
 def _is_hidden(ends: Array, state: NDArray[np.uint8], others: Sequence[Array]) -> bool:
     """Whether saturated pixels or another line hide what is between the points `ends` (2, ≥ 4) of one line."""
-    if not _follow(ends[0], ends[1]):
+    (du, dv), (nu, nv) = ends[1, :2] - ends[0, :2], ends[0, 2:4] + ends[1, 2:4]
+    if dv * nu - du * nv <= abs(du * nu + dv * nv):  # beside or behind
         return False
     share = np.linspace(0, 1, math.ceil(math.dist(ends[0, :2], ends[1, :2])))[:, None]
     u, v = np.round(ends[0, :2] + share * (ends[1, :2] - ends[0, :2])).astype(np.intp).T
@@ -59,17 +63,10 @@ def _suspects(run: Array, kept: NDArray[np.intp], longest: float) -> NDArray[np.
     found = np.empty(len(kept), dtype=np.intp)
     count = 0
     for k in range(1, len(kept)):
-        before, here = run[kept[k - 1]], run[kept[k]]
-        du, dv = here[0] - before[0], here[1] - before[1]
-        if du * du + dv * dv > longest * longest or not _follow(before, here):
+        a, b = kept[k - 1], kept[k]
+        du, dv = run[b, 0] - run[a, 0], run[b, 1] - run[a, 1]
+        nu, nv = run[a, 2] + run[b, 2], run[a, 3] + run[b, 3]
+        if du * du + dv * dv > longest * longest or dv * nu - du * nv <= abs(du * nu + dv * nv):
             found[count] = k
             count += 1
     return found[:count]
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def _follow(before: Array, here: Array) -> bool:
-    """Whether a point (≥ 4,) lies ahead of the one before it, rather than beside or behind it."""
-    du, dv = here[0] - before[0], here[1] - before[1]
-    nu, nv = before[2] + here[2], before[3] + here[3]
-    return bool(du * -nv + dv * nu > abs(du * nu + dv * nv))

@@ -82,18 +82,25 @@ def straight(length: int) -> np.ndarray:
     return np.column_stack([np.arange(length), np.full(length, 50.0), np.zeros(length), -np.ones(length)]).astype(float)
 
 
+def parts(run: np.ndarray, keep: np.ndarray, *others: np.ndarray, state: np.ndarray = DARK) -> list[np.ndarray]:
+    """Numbers of the points of each part of a run that other lines may cross."""
+    lines, kept = [*others, run], [*(np.ones(len(other), dtype=bool) for other in others), keep]
+    found = unbroken_parts(lines, kept, len(others), 5.0, state)
+    return [np.arange(len(run))[part] for part in found]
+
+
 def test_a_line_goes_on_across_a_short_hole_and_ends_at_a_long_one() -> None:
     run, keep = straight(300), np.ones(300, dtype=bool)
     keep[100:110] = False
-    assert len(unbroken_parts(run, keep, 5.0, DARK, [])) == 1
+    assert len(parts(run, keep)) == 1
     keep[150:200] = False
-    assert [(part[0], part[-1]) for part in unbroken_parts(run, keep, 5.0, DARK, [])] == [(0, 149), (200, 299)]
+    assert [(part[0], part[-1]) for part in parts(run, keep)] == [(0, 149), (200, 299)]
 
 
 def test_a_line_goes_on_behind_saturated_pixels() -> None:
     run, keep = straight(300), np.ones(300, dtype=bool)
     keep[150:200] = False
-    assert len(unbroken_parts(run, keep, 5.0, DARK + np.uint8(SATURATED), [])) == 1
+    assert len(parts(run, keep, state=DARK + np.uint8(SATURATED))) == 1
 
 
 def test_a_line_goes_on_behind_another_that_crosses_it_and_not_beside_one() -> None:
@@ -101,14 +108,14 @@ def test_a_line_goes_on_behind_another_that_crosses_it_and_not_beside_one() -> N
     keep[150:200] = False
     across = np.column_stack([np.full(100, 175.0), np.arange(100.0)])
     beside = np.column_stack([np.arange(300.0), np.full(300, 55.0)])
-    assert len(unbroken_parts(run, keep, 5.0, DARK, [across])) == 1
-    assert len(unbroken_parts(run, keep, 5.0, DARK, [beside])) == 2
+    assert len(parts(run, keep, across)) == 1
+    assert len(parts(run, keep, beside)) == 2
 
 
 def test_a_line_ends_where_its_points_jump_aside_or_turn_back() -> None:
     run, keep = straight(200), np.ones(200, dtype=bool)
     run[100:, 1] += 3.0
-    assert [len(part) for part in unbroken_parts(run, keep, 5.0, DARK, [])] == [100, 100]
+    assert [len(part) for part in parts(run, keep)] == [100, 100]
     run = straight(200)
     run[100:, 0] -= 4.0
-    assert [len(part) for part in unbroken_parts(run, keep, 5.0, DARK, [])] == [100, 100]
+    assert [len(part) for part in parts(run, keep)] == [100, 100]
