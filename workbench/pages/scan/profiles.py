@@ -6,7 +6,7 @@ import math
 from pathlib import Path
 
 from PySide6.QtCore import QUrl
-from PySide6.QtGui import QDesktopServices
+from PySide6.QtGui import QDesktopServices, QResizeEvent
 from PySide6.QtWidgets import QPushButton, QVBoxLayout, QWidget
 
 from core.files.project.results import ProfilesSummary
@@ -28,16 +28,19 @@ class ProfilesPanel(QWidget):
         self._bench, self._model = bench, bench.model
         self._task: Task | None = None
         self._report: Path | None = None
-        self._stage, self._sd_deg = "", 0.0
+        self._stage, self._sd_deg, self._cannot = "", 0.0, ""
         self.form, self.said = SettingsForm(), muted()
         self.form.add_text(
-            "stage", tr("Plate on the stage"), tr("The pose whose plate lay on what the part stands on, as pose03.")
+            "stage",
+            tr("Plate on the stage"),
+            tr("Its pose, as pose03."),
+            tip=tr("The pose whose plate lay on what the part stands on when the laser planes were calibrated"),
         )
         self.form.add_number(
-            "tilt_sd", tr("Tilt known to"), "°",
-            tr("Standard uncertainty of how the faces are tilted; without a pose the light plane is taken to stand at "
-               "right angles on them."),
-            minimum=0.0, maximum=9.9, decimals=2, step=0.1, none_text=tr("not stated"), first=0.5,
+            "tilt_sd", tr("Tilt known to"), "°", minimum=0.0, maximum=9.9, decimals=2, step=0.1,
+            none_text=tr("not stated"), first=0.5,
+            tip=tr("Standard uncertainty of how the faces are tilted; without a pose the light plane is taken to "
+                   "stand at right angles on them"),
         )  # fmt: skip
         self.form.edited.connect(self._edited)
         self.measure = QPushButton(tr("Measure by the fixed lines"))
@@ -57,7 +60,12 @@ class ProfilesPanel(QWidget):
         one = self._model.project.rig.lines == 1
         self.form.setVisible(one)
         self.form.set_values({"stage": self._stage, "tilt_sd": self._sd_deg or None})
-        self.measure.setEnabled(not cannot and self._task is None)
+        self._cannot = cannot
+        self._enable()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self._fit()
 
     def tilt(self) -> StatedTilt | None:
         """What is stated of how the faces stand."""
@@ -75,7 +83,6 @@ class ProfilesPanel(QWidget):
         if self._model.folder is None:
             return
         self._say(tr("The pictures are being measured …"))
-        self.measure.setEnabled(False)
         self._task = self._bench.run_long(
             self,
             jobs.MEASURE_PROFILES,
@@ -87,6 +94,7 @@ class ProfilesPanel(QWidget):
             on_failed=lambda _: self._ended(),
             on_cancelled=self._ended,
         )
+        self._enable()
 
     def _done(self, summary: ProfilesSummary) -> None:
         self._ended()
@@ -101,8 +109,11 @@ class ProfilesPanel(QWidget):
 
     def _ended(self) -> None:
         self._task = None
-        self.measure.setEnabled(True)
+        self._enable()
         self._say("")
+
+    def _enable(self) -> None:
+        self.measure.setEnabled(not self._cannot and self._task is None)
 
     def _forget(self) -> None:
         self._stage, self._sd_deg = "", 0.0
@@ -113,6 +124,11 @@ class ProfilesPanel(QWidget):
         self.said.setText(text)
         self.said.setVisible(bool(text))
         self.open.setVisible(report is not None)
+        self._fit()
+
+    def _fit(self) -> None:
+        """Give the words all the lines they need: a folding panel asks once, before it knows how wide it is."""
+        self.said.setMinimumHeight(self.said.heightForWidth(self.said.width()) if self.said.text() else 0)
 
     def _open(self) -> None:
         if self._report is not None and not QDesktopServices.openUrl(QUrl.fromLocalFile(str(self._report))):

@@ -57,7 +57,12 @@ def test_the_result_is_told_with_every_picture_that_gave_none(
 ) -> None:
     opened(panel, bench, tmp_path / "three", 3)
     given: dict[str, Any] = {}
-    monkeypatch.setattr(type(bench), "run_long", lambda _self, *args, **more: given.update(args=args, **more))
+
+    def run_long(_self: Bench, *args: Any, **more: Any) -> object:
+        given.update(args=args, **more)
+        return object()
+
+    monkeypatch.setattr(type(bench), "run_long", run_long)
     panel.measure.click()
     assert not panel.measure.isEnabled()
     pictures = (PictureStep(0, "scan/a.png", 20.0, 0.01), PictureStep(1, "scan/b.png", reason=plain("no face")))
@@ -77,3 +82,9 @@ def test_another_project_forgets_the_result(panel: ProfilesPanel, bench: Bench, 
     opened(panel, bench, tmp_path / "two", 1)
     assert panel.tilt() is None
     assert not panel.said.isVisible()
+
+
+def test_without_calibrations_nothing_is_measured(panel: ProfilesPanel, bench: Bench, tmp_path: Path) -> None:
+    opened(panel, bench, tmp_path / "one", 1)
+    panel.refresh("Accept a camera calibration first.")
+    assert not panel.measure.isEnabled()
