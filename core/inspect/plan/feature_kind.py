@@ -48,7 +48,10 @@ class ResultKind:
 
 @dataclass(frozen=True, slots=True)
 class NumberField:
-    """A number in the form; `key` is the name of the setting."""
+    """A number in the form; `key` is the name of the setting.
+
+    With `none` it may be none, which is shown so; `first` is where it begins when one is wanted.
+    """
 
     key: str
     label: str
@@ -58,6 +61,8 @@ class NumberField:
     maximum: float
     decimals: int
     step: float
+    none: str = ""
+    first: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,6 +13,54 @@ MOST_FACES = 8
 WIDEST_MM = 5000.0
 """Lengths in forms go up to here: no rig sees farther."""
 
+FILTERS: tuple[NumberField, ...] = (
+    NumberField(
+        "sigma_max_mm", label("σ up to"), label("Points with a larger standard uncertainty are left out."),
+        "mm", 0.0001, WIDEST_MM, 4, 0.01, none=label("any"), first=0.1,
+    ),
+    NumberField(
+        "margin_mm", label("Margin at edges"), label("Points so near to a plane face's edge are left out."),
+        "mm", 0.0, 100.0, 2, 0.1,
+    ),
+    NumberField(
+        "outliers", label("Outliers beyond"), label("Robust standard deviations from the fit; 4.685 is usual."),
+        "σ", 2.0, 100.0, 3, 0.5,
+    ),
+    NumberField(
+        "cell_mm", label("Form over cells of"), label("Noise is averaged over cells so wide; 0: single points."),
+        "mm", 0.0, 100.0, 2, 0.5,
+    ),
+)  # fmt: skip
+"""Which points of their regions features use: in the form of every kind that is not made of others."""
+
+_SECTION = (
+    NumberField(
+        "half_width_mm", label("Half width"), label("Points so near to the cut are taken for points in it."),
+        "mm", 0.01, WIDEST_MM, 2, 0.1,
+    ),
+    NumberField(
+        "step_mm", label("Profile in steps of"), label("The profile drawn is averaged over so much."),
+        "mm", 0.01, WIDEST_MM, 2, 0.1,
+    ),
+)  # fmt: skip
+_ALIGNED = (
+    ("best fit", label("best fit")),
+    ("frame", label("part coordinates")),
+    ("as measured", label("as measured")),
+)
+_DEVIATION = (
+    TextField("nominal", label("Nominal surface"), label("STL file in mm, in the project's folder or elsewhere.")),
+    ChoiceField("align", label("Aligned by"), label("How the nominal surface is laid on the scan."), _ALIGNED),
+    NumberField(
+        "tolerance_mm", label("Colours up to ±"), label("Marks + ++ +++ are its quarters, ! lies beyond."),
+        "mm", 0.0001, WIDEST_MM, 4, 0.01,
+    ),
+    NumberField(
+        "reach_mm", label("Part within"), label("Points farther off belong to a table or a clamp."),
+        "mm", 0.01, WIDEST_MM, 2, 0.5,
+    ),
+)  # fmt: skip
+
 _DIAMETER = ResultKind("diameter", expands=True)
 _FORM = ResultKind("form", one_sided=True)
 _HEIGHT = ResultKind("height", expands=True)
@@ -118,28 +166,7 @@ KINDS: tuple[FeatureKind, ...] = (
         results=(_HEIGHT, _DISTANCE, ResultKind("radius", expands=True)),
         automatic="all points",
         settings="section",
-        fields=(
-            NumberField(
-                "half_width_mm",
-                label("Half width"),
-                label("Points so near to the cut are taken for points in it."),
-                "mm",
-                0.01,
-                WIDEST_MM,
-                2,
-                0.1,
-            ),
-            NumberField(
-                "step_mm",
-                label("Profile in steps of"),
-                label("The profile drawn is averaged over so much."),
-                "mm",
-                0.01,
-                WIDEST_MM,
-                2,
-                0.1,
-            ),
-        ),
+        fields=_SECTION,
         plotted=True,
     ),
     FeatureKind(
@@ -151,41 +178,7 @@ KINDS: tuple[FeatureKind, ...] = (
         results=(ResultKind("profile", one_sided=True), ResultKind("mean")),
         automatic="all points",
         settings="deviation",
-        fields=(
-            TextField(
-                "nominal", label("Nominal surface"), label("STL file in mm, in the project's folder or elsewhere.")
-            ),
-            ChoiceField(
-                "align",
-                label("Aligned by"),
-                label("How the nominal surface is laid on the scan."),
-                (
-                    ("best fit", label("best fit")),
-                    ("frame", label("part coordinates")),
-                    ("as measured", label("as measured")),
-                ),
-            ),
-            NumberField(
-                "tolerance_mm",
-                label("Colours up to ±"),
-                label("Marks + ++ +++ are its quarters, ! lies beyond."),
-                "mm",
-                0.0001,
-                WIDEST_MM,
-                4,
-                0.01,
-            ),
-            NumberField(
-                "reach_mm",
-                label("Part within"),
-                label("Points farther off belong to a table or a clamp."),
-                "mm",
-                0.01,
-                WIDEST_MM,
-                2,
-                0.5,
-            ),
-        ),
+        fields=_DEVIATION,
         nominal_file=True,
         plotted=True,
     ),

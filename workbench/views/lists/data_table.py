@@ -3,24 +3,79 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
-from PySide6.QtCore import Qt, Signal
+from PySide6.QtCore import QAbstractTableModel, QModelIndex, QPersistentModelIndex, Qt, Signal
 from PySide6.QtGui import QGuiApplication, QKeyEvent, QKeySequence
-from PySide6.QtWidgets import (
-    QAbstractItemView,
-    QHeaderView,
-    QMenu,
-    QTableWidget,
-    QTableWidgetItem,
-    QWidget,
-)
+from PySide6.QtWidgets import QAbstractItemView, QHeaderView, QMenu, QTableView, QWidget
 
 from workbench.views.layouts import in_column
 
 _NUMBER_SIGNS = set("0123456789.,+-−–±×e%° ")
+_Index = QModelIndex | QPersistentModelIndex
+_NONE = QModelIndex()
 
 
-class CopyingTable(QTableWidget):
+class _Texts(QAbstractTableModel):
+    """Rows of texts with titles and tips; a column of numbers stands right."""
+
+    titles: tuple[str, ...] = ()
+    rows: tuple[Sequence[str], ...] = ()
+    _tips: Sequence[str] | None = None
+    _right: tuple[bool, ...] = ()
+
+    def set_titles(self, titles: Sequence[str]) -> None:
+        self.beginResetModel()
+        self.titles, self.rows, self._tips, self._right = tuple(titles), (), None, ()
+        self.endResetModel()
+
+    def set_rows(self, rows: Sequence[Sequence[str]], tips: Sequence[str] | None) -> None:
+        """Rows that stay keep their places, so that what is chosen stays chosen."""
+        before, now = len(self.rows), len(rows)
+        if now > before:
+            self.beginInsertRows(_NONE, before, now - 1)
+        elif now < before:
+            self.beginRemoveRows(_NONE, now, before - 1)
+        self.rows, self._tips = tuple(rows), tips
+        columns = range(len(self.titles))
+        self._right = tuple(bool(rows) and all(_is_number(row[i]) for row in rows if row[i]) for i in columns)
+        if now > before:
+            self.endInsertRows()
+        elif now < before:
+            self.endRemoveRows()
+        if now:
+            self.dataChanged.emit(self.index(0, 0), self.index(now - 1, len(self.titles) - 1))
+        self.headerDataChanged.emit(Qt.Orientation.Horizontal, 0, len(self.titles) - 1)
+
+    def rowCount(self, parent: _Index = _NONE) -> int:
+        return 0 if parent.isValid() else len(self.rows)
+
+    def columnCount(self, parent: _Index = _NONE) -> int:
+        return 0 if parent.isValid() else len(self.titles)
+
+    def data(self, index: _Index, role: int = Qt.ItemDataRole.DisplayRole) -> Any:
+        match role:
+            case Qt.ItemDataRole.DisplayRole:
+                return self.rows[index.row()][index.column()]
+            case Qt.ItemDataRole.ToolTipRole if self._tips is not None:
+                return self._tips[index.row()]
+            case Qt.ItemDataRole.TextAlignmentRole:
+                return self._placed(index.column())
+        return None
+
+    def headerData(self, section: int, orientation: Qt.Orientation, role: int = Qt.ItemDataRole.DisplayRole) -> Any:
+        if orientation is Qt.Orientation.Horizontal and role == Qt.ItemDataRole.DisplayRole:
+            return self.titles[section]
+        if orientation is Qt.Orientation.Horizontal and role == Qt.ItemDataRole.TextAlignmentRole and self.rows:
+            return self._placed(section)
+        return None
+
+    def _placed(self, column: int) -> Qt.AlignmentFlag:
+        side = Qt.AlignmentFlag.AlignRight if self._right[column] else Qt.AlignmentFlag.AlignLeft
+        return side | Qt.AlignmentFlag.AlignVCenter
+
+
+class CopyingTable(QTableView):
     """A table that asks its owner when something is to be copied."""
 
     copy_wanted = Signal()
@@ -43,8 +98,8 @@ class DataTable(QWidget):
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self._titles: list[str] = []
-        self.table = CopyingTable()
+        self._model, self.table = _Texts(self), CopyingTable()
+        self.table.setModel(self._model)
         self.table.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
         self.table.setSelectionBehavior(QAbstractItemView.SelectionBehavior.SelectRows)
         self.table.setAlternatingRowColors(True)
@@ -59,18 +114,14 @@ class DataTable(QWidget):
         self.table.setContextMenuPolicy(Qt.ContextMenuPolicy.CustomContextMenu)
         self.table.customContextMenuRequested.connect(self._menu)
         self.table.copy_wanted.connect(self._copy)
-        self.table.currentCellChanged.connect(self._moved)
-        self.table.cellActivated.connect(lambda row, _: self.row_activated.emit(row))
+        self.table.selectionModel().currentRowChanged.connect(self._moved)
+        self.table.activated.connect(self._activated)
         self.setFocusProxy(self.table)
         in_column(self.table, on=self)
 
     def set_headers(self, headers: Sequence[tuple[str, str]]) -> None:
         """(title, unit) of each column; rows shown before are gone."""
-        self._titles = [f"{title} [{unit}]" if unit else title for title, unit in headers]
-        self.table.clear()
-        self.table.setRowCount(0)
-        self.table.setColumnCount(len(headers))
-        self.table.setHorizontalHeaderLabels(self._titles)
+        self._model.set_titles([f"{title} [{unit}]" if unit else title for title, unit in headers])
 
     def set_rows(self, rows: Sequence[Sequence[str]], tips: Sequence[str] | None = None) -> None:
         """Rows of texts, as many as there are columns; `tips` one a row. The chosen row and the scrolling are kept.
@@ -80,42 +131,27 @@ class DataTable(QWidget):
         ValueError
             If a row has not as many texts as there are columns.
         """
-        if wrong := next((row for row in rows if len(row) != len(self._titles)), None):
-            raise ValueError(f"{len(self._titles)} columns, but a row of {len(wrong)}")
-        kept, scrolled = self.table.currentRow(), self.table.verticalScrollBar().value()
-        self.table.blockSignals(True)
-        self.table.setRowCount(len(rows))
-        numeric = [all(_is_number(row[i]) for row in rows if row[i]) for i in range(len(self._titles))] if rows else []
-        for place, row in enumerate(rows):
-            for i, (text, right) in enumerate(zip(row, numeric, strict=True)):
-                item = QTableWidgetItem(text)
-                item.setTextAlignment(_placed(right))
-                if tips is not None:
-                    item.setToolTip(tips[place])
-                self.table.setItem(place, i, item)
-        for i, right in enumerate(numeric):
-            header = self.table.horizontalHeaderItem(i)
-            assert header is not None
-            header.setTextAlignment(_placed(right))
-        self.table.blockSignals(False)
-        self.table.setCurrentCell(min(kept, len(rows) - 1), 0)
-        self.table.verticalScrollBar().setValue(scrolled)
+        columns = len(self._model.titles)
+        if wrong := next((row for row in rows if len(row) != columns), None):
+            raise ValueError(f"{columns} columns, but a row of {len(wrong)}")
+        self._model.set_rows(rows, tips)
+
+    def rows(self) -> tuple[tuple[str, ...], ...]:
+        """The texts as they stand."""
+        return tuple(tuple(row) for row in self._model.rows)
 
     def current_row(self) -> int:
         """The row gone to, −1 for none."""
-        return self.table.currentRow()
+        return self.table.currentIndex().row()
 
     def set_current_row(self, row: int) -> None:
-        """Go to a row."""
-        self.table.setCurrentCell(row, 0)
+        """Go to a row; −1 to none."""
+        self.table.setCurrentIndex(self._model.index(row, 0))
 
     def copied(self) -> str:
         """What Ctrl+C copies: the chosen rows, or all if none is chosen, with the headers."""
-        chosen = sorted({index.row() for index in self.table.selectedIndexes()}) or range(self.table.rowCount())
-        columns = range(self.table.columnCount())
-        model = self.table.model()
-        lines = [self._titles, *([str(model.index(row, column).data()) for column in columns] for row in chosen)]
-        return "\n".join("\t".join(line) for line in lines)
+        chosen = sorted({index.row() for index in self.table.selectedIndexes()}) or range(len(self._model.rows))
+        return "\n".join("\t".join(line) for line in (self._model.titles, *(self._model.rows[row] for row in chosen)))
 
     def _copy(self) -> None:
         QGuiApplication.clipboard().setText(self.copied())
@@ -126,15 +162,14 @@ class DataTable(QWidget):
         menu.exec(self.cursor().pos())
         menu.deleteLater()
 
-    def _moved(self, row: int, _column: int, before: int, _before_column: int) -> None:
-        if row != before:
-            self.current_row_changed.emit(row)
+    def _moved(self, now: _Index, before: _Index) -> None:
+        if now.row() != before.row():
+            self.current_row_changed.emit(now.row())
+
+    def _activated(self, index: _Index) -> None:
+        self.row_activated.emit(index.row())
 
 
 def _is_number(text: str) -> bool:
     """Whether a text is a number, perhaps with an uncertainty: it stands right then."""
     return any(c.isdigit() for c in text) and set(text) <= _NUMBER_SIGNS
-
-
-def _placed(right: bool) -> Qt.AlignmentFlag:
-    return (Qt.AlignmentFlag.AlignRight if right else Qt.AlignmentFlag.AlignLeft) | Qt.AlignmentFlag.AlignVCenter

@@ -8,7 +8,7 @@ from core.inspect.characteristic import Limits
 from core.inspect.plan.feature_spec import Auto, FeatureSpec, PointsOf, Polygon
 from core.inspect.plan.inspection_plan import InspectionPlan
 from core.inspect.plan.kinds import KINDS
-from workbench.pages.inspect import feature_values as fields
+from workbench.pages.inspect.features import values as fields
 
 SIZE = (640, 480)
 PLANES = InspectionPlan((FeatureSpec("top", "plane"), FeatureSpec("table", "plane")))

@@ -21,7 +21,7 @@ from core.messages import plain
 from tests.inspect.plan.toy_kind import toy
 from tests.workbench.hand_lane import HandLane
 from tests.workbench.pages import inspect_cases as cases
-from workbench.pages.inspect import feature_values as fields
+from workbench.pages.inspect.features import values as fields
 from workbench.pages.inspect.features.edit import LINE
 from workbench.pages.inspect.page import InspectPage
 from workbench.pages.inspect.surface import TOGETHER

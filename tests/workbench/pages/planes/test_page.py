@@ -268,7 +268,7 @@ def test_planes_are_restored_from_the_history(solved: PlanesPage, qtbot: Any) ->
     settled(qtbot, solved)
     solved.tabs.setCurrentWidget(solved.history)
     solved.refreshing.at_once()
-    assert solved.history.table.table.rowCount() == 2
+    assert len(solved.history.table.rows()) == 2
     assert solved.history.restore.toolTip() == "Choose a calibration in the list first."
     assert solved.history.words.text() == "Choose a calibration in the list first."
     solved.history.table.set_current_row(1)

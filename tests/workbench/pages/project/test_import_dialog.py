@@ -33,8 +33,7 @@ def dialog_of(technician: Technician) -> ImportDialog:
 
 
 def cells(dialog: ImportDialog) -> list[tuple[str, ...]]:
-    table = dialog.table.table
-    return [tuple(table.item(row, k).text() for k in range(3)) for row in range(table.rowCount())]  # type: ignore[union-attr]
+    return [row[:3] for row in dialog.table.rows()]
 
 
 def test_what_was_understood_is_shown_before_the_project_measures_it(

@@ -145,7 +145,10 @@ def table(qtbot):
 
 def test_numbers_stand_right_and_words_left(table):
     def side(column):
-        return Qt.AlignmentFlag(table.table.item(0, column).textAlignment()) & Qt.AlignmentFlag.AlignHorizontal_Mask
+        return (
+            Qt.AlignmentFlag(table.table.model().index(0, column).data(Qt.ItemDataRole.TextAlignmentRole))
+            & Qt.AlignmentFlag.AlignHorizontal_Mask
+        )
 
     assert [side(column) for column in range(3)] == [
         Qt.AlignmentFlag.AlignLeft,

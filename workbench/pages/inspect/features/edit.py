@@ -14,7 +14,7 @@ from core.inspect.plan.feature_spec import FeatureSpec, Polygon
 from core.inspect.plan.kinds import kind_of
 from core.inspect.profile import usual_stretches
 from workbench.language import text_of, tr
-from workbench.pages.inspect import feature_values as fields
+from workbench.pages.inspect.features import values as fields
 from workbench.pages.inspect.features.plan import InspectFeatures
 from workbench.pages.inspect.scan import InspectScan
 

@@ -11,11 +11,11 @@ from core.inspect.plan.feature_spec import Auto, FeatureSpec, InBox, InSphere, P
 from core.inspect.plan.inspection_plan import InspectionPlan
 from core.inspect.plan.kinds import MOST_FACES, kind_of
 from workbench.language import tr
-from workbench.pages.inspect import feature_values as fields
-from workbench.pages.inspect import feature_words as words
-from workbench.pages.inspect.feature_settings import add_cuts, add_fields, add_filters, add_limits, add_line
+from workbench.pages.inspect.features import values as fields
+from workbench.pages.inspect.features import words
 from workbench.pages.inspect.features.edit import InspectFeatureEdit
 from workbench.pages.inspect.features.plan import InspectFeatures
+from workbench.pages.inspect.features.settings import add_settings
 from workbench.pages.inspect.scan import InspectScan
 from workbench.theme import icon
 from workbench.views import ask
@@ -71,7 +71,7 @@ class FeatureForm(QWidget):
         column.addWidget(self.where)
         if fields.own_regions(spec):
             column.addLayout(self._drawing_tools(spec))
-        self._add_what(spec)
+        add_settings(self.what, spec)
         column.addWidget(self.what)
         self._add_buttons(spec, column)
         self._column.addWidget(self._inside)
@@ -138,17 +138,6 @@ class FeatureForm(QWidget):
                 self.tools[place, kind] = button
                 grid.addWidget(button, place, column)
         return grid
-
-    def _add_what(self, spec: FeatureSpec) -> None:
-        form = self.what
-        if spec.section is not None:
-            add_line(form, spec.section)
-        add_fields(form, kind_of(spec).fields)
-        if spec.section is not None:
-            add_cuts(form, spec.section)
-        add_limits(form, spec)
-        if not kind_of(spec).made_of:
-            add_filters(form)
 
     def _add_buttons(self, spec: FeatureSpec, column: QVBoxLayout) -> None:
         wanted: list[tuple[str, str, str, Any]] = []

@@ -23,8 +23,8 @@ from core.inspect.plan import kinds
 from core.inspect.plan.feature_kind import FeatureKind
 from core.inspect.plan.kinds import kind_named, kind_of
 from workbench.language import text_of, tr
-from workbench.pages.inspect import feature_values as fields
-from workbench.pages.inspect import feature_words as words
+from workbench.pages.inspect.features import values as fields
+from workbench.pages.inspect.features import words
 from workbench.pages.inspect.features.edit import InspectFeatureEdit
 from workbench.pages.inspect.features.form import FeatureForm
 from workbench.pages.inspect.features.plan import InspectFeatures

@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QWidget
 
 from core.inspect.plan.kinds import kind_of
 from workbench.language import text_of, tr
-from workbench.pages.inspect import feature_words as words
+from workbench.pages.inspect.features import words
 from workbench.pages.inspect.features.edit import InspectFeatureEdit
 from workbench.pages.inspect.features.plan import InspectFeatures
 from workbench.views.colours import FEATURE

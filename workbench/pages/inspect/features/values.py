@@ -20,7 +20,7 @@ from core.inspect.plan.feature_spec import (
     Section,
 )
 from core.inspect.plan.inspection_plan import InspectionPlan
-from core.inspect.plan.kinds import MOST_FACES, kind_named, kind_of, results_of
+from core.inspect.plan.kinds import FILTERS, MOST_FACES, kind_named, kind_of, results_of
 from workbench.language import tr
 
 AUTO, DRAWN, PLACED = "auto", "drawn", "placed"
@@ -61,17 +61,14 @@ def values_of(spec: FeatureSpec) -> dict[str, Any]:
     values: dict[str, Any] = {"name": spec.name}
     values |= {f"of {place}": name for place, name in enumerate(spec.of)}
     if not kind_of(spec).made_of:
-        filters = spec.filters
-        values |= {"sigma_max_mm": filters.sigma_max_mm, "margin_mm": filters.margin_mm}
-        values |= {"outliers": filters.outliers, "cell_mm": filters.cell_mm}
         values["parts"] = None if len(spec.regions) == 1 else len(spec.regions)
     for place, region in enumerate(own_regions(spec)):
         values[f"source {place}"] = _source(region)
         values[f"number {place}"] = region.number if isinstance(region, Auto) else 1
     for result in results_of(spec):
         values |= limits_values(spec, result)
-    for one in kind_of(spec).fields:
-        values[one.key] = _shown(getattr(_holder(spec), one.key))
+    for key, holder in _holders(spec).items():
+        values[key] = _shown(getattr(getattr(spec, holder) if holder else spec, key))
     if spec.section is not None:
         values |= _section_values(spec.section)
     return values
@@ -91,10 +88,8 @@ def with_value(spec: FeatureSpec, key: str, value: Any) -> FeatureSpec:
         return replace(spec, regions=tuple(_region(spec.regions, place) for place in range(count)))
     if group in ("source", "number"):
         return with_region(spec, int(rest), _sourced(value) if group == "source" else Auto(int(value)))
-    if key in ("sigma_max_mm", "margin_mm", "outliers", "cell_mm"):
-        return replace(spec, filters=replace(spec.filters, **{key: value}))
-    if any(one.key == key for one in kind_of(spec).fields):
-        return _with_own(spec, key, value)
+    if key in _holders(spec):
+        return _with_own(spec, _holders(spec)[key], key, value)
     if spec.section is not None:
         return _with_section(spec, spec.section, key, value)
     raise KeyError(key)
@@ -190,19 +185,20 @@ def _numbers(text: str) -> tuple[float, ...]:
 # ---- settings of a kind
 
 
-def _holder(spec: FeatureSpec) -> Any:
-    """What holds a kind's own settings: the feature itself, or one of its fields."""
-    settings = kind_of(spec).settings
-    return getattr(spec, settings) if settings else spec
+def _holders(spec: FeatureSpec) -> dict[str, str]:
+    """The settings it has, by key, and the field of the feature that holds each; "" for the feature itself."""
+    kind = kind_of(spec)
+    own = {one.key: str(kind.settings) for one in kind.fields}
+    return own if kind.made_of else own | {one.key: "filters" for one in FILTERS}
 
 
-def _with_own(spec: FeatureSpec, key: str, value: Any) -> FeatureSpec:
-    """The feature with one of its kind's own settings changed."""
-    settings, holder = kind_of(spec).settings, _holder(spec)
-    if isinstance(getattr(holder, key), tuple):
+def _with_own(spec: FeatureSpec, holder: str, key: str, value: Any) -> FeatureSpec:
+    """The feature with one of these changed."""
+    held = getattr(spec, holder) if holder else spec
+    if isinstance(getattr(held, key), tuple):
         value = _numbers(str(value))
-    changed = replace(holder, **{key: value})
-    return replace(spec, **{settings: changed}) if settings else changed
+    changed: Any = replace(held, **{key: value})
+    return replace(spec, **{holder: changed}) if holder else changed
 
 
 def _shown(value: Any) -> Any:
