@@ -117,7 +117,8 @@ def solve(
         How often the standard deviations are improved, at most.
     """
     seen = Observations(poses, camera, camera_covariance, plate)
-    state = State(planes, tuple(pose.pose for pose in poses), np.zeros(seen.bows), np.zeros(PARAMETERS))
+    bow = np.zeros(0) if plate is None else plate.bow
+    state = State(planes, tuple(pose.pose for pose in poses), bow, np.zeros(PARAMETERS))
     trust = _at_first(seen, state)
     solution = minimise(state, partial(seen.linearise, trust=trust), seen.move)
     for _ in range(rounds):

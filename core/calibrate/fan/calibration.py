@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from core.calibrate.board_shape import Board
+from core.calibrate.board_shape import Board, BoardShape
 from core.calibrate.fan.bundle import Bundle, solve
 from core.calibrate.fan.cross_validation import prediction_errors
 from core.calibrate.fan.line_assignment import NOT_SEEN, assign_lines
@@ -24,6 +24,7 @@ from core.calibrate.fan.located_pose import LocatedPose, locate
 from core.calibrate.fan.observations import BundlePose, Plate
 from core.calibrate.fan.pencil import FreePlanes, PlaneSet
 from core.calibrate.fan.pose_features import PoseFeatures
+from core.calibrate.fan.stripe_distances import BOWS
 from core.calibrate.fan.stripe_lines import StripeLine
 from core.calibrate.fan.summary import summarise
 from core.calibrate.fan.target_plane import on_target
@@ -47,6 +48,9 @@ MOST_BOWED = 3.0
 """A bow of this many times the stated flatness is not believed."""
 TILTS_OF_USE = np.deg2rad(60.0)
 """The most that a target can be tilted and still be seen well."""
+BENDS_MM = 0.03
+"""Standard deviation in mm of how much a board bends otherwise when it is held anew, between one step and the next:
+assumed, for a sheet on a board of some mm."""
 OUTLYING = 5.0
 """A pose this many times worse than the median pose is left out."""
 
@@ -69,6 +73,9 @@ class FanOptions:
     flatness_mm
         Standard deviation of how far the edges of what is used of the target may be off its plane: then its bow is
         solved for. 0 or None: it is flat.
+    board
+        The target's shape where the camera's calibration with the same target has found it bowed: then its bow is
+        solved for from there, within what is known of it, whatever the flatness.
 
     Raises
     ------
@@ -81,6 +88,7 @@ class FanOptions:
     constrained: Constrained = "auto"
     scale_sd: float = 0.0
     flatness_mm: float | None = None
+    board: BoardShape | None = None
 
     def __post_init__(self) -> None:
         if self.lines < 1:
@@ -127,9 +135,9 @@ def fit_fan(
     located, rough = _assigned(located, camera, options)
     _check_spread(located, options.lines)
     further = _further_line(located, camera, rough)
-    plate = _plate(located, options.flatness_mm)
+    plate = _plate(located, options)
     located, free = _solve_without_outlying_poses(FreePlanes(rough), located, camera, plate)
-    _check_bow(free, options.flatness_mm)
+    _check_bow(free, options)
     volume = _points_by_line(located, free)
     verdict = judge(free, volume, options.angle, options.constrained)
     if camera_covariance is not None and camera_covariance.any():
@@ -284,9 +292,12 @@ def _missing_tilt(stripes: Sequence[StripeLine], ends: Array, spread: float) -> 
     )
 
 
-def _check_bow(fit: Bundle, flatness_mm: float | None) -> None:
-    """InputError if the target comes out far more bowed than it was said that it may be."""
-    bow = float(np.abs(fit.shape.values[:3]).max())
+def _check_bow(fit: Bundle, options: FanOptions) -> None:
+    """InputError if the target comes out far more bowed than it was said that it may be, or than the camera saw it."""
+    bow, flatness_mm = float(np.abs(fit.shape.values[:BOWS]).max()), options.flatness_mm
+    if options.board is not None and options.board.values[:BOWS].any():
+        _check_bow_against(options.board, fit.shape)
+        return
     if not flatness_mm or bow <= MOST_BOWED * flatness_mm:
         return
     raise InputError(
@@ -307,15 +318,39 @@ def _check_bow(fit: Bundle, flatness_mm: float | None) -> None:
     )
 
 
-def _plate(located: Sequence[LocatedPose], flatness_mm: float | None) -> Plate | None:
+def _check_bow_against(seen: BoardShape, found: BoardShape) -> None:
+    """InputError if the target is `found` bowed otherwise than the camera's views have `seen` it."""
+    off = np.abs(found.values - seen.values)[:BOWS]
+    if (off <= MOST_BOWED * np.hypot(seen.sd[:BOWS], BENDS_MM)).all():
+        return
+    raise InputError(
+        Message(
+            "fan.bow_not_as_camera",
+            "the plane target comes out bowed by {found:.2f} mm, but the camera's views of the same target say "
+            "{seen:.2f} mm",
+            found=found.departure_mm,
+            seen=seen.departure_mm,
+        ),
+        where=WHERE,
+        todo=Message(
+            "advice.same_target",
+            "check that both steps used one target, fixed to something flat, and calibrate both on one day",
+        ),
+    )
+
+
+def _plate(located: Sequence[LocatedPose], options: FanOptions) -> Plate | None:
     """The part of the target that points and stripes are on, if it may be bowed."""
-    if not flatness_mm:
+    if options.board is not None and options.board.values[:BOWS].any():
+        known = options.board.covariance[:BOWS, :BOWS] + BENDS_MM**2 * np.eye(BOWS)
+        return Plate(options.board.board, options.board.values[:BOWS], known)
+    if not options.flatness_mm:
         return None
     used = [pose for pose in located if pose.used and pose.features.view is not None]
     points = [pose.features.view.points for pose in used if pose.features.view is not None]
     for pose in used:
         points += [pose.pose.inverse().apply(on_target(stripe.rays, pose.pose)) for stripe in pose.stripes.values()]
-    return Plate(Board.of(points), flatness_mm)
+    return Plate.flat_within(Board.of(points), options.flatness_mm)
 
 
 def _bundle_poses(located: Sequence[LocatedPose]) -> list[BundlePose]:

@@ -49,10 +49,21 @@ class BundlePose:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Plate:
-    """A plate that may be bowed: its extent, and the standard deviation of how far its edges are off its plane."""
+    """A plate that may be bowed: its extent, and what is known of its bow, values (3,) and covariance (3, 3) in mm."""
 
     board: Board
-    flatness_mm: float
+    bow: Array
+    covariance: Array
+
+    @classmethod
+    def flat_within(cls, board: Board, flatness_mm: float) -> Plate:
+        """A plate whose edges may be off its plane by a standard deviation of `flatness_mm`."""
+        return cls(board, np.zeros(BOWS), flatness_mm**2 * np.eye(BOWS))
+
+    @property
+    def whiten(self) -> Array:
+        """(3, 3) that turns bows into independent numbers of unit variance."""
+        return np.asarray(np.linalg.inv(np.linalg.cholesky(self.covariance)), dtype=np.float64)
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -205,8 +216,9 @@ class Observations:
         rows = np.zeros((self.bows, width))
         if self.plate is None:
             return np.zeros(0), rows
-        rows[:, first : first + self.bows] = np.eye(self.bows) / self.plate.flatness_mm
-        return state.bow / self.plate.flatness_mm, rows
+        whiten = self.plate.whiten
+        rows[:, first : first + self.bows] = whiten
+        return np.asarray(whiten @ (state.bow - self.plate.bow), dtype=np.float64), rows
 
     def move(self, state: State, step: Array) -> State:
         """The state after a step of the unknowns that are free."""

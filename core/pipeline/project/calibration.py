@@ -101,7 +101,7 @@ def solve_poses(
         If no camera is accepted, or the poses do not determine the fan.
     """
     camera = _accepted(folder, project)
-    return solve_planes(poses, camera.camera, project.rig, project.options, progress, camera.covariance)
+    return solve_planes(poses, camera.camera, project.rig, project.options, progress, camera)
 
 
 def accept_fan(

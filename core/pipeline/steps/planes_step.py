@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from core.calibrate.fan.calibration import FanOptions, fit_fan
 from core.calibrate.fan.plane_pose import measure_plane_pose
 from core.calibrate.fan.pose_features import PoseFeatures
 from core.calibrate.fan.verdict import Constrained
-from core.calibrate.results import FanCalibration
+from core.calibrate.results import CameraCalibration, FanCalibration
 from core.errors import InputError
 from core.files.pictures import compression_grey
 from core.files.recording.features_file import write_poses
@@ -21,7 +22,6 @@ from core.files.results.fan_file import fan_id, read_fan, write_fan
 from core.image.stripes.stripe import StripeSettings
 from core.messages import Command, Message, plain
 from core.model import Camera
-from core.model.arrays import Array
 from core.pipeline.steps.workspace import Workspace, check_size
 from core.progress import Progress, silent
 from core.threads import ordered_map
@@ -45,7 +45,7 @@ def planes_step(work: Workspace, options: Options | None = None, progress: Progr
     with work.step("planes") as log:
         log.settings.update(planes_settings(work.found.rig, options))
         poses = measure_poses(work.found, camera, progress, options.plane_stripe)
-        calibration = solve_planes(poses, camera, work.found.rig, options, progress, given.covariance)
+        calibration = solve_planes(poses, camera, work.found.rig, options, progress, given)
         check_agreement(calibration, options.accept_few_poses)
         log.notes.extend(note for pose in poses for note in pose.notes)
         log.notes.extend(calibration.notes)
@@ -109,11 +109,12 @@ def solve_planes(
     rig: Rig,
     options: Options | None = None,
     progress: Progress = silent,
-    camera_covariance: Array | None = None,
+    calibration: CameraCalibration | None = None,
 ) -> FanCalibration:
     """The fan from what the pictures of all poses show, without those left out by hand.
 
-    The camera's covariance (10, 10) is needed where the options have the camera adjusted; without it, it is not.
+    The camera's `calibration` is needed where the options have the camera adjusted; without it, it is not. What it
+    says of the shape of a target that both steps use holds here as well.
 
     Raises
     ------
@@ -122,8 +123,11 @@ def solve_planes(
     """
     options = options or Options()
     excluded = {name.removeprefix(FOLDER) for name in options.excluded if name.startswith(FOLDER)}
-    adjusted = camera_covariance if options.adjust_camera else None
-    return fit_fan(poses, camera, fan_options(rig, options), progress, excluded, adjusted)
+    adjusted = calibration.covariance if calibration is not None and options.adjust_camera else None
+    known = fan_options(rig, options)
+    if calibration is not None and rig.camera_target == rig.plane_target:
+        known = replace(known, board=calibration.board)
+    return fit_fan(poses, camera, known, progress, excluded, adjusted)
 
 
 def fan_options(rig: Rig, options: Options) -> FanOptions:

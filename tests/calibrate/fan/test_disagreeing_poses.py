@@ -1,14 +1,17 @@
 """Poses that disagree: scattered plates, nearly parallel ones, and what is said of them."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from core.calibrate.board_shape import BoardShape
 from core.calibrate.fan.calibration import FanOptions, fit_fan
 from core.calibrate.results import FanCalibration
 from core.errors import InputError
 from core.model import Pose
-from tests.calibrate.fan.test_calibration import THREE
+from tests.calibrate.fan.test_calibration import THREE, normalised, worst_mm
 from tests.calibrate.fan_scenes import CAMERA, GRID, PAPER, Noise, bowed, features, poses
 
 
@@ -72,3 +75,24 @@ def test_a_bow_beyond_what_was_stated_is_refused():
     seen = features(poses(9, 302), Noise(), 2, points=GRID, shape=bowed(3.0, 3.0, 0.0))
     with pytest.raises(InputError, match="times its stated flatness"):
         fit_fan(seen, CAMERA, FanOptions(3, THREE.angle, flatness_mm=0.05))
+
+
+def seen_by_camera(*bow: float) -> BoardShape:
+    """The board's shape as the camera's views tell it, to 0.02 mm."""
+    return replace(bowed(*bow), covariance=0.02**2 * np.eye(4))
+
+
+def test_a_bow_that_the_camera_has_seen_is_taken_over_and_the_planes_are_right():
+    """Nothing is said of its flatness: taken for flat, planes are off by more than their uncertainty."""
+    seen = features(poses(9, 302), Noise(), 2, points=GRID, shape=bowed(0.7, 0.5, 0.0))
+    known = fit_fan(seen, CAMERA, FanOptions(3, THREE.angle, board=seen_by_camera(0.7, 0.5, 0.0)))
+    flat = fit_fan(seen, CAMERA, THREE)
+    assert known.board.values[:3] == pytest.approx([0.7, 0.5, 0.0], abs=0.06)
+    assert worst_mm(known.fan.pis, PAPER) < 0.4 * worst_mm(flat.fan.pis, PAPER)
+    assert normalised(known) < 4
+
+
+def test_a_board_bowed_otherwise_than_the_camera_saw_it_is_refused():
+    seen = features(poses(9, 302), Noise(), 2, points=GRID, shape=bowed(-0.7, -0.5, 0.0))
+    with pytest.raises(InputError, match="views of the same target"):
+        fit_fan(seen, CAMERA, FanOptions(3, THREE.angle, board=seen_by_camera(0.7, 0.5, 0.0)))
