@@ -9,9 +9,11 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, PlainValidator, WrapValidator
 
+from core.calibrate.results import PlanePose, ViewQuality
 from core.inspect.results import Contribution
 from core.inspect.uncertainty.causes import known_cause
 from core.messages import Message, as_json, from_json, label
+from core.model import Pose
 
 
 def _aware(value: object) -> object:
@@ -66,6 +68,27 @@ class ResultFile(BaseModel):
     """A file of results: keys may be added by others, and are then ignored."""
 
     model_config = ConfigDict(extra="ignore", strict=True, frozen=True)
+
+
+class CountedPose(ResultFile):
+    """A picture of a target: whether it counts, and where the target was in the camera's frame."""
+
+    name: str
+    used: bool
+    reason: OptionalMessage = None
+    rotation_vector: Row3
+    translation_mm: Row3
+
+    def pose(self) -> Pose:
+        """Where the target was."""
+        return Pose.from_vector([*self.rotation_vector, *self.translation_mm])
+
+
+def counted_pose(view: ViewQuality | PlanePose, **figures: Any) -> dict[str, Any]:
+    """The same as it is written, with its figures of merit."""
+    vector = view.pose.vector
+    head = {"name": view.name, "used": view.used, "reason": kept(view.reason)}
+    return head | figures | {"rotation_vector": vector[:3], "translation_mm": vector[3:]}
 
 
 class BudgetRow(ResultFile):

@@ -227,27 +227,21 @@ def _sum_of(arrays: Iterable[NDArray[Any]]) -> str:
 
 def _missing(errors: PointErrors) -> tuple[Message, ...]:
     """What the stated uncertainties do not hold."""
-    missing = []
-    if errors.sweep_covariance is None:
-        missing.append(Message("inspection.without_sweeps", "the sweeps' light planes"))
-    if not errors.knows("camera"):
-        missing.append(Message("inspection.without_camera", "the camera"))
-    if not errors.knows("fan"):
-        missing.append(Message("inspection.without_fan", "the fan"))
+    missing = errors.missing()
     if not missing:
         return ()
     if errors.sweep_covariance is not None:
         return (
             Message(
                 "inspection.missing_in_u",
-                "The stated uncertainties do not hold that of {missing}: they are less than is known.",
+                "The stated uncertainties do not hold {missing}: they are less than is known.",
                 missing=missing,
             ),
         )
     return (
         Message(
             "inspection.missing_in_u_proves_nothing",
-            "The stated uncertainties do not hold that of {missing}: they are less than is known, and prove nothing.",
+            "The stated uncertainties do not hold {missing}: they are less than is known, and prove nothing.",
             missing=missing,
         ),
     )

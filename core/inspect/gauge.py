@@ -186,7 +186,9 @@ def measure_gauge(
         verdict=verdict,
         normal=fit.planes.normal,
         rule=RULE if fit.planes.tilt_determined else RULE_LINE,
-        notes=_notes(errors),
+        notes=(Message("gauge.missing_in_u", "The stated uncertainty does not hold {missing}.", missing=missing),)
+        if (missing := errors.missing())
+        else (),
     )
 
 
@@ -207,19 +209,3 @@ def _face(fit: PlaneFit, indices: NDArray[np.int64]) -> Face:
     low, high = np.quantile(residuals, [0.025, 0.975])
     plane = LightPlane.from_normal(fit.normal, fit.distance)
     return Face(plane, indices[kept], residuals, float(high - low), float(np.sqrt(np.mean(residuals**2))))
-
-
-def _notes(errors: PointErrors) -> tuple[Message, ...]:
-    """What the stated uncertainty does not hold."""
-    missing = []
-    if errors.sweep_covariance is None:
-        missing.append(Message("gauge.without_sweeps", "that of the sweeps' light planes"))
-    elif errors.speckle is None:
-        missing.append(Message("gauge.without_speckle", "what the sweeps owe to the fan's speckle"))
-    if not errors.knows("camera"):
-        missing.append(Message("gauge.without_camera", "that of the camera"))
-    if not errors.knows("fan"):
-        missing.append(Message("gauge.without_fan", "that of the fan"))
-    if not missing:
-        return ()
-    return (Message("gauge.missing_in_u", "The stated uncertainty does not hold {missing}.", missing=missing),)

@@ -16,10 +16,20 @@ from core.calibrate.results import CAMERA_PARAMETERS, CameraCalibration, ViewQua
 from core.files.complaints import Clash, checked
 from core.files.json_text import rounded, write_json
 from core.files.reading import read_json
-from core.files.tables import Finite, KeptMessage, OptionalMessage, OrNan, ResultFile, Row2, Row3, kept
+from core.files.tables import (
+    CountedPose,
+    Finite,
+    KeptMessage,
+    OrNan,
+    ResultFile,
+    Row2,
+    Row3,
+    counted_pose,
+    kept,
+)
 from core.image.targets.target_view import TargetView
 from core.messages import Command, Message
-from core.model import Camera, Pose
+from core.model import Camera
 from core.model.camera import DISTORTION_NAMES
 
 
@@ -31,15 +41,10 @@ class _Distortion(ResultFile):
     k3: Finite = Field(0.0, description="a finite number")
 
 
-class _View(ResultFile):
-    name: str
-    used: bool
-    reason: OptionalMessage = None
+class _View(CountedPose):
     rms_px: OrNan = math.nan
     mean_px: OrNan = math.nan
     tilt_deg: OrNan = math.nan
-    rotation_vector: Row3
-    translation_mm: Row3
     points_mm: list[Row3]
     uv_px: list[Row2]
     sigma_px: list[Finite]
@@ -188,16 +193,8 @@ def board_shape(table: BoardTable | None) -> BoardShape:
 
 
 def _view(quality: ViewQuality) -> dict[str, Any]:
-    vector = quality.pose.vector
-    return {
-        "name": quality.name,
-        "used": quality.used,
-        "reason": kept(quality.reason),
-        "rms_px": quality.rms_px,
-        "mean_px": quality.mean_px,
-        "tilt_deg": math.degrees(quality.tilt),
-        "rotation_vector": vector[:3],
-        "translation_mm": vector[3:],
+    tilt_deg = math.degrees(quality.tilt)
+    return counted_pose(quality, rms_px=quality.rms_px, mean_px=quality.mean_px, tilt_deg=tilt_deg) | {
         "points_mm": rounded(quality.view.points, 6),
         "uv_px": rounded(quality.view.uv, 6),
         "sigma_px": rounded(quality.view.sigma, 6),
@@ -214,7 +211,7 @@ def _quality(view: _View) -> ViewQuality:
             np.array(view.sigma_px),
             view.name,
         ),
-        pose=Pose.from_vector([*view.rotation_vector, *view.translation_mm]),
+        pose=view.pose(),
         residuals=np.array(view.residuals_px, dtype=np.float64).reshape(-1, 2),
         rms_px=view.rms_px,
         mean_px=view.mean_px,

@@ -17,9 +17,19 @@ from core.files.complaints import Clash, checked
 from core.files.json_text import write_json
 from core.files.reading import read_json
 from core.files.results.camera_file import BoardTable, board_shape, board_table, camera_id
-from core.files.tables import Finite, KeptMessage, OptionalMessage, OrNan, ResultFile, Row3, kept
+from core.files.tables import (
+    CountedPose,
+    Finite,
+    KeptMessage,
+    OptionalMessage,
+    OrNan,
+    ResultFile,
+    Row3,
+    counted_pose,
+    kept,
+)
 from core.messages import Command, Message, label
-from core.model import Camera, Fan, LightPlane, Pose
+from core.model import Camera, Fan, LightPlane
 
 _PARAMETERS = len(CAMERA_PARAMETERS)
 _VECTOR = label("three finite numbers, not all zero")
@@ -47,15 +57,10 @@ class _Angles(ResultFile):
     free: list[Finite] = Field(default_factory=list)
 
 
-class _Pose(ResultFile):
-    name: str
-    used: bool
-    reason: OptionalMessage = None
+class _Pose(CountedPose):
     rms_mm: OrNan = math.nan
     prediction_mm: OrNan = math.nan
     target_rms_px: OrNan = math.nan
-    rotation_vector: Row3
-    translation_mm: Row3
 
 
 class _Camera(ResultFile):
@@ -262,24 +267,15 @@ def _plane(plane: LightPlane) -> dict[str, Any]:
 
 
 def _pose(pose: PlanePose) -> dict[str, Any]:
-    vector = pose.pose.vector
-    return {
-        "name": pose.name,
-        "used": pose.used,
-        "reason": kept(pose.reason),
-        "rms_mm": pose.rms_mm,
-        "prediction_mm": pose.prediction_mm,
-        "target_rms_px": pose.target_rms_px,
-        "rotation_vector": vector[:3],
-        "translation_mm": vector[3:],
-        "points": [len(points) for points in pose.points],
-    }
+    return counted_pose(
+        pose, rms_mm=pose.rms_mm, prediction_mm=pose.prediction_mm, target_rms_px=pose.target_rms_px
+    ) | {"points": [len(points) for points in pose.points]}
 
 
 def _plane_pose(pose: _Pose) -> PlanePose:
     return PlanePose(
         name=pose.name,
-        pose=Pose.from_vector([*pose.rotation_vector, *pose.translation_mm]),
+        pose=pose.pose(),
         target_rms_px=pose.target_rms_px,
         points=(),
         distances=(),

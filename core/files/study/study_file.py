@@ -15,7 +15,7 @@ from core.files.atomic import make_folder, write_text
 from core.files.complaints import checked
 from core.files.json_text import to_json
 from core.files.reading import read_json
-from core.files.tables import Finite, KeptCause, ResultFile, kept
+from core.files.tables import BudgetRow, Finite, ResultFile, kept
 from core.inspect.conformity import Zones
 from core.inspect.results import Contribution
 from core.messages import Command, Message
@@ -215,18 +215,13 @@ _TODO = Message(
 )
 
 
-class _Row(ResultFile):
-    source: KeptCause
-    contribution: Finite
-    u_input: Finite | None = None
-    distribution: str = "normal"
+class _Row(BudgetRow):
+    point_mm: Finite | None = Field(None, validation_alias="u_input")
     dof: Finite | None = None
-    value: Finite | None = None
-    unit: str = "mm"
+    contribution: Finite
 
     def row(self) -> Contribution:
-        dof = math.inf if self.dof is None else self.dof
-        return Contribution(self.source, self.contribution, self.u_input, self.distribution, dof, self.value, self.unit)
+        return self.contributing(self.contribution)
 
 
 class _Budget(ResultFile):

@@ -91,6 +91,19 @@ class PointErrors:
         """Whether the errors of that calibration are among them."""
         return self.common is not None and source in self.common.sources
 
+    def missing(self) -> tuple[Message, ...]:
+        """What an uncertainty made of them does not hold, as the object of a sentence."""
+        lacking = []
+        if self.sweep_covariance is None:
+            lacking.append(Message("gauge.without_sweeps", "that of the sweeps' light planes"))
+        elif self.speckle is None:
+            lacking.append(Message("gauge.without_speckle", "what the sweeps owe to the fan's speckle"))
+        if not self.knows("camera"):
+            lacking.append(Message("gauge.without_camera", "that of the camera"))
+        if not self.knows("fan"):
+            lacking.append(Message("gauge.without_fan", "that of the fan"))
+        return tuple(lacking)
+
     @property
     def sweeps(self) -> int:
         """How many sweeps the covariance holds."""
