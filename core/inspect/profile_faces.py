@@ -27,6 +27,9 @@ MARGIN_MM, MARGIN_SHARE = 1.5, 0.2
 """Left out at either end of a stretch, in mm, but no more than this share of it: stripes are biased at edges."""
 STRAIGHT_SIGMAS, STRAIGHT_MM = 5.0, 0.05
 """A stretch is straight if no point is farther off than so many standard uncertainties, or this many mm."""
+ARC_SIGMAS, ARC_MM = 2.0, 0.02
+"""A stretch whose ends bend away from its middle by more than so many uncertainties of a point, or this many mm, is no
+face; what is less is a face's form."""
 PARALLEL = float(np.radians(2.0))
 """Stretches lie on parallel faces within this angle."""
 LEVEL_SIGMAS, LEVEL_MM = 5.0, 0.1
@@ -48,15 +51,19 @@ class Stretch:
     length_mm: float
 
 
-def stretches(cloud: Cloud) -> tuple[Stretch, ...]:
-    """Find the straight stretches of all profiles in the `cloud` of one picture, in order along each line."""
+def stretches(cloud: Cloud, correlation_px: float = 8.0) -> tuple[Stretch, ...]:
+    """Find the straight stretches of all profiles in the `cloud` of one picture, in order along each line.
+
+    `correlation_px` is the length along a line over which its noise counts as one.
+    """
     limit = _limit(cloud, STRAIGHT_SIGMAS, STRAIGHT_MM)
     found = []
     for line in range(int(FAN - cloud.sweep.min(initial=FAN)) + 1):
         mine = np.flatnonzero(cloud.sweep == FAN - line)
         apart = np.linalg.norm(np.diff(cloud.uv[mine], axis=0), axis=1) > GAP_PX
         for piece in np.split(mine, np.flatnonzero(apart) + 1):
-            found += [_stretch(cloud, line, run) for run in _straight(cloud.points, piece, limit)]
+            runs = _straight(cloud.points, piece, limit)
+            found += [_stretch(cloud, line, run) for run in runs if not _bent(cloud, run, correlation_px)]
     return tuple(found)
 
 
@@ -73,7 +80,7 @@ def faces_of(cloud: Cloud, found: Sequence[Stretch], normal: Array | None) -> Fa
         (3,) normal of the faces where it is known, away from the camera; None: that of any two stretches of different
         lines is tried.
     """
-    limit = _limit(cloud, LEVEL_SIGMAS, LEVEL_MM)
+    limit = level_limit(cloud)
     if normal is not None:
         return _pair(next(iter(_apart(found, normal, limit)), None))
     tried = [levels for one in _normals(found) for levels in _two_levels(found, one, limit)]
@@ -134,6 +141,11 @@ def _common_normal(levels: _Levels) -> Array:
     return np.asarray(normal if normal @ levels[0][0].centre > 0 else -normal, dtype=np.float64)
 
 
+def level_limit(cloud: Cloud) -> float:
+    """Heights in mm that differ by less are of one level."""
+    return _limit(cloud, LEVEL_SIGMAS, LEVEL_MM)
+
+
 def _limit(cloud: Cloud, sigmas: float, least_mm: float) -> float:
     return max(least_mm, sigmas * float(np.median(cloud.sigma))) if len(cloud) else least_mm
 
@@ -154,6 +166,27 @@ def _straight(points: Array, run: NDArray[np.int64], limit: float) -> Iterator[N
     at = int(np.clip(np.argmax(bow), 2, len(run) - 2))
     yield from _straight(points, run[:at], limit)
     yield from _straight(points, run[at:], limit)
+
+
+def _bent(cloud: Cloud, run: NDArray[np.int64], correlation_px: float) -> bool:
+    """Whether a run is an arc: short ones of a curved surface are straight within the noise of a single point."""
+    points = cloud.points[run]
+    centre, along = _line(points)
+    position = (points - centre) @ along
+    off = points - centre - np.outer(position, along)
+    across = np.linalg.svd(off, full_matrices=False)[2][0]
+    height = off @ across
+    arc = (position / np.abs(position).max()) ** 2
+    arc -= arc.mean()
+    size = float(arc @ height / (arc @ arc))
+    rest = height - size * arc
+    sd = float(np.std(rest)) * np.sqrt(max(correlation_px, 1.0) / float(arc @ arc))
+    least = max(ARC_SIGMAS * float(np.median(cloud.sigma[run])), ARC_MM)
+    return bool(abs(size) > max(_ARC_CLEAR * sd, least))
+
+
+_ARC_CLEAR = 5.0
+"""Standard deviations from which on an arc is no chance."""
 
 
 def _line(points: Array) -> tuple[Array, Array]:

@@ -17,8 +17,9 @@ import numpy as np
 
 from core.inspect.conformity import Verdict, decide
 from core.inspect.faces import FacePair
-from core.inspect.fit.plane_fit import FittedFaces, fit_faces, fit_parallel_planes, fit_plane
-from core.inspect.profile_faces import faces_of, stretches
+from core.inspect.fit.plane_fit import FittedFaces, ParallelPlaneFit, fit_faces, fit_parallel_planes, fit_plane
+from core.inspect.fit.plane_search import FEWEST_POINTS
+from core.inspect.profile_faces import faces_of, level_limit, stretches
 from core.inspect.results import Contribution, Face, GaugeResult
 from core.inspect.uncertainty.budget import Effect, budget_of, combined, effects
 from core.inspect.uncertainty.causes import FACE_TILT, OBSERVED
@@ -41,6 +42,9 @@ RULE_ONE_LINE = Message(
 NO_FACES = Message("profile.no_faces", "no two parallel faces lie on one line's profile")
 NO_TILT = Message(
     "profile.no_tilt", "its stretches lie on one line each, so nothing in the picture says how the faces are tilted"
+)
+NOT_PLANE = Message(
+    "profile.not_plane", "other lines lie on the part at other heights than those on its upper face: it is no plane"
 )
 _LEAST_SIGMA_MM = 1e-6
 
@@ -100,7 +104,7 @@ def step_of(cloud: Cloud, errors: PointErrors, tilt: KnownTilt | None = None) ->
     tilt
         Used where the picture's own lines do not show how the faces are tilted; None: such a picture gives nothing.
     """
-    found = sorted(stretches(cloud), key=lambda one: -one.length_mm)
+    found = sorted(stretches(cloud, errors.speckle_px), key=lambda one: -one.length_mm)
     lines = {one.line for one in found}
     pair = faces_of(cloud, found, None) if len(lines) > 1 else None
     hint: Array | None = None
@@ -118,6 +122,8 @@ def step_of(cloud: Cloud, errors: PointErrors, tilt: KnownTilt | None = None) ->
         robust = fit_parallel_planes(upper.points, lower.points, upper.sigma, lower.sigma, reference_normal=hint)
     if robust.thickness <= 0:
         return NO_FACES
+    if _others_on_part(cloud, found[0].along, pair, robust):
+        return NOT_PLANE
     faces = fit_faces(upper, lower, robust, errors)
     of_step = effects(
         faces.gains[None, :], faces.sources, own=faces.fit.own, form_mm=faces.fit.form_mm,
@@ -125,6 +131,21 @@ def step_of(cloud: Cloud, errors: PointErrors, tilt: KnownTilt | None = None) ->
     )  # fmt: skip
     by_tilt = 0.0 if robust.tilt_determined or tilt is None else _by_tilt(upper, lower, faces, tilt)
     return Step(int(cloud.frame[0]), cloud, pair, faces, tuple(map(_as_one, of_step)), by_tilt)
+
+
+def _others_on_part(cloud: Cloud, along: Array, pair: FacePair, planes: ParallelPlaneFit) -> bool:
+    """Whether a line that does not meet the upper face has points beside it that are clearly above the lower one."""
+    upper = pair.upper
+    position = cloud.points @ along
+    beside = (position > position[upper].min()) & (position < position[upper].max())
+    height = planes.lower_distance - cloud.points @ planes.normal
+    above = (height > _PART_SHARE * planes.thickness) & (np.abs(height - planes.thickness) > level_limit(cloud))
+    others = ~np.isin(cloud.sweep, cloud.sweep[upper])
+    return int(np.count_nonzero(beside & above & others)) >= FEWEST_POINTS
+
+
+_PART_SHARE = 0.5
+"""A point higher than this share of the step is on the part, and not on what it stands on."""
 
 
 def _hint(cloud: Cloud, line: int, along: Array, tilt: KnownTilt) -> Array:

@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 
 from core.inspect.profile_faces import faces_of, stretches
-from core.inspect.step_height import NO_FACES, NO_TILT, KnownTilt, Step, measure_steps, step_of
+from core.inspect.step_height import NO_FACES, NO_TILT, NOT_PLANE, KnownTilt, Step, measure_steps, step_of
 from core.inspect.uncertainty.point_errors import PointErrors
 from core.messages import Message
 from core.scan.surface.cloud import FAN, Cloud
+from core.scan.surface.triangulate import join
 from tests.inspect.profile_pictures import NORMAL, RIG, errors, fan_of, picture
 from tests.shared import REAL_SETS
 
@@ -117,6 +118,23 @@ def test_pictures_that_disagree_widen_the_uncertainty():
 def test_a_step_too_small_to_be_told_from_noise_gives_none():
     flat = ((-150.0, -40.0, 0.0), (-20.0, 30.0, 0.05), (60.0, 150.0, 0.0))
     assert step_of(picture(flat, noise_px=0.1), errors()) == NO_FACES
+
+
+def test_arcs_are_no_faces():
+    x = np.arange(-25.0, 25.0, 2.0)
+    ball = [(float(a), float(a) + 2.0, float(np.sqrt(30.0**2 - (a + 1) ** 2) - 10.0)) for a in x]
+    cloud = picture([(-150.0, -40.0, 0.0), *ball, (60.0, 150.0, 0.0)], noise_px=0.05)
+    assert isinstance(step_of(cloud, errors()), Message)
+
+
+def test_lines_at_other_heights_on_the_part_tell_that_it_is_no_plane():
+    heights = (18.0, 20.0, 18.0)
+    clouds = [
+        picture([(a, b, height if h else 0.0) for a, b, h in BLOCK], noise_px=0.02, seed=line)
+        for line, height in enumerate(heights)
+    ]
+    lying = join([cloud.select(cloud.sweep == FAN - line) for line, cloud in enumerate(clouds)])
+    assert step_of(lying, errors()) == NOT_PLANE
 
 
 @pytest.mark.skipif(not REAL.exists(), reason="needs the real profile of a gauge block")

@@ -16,6 +16,7 @@ from core.files.recording.rig import GaugeSpec
 from core.files.results.gauge_file import write_gauge
 from core.files.results.ply import write_cloud
 from core.files.results.profile_file import PictureStep, write_profiles, write_profiles_csv
+from core.inspect.face_region import inside_polygon
 from core.inspect.results import GaugeResult
 from core.inspect.step_height import KnownTilt, Step, measure_steps, step_of
 from core.inspect.uncertainty.point_errors import PointErrors
@@ -72,7 +73,7 @@ def profile_step(
     paths = _pictures(found, options)
     calibration = work.calibration()
     camera, fan = calibration.camera.camera, calibration.fan.fan
-    known = _known(calibration, tilt)
+    known, spec = _known(calibration, tilt), found.rig.gauge or GaugeSpec()
     if fan.lines == 1 and known is None:
         raise InputError(
             Message("profile.one_line", "the fan has one line, which does not show how the faces are tilted"),
@@ -100,13 +101,12 @@ def profile_step(
                 pictures.append(PictureStep(index, name, reason=error.what))
                 continue
             seen.append(profiles)
-            step = step_of(profiles.cloud, PointErrors.of_fan(profiles.pieces, common), known)
+            step = step_of(_within(profiles.cloud, spec), PointErrors.of_fan(profiles.pieces, common), known)
             pictures.append(_row(index, name, step))
             steps += [] if isinstance(step, Message) else [step]
         progress("profiles", len(paths), len(paths))
         if not steps:
             raise _nothing(pictures)
-        spec = found.rig.gauge or GaugeSpec()
         gauge = measure_steps(
             steps,
             one_line=not steps[0].faces.planes.tilt_determined,
@@ -131,6 +131,15 @@ def profile_axes(step_normal: Array, cloud: Cloud) -> tuple[Array, Array]:
     flat = points - np.outer(points @ step_normal, step_normal)
     along = np.linalg.svd(flat, full_matrices=False)[2][0]
     return np.asarray(along if along[0] > 0 else -along), -np.asarray(step_normal)
+
+
+def _within(cloud: Cloud, spec: GaugeSpec) -> Cloud:
+    """The points in the regions of both faces, where such are given; else all."""
+    if spec.upper_polygon_px is None or spec.lower_polygon_px is None:
+        return cloud
+    return cloud.select(
+        inside_polygon(cloud.uv, spec.upper_polygon_px) | inside_polygon(cloud.uv, spec.lower_polygon_px)
+    )
 
 
 def _pictures(found: RecordingSet, options: Options) -> list[Path]:
@@ -205,6 +214,12 @@ def _cloud(seen: Sequence[Profiles], shown: int, common: CommonErrors) -> Cloud:
     return replace(cloud, sigma_common=common.sigma(cloud))
 
 
+_ONE_LINE_ON_PART = Message(
+    "profile.one_line_on_part",
+    "One line alone meets the upper face: that it is plane, and parallel to the lower one, is taken for granted.",
+)
+
+
 def _assumed(lines: int, tilt: StatedTilt | None, shown: Step) -> tuple[Message, ...]:
     """What the thickness takes for granted."""
     resting = Message(
@@ -212,7 +227,8 @@ def _assumed(lines: int, tilt: StatedTilt | None, shown: Step) -> tuple[Message,
         "The part is taken to have been at rest during each exposure, and its two faces to be parallel.",
     )
     if shown.faces.planes.tilt_determined or tilt is None:
-        return (resting,)
+        upper = np.unique(shown.cloud.sweep[shown.pair.upper])
+        return (resting,) if len(upper) > 1 else (resting, _ONE_LINE_ON_PART)
     sd = float(np.degrees(STAGE_SD if tilt.sd is None else tilt.sd))
     if tilt.stage:
         how = Message(

@@ -111,3 +111,21 @@ def test_pictures_without_both_faces_are_named_and_when_none_has_both_it_is_told
     shutil.copy(next((empty / "scan").iterdir()), tmp_path / "mixed/scan/frame0009.png")
     told = json.loads(trisect("profile", tmp_path / "mixed", "--out", tmp_path / "out", "--json").out)
     assert [bool(one["reason"]) for one in told["pictures"]] == [False, False, False, True]
+
+
+@pytest.mark.slow
+def test_regions_in_the_rig_choose_what_is_looked_at(three, tmp_path):
+    folder, out = (shutil.copytree(one, tmp_path / one.name) for one in three)
+    width, height = picture_size(out)
+    corner = [[0, 0], [9, 0], [9, 9]]
+    whole = [[0, 0], [width, 0], [width, height], [0, height]]
+    for regions, code in (((whole, corner), (0, 1)), ((corner, corner), (2,))):
+        text = (three[0] / "rig.toml").read_text()
+        (folder / "rig.toml").write_text(
+            text.replace("[gauge]", f"[gauge]\nupper_polygon_px = {regions[0]}\nlower_polygon_px = {regions[1]}")
+        )
+        assert trisect("profile", folder, "--out", out).code in code
+
+
+def picture_size(out: Path) -> tuple[int, int]:
+    return tuple(json.loads((out / "camera.json").read_text())["image_size"])
