@@ -100,8 +100,9 @@ class RecordingSet:
             If it is damaged or unreadable; names the file.
         """
         data = read_bytes(path)
-        self.hashes[self.name_of(path)] = hashlib.sha256(data).hexdigest()
-        return decode_picture(data, path, self.rig.channel)
+        name = self.name_of(path)
+        self.hashes[name] = hashlib.sha256(data).hexdigest()
+        return decode_picture(data, path, self.rig.channel_of(name.partition("/")[0]))
 
     def stream(self, paths: Sequence[Path], times: StageTimes | None = None) -> Iterator[tuple[str, Picture | str]]:
         """Yield name and picture of each of `paths`, a few read ahead; for a damaged one, why it cannot be read.
