@@ -17,9 +17,9 @@ from workbench.pages.calibration.card import CalibrationCard
 from workbench.pages.calibration.history_tab import HistoryTab
 from workbench.pages.calibration.picture import PictureTab
 from workbench.pages.calibration.stage import Stage
-from workbench.pages.calibration.words import length
 from workbench.pages.calibration.work import CalibrationWork
 from workbench.pages.step_page import StepPage
+from workbench.pages.words import length
 from workbench.views.forms.live_panel import LivePanel, LiveStrip
 from workbench.views.forms.source_chooser import SourceChooser
 from workbench.views.lists.view_list import ListRow, ViewList

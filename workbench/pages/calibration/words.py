@@ -2,26 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 from workbench.language import tr
 from workbench.views.lists.value_rows import ValueRow
-
-
-def length(value: float, unit: str, digits: int = 3) -> str:
-    """A length in px or mm; a dash for NaN."""
-    return "–" if math.isnan(value) else f"{value:.{digits}f} {unit}"
-
-
-def px(value: float) -> str:
-    """A length in pixels."""
-    return length(value, "px")
-
-
-def mm(value: float, digits: int = 3) -> str:
-    """A length in millimetres."""
-    return length(value, "mm", digits)
 
 
 def used_row(name: str, views: tuple[Any, ...], tip: str) -> ValueRow:

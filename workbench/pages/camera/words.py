@@ -10,7 +10,8 @@ from core.calibrate.camera.expected_error import ExpectedError
 from core.calibrate.camera.views import ViewsJudgement
 from core.calibrate.results import CAMERA_PARAMETERS, CameraCalibration, ViewQuality
 from workbench.language import text_of, tr
-from workbench.pages.calibration.words import history_row, mm, px, used_row
+from workbench.pages.calibration.words import history_row, used_row
+from workbench.pages.words import degrees, mm, percent, px
 from workbench.views.lists.value_rows import ValueRow
 
 
@@ -29,13 +30,13 @@ def quality_rows(calibration: CameraCalibration | None, judgement: ViewsJudgemen
         used_row(tr("Views"), calibration.views, tr("Views used, and all there are")),
         (
             tr("Coverage"),
-            f"{100 * calibration.coverage:.0f} %",
+            percent(calibration.coverage),
             tr("Share of the picture where there are corners"),
             "",
         ),
         (
             tr("Tilts"),
-            f"{math.degrees(calibration.tilt_range):.0f}°",
+            degrees(calibration.tilt_range, 0),
             tr("Largest angle between the target's planes in two views; 30° and more is good"),
             "",
         ),

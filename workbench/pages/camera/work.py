@@ -10,7 +10,9 @@ from core.calibrate.results import CameraCalibration
 from core.errors import InputError
 from core.files.project.data import Project
 from core.messages import Message
+from workbench.language import text_of
 from workbench.pages.calibration.work import CalibrationWork, Key
+from workbench.pages.words import capital
 from workbench.work import jobs
 
 
@@ -52,8 +54,8 @@ class CameraWork(CalibrationWork[SeenViews, CameraCalibration]):
         """A problem as a sentence of its own; where it is, the page itself shows."""
         if not isinstance(problem, InputError) or problem.where not in ("", "camera"):
             return super()._in_words(problem)
-        text = f"{problem.what}; {problem.todo}." if str(problem.todo) else f"{problem.what}."
-        return text[:1].upper() + text[1:]
+        said = [text_of(part) for part in (problem.what, problem.todo) if str(part)]
+        return capital(f"{'; '.join(said)}.")
 
     def _recall(self, folder: Path, project: Project) -> None:
         if not project.accepted.camera:

@@ -11,6 +11,7 @@ from core.report.wording import decimals_of, fixed, grouped, with_uncertainty
 from core.study.repeats import RepeatStatistics
 from workbench.language import text_of, tr
 from workbench.pages.inspect.picks import Pick, Span
+from workbench.pages.words import capital
 from workbench.views.colours import Level
 from workbench.views.lists.value_rows import ValueRow
 
@@ -65,7 +66,7 @@ def budget_rows(gauge: GaugeResult) -> list[ValueRow]:
     """Each contribution to the uncertainty, and all together."""
     decimals = max(decimals_of(gauge.u_mm) + 1, 0)
     rows: list[ValueRow] = [
-        (_first_up(text_of(row.source)), f"{fixed(row.u_mm, decimals)} mm", tr("Standard uncertainty (k = 1)"), "")
+        (capital(text_of(row.source)), f"{fixed(row.u_mm, decimals)} mm", tr("Standard uncertainty (k = 1)"), "")
         for row in gauge.budget
     ]
     together = tr("Root of the sum of squares of all rows (k = 1)")
@@ -199,7 +200,3 @@ def span_label(span: Span) -> str:
 def _span(span: Span) -> dict[str, str]:
     value, u = with_uncertainty(span.result.distance_mm, span.result.u_mm)
     return {"value": value, "u": u}
-
-
-def _first_up(text: str) -> str:
-    return text[:1].upper() + text[1:]

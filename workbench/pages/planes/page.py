@@ -16,6 +16,7 @@ from workbench.pages.planes.panels import PLATES, LaserForm, PlanesCard, PlanesL
 from workbench.pages.planes.picture import PoseTab
 from workbench.pages.planes.presenter import PlanesPresenter
 from workbench.pages.planes.tabs import PlanesHistoryTab, RigTab
+from workbench.pages.words import capital
 from workbench.views import ask
 
 
@@ -51,7 +52,7 @@ class PlanesPage(CalibrationPage):
         """Ask whether planes of a minority of the poses are to be used."""
         text = tr(
             "{minority}. Look at the poses left out, the plate's size and the camera first. Use these laser planes?",
-            minority=text_of(minority)[:1].upper() + text_of(minority)[1:],
+            minority=capital(text_of(minority)),
         )
         return ask.ask(self, tr("Few poses agree"), text, (tr("Use them"), tr("Do not use them"))) == 0
 

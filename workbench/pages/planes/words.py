@@ -9,7 +9,8 @@ from typing import Any
 from core.calibrate.fan.pose_features import PoseFeatures
 from core.calibrate.results import FanCalibration, PlanePose
 from workbench.language import text_of, tr
-from workbench.pages.calibration.words import history_row, mm, px, used_row
+from workbench.pages.calibration.words import history_row, used_row
+from workbench.pages.words import capital, degrees, mm, px
 from workbench.views.colours import Level
 from workbench.views.lists.value_rows import ValueRow
 
@@ -50,7 +51,7 @@ def left_out_lines(poses: Sequence[PlanePose | PoseFeatures]) -> list[str]:
 def verdict_sentence(calibration: FanCalibration | None) -> str:
     """Whether the laser is the pencil it is said to be, as a sentence."""
     verdict = text_of((calibration and calibration.verdict) or "")
-    return f"{verdict[:1].upper()}{verdict[1:]}." if verdict else ""
+    return f"{capital(verdict)}." if verdict else ""
 
 
 def notes(calibration: FanCalibration | None) -> str:
@@ -58,7 +59,7 @@ def notes(calibration: FanCalibration | None) -> str:
     if calibration is None:
         return ""
     said = [text_of(note) for note in calibration.notes if note.code != "fan.poses_left_out"]
-    return "\n".join(f"{note[:1].upper()}{note[1:]}." if note[-1:] != "." else note for note in said)
+    return "\n".join(f"{capital(note)}." if note[-1:] != "." else note for note in said)
 
 
 def short_names(names: Sequence[str]) -> list[str]:
@@ -118,8 +119,3 @@ def history_rows(entries: tuple[Any, ...], accepted: str) -> list[tuple[str, ...
         )
         for entry in entries
     ]  # fmt: skip
-
-
-def degrees(value: float) -> str:
-    """An angle, given in rad."""
-    return f"{math.degrees(value):.3f}°"

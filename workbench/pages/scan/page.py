@@ -20,6 +20,7 @@ from workbench.pages.scan.presenter import ScanPresenter, Stage
 from workbench.pages.scan.profiles import ProfilesPanel
 from workbench.pages.scan.run import short
 from workbench.pages.step_page import StepPage
+from workbench.pages.words import mm
 from workbench.views.forms.live_panel import LivePanel, LiveStrip
 from workbench.views.forms.source_chooser import SourceChooser
 from workbench.views.image.side_by_side import SideBySide
@@ -205,7 +206,7 @@ class ScanPage(StepPage):
         for name in p.work.names:
             record = records.get(name)
             sigma = record.sigma_mm if record is not None and not math.isnan(record.sigma_mm) else None
-            text = words.mm(sigma) if sigma is not None else ""
+            text = mm(sigma) if sigma is not None else ""
             said = words.frame_line(record, seen.get(name))
             picture = p.thumbnails.pictures.get(name)
             rows.append(ListRow(name, sigma, text, not p.is_left_out(name), said, picture, short(name)))

@@ -8,6 +8,7 @@ from core.messages import Message
 from core.scan.features.frames import NO_REASON, FrameRecord
 from core.scan.preview.shown import FrameStages, ShownScan
 from workbench.language import text_of, tr
+from workbench.pages.words import capital, count, mm, percent
 from workbench.views.lists.value_rows import ValueRow
 
 _RAISED = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -47,7 +48,7 @@ def reason_rows(look: ShownScan | None) -> list[ValueRow]:
     if look is None:
         return []
     return [
-        (sentence(text_of(reason)), str(frames), tr("Frames left out for this reason"), "")
+        (capital(text_of(reason)), str(frames), tr("Frames left out for this reason"), "")
         for reason, frames in look.left_out
     ]
 
@@ -110,23 +111,3 @@ def condition_text(condition: float) -> str:
 def speed_text(speed_px: float) -> str:
     """How far the stripe moves from frame to frame."""
     return "" if math.isnan(speed_px) else tr("{speed:.0f} px/frame", speed=speed_px)
-
-
-def sentence(reason: str) -> str:
-    """A reason as it stands by itself."""
-    return reason[:1].upper() + reason[1:]
-
-
-def count(number: int) -> str:
-    """A count with thin spaces between thousands."""
-    return f"{number:,}".replace(",", "\u2009")
-
-
-def percent(share: float) -> str:
-    """A share of one."""
-    return f"{100 * share:.0f} %"
-
-
-def mm(value: float) -> str:
-    """A length in millimetres."""
-    return "–" if math.isnan(value) else f"{value:.3f} mm"

@@ -6,10 +6,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from core.errors import InputError
 from core.files.pictures import write_picture
 from core.files.project.data import Sources
 from core.files.project.keys import finished
+from core.messages import Message
 from core.pipeline.live.events import LiveEnded
+from core.translations import PSEUDO, language
+from workbench import language as spoken
 from workbench.pages.calibration.stage import Stage
 from workbench.pages.camera.presenter import CameraPresenter
 from workbench.step_state import State
@@ -368,3 +372,9 @@ def test_beside_an_accepted_camera_a_newer_solution_is_offered_again_too(accepte
     accepted.bench.quick.answers[jobs.FOUND_VIEWS] = lambda folder, project: found
     reopened(accepted, qtbot)
     qtbot.waitUntil(lambda: accepted.work.seen is found)
+
+
+def test_what_went_wrong_is_told_in_the_language_of_the_window(presenter, monkeypatch):
+    monkeypatch.setattr(spoken, "_chosen", language(PSEUDO))
+    problem = InputError(Message("x.few", "few views"), todo=Message("x.more", "record more"))
+    assert presenter.work._in_words(problem) == "⟦fééŵ vííééŵš⟧; ⟦ŕééçóóŕd móóŕéé⟧."

@@ -1,0 +1,42 @@
+"""How pages write values, the same everywhere: numbers with their units, a dash for what is not known."""
+
+from __future__ import annotations
+
+import math
+
+from workbench.language import number
+
+
+def length(value: float, unit: str, digits: int = 3) -> str:
+    """A length in px or mm; a dash for NaN."""
+    return "–" if math.isnan(value) else f"{number(value, f'.{digits}f')} {unit}"
+
+
+def px(value: float) -> str:
+    """A length in pixels."""
+    return length(value, "px")
+
+
+def mm(value: float, digits: int = 3) -> str:
+    """A length in millimetres."""
+    return length(value, "mm", digits)
+
+
+def degrees(value: float, digits: int = 3) -> str:
+    """An angle, given in rad."""
+    return f"{number(math.degrees(value), f'.{digits}f')}°"
+
+
+def percent(share: float) -> str:
+    """A share of one."""
+    return f"{number(100 * share, '.0f')} %"
+
+
+def count(number: int) -> str:
+    """A count with thin spaces between thousands."""
+    return f"{number:,}".replace(",", "\u2009")
+
+
+def capital(text: str) -> str:
+    """A text that begins a sentence."""
+    return text[:1].upper() + text[1:]
