@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from core.calibrate.board_shape import BoardShape
-from core.calibrate.fan.bundle import SCATTERED, Bundle
+from core.calibrate.fan.bundle import Bundle
 from core.calibrate.fan.located_pose import LocatedPose
 from core.calibrate.fan.straightness import bends_of, judge_lines, notes_on_lines, off_planes_mm
 from core.calibrate.fan.target_plane import on_target
@@ -24,6 +24,9 @@ POORLY_PREDICTED = 4.0
 
 WORTH_A_NOTE_MM = 0.05
 """Errors of prediction and bows below this are not noted."""
+
+SCATTERED = 3.0
+"""Poses that disagree by this many times their noise do so by themselves, not by chance of points and stripes."""
 
 SATURATED_SHARE = 1 / 3
 """A share of saturated stripe points worth a warning."""
