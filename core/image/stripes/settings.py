@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -19,6 +20,10 @@ from core.model.arrays import Array
 
 _BLOCKS = (1, 2, 3, 4, 6, 9, 13)
 """Stripe σ tried at first, in px; the rounds that follow correct a factor of two between them."""
+
+_REDUCED = (4, 8, 16)
+"""Factors of the reduced pictures: grains up to so many px are averaged."""
+_SMALLEST_REDUCED = 24  # px that a reduced picture must have each way
 
 # Held by tests/image/stripes/test_extraction.py (settings are chosen) on rendered stripes of σ 0.9 to 5 px, of several
 # heights and noises.
@@ -51,12 +56,29 @@ def choose_settings(
     The first guess of the width is the block size at which the strongest crests answer best: with the response
     divided by the square root of the block size (Lindeberg's normalisation of ridges, γ = 3/4), that is where block
     and stripe σ agree. Then stripes are traced, their cross-sections fitted, and the width corrected until it stays.
+    A wide speckled stripe falls apart into its grains, and none is long enough. So where nothing is found, the same is
+    done in pictures reduced until the grains are averaged.
 
     References
     ----------
     Lindeberg, T., Edge detection and ridge detection with automatic scale selection, IJCV 30 (1998),
     doi:10.1023/A:1008097225773.
     """
+    found = _chosen(picture, full_scale, mask)
+    for factor in _REDUCED:
+        size = (picture.shape[1] // factor, picture.shape[0] // factor)
+        if found is not None or min(size) < _SMALLEST_REDUCED:
+            break
+        small = np.asarray(cv2.resize(picture, size, interpolation=cv2.INTER_AREA), dtype=np.float32)
+        covered = None if mask is None else cv2.resize(mask.astype(np.uint8), size, interpolation=cv2.INTER_AREA) > 0
+        found = _chosen(small, full_scale, covered)
+        if found is not None:
+            found = StripeSettings(factor * found.width_px, found.contrast)
+    return found
+
+
+def _chosen(picture: NDArray[np.float32], full_scale: float, mask: NDArray[np.bool_] | None) -> StripeSettings | None:
+    """Choose settings at one size of the picture; None when it shows no stripe there."""
     state = np.where(picture >= full_scale, np.uint8(SATURATED), np.uint8(0))
     if mask is not None:
         state[mask] |= IGNORED

@@ -359,6 +359,18 @@ def test_settings_are_chosen_from_a_difference_with_speckle() -> None:
     assert 55 < chosen.contrast < 100
 
 
+def test_a_wide_speckled_stripe_is_found_though_its_grains_are_no_stripes() -> None:
+    rng, shape, truth = np.random.default_rng(1), (900, 1200), straight((600.0, 440.3), 0.2)
+    light = draw(shape, truth, 20.0, 120.0, 2) * speckle(shape, 0.5, 4.0, rng)
+    picture = np.clip(np.round(expose(20 + light, rng)), 0, 255).astype(np.float32)
+    chosen = choose_settings(picture, 255.0)
+    assert chosen is not None
+    assert chosen.width_px == pytest.approx(80.0, rel=0.1)
+    lines = extract_centrelines(picture, chosen, noise=estimate_noise(picture), saturated=picture >= 255)
+    assert max(np.abs(np.median(errors(line, truth))) for line in lines) < 2.0
+    assert sum(map(len, lines)) > 0.65 * 1200
+
+
 def test_noise_is_estimated() -> None:
     rng = np.random.default_rng(10)
     light = np.tile(np.linspace(5, 200, 640), (480, 1))
