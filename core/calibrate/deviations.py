@@ -23,7 +23,7 @@ from core.calibrate.results import CameraCalibration, FanCalibration
 from core.model import Camera, Fan, LightPlane
 from core.model.arrays import Array
 
-Source = Literal["camera", "fan", "bend", "scale"]
+Source = Literal["camera", "fan", "bend", "scale", "change"]
 UNEXPLAINED: Source = "bend"
 """The source of errors that were seen, but not why: they are uncertain by all of what was seen."""
 
@@ -37,7 +37,7 @@ class Deviation:
 
     `source` says whose error it is: "camera" (the fan moves along with it, as it would have been calibrated through
     such a camera), "fan" (the camera is as calibrated), "bend" (its light is off its planes),
-    "scale" (the plane target is larger than stated).
+    "scale" (the plane target is larger than stated), "change" (the rig since then, `core.calibrate.change`).
     """
 
     source: Source

@@ -21,6 +21,7 @@ from core.inspect.results import GaugeResult
 from core.messages import Message
 from core.pipeline.steps.batch import SetResult, run_batch
 from core.pipeline.steps.camera_step import camera_step
+from core.pipeline.steps.check_step import InterimCheck, check_step
 from core.pipeline.steps.executors import executor_of
 from core.pipeline.steps.gauge_step import gauge_step
 from core.pipeline.steps.planes_step import planes_step
@@ -147,6 +148,13 @@ def run_planes(folder: Path, out: Path, chosen: Options, progress: Progress) -> 
     work = _open(folder, out)
     calibration = planes_step(work, chosen, progress)
     return _shown(work, "planes", output.fan_rows(calibration), output.fan_json(calibration), "planes")
+
+
+def run_check(folder: Path, out: Path, chosen: Options, progress: Progress) -> tuple[InterimCheck, Shown]:
+    """Check step."""
+    work = _open(folder, out)
+    check = check_step(work, chosen, progress)
+    return check, _shown(work, "check", output.check_rows(check), output.check_json(check), "check")
 
 
 def run_scan(folder: Path, out: Path, chosen: Options, progress: Progress) -> Shown:

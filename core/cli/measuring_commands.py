@@ -126,6 +126,18 @@ def planes(
     shown.show(as_json=json)
 
 
+@commands.command(epilog=EPILOG)
+def check(folder: Set, out: Out, stripe_width: StripeWidth = 0.0, contrast: Contrast = 0.0, json: Json = False) -> None:
+    """Check by pictures of the day in SET/check whether camera and laser are where they were calibrated, in DIR."""
+    from core.cli import measuring
+
+    options = measuring.plane_options(False, False, stripe_width, contrast)
+    with bars() as progress:
+        result, shown = measuring.run_check(folder, out, options, progress)
+    shown.show(as_json=json)
+    raise typer.Exit(measuring.exit_code("conforming" if result.passed else "changed"))
+
+
 @commands.command()
 def scan(
     folder: Set,

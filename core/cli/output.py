@@ -17,6 +17,7 @@ from core.files.results.gauge_file import gauge_summary
 from core.files.results.profile_file import PictureStep
 from core.inspect.results import GaugeResult
 from core.messages import Message
+from core.pipeline.steps.check_step import InterimCheck
 from core.report.wording import count, decimals_of, fixed, grouped, thickness_line, with_uncertainty
 from core.scan.features.frames import NO_REASON
 from core.scan.results import FrameRecord
@@ -130,6 +131,34 @@ def gauge_rows(gauge: GaugeResult) -> Rows:
         ("parallelism", f"{math.degrees(gauge.parallelism):.3f}°"),
         ("points on faces", f"{grouped(upper)} above, {grouped(lower)} below"),
     ]
+
+
+def check_rows(check: InterimCheck) -> Rows:
+    """Where the stripes are, and what that does to a step of the part's height."""
+    used = sum(pose.located.used for pose in check.poses)
+    return [
+        ("poses", f"{used} of {count(len(check.poses), 'pose')} used"),
+        ("stripes off by", f"{check.offset_px:.3f} px, {check.offset_mm:.4f} mm (RMS)"),
+        ("chance", f"p = {check.change.p:.2g}"),
+        (
+            f"a step of {check.step_mm:g} mm",
+            f"measured wrong by {check.error_mm:+.3f} mm ± {check.unseen_mm:.3f} mm (k = 2) with this calibration",
+        ),
+        ("verdict", str(check.sentence)),
+    ]
+
+
+def check_json(check: InterimCheck) -> dict[str, Any]:
+    """The same for programs; check.json has it stripe by stripe."""
+    return {
+        "passed": check.passed,
+        "p": check.change.p,
+        "offset_px": check.offset_px,
+        "offset_mm": check.offset_mm,
+        "step_mm": check.step_mm,
+        "error_mm": check.error_mm,
+        "unseen_mm": check.unseen_mm,
+    }
 
 
 def frame_rows(frames: Sequence[FrameRecord], points: int) -> Rows:

@@ -49,6 +49,13 @@ def simulate(
     texture: Annotated[float, typer.Option(help="Relative unevenness of the surfaces.")] = SCENARIO.texture,
     camera_target: Annotated[str, typer.Option(help=f"One of {', '.join(CAMERA_TARGETS)}.")] = SCENARIO.camera_target,
     plane_target: Annotated[str, typer.Option(help=f"One of {', '.join(PLANE_TARGETS)}.")] = SCENARIO.plane_target,
+    check_poses: Annotated[int, typer.Option(help="Pictures of an interim check.")] = SCENARIO.check_poses,
+    turned: Annotated[
+        float, typer.Option(metavar="URAD", help="The laser turned by so much since its calibration.")
+    ] = SCENARIO.turned_urad,
+    drifted: Annotated[
+        float, typer.Option(metavar="PX", help="The picture moved by so much since the camera's calibration.")
+    ] = SCENARIO.drifted_px,
     published_planes: Annotated[
         bool, typer.Option("--published-planes", help="The paper's printed planes instead of an exact 5° pencil.")
     ] = False,
@@ -87,6 +94,9 @@ def simulate(
         fan_lines=fan_lines,
         hand_laser=not no_hand_laser,
         travel_mm=travel,
+        check_poses=check_poses,
+        turned_urad=turned,
+        drifted_px=drifted,
     )
     with bars() as progress:
         simulate_set(scenario, out, progress)

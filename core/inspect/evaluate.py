@@ -137,7 +137,8 @@ def evaluate(
         scene.pose_camera_part, frame_problem = _frame(plan.frame, scene)
     progress("features", len(ordered), len(ordered))
     results = tuple(scene.found[spec.name] for spec in plan.features)
-    notes = (*([frame_problem] if frame_problem else []), *_missing(scene.errors))
+    doubt = scene.errors.doubt
+    notes = (*([doubt] if doubt else []), *([frame_problem] if frame_problem else []), *_missing(scene.errors))
     return Inspection(plan, results, scene.pose_camera_part, notes, scan_key, scene.found_planes)
 
 

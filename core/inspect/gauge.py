@@ -8,7 +8,7 @@ extrapolated by itself, and no mean height is taken.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -173,7 +173,11 @@ def measure_gauge(
     verdict = Verdict.NONE
     if nominal_mm is not None and tolerance_mm is not None:
         verdict = decide(fit.thickness_mm - nominal_mm, tolerance_mm, k * u)
-    return GaugeResult(
+    missing = errors.missing()
+    notes: tuple[Message, ...] = ()
+    if missing:
+        notes = (Message("gauge.missing_in_u", "The stated uncertainty does not hold {missing}.", missing=missing),)
+    gauge = GaugeResult(
         thickness_mm=fit.thickness_mm,
         u_mm=u,
         k=k,
@@ -186,10 +190,15 @@ def measure_gauge(
         verdict=verdict,
         normal=fit.planes.normal,
         rule=RULE if fit.planes.tilt_determined else RULE_LINE,
-        notes=(Message("gauge.missing_in_u", "The stated uncertainty does not hold {missing}.", missing=missing),)
-        if (missing := errors.missing())
-        else (),
+        notes=notes,
     )
+    return gauge if errors.doubt is None else doubted(gauge, errors.doubt)
+
+
+def doubted(gauge: GaugeResult, doubt: Message) -> GaugeResult:
+    """The same thickness, which proves no conformity because of the `doubt`."""
+    verdict = Verdict.NOT_PROVEN if gauge.verdict is Verdict.CONFORMING else gauge.verdict
+    return replace(gauge, verdict=verdict, notes=(doubt, *gauge.notes))
 
 
 def _budget(faces: FittedFaces, errors: PointErrors) -> tuple[Contribution, ...]:

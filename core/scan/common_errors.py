@@ -9,7 +9,7 @@ needed, and what points have in common stays common.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -98,7 +98,6 @@ class CommonErrors:
             np.array([parameters_of(camera), *(parameters_of(one.camera) for one in deviations)]),
             np.array([fan.pis, *(one.fan.pis for one in deviations)]),
             np.zeros((1 + len(deviations), 0, 3)),
-            _bends(fan, deviations),
         )
 
 
@@ -130,8 +129,14 @@ def solve_common(
         again = solve(crossings, line, one.camera, one.fan, reported.within_step)
         sweeps.append(again.pis[np.searchsorted(again.frames, scan.sweep_frames)])
         reported("calibration uncertainty", number + 1, len(deviations))
-    of_fan = CommonErrors.of_fan(camera, fan, deviations)
-    return replace(of_fan, image_size=features.image_size, sweeps=np.array(sweeps))
+    return CommonErrors(
+        features.image_size,
+        tuple(one.source for one in deviations),
+        np.array([parameters_of(camera), *(parameters_of(one.camera) for one in deviations)]),
+        np.array([fan.pis, *(one.fan.pis for one in deviations)]),
+        np.array(sweeps),
+        _bends(fan, deviations),
+    )
 
 
 def _bends(fan: Fan, deviations: Sequence[Deviation]) -> Array | None:

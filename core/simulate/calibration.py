@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from core.calibrate.change import STABLE
 from core.files.recording.rig import GaugeSpec, rig_to_toml
 from core.files.recording.rig import Rig as StatedRig
 from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid, Target
@@ -24,6 +25,9 @@ from core.simulate.scene.targets import RenderContext, camera_picture, fan_centr
 CAMERA_GREY, PLANE_GREY = 230.0, 75.0
 """8-bit grey level of a white surface in the room's light, while the camera and while the fan is calibrated: the target
 nearly white, and dark enough for the fan's stripes to stand out."""
+
+CHECK_SEEDS = 10_000
+"""Poses of a check draw their noise by numbers from here on, those of the calibration below."""
 
 PLATES: dict[str, Target] = {
     "checkerboard": Checkerboard(17, 12, 10.0),
@@ -47,7 +51,11 @@ def rig_toml(scenario: Scenario) -> str:
     targets = PLATES[scenario.camera_target], PLATES[scenario.plane_target]
     return rig_to_toml(
         StatedRig(
-            *targets, lines=scenario.fan_lines, angle=math.radians(5.0) if scenario.fan_lines > 1 else 0.0, gauge=gauge
+            *targets,
+            lines=scenario.fan_lines,
+            angle=math.radians(5.0) if scenario.fan_lines > 1 else 0.0,
+            gauge=gauge,
+            stability=STABLE,
         )
     )
 
@@ -95,3 +103,23 @@ def _on_table(rig: Rig, outline: Array) -> Pose:
     middle = table.translation + along * (1 - pi @ table.translation) / (pi @ along)
     rotation = table.rotation @ np.diag([1.0, -1.0, -1.0])  # a plate's z points away from the camera
     return Pose(rotation, middle - rotation @ outline.mean(axis=0))
+
+
+class CheckPictures:
+    """The pictures of an interim check, rendered one pose at a time: held where the scanned parts will be."""
+
+    def __init__(self, scenario: Scenario, rig: Rig, rays: Map) -> None:
+        self._seed = scenario.seed
+        self._context = RenderContext(rig, rays, Sensor(rig.optics, scenario.bits, scenario.noise))
+        self._plate = printed(PLATES[scenario.plane_target])
+        poses = plane_poses(
+            fan_centres(rig, scenario.check_poses), self._plate.outline, generator(self._seed, "check poses")
+        )
+        self.poses = {f"check{i:02d}": pose for i, pose in enumerate(poses)}
+
+    def render(self, name: str) -> Iterator[tuple[str, Picture]]:
+        """Render the pictures of one pose, each with its path within the set."""
+        index = CHECK_SEEDS + list(self.poses).index(name)
+        on, off = plane_pictures(self._context, self._plate, self.poses[name], PLANE_GREY, self._seed, index)
+        yield f"check/{name}.png", on
+        yield f"check/{name}_off.png", off

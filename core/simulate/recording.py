@@ -10,13 +10,16 @@ from dataclasses import asdict, replace
 from pathlib import Path
 from typing import cast
 
+import numpy as np
+
+from core.calibrate.change import displaced_fan
 from core.errors import InputError
 from core.files.atomic import cannot_write, make_folder, write_text
 from core.files.pictures import write_picture
 from core.messages import Message
-from core.model import Fan, LightPlane, Pose
+from core.model import Camera, Fan, LightPlane, Pose
 from core.progress import Progress, silent, steps
-from core.simulate.calibration import CalibrationPictures, rig_toml
+from core.simulate.calibration import CalibrationPictures, CheckPictures, rig_toml
 from core.simulate.rig import Optics, Rig, paper_rig
 from core.simulate.scan import ScanStage
 from core.simulate.scenario import Scenario
@@ -94,6 +97,11 @@ def _render(scenario: Scenario, rig: Rig, made: Path, hidden: Path, progress: Pr
     else:
         names = [*camera_poses, *plane_poses]
         _write_all(made, lambda name: calibration.render(name), names, progress, "calibration pictures")
+    rig = changed_rig(scenario, rig)
+    if scenario.check_poses:
+        (made / "check").mkdir()
+        check = CheckPictures(scenario, rig, ray_map(rig.camera))
+        _write_all(made, check.render, list(check.poses), progress, "calibration pictures")
     stage, sheets, figures = scan_of(scenario, rig)
     shots = {f"frame{i:04d}": (i, sheet) for i, sheet in enumerate(sheets)}
 
@@ -133,6 +141,15 @@ def profile_picture(scenario: Scenario, index: int, rig: Rig | None = None) -> P
     there = replace(scenario, away_mm=scenario.away_mm + moved, seed=seed)
     stage, _, _ = scan_of(replace(there, frames=0), rig)
     return stage.sensor.expose(stage.still, generator(scenario.seed, "profile", index))
+
+
+def changed_rig(scenario: Scenario, rig: Rig) -> Rig:
+    """The rig at the time of the scan: as calibrated but for what has changed since."""
+    if not scenario.turned_urad and not scenario.drifted_px:
+        return rig
+    fan = displaced_fan(rig.fan, np.array([scenario.turned_urad * 1e-6, 0.0, 0.0]), rig.fan_emitter)
+    matrix = rig.camera.matrix + scenario.drifted_px * np.array([[0, 0, 1.0], [0, 0, 0.6], [0, 0, 0]])
+    return replace(rig, fan=fan, camera=Camera(rig.camera.image_size, matrix, rig.camera.distortion))
 
 
 def scan_of(scenario: Scenario, rig: Rig | None = None) -> tuple[ScanStage, list[Sheet], dict[str, object]]:

@@ -56,6 +56,11 @@ class Scenario:
         0.3 mm over the objects.
     reference
         Write scan/reference.png, the fan alone.
+    check_poses
+        How many pictures of an interim check are taken between calibration and scan.
+    turned_urad, drifted_px
+        What has changed between the calibration and these pictures and the scan: the fan's laser turned about its
+        emitter and the camera's x axis, and the picture moved on the sensor to the right, and 0.6 times as far down.
     yaw_deg, right_mm, away_mm
         Where the object stands: turned about the table's normal, and moved over the table, from its middle.
     fan_lines
@@ -90,6 +95,9 @@ class Scenario:
     fan_lines: int = 3
     hand_laser: bool = True
     travel_mm: float = 0.0
+    check_poses: int = 0
+    turned_urad: float = 0.0
+    drifted_px: float = 0.0
 
     def __post_init__(self) -> None:
         choices = (
@@ -126,6 +134,9 @@ class Scenario:
             ("right_mm", -60.0, 60.0),
             ("away_mm", -60.0, 60.0),
             ("travel_mm", 0.0, 60.0),
+            ("check_poses", 0, 100),
+            ("turned_urad", -1e5, 1e5),
+            ("drifted_px", -50.0, 50.0),
         )
         for name, low, high in ranges:
             if not low <= getattr(self, name) <= high:

@@ -51,12 +51,15 @@ def numbered_stripes(features: PoseFeatures, camera: Camera, fan: Fan | None = N
     located = locate(features, camera)
     if features.view is None or not located.lines:
         return tuple(NumberedStripe(piece.uv, NOT_SEEN) for piece in features.centrelines)
-    numbers = _numbers(located.lines, located.pose, fan) if fan else [NOT_SEEN] * len(located.lines)
+    numbers = line_numbers(located.lines, located.pose, fan) if fan else [NOT_SEEN] * len(located.lines)
     return tuple(NumberedStripe(stripe.uv, line) for stripe, line in zip(located.lines, numbers, strict=True))
 
 
-def _numbers(stripes: Sequence[StripeLine], pose: Pose, fan: Fan) -> list[int]:
-    """Each plane takes the stripe that is nearest to it, the best-fitting pair first."""
+def line_numbers(stripes: Sequence[StripeLine], pose: Pose, fan: Fan) -> list[int]:
+    """The fan line that drew each stripe, or NOT_SEEN.
+
+    Each plane takes the stripe that is nearest to it, the best-fitting pair first.
+    """
     points = [on_target(stripe.rays, pose) for stripe in stripes]
     off = np.array([[_misfit(plane, own) for plane in fan.planes] for own in points])
     numbers = [NOT_SEEN] * len(stripes)

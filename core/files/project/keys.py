@@ -83,7 +83,7 @@ def _camera(project: Project) -> dict[str, str]:
     return {
         label("pictures of the camera target"): project.sources.camera,
         label("camera target"): _digest(rig_tables(project.rig)["camera_target"]),
-        label("colour channel"): project.rig.channel_of("camera") or "",
+        label("colour channel"): project.rig.channel or "",
         label("left-out views"): _left_out(project, "camera"),
         label("camera settings"): _digest([camera.skew, camera.k3, sorted(camera.fixed), camera.outliers]),
         label("accepted camera calibration"): _whether(project.accepted.camera),
@@ -100,7 +100,7 @@ def _planes(project: Project) -> dict[str, str]:
         label("pictures of the plane target"): project.sources.planes,
         label("plane target"): _digest(tables["plane_target"]),
         label("laser"): _digest(tables["laser_fan"]),
-        label("colour channel"): project.rig.channel_of("planes") or "",
+        label("colour channel"): project.rig.channel or "",
         label("left-out poses"): _left_out(project, "planes"),
         label("constraint of the fan"): str(project.options.constrain_fan),
         **adjusted,
@@ -116,7 +116,7 @@ def _scan(project: Project) -> dict[str, str]:
         label("camera calibration"): project.accepted.camera,
         label("laser planes"): project.accepted.fan,
         label("recording"): project.sources.scan,
-        label("colour channel"): project.rig.channel_of("scan") or "",
+        label("colour channel"): project.rig.channel or "",
         label("left-out frames"): _left_out(project, "scan"),
         label("scan settings"): _digest(settings),
     }

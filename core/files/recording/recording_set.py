@@ -7,6 +7,7 @@ The layout is fixed, so that any program can write one::
     SET/planes/NAME.png     target with the fan on it; NAME_off.png = same pose, laser off (optional)
     SET/scan/reference.png  fan only (optional)
     SET/scan/*              frames, in the order of their names
+    SET/check/NAME.png      as planes, but taken on the day of the scan (optional)
 
 A project measures from three folders that may lie anywhere; they are gathered into the same set, with the same names.
 """
@@ -31,6 +32,8 @@ from core.stage_times import StageTimes, stage
 
 PARTS = ("camera", "planes", "scan")
 """The parts of a set, each a folder of pictures."""
+CHECK = "check"
+"""The folder of the interim check, beside the parts: a set need not have one."""
 RIG = "rig.toml"
 
 
@@ -55,6 +58,7 @@ class RecordingSet:
     planes: tuple[PlanePair, ...]
     reference: Path | None
     frames: tuple[Path, ...]
+    check: tuple[PlanePair, ...] = ()
     hashes: dict[str, str] = field(default_factory=dict)
 
     def name_of(self, path: Path) -> str:
@@ -100,9 +104,8 @@ class RecordingSet:
             If it is damaged or unreadable; names the file.
         """
         data = read_bytes(path)
-        name = self.name_of(path)
-        self.hashes[name] = hashlib.sha256(data).hexdigest()
-        return decode_picture(data, path, self.rig.channel_of(name.partition("/")[0]))
+        self.hashes[self.name_of(path)] = hashlib.sha256(data).hexdigest()
+        return decode_picture(data, path, self.rig.channel)
 
     def stream(self, paths: Sequence[Path], times: StageTimes | None = None) -> Iterator[tuple[str, Picture | str]]:
         """Yield name and picture of each of `paths`, a few read ahead; for a damaged one, why it cannot be read.
@@ -169,8 +172,11 @@ def open_set(folder: Path) -> RecordingSet:
             todo=Message("advice.set_needs_pictures", "it needs rig.toml and pictures in camera, planes and scan"),
         )
     rig = read_rig(folder / RIG)
-    found = _listed(folder.resolve().name, rig, {part: folder / part for part in PARTS}, _hash_of(folder / RIG))
-    check_sizes([path for part in PARTS for path in _paths(found, part)])
+    places = {part: folder / part for part in PARTS}
+    if (folder / CHECK).is_dir():
+        places[CHECK] = folder / CHECK
+    found = _listed(folder.resolve().name, rig, places, _hash_of(folder / RIG))
+    check_sizes([path for part in (*PARTS, CHECK) for path in _paths(found, part)])
     return found
 
 
@@ -239,14 +245,18 @@ def require_scan(found: RecordingSet) -> None:
 def _listed(name: str, rig: Rig, folders: Mapping[str, Path], rig_hash: str) -> RecordingSet:
     camera, planes = pictures_in(folders.get("camera")), plane_pairs(folders.get("planes"))
     reference, frames = scan_frames(folders.get("scan"))
-    return RecordingSet(name, rig, folders, camera, planes, reference, frames, {RIG: rig_hash})
+    check = plane_pairs(folders.get(CHECK))
+    return RecordingSet(name, rig, folders, camera, planes, reference, frames, check, {RIG: rig_hash})
 
 
 def _paths(found: RecordingSet, part: str) -> list[Path]:
     """All pictures of one part."""
-    planes = [path for pair in found.planes for path in (pair.on, pair.off) if path is not None]
-    scan = [*([found.reference] if found.reference else []), *found.frames]
-    return {"camera": list(found.camera), "planes": planes, "scan": scan}[part]
+    if part == "camera":
+        return list(found.camera)
+    if part == "scan":
+        return [*([found.reference] if found.reference else []), *found.frames]
+    pairs = found.check if part == CHECK else found.planes
+    return [path for pair in pairs for path in (pair.on, pair.off) if path is not None]
 
 
 def _rig_hash(rig: Rig, places: Sequence[Path]) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Annotated, Any, Literal, TypeAlias
 
@@ -13,6 +13,7 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from core.acquire.grey import Channel
 from core.calibrate.board_shape import BoardTolerance
+from core.calibrate.change import Stability
 from core.errors import InputError
 from core.files.complaints import Clash, checked
 from core.files.reading import read_toml
@@ -31,7 +32,6 @@ _A_LENGTH = label("a length in mm above 0 and at most 5000")
 _TWO_COUNTS = label("two whole numbers from 3 to 500, [columns, rows]")
 _Vertex = Annotated[list[Annotated[float, Field(allow_inf_nan=False)]], Field(min_length=2, max_length=2)]
 _Polygon = Annotated[list[_Vertex], Field(min_length=3)]
-_A_CHANNEL = '"red", "green" or "blue"'
 _A_POLYGON = label("a list of three or more [u, v] in pixels")
 
 
@@ -199,12 +199,16 @@ class PlanTable(Table):
         return self
 
 
-class _Channels(Table):
-    """[channels]: what each step looks at, where that is not the `channel` of all."""
+class _Stability(Table):
+    """[stability]: how far the rig may have changed since its calibration, as standard uncertainties."""
 
-    camera: Channel | None = Field(None, description=_A_CHANNEL)
-    planes: Channel | None = Field(None, description=_A_CHANNEL)
-    scan: Channel | None = Field(None, description=_A_CHANNEL)
+    turn_urad: float = Field(ge=0, le=1e5, allow_inf_nan=False, description="an angle in µrad, 0 to 100000")
+    shift_um: float = Field(ge=0, le=1e4, allow_inf_nan=False, description="a length in µm, 0 to 10000")
+    centre_px: float = Field(ge=0, le=100, allow_inf_nan=False, description="a number of pixels, 0 to 100")
+    focal_ppm: float = Field(ge=0, le=1e4, allow_inf_nan=False, description="a share in 10⁻⁶, 0 to 10000")
+
+    def stability(self) -> Stability:
+        return Stability(self.turn_urad * 1e-6, self.shift_um * 1e-3, self.centre_px, self.focal_ppm * 1e-6)
 
 
 class RigTables(Table):
@@ -214,9 +218,11 @@ class RigTables(Table):
     plane_target: TargetTable | None = Field(None, description="a table [plane_target] with kind and sizes")
     laser_fan: _LaserFan | None = Field(None, description="a table [laser_fan] with lines and angle_deg")
     gauge: GaugeTable | None = Field(None, description="a table [gauge]")
-    channel: Channel | None = Field(None, description=_A_CHANNEL)
-    channels: _Channels | None = Field(None, description="a table [channels] with camera, planes or scan")
+    channel: Literal["red", "green", "blue"] | None = Field(None, description='"red", "green" or "blue"')
     plan: PlanTable | None = Field(None, description="a table [plan]")
+    stability: _Stability | None = Field(
+        None, description="a table [stability] with turn_urad, shift_um, centre_px and focal_ppm"
+    )
 
 
 STEP_TABLES = ("camera_target", "plane_target", "laser_fan")
@@ -253,21 +259,11 @@ class GaugeSpec:
 
 
 @dataclass(frozen=True, slots=True)
-class Channels:
-    """The channel of colour pictures that each step looks at; None where it is the one of all."""
-
-    camera: Channel | None = None
-    planes: Channel | None = None
-    scan: Channel | None = None
-
-
-@dataclass(frozen=True, slots=True)
 class Rig:
     """What rig.toml says. `angle` between neighbouring lines is in rad (0 with one line).
 
     `camera_board` and `plane_board` say how true the two targets are, `plane_margin_mm` how far the plate of the second
-    goes on beyond what is printed on it, None if that is not known. `channels` are those of steps that look at another
-    channel of colour pictures than `channel`, see :meth:`channel_of`. `unstated` are the tables that rig.toml does not
+    goes on beyond what is printed on it, None if that is not known. `unstated` are the tables that rig.toml does not
     have: what they would say is as in the paper's rig, and no step may rest on it (:func:`require_tables`).
     """
 
@@ -279,14 +275,10 @@ class Rig:
     channel: Channel | None = None
     camera_board: BoardTolerance = field(default_factory=BoardTolerance)
     plane_board: BoardTolerance = field(default_factory=BoardTolerance)
-    unstated: frozenset[str] = frozenset()
     plane_margin_mm: float | None = None
-    channels: Channels = Channels()
-
-    def channel_of(self, part: str) -> Channel | None:
-        """The channel in which a part of a set ("camera", "planes", "scan", "check") is looked at, if any."""
-        own: Channel | None = getattr(self.channels, "planes" if part == "check" else part, None)
-        return own or self.channel
+    unstated: frozenset[str] = frozenset()
+    stability: Stability | None = None
+    """How far it may have changed since its calibration; None: nothing is stated."""
 
 
 def default_rig() -> Rig:
@@ -339,8 +331,8 @@ def rig_of(tables: RigTables, path: Path, within: str = "") -> Rig:
         stated["plane_margin_mm"] = tables.plane_target.margin_mm
     if tables.laser_fan is not None:
         stated |= {"lines": tables.laser_fan.lines, "angle": math.radians(tables.laser_fan.angle_deg or 0.0)}
-    if tables.channels is not None:
-        stated["channels"] = Channels(**tables.channels.model_dump())
+    if tables.stability is not None:
+        stated["stability"] = tables.stability.stability()
     unstated = frozenset(name for name in STEP_TABLES if getattr(tables, name) is None)
     return replace(
         rig, gauge=_gauge(tables.gauge) if tables.gauge else None, channel=tables.channel, unstated=unstated, **stated
@@ -351,13 +343,13 @@ def rig_tables(rig: Rig) -> dict[str, Any]:
     """The tables of `rig` as rig.toml has them, without those that are not there; `RigTables` checks them."""
     tables = {
         "channel": rig.channel,
-        "channels": _present(asdict(rig.channels)) or None,
         "camera_target": _target_table(rig.camera_target) | _tolerance_table(rig.camera_board),
         "plane_target": _target_table(rig.plane_target)
         | _tolerance_table(rig.plane_board)
         | _present({"margin_mm": rig.plane_margin_mm}),
         "laser_fan": _present({"lines": rig.lines, "angle_deg": _in_degrees(rig.angle) if rig.angle else None}),
         "gauge": None if rig.gauge is None else _gauge_table(rig.gauge),
+        "stability": None if rig.stability is None else _stability_table(rig.stability),
     }
     return {name: table for name, table in _present(tables).items() if name not in rig.unstated}
 
@@ -426,6 +418,15 @@ def _gauge_table(gauge: GaugeSpec) -> dict[str, Any]:
             **{name: None if polygon is None else polygon.tolist() for name, polygon in polygons.items()},
         }
     )
+
+
+def _stability_table(stability: Stability) -> dict[str, Any]:
+    return {
+        "turn_urad": round(stability.turn * 1e6, 6),
+        "shift_um": round(stability.shift_mm * 1e3, 6),
+        "centre_px": stability.centre_px,
+        "focal_ppm": round(stability.focal_share * 1e6, 6),
+    }
 
 
 def _present(table: Mapping[str, Any]) -> dict[str, Any]:

@@ -81,6 +81,8 @@ class _PlanesFile(ResultFile):
     by_camera: list[list[Finite]] | None = Field(None, description="3N × 10 finite numbers for N planes")
     scale_sd: Finite = Field(0.0, ge=0, le=0.1, description="a share of the target's size from 0 to 0.1")
     cross_validation_mm: OrNan = math.nan
+    stripe_sd_mm: OrNan = math.nan
+    corner_scale: OrNan = math.nan
     camera: _Camera | None = None
     board: BoardTable | None = None
     bends: list[Annotated[list[Row3], Field(min_length=3, max_length=3)]] | None = None
@@ -158,6 +160,8 @@ def write_fan(path: Path, calibration: FanCalibration, camera: Camera) -> None:
             ],
             "angles_deg": degrees,
             "cross_validation_mm": calibration.cross_validation_mm,
+            "stripe_sd_mm": calibration.stripe_sd_mm,
+            "corner_scale": calibration.corner_scale,
             "pencil_gap_mm": calibration.pencil_gap_mm,
             "constraint_suits": calibration.constraint_suits,
             "verdict": kept(calibration.verdict),
@@ -230,6 +234,8 @@ def read_fan(path: Path, camera: Camera) -> FanCalibration:
         by_camera=None if file.by_camera is None else np.array(file.by_camera),
         scale_sd=file.scale_sd,
         cross_validation_mm=file.cross_validation_mm,
+        stripe_sd_mm=file.stripe_sd_mm,
+        corner_scale=file.corner_scale,
         camera=_camera(path, file.camera, camera.image_size),
         camera_covariance=None if file.camera is None else np.array(file.camera.covariance),
         board=board_shape(file.board),

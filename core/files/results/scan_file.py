@@ -6,6 +6,7 @@ thickness, without its pictures.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
@@ -73,6 +74,8 @@ class ScanFile:
         Names what the features rest on: with the same key they need not be looked for again. Nothing if not known.
     speckle
         What the fan's own points and the sweeps are both wrong by; None if not known.
+    change_p
+        Probability that chance alone sets calibrations and pictures of the scan so far apart; NaN if not known.
     """
 
     features: ScanFeatures
@@ -86,6 +89,7 @@ class ScanFile:
     features_key: str = ""
     common: CommonErrors | None = None
     speckle: FanSpeckle | None = None
+    change_p: float = math.nan
 
 
 def write_scan(path: Path, scan: ScanFile) -> None:
@@ -107,6 +111,7 @@ def write_scan(path: Path, scan: ScanFile) -> None:
         "frame_shift_px": np.array([frame.shift_px for frame in features.frames], dtype=np.float64),
         "notes": pack_messages(features.notes),
         "stripes": _stripes(features.fan_stripe, features.sweep_stripe),
+        "change_p": np.array(scan.change_p),
         **({f"common_{name}": np.asarray(getattr(common, name)) for name in _COMMON} if common else {}),
         **({} if common is None or common.bends is None else {"common_bends": common.bends}),
         **({f"speckle_{name}": getattr(speckle, name) for name in _SPECKLE} if speckle else {}),
@@ -172,6 +177,7 @@ def _unpacked(arrays: Arrays) -> ScanFile:
         features_key=str(arrays.get("features_key", "")),
         common=_common(arrays, (width, height)),
         speckle=_speckle(arrays),
+        change_p=float(arrays.get("change_p", math.nan)),
     )
 
 

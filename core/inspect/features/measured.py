@@ -143,7 +143,7 @@ class Scene:
             limits=spec.limits_of(result),
             budget=budget,
             rule=rule,
-            complete=self.errors.sweep_covariance is not None,
+            complete=self.errors.complete,
         )
 
 

@@ -18,6 +18,7 @@ CAMERA = Message("inspection.cause_camera", "camera calibration")
 FAN_CALIBRATION = Message("inspection.cause_fan", "fan calibration")
 BENT_LIGHT = Message("inspection.cause_bent_light", "light of the fan that lies in no planes")
 SCALE = Message("inspection.cause_scale", "scale of the targets")
+CHANGE = Message("inspection.cause_change", "change since the calibration")
 
 PART_TEMPERATURE = Message("inspection.cause_part_temperature", "temperature of the part")
 PART_EXPANSION = Message("inspection.cause_part_expansion", "expansion coefficient of the part")
@@ -32,7 +33,13 @@ REPEATABILITY = Message("study.cause_repeatability", "repeatability of the scans
 STATED = Message("study.cause_stated", "uncertainty stated by each scan, as if common to all")
 GIVEN = Message("study.cause_given", "common to all scans, as given")
 
-CALIBRATIONS: Mapping[str, Message] = {"camera": CAMERA, "fan": FAN_CALIBRATION, "bend": BENT_LIGHT, "scale": SCALE}
+CALIBRATIONS: Mapping[str, Message] = {
+    "camera": CAMERA,
+    "fan": FAN_CALIBRATION,
+    "bend": BENT_LIGHT,
+    "scale": SCALE,
+    "change": CHANGE,
+}
 """By the sources of `core.calibrate.deviations`: what errs in all points of a scan at once."""
 
 _ALL = [one for one in list(globals().values()) if isinstance(one, Message)]

@@ -49,6 +49,8 @@ class PointErrors:
         What the fan's points and the sweeps have in common; None: taken for independent of each other.
     stripe_px
         σ of the light's sections in the picture; 0: not known. On a curved surface they are uneven.
+    doubt
+        Why nothing measured proves conformity, however small its uncertainty; None: nothing speaks against it.
     """
 
     sweep_covariance: Array | None = None
@@ -57,6 +59,12 @@ class PointErrors:
     speckle_px: float = 12.0
     speckle: FanSpeckle | None = None
     stripe_px: float = 0.0
+    doubt: Message | None = None
+
+    @property
+    def complete(self) -> bool:
+        """Whether uncertainties hold all that is known to act on the points; else they prove nothing."""
+        return self.sweep_covariance is not None and self.doubt is None
 
     @classmethod
     def of_scan(

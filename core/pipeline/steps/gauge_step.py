@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+from core.calibrate.change import PROVES_NOTHING
 from core.errors import InputError
 from core.files.recording.rig import GaugeSpec
 from core.files.results.gauge_file import read_gauge, write_gauge
@@ -14,6 +17,11 @@ from core.messages import Message, as_json
 from core.model.arrays import Array
 from core.pipeline.steps.workspace import Workspace, check_calibration
 from core.progress import Progress, silent
+
+CHANGED = Message(
+    "inspection.rig_has_changed",
+    "Laser or camera have surely changed since they were calibrated: nothing measured proves conformity.",
+)
 
 
 def gauge_step(work: Workspace, progress: Progress = silent) -> GaugeResult:
@@ -49,7 +57,8 @@ def gauge_step(work: Workspace, progress: Progress = silent) -> GaugeResult:
 
 def point_errors(scan: ScanFile) -> PointErrors:
     """How the errors of a scan's points hang together."""
-    return PointErrors.of_scan(scan.features, scan.covariance, scan.common, scan.speckle)
+    errors = PointErrors.of_scan(scan.features, scan.covariance, scan.common, scan.speckle)
+    return replace(errors, doubt=CHANGED) if scan.change_p < PROVES_NOTHING else errors
 
 
 def gauge_if_possible(work: Workspace, progress: Progress = silent) -> tuple[GaugeResult | None, Message | None]:

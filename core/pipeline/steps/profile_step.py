@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from core.calibrate.deviations import calibration_deviations
+from core.calibrate.change import PROVES_NOTHING
 from core.errors import InputError
 from core.files.recording.options import Options, StatedTilt
 from core.files.recording.recording_set import RecordingSet
@@ -17,11 +17,14 @@ from core.files.results.gauge_file import write_gauge
 from core.files.results.ply import write_cloud
 from core.files.results.profile_file import PictureStep, write_profiles, write_profiles_csv
 from core.inspect.face_region import inside_polygon
+from core.inspect.gauge import doubted
 from core.inspect.results import GaugeResult
 from core.inspect.step_height import KnownTilt, Step, measure_steps, step_of
 from core.inspect.uncertainty.point_errors import PointErrors
 from core.messages import Message, as_json, from_json
 from core.model.arrays import Array
+from core.pipeline.steps.check_step import assumed_stability, since_calibration
+from core.pipeline.steps.gauge_step import CHANGED
 from core.pipeline.steps.scan_step import feature_options, taken_frames
 from core.pipeline.steps.workspace import Calibration, Workspace, check_size
 from core.progress import Progress, silent
@@ -86,7 +89,8 @@ def profile_step(
         )
     with work.step("profile") as log:
         log.settings.update({**options.scan_settings, **_tilt_settings(tilt)})
-        common = CommonErrors.of_fan(camera, fan, calibration_deviations(calibration.camera, calibration.fan))
+        change = since_calibration(found, calibration, options, progress)
+        common = CommonErrors.of_fan(camera, fan, change.deviations)
         seen, steps, pictures = [], [], []
         stream = found.stream(paths)
         for index, (name, picture) in enumerate(stream):
@@ -115,7 +119,9 @@ def profile_step(
         )
         shown = next(one for one in steps if one.faces.planes.normal is gauge.normal)
         cloud = _cloud(seen, shown.frame, common)
-        notes = (*gauge.notes, *_assumed(fan.lines, tilt, shown))
+        if change.p < PROVES_NOTHING:
+            gauge = doubted(gauge, CHANGED)
+        notes = (*change.notes, *gauge.notes, *_assumed(fan.lines, tilt, shown), *assumed_stability(found))
         gauge = replace(gauge, notes=notes)
         log.frames.extend(_records(pictures, seen))
         log.notes.extend(notes)

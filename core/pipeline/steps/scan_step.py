@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
-from core.calibrate.deviations import calibration_deviations
 from core.calibrate.results import LEFT_OUT
 from core.errors import InputError
 from core.files.pictures import Picture, compression_grey
@@ -19,11 +19,11 @@ from core.files.results.ply import write_cloud, write_mesh
 from core.files.results.scan_file import ScanFile, write_scan
 from core.messages import Message, from_json, plain, plural_message
 from core.model import Camera
+from core.pipeline.steps.check_step import assumed_stability, since_calibration
 from core.pipeline.steps.kept_features import features_key, kept_features
 from core.pipeline.steps.workspace import Calibration, Workspace, check_size
 from core.progress import Progress, silent, steps
 from core.scan.bend_correction import reconstruct_twice
-from core.scan.calibration_check import check_calibration
 from core.scan.common_errors import solve_common
 from core.scan.features.extraction import (
     FeatureOptions,
@@ -41,6 +41,7 @@ from core.scan.preview.frames import Preview
 from core.scan.preview.shown import FramePreview
 from core.scan.reconstruct import ReconstructOptions
 from core.scan.results import FrameRecord, ScanResult
+from core.scan.scan_evidence import scan_evidence
 from core.scan.surface.fused_surface import Mesh
 from core.scan.surface.fusion import fuse
 from core.scan.surface.mesh import build_mesh
@@ -95,13 +96,12 @@ def scan_step(
             features = _look(found, calibration, options, progress, watch)
         solving = ReconstructOptions(method=options.method, sigma_cut_mm=options.sigma_cut_mm)
         even, scan = reconstruct_twice(features, camera, fan, solving, progress)
-        deviations = calibration_deviations(calibration.camera, calibration.fan)
-        common = solve_common(even, scan, camera, fan, deviations, options.method, progress)
+        of_scan = partial(scan_evidence, even, scan, camera, fan) if options.method == Method.NETWORK else None
+        change = since_calibration(found, calibration, options, progress, of_scan)
+        common = solve_common(even, scan, camera, fan, change.deviations, options.method, progress)
         cloud = replace(scan.cloud, sigma_common=common.sigma(scan.cloud))
         scan = replace(scan, cloud=with_normals(cloud, progress=progress))
-        if options.method == Method.NETWORK:
-            check = check_calibration(even, scan, camera, fan, deviations)
-            scan = replace(scan, notes=scan.notes + check.notes)
+        scan = replace(scan, notes=change.notes + scan.notes + assumed_stability(found))
         log.frames.extend(scan.frames)
         log.notes.extend(left_out_notes(scan.frames))
         log.notes.extend(scan.notes)
@@ -110,7 +110,7 @@ def scan_step(
         mesh = build_mesh(surface, progress=progress)
         file = _file(features, scan, calibration.id, features_key(found, options, camera))
         with stage(progress if isinstance(progress, StageTimes) else None, "writing"):
-            _write(work, scan, mesh, replace(file, common=common))
+            _write(work, scan, mesh, replace(file, common=common, change_p=change.p))
     return Measured(scan, mesh)
 
 

@@ -28,6 +28,7 @@ FILES = {
     "camera": "camera.json",
     "planes": "planes.json",
     "poses": "planes.npz",
+    "check": "check.json",
     "cloud": "cloud.ply",
     "mesh": "mesh.ply",
     "scan": "scan.npz",

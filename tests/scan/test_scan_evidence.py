@@ -1,18 +1,18 @@
-"""What a scan says of the calibrations it is solved with."""
+"""What a scan says of the calibrations it is solved with, and of what has changed since."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.spatial.transform import Rotation
 
 from core.calibrate.camera.reprojection import camera_of, parameters_of
+from core.calibrate.change import STABLE, Change, Evidence, changes, displaced_fan, judge, lasting
 from core.calibrate.deviations import Deviation, moved_fan
 from core.calibrate.fan.calibration import FanOptions, fit_fan
-from core.model import Camera, Fan, LightPlane
-from core.scan.calibration_check import check_calibration
+from core.model import Camera, Fan
 from core.scan.features.extraction import ScanFeatures
 from core.scan.reconstruct import reconstruct
+from core.scan.scan_evidence import scan_evidence
 from core.scan.sweeps.fan_lines import FanLines
 from core.simulate.scenario import Scenario
 from tests.calibrate.fan_scenes import ALPHA, CAMERA, Noise, features, poses
@@ -52,59 +52,61 @@ def longer(camera: Camera, share: float) -> Camera:
 
 def turned(fan: Fan, degrees: float, axis: int) -> Fan:
     """The fan turned about an axis through its laser."""
-    rotation = Rotation.from_rotvec(np.radians(degrees) * np.eye(3)[axis]).as_matrix()
-    laser = np.array([120.0, 30.0, 300.0])
-    planes = []
-    for plane in fan.planes:
-        normal = rotation @ plane.normal
-        foot = rotation @ (plane.normal * plane.d_mm - laser) + laser
-        planes.append(LightPlane(normal / (normal @ foot)))
-    return Fan(tuple(planes))
+    return displaced_fan(fan, np.radians(degrees) * np.eye(3)[axis], np.array([120.0, 30.0, 300.0]))
 
 
-def checked(exact: ExactScan, seed: int, camera: Camera, fan: Fan, steps: np.ndarray):
-    """The check of a scan with fresh noise that is solved with this camera and fan."""
+def said(exact: ExactScan, seed: int, camera: Camera, fan: Fan, steps: np.ndarray) -> tuple[list[Deviation], Evidence]:
+    """What a scan with fresh noise says that is solved with this camera and fan."""
     deviations = [Deviation("fan", camera, moved_fan(fan, step)) for step in steps]
-    deviations.append(Deviation("camera", longer(camera, FOCAL_SHARE), fan))
+    deviations += [Deviation("camera", longer(camera, FOCAL_SHARE), fan), *changes(camera, fan)]
     seen = measured(exact, seed)
     scan = reconstruct(seen, camera, fan, fan_lines=FanLines.settled_as(exact.fan_line))
-    return check_calibration(seen, scan, camera, fan, deviations)
+    return deviations, scan_evidence(seen, scan, camera, fan, deviations)
+
+
+def judged(exact: ExactScan, seed: int, camera: Camera, fan: Fan, steps: np.ndarray) -> Change:
+    """What that proves of a rig that nothing should change."""
+    deviations, evidence = said(exact, seed, camera, fan, steps)
+    return judge(camera, fan, deviations, evidence, STABLE)
+
+
+def left(exact: ExactScan, steps: np.ndarray) -> np.ndarray:
+    """(K,) the calibrations' standard uncertainties adjusted by a scan, over those before."""
+    deviations, evidence = said(exact, 3, exact.rig.camera, exact.rig.fan, steps)
+    covariance = lasting(deviations, evidence, STABLE)[1]
+    return np.sqrt(np.linalg.eigvalsh(covariance[: len(steps) + 1, : len(steps) + 1]))
 
 
 def test_scans_and_calibrations_agree_as_closely_as_is_stated(exact, fan_steps):
     rng = np.random.default_rng(1)
-    checks = []
+    found = []
     for seed in range(4):
         fan = moved_fan(exact.rig.fan, rng.normal(size=5) @ fan_steps)
         camera = longer(exact.rig.camera, FOCAL_SHARE * rng.normal())
-        checks.append(checked(exact, seed, camera, fan, fan_steps))
-    assert {check.freedom for check in checks} == {3}, "turns and shifts that leave no trace are not looked at"
-    assert 0.25 < np.mean([check.squares / check.freedom for check in checks]) < 2.2
-    assert not any(check.notes for check in checks)
+        found.append(judged(exact, seed, camera, fan, fan_steps))
+    assert 0.25 < np.mean([change.times**2 for change in found]) < 2.2
+    assert not any(change.notes for change in found)
 
 
 @pytest.mark.parametrize(("degrees", "axis"), [(0.1, 0), (0.25, 1), (0.25, 2)])
 def test_a_laser_that_was_knocked_after_its_calibration_is_found_out(exact, fan_steps, degrees, axis):
-    check = checked(exact, 3, exact.rig.camera, turned(exact.rig.fan, degrees, axis), fan_steps)
-    assert check.p < 1e-6
-    assert check.notes[0].code == "scan.fan_has_moved"
+    change = judged(exact, 3, exact.rig.camera, turned(exact.rig.fan, degrees, axis), fan_steps)
+    assert change.p < 1e-6
+    assert change.notes[0].code == "scan.fan_has_moved"
 
 
 def test_a_scan_can_hardly_better_its_calibrations(exact, fan_steps):
-    """Why there is the check alone and no refinement: the scan leaves more than 0.9 of each standard uncertainty."""
-    check = checked(exact, 3, exact.rig.camera, exact.rig.fan, fan_steps)
-    left = np.sqrt(np.linalg.eigvalsh(check.posterior))
-    print("standard uncertainties of the calibrations, adjusted by the scan over before:", np.round(left, 3))
-    assert (left > 0.9).all()
-    assert (left < 1.001).all()
+    """Why nothing is refined by a scan: it leaves more than 0.9 of each standard uncertainty."""
+    of_each = left(exact, fan_steps)
+    assert (of_each > 0.9).all()
+    assert (of_each < 1.001).all()
 
 
 def test_a_scan_knows_more_of_calibrations_that_know_little(exact, fan_steps):
     """As a check of the normal matrix: of fifty times the uncertainty the scan takes three unknowns, never five."""
-    check = checked(exact, 3, exact.rig.camera, exact.rig.fan, 50 * fan_steps)
-    left = np.sort(np.linalg.eigvalsh(check.posterior))
-    assert (left[:3] < 0.35).all()
-    assert (left[3:5] > 0.5).all(), "scale and place come from nowhere else"
+    of_each = np.sort(left(exact, 50 * fan_steps)) ** 2
+    assert (of_each[:3] < 0.35).all()
+    assert (of_each[3:5] > 0.5).all(), "scale and place come from nowhere else"
 
 
 def test_frames_that_left_the_scan_do_not_matter(exact, fan_steps):
@@ -112,13 +114,16 @@ def test_frames_that_left_the_scan_do_not_matter(exact, fan_steps):
     camera, fan = exact.rig.camera, exact.rig.fan
     scan = reconstruct(seen, camera, fan, fan_lines=FanLines.settled_as(exact.fan_line))
     fewer = replace(scan, pis=scan.pis[:-2], sweep_frames=scan.sweep_frames[:-2])
-    assert check_calibration(seen, fewer, camera, fan, []).freedom == 3
+    evidence = scan_evidence(seen, fewer, camera, fan, changes(camera, fan))
+    assert judge(camera, fan, changes(camera, fan), evidence, STABLE).times > 0
 
 
 def test_a_scan_over_one_line_cannot_tell_whether_anything_moved(exact):
     """The sweeps follow whatever one plane does."""
     lines = FanLines.settled_as([number if number == 1 else -1 for number in exact.fan_line])
-    seen = measured(exact, 2)
-    scan = reconstruct(seen, exact.rig.camera, exact.rig.fan, fan_lines=lines)
-    check = check_calibration(seen, scan, exact.rig.camera, exact.rig.fan, [])
-    assert (check.freedom, check.p, check.notes) == (0, 1.0, ())
+    seen, camera, fan = measured(exact, 2), exact.rig.camera, exact.rig.fan
+    scan = reconstruct(seen, camera, fan, fan_lines=lines)
+    change = judge(
+        camera, fan, changes(camera, fan), scan_evidence(seen, scan, camera, fan, changes(camera, fan)), STABLE
+    )
+    assert (change.times, change.p, change.notes) == (0.0, 1.0, ())

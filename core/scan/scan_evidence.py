@@ -1,0 +1,73 @@
+"""What a scan says of the calibrations it is measured with, and of what has changed since.
+
+A scan's crossings cannot tell everything of the calibrations: π → s π + c of all planes, the fan's included, leaves
+every crossing as it is. But how the fan's planes stand to each other, and the camera's distortion, they do see: with a
+fan or camera that is off, no light planes of the sweeps satisfy them all. With the misclosures v, their derivatives B
+by the deviations and A by the network's unknowns, eliminated::
+
+    N = Bᵀ W B − Bᵀ W A H⁻¹ Aᵀ W B,   g = −Bᵀ W v
+
+N = 1 in a direction means that the scan knows as much of it as the calibration. The covariance of g is taken from the
+crossings' whole covariance (`core.scan.network.equations`).
+
+References
+----------
+Koch, K.-R., Parameter Estimation and Hypothesis Testing in Linear Models (1999), 3.2 (prior information), 4.1.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from scipy.linalg import cho_solve
+
+from core.calibrate.change import Evidence
+from core.calibrate.deviations import Deviation
+from core.model import Camera, Fan
+from core.model.arrays import Array
+from core.scan.features.extraction import ScanFeatures
+from core.scan.network.equations import Adjustment, Solution
+from core.scan.network.geometry import CrossingRays
+from core.scan.network.line_errors import LineErrors
+from core.scan.results import ScanResult
+from core.scan.sweeps.locate import by_sweep, numbered
+
+_ROUNDS = 2
+"""Rounds of Gauss–Helmert, with the weights of the solution: the first moves the crossings, the second settles."""
+
+
+def scan_evidence(
+    features: ScanFeatures, scan: ScanResult, camera: Camera, fan: Fan, deviations: Sequence[Deviation]
+) -> Evidence:
+    """What a scan says of K deviations.
+
+    `scan` is the solution of `features` by the network with `camera` and `fan`.
+    """
+    crossings, line = numbered(features.crossings, scan.fan_lines)
+    table = by_sweep(crossings.select(scan.of_solved), scan.sweep_frames)
+    geometry = CrossingRays.of(table, camera)
+    equations = Adjustment(table, geometry, line[scan.of_solved], fan, len(scan.pis), LineErrors.of(table))
+    solution = replace(equations.start(), pis=scan.pis)
+    for _ in range(_ROUNDS):
+        solution = equations.improve(solution, scan.crossing_weights[scan.of_solved])
+    changes = np.array(
+        [_change(equations, solution, one.fan, one.camera if one.camera is not camera else None) for one in deviations]
+    ).T
+    weight = solution.weights / solution.sigma**2
+    eliminated = cho_solve(solution.factor, solution.design.T @ (weight[:, None] * changes), check_finite=False)
+    felt = weight[:, None] * (changes - solution.design @ eliminated)
+    noise, cells = equations.noise(solution).T @ felt, eliminated[3 * equations.sweeps :]
+    scatter = max(1.0, scan.scale) ** 2 * (noise.T @ noise + cells.T @ cells)
+    gradient = -changes.T @ (weight * solution.residuals * solution.sigma)
+    return Evidence(changes.T @ felt, scatter, gradient)
+
+
+def _change(equations: Adjustment, solution: Solution, fan: Fan, camera: Camera | None = None) -> Array:
+    """(M,) change of the misclosures observed − adjusted, in 1/mm, with another `fan` and `camera` (None: the same)."""
+    rays = equations.geometry.rays
+    here = np.einsum("mi,mi->m", equations.differences(solution.pis), rays)
+    there = replace(equations, fan=fan).differences(solution.pis)
+    other = rays if camera is None else camera.rays(equations.crossings.uv)
+    return np.asarray(here - np.einsum("mi,mi->m", there, other))

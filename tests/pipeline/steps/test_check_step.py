@@ -1,0 +1,105 @@
+"""The interim check on rendered pictures, and what it makes of a measurement."""
+
+import json
+from dataclasses import replace
+
+import pytest
+
+from core.calibrate.change import PROVES_NOTHING
+from core.errors import InputError
+from core.files.recording.options import Options
+from core.files.recording.recording_set import open_set
+from core.files.results.scan_file import read_scan
+from core.inspect.conformity import Verdict
+from core.pipeline.steps.camera_step import camera_step
+from core.pipeline.steps.check_step import check_step
+from core.pipeline.steps.gauge_step import gauge_step
+from core.pipeline.steps.planes_step import planes_step
+from core.pipeline.steps.scan_step import scan_step
+from core.pipeline.steps.workspace import Workspace
+from core.simulate.recording import simulate_set
+from core.simulate.scenario import Scenario
+from tests.shared import made_once
+
+RIG = Scenario(scale=0.25, frames=24, camera_views=10, plane_poses=8, check_poses=2, seed=5)
+COARSE = Options(sigma_cut_mm=0.3)
+
+
+def prepared(tmp_path_factory, name: str, scenario: Scenario):
+    """Set and results of a rig with stated nothing of its stability, calibrated; made once for all test processes."""
+
+    def make(folder):
+        simulate_set(scenario, folder / "set")
+        rig = folder / "set" / "rig.toml"
+        rig.write_text(rig.read_text().split("[stability]")[0])
+        work = Workspace.open(open_set(folder / "set"), folder / "out")
+        camera_step(work)
+        planes_step(work)
+
+    return made_once(tmp_path_factory, name, make)
+
+
+@pytest.fixture(scope="module")
+def unchanged(tmp_path_factory):
+    return prepared(tmp_path_factory, "checked-unchanged", RIG)
+
+
+@pytest.fixture(scope="module")
+def turned(tmp_path_factory):
+    return prepared(tmp_path_factory, "checked-turned", replace(RIG, turned_urad=400.0))
+
+
+def work_in(folder, tmp_path, *, with_check: bool = True) -> Workspace:
+    found = open_set(folder / "set")
+    out = tmp_path / "out"
+    out.mkdir()
+    for name in ("camera.json", "planes.json", "planes.npz"):
+        (out / name).write_bytes((folder / "out" / name).read_bytes())
+    return Workspace.open(found if with_check else replace(found, check=()), out)
+
+
+def test_a_rig_that_has_not_changed_passes(unchanged, tmp_path):
+    work = work_in(unchanged, tmp_path)
+    check = check_step(work)
+    assert check.passed
+    assert check.offset_px < 0.1
+    assert abs(check.error_mm) < 2 * check.unseen_mm < 0.2
+    said = json.loads((work.out / "check.json").read_text())
+    assert said["passed"] is True
+    assert [len(pose["lines"]) for pose in said["poses"]] == [3, 3]
+
+
+def test_a_mount_that_turned_is_found_out_and_nothing_is_conforming_by_it(turned, tmp_path):
+    work = work_in(turned, tmp_path)
+    check = check_step(work)
+    assert check.change.p < PROVES_NOTHING
+    assert check.sentence.code == "check.failed"
+    assert check.error_mm == pytest.approx(0.16, abs=0.08), "what it does to a step of 50 mm"
+    measured = scan_step(work, COARSE)
+    assert measured.scan.notes[0].code == "scan.fan_has_moved", "said first"
+    assert read_scan(work.path("scan")).change_p < PROVES_NOTHING
+    gauge = gauge_step(work)
+    assert gauge.verdict is not Verdict.CONFORMING
+    assert gauge.notes[0].code == "inspection.rig_has_changed"
+
+
+@pytest.mark.parametrize("with_check", [False, True], ids=["no check", "checked"])
+def test_what_may_have_changed_is_a_row_of_the_budget(unchanged, tmp_path, with_check):
+    work = work_in(unchanged, tmp_path, with_check=with_check)
+    scan_step(work, COARSE)
+    gauge = gauge_step(work)
+    (row,) = [row for row in gauge.budget if row.source.code == "inspection.cause_change"]
+    assert abs(gauge.thickness_mm - 50) <= gauge.U_mm
+    assert (row.u_mm < 0.025) if with_check else (0.02 < row.u_mm < 0.2)
+
+
+def test_a_mount_that_turned_unseen_is_within_what_could_not_be_excluded(turned, tmp_path):
+    work = work_in(turned, tmp_path, with_check=False)
+    scan_step(work, COARSE)
+    gauge = gauge_step(work)
+    assert abs(gauge.thickness_mm - 50) <= gauge.U_mm
+
+
+def test_a_set_without_pictures_of_a_check_says_what_to_record(unchanged, tmp_path):
+    with pytest.raises(InputError, match="check: there are no pictures of an interim check; hold the plane target"):
+        check_step(work_in(unchanged, tmp_path, with_check=False))
