@@ -208,7 +208,7 @@ class _Stability(Table):
     focal_ppm: float = Field(ge=0, le=1e4, allow_inf_nan=False, description="a share in 10⁻⁶, 0 to 10000")
 
     def stability(self) -> Stability:
-        return Stability(self.turn_urad * 1e-6, self.shift_um * 1e-3, self.centre_px, self.focal_ppm * 1e-6)
+        return Stability(self.turn_urad / 1e6, self.shift_um / 1e3, self.centre_px, self.focal_ppm / 1e6)
 
 
 class RigTables(Table):

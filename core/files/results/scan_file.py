@@ -6,7 +6,6 @@ thickness, without its pictures.
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
@@ -75,7 +74,7 @@ class ScanFile:
     speckle
         What the fan's own points and the sweeps are both wrong by; None if not known.
     change_p
-        Probability that chance alone sets calibrations and pictures of the scan so far apart; NaN if not known.
+        Probability that chance alone sets calibrations and pictures of the scan so far apart; 1 if not known.
     """
 
     features: ScanFeatures
@@ -89,7 +88,7 @@ class ScanFile:
     features_key: str = ""
     common: CommonErrors | None = None
     speckle: FanSpeckle | None = None
-    change_p: float = math.nan
+    change_p: float = 1.0
 
 
 def write_scan(path: Path, scan: ScanFile) -> None:
@@ -177,7 +176,7 @@ def _unpacked(arrays: Arrays) -> ScanFile:
         features_key=str(arrays.get("features_key", "")),
         common=_common(arrays, (width, height)),
         speckle=_speckle(arrays),
-        change_p=float(arrays.get("change_p", math.nan)),
+        change_p=float(arrays.get("change_p", 1.0)),
     )
 
 

@@ -9,6 +9,7 @@ import pytest
 
 from core.calibrate.board_shape import BoardTolerance
 from core.calibrate.camera.adjustment import CameraOptions
+from core.calibrate.change import Stability
 from core.errors import InputError
 from core.files.project import json_form as project_json
 from core.files.project.data import (
@@ -45,7 +46,8 @@ def full_project():
     return Project(
         ProjectInfo("Block 50", "gauge", "S/N 7", "Ö. Ärzt", "ACME", "Lab 3", 20.5, 21, 'quotes " and\nlines — σ'),
         Rig(Charuco(9, 7, 20, 15), CircleGrid(7, 6, 37.5), 2, math.radians(4.0), GaugeSpec(50, 0.2, POLYGON, POLYGON),
-            "green", BoardTolerance(0.1, 2e-4), BoardTolerance(0.05, 3e-4)),
+            "green", BoardTolerance(0.1, 2e-4), BoardTolerance(0.05, 3e-4),
+            plane_margin_mm=12.0, stability=Stability(5e-5, 0.01, 0.1, 5e-5)),
         Sources("/data/set/camera", "recordings/planes-1", "C:/pictures/scan"),
         Options("three-crossings", 0.3, CameraOptions(False, frozenset({"p1", "k2"}), True, "all"), "my part",
                 StripeSettings(8.5, 120), frozenset({"camera/b.png", "planes/pose02", "scan/ä ö.png"}), False, True,
@@ -111,9 +113,13 @@ def swapped(to, source, path):
     return replace(to, **{name: swapped(getattr(to, name), inner, rest) if rest else inner})
 
 
-WHOLE = {("rig", "gauge"), ("rig", "unstated"), ("options", "stripe"), ("options", "plane_stripe")} | {
-    ("inspection", of) for of in ("frame", "temperature", "master")
-}
+WHOLE = {
+    ("rig", "gauge"),
+    ("rig", "unstated"),
+    ("rig", "stability"),
+    ("options", "stripe"),
+    ("options", "plane_stripe"),
+} | {("inspection", of) for of in ("frame", "temperature", "master")}
 """What a new project has none of; a project states all of its rig."""
 ONE_BY_ONE = [path for path in leaves(full_project()) if path[:2] not in WHOLE]
 
