@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 from functools import partial
 from pathlib import Path
 
@@ -73,7 +74,10 @@ def test_from_new_project_to_report_and_cloud_with_the_numbers_of_the_pipeline(
     assert t.errors() == []
     assert [t.window.rail.state_of(step) for step in t.window.pages] == ["done"] * 6
 
-    expected = run(simulated, tmp_path / "out", Options(sigma_cut_mm=0.3))
+    unstated = Path(shutil.copytree(simulated, tmp_path / simulated.name))
+    rig = unstated / "rig.toml"
+    rig.write_text(rig.read_text().split("[stability]")[0])  # a new project states nothing of it
+    expected = run(unstated, tmp_path / "out", Options(sigma_cut_mm=0.3))
     gauge = json.loads((folder / "results" / FILES["gauge"]).read_text())
     assert expected.gauge is not None
     assert gauge["thickness_mm"] == expected.gauge.thickness_mm

@@ -112,6 +112,8 @@ def _planes(project: Project) -> dict[str, str]:
 def _scan(project: Project) -> dict[str, str]:
     options, stripe = project.options, project.options.stripe
     settings = [options.method, options.sigma_cut_mm, [stripe.width_px, stripe.contrast] if stripe else None]
+    stability = rig_tables(project.rig).get("stability")
+    stated = {label("stability of the rig"): _digest(stability)} if stability else {}
     return {
         label("camera calibration"): project.accepted.camera,
         label("laser planes"): project.accepted.fan,
@@ -119,6 +121,7 @@ def _scan(project: Project) -> dict[str, str]:
         label("colour channel"): project.rig.channel or "",
         label("left-out frames"): _left_out(project, "scan"),
         label("scan settings"): _digest(settings),
+        **stated,
     }
 
 

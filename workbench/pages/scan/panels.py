@@ -14,6 +14,7 @@ from core.scan.preview.hints import HintLimits
 from workbench.language import text_of, tr
 from workbench.pages.scan import words
 from workbench.pages.scan.presenter import ScanPresenter, Stage
+from workbench.pages.scan.stability import STABILITY
 from workbench.views.forms.form import SettingsForm
 from workbench.views.layouts import heading, in_column, muted
 from workbench.views.lists.value_rows import ValueRows
@@ -144,6 +145,12 @@ class SettingsPanel(QWidget):
             self.tr("Height above the background where the stripe is rather faint."),
             minimum=1.0, maximum=65535.0, decimals=0, step=5.0,
         )  # fmt: skip
+        form.add_section(self.tr("Since its calibration the rig may have changed by"))
+        for key, label, unit, decimals, usual in STABILITY:
+            form.add_number(
+                key, tr(label), unit, tr("Standard uncertainty; empty: {usual} {unit}.", usual=usual, unit=unit),
+                minimum=0.0, maximum=10_000.0, decimals=decimals, step=usual / 10, none_text=tr("assumed"), first=usual,
+            )  # fmt: skip
         form.edited.connect(presenter.set_setting, Qt.ConnectionType.QueuedConnection)
         in_column(form, on=self)
 

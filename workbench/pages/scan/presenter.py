@@ -20,6 +20,7 @@ from workbench.bench import Bench
 from workbench.language import tr
 from workbench.pages.live.presenter import LivePresenter
 from workbench.pages.presenter import StepPresenter
+from workbench.pages.scan import stability
 from workbench.pages.scan.run import ScanRun, short
 from workbench.pages.scan.scrub import FrameScrub
 from workbench.pages.scan.thumbnails import FrameThumbnails
@@ -190,10 +191,15 @@ class ScanPresenter(StepPresenter):
 
     def settings(self) -> dict[str, Any]:
         """How the scan is measured, as the fields of a form."""
-        return values_of(self.project.options, self.work.look)
+        return {**values_of(self.project.options, self.work.look), **stability.shown(self.project.rig.stability)}
 
     def set_setting(self, field: str, value: Any) -> None:
         """Change a setting; undoable. What cannot be is refused with a sentence."""
+        if field in stability.shown(None):
+            rig = self.project.rig
+            after = replace(self.project, rig=replace(rig, stability=stability.stated(rig.stability, field, value)))
+            self.model.edit(tr("change what is known of the rig's stability"), after, f"scan {field}")
+            return
         try:
             options = changed_options(self.project.options, self.work.look, field, value)
         except (InputError, ValueError) as error:
