@@ -223,7 +223,7 @@ def test_poses_can_be_taken_without_a_second_picture(monkeypatch, tmp_path, plat
 
 def test_a_plate_without_the_fan_s_light_is_not_taken(monkeypatch, tmp_path, plates):
     def told(event):
-        return isinstance(event, LiveView) and event.detail is not None and "is it on?" in str(event.detail.sentence)
+        return isinstance(event, LiveView) and event.detail is not None and "is not seen" in str(event.detail.sentence)
 
     window = Window(lambda event: Stop() if told(event) else None)
     off, choices = plates.poses[0][1], {"frames": UNTIL_STOPPED, "camera": plates.camera}
