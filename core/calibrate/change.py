@@ -163,18 +163,34 @@ class Change:
     p
         Probability that chance alone would set pictures and calibrations this far apart; 1 where they cannot tell.
     times
-        How many times further apart they are than calibrations and noise let one expect.
+        How many times further apart they are than calibrations and noise let one expect; infinite where the fan is so
+        far from where it was calibrated that its lines are not known again.
+    left_out
+        Why pictures of an interim check say nothing.
     """
 
     deviations: tuple[Deviation, ...]
     p: float
     times: float
+    left_out: tuple[Message, ...] = ()
 
     @property
     def notes(self) -> tuple[Message, ...]:
-        """A note if something has surely changed."""
+        """A note if something has surely changed, and on pictures that say nothing."""
+        return (*self._changed, *self.left_out)
+
+    @property
+    def _changed(self) -> tuple[Message, ...]:
         if self.p >= TOLD:
             return ()
+        if np.isinf(self.times):
+            return (
+                Message(
+                    "scan.fan_is_elsewhere",
+                    "In the pictures of the check no stripe is where the calibration has the fan: laser or camera were "
+                    "moved since; calibrate again.",
+                ),
+            )
         return (
             Message(
                 "scan.fan_has_moved",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
@@ -18,7 +19,7 @@ from core.calibrate.change import (
     lasting,
 )
 from core.calibrate.deviations import Deviation, calibration_deviations
-from core.calibrate.fan.interim_check import CheckedPose, check_poses, step_errors
+from core.calibrate.fan.interim_check import ELSEWHERE, CheckedPose, check_poses, step_errors
 from core.calibrate.fan.pose_features import PoseFeatures
 from core.errors import InputError
 from core.files.json_text import write_json
@@ -165,9 +166,19 @@ def since_calibration(
     camera, fan = calibration.camera.camera, calibration.fan
     deviations = (*calibration_deviations(calibration.camera, fan), *changes(camera, fan.fan))
     evidence = Evidence.none(len(deviations)) if of_measured is None else of_measured(deviations)
+    checked: tuple[CheckedPose, ...] = ()
     if found.check:
-        evidence += check_poses(measure_check(found, camera, options, progress), camera, fan, deviations)[1]
-    return judge(camera, fan.fan, deviations, evidence, found.rig.stability or DEFAULT_STABILITY)
+        checked, of_check = check_poses(measure_check(found, camera, options, progress), camera, fan, deviations)
+        evidence += of_check
+    change = judge(camera, fan.fan, deviations, evidence, found.rig.stability or DEFAULT_STABILITY)
+    reasons = [(one.located.features.name, one.located.reason) for one in checked if one.located.reason is not None]
+    if any(reason.code == ELSEWHERE for _, reason in reasons):
+        change = replace(change, p=0.0, times=math.inf)
+    left_out = (
+        Message("check.pose_left_out", "Picture {pose} of the check says nothing: {reason}.", pose=pose, reason=reason)
+        for pose, reason in reasons
+    )
+    return replace(change, left_out=tuple(left_out))
 
 
 def assumed_stability(found: RecordingSet) -> tuple[Message, ...]:

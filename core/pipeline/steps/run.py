@@ -11,6 +11,7 @@ from core.files.recording.recording_set import open_set, require_camera, require
 from core.inspect.results import GaugeResult
 from core.messages import Message
 from core.pipeline.steps.camera_step import camera_step
+from core.pipeline.steps.check_step import check_step
 from core.pipeline.steps.gauge_step import gauge_if_possible, gauge_step
 from core.pipeline.steps.planes_step import planes_step
 from core.pipeline.steps.report_step import report_step
@@ -66,6 +67,8 @@ def run(set_folder: Path, out_folder: Path, options: Options | None = None, prog
     work.clear()
     camera = camera_step(work, options, progress)
     fan = planes_step(work, options, progress)
+    if found.check:
+        check_step(work, options, progress)
     measured = scan_step(work, options, progress)
     # a part without two parallel faces is no error when rig.toml does not ask for a thickness
     asked = found.rig.gauge is not None

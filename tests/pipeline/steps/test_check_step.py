@@ -3,18 +3,20 @@
 import json
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
-from core.calibrate.change import PROVES_NOTHING
+from core.calibrate.change import PROVES_NOTHING, displaced_fan
 from core.errors import InputError
 from core.files.recording.options import Options
 from core.files.recording.recording_set import open_set
 from core.files.results.scan_file import read_scan
 from core.inspect.conformity import Verdict
 from core.pipeline.steps.camera_step import camera_step
-from core.pipeline.steps.check_step import check_step
+from core.pipeline.steps.check_step import check_step, since_calibration
 from core.pipeline.steps.gauge_step import gauge_step
 from core.pipeline.steps.planes_step import planes_step
+from core.pipeline.steps.run import run
 from core.pipeline.steps.scan_step import scan_step
 from core.pipeline.steps.workspace import Workspace
 from core.simulate.recording import simulate_set
@@ -98,6 +100,30 @@ def test_a_mount_that_turned_unseen_is_within_what_could_not_be_excluded(turned,
     scan_step(work, COARSE)
     gauge = gauge_step(work)
     assert abs(gauge.thickness_mm - 50) <= gauge.U_mm
+
+
+def test_a_fan_that_is_not_found_again_is_no_passed_check(unchanged, tmp_path):
+    """No stripe near its plane gives no number at all: that must not look like nothing having changed."""
+    work = work_in(unchanged, tmp_path)
+    known = work.calibration()
+    elsewhere = displaced_fan(known.fan.fan, np.array([0.0, 0.0, 0.3]), np.array([48.0, 81.0, 312.0]))
+    moved = replace(known, fan=replace(known.fan, fan=elsewhere))
+    change = since_calibration(work.found, moved, Options())
+    assert change.p < PROVES_NOTHING
+    assert change.notes[0].code == "scan.fan_is_elsewhere"
+
+
+def test_a_picture_of_the_check_that_shows_no_target_is_told(unchanged, tmp_path):
+    work = work_in(unchanged, tmp_path)
+    pairs = [replace(pair, on=work.found.frames[0], off=None) for pair in work.found.check]
+    change = since_calibration(replace(work.found, check=tuple(pairs)), work.calibration(), Options())
+    assert {note.code for note in change.notes} == {"check.pose_left_out"}
+
+
+def test_a_whole_run_checks_first(unchanged, tmp_path):
+    result = run(unchanged / "set", tmp_path / "out", COARSE)
+    assert result.files["check"].exists()
+    assert "check.passed" in {note.code for note in result.notes}
 
 
 def test_a_set_without_pictures_of_a_check_says_what_to_record(unchanged, tmp_path):
