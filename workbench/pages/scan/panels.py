@@ -148,7 +148,7 @@ class SettingsPanel(QWidget):
         form.add_section(self.tr("Since its calibration the rig may have changed by"))
         for key, label, unit, decimals, usual in STABILITY:
             form.add_number(
-                key, tr(label), unit, tr("Standard uncertainty; empty: {usual} {unit}.", usual=usual, unit=unit),
+                key, tr(label), unit, tr("Standard uncertainty; empty: {usual:g} {unit}.", usual=usual, unit=unit),
                 minimum=0.0, maximum=10_000.0, decimals=decimals, step=usual / 10, none_text=tr("assumed"), first=usual,
             )  # fmt: skip
         form.edited.connect(presenter.set_setting, Qt.ConnectionType.QueuedConnection)
