@@ -191,7 +191,8 @@ class Monkey(QObject):
         kind = QAbstractButton if self.random.random() < 0.6 else QWidget
         if found := self._widgets(kind):
             widget = self.random.choice(found)
-            self._did(f"click {type(widget).__name__} {getattr(widget, 'text', str)()!r:.40}")
+            text = getattr(widget, "text", None)  # some widgets call something else so
+            self._did(f"click {type(widget).__name__} {text() if callable(text) else ''!r:.40}")
             at = widget.rect().center() if kind is QAbstractButton else self._point(widget)
             button = Qt.MouseButton.RightButton if self.random.random() < 0.05 else Qt.MouseButton.LeftButton
             if self.random.random() < 0.06:
