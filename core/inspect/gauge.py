@@ -196,9 +196,9 @@ def measure_gauge(
 
 
 def doubted(gauge: GaugeResult, doubt: Message) -> GaugeResult:
-    """The same thickness, which proves no conformity because of the `doubt`."""
-    verdict = Verdict.NOT_PROVEN if gauge.verdict is Verdict.CONFORMING else gauge.verdict
-    return replace(gauge, verdict=verdict, notes=(doubt, *gauge.notes))
+    """The same thickness, which proves nothing because of the `doubt`."""
+    verdict = Verdict.NOT_PROVEN if gauge.verdict else Verdict.NONE
+    return replace(gauge, verdict=verdict, notes=(doubt, *gauge.notes), complete=False)
 
 
 def _budget(faces: FittedFaces, errors: PointErrors) -> tuple[Contribution, ...]:

@@ -73,7 +73,8 @@ class GaugeResult:
 
     `normal` (3,) is the unit normal common to both faces, away from the camera; `parallelism` (rad) the angle between
     the faces when each is fitted freely. `rule` says what the thickness is. `points_used` on the upper and the lower
-    face. `verdict` is that of ISO 14253-1; none without a nominal value and a tolerance.
+    face. `verdict` is that of ISO 14253-1; none without a nominal value and a tolerance. What is not `complete` proves
+    nothing, whatever u: `notes` say why.
     """
 
     thickness_mm: float
@@ -89,6 +90,7 @@ class GaugeResult:
     normal: Array | None = None
     rule: Message | None = None
     notes: tuple[Message, ...] = ()
+    complete: bool = True
 
     @property
     def points_used(self) -> tuple[int, int]:

@@ -382,4 +382,5 @@ def thickness_characteristic(gauge: GaugeResult) -> Characteristic:
         budget=gauge.budget,
         rule=gauge.rule,
         notes=gauge.notes,
+        complete=gauge.complete,
     )

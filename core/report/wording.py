@@ -146,10 +146,17 @@ def uncertainty_sentence(k: float, U: float, words: Words = ENGLISH) -> str:
     return meaning + words("; u is the combined standard uncertainty.")
 
 
+PROVES_NOTHING = label(
+    "Neither conformity nor non-conformity is proven, whatever the uncertainty says: the notes tell why."
+)
+
+
 def verdict_sentence(gauge: GaugeResult, words: Words = ENGLISH) -> str:
     """Why the verdict on a thickness is what it is (ISO 14253-1), with the numbers that decide."""
     if not gauge.verdict or gauge.nominal_mm is None or gauge.tolerance_mm is None or gauge.deviation_mm is None:
         return words("No nominal value with a tolerance was given, so the thickness is stated without a verdict.")
+    if not gauge.complete:
+        return words(PROVES_NOTHING)
     tolerance = words.general(gauge.tolerance_mm)
     return _reason(gauge.verdict, gauge.deviation_mm, gauge.U_mm, f"±{tolerance} mm", "mm", words)
 
@@ -158,6 +165,8 @@ def decision_sentence(one: Characteristic, words: Words = ENGLISH) -> str:
     """Why the decision on a characteristic is what it is (ISO 14253-1), with the numbers that decide."""
     if one.limits is None or one.deviation is None:
         return words("No nominal value with a tolerance was given, so the result is stated without a verdict.")
+    if not one.complete:
+        return words(PROVES_NOTHING)
     unit, factor = shown_unit(one)
     deviation = factor * one.deviation
     return _reason(one.verdict, deviation, factor * one.U, tolerance_words(one, words), unit, words)

@@ -64,6 +64,7 @@ class _GaugeFile(ResultFile):
     nominal_mm: Finite | None = None
     tolerance_mm: Finite | None = None
     verdict: Annotated[Verdict, BeforeValidator(Verdict)] = Verdict.NONE
+    complete: bool = True
     rule: OptionalMessage = None
     normal: Row3 | None = None
     notes: list[KeptMessage] = Field(default_factory=list)
@@ -95,6 +96,7 @@ def write_gauge(path: Path, gauge: GaugeResult, calibration_id: str) -> None:
         to_json(
             {
                 **gauge_summary(gauge),
+                "complete": gauge.complete,
                 "rule": kept(gauge.rule),
                 "notes": [kept(note) for note in gauge.notes],
                 "points": dict(zip(("upper", "lower"), gauge.points_used, strict=True)),
@@ -129,6 +131,7 @@ def read_gauge(path: Path, cloud: Cloud) -> GaugeResult:
         nominal_mm=file.nominal_mm,
         tolerance_mm=file.tolerance_mm,
         verdict=file.verdict,
+        complete=file.complete,
         normal=None if file.normal is None else np.array(file.normal),
         rule=file.rule,
         notes=tuple(file.notes),
@@ -143,6 +146,7 @@ def read_thickness(path: Path) -> Characteristic:
     return Characteristic(
         "thickness", "thickness", file.thickness_mm, file.u_mm, k=file.k, limits=limits,
         budget=tuple(row.row() for row in file.budget), rule=file.rule, notes=tuple(file.notes),
+        complete=file.complete,
     )  # fmt: skip
 
 

@@ -10,6 +10,7 @@ from core.calibrate.change import PROVES_NOTHING, displaced_fan
 from core.errors import InputError
 from core.files.recording.options import Options
 from core.files.recording.recording_set import open_set
+from core.files.results.gauge_file import read_thickness
 from core.files.results.scan_file import read_scan
 from core.inspect.conformity import Verdict
 from core.pipeline.steps.camera_step import camera_step
@@ -19,6 +20,8 @@ from core.pipeline.steps.planes_step import planes_step
 from core.pipeline.steps.run import run
 from core.pipeline.steps.scan_step import scan_step
 from core.pipeline.steps.workspace import Workspace
+from core.report.content import thickness_characteristic
+from core.report.wording import decision_sentence, verdict_sentence
 from core.simulate.recording import simulate_set
 from core.simulate.scenario import Scenario
 from tests.shared import made_once
@@ -81,8 +84,12 @@ def test_a_mount_that_turned_is_found_out_and_nothing_is_conforming_by_it(turned
     assert measured.scan.notes[0].code == "scan.fan_has_moved", "said first"
     assert read_scan(work.path("scan")).change_p < PROVES_NOTHING
     gauge = gauge_step(work)
-    assert gauge.verdict is not Verdict.CONFORMING
+    assert gauge.verdict is Verdict.NOT_PROVEN
     assert gauge.notes[0].code == "inspection.rig_has_changed"
+    for one in (thickness_characteristic(gauge), read_thickness(work.path("gauge"))):
+        assert one.verdict is Verdict.NOT_PROVEN, "in the report and in what is handed over"
+        assert decision_sentence(one) == verdict_sentence(gauge)
+    assert "the notes tell why" in verdict_sentence(gauge)
 
 
 @pytest.mark.parametrize("with_check", [False, True], ids=["no check", "checked"])
