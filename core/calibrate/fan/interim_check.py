@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from operator import itemgetter
 
 import numpy as np
 
@@ -109,17 +110,13 @@ def _located(features: PoseFeatures, camera: Camera, fan: Fan) -> LocatedPose:
     if not pose.used:
         return pose
     numbers = line_numbers(pose.lines, pose.pose, fan)
-    stripes = {line: stripe for line, stripe in sorted(zip(numbers, pose.lines, strict=True), key=_number)}
+    stripes = dict(sorted(zip(numbers, pose.lines, strict=True), key=itemgetter(0)))
     stripes.pop(NOT_SEEN, None)
     if stripes:
         return replace(pose, stripes=stripes)
     return pose.left_out(
         Message("check.no_stripe_near", "no stripe is near where the calibration has the fan: laser or camera moved")
     )
-
-
-def _number(pair: tuple[int, object]) -> int:
-    return pair[0]
 
 
 def _check(

@@ -119,9 +119,7 @@ def check_step(work: Workspace, options: Options | None = None, progress: Progre
     calibration = work.calibration()
     camera, fan = calibration.camera.camera, calibration.fan
     with work.step("check") as log:
-        poses = measure_check(found, camera, options, progress)
-        deviations = (*calibration_deviations(calibration.camera, fan), *changes(camera, fan.fan))
-        checked, evidence = check_poses(poses, camera, fan, deviations)
+        deviations, evidence, checked, change = _judged(found, calibration, options, progress)
         if not any(pose.located.used for pose in checked):
             reasons = [pose.located.reason for pose in checked if pose.located.reason is not None]
             raise InputError(
@@ -129,15 +127,13 @@ def check_step(work: Workspace, options: Options | None = None, progress: Progre
                 where=found.where(CHECK),
                 todo=Message("check.advice", "hold the target where all lines meet it; else calibrate again"),
             )
-        stability = found.rig.stability or DEFAULT_STABILITY
-        change = judge(camera, fan.fan, deviations, evidence, stability)
         nominal = None if found.rig.gauge is None else found.rig.gauge.nominal_mm
         step = nominal or STEP_MM
         by = step_errors(checked, camera, fan.fan, deviations, step)
-        estimate, covariance = lasting(deviations, evidence, stability)
+        estimate, covariance = lasting(deviations, evidence, found.rig.stability or DEFAULT_STABILITY)
         check = InterimCheck(checked, change, step, float(-by @ estimate), 2 * float(np.sqrt(by @ covariance @ by)))
         log.notes.append(check.sentence)
-        log.notes.extend(note for pose in poses for note in pose.notes)
+        log.notes.extend(note for pose in checked for note in pose.located.features.notes)
         write_json(work.path("check"), _values(check, calibration.id))
     return check
 
@@ -163,6 +159,17 @@ def since_calibration(
     InputError
         If the check's pictures have another size than the camera's.
     """
+    return _judged(found, calibration, options, progress, of_measured)[-1]
+
+
+def _judged(
+    found: RecordingSet,
+    calibration: Calibration,
+    options: Options,
+    progress: Progress,
+    of_measured: Callable[[Sequence[Deviation]], Evidence] | None = None,
+) -> tuple[tuple[Deviation, ...], Evidence, tuple[CheckedPose, ...], Change]:
+    """The deviations reckoned with, what all pictures say of them, the check's poses, and what that proves."""
     camera, fan = calibration.camera.camera, calibration.fan
     deviations = (*calibration_deviations(calibration.camera, fan), *changes(camera, fan.fan))
     evidence = Evidence.none(len(deviations)) if of_measured is None else of_measured(deviations)
@@ -178,7 +185,7 @@ def since_calibration(
         Message("check.pose_left_out", "Picture {pose} of the check says nothing: {reason}.", pose=pose, reason=reason)
         for pose, reason in reasons
     )
-    return replace(change, left_out=tuple(left_out))
+    return deviations, evidence, checked, replace(change, left_out=tuple(left_out))
 
 
 def assumed_stability(found: RecordingSet) -> tuple[Message, ...]:
