@@ -20,7 +20,7 @@ SCREEN_ONLY := $(filter-out $(BOTH_WAYS),$(wildcard tests/workbench/test_behavio
 
 SCREEN := $(shell command -v xvfb-run >/dev/null && echo 'xvfb-run -a -s "-screen 0 1920x1080x24"')
 
-.PHONY: demo app test quick proofs accuracy bench soak check docs translations screenshots pictures wheel compile clean
+.PHONY: demo app test quick proofs accuracy bench soak check docs translations notice screenshots pictures wheel compile clean
 
 demo: $(READY)            ## measure the embedded sample: cloud, mesh and report of a 50 mm gauge block in ./out
 	$(BIN)/trisect demo --out $(OUT)
@@ -68,11 +68,15 @@ pictures: $(READY)        ## the four pictures of the README
 translations: $(READY)    ## every text of the code into the catalogues of all languages, resources/translations/*.po
 	$(BIN)/python -m tests.translations
 
+notice: $(READY)          ## NOTICE: what the program stands on, and under which licences
+	$(BIN)/python -m tests.licences
+
 check: $(READY)
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+	$(BIN)/pytest -q -n 0 tests/test_licences.py
 
 docs: $(READY)            ## the manual as pages for a browser, in build/manual; dead links are errors
 	$(BIN)/sphinx-build -n -W --keep-going -q -b html resources/manual build/manual

@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-import io
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from plyfile import PlyData, PlyElement, PlyParseError
 
 from core import __version__
 from core.errors import InputError
 from core.files.atomic import write_bytes
-from core.files.reading import MISSING, cannot_read
+from core.files.reading import MISSING, read_bytes
+from core.files.results.ply_format import Ply, parse_ply, ply_bytes
 from core.messages import Command, Message
 from core.model.arrays import Array
 from core.scan.surface.cloud import Cloud
@@ -68,7 +67,7 @@ def write_cloud(path: Path, cloud: Cloud, calibration_id: str) -> None:
         "sigma: standard uncertainty of the depth in mm; frame -1: measured by the fan itself",
         "sigma_common: what camera and fan calibration add to it, in mm, common to all points",
     ]
-    _write(path, [PlyElement.describe(vertices, "vertex")], comments, calibration_id)
+    _write(path, {"vertex": vertices}, comments, calibration_id)
 
 
 def read_cloud(path: Path) -> CloudFile:
@@ -132,9 +131,8 @@ def write_mesh(path: Path, mesh: Mesh, calibration_id: str) -> None:
     faces["vertex_indices"] = mesh.triangles
     if marked:
         faces[_FILLED] = mesh.filled
-    elements = [PlyElement.describe(vertices, "vertex"), PlyElement.describe(faces, "face")]
     comments = ["unit mm", "frame of reference: the camera, z forward, y down", "sigma: standard uncertainty in mm"]
-    _write(path, elements, comments, calibration_id)
+    _write(path, {"vertex": vertices, "face": faces}, comments, calibration_id)
 
 
 def read_mesh(path: Path) -> Mesh:
@@ -148,6 +146,9 @@ def read_mesh(path: Path) -> Mesh:
     data = _read(path, _TODO)
     vertices = _element(data, "vertex", [name for name, _ in _MESH], path)
     faces = _element(data, "face", ["vertex_indices"], path)
+    shape = faces["vertex_indices"].shape
+    if len(faces) and shape[1:] != (3,):
+        raise InputError(Message("file.faces_no_triangles", "its faces are no triangles"), where=path)
     corners = np.array(faces["vertex_indices"], dtype=np.int64).reshape(-1, 3)
     if len(corners) and (corners.min() < 0 or corners.max() >= len(vertices)):
         raise InputError(
@@ -169,34 +170,30 @@ def _put(vertices: NDArray[Any], names: Sequence[str], values: Array) -> None:
         vertices[name] = values[:, column]
 
 
-def _write(path: Path, elements: list[PlyElement], comments: list[str], calibration_id: str) -> None:
-    stamp = [f"Trisect {__version__}", *comments, f"{_CALIBRATION}{calibration_id}"]
-    text = io.BytesIO()
-    PlyData(elements, byte_order="<", comments=stamp).write(text)
-    write_bytes(path, text.getvalue())
+def _write(path: Path, elements: Mapping[str, NDArray[Any]], comments: list[str], calibration_id: str) -> None:
+    stamp = (f"Trisect {__version__}", *comments, f"{_CALIBRATION}{calibration_id}")
+    write_bytes(path, ply_bytes(Ply(elements, stamp)))
 
 
-def _read(path: Path, todo: Message) -> PlyData:
-    """The whole file, mapped into memory: reading it row by row would take seconds."""
+def _read(path: Path, todo: Message) -> Ply:
     if not path.exists():
         raise InputError(MISSING, where=path, todo=todo)
+    data = read_bytes(path)
     try:
-        return PlyData.read(str(path), known_list_len={"face": {"vertex_indices": 3}})
-    except (PlyParseError, UnicodeDecodeError, ValueError, EOFError) as error:
+        return parse_ply(data)
+    except ValueError as error:
         raise InputError(
             Message("file.no_whole_ply", "this is no whole PLY file ({reason})", reason=str(error)),
             where=path,
             todo=Message("advice.make_file_again", "make it again"),
         ) from error
-    except OSError as error:
-        raise cannot_read(path, error) from error
 
 
-def _element(data: PlyData, name: str, properties: Sequence[str], path: Path) -> NDArray[Any]:
+def _element(data: Ply, name: str, properties: Sequence[str], path: Path) -> NDArray[Any]:
     """The rows of one element, all `properties` there."""
-    if name not in data:
+    rows = data.elements.get(name)
+    if rows is None:
         raise InputError(Message("file.no_element", "there is no element {name}", name=name), where=path)
-    rows: NDArray[Any] = data[name].data
     missing = [one for one in properties if one not in (rows.dtype.names or ())]
     if missing:
         raise InputError(

@@ -3,9 +3,10 @@ import math
 from dataclasses import replace
 from datetime import UTC, datetime
 
+import meshio
 import numpy as np
 import pytest
-from plyfile import PlyData
+import trimesh
 
 from core.calibrate.board_shape import Board, BoardShape
 from core.calibrate.fan.pose_features import PoseFeatures
@@ -16,6 +17,7 @@ from core.files.results.camera_file import camera_id, read_camera, write_camera
 from core.files.results.fan_file import read_fan, write_fan
 from core.files.results.gauge_file import read_gauge, write_gauge
 from core.files.results.ply import read_cloud, read_mesh, write_cloud, write_mesh
+from core.files.results.ply_format import Ply, parse_ply, ply_bytes
 from core.files.results.run_file import RunRecord, read_run, write_run
 from core.files.results.scan_file import ScanFile, read_scan, write_scan
 from core.image.stripes.centreline import Centreline
@@ -225,20 +227,34 @@ def test_what_calibrations_add_to_sigma_is_a_property_behind_those_of_the_design
     common = np.linspace(0.01, 0.02, len(cloud))
     write_cloud(path, replace(cloud, sigma_common=common), "abc")
     assert np.allclose(read_cloud(path).cloud.sigma_common, common, rtol=1e-6)
-    assert [p.name for p in PlyData.read(str(path))["vertex"].properties][-1] == "sigma_common"
+    assert parse_ply(path.read_bytes()).elements["vertex"].dtype.names[-1] == "sigma_common"
     path.write_bytes(path.read_bytes().replace(b"property float sigma_common", b"property float of_another_prog"))
     assert not read_cloud(path).cloud.sigma_common.any()  # a file of an earlier version: not known
 
 
 def test_cloud_is_the_ply_of_the_design(tmp_path, cloud):
     write_cloud(tmp_path / "cloud.ply", cloud, "abc")
-    data = PlyData.read(str(tmp_path / "cloud.ply"))
-    assert (data.text, data.byte_order) == (False, "<")
-    names = [p.name for p in data["vertex"].properties]
-    assert names[:9] == ["x", "y", "z", "nx", "ny", "nz", "sigma", "intensity", "frame"]
+    written = (tmp_path / "cloud.ply").read_bytes()
+    assert written.startswith(b"ply\nformat binary_little_endian 1.0\n")
+    data = parse_ply(written)
+    names = data.elements["vertex"].dtype.names
+    assert list(names[:9]) == ["x", "y", "z", "nx", "ny", "nz", "sigma", "intensity", "frame"]
     assert "unit mm" in data.comments
     assert "calibration abc" in data.comments
     assert any(line.startswith("Trisect ") for line in data.comments)
+
+
+def test_cloud_and_mesh_are_read_alike_by_another_program(tmp_path, cloud):
+    write_cloud(tmp_path / "cloud.ply", cloud, "abc")
+    theirs = meshio.read(tmp_path / "cloud.ply")
+    assert np.array_equal(theirs.points, cloud.points)
+    assert np.allclose(theirs.point_data["sigma"], cloud.sigma, rtol=1e-6)
+    assert np.array_equal(theirs.point_data["frame"], cloud.frame)
+    corners = np.array([[0, 1, 2], [2, 3, 4]])
+    mesh = Mesh(np.eye(5)[:, :3], np.eye(5)[:, :3], np.ones(5), corners, np.array([False, True]))
+    write_mesh(tmp_path / "mesh.ply", mesh, "abc")
+    assert np.array_equal(trimesh.load_mesh(tmp_path / "mesh.ply", process=False).faces, corners)
+    assert read_mesh(tmp_path / "mesh.ply").filled.tolist() == [False, True]
 
 
 def test_truncated_and_spoilt_clouds_are_refused(tmp_path, cloud):
@@ -275,6 +291,14 @@ def test_mesh_round_trip(tmp_path):
     empty = Mesh(np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0), np.zeros((0, 3), dtype=np.int64))
     write_mesh(tmp_path / "empty.ply", empty, "abc")
     assert read_mesh(tmp_path / "empty.ply").triangles.shape == (0, 3)
+
+
+def test_a_mesh_of_squares_is_refused(tmp_path):
+    squares = np.zeros(2, dtype=[("vertex_indices", "i4", (4,))])
+    vertices = np.zeros(4, dtype=[(name, "f4") for name in ("x", "y", "z", "nx", "ny", "nz", "sigma")])
+    (tmp_path / "mesh.ply").write_bytes(ply_bytes(Ply({"vertex": vertices, "face": squares})))
+    with pytest.raises(InputError, match=r"mesh\.ply: its faces are no triangles"):
+        read_mesh(tmp_path / "mesh.ply")
 
 
 def centreline(rng, count):
