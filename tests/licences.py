@@ -78,8 +78,9 @@ def runtime_licences() -> list[Licence]:
 def licence(name: str, said: PackageMetadata) -> Licence:
     """By its SPDX expression, else its classifiers, else the first line of its licence field."""
     classifiers = [one.split(" :: ")[-1] for one in said.get_all("Classifier") or [] if one.startswith("License")]
-    written = next((line.strip() for line in (said.get("License") or "").splitlines() if line.strip(" =")), "")
-    words = said.get("License-Expression") or ", ".join(classifiers) or written[:_LINE]
+    fields = {field: said[field] for field in ("License", "License-Expression") if field in said}
+    written = next((line.strip() for line in fields.get("License", "").splitlines() if line.strip(" =")), "")
+    words = fields.get("License-Expression") or ", ".join(classifiers) or written[:_LINE]
     return Licence(name, words, _home(said))
 
 
