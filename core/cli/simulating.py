@@ -56,6 +56,21 @@ def simulate(
     drifted: Annotated[
         float, typer.Option(metavar="PX", help="The picture moved by so much since the camera's calibration.")
     ] = SCENARIO.drifted_px,
+    readout: Annotated[
+        float, typer.Option(metavar="MS", help="Rows are read out over so long: a rolling shutter.")
+    ] = SCENARIO.readout_ms,
+    exposure: Annotated[float, typer.Option(metavar="MS", help="Each row is exposed for so long.")] = (
+        SCENARIO.exposure_ms
+    ),
+    hand_speed: Annotated[float, typer.Option(metavar="MM/S", help="Speed of the hand in a picture.")] = (
+        SCENARIO.hand_mm_s
+    ),
+    tremor: Annotated[float, typer.Option(metavar="MM", help="Amplitude of the hand's tremor.")] = SCENARIO.tremor_mm,
+    moved_frame: Annotated[int, typer.Option(help="From this frame on something has moved:")] = SCENARIO.moved_frame,
+    lifted: Annotated[float, typer.Option(metavar="MM", help="… the object up.")] = SCENARIO.lifted_mm,
+    pushed: Annotated[float, typer.Option(metavar="MM", help="… the object aside.")] = SCENARIO.pushed_mm,
+    table_sunk: Annotated[float, typer.Option(metavar="MM", help="… the table with the object.")] = SCENARIO.table_mm,
+    bumped: Annotated[float, typer.Option(metavar="PX", help="… the camera's picture.")] = SCENARIO.bumped_px,
     published_planes: Annotated[
         bool, typer.Option("--published-planes", help="The paper's printed planes instead of an exact 5° pencil.")
     ] = False,
@@ -97,6 +112,15 @@ def simulate(
         check_poses=check_poses,
         turned_urad=turned,
         drifted_px=drifted,
+        readout_ms=readout,
+        exposure_ms=exposure,
+        hand_mm_s=hand_speed,
+        tremor_mm=tremor,
+        moved_frame=moved_frame,
+        lifted_mm=lifted,
+        pushed_mm=pushed,
+        table_mm=table_sunk,
+        bumped_px=bumped,
     )
     with bars() as progress:
         simulate_set(scenario, out, progress)

@@ -14,7 +14,7 @@ from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid, T
 from core.model import Pose
 from core.model.arrays import Array
 from core.simulate.poses import camera_poses, plane_poses
-from core.simulate.rig import Rig
+from core.simulate.rig import FULL_SIZE, Rig
 from core.simulate.scenario import Scenario
 from core.simulate.scene.boards import printed
 from core.simulate.scene.image import Picture, Sensor, generator
@@ -56,6 +56,9 @@ def rig_toml(scenario: Scenario) -> str:
             angle=math.radians(5.0) if scenario.fan_lines > 1 else 0.0,
             gauge=gauge,
             stability=STABLE,
+            row_time_us=1000 * scenario.readout_ms / round(FULL_SIZE[1] * scenario.scale)
+            if scenario.readout_ms
+            else None,
         )
     )
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import shutil
 import tempfile
-from collections.abc import Callable, Generator, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from contextlib import closing
 from dataclasses import asdict, replace
 from pathlib import Path
@@ -20,14 +20,16 @@ from core.messages import Message
 from core.model import Camera, Fan, LightPlane, Pose
 from core.progress import Progress, silent, steps
 from core.simulate.calibration import CalibrationPictures, CheckPictures, rig_toml
-from core.simulate.rig import Optics, Rig, paper_rig
+from core.simulate.hand_motion import HandMotion
+from core.simulate.rig import FULL_SIZE, Optics, Rig, paper_rig
 from core.simulate.scan import ScanStage
 from core.simulate.scenario import Scenario
 from core.simulate.scene.image import Picture, Sensor, generator
 from core.simulate.scene.laser import Sheet
 from core.simulate.scene.rays import ray_map
+from core.simulate.scene.scene import Scene
 from core.simulate.scene.stage import WORK_POINT, aim_of, build_scene
-from core.simulate.sweep import hand_sweeps, sweep_range
+from core.simulate.sweep import hand_sweeps, headings_of, sweep_range
 from core.simulate.truth import TRUTH_FILE, Truth, load_truth, save_truth, truth_folder
 from core.threads import ordered_map
 
@@ -103,13 +105,17 @@ def _render(scenario: Scenario, rig: Rig, made: Path, hidden: Path, progress: Pr
         check = CheckPictures(scenario, rig, ray_map(rig.camera))
         _write_all(made, check.render, list(check.poses), progress, "calibration pictures")
     stage, sheets, figures = scan_of(scenario, rig)
+    later = moved_stage(scenario, rig)
     shots = {f"frame{i:04d}": (i, sheet) for i, sheet in enumerate(sheets)}
+    moving = moving_sheets(scenario, sheets)
 
     def shoot(name: str) -> Iterator[tuple[str, Picture]]:
         if name == "reference":
             yield "scan/reference.png", stage.reference()
         elif scenario.hand_laser:
-            yield f"scan/{name}.png", stage.frame(*shots[name])
+            index = shots[name][0]
+            seen = stage if later is None or index < scenario.moved_frame else later
+            yield f"scan/{name}.png", seen.frame(index, *moving[index])
         else:
             yield f"scan/{name}.png", profile_picture(scenario, shots[name][0], rig)
 
@@ -117,7 +123,7 @@ def _render(scenario: Scenario, rig: Rig, made: Path, hidden: Path, progress: Pr
     _write_all(made, shoot, [*first, *shots], progress, "frames")
     write_text(made / "rig.toml", rig_toml(scenario), sync=False)
     swept = shots if scenario.hand_laser else {}
-    sweeps: dict[str, LightPlane] = {name: sheet.plane for name, (_, sheet) in swept.items()}
+    sweeps: dict[str, LightPlane] = {name: moving[index][0].plane for name, (index, _) in swept.items()}
     maps = stage.maps
     truth = Truth(rig.camera, rig.fan, sweeps, camera_poses, plane_poses, figures, maps.depth, maps.table)
     save_truth(hidden, truth, asdict(scenario))
@@ -148,8 +154,13 @@ def changed_rig(scenario: Scenario, rig: Rig) -> Rig:
     if not scenario.turned_urad and not scenario.drifted_px:
         return rig
     fan = displaced_fan(rig.fan, np.array([scenario.turned_urad * 1e-6, 0.0, 0.0]), rig.fan_emitter)
-    matrix = rig.camera.matrix + scenario.drifted_px * np.array([[0, 0, 1.0], [0, 0, 0.6], [0, 0, 0]])
-    return replace(rig, fan=fan, camera=Camera(rig.camera.image_size, matrix, rig.camera.distortion))
+    return replace(_drifted(rig, scenario.drifted_px), fan=fan)
+
+
+def _drifted(rig: Rig, drift_px: float) -> Rig:
+    """The rig with its camera's picture moved to the right, and 0.6 times as far down."""
+    matrix = rig.camera.matrix + drift_px * np.array([[0, 0, 1.0], [0, 0, 0.6], [0, 0, 0]])
+    return replace(rig, camera=Camera(rig.camera.image_size, matrix, rig.camera.distortion))
 
 
 def scan_of(scenario: Scenario, rig: Rig | None = None) -> tuple[ScanStage, list[Sheet], dict[str, object]]:
@@ -161,19 +172,45 @@ def scan_of(scenario: Scenario, rig: Rig | None = None) -> tuple[ScanStage, list
     """
     rig = rig or scenario_rig(scenario)
     scene, figures = build_scene(scenario)
-    sensor = Sensor(rig.optics, scenario.bits, scenario.noise)
-    stage = ScanStage(
+    reach = sweep_range(scene, aim_of(scene))
+    sheets = hand_sweeps(rig, reach, scenario.frames, generator(scenario.seed, "sweeps"))
+    return _stage(scenario, rig, scene), sheets, figures
+
+
+def moved_stage(scenario: Scenario, rig: Rig) -> ScanStage | None:
+    """The stage from the frame on at which something moves; None if nothing does."""
+    if not (scenario.lifted_mm or scenario.pushed_mm or scenario.table_mm or scenario.bumped_px):
+        return None
+    scene, _ = build_scene(scenario)
+    assert scene.pose_cam_table is not None
+    up, aside = scene.pose_cam_table.rotation[:, 2], scene.pose_cam_table.rotation[:, 0]
+    scene = scene.moved(Pose(np.eye(3), scenario.lifted_mm * up + scenario.pushed_mm * aside))
+    scene = scene.moved(Pose(np.eye(3), -scenario.table_mm * up), with_table=True)
+    return _stage(scenario, _drifted(rig, scenario.bumped_px), scene)
+
+
+def moving_sheets(scenario: Scenario, sheets: Sequence[Sheet]) -> list[tuple[Sheet, ...]]:
+    """What the picture of each frame sees of the hand-held laser at `sheets`: more than that one if the hand moves."""
+    motion = HandMotion(scenario.hand_mm_s, scenario.tremor_mm, scenario.readout_ms / 1000, scenario.exposure_ms / 1000)
+    if not motion.seen:
+        return [(sheet,) for sheet in sheets]
+    rows, headings = round(FULL_SIZE[1] * scenario.scale), headings_of(len(sheets))
+    return [
+        motion.sheets(sheet, rows, headings[i], generator(scenario.seed, "hand motion", i))
+        for i, sheet in enumerate(sheets)
+    ]
+
+
+def _stage(scenario: Scenario, rig: Rig, scene: Scene) -> ScanStage:
+    return ScanStage(
         rig,
         scene,
-        sensor,
+        Sensor(rig.optics, scenario.bits, scenario.noise),
         seed=scenario.seed,
         ambient_grey=scenario.ambient_grey,
         texture=scenario.texture,
         aim=WORK_POINT,
     )
-    reach = sweep_range(scene, aim_of(scene))
-    sheets = hand_sweeps(rig, reach, scenario.frames, generator(scenario.seed, "sweeps"))
-    return stage, sheets, figures
 
 
 def _write_all(

@@ -66,10 +66,10 @@ class ScanStage:
         """The picture with the hand-held laser off: room light and fan."""
         return self.sensor.expose(self._still, generator(self.seed, "reference"))
 
-    def frame(self, index: int, sheet: Sheet) -> Picture:
-        """Frame number `index`, the hand-held laser at `sheet`."""
+    def frame(self, index: int, *sheets: Sheet) -> Picture:
+        """Frame number `index`, the hand-held laser at one sheet, or at several in the course of the exposure."""
         rng = generator(self.seed, "frame", index)
-        return self.sensor.expose(self.lit_by(sheet, rng), rng)
+        return self.sensor.expose(self.lit_by(*sheets, rng=rng), rng)
 
     @property
     def room_light(self) -> Map:
@@ -81,9 +81,14 @@ class ScanStage:
         """Light (h, w) in grey levels that is the same in every frame: the room's and the fan's."""
         return self._still
 
-    def lit_by(self, sheet: Sheet, rng: np.random.Generator, *, fan: bool = True) -> Map:
-        """Light (h, w) in grey levels with the hand-held laser at `sheet`; `rng` chooses its speckle."""
-        light = blurred(laser_light(sheet, self.scene, self.maps), self.rig.blur_px)
+    def lit_by(self, *sheets: Sheet, rng: np.random.Generator, fan: bool = True) -> Map:
+        """Light (h, w) in grey levels, the mean with the hand-held laser at `sheets`; `rng` chooses its speckle."""
+        light = laser_light(sheets[0], self.scene, self.maps)
+        for sheet in sheets[1:]:
+            laser_light(sheet, self.scene, self.maps, light)
+        if len(sheets) > 1:
+            light /= len(sheets)
+        light = blurred(light, self.rig.blur_px)
         light = self._with_speckle(light, rng)
         light += self._still if fan else self._room_light
         return light

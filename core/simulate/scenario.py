@@ -61,6 +61,19 @@ class Scenario:
     turned_urad, drifted_px
         What has changed between the calibration and these pictures and the scan: the fan's laser turned about its
         emitter and the camera's x axis, and the picture moved on the sensor to the right, and 0.6 times as far down.
+    readout_ms, exposure_ms
+        Time from the first to the last row of a picture of the scan (71 ms in the paper's camera at 14 frames/s), and
+        time each row collects light: what the moving hand does to the stripe meanwhile.
+    hand_mm_s, tremor_mm
+        Speed of the hand, and amplitude of its tremor of 8 to 12 Hz (0.35 mm is usual): `core.simulate.hand_motion`.
+    moved_frame
+        From this frame on something is moved: object, table or camera.
+    lifted_mm, pushed_mm
+        The object, off the table along its normal and aside.
+    table_mm
+        The table with the object on it, away from the camera along its normal.
+    bumped_px
+        The camera: its picture moved by so many px to the right, and 0.6 times as far down.
     yaw_deg, right_mm, away_mm
         Where the object stands: turned about the table's normal, and moved over the table, from its middle.
     fan_lines
@@ -98,6 +111,15 @@ class Scenario:
     check_poses: int = 0
     turned_urad: float = 0.0
     drifted_px: float = 0.0
+    readout_ms: float = 0.0
+    exposure_ms: float = 0.0
+    hand_mm_s: float = 0.0
+    tremor_mm: float = 0.0
+    moved_frame: int = 0
+    lifted_mm: float = 0.0
+    pushed_mm: float = 0.0
+    table_mm: float = 0.0
+    bumped_px: float = 0.0
 
     def __post_init__(self) -> None:
         choices = (
@@ -137,6 +159,15 @@ class Scenario:
             ("check_poses", 0, 100),
             ("turned_urad", -1e5, 1e5),
             ("drifted_px", -50.0, 50.0),
+            ("readout_ms", 0.0, 1000.0),
+            ("exposure_ms", 0.0, 1000.0),
+            ("hand_mm_s", 0.0, 1000.0),
+            ("tremor_mm", 0.0, 10.0),
+            ("moved_frame", 0, 100_000),
+            ("lifted_mm", -20.0, 20.0),
+            ("pushed_mm", -20.0, 20.0),
+            ("table_mm", -20.0, 20.0),
+            ("bumped_px", -50.0, 50.0),
         )
         for name, low, high in ranges:
             if not low <= getattr(self, name) <= high:

@@ -87,8 +87,8 @@ class HandCourse:
 
 def hand_course(reach: SweepRange, frames: int, rng: np.random.Generator) -> HandCourse:
     """Make the course of the hand during a scan of `frames` frames, in the order of time."""
-    passes = max(min(LEAST_PASSES, frames), round(frames / FRAMES_PER_PASS))
-    number = np.arange(frames) * passes // frames
+    number = _passes(frames)
+    passes = int(number.max(initial=-1)) + 1
     begins = np.searchsorted(number, np.arange(passes))
     counts = np.diff(np.append(begins, frames))
     along = (np.arange(frames) - begins[number] + 0.5) / counts[number]  # 0 … 1 within the pass
@@ -109,6 +109,17 @@ def hand_course(reach: SweepRange, frames: int, rng: np.random.Generator) -> Han
 def hand_sweeps(rig: Rig, reach: SweepRange, frames: int, rng: np.random.Generator) -> list[Sheet]:
     """Make the sheets of light of a scan of `frames` frames, in the camera frame, in the order of time."""
     return hand_course(reach, frames, rng).sheets(rig)
+
+
+def headings_of(frames: int) -> Array:
+    """(N,) of each frame of a scan: +1 where the stripe goes to the right, −1 where to the left."""
+    return np.where(_passes(frames) % 2 == 0, 1.0, -1.0)
+
+
+def _passes(frames: int) -> NDArray[np.intp]:
+    """(N,) number of the pass over the object, from 0, that each frame is of."""
+    passes = max(min(LEAST_PASSES, frames), round(frames / FRAMES_PER_PASS))
+    return np.arange(frames) * passes // max(frames, 1)
 
 
 def sweep_range(scene: Scene, centre: Array) -> SweepRange:

@@ -112,8 +112,10 @@ def _planes(project: Project) -> dict[str, str]:
 def _scan(project: Project) -> dict[str, str]:
     options, stripe = project.options, project.options.stripe
     settings = [options.method, options.sigma_cut_mm, [stripe.width_px, stripe.contrast] if stripe else None]
-    stability = rig_tables(project.rig).get("stability")
+    tables = rig_tables(project.rig)
+    stability, camera = tables.get("stability"), tables.get("camera")
     stated = {label("stability of the rig"): _digest(stability)} if stability else {}
+    stated |= {label("row time of the camera"): _digest(camera)} if camera else {}
     return {
         label("camera calibration"): project.accepted.camera,
         label("laser planes"): project.accepted.fan,

@@ -211,6 +211,14 @@ class _Stability(Table):
         return Stability(self.turn_urad / 1e6, self.shift_um / 1e3, self.centre_px, self.focal_ppm / 1e6)
 
 
+class _Camera(Table):
+    """[camera]: what the camera's data sheet says."""
+
+    row_time_us: float = Field(
+        ge=0, le=1e5, allow_inf_nan=False, description="a time in µs from one row to the next, 0 to 100000"
+    )
+
+
 class RigTables(Table):
     """What rig.toml holds, and project.json under "rig"; a step that wants a table that is not there complains."""
 
@@ -218,6 +226,7 @@ class RigTables(Table):
     plane_target: TargetTable | None = Field(None, description="a table [plane_target] with kind and sizes")
     laser_fan: _LaserFan | None = Field(None, description="a table [laser_fan] with lines and angle_deg")
     gauge: GaugeTable | None = Field(None, description="a table [gauge]")
+    camera: _Camera | None = Field(None, description="a table [camera] with row_time_us")
     channel: Literal["red", "green", "blue"] | None = Field(None, description='"red", "green" or "blue"')
     plan: PlanTable | None = Field(None, description="a table [plan]")
     stability: _Stability | None = Field(
@@ -279,6 +288,8 @@ class Rig:
     unstated: frozenset[str] = frozenset()
     stability: Stability | None = None
     """How far it may have changed since its calibration; None: nothing is stated."""
+    row_time_us: float | None = None
+    """Time from one row of a picture to the next of a rolling shutter, 0 for a global one; None: not stated."""
 
 
 def default_rig() -> Rig:
@@ -333,6 +344,8 @@ def rig_of(tables: RigTables, path: Path, within: str = "") -> Rig:
         stated |= {"lines": tables.laser_fan.lines, "angle": math.radians(tables.laser_fan.angle_deg or 0.0)}
     if tables.stability is not None:
         stated["stability"] = tables.stability.stability()
+    if tables.camera is not None:
+        stated["row_time_us"] = tables.camera.row_time_us
     unstated = frozenset(name for name in STEP_TABLES if getattr(tables, name) is None)
     return replace(
         rig, gauge=_gauge(tables.gauge) if tables.gauge else None, channel=tables.channel, unstated=unstated, **stated
@@ -350,6 +363,7 @@ def rig_tables(rig: Rig) -> dict[str, Any]:
         "laser_fan": _present({"lines": rig.lines, "angle_deg": _in_degrees(rig.angle) if rig.angle else None}),
         "gauge": None if rig.gauge is None else _gauge_table(rig.gauge),
         "stability": None if rig.stability is None else _stability_table(rig.stability),
+        "camera": None if rig.row_time_us is None else {"row_time_us": rig.row_time_us},
     }
     return {name: table for name, table in _present(tables).items() if name not in rig.unstated}
 

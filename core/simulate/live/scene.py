@@ -126,7 +126,7 @@ class LiveScene:
     def _scan_light(self, moment: Moment, rng: np.random.Generator) -> Map:
         assert self._stage is not None
         if moment.lasers.hand:
-            return self._stage.lit_by(self._hand.sheet(moment.sweep_s), rng, fan=moment.lasers.fan)
+            return self._stage.lit_by(self._hand.sheet(moment.sweep_s), rng=rng, fan=moment.lasers.fan)
         return self._stage.still if moment.lasers.fan else self._stage.room_light
 
     def _plate_light(self, moment: Moment, rng: np.random.Generator) -> Map:

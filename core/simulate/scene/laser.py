@@ -33,12 +33,17 @@ BOW_SEEN_TO = 0.6
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Sheet:
-    """One sheet of laser light: its plane, its emitter (3,) on that plane in mm, its axis (3,) and its beam."""
+    """One sheet of laser light: its plane, its emitter (3,) on that plane in mm, its axis (3,) and its beam.
+
+    `rows` (height, 4) is for a laser that moves while the camera reads its rows out: unit normal and distance in mm of
+    the plane that each row of the picture sees; `plane` then is that of the middle row.
+    """
 
     plane: LightPlane
     emitter: Array
     axis: Array
     beam: Beam
+    rows: Array | None = None
 
     def __post_init__(self) -> None:
         emitter = np.asarray(self.emitter, dtype=np.float64)
@@ -48,8 +53,10 @@ class Sheet:
         set_field(self, "emitter", frozen_array(emitter, (3,), "emitter"))
         set_field(self, "axis", frozen_array(axis / np.linalg.norm(axis), (3,), "axis"))
 
-    def off_light(self, points: Array) -> Array:
-        """Signed distances (N,) in mm of `points` (N, 3) from the middle of the light, bowed or in its plane."""
+    def off_light(self, points: Array, row: NDArray[np.intp]) -> Array:
+        """Signed distances (N,) in mm of `points` (N, 3), seen in these rows, from the middle of the light."""
+        if self.rows is not None:
+            return np.asarray((points * self.rows[row, :3]).sum(axis=1) - self.rows[row, 3], dtype=np.float64)
         off = self.plane.distances(points)
         if not self.beam.bow:
             return off
@@ -74,7 +81,7 @@ def laser_light(sheet: Sheet, scene: Scene, maps: SurfaceMaps, out: Map | None =
     light = np.zeros(maps.albedo.shape, np.float32) if out is None else out
     beam = sheet.beam
     widest = beam.sigma_mm * np.hypot(1, max(1.0, FARTHEST_FROM_FOCUS_MM / beam.rayleigh_mm))
-    reach = REACH_SIGMAS * widest + _largest_bow(beam)
+    reach = REACH_SIGMAS * widest + _largest_bow(beam) + _largest_shift(sheet)
     v, u = _near(maps, sheet.plane, reach)
     points = maps.points[v, u].astype(np.float64)
     towards = points - sheet.emitter
@@ -85,7 +92,7 @@ def laser_light(sheet: Sheet, scene: Scene, maps: SurfaceMaps, out: Map | None =
     caster = ShadowCaster.near_plane(scene, sheet.plane, sheet.emitter, sheet.axis, reach)
     open_sky = caster.sees(points)
     sigma = beam.sigma_mm * np.hypot(1, (rho - beam.focus_mm) / beam.rayleigh_mm)
-    off = sheet.off_light(points)
+    off = sheet.off_light(points, v)
     angle = np.arccos(np.clip(towards @ sheet.axis / rho, -1, 1))
     strength = beam.peak_grey * beam.focus_mm * beam.sigma_mm / (rho * sigma)
     profile = np.exp(-0.5 * (off / sigma) ** 2 - 2 * (angle / beam.half_angle) ** 2)
@@ -96,6 +103,15 @@ def laser_light(sheet: Sheet, scene: Scene, maps: SurfaceMaps, out: Map | None =
 def _largest_bow(beam: Beam) -> float:
     """How far in mm the light of a beam leaves its plane at most, where anything is looked at."""
     return 0.5 * abs(beam.bow) * BOW_SEEN_TO**2 * (beam.focus_mm + FARTHEST_FROM_FOCUS_MM)
+
+
+def _largest_shift(sheet: Sheet) -> float:
+    """How far in mm a moving sheet leaves its middle plane at most, where anything is looked at."""
+    if sheet.rows is None:
+        return 0.0
+    turned = np.linalg.norm(sheet.rows[:, :3] - sheet.plane.normal, axis=1)
+    shifted = np.abs(sheet.rows[:, 3] - sheet.rows[:, :3] @ sheet.emitter)
+    return float((shifted + turned * (sheet.beam.focus_mm + FARTHEST_FROM_FOCUS_MM)).max())
 
 
 def _near(maps: SurfaceMaps, plane: LightPlane, reach: float) -> tuple[NDArray[np.intp], NDArray[np.intp]]:

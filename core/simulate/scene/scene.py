@@ -81,6 +81,15 @@ class Scene:
         spheres = tuple(thing for thing in moved if isinstance(thing, Sphere))
         return cls(pose_cam_table, meshes, spheres, table_albedo)
 
+    def moved(self, motion: Pose, *, with_table: bool = False) -> Scene:
+        """The scene with its objects moved by `motion` in the camera frame, with or without the table."""
+        table = self.pose_cam_table
+        if with_table and table is not None:
+            table = Pose(motion.rotation @ table.rotation, motion.apply(table.translation[None])[0])
+        meshes = tuple(mesh.moved(motion) for mesh in self.meshes)
+        spheres = tuple(sphere.moved(motion) for sphere in self.spheres)
+        return Scene(table, meshes, spheres, self.table_albedo)
+
     @property
     def occluders(self) -> Array:
         """All triangles (T, 3, 3) that can cast a shadow; the table is below everything and casts none."""
