@@ -30,7 +30,7 @@ __all__ = [
     "Unplugged",
 ]
 
-Step = Literal["camera", "planes", "scan"]
+Step = Literal["camera", "planes", "scan", "check"]
 """What is being recorded, named as the part of the recording set it becomes."""
 
 Picture = NDArray[np.uint8] | NDArray[np.uint16]

@@ -16,12 +16,13 @@ from core.cli.options import ExitCode
 from core.errors import InputError
 from core.files.recording.options import Options, StatedTilt
 from core.files.recording.recording_set import excluded_names, open_set
+from core.files.results.check_file import InterimCheck
 from core.image.stripes.stripe import StripeSettings
 from core.inspect.results import GaugeResult
 from core.messages import Message
 from core.pipeline.steps.batch import SetResult, run_batch
 from core.pipeline.steps.camera_step import camera_step
-from core.pipeline.steps.check_step import InterimCheck, check_step
+from core.pipeline.steps.check_step import check_step
 from core.pipeline.steps.executors import executor_of
 from core.pipeline.steps.gauge_step import gauge_step
 from core.pipeline.steps.planes_step import planes_step

@@ -13,11 +13,11 @@ from rich.table import Table
 
 from core.calibrate.results import CAMERA_PARAMETERS, CameraCalibration, FanCalibration
 from core.files.json_text import to_json
+from core.files.results.check_file import InterimCheck
 from core.files.results.gauge_file import gauge_summary
 from core.files.results.profile_file import PictureStep
 from core.inspect.results import GaugeResult
 from core.messages import Message
-from core.pipeline.steps.check_step import InterimCheck
 from core.report.wording import count, decimals_of, fixed, grouped, thickness_line, with_uncertainty
 from core.scan.features.frames import NO_REASON
 from core.scan.results import FrameRecord
@@ -135,11 +135,10 @@ def gauge_rows(gauge: GaugeResult) -> Rows:
 
 def check_rows(check: InterimCheck) -> Rows:
     """Where the stripes are, and what that does to a step of the part's height."""
-    used = sum(pose.located.used for pose in check.poses)
     return [
-        ("poses", f"{used} of {count(len(check.poses), 'pose')} used"),
+        ("poses", f"{check.used} of {count(len(check.poses), 'pose')} used"),
         ("stripes off by", f"{check.offset_px:.3f} px, {check.offset_mm:.4f} mm (RMS)"),
-        ("chance", f"p = {check.change.p:.2g}"),
+        ("chance", f"p = {check.p:.2g}"),
         (
             f"a step of {check.step_mm:g} mm",
             f"measured wrong by {check.error_mm:+.3f} mm ± {check.unseen_mm:.3f} mm (k = 2) with this calibration",
@@ -152,7 +151,7 @@ def check_json(check: InterimCheck) -> dict[str, Any]:
     """The same for programs; check.json has it stripe by stripe."""
     return {
         "passed": check.passed,
-        "p": check.change.p,
+        "p": check.p,
         "offset_px": check.offset_px,
         "offset_mm": check.offset_mm,
         "step_mm": check.step_mm,

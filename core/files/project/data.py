@@ -51,6 +51,7 @@ class Sources:
     camera: str = ""
     planes: str = ""
     scan: str = ""
+    check: str = ""
     __pydantic_config__ = _CHECKED
 
 

@@ -24,7 +24,7 @@ from core.errors import InputError
 from core.files.atomic import ANOTHER_OUT, cannot_write, make_folder, write_bytes, write_text
 from core.files.project.data import Project, ProjectFile, ProjectInfo, Sources
 from core.files.project.json_form import project_text, read_project_text
-from core.files.recording.recording_set import PARTS
+from core.files.recording.recording_set import CHECK, PARTS
 from core.files.recording.rig import read_rig
 from core.messages import Message
 
@@ -199,7 +199,7 @@ def results_folder(project_folder: Path) -> Path:
 
 def sources_of_set(folder: Path) -> Sources:
     """The folders of pictures in a recording set, in full; nothing for a part that is not there."""
-    folders = {part: folder.resolve() / part for part in PARTS}
+    folders = {part: folder.resolve() / part for part in (*PARTS, CHECK)}
     return Sources(**{part: path.as_posix() if path.is_dir() else "" for part, path in folders.items()})
 
 

@@ -101,7 +101,7 @@ class ProjectTables(Table):
     results: dict[str, Done] = Field(default_factory=dict)
 
 
-SCHEMA = 5
+SCHEMA = 6
 """Raised with every change of the keys: an older program then says that the project is too new for it."""
 
 MIGRATIONS: Mapping[int, Callable[[dict[str, Any]], dict[str, Any]]] = {
@@ -109,6 +109,7 @@ MIGRATIONS: Mapping[int, Callable[[dict[str, Any]], dict[str, Any]]] = {
     2: lambda tables: tables,  # language and template of the report, which have defaults
     3: lambda tables: tables,  # the plan of the inspection, which may be empty
     4: lambda tables: tables,  # studies, which may be none
+    5: lambda tables: tables,  # the folder of an interim check, which need not be there
 }
 """By schema: the tables as the next schema has them, from those of this one."""
 

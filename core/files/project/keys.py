@@ -17,8 +17,9 @@ from core.files.project.data import Done, Project, ReportChoices
 from core.files.recording.rig import rig_tables
 from core.messages import label
 
-STEPS = ("camera", "planes", "scan", "inspect", "features", "report")
-"""The steps that have a result, in the order of work; "inspect" is the thickness, "features" the plan's inspection."""
+STEPS = ("camera", "planes", "check", "scan", "inspect", "features", "report")
+"""The steps that have a result, in the order of work; "check" is the interim check, "inspect" the thickness,
+"features" the plan's inspection."""
 
 Keys = Mapping[str, str]
 """Name of an input, fixed words of the catalogues → its key."""
@@ -40,6 +41,8 @@ def rests_on(step: str, project: Project, results: Mapping[str, Done]) -> dict[s
             return _camera(project)
         case "planes":
             return _planes(project)
+        case "check":
+            return _check(project)
         case "scan":
             return _scan(project)
         case "inspect":
@@ -109,6 +112,19 @@ def _planes(project: Project) -> dict[str, str]:
     }
 
 
+def _check(project: Project) -> dict[str, str]:
+    tables, stripe = rig_tables(project.rig), project.options.plane_stripe
+    return {
+        label("camera calibration"): project.accepted.camera,
+        label("laser planes"): project.accepted.fan,
+        label("pictures of the interim check"): project.sources.check,
+        label("plane target"): _digest(tables["plane_target"]),
+        label("colour channel"): project.rig.channel or "",
+        label("stripes on the plane target"): _digest([stripe.width_px, stripe.contrast]) if stripe else "",
+        label("stability of the rig"): _digest(tables.get("stability")),
+    }
+
+
 def _scan(project: Project) -> dict[str, str]:
     options, stripe = project.options, project.options.stripe
     settings = [options.method, options.sigma_cut_mm, [stripe.width_px, stripe.contrast] if stripe else None]
@@ -116,6 +132,8 @@ def _scan(project: Project) -> dict[str, str]:
     stability, camera = tables.get("stability"), tables.get("camera")
     stated = {label("stability of the rig"): _digest(stability)} if stability else {}
     stated |= {label("row time of the camera"): _digest(camera)} if camera else {}
+    if project.sources.check:
+        stated[label("pictures of the interim check")] = project.sources.check
     return {
         label("camera calibration"): project.accepted.camera,
         label("laser planes"): project.accepted.fan,

@@ -9,7 +9,7 @@ The layout is fixed, so that any program can write one::
     SET/scan/*              frames, in the order of their names
     SET/check/NAME.png      as planes, but taken on the day of the scan (optional)
 
-A project measures from three folders that may lie anywhere; they are gathered into the same set, with the same names.
+A project measures from folders that may lie anywhere; they are gathered into the same set, with the same names.
 """
 
 from __future__ import annotations
@@ -107,6 +107,11 @@ class RecordingSet:
         self.hashes[self.name_of(path)] = hashlib.sha256(data).hexdigest()
         return decode_picture(data, path, self.rig.channel)
 
+    def id_of(self, paths: Iterable[Path]) -> str:
+        """Twelve hex digits that name some pictures by what is in them, as far as they have been read."""
+        text = "\n".join(sorted(self.hashes.get(self.name_of(path), "") for path in paths))
+        return hashlib.sha256(text.encode()).hexdigest()[:12]
+
     def stream(self, paths: Sequence[Path], times: StageTimes | None = None) -> Iterator[tuple[str, Picture | str]]:
         """Yield name and picture of each of `paths`, a few read ahead; for a damaged one, why it cannot be read.
 
@@ -180,8 +185,15 @@ def open_set(folder: Path) -> RecordingSet:
     return found
 
 
-def gather_set(rig: Rig, camera: Path | None, planes: Path | None, scan: Path | None, name: str = "") -> RecordingSet:
-    """One set from three folders of pictures that may lie anywhere; one that is not there leaves its part empty.
+def gather_set(
+    rig: Rig,
+    camera: Path | None,
+    planes: Path | None,
+    scan: Path | None,
+    name: str = "",
+    check: Path | None = None,
+) -> RecordingSet:
+    """One set from folders of pictures that may lie anywhere; one that is not there leaves its part empty.
 
     Names and hashes are those of a set in one folder. The rig's hash is that of the rig.toml beside one of the folders
     if it says the same, else of the rig.toml that could be written. Without a `name`, the set is called like the folder
@@ -192,7 +204,7 @@ def gather_set(rig: Rig, camera: Path | None, planes: Path | None, scan: Path | 
     InputError
         If one folder is to be two parts, or the pictures of one part are not all of one size.
     """
-    given = dict(zip(PARTS, (camera, planes, scan), strict=True))
+    given = dict(zip((*PARTS, CHECK), (camera, planes, scan, check), strict=True))
     folders = {part: folder for part, folder in given.items() if folder is not None}
     taken: dict[Path, str] = {}
     for part, folder in folders.items():
@@ -205,7 +217,7 @@ def gather_set(rig: Rig, camera: Path | None, planes: Path | None, scan: Path | 
             )
     places = [folders[part] for part in reversed(PARTS) if part in folders]
     found = _listed(name or (places[0].resolve().parent.name if places else ""), rig, folders, _rig_hash(rig, places))
-    for part in PARTS:  # between the parts, each step compares with the camera's calibration
+    for part in (*PARTS, CHECK):  # between the parts, each step compares with the camera's calibration
         check_sizes(_paths(found, part))
     return found
 

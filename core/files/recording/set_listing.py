@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
+from datetime import UTC, datetime
 from pathlib import Path
 
 from PIL import Image
@@ -76,6 +78,15 @@ def scan_frames(folder: Path | None) -> tuple[Path | None, tuple[Path, ...]]:
             todo=Message("advice.keep_one", "keep one of them"),
         )
     return references[0] if references else None, tuple(path for path in scan if path not in references)
+
+
+def taken_at(paths: Sequence[Path]) -> datetime:
+    """When the newest of some pictures was taken, as far as their files know; now, if there are none any more."""
+    times = []
+    for path in paths:
+        with contextlib.suppress(OSError):
+            times.append(path.stat().st_mtime)
+    return datetime.fromtimestamp(max(times), UTC) if times else datetime.now(UTC)
 
 
 def check_sizes(paths: Sequence[Path]) -> None:

@@ -90,7 +90,7 @@ def _step(desk: Desk) -> LiveStep:
     match desk.request.step:
         case "camera":
             return LiveCamera(desk)
-        case "planes":
+        case "planes" | "check":
             return LivePlanes(desk)
         case "scan":
             return LiveScan(desk, Recorder(desk.request.folder, ending=desk.request.ending))

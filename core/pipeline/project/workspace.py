@@ -23,8 +23,9 @@ def project_set(folder: Path, project: Project) -> RecordingSet:
         If pictures of one part are not all of one size, or one folder is to be two parts.
     """
     sources = project.sources
-    camera, planes, scan = (source_folder(folder, name) for name in (sources.camera, sources.planes, sources.scan))
-    return gather_set(project.rig, camera, planes, scan, project.info.name)
+    names = (sources.camera, sources.planes, sources.scan, sources.check)
+    camera, planes, scan, check = (source_folder(folder, name) for name in names)
+    return gather_set(project.rig, camera, planes, scan, project.info.name, check)
 
 
 def part_name(project: Project) -> str:

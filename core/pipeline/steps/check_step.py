@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from core.calibrate.change import (
     DEFAULT_STABILITY,
-    PROVES_NOTHING,
-    TOLD,
     Change,
     Evidence,
     changes,
@@ -22,10 +20,11 @@ from core.calibrate.deviations import Deviation, calibration_deviations
 from core.calibrate.fan.interim_check import ELSEWHERE, CheckedPose, check_poses, step_errors
 from core.calibrate.fan.pose_features import PoseFeatures
 from core.errors import InputError
-from core.files.json_text import write_json
 from core.files.recording.options import Options
 from core.files.recording.recording_set import CHECK, RecordingSet
-from core.messages import Message, as_json
+from core.files.recording.set_listing import taken_at
+from core.files.results.check_file import CheckedLine, CheckedPicture, InterimCheck, write_check
+from core.messages import Message
 from core.model import Camera
 from core.pipeline.steps.planes_step import measure_poses
 from core.pipeline.steps.workspace import Calibration, Workspace
@@ -33,71 +32,6 @@ from core.progress import Progress, silent
 
 STEP_MM = 50.0
 """Height of the step whose error is told where no nominal thickness is stated."""
-
-
-@dataclass(frozen=True, eq=False, slots=True)
-class InterimCheck:
-    """Result of an interim check.
-
-    Parameters
-    ----------
-    poses
-        What each pose showed.
-    change
-        What all of them say of camera and laser together.
-    step_mm
-        Height of the step that the errors are told for.
-    error_mm
-        By how much the camera and the laser as they are now would measure such a step too high with the calibrations.
-    unseen_mm
-        Expanded uncertainty (k = 2) of that: an error this large could have been overlooked.
-    """
-
-    poses: tuple[CheckedPose, ...]
-    change: Change
-    step_mm: float
-    error_mm: float
-    unseen_mm: float
-
-    @property
-    def passed(self) -> bool:
-        """Whether the pictures agree with the calibrations."""
-        return self.change.p >= TOLD
-
-    @property
-    def offset_px(self) -> float:
-        """RMS distance in pixels of the stripes from where the calibrations have them."""
-        return float(np.sqrt(np.mean(np.concatenate([pose.offset_px for pose in self.poses]) ** 2)))
-
-    @property
-    def offset_mm(self) -> float:
-        """The same in mm on the target."""
-        return float(np.sqrt(np.mean(np.concatenate([pose.offset_mm for pose in self.poses]) ** 2)))
-
-    @property
-    def sentence(self) -> Message:
-        """What came of it, and what to do."""
-        values = {"offset_px": self.offset_px, "offset_mm": self.offset_mm, "p": self.change.p}
-        if self.passed:
-            return Message(
-                "check.passed",
-                "Camera and laser are where they were calibrated: the stripes are off by {offset_px:.2f} px, "
-                "{offset_mm:.3f} mm, as noise and calibration let one expect.",
-                **values,
-            )
-        if self.change.p >= PROVES_NOTHING:
-            return Message(
-                "check.doubtful",
-                "Camera or laser may have changed: the stripes are off by {offset_px:.2f} px, {offset_mm:.3f} mm "
-                "(probability that it is chance: {p:.1g}); check again, and calibrate if it stays.",
-                **values,
-            )
-        return Message(
-            "check.failed",
-            "Camera or laser have changed since they were calibrated: the stripes are off by {offset_px:.2f} px, "
-            "{offset_mm:.3f} mm (probability that it is chance: {p:.1g}); calibrate again.",
-            **values,
-        )
 
 
 def check_step(work: Workspace, options: Options | None = None, progress: Progress = silent) -> InterimCheck:
@@ -120,21 +54,34 @@ def check_step(work: Workspace, options: Options | None = None, progress: Progre
     camera, fan = calibration.camera.camera, calibration.fan
     with work.step("check") as log:
         deviations, evidence, checked, change = _judged(found, calibration, options, progress)
-        if not any(pose.located.used for pose in checked):
-            reasons = [pose.located.reason for pose in checked if pose.located.reason is not None]
+        reasons = [pose.located.reason for pose in checked if pose.located.reason is not None]
+        if len(reasons) == len(checked) and all(reason.code != ELSEWHERE for reason in reasons):
             raise InputError(
                 Message("check.nothing_seen", "no picture shows target and stripes: {reason}", reason=reasons[0]),
                 where=found.where(CHECK),
                 todo=Message("check.advice", "hold the target where all lines meet it; else calibrate again"),
             )
         nominal = None if found.rig.gauge is None else found.rig.gauge.nominal_mm
-        step = nominal or STEP_MM
-        by = step_errors(checked, camera, fan.fan, deviations, step)
-        estimate, covariance = lasting(deviations, evidence, found.rig.stability or DEFAULT_STABILITY)
-        check = InterimCheck(checked, change, step, float(-by @ estimate), 2 * float(np.sqrt(by @ covariance @ by)))
+        paths = [path for pair in found.check for path in (pair.on, pair.off) if path is not None]
+        check = InterimCheck(
+            calibration.id, found.id_of(paths), taken_at(paths), change.p, tuple(map(_told, checked)),
+            nominal or STEP_MM,
+        )  # fmt: skip
+        if check.used:
+            stability = found.rig.stability or DEFAULT_STABILITY
+            by = step_errors(checked, camera, fan.fan, deviations, check.step_mm)
+            estimate, covariance = lasting(deviations, evidence, stability)
+            of_changes = by[[one.source == "change" for one in deviations]]
+            check = replace(
+                check,
+                error_mm=float(-by @ estimate),
+                unseen_mm=2 * float(np.sqrt(by @ covariance @ by)),
+                stated_mm=float(np.linalg.norm(of_changes * stability.over_default)),
+            )
         log.notes.append(check.sentence)
+        log.notes.extend(change.left_out)
         log.notes.extend(note for pose in checked for note in pose.located.features.notes)
-        write_json(work.path("check"), _values(check, calibration.id))
+        write_check(work.path("check"), check)
     return check
 
 
@@ -218,28 +165,8 @@ def measure_check(
     return measure_poses(replace(found, planes=found.check), camera, progress, options.plane_stripe)
 
 
-def _values(check: InterimCheck, calibration_id: str) -> dict[str, object]:
-    return {
-        "calibration_id": calibration_id,
-        "passed": check.passed,
-        "p": check.change.p,
-        "offset_px": check.offset_px,
-        "offset_mm": check.offset_mm,
-        "step_mm": check.step_mm,
-        "error_mm": check.error_mm,
-        "unseen_mm": check.unseen_mm,
-        "sentence": as_json(check.sentence),
-        "poses": [
-            {
-                "name": pose.located.features.name,
-                "reason": None if pose.located.reason is None else as_json(pose.located.reason),
-                "lines": [
-                    {"line": line + 1, "offset_mm": float(mm), "offset_px": float(px), "sd_mm": float(sd)}
-                    for line, mm, px, sd in zip(
-                        pose.located.stripes, pose.offset_mm, pose.offset_px, pose.sd_mm, strict=True
-                    )
-                ],
-            }
-            for pose in check.poses
-        ],
-    }
+def _told(pose: CheckedPose) -> CheckedPicture:
+    """One pose as it is kept."""
+    offsets = zip(pose.located.stripes, pose.offset_mm, pose.offset_px, pose.sd_mm, strict=True)
+    lines = (CheckedLine(line + 1, float(mm), float(px), float(sd)) for line, mm, px, sd in offsets)
+    return CheckedPicture(pose.located.features.name, pose.located.reason, tuple(lines))

@@ -46,9 +46,9 @@ def test_another_operator_makes_only_the_report_out_of_date():
     assert out_of_date(project) == {"report": ("project fields",)}
 
 
-def test_another_camera_calibration_makes_planes_and_scan_out_of_date_and_says_so():
+def test_another_camera_calibration_makes_planes_check_and_scan_out_of_date_and_says_so():
     project = replace(START, accepted=Accepted("cam2", "fan1"))
-    assert out_of_date(project) == {"planes": ("camera calibration",), "scan": ("camera calibration",)}
+    assert out_of_date(project) == dict.fromkeys(("planes", "check", "scan"), ("camera calibration",))
 
 
 @pytest.mark.parametrize(
@@ -65,7 +65,14 @@ def test_another_camera_calibration_makes_planes_and_scan_out_of_date_and_says_s
         (replace(START, report=ReportChoices(frozenset({"inputs"}))), {"report": ("sections of the report",)}),
         (replace(START, report=ReportChoices(language="de")), {"report": ("sections of the report",)}),
         (replace(START, report=ReportChoices(template="house.toml")), {"report": ("sections of the report",)}),
-        (replace(START, accepted=Accepted("cam1", "fan2")), {"scan": ("laser planes",)}),
+        (
+            replace(START, accepted=Accepted("cam1", "fan2")),
+            {"check": ("laser planes",), "scan": ("laser planes",)},
+        ),
+        (
+            replace(START, sources=replace(START.sources, check="recordings/check-1")),
+            {"check": ("pictures of the interim check",), "scan": ("pictures of the interim check",)},
+        ),
         (
             replace(START, rig=replace(START.rig, gauge=GaugeSpec(50.0, 0.2))),
             {"inspect": ("nominal thickness",)},
@@ -86,7 +93,7 @@ def test_an_edit_makes_out_of_date_what_it_changes_and_nothing_else(project, exp
 
 def test_a_colour_channel_is_in_every_picture():
     project = replace(START, rig=replace(START.rig, channel="green"))
-    assert set(out_of_date(project)) == {"camera", "planes", "scan"}
+    assert set(out_of_date(project)) == {"camera", "planes", "check", "scan"}
 
 
 def test_a_scan_measured_anew_with_other_settings_makes_thickness_and_report_out_of_date():

@@ -77,7 +77,7 @@ def test_a_rig_that_has_not_changed_passes(unchanged, tmp_path):
 def test_a_mount_that_turned_is_found_out_and_nothing_is_conforming_by_it(turned, tmp_path):
     work = work_in(turned, tmp_path)
     check = check_step(work)
-    assert check.change.p < PROVES_NOTHING
+    assert check.p < PROVES_NOTHING
     assert check.sentence.code == "check.failed"
     assert check.error_mm == pytest.approx(0.16, abs=0.08), "what it does to a step of 50 mm"
     measured = scan_step(work, COARSE)

@@ -13,6 +13,7 @@ from core.pipeline.live.events import LiveView, ScanDetail
 from workbench.language import tr
 from workbench.pages.scan import words
 from workbench.pages.scan.bar import FrameBar
+from workbench.pages.scan.check_card import CheckCard
 from workbench.pages.scan.cloud import ScanCloud
 from workbench.pages.scan.panels import ResultPanel, RunningPanel, ScanCard, SettingsPanel
 from workbench.pages.scan.picture import ScanPicture, View
@@ -57,6 +58,8 @@ class ScanPage(StepPage):
 
         self.stage = ScanCard(presenter)
         self.add_to_side(self.stage)
+        self.check = CheckCard(presenter.check)
+        self.add_to_side(self.check)
         self.checks = ChecksCard()
         self.add_to_side(self.checks)
         self.live_panel = LivePanel(presenter.live)
@@ -79,6 +82,7 @@ class ScanPage(StepPage):
         p, stage = self.presenter, self.presenter.stage
         live, busy = stage is Stage.LIVE, stage in (Stage.LIVE, Stage.MEASURING)
         self.stage.refresh()
+        self.check.refresh()
         before = p.live_stage in BEFORE
         self.checks.show_checks([check for check in p.live.checks if before or check.state == "failed"])
         self.source.set_folder(p.folder, self._folder_words())

@@ -21,6 +21,7 @@ from workbench.language import tr
 from workbench.pages.live.presenter import LivePresenter
 from workbench.pages.presenter import StepPresenter
 from workbench.pages.scan import stability
+from workbench.pages.scan.check import RigCheck
 from workbench.pages.scan.run import ScanRun, short
 from workbench.pages.scan.scrub import FrameScrub
 from workbench.pages.scan.thumbnails import FrameThumbnails
@@ -60,6 +61,7 @@ class ScanPresenter(StepPresenter):
         self.live.cannot_start = self._cannot_record
         self.work = ScanWork(bench, self)
         self.run = ScanRun(bench, self)
+        self.check = RigCheck(bench, self)
         self.scrub = FrameScrub(bench, self.work, self)
         self.thumbnails = FrameThumbnails(bench, self)
         self.live_stage = ""
@@ -70,6 +72,7 @@ class ScanPresenter(StepPresenter):
         self.live.ended.connect(self._live_ended)
         self.work.changed.connect(self._look_again)
         self.run.changed.connect(self._look_again)
+        self.check.changed.connect(self.changed)
         self.scrub.changed.connect(self.changed)
         self.model.results_changed.connect(self._results_changed)
 
@@ -246,6 +249,7 @@ class ScanPresenter(StepPresenter):
         self.scrub.forget()
         self.thumbnails.forget()
         self.run.opened()
+        self.check.opened()
         self.work.opened()
 
     def project_changed(self, before: Project, after: Project) -> None:
@@ -253,6 +257,7 @@ class ScanPresenter(StepPresenter):
             self.scrub.forget()
         self.thumbnails.follow()
         self.work.follow()
+        self.check.follow()
         self._follow_frames()
 
     def _leave(self) -> None:
@@ -261,6 +266,7 @@ class ScanPresenter(StepPresenter):
 
     def _results_changed(self) -> None:
         self.work.follow()
+        self.check.follow()
         self._follow_frames()
 
     def _look_again(self) -> None:

@@ -1,0 +1,232 @@
+"""check.json: what an interim check says of camera and laser, picture by picture and stripe by stripe."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+from pydantic import Field
+
+from core import __version__
+from core.calibrate.change import PROVES_NOTHING, TOLD
+from core.files.complaints import checked
+from core.files.json_text import write_json
+from core.files.reading import read_json
+from core.files.tables import Finite, OptionalMessage, OrNan, ResultFile, Time, kept
+from core.messages import Command, Message
+
+CheckVerdict = Literal["passed", "doubtful", "failed"]
+
+_TODO = Message("advice.check_first", "check first{command}", command=Command("trisect check SET --out DIR"))
+
+
+@dataclass(frozen=True, slots=True)
+class CheckedLine:
+    """A stripe of the fan's `line` (from 1): how far it is from its light plane, with the standard uncertainty of it.
+
+    `offset_px` is the same in the picture.
+    """
+
+    line: int
+    offset_mm: float
+    offset_px: float
+    sd_mm: float
+
+
+@dataclass(frozen=True, slots=True)
+class CheckedPicture:
+    """One pose of the target in a check: its stripes, or the `reason` why nothing can be said."""
+
+    name: str
+    reason: Message | None
+    lines: tuple[CheckedLine, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class InterimCheck:
+    """Result of an interim check.
+
+    Parameters
+    ----------
+    calibration_id
+        The camera and the fan that were checked.
+    pictures_id
+        Names the pictures by what is in them: the same pictures checked again are no other check.
+    taken_at
+        When the newest of them was taken.
+    p
+        Probability that chance alone would set stripes and calibrations this far apart.
+    poses
+        What each pose showed.
+    step_mm
+        Height of the step that the errors are told for.
+    error_mm
+        By how much camera and laser as they are now would measure such a step too high with the calibrations.
+    unseen_mm
+        Expanded uncertainty (k = 2) of that: an error this large could have been overlooked.
+    stated_mm
+        Standard uncertainty of such a step by how stable the rig is stated, or assumed, to be.
+
+    The lengths are NaN where no stripe was found again.
+    """
+
+    calibration_id: str
+    pictures_id: str
+    taken_at: datetime
+    p: float
+    poses: tuple[CheckedPicture, ...]
+    step_mm: float
+    error_mm: float = math.nan
+    unseen_mm: float = math.nan
+    stated_mm: float = math.nan
+
+    @property
+    def passed(self) -> bool:
+        """Whether the pictures agree with the calibrations."""
+        return self.verdict == "passed"
+
+    @property
+    def verdict(self) -> CheckVerdict:
+        """Doubtful is what chance does to one rig in a hundred that has not changed."""
+        return "passed" if self.p >= TOLD else "doubtful" if self.p >= PROVES_NOTHING else "failed"
+
+    @property
+    def used(self) -> int:
+        """How many poses say something."""
+        return sum(pose.reason is None for pose in self.poses)
+
+    @property
+    def offset_px(self) -> float:
+        """RMS distance in pixels of the stripes from where the calibrations have them; NaN without stripes."""
+        return _rms([line.offset_px for pose in self.poses for line in pose.lines])
+
+    @property
+    def offset_mm(self) -> float:
+        """The same in mm on the target."""
+        return _rms([line.offset_mm for pose in self.poses for line in pose.lines])
+
+    @property
+    def sentence(self) -> Message:
+        """What came of it, and what to do."""
+        values = {"offset_px": self.offset_px, "offset_mm": self.offset_mm, "p": self.p}
+        if not self.used:
+            return Message(
+                "check.fan_is_elsewhere",
+                "No stripe is where the calibration has the fan: laser or camera were moved; calibrate again.",
+            )
+        if self.verdict == "passed":
+            return Message(
+                "check.passed",
+                "Camera and laser are where they were calibrated: the stripes are off by {offset_px:.2f} px, "
+                "{offset_mm:.3f} mm, as noise and calibration let one expect.",
+                **values,
+            )
+        if self.verdict == "doubtful":
+            return Message(
+                "check.doubtful",
+                "Camera or laser may have changed: the stripes are off by {offset_px:.2f} px, {offset_mm:.3f} mm "
+                "(probability that it is chance: {p:.1g}); check again, and calibrate if it stays.",
+                **values,
+            )
+        return Message(
+            "check.failed",
+            "Camera or laser have changed since they were calibrated: the stripes are off by {offset_px:.2f} px, "
+            "{offset_mm:.3f} mm (probability that it is chance: {p:.1g}); calibrate again.",
+            **values,
+        )
+
+
+class _Line(ResultFile):
+    line: int
+    offset_mm: Finite
+    offset_px: Finite
+    sd_mm: Finite
+
+
+class _Pose(ResultFile):
+    name: str
+    reason: OptionalMessage = None
+    lines: list[_Line] = Field(default_factory=list)
+
+
+class _CheckFile(ResultFile):
+    calibration_id: str
+    pictures_id: str
+    taken_at: Time
+    p: Finite = Field(ge=0, le=1, description="a probability, 0 to 1")
+    poses: list[_Pose]
+    step_mm: Finite = Field(gt=0, description="a length in mm above 0")
+    error_mm: OrNan = math.nan
+    unseen_mm: OrNan = math.nan
+    stated_mm: OrNan = math.nan
+
+
+def write_check(path: Path, check: InterimCheck) -> None:
+    """Write check.json; InputError if it cannot be written."""
+    write_json(
+        path,
+        {
+            "calibration_id": check.calibration_id,
+            "pictures_id": check.pictures_id,
+            "taken_at": check.taken_at.isoformat(),
+            "passed": check.passed,
+            "verdict": check.verdict,
+            "p": check.p,
+            "offset_px": check.offset_px,
+            "offset_mm": check.offset_mm,
+            "step_mm": check.step_mm,
+            "error_mm": check.error_mm,
+            "unseen_mm": check.unseen_mm,
+            "stated_mm": check.stated_mm,
+            "sentence": kept(check.sentence),
+            "poses": [
+                {
+                    "name": pose.name,
+                    "reason": kept(pose.reason),
+                    "lines": [
+                        {
+                            "line": one.line,
+                            "offset_mm": one.offset_mm,
+                            "offset_px": one.offset_px,
+                            "sd_mm": one.sd_mm,
+                        }
+                        for one in pose.lines
+                    ],
+                }
+                for pose in check.poses
+            ],
+            "version": __version__,
+        },
+    )
+
+
+def read_check(path: Path) -> InterimCheck:
+    """Read check.json; InputError if it is missing, no JSON, or a value is wrong."""
+    file = checked(_CheckFile, read_json(path, todo=_TODO), path)
+    poses = (
+        CheckedPicture(
+            pose.name,
+            pose.reason,
+            tuple(CheckedLine(one.line, one.offset_mm, one.offset_px, one.sd_mm) for one in pose.lines),
+        )
+        for pose in file.poses
+    )
+    return InterimCheck(
+        file.calibration_id,
+        file.pictures_id,
+        file.taken_at,
+        file.p,
+        tuple(poses),
+        file.step_mm,
+        file.error_mm,
+        file.unseen_mm,
+        file.stated_mm,
+    )
+
+
+def _rms(values: list[float]) -> float:
+    return float(np.sqrt(np.mean(np.square(values)))) if values else math.nan

@@ -1,0 +1,54 @@
+"""The interim check of a project, on rendered pictures."""
+
+from dataclasses import replace
+
+import pytest
+
+from core.errors import Cancelled
+from core.files.project.calibration_store import keep_camera, keep_fan
+from core.files.project.data import Accepted
+from core.files.project.folder import project_from_set
+from core.files.recording.options import Options
+from core.files.results.check_file import read_check
+from core.pipeline.project.interim_check import check_rig, show_check
+from core.pipeline.project.workspace import project_set
+from core.pipeline.steps.workspace import read_calibration
+from tests.pipeline.steps.test_check_step import RIG, prepared
+
+
+@pytest.fixture(scope="module")
+def unchanged(tmp_path_factory):
+    return prepared(tmp_path_factory, "checked-unchanged", RIG)
+
+
+def opened(made, folder):
+    """A project on that set with its calibrations accepted."""
+    known = read_calibration(made / "out")
+    camera = keep_camera(folder, known.camera, Options())
+    fan = keep_fan(folder, known.fan, known.camera.camera, ())
+    project = project_from_set(made / "set", "Block")
+    return replace(project, accepted=Accepted(camera, fan))
+
+
+def test_a_project_made_of_a_set_checks_by_its_pictures_of_the_day(unchanged, tmp_path):
+    project = opened(unchanged, tmp_path)
+    assert show_check(tmp_path) is None
+    check = check_rig(tmp_path, project)
+    assert check.passed and check.used == 2
+    assert check.calibration_id == f"{project.accepted.camera}-{project.accepted.fan}"
+    assert show_check(tmp_path) == check == read_check(tmp_path / "check" / "check.json")
+    assert [pair.name for pair in project_set(tmp_path, project).check] == ["check00", "check01"], (
+        "the scan has them, too"
+    )
+
+
+def test_a_check_that_is_cancelled_keeps_the_one_before(unchanged, tmp_path):
+    project = opened(unchanged, tmp_path)
+    check = check_rig(tmp_path, project)
+
+    def cancel(*_):
+        raise Cancelled
+
+    with pytest.raises(Cancelled):
+        check_rig(tmp_path, project, cancel)
+    assert show_check(tmp_path) == check

@@ -1,0 +1,135 @@
+"""The Check card of the scan page: pictures of the day, run, light, figures."""
+
+from dataclasses import replace
+from typing import cast
+
+import pytest
+from PySide6.QtCore import Qt
+
+from core.errors import InputError
+from core.files.project.data import Accepted
+from tests.workbench.hand_lane import HandLane
+from tests.workbench.pages.check_cases import check, nowhere
+from workbench.pages.scan.check import CheckStage
+from workbench.pages.scan.page import ScanPage
+from workbench.pages.scan.presenter import ScanPresenter
+from workbench.views import ask
+from workbench.work import jobs
+
+LEFT = Qt.MouseButton.LeftButton
+
+
+@pytest.fixture
+def measuring(scan_bench):
+    lane = cast(HandLane, scan_bench.measuring)
+    lane.held.add(jobs.CHECK_RIG)
+    return lane
+
+
+@pytest.fixture
+def page(scan_bench, measuring, qtbot, monkeypatch):
+    monkeypatch.setenv("TRISECT_NO_OPENGL", "none")
+    made = ScanPage(ScanPresenter(scan_bench))
+    made.presenter.opened()
+    qtbot.addWidget(made)
+    made.resize(1100, 700)
+    made.show()
+    return made
+
+
+@pytest.fixture
+def chosen(page, qtbot, monkeypatch, tmp_path):
+    """The folder of the day's pictures is chosen by hand: the check begins."""
+    folder = tmp_path / "today"
+    folder.mkdir()
+    monkeypatch.setattr(ask, "choose_folder", lambda *_: folder)
+    qtbot.mouseClick(page.check.choose, LEFT)
+    return page
+
+
+def shown(page, qtbot, stage):
+    qtbot.waitUntil(lambda: page.presenter.check.stage is stage)
+    page.refresh()
+    return page.check
+
+
+def test_without_pictures_it_says_how_to_take_them(page, qtbot):
+    card = shown(page, qtbot, CheckStage.NONE)
+    assert card.word.text() == "Not checked"
+    assert "pictures of the plane target in the fan" in card.sentence.text()
+    assert not card.run.isEnabled() and card.run.toolTip() == "Choose the pictures of the check first."
+    assert card.rows.isHidden()
+
+
+def test_chosen_pictures_are_checked_at_once_and_can_be_given_up(chosen, qtbot):
+    card = shown(chosen, qtbot, CheckStage.CHECKING)
+    assert card.word.text() == "Checking …" and card.run.text() == "Cancel"
+    qtbot.mouseClick(card.run, LEFT)
+    shown(chosen, qtbot, CheckStage.CHOSEN)
+    assert "check" not in chosen.presenter.model.results
+
+
+@pytest.mark.parametrize(
+    ("look", "word", "symbol", "todo"),
+    [
+        (check(0.4), "In order", "mdi6.check-circle-outline", "where they were calibrated"),
+        (check(0.005, 0.3), "In doubt", "mdi6.alert-outline", "check again"),
+        (check(1e-9, 1.5), "Changed", "mdi6.close-octagon-outline", "calibrate again"),
+        (nowhere(), "Changed", "mdi6.close-octagon-outline", "calibrate again"),
+    ],
+    ids=["green", "amber", "red", "fan elsewhere"],
+)
+def test_the_light_is_a_word_and_an_icon_with_what_to_do(chosen, measuring, qtbot, look, word, symbol, todo):
+    measuring.finish(look)
+    card = shown(chosen, qtbot, CheckStage.CHECKED)
+    assert card.word.text() == word
+    assert card.sign.shown[0] == symbol and card.sign.accessibleName() == word
+    assert todo in card.sentence.text()
+
+
+def test_it_shows_how_far_off_and_what_could_be_overlooked(chosen, measuring, qtbot):
+    measuring.finish(check())
+    rows = shown(chosen, qtbot, CheckStage.CHECKED).rows
+    assert rows.text_of("Stripes off by") == "0.050 px"
+    assert rows.text_of("At the part") == "0.010 mm"
+    assert rows.text_of("A step of 50 mm is off by") == "0.012 mm"
+    assert rows.text_of("Smallest error it would find") == "0.050 mm"
+    assert rows.text_of("check/c") == "left out"
+    assert rows.isVisible()
+
+
+def test_a_result_is_out_of_date_with_another_calibration_and_back_with_undo(chosen, measuring, qtbot):
+    measuring.finish(check())
+    shown(chosen, qtbot, CheckStage.CHECKED)
+    model = chosen.presenter.model
+    model.edit("accept", replace(model.project, accepted=Accepted("camera-1", "fan-2")))
+    card = shown(chosen, qtbot, CheckStage.OUTDATED)
+    assert card.word.text() == "Out of date" and "laser planes" in card.sentence.text()
+    model.undo_stack.undo()
+    shown(chosen, qtbot, CheckStage.CHECKED)
+    model.undo_stack.undo()
+    assert model.project.sources.check == "", "the choice of the pictures is undone"
+    shown(chosen, qtbot, CheckStage.OUTDATED)
+
+
+def test_pictures_that_say_nothing_are_told_and_the_result_before_stays(chosen, measuring, qtbot):
+    measuring.finish(check())
+    card = shown(chosen, qtbot, CheckStage.CHECKED)
+    done = chosen.presenter.model.results["check"]
+    qtbot.mouseClick(card.run, LEFT)
+    measuring.fail(InputError("no picture shows target and stripes"))
+    card = shown(chosen, qtbot, CheckStage.UNREADABLE)
+    assert "no picture shows target and stripes" in card.sentence.text()
+    assert chosen.presenter.model.results["check"] is done
+
+
+def test_a_project_opened_again_shows_its_check(chosen, measuring, scan_bench, qtbot):
+    measuring.finish(check())
+    shown(chosen, qtbot, CheckStage.CHECKED)
+    cast(HandLane, scan_bench.quick).answers[jobs.SHOW_CHECK] = lambda folder: check(0.005)
+    scan_bench.model.save()
+    folder = scan_bench.model.folder
+    scan_bench.model.close()
+    scan_bench.model.open(folder)
+    card = shown(chosen, qtbot, CheckStage.CHECKED)
+    assert card.word.text() == "In doubt"

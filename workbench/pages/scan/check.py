@@ -1,0 +1,163 @@
+"""The check of camera and laser on the day: its pictures, its run, its result."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from pathlib import Path
+
+from PySide6.QtCore import QObject, Signal
+
+from core.files.project.data import Project
+from core.files.project.keys import changed, finished, rests_on
+from core.files.results.check_file import InterimCheck
+from workbench.bench import Bench
+from workbench.language import text_of, tr
+from workbench.pages.sources import folder_of, put_source
+from workbench.work import jobs
+from workbench.work.tasks import Task
+
+
+class CheckStage(StrEnum):
+    """How far the check is."""
+
+    NONE = "none"
+    CHOSEN = "chosen"
+    CHECKING = "checking"
+    UNREADABLE = "unreadable"
+    CHECKED = "checked"
+    OUTDATED = "outdated"
+
+
+class RigCheck(QObject):
+    """Checks the accepted calibrations by pictures of the day, and records the result in the project.
+
+    `look` is the last result, whatever it was made from; None if there is none, or until it is read.
+    """
+
+    changed = Signal()
+
+    look: InterimCheck | None
+
+    def __init__(self, bench: Bench, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self._bench, self._model = bench, bench.model
+        self._task: Task | None = None
+        self._problem = ("", "")
+        self._forget()
+
+    def _forget(self) -> None:
+        self.look, self._looked = None, ""
+
+    @property
+    def folder(self) -> Path | None:
+        """The folder of the pictures."""
+        return folder_of(self._model, "check")
+
+    @property
+    def stage(self) -> CheckStage:
+        """How far it is."""
+        if self._task is not None:
+            return CheckStage.CHECKING
+        if self.problem:
+            return CheckStage.UNREADABLE
+        if self.look is not None:
+            return CheckStage.OUTDATED if self.changed_since() else CheckStage.CHECKED
+        return CheckStage.CHOSEN if self._model.project.sources.check else CheckStage.NONE
+
+    @property
+    def problem(self) -> str:
+        """Why the last check of the project as it is gave no result, or ""."""
+        return self._problem[1] if self._problem[0] == _key(self._model.project) else ""
+
+    @property
+    def cannot_check(self) -> str:
+        """Why nothing can be checked now, or ""."""
+        project = self._model.project
+        if self._task is not None:
+            return tr("Camera and laser are being checked.")
+        if not project.accepted.camera:
+            return tr("Accept a camera calibration first.")
+        if not project.accepted.fan:
+            return tr("Accept the laser planes first.")
+        if not project.sources.check:
+            return tr("Choose the pictures of the check first.")
+        return ""
+
+    def changed_since(self) -> tuple[str, ...]:
+        """What the result rests on and is not what it was."""
+        done = self._model.results.get("check")
+        return changed(done.rests_on, rests_on("check", self._model.project, {})) if done is not None else ()
+
+    def use_folder(self, folder: Path) -> None:
+        """Check by the pictures in this folder; the choice is undoable, and what can be checked is."""
+        self.cancel()
+        put_source(self._model, "check", folder, tr("choose the pictures of the check"))
+        self.start()
+
+    def start(self) -> None:
+        """Check."""
+        folder, project = self._model.folder, self._model.project
+        if folder is None or self.cannot_check:
+            return
+        self._problem = ("", "")
+        task: Task = self._bench.run_long(
+            self,
+            jobs.CHECK_RIG,
+            folder,
+            project,
+            label=self.tr("Check"),
+            on_done=lambda look: self._checked(task, folder, project, look),
+            on_failed=lambda problem: self._not_checked(task, project, text_of(problem)),
+            on_cancelled=lambda: self._not_checked(task, project, ""),
+        )
+        self._task = task
+        self.changed.emit()
+
+    def cancel(self) -> None:
+        """Stop checking; the result before stays."""
+        if self._task is not None:
+            self._task.cancel()
+
+    def opened(self) -> None:
+        """Another project: stop, forget, and read its result."""
+        self.cancel()
+        self._task, self._problem = None, ("", "")
+        self._forget()
+        self.follow()
+
+    def follow(self) -> None:
+        """The project or its results are others: read the result that is recorded."""
+        folder, done = self._model.folder, self._model.results.get("check")
+        wanted = f"{folder}|{done.key}|{done.at}" if folder is not None and done is not None else ""
+        if wanted == self._looked:
+            return
+        self._looked = wanted
+        if folder is None or done is None:
+            self.look = None
+            return
+
+        def read(look: InterimCheck | None) -> None:
+            if self._looked == wanted:
+                self.look = look
+                self.changed.emit()
+
+        self._bench.run_quick(self, jobs.SHOW_CHECK, folder, label=self.tr("Reading the check"), on_done=read)
+
+    def _checked(self, task: Task, folder: Path, project: Project, look: InterimCheck) -> None:
+        if task is not self._task:
+            return
+        self._task = None
+        if folder == self._model.folder:
+            done = finished("check", project, self._model.results)
+            self.look, self._looked = look, f"{folder}|{done.key}|{done.at}"
+            self._model.record("check", done)
+        self.changed.emit()
+
+    def _not_checked(self, task: Task, project: Project, problem: str) -> None:
+        if task is self._task:
+            self._task, self._problem = None, (_key(project), problem)
+            self.changed.emit()
+
+
+def _key(project: Project) -> str:
+    return repr(sorted(rests_on("check", project, {}).items()))

@@ -1,0 +1,134 @@
+"""The Check card: whether camera and laser are where they were calibrated, how far off, and what to do."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from PySide6.QtCore import QEvent
+from PySide6.QtWidgets import QFrame, QLabel, QPushButton, QWidget
+
+from core.files.results.check_file import InterimCheck
+from workbench.language import text_of, tr
+from workbench.pages.scan.check import CheckStage, RigCheck
+from workbench.pages.words import capital, mm, px
+from workbench.theme import icon, shades
+from workbench.views import ask
+from workbench.views.colours import Level
+from workbench.views.common import IconLabel, dress
+from workbench.views.layouts import enable, heading, in_column, in_row, muted, say
+from workbench.views.lists.value_rows import LEVEL_ICONS, ValueRow, ValueRows
+
+LEVELS: dict[str, Level] = {"passed": "good", "doubtful": "warn", "failed": "bad"}
+
+
+class CheckCard(QFrame):
+    """A traffic light in words: icon and word, a sentence on what to do, the figures, and the buttons."""
+
+    def __init__(self, check: RigCheck, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName("card")
+        self._check = check
+        self.sign, self.word, self.sentence, self.rows = IconLabel(18), QLabel(), muted(), ValueRows()
+        self.choose, self.run = QPushButton(self.tr("Pictures …")), QPushButton()
+        self.choose.setIcon(icon("mdi6.folder-open-outline"))
+        self.choose.clicked.connect(self._choose)
+        self.run.clicked.connect(self._run)
+        light = in_row(self.sign, (self.word, 1), spacing=6)
+        self.buttons = in_row(self.choose, (self.run, 1), spacing=6)
+        title = heading(self.tr("Check of camera and laser"))
+        in_column(title, light, self.sentence, self.rows, self.buttons, on=self, margins=(10, 8, 10, 10), spacing=5)
+
+    def refresh(self) -> None:
+        """Show how far the check is."""
+        check, stage = self._check, self._check.stage
+        level, word, sentence = self._said(stage)
+        symbol, colour = LEVEL_ICONS[level] if level else ("mdi6.help-circle-outline", "muted")
+        self.sign.show_icon(symbol, colour)
+        self.sign.setAccessibleName(word)
+        self.word.setText(word)
+        dress(self.word, f"color: {getattr(shades(), colour)}; font-weight: 600;")
+        say(self.sentence, sentence)
+        shown = check.look if stage in (CheckStage.CHECKED, CheckStage.OUTDATED) else None
+        self.rows.set_rows(figures(shown))
+        self.rows.setVisible(shown is not None)
+        checking = stage is CheckStage.CHECKING
+        self.choose.setToolTip(
+            tr("Choose the folder with pictures of the plane target in the fan, taken today (now: {folder})",
+               folder=check.folder or tr("none"))
+        )  # fmt: skip
+        self.run.setText(self.tr("Cancel") if checking else self.tr("Check again") if shown else self.tr("Check"))
+        self.run.setIcon(icon("mdi6.stop" if checking else "mdi6.play"))
+        tip = self.tr("Stop checking; the result before is kept") if checking else self.tr(
+            "Compare the stripes in the pictures with where the calibrations have them"
+        )  # fmt: skip
+        enable(self.run, "" if checking else check.cannot_check, tip)
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.PaletteChange:
+            self.refresh()
+
+    def _said(self, stage: CheckStage) -> tuple[Level, str, str]:
+        """Level, word and sentence of a stage."""
+        check = self._check
+        match stage:
+            case CheckStage.NONE:
+                return "", self.tr("Not checked"), self.tr(
+                    "Hold the plane target into the fan where the parts will be, and take one to three pictures, with "
+                    "the fan on and off: they show whether anything has moved since the calibration."
+                )  # fmt: skip
+            case CheckStage.CHOSEN:
+                return "", self.tr("Not checked yet"), check.cannot_check or self.tr("Press Check.")
+            case CheckStage.CHECKING:
+                return "", self.tr("Checking …"), self.tr("Cancel keeps the result before.")
+            case CheckStage.UNREADABLE:
+                return "bad", self.tr("Not checked"), check.problem
+        assert check.look is not None
+        if stage is CheckStage.OUTDATED:
+            what = ", ".join(check.changed_since())
+            return "warn", self.tr("Out of date"), tr("Changed since the check: {what}; check again.", what=what)
+        words = {"good": self.tr("In order"), "warn": self.tr("In doubt"), "bad": self.tr("Changed")}
+        level = LEVELS[check.look.verdict]
+        return level, words[level], text_of(check.look.sentence)
+
+    def _run(self) -> None:
+        if self._check.stage is CheckStage.CHECKING:
+            self._check.cancel()
+        else:
+            self._check.start()
+
+    def _choose(self) -> None:
+        start = self._check.folder or Path.home()
+        folder = ask.choose_folder(self, self.tr("Folder with the pictures of the check"), start)
+        if folder is not None:
+            self._check.use_folder(folder)
+
+
+def figures(look: InterimCheck | None) -> list[ValueRow]:
+    """How far off: label, value with unit, tip, level."""
+    if look is None:
+        return []
+    step = tr("{step:g} mm", step=look.step_mm)
+    rows: list[ValueRow] = [
+        (tr("Stripes off by"), px(look.offset_px), tr("RMS distance from where the calibrations have them"), ""),
+        (tr("At the part"), mm(look.offset_mm), tr("The same in mm on the plane target"), ""),
+        (
+            tr("A step of {step} is off by", step=step),
+            mm(look.error_mm),
+            tr("By how much it would be measured too high now; nothing is corrected by it"),
+            "",
+        ),
+        (
+            tr("Smallest error it would find"),
+            mm(look.unseen_mm),
+            tr("An error of a thickness of {step} up to this could have been overlooked (k = 2)", step=step),
+            "",
+        ),
+        (tr("Pictures taken"), look.taken_at.astimezone().strftime("%Y-%m-%d %H:%M"), tr("The newest of them"), ""),
+    ]
+    rows += [
+        (pose.name, tr("left out"), capital(text_of(pose.reason)), "warn")
+        for pose in look.poses
+        if pose.reason is not None
+    ]
+    return rows
