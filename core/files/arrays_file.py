@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import io
+import math
 import zipfile
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from itertools import pairwise
 from pathlib import Path
+from tokenize import TokenError
 from typing import Any
 
 import numpy as np
+from numpy.lib import format as npy
 from numpy.typing import NDArray
 
 from core.errors import InputError
@@ -20,6 +23,13 @@ from core.image.stripes.centreline import Centreline
 from core.messages import Message, as_text, from_text
 
 Arrays = Mapping[str, NDArray[Any]]
+
+_KINDS = "biufU"
+"""Numpy's letters of truth values, whole and real numbers, and texts."""
+_HEADS = {(1, 0): npy.read_array_header_1_0, (2, 0): npy.read_array_header_2_0}
+_LAST_CHARACTER = 0x10FFFF
+_HALVES = (0xD800, 0xDFFF)
+"""Of Unicode: its last character, and the codes that are halves of one in UTF-16."""
 
 _POINTS = ("uv", "normal", "width", "strength", "sigma", "saturated")
 
@@ -41,10 +51,10 @@ def read_arrays(path: Path, names: Sequence[str], *, todo: Message) -> Arrays:
     """
     if not path.exists():
         raise InputError(MISSING, where=path, todo=todo)
+    data = read_bytes(path)
     try:
-        with np.load(io.BytesIO(read_bytes(path)), allow_pickle=False) as file:
-            arrays = dict(file)
-    except (zipfile.BadZipFile, ValueError, EOFError, OSError) as error:
+        arrays = _members(data)
+    except (zipfile.BadZipFile, ValueError, EOFError, OSError, KeyError, NotImplementedError, RuntimeError) as error:
         what = Message("file.no_whole_arrays", "this is no whole file of arrays ({reason})", reason=str(error))
         raise InputError(what, where=path, todo=todo) from error
     for name in names:
@@ -57,6 +67,45 @@ def read_arrays(path: Path, names: Sequence[str], *, todo: Message) -> Arrays:
     return arrays
 
 
+def _members(data: bytes) -> dict[str, NDArray[Any]]:
+    """The arrays of a file as `write_arrays` writes it; ValueError if one is packed, or is not as long as it says."""
+    arrays = {}
+    with zipfile.ZipFile(io.BytesIO(data)) as file:
+        members = file.infolist()
+        if sum(one.file_size for one in members) > len(data) or any(one.compress_type for one in members):
+            raise ValueError("its arrays are packed, or longer than the file")
+        for one in members:
+            arrays[one.filename.removesuffix(".npy")] = _array(file.read(one))
+    return arrays
+
+
+def _array(data: bytes) -> NDArray[Any]:
+    """One array, of numbers or texts; its head is read before room is made for what it declares."""
+    stream = io.BytesIO(data)
+    version = npy.read_magic(stream)
+    if version not in _HEADS:
+        raise ValueError(f"an array is of version {version[0]}.{version[1]}")
+    try:
+        shape, _, dtype = _HEADS[version](stream)
+    except (SyntaxError, TypeError, RecursionError, MemoryError, TokenError) as error:
+        raise ValueError("an array has no head") from error
+    if dtype.kind not in _KINDS or not dtype.itemsize or not dtype.isnative:
+        raise ValueError(f"an array is of type {dtype}")
+    if min(shape, default=0) < 0 or math.prod(shape) * dtype.itemsize != len(data) - stream.tell():
+        raise ValueError("an array is not as long as it says")
+    stream.seek(0)
+    array: NDArray[Any] = npy.read_array(stream, allow_pickle=False)
+    if dtype.kind == "U":
+        _check_characters(array.reshape(-1).view(np.uint32))
+    return array
+
+
+def _check_characters(codes: NDArray[np.uint32]) -> None:
+    """ValueError if one is beyond Unicode, or half of a pair: no text could be made or written of it."""
+    if np.any((codes > _LAST_CHARACTER) | ((codes >= _HALVES[0]) & (codes <= _HALVES[1]))):
+        raise ValueError("a text holds no characters")
+
+
 @contextmanager
 def unpacking(path: Path, *, todo: Message) -> Iterator[None]:
     """Tell as InputError that an array of `path` is missing, or that arrays do not fit together, which unpacking finds.
@@ -67,7 +116,7 @@ def unpacking(path: Path, *, todo: Message) -> Iterator[None]:
         yield
     except KeyError as error:
         raise InputError(_missing(str(error.args[0])), where=path, todo=todo) from error
-    except (ValueError, TypeError) as error:
+    except (ValueError, TypeError, IndexError, OverflowError, RecursionError) as error:
         what = Message("file.arrays_do_not_fit", "its arrays do not fit together ({reason})", reason=str(error))
         raise InputError(what, where=path, todo=todo) from error
 

@@ -15,6 +15,8 @@ from core.messages import Message
 
 START = b"\xff\xd8"
 _QUANTISATION, _SCAN = 0xDB, 0xDA
+_FRAMES = frozenset(range(0xC0, 0xD0)) - {0xC4, 0xC8, 0xCC}
+"""Markers of a frame's head; the three between them are tables and an extension."""
 _COARSE_TERMS = 10
 """Terms of a block's cosine series, in the order of the file, that make up a stripe: those of the 4 lowest orders."""
 
@@ -57,6 +59,14 @@ def compression_grey(data: bytes) -> float:
     return 0.0
 
 
+def frame_sizes(data: bytes) -> Iterator[tuple[int, int]]:
+    """(width, height) of each frame that is declared; ValueError where no marker is."""
+    for marker, start, _ in _segments(data):
+        if marker in _FRAMES and start + 5 <= len(data):
+            height, width = (int.from_bytes(data[at : at + 2], "big") for at in (start + 1, start + 3))
+            yield width, height
+
+
 def _segments(data: bytes) -> Iterator[tuple[int, int, int]]:
     """Marker, first byte and past-the-last byte of each segment up to the scan; ValueError where no marker is."""
     at = 2
@@ -67,7 +77,7 @@ def _segments(data: bytes) -> Iterator[tuple[int, int, int]]:
         if marker == 0xFF:  # a fill byte
             at += 1
             continue
-        end = at + 2 + int.from_bytes(data[at + 2 : at + 4], "big")
+        end = at + 2 + max(2, int.from_bytes(data[at + 2 : at + 4], "big"))
         yield marker, at + 4, end
         if marker == _SCAN:
             return

@@ -14,6 +14,8 @@ from core.acquire.grey import Channel, to_grey
 from core.errors import InputError
 from core.files import jpeg
 from core.files.atomic import write_bytes
+from core.files.limits import check_file, check_pixels
+from core.files.picture_size import declared_sizes
 from core.files.reading import read_bytes
 from core.messages import Message
 
@@ -69,6 +71,8 @@ def _head(data: bytes) -> tuple[int, int, int, int]:
             at += 1
         if start == at:
             raise EOFError if at >= len(data) else ValueError("no number")
+        if at - start > _PGM_DIGITS:
+            raise ValueError("a number is too long")
         fields.append(int(data[start:at]))
     width, height, white = fields
     return width, height, white, at + 1
@@ -80,6 +84,8 @@ _Any = NDArray[Any]
 SUFFIXES = frozenset({".png", ".tif", ".tiff", ".bmp", ".jpg", ".jpeg", ".pgm"})
 """Endings (lower case) of the files that count as pictures."""
 
+_PGM_DIGITS = 18
+"""As many as a whole number of 64 bits may have."""
 _ENDS_EARLY = Message("picture.ends_early", "ends early")
 _TABLES_WITHIN = 1 << 17
 """Bytes in which a JPEG's tables are: they may stand behind a thumbnail of up to 64 kB."""
@@ -127,14 +133,18 @@ def decode_picture(data: bytes, path: Path, channel: Channel | None = None) -> P
             where=path,
             todo=Message("advice.record_or_copy_again", "record or copy it again"),
         )
-    plain = read_pgm(data) if data.startswith(MAGIC) else None
-    if plain is not None:
-        return plain
+    for width, height in declared_sizes(data):
+        check_pixels(width, height, path)
+    if data.startswith(MAGIC):
+        check_pixels(*_head(data)[:2], path)
+        plain = read_pgm(data)
+        if plain is not None:
+            return plain
     try:
         picture: _Any | None = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_UNCHANGED)
     except cv2.error:
         picture = None
-    if picture is None:
+    if picture is None or picture.ndim not in (2, 3) or not picture.size:
         raise InputError(
             Message("picture.unreadable", "this is no readable picture"),
             where=path,
@@ -154,6 +164,7 @@ def compression_grey(path: Path) -> float:
 
     0 for a file that is lossless or cannot be read.
     """
+    check_file(path)
     try:
         with path.open("rb") as file:
             return jpeg.compression_grey(file.read(_TABLES_WITHIN))

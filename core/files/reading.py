@@ -2,26 +2,30 @@
 
 from __future__ import annotations
 
+import csv
 import json
 import tomllib
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
 from core.errors import InputError
+from core.files.limits import DATA_BYTES, TEXT_BYTES, TOML_BYTES, check_file, check_json, check_toml
 from core.messages import Message
 
 MISSING = Message("file.missing", "the file is missing")
 
 
-def read_bytes(path: Path) -> bytes:
-    """The bytes of a file; InputError if it cannot be read."""
+def read_bytes(path: Path, *, most: int = DATA_BYTES) -> bytes:
+    """The bytes of a file; InputError if it cannot be read, is no file, or has more than `most` bytes."""
+    check_file(path, most)
     try:
         return path.read_bytes()
-    except OSError as error:
+    except (OSError, ValueError) as error:  # ValueError: a path with a NUL
         raise cannot_read(path, error) from error
 
 
-def read_text(path: Path, *, missing: Message = MISSING, todo: Message | None = None) -> str:
+def read_text(path: Path, *, missing: Message = MISSING, todo: Message | None = None, most: int = TEXT_BYTES) -> str:
     """The text of a UTF-8 file, without the mark some programs begin it with.
 
     Parameters
@@ -30,40 +34,69 @@ def read_text(path: Path, *, missing: Message = MISSING, todo: Message | None = 
         Of the file.
     missing, todo
         What to tell if it is not there, and how to come by it.
+    most
+        Bytes it may have.
 
     Raises
     ------
     InputError
-        If it is missing, cannot be read, or is no UTF-8.
+        If it is missing, cannot be read, is no file, too large, or no UTF-8.
     """
+    check_file(path, most)
     try:
         return path.read_text(encoding="utf-8-sig")
     except FileNotFoundError as error:
         raise InputError(missing, where=path, todo=todo or "") from error
-    except (OSError, UnicodeDecodeError) as error:
+    except (OSError, ValueError) as error:
         what = Message("file.no_text", "cannot be read as UTF-8 text ({reason})", reason=str(error))
         raise InputError(what, where=path) from error
 
 
 def read_json(path: Path, *, todo: Message | None = None) -> Any:
     """The content of a JSON file; InputError as `read_text`, or if it is no JSON."""
+    return json_of(read_text(path, todo=todo), path, todo=todo)
+
+
+def json_of(text: str, where: Path | str, *, todo: Message | None = None) -> Any:
+    """What a text of JSON says; InputError if it is none, too deep, or has characters that are none."""
+    check_json(text, where)
     try:
-        return json.loads(read_text(path, todo=todo))
-    except json.JSONDecodeError as error:
+        value = json.loads(text)
+        if "\\u" in text:
+            json.dumps(value, ensure_ascii=False).encode()  # half of a pair stands for no character
+    except UnicodeEncodeError as error:
+        raise InputError(Message("file.half_character", "it holds half a character"), where=where) from error
+    except ValueError as error:
         what = Message("file.no_json", "this is no valid JSON: {reason}", reason=str(error))
-        raise InputError(what, where=path, todo=todo or "") from error
+        raise InputError(what, where=where, todo=todo or "") from error
+    return value
 
 
 def read_toml(path: Path, *, missing: Message = MISSING, todo: Message | None = None) -> dict[str, Any]:
     """The tables of a TOML file; InputError as `read_text`, or if it is no TOML."""
+    return toml_of(read_text(path, missing=missing, todo=todo, most=TOML_BYTES), path)
+
+
+def toml_of(text: str, where: Path | str) -> dict[str, Any]:
+    """The tables a text of TOML says; InputError if it is none, or too deep."""
+    check_toml(text, where)
     try:
-        return tomllib.loads(read_text(path, missing=missing, todo=todo))
-    except tomllib.TOMLDecodeError as error:
+        return tomllib.loads(text)
+    except (ValueError, RecursionError) as error:
         what = Message("file.no_toml", "this is no valid TOML: {reason}", reason=str(error))
+        raise InputError(what, where=where) from error
+
+
+def csv_rows(lines: Iterable[str], path: Path, separator: str = ",") -> list[list[str]]:
+    """The cells of a CSV file's lines; InputError if a cell is longer than any is, or the lines are none of a table."""
+    try:
+        return list(csv.reader(lines, delimiter=separator))
+    except csv.Error as error:
+        what = Message("file.no_csv", "this is no table ({reason})", reason=str(error))
         raise InputError(what, where=path) from error
 
 
-def cannot_read(path: Path, error: OSError) -> InputError:
+def cannot_read(path: Path, error: OSError | ValueError) -> InputError:
     """The sentence for a file or folder that is there and cannot be read."""
-    reason = str(error.strerror or error)
+    reason = str(getattr(error, "strerror", "") or error)
     return InputError(Message("file.cannot_be_read", "cannot be read ({reason})", reason=reason), where=path)

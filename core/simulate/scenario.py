@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import hashlib
 import json
-import tomllib
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 
 from core.errors import InputError
-from core.messages import Message, plain
+from core.files.limits import TOML_BYTES
+from core.files.reading import read_text, toml_of
+from core.messages import Message
 
 OBJECTS = ("block", "narrow-block", "steps", "sphere", "cylinder", "mask", "stl", "plane")
 """Objects that can stand on the table."""
@@ -200,12 +201,7 @@ class Scenario:
         InputError
             If it is no TOML, has an unknown key or a value of the wrong type.
         """
-        try:
-            values = tomllib.loads(text)
-        except tomllib.TOMLDecodeError as problem:
-            raise InputError(
-                Message("simulate.bad_toml", "it is not valid TOML ({why})", why=plain(str(problem))), where=where
-            ) from problem
+        values = toml_of(text, where)
         known = {field.name: type(field.default) for field in fields(cls)}
         for name, value in values.items():
             if name not in known:
@@ -229,10 +225,4 @@ class Scenario:
     @classmethod
     def read(cls, path: Path) -> Scenario:
         """A scenario from a TOML file; raises InputError as `from_toml` does, or when it cannot be read."""
-        try:
-            text = path.read_text(encoding="utf-8")
-        except (OSError, UnicodeDecodeError) as problem:
-            raise InputError(
-                Message("simulate.unreadable", "it cannot be read ({why})", why=plain(str(problem))), where=path
-            ) from problem
-        return cls.from_toml(text, path)
+        return cls.from_toml(read_text(path, most=TOML_BYTES), path)

@@ -7,10 +7,8 @@ element, so that with γ ≠ 0 they are wrong by up to γ·y px at the ray (x, y
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from datetime import datetime
 from pathlib import Path
-from typing import Any
 
 import cv2
 import numpy as np
@@ -18,8 +16,8 @@ import numpy as np
 from core.calibrate.results import CameraCalibration
 from core.errors import InputError
 from core.files.atomic import write_text
+from core.files.exchange.calibration_text import first_of, numbers, read_fields
 from core.files.exchange.imported import imported_camera
-from core.files.reading import read_bytes
 from core.messages import Message
 
 _NAMES = {
@@ -62,43 +60,17 @@ def read_opencv(path: Path) -> CameraCalibration:
     InputError
         If it is no such file, lacks matrix, distortion or size, or they are no camera of ours.
     """
-    text = read_bytes(path).decode("utf-8", "replace")
-    try:
-        storage = cv2.FileStorage(text, cv2.FileStorage_READ | cv2.FileStorage_MEMORY)
-        found = {what: _first(storage, names) for what, names in _NAMES.items()}
-        matrix, distortion = _matrix(found["matrix"]), _matrix(found["distortion"])
-        width, height = (_real(found[side]) for side in ("width", "height"))
-        rms = _real(found["rms"])
-    except (cv2.error, SystemError, ValueError) as error:
-        raise InputError(
-            Message("file.no_opencv_storage", "this is no file of OpenCV's FileStorage that can be read"),
-            where=path,
-        ) from error
-    for what, value in (("matrix", matrix), ("distortion", distortion), ("width", width), ("height", height)):
-        if value is None:
+    fields = read_fields(path)
+    found = {what: numbers(first_of(fields, names)) for what, names in _NAMES.items()}
+    for what, count in (("matrix", 9), ("distortion", 0), ("width", 1), ("height", 1)):
+        values = found[what]
+        if values is None or (count and len(values) != count):
             raise InputError(
                 Message("file.opencv_value_missing", "there is no {names}", names=_NAMES[what][0]),
                 where=path,
                 todo=Message("advice.write_with_opencv", "write it with OpenCV's FileStorage"),
             )
-    size = (int(width or 0), int(height or 0))
-    coefficients = [] if distortion is None else [float(value) for value in distortion.ravel()]
-    return imported_camera(path, size, np.eye(3) if matrix is None else matrix, coefficients, rms or math.nan)
-
-
-def _first(storage: Any, names: Sequence[str]) -> Any:
-    nodes = (storage.getNode(name) for name in names)
-    return next((node for node in nodes if not node.empty()), None)
-
-
-def _matrix(node: Any) -> Any:
-    """An OpenCV matrix, or a list of numbers; None where there is none."""
-    if node is None:
-        return None
-    if node.isSeq():
-        return np.array([node.at(place).real() for place in range(node.size())])
-    return node.mat()
-
-
-def _real(node: Any) -> float | None:
-    return None if node is None else float(node.real())
+    size = [int(value) for what in ("width", "height") for value in found[what] or ()]
+    rms = found["rms"] or [math.nan]
+    matrix = np.reshape(found["matrix"] or (), (3, 3))
+    return imported_camera(path, (size[0], size[1]), matrix, found["distortion"] or (), rms[0])

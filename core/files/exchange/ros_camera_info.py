@@ -5,17 +5,15 @@ ROS has no skew: a camera with γ ≠ 0 is not written, since everything that re
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
-
-import yaml
 
 from core.calibrate.results import CameraCalibration
 from core.errors import InputError
 from core.files.atomic import write_text
+from core.files.exchange.calibration_text import numbers, read_fields
 from core.files.exchange.imported import imported_camera
-from core.files.reading import read_bytes
 from core.messages import Message
 
 MODELS = ("plumb_bob", "rational_polynomial")
@@ -66,19 +64,14 @@ def read_camera_info(path: Path) -> CameraCalibration:
     InputError
         If it is no such file, lacks a key, or has another distortion model.
     """
-    try:
-        file = yaml.safe_load(read_bytes(path))
-    except (yaml.YAMLError, UnicodeDecodeError) as error:
-        raise InputError(Message("file.no_yaml", "this is no YAML that can be read"), where=path) from error
-    if not isinstance(file, Mapping):
-        raise InputError(Message("file.no_camera_info", "this is no camera_info of ROS"), where=path)
+    file = read_fields(path)
     model = file.get("distortion_model", MODELS[0])
     if model not in MODELS:
         raise InputError(
             Message(
                 "file.distortion_model",
                 "distortion_model is {model!r}, and only {models} can be used here",
-                model=model,
+                model=str(model)[:40],
                 models=MODELS[0],
             ),
             where=path,
@@ -91,13 +84,11 @@ def read_camera_info(path: Path) -> CameraCalibration:
 
 def _numbers(path: Path, file: Mapping[str, Any], key: str, count: int) -> list[float]:
     """The numbers under a key, `count` of them (0: any): by themselves, in a list, or as `data` of a matrix."""
-    value = file.get(key)
-    value = value.get("data") if isinstance(value, Mapping) else value
-    values: list[Any] = list(value) if isinstance(value, Sequence) and not isinstance(value, str) else [value]
-    if not all(isinstance(one, int | float) for one in values) or (count and len(values) != count):
+    values = numbers(file.get(key))
+    if values is None or (count and len(values) != count):
         wanted = "a number" if count == 1 else f"{count} numbers" if count else "a list of numbers"
         raise InputError(Message("file.value_wrong", "{key} is not {wanted}", key=key, wanted=wanted), where=path)
-    return [float(one) for one in values]
+    return values
 
 
 def _matrix(key: str, rows: list[list[float]]) -> list[str]:

@@ -6,6 +6,7 @@ Nothing is written here; `core.files.recording.import_pictures` does that, once 
 from __future__ import annotations
 
 import re
+import struct
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -16,9 +17,10 @@ from typing import TypeAlias
 
 import cv2
 import numpy as np
-from PIL import Image, UnidentifiedImageError
+from PIL import Image
 
 from core.errors import InputError
+from core.files.limits import check_file
 from core.files.pictures import read_picture
 from core.files.reading import cannot_read
 from core.files.recording.set_listing import check_sizes, pictures_in
@@ -328,6 +330,7 @@ def _in_order(
 
 def _taken_at(path: Path) -> datetime | None:
     """When the camera says it took a picture (EXIF 2.32: DateTimeOriginal, else DateTime); None if it does not."""
+    check_file(path)
     try:
         with Image.open(path) as picture:
             head = picture.getexif()
@@ -335,7 +338,7 @@ def _taken_at(path: Path) -> datetime | None:
             text = str(own.get(_TAKEN_AT) or head.get(_WRITTEN_AT) or "")
             part = str(own.get(_TAKEN_AT_PART) or "").strip() if own.get(_TAKEN_AT) else ""
         at = datetime.strptime(text.strip("\0 "), "%Y:%m:%d %H:%M:%S")  # the camera's clock: no zone
-    except (OSError, SyntaxError, ValueError, UnidentifiedImageError, Image.DecompressionBombError):
+    except (OSError, SyntaxError, ValueError, TypeError, struct.error, Image.DecompressionBombError):
         return None
     return at.replace(microsecond=int(f"{part:0<6}"[:6])) if part.isdecimal() else at
 

@@ -7,7 +7,6 @@ every frame that was acknowledged; at most its last line is torn, and not counte
 from __future__ import annotations
 
 import contextlib
-import csv
 import errno
 import os
 from collections.abc import Sequence
@@ -17,7 +16,7 @@ from pathlib import Path
 
 from core.errors import InputError
 from core.files.atomic import cannot_write
-from core.files.reading import read_text
+from core.files.reading import csv_rows, read_text
 from core.messages import Message
 
 LOG = "recording.csv"
@@ -82,7 +81,7 @@ def read_log(folder: Path) -> tuple[LoggedFrame, ...]:
         return ()
     text = read_text(path)
     whole = text[: text.rfind("\n") + 1]
-    rows = list(csv.reader(whole.splitlines()))
+    rows = csv_rows(whole.splitlines(), path)
     try:
         return tuple(LoggedFrame(name, int(index), float(time), int(lost)) for name, index, time, lost in rows[1:])
     except ValueError as error:

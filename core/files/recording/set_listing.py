@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import struct
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -12,6 +13,7 @@ from pathlib import Path
 from PIL import Image
 
 from core.errors import InputError
+from core.files.limits import check_file
 from core.files.pictures import is_picture
 from core.messages import Message
 
@@ -121,8 +123,9 @@ def check_sizes(paths: Sequence[Path]) -> None:
 
 def _size(path: Path) -> tuple[int, int] | None:
     """(width, height) from the head of a picture file, or None if it has none; reading it will tell why."""
+    check_file(path)
     try:
         with Image.open(path) as picture:
             return picture.size
-    except (OSError, SyntaxError, ValueError, Image.DecompressionBombError):
+    except (OSError, SyntaxError, ValueError, Image.DecompressionBombError, TypeError, struct.error):
         return None

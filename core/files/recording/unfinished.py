@@ -10,6 +10,7 @@ from typing import get_args
 from core.acquire.source import Step
 from core.errors import InputError
 from core.files.atomic import cannot_write, make_folder, write_text
+from core.files.reading import read_json
 from core.files.recording.set_listing import pictures_in
 
 NOTE = Path("recordings") / ".unfinished.json"
@@ -42,7 +43,7 @@ def forget_recording(project: Path) -> None:
 def unfinished_recording(project: Path) -> Unfinished | None:
     """What was being recorded when the program died; None if nothing was, or no picture of it is there."""
     try:
-        noted = json.loads((project / NOTE).read_text(encoding="utf-8"))
+        noted = read_json(project / NOTE)
         step, name = noted["step"], noted["folder"]
         if step not in get_args(Step) or name != Path(name).name:
             return None

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from core.errors import InputError
+from core.files.limits import STL_BYTES, check_file
 from core.inspect.plan.inspection_plan import InspectionPlan
 from core.messages import Message
 from core.scan.surface.triangles import Triangles
@@ -30,6 +31,7 @@ def read_nominal(path: Path) -> Triangles:
             where=path,
             todo=Message("advice.name_stl_beside_plan", "name an STL file beside the plan"),
         )
+    check_file(path, most=STL_BYTES)
     try:
         loaded = trimesh.load_mesh(str(path), file_type="stl", process=False)
         corners = np.asarray(loaded.triangles, dtype=np.float64)

@@ -6,7 +6,6 @@ lines that begin with # are passed over.
 
 from __future__ import annotations
 
-import csv
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -14,7 +13,7 @@ from difflib import get_close_matches
 from pathlib import Path
 
 from core.errors import InputError
-from core.files.reading import read_text
+from core.files.reading import csv_rows, read_text
 from core.messages import Message
 
 SEPARATORS = ";\t,"
@@ -139,9 +138,7 @@ def table_of(text: str, path: Path) -> Table:
         raise InputError(Message("study.table_without_rows", "the table has no rows below its head"), where=path)
     head = lines[0][1]
     separator = next((one for one in SEPARATORS if one in head), ",")
-    names, *rows = (
-        [cell.strip() for cell in row] for row in csv.reader((line for _, line in lines), delimiter=separator)
-    )
+    names, *rows = ([cell.strip() for cell in row] for row in csv_rows((line for _, line in lines), path, separator))
     twice = next((name for name in names if names.count(name) > 1), None)
     if twice is not None:
         raise InputError(Message("study.column_twice", 'the column "{twice}" is there twice', twice=twice), where=path)

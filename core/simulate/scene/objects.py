@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from core.errors import InputError
+from core.files.limits import STL_BYTES, check_file
 from core.messages import Message, plain
 from core.model.arrays import Array
 from core.simulate.scene.scene import OBJECT_ALBEDO, Mesh
@@ -109,6 +110,7 @@ def stl(path: Path) -> Mesh:
     """
     import trimesh  # slow to import, and only this function needs it
 
+    check_file(path, most=STL_BYTES)
     try:
         loaded = trimesh.load_mesh(str(path), file_type="stl")
         triangles: Array = np.asarray(loaded.triangles, dtype=np.float64)

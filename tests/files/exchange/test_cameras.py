@@ -124,8 +124,8 @@ def test_a_rational_model_is_read_where_it_says_no_more_than_plumb_bob(tmp_path)
             "camera_matrix is not 9 numbers",
         ),
         (ROS.format(model="plumb_bob", coefficients="0").replace("500, 0, 320", "-5, 0, 320"), "this is no camera"),
-        ("just words", "no camera_info"),
-        ("a: [", "no YAML"),
+        ("just words", "no calibration in YAML, JSON or XML"),
+        ("a: [", "no calibration in YAML"),
     ],
 )
 def test_what_is_wrong_in_a_file_of_ros_is_told(tmp_path, text, complaint):
@@ -139,11 +139,47 @@ def test_what_is_wrong_in_a_file_of_ros_is_told(tmp_path, text, complaint):
     ("text", "complaint"),
     [
         ("%YAML:1.0\n---\nimage_width: 640\n", "there is no camera_matrix"),
-        ("nonsense", "no file of OpenCV"),
-        ('{"camera_matrix": 5}', "no file of OpenCV|there is no|not of the form"),
+        ("nonsense", "no calibration in YAML"),
+        ('{"camera_matrix": 5}', "there is no camera_matrix"),
     ],
 )
 def test_what_is_wrong_in_a_file_of_opencv_is_told(tmp_path, text, complaint):
     (tmp_path / "c.yml").write_text(text)
     with pytest.raises(InputError, match=complaint):
         read_opencv(tmp_path / "c.yml")
+
+
+MATRIX = "!!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n   data: [500., 0., 320., 0., 501., 240., 0., 0., 1.]"
+GOOD = f"%YAML:1.0\n---\nimage_width: 640\nimage_height: 480\ncamera_matrix: {MATRIX}\ndistortion_coefficients: [0.1]\n"
+
+
+def test_opencvs_yaml_is_read_without_opencv(tmp_path, monkeypatch):
+    monkeypatch.delattr(cv2, "FileStorage")
+    (tmp_path / "c.yml").write_text(GOOD)
+    assert read_opencv(tmp_path / "c.yml").camera.matrix[1].tolist() == [0, 501, 240]
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "complaint"),
+    [
+        ("c.json", '{"a":' * 100_000, "more than 60 deep"),
+        ("c.yml", "%YAML:1.0\n---\na: " + "[" * 100_000, "more than 60 deep"),
+        ("c.yml", "- " * 100_000, "no calibration"),
+        ("c.yml", "? " * 100_000, "no calibration"),
+        ("c.xml", "<opencv_storage>" + "<a>" * 100_000 + "</a>" * 100_000 + "</opencv_storage>", "no camera_matrix"),
+        ("c.xml", '<!DOCTYPE a [<!ENTITY b "c">]><a>&b;</a>', "declares entities"),
+        ("c.yml", GOOD.replace("500.", "9" * 5000), "more than 100 digits"),
+        ("c.yml", GOOD.replace("500.", ".Inf"), "no camera_matrix"),
+        ("c.yml", GOOD.replace("500.", "1e999"), "no camera_matrix"),
+        ("c.yml", GOOD.replace("640", "0"), "no camera"),
+        ("c.yml", GOOD + "note: !!python/object/apply:os.system [exit 7]\ncamera_matrix: 5\n", "no camera_matrix"),
+        ("c.yml", "a: &a [1,2]\nb: &b [*a,*a]\ncamera_matrix: [*b, *b]\n", "no calibration"),
+        ("c.json", " " * 1_000_001, "the file has 1.0 MB"),
+        ("c.yml", "a: \0", "no calibration"),
+    ],
+)
+def test_a_hostile_calibration_is_refused_in_one_sentence(tmp_path, name, text, complaint):
+    (tmp_path / name).write_text(text)
+    with pytest.raises(InputError, match=complaint) as refused:
+        read_opencv(tmp_path / name)
+    assert len(refused.value.told().removeprefix(str(tmp_path))) < 300
