@@ -13,13 +13,15 @@ Strobl, K. H. & Hirzinger, G., More accurate pinhole camera calibration with imp
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import chi2
 
+from core.messages import Field, Message
 from core.model.arrays import Array
 
 SHAPE_PARAMETERS = ("bow_x", "bow_y", "twist", "aspect")
@@ -27,6 +29,9 @@ SHAPE_PARAMETERS = ("bow_x", "bow_y", "twist", "aspect")
 
 SUSPECTED_MM = 0.2
 """Standard deviation in mm of how far a board may be from flat of which nothing is known: a print on a usual board."""
+SUSPECTED_SCALE = 5e-4
+"""Standard uncertainty of the size of a target of which nothing is known, as a share of it: an office laser printer's,
+whose feed rollers and drum grow with warmth and wear."""
 
 SURE = 1e-4
 """A board is bowed for sure if the probability that a flat one looks so is smaller; tests/calibrate/test_board_shape.py
@@ -43,7 +48,8 @@ class BoardTolerance:
         Standard deviation of how far its edges may be off the plane through its middle; 0: it is flat. None: nothing is
         known; it is taken as flat unless the views surely show otherwise.
     scale_sd
-        Standard uncertainty of its size as a share of it, in x and in y on their own; 0: it is true.
+        Standard uncertainty of its size as a share of it, in x and in y on their own; 0: it is true. None: nothing is
+        known; it is taken for a print of SUSPECTED_SCALE.
 
     Raises
     ------
@@ -52,25 +58,68 @@ class BoardTolerance:
     """
 
     flatness_mm: float | None = None
-    scale_sd: float = 0.0
+    scale_sd: float | None = None
 
     def __post_init__(self) -> None:
         if self.flatness_mm is not None and not 0 <= self.flatness_mm <= 100:
             raise ValueError(f"a flatness of {self.flatness_mm} mm is not between 0 and 100 mm")
-        if not 0 <= self.scale_sd <= 0.1:
+        if self.scale_sd is not None and not 0 <= self.scale_sd <= 0.1:
             raise ValueError(f"a relative uncertainty of {self.scale_sd} of the size is not between 0 and 0.1")
+
+    def notes(self, target: Literal["camera_target", "plane_target"]) -> tuple[Message, ...]:
+        """What is assumed of a target of which rig.toml says nothing, as far as the step of that `target` rests on it.
+
+        A bow of the camera's target is found in its views, so only the plane target's flatness is ever assumed.
+        """
+        size = Message(
+            "target.size_assumed",
+            "How true the target's size is, is not stated ({field}): {per_mille:g} ‰ of it is assumed as "
+            "standard uncertainty, as of an office laser printer's print.",
+            field=Field(f"{target}.scale_sd", whole=True),
+            per_mille=self.size_sd * 1e3,
+        )
+        flatness = Message(
+            "target.flatness_assumed",
+            "How flat the target is, is not stated ({field}): {mm:g} mm is assumed as standard deviation.",
+            field=Field(f"{target}.flatness_mm", whole=True),
+            mm=SUSPECTED_MM,
+        )
+        unknown_bow = self.flatness_mm is None and target == "plane_target"
+        return (*[size] * (self.scale_sd is None), *[flatness] * unknown_bow)
+
+    @property
+    def size_sd(self) -> float:
+        """Standard uncertainty of its size as a share of it, stated or not."""
+        return SUSPECTED_SCALE if self.scale_sd is None else self.scale_sd
+
+    @property
+    def flatness_sd_mm(self) -> float:
+        """Standard deviation of how far its edges may be off its plane, stated or not."""
+        return SUSPECTED_MM if self.flatness_mm is None else self.flatness_mm
 
     @property
     def sd(self) -> Array:
         """Standard deviations (4,) of the shape's parameters before any view is seen; 0 where they are known."""
-        flatness = SUSPECTED_MM if self.flatness_mm is None else self.flatness_mm
-        aspect = self.scale_sd * np.sqrt(2)  # the difference of two independent sizes
+        flatness = self.flatness_sd_mm
+        aspect = self.size_sd * np.sqrt(2)  # the difference of two independent sizes
         return np.array([flatness, flatness, flatness, aspect])
 
     @property
     def free(self) -> NDArray[np.intp]:
         """Indices of the parameters that are unknown."""
         return np.flatnonzero(self.sd)
+
+
+TRUE = BoardTolerance(0.0, 0.0)
+"""Of a target that is as it should be."""
+
+MADE: Mapping[str, BoardTolerance] = {
+    "laser printer": BoardTolerance(SUSPECTED_MM, SUSPECTED_SCALE),
+    "print shop": BoardTolerance(0.1, 2e-4),
+    "chrome on glass": BoardTolerance(0.005, 1e-5),
+}
+"""How true targets usually are, by how they were made: a sheet fixed to a plate, a print on a sandwich of aluminium
+(0.1 mm in 500 mm by its makers), and a photomask (a few micrometres)."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)

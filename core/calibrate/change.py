@@ -203,12 +203,15 @@ class Change:
 
 
 def judge(
-    camera: Camera, fan: Fan, deviations: Sequence[Deviation], evidence: Evidence, stability: Stability
+    camera: Camera, fan: Fan, deviations: Sequence[Deviation], evidence: Evidence, stated: Stability | None
 ) -> Change:
     """What has changed, by all evidence of the K `deviations`: those of the calibrations, and then `changes`.
 
-    `camera` and `fan` are those calibrated.
+    `camera` and `fan` are those calibrated. Without a `stated` stability the default one is assumed, and what change
+    adds says so.
     """
+    stability = stated or DEFAULT_STABILITY
+    source_of_change: Source = "change" if stated is not None else "assumed change"
     bent = tuple(one for one in deviations if one.source == UNEXPLAINED)  # no parameter of camera and fan
     m = np.array([one.source == "change" for one in deviations], dtype=np.bool_)
     squares, freedom = _squares(evidence, m)
@@ -219,7 +222,7 @@ def judge(
     x, estimate, root = _lasting(deviations, evidence, stability)
     free = [one for one, there in zip(deviations, x, strict=True) if there]
     steps = np.array([_vector(one.camera, one.fan) for one in free]) - _vector(camera, fan)
-    sources: list[Source] = [*(one.source for one in free), "change"]
+    sources = [source_of_change if one.source == "change" else one.source for one in free] + [source_of_change]
     displaced = np.vstack([np.linalg.qr(root.T, mode="r"), estimate]) @ steps  # R of the root's transpose is Lᵀ
     told = (_displaced(camera, fan, source, step) for source, step in zip(sources, displaced, strict=True))
     return Change((*told, *bent), p, times)

@@ -23,7 +23,9 @@ from core.calibrate.results import CameraCalibration, FanCalibration
 from core.model import Camera, Fan, LightPlane
 from core.model.arrays import Array
 
-Source = Literal["camera", "fan", "bend", "scale", "change"]
+Source = Literal["camera", "fan", "bend", "scale", "assumed scale", "change", "assumed change"]
+SCALES: tuple[Source, ...] = ("scale", "assumed scale")
+"""The sources that are the size of the plane target, which no picture of it shows."""
 UNEXPLAINED: Source = "bend"
 """The source of errors that were seen, but not why: they are uncertain by all of what was seen."""
 
@@ -37,7 +39,8 @@ class Deviation:
 
     `source` says whose error it is: "camera" (the fan moves along with it, as it would have been calibrated through
     such a camera), "fan" (the camera is as calibrated), "bend" (its light is off its planes),
-    "scale" (the plane target is larger than stated), "change" (the rig since then, `core.calibrate.change`).
+    "scale" (the plane target is larger than stated), "change" (the rig since then, `core.calibrate.change`). Where
+    nobody has stated how large the last two may be, their sources say that they are assumed.
     """
 
     source: Source
@@ -97,4 +100,5 @@ def _of_fan(camera: Camera, fan: FanCalibration) -> Iterator[Deviation]:
 def _of_scale(camera: Camera, fan: FanCalibration) -> Iterator[Deviation]:
     """A target larger by s of itself makes all of space larger and every π smaller by s; the camera stays the same."""
     if fan.scale_sd > 0:
-        yield Deviation("scale", camera, moved_fan(fan.fan, -fan.scale_sd * fan.fan.pis.ravel()))
+        source: Source = "assumed scale" if fan.scale_assumed else "scale"
+        yield Deviation(source, camera, moved_fan(fan.fan, -fan.scale_sd * fan.fan.pis.ravel()))

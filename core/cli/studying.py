@@ -68,7 +68,7 @@ def repeats(
         budget = from_stated(found.values, found.u if u is None else u, unit=found.unit)
     return repeat_study(
         found.values, budget, complete=u is not None or found.u is not None, name=name, labels=found.labels, U=found.U,
-        asked=Requirement(nominal, limits, guard),
+        asked=Requirement(nominal, limits, guard), doubted=found.doubted,
     )  # fmt: skip
 
 

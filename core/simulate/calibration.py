@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from core.calibrate.board_shape import TRUE
 from core.calibrate.change import STABLE
 from core.files.recording.rig import GaugeSpec, rig_to_toml
 from core.files.recording.rig import Rig as StatedRig
@@ -59,6 +60,8 @@ def rig_toml(scenario: Scenario) -> str:
             row_time_us=1000 * scenario.readout_ms / round(FULL_SIZE[1] * scenario.scale)
             if scenario.readout_ms
             else None,
+            camera_board=TRUE,
+            plane_board=TRUE,
         )
     )
 

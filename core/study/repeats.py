@@ -125,6 +125,8 @@ class RepeatStudy:
         Of the deviation of the mean from the nominal value; None without a nominal value and a tolerance.
     unit
         "mm" or "deg".
+    doubted
+        Labels of repeats that prove nothing, whatever their uncertainty: nor does their mean.
     """
 
     name: str
@@ -139,18 +141,32 @@ class RepeatStudy:
     nominal: float | None = None
     zones: Zones | None = None
     unit: str = "mm"
+    doubted: tuple[str, ...] = ()
 
     @property
     def verdict(self) -> Verdict:
-        """By ISO 14253-1, of the mean; nothing is proven while its uncertainty is not complete, none without limits."""
+        """By ISO 14253-1, of the mean; none without limits.
+
+        Nothing is proven while its uncertainty is not complete, or a repeat is doubted.
+        """
         if self.zones is None or self.nominal is None:
             return Verdict.NONE
-        return self.zones.verdict(self.statistics.mean_mm - self.nominal) if self.complete else Verdict.NOT_PROVEN
+        if self.doubted or not self.complete:
+            return Verdict.NOT_PROVEN
+        return self.zones.verdict(self.statistics.mean_mm - self.nominal)
 
     @property
     def notes(self) -> tuple[Message, ...]:
         """What to know about the figures."""
         said = []
+        if self.doubted:
+            said.append(
+                Message(
+                    "study.doubted",
+                    "By their own results {names} prove nothing, and so their mean does not: read their notes.",
+                    names=self.doubted,
+                )
+            )
         if not self.complete:
             said.append(
                 Message(
@@ -198,12 +214,13 @@ def repeat_study(
     labels: Sequence[str] = (),
     U: Sequence[float] = (),
     asked: Requirement = Requirement(),
+    doubted: Sequence[str] = (),
 ) -> RepeatStudy:
     """Study of n ≥ 1 repeats, in the unit of the budget of their mean.
 
     Parameters
     ----------
-    values, labels, U, name
+    values, labels, U, name, doubted
         See `RepeatStudy`; without labels "1", "2", …
     budget, complete
         Of the mean: `core.study.budget`.
@@ -225,7 +242,7 @@ def repeat_study(
     zones = None if limits is None or nominal is None else Zones(*limits, budget.U, asked.r)
     return RepeatStudy(
         name, names, measured, stated, statistics, run_chart(measured), histogram(measured), budget, complete, nominal,
-        zones, budget.unit,
+        zones, budget.unit, tuple(doubted),
     )  # fmt: skip
 
 

@@ -10,8 +10,8 @@ from core.calibrate.camera.reprojection import parameters_of
 from core.calibrate.results import CameraCalibration
 from tests.calibrate.camera_views import TRUTH, synthetic_views
 
-FLAT = BoardTolerance(flatness_mm=0)
-UNSURE = BoardTolerance(flatness_mm=0.2)
+FLAT = BoardTolerance(0.0, 0.0)
+UNSURE = BoardTolerance(0.2, 0.0)
 TRUE = parameters_of(TRUTH)
 BENT = (0.25, -0.1, 0.15, 0.0)
 
@@ -79,7 +79,7 @@ def test_residuals_take_the_shape_into_account_also_of_views_left_out():
 def test_a_shape_is_only_believed_when_it_is_sure_or_expected():
     nearly = (0.002, 0.0, 0.0, 0.0)
     assert not calibrated(5, nearly).board.values.any()
-    assert calibrated(5, nearly, BoardTolerance(flatness_mm=0.2)).board.values[:3].all()
+    assert calibrated(5, nearly, BoardTolerance(0.2, 0.0)).board.values[:3].all()
     assert calibrated(5, (0.05, 0, 0, 0)).board.values[0] == pytest.approx(0.05, abs=0.01)
 
 

@@ -29,12 +29,12 @@ def of_values(folder, values, head="value"):
     return table(folder, "\n".join([head, *map(str, values)]))
 
 
-def results(folder, thickness, u=0.01, budget=None):
+def results(folder, thickness, u=0.01, budget=None, complete=True):
     """A folder as `trisect run` leaves it, as far as a study reads it."""
     folder.mkdir()
     face = Face(LightPlane.from_normal([0, 0, 1.0], 600.0), NO_POINTS, np.empty(0), 0.01, 0.01)
     rows = (Contribution(CAMERA, u),) if budget is None else budget
-    gauge = GaugeResult(thickness, u, 2.0, face, face, 0.0, rows, 50.0, 0.2, "conforming")
+    gauge = GaugeResult(thickness, u, 2.0, face, face, 0.0, rows, 50.0, 0.2, "conforming", complete=complete)
     write_gauge(folder / "gauge.json", gauge, "abc")
     return folder
 
@@ -75,6 +75,13 @@ def test_the_exit_code_of_repeats_is_that_of_their_verdict(tmp_path, u, verdict,
     words = () if u is None else ("--u", u)
     said = trisect("study", "repeats", path, "--nominal", 50, "--tolerance", 0.1, "--json", *words)
     assert (json.loads(said.out)["verdict"], said.code) == (verdict, code)
+
+
+def test_a_repeat_of_a_rig_that_surely_changed_takes_its_proof_from_the_mean(tmp_path):
+    sure, doubted = results(tmp_path / "a", 50.001), results(tmp_path / "b", 50.002, complete=False)
+    said = json.loads(trisect("study", "repeats", sure, doubted, "--json").out)
+    assert (said["verdict"], said["doubted"]) == ("not proven", ["b"])
+    assert any("b prove" in note for note in map(str, said["notes"]))
 
 
 def test_folders_of_results_bring_their_values_their_limits_and_their_budgets(tmp_path):

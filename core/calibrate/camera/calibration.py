@@ -76,7 +76,8 @@ def calibrate_camera(
 
     Corners are weighted by their `sigma` relative to each other; its true size is estimated from the residuals. Views
     whose name is in `excluded` have no part in the solution; they are returned with their residuals under it. The
-    target's shape is estimated, too, within its `tolerance`.
+    target's shape is estimated, too, within its `tolerance`; None: it has its size, and is flat unless the views surely
+    show otherwise.
 
     Raises
     ------
@@ -87,7 +88,9 @@ def calibrate_camera(
     """
     options = options or CameraOptions()
     taken = [view for view in views if view.name not in excluded]
-    calibration = _calibrated(taken, image_size, options, tolerance or BoardTolerance(), progress)
+    calibration = _calibrated(taken, image_size, options, tolerance or BoardTolerance(scale_sd=0.0), progress)
+    if tolerance is not None:
+        calibration = replace(calibration, notes=(*calibration.notes, *tolerance.notes("camera_target")))
     left_out = [view for view in views if view.name in excluded]
     if not left_out:
         return calibration

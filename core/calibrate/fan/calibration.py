@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from core.calibrate.board_shape import Board, BoardShape
+from core.calibrate.board_shape import TRUE, Board, BoardShape, BoardTolerance
 from core.calibrate.fan.bundle import Bundle, solve
 from core.calibrate.fan.cross_validation import prediction_errors
 from core.calibrate.fan.line_assignment import NOT_SEEN, assign_lines
@@ -68,11 +68,8 @@ class FanOptions:
     constrained
         "always" holds the planes to one pencil with that angle, "axis" to a pencil with any angles, "never" to
         nothing; "auto" takes the first of these that suits the laser.
-    scale_sd
-        Standard uncertainty of the target's size as a share of it.
-    flatness_mm
-        Standard deviation of how far the edges of what is used of the target may be off its plane: then its bow is
-        solved for. 0 or None: it is flat.
+    target
+        How true the target is: its bow is solved for within its flatness, which is that of what is used of it.
     board
         The target's shape where the camera's calibration with the same target has found it bowed: then its bow is
         solved for from there, within what is known of it, whatever the flatness.
@@ -80,14 +77,13 @@ class FanOptions:
     Raises
     ------
     ValueError
-        If there is no line, the angle is not between 0 and π/2, or the flatness is negative.
+        If there is no line, or the angle is not between 0 and π/2.
     """
 
     lines: int = 3
     angle: float | None = None
     constrained: Constrained = "auto"
-    scale_sd: float = 0.0
-    flatness_mm: float | None = None
+    target: BoardTolerance = TRUE
     board: BoardShape | None = None
 
     def __post_init__(self) -> None:
@@ -95,8 +91,6 @@ class FanOptions:
             raise ValueError(f"a fan has at least one line, not {self.lines}")
         if self.angle is not None and self.lines > 1 and not 0 < self.angle < np.pi / 2:
             raise ValueError(f"the angle between neighbouring lines must be between 0 and π/2 rad, not {self.angle}")
-        if self.flatness_mm is not None and self.flatness_mm < 0:
-            raise ValueError(f"a flatness of {self.flatness_mm} mm is below 0")
 
 
 def fit_fan(
@@ -148,7 +142,13 @@ def fit_fan(
     if not isinstance(verdict.start, FreePlanes):
         used = solve(verdict.start, _bundle_poses(located), camera, plate=plate)
     errors = prediction_errors(used, _bundle_poses(located), camera, plate)
-    return replace(summarise(located, free, used, verdict, errors, further), scale_sd=options.scale_sd)
+    summary = summarise(located, free, used, verdict, errors, further)
+    return replace(
+        summary,
+        notes=(*summary.notes, *options.target.notes("plane_target")),
+        scale_sd=options.target.size_sd,
+        scale_assumed=options.target.scale_sd is None,
+    )
 
 
 def _check_poses(located: Sequence[LocatedPose]) -> None:
@@ -294,7 +294,7 @@ def _missing_tilt(stripes: Sequence[StripeLine], ends: Array, spread: float) -> 
 
 def _check_bow(fit: Bundle, options: FanOptions) -> None:
     """InputError if the target comes out far more bowed than it was said that it may be, or than the camera saw it."""
-    bow, flatness_mm = float(np.abs(fit.shape.values[:BOWS]).max()), options.flatness_mm
+    bow, flatness_mm = float(np.abs(fit.shape.values[:BOWS]).max()), options.target.flatness_sd_mm
     if options.board is not None and options.board.values[:BOWS].any():
         _check_bow_against(options.board, fit.shape)
         return
@@ -303,8 +303,8 @@ def _check_bow(fit: Bundle, options: FanOptions) -> None:
     raise InputError(
         Message(
             "fan.bow_beyond_flatness",
-            "the plane target comes out bowed by {bow:.2f} mm at its edges, {times:.0f} times its stated flatness of "
-            "{flatness:g} mm: something else is wrong that looks like a bow, or it is not so flat",
+            "the plane target comes out bowed by {bow:.2f} mm at its edges, {times:.0f} times its flatness of "
+            "{flatness:g} mm, stated or assumed: something else is wrong that looks like a bow, or it is not so flat",
             bow=bow,
             times=bow / flatness_mm,
             flatness=flatness_mm,
@@ -344,13 +344,14 @@ def _plate(located: Sequence[LocatedPose], options: FanOptions) -> Plate | None:
     if options.board is not None and options.board.values[:BOWS].any():
         known = options.board.covariance[:BOWS, :BOWS] + BENDS_MM**2 * np.eye(BOWS)
         return Plate(options.board.board, options.board.values[:BOWS], known)
-    if not options.flatness_mm:
+    flatness_mm = options.target.flatness_sd_mm
+    if not flatness_mm:
         return None
     used = [pose for pose in located if pose.used and pose.features.view is not None]
     points = [pose.features.view.points for pose in used if pose.features.view is not None]
     for pose in used:
         points += [pose.pose.inverse().apply(on_target(stripe.rays, pose.pose)) for stripe in pose.stripes.values()]
-    return Plate.flat_within(Board.of(points), options.flatness_mm)
+    return Plate.flat_within(Board.of(points), flatness_mm)
 
 
 def _bundle_poses(located: Sequence[LocatedPose]) -> list[BundlePose]:

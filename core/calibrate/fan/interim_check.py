@@ -14,7 +14,7 @@ import numpy as np
 
 from core.calibrate.camera.reprojection import linearise, moved, parameters_of
 from core.calibrate.change import Evidence
-from core.calibrate.deviations import Deviation
+from core.calibrate.deviations import SCALES, Deviation
 from core.calibrate.fan.located_pose import LocatedPose, locate
 from core.calibrate.fan.pencil import FreePlanes
 from core.calibrate.fan.pose_features import PoseFeatures
@@ -135,6 +135,9 @@ def _check(
 
     here, planes = misfit(camera, fan.fan), FreePlanes(fan.fan.pis)
     by = np.array([misfit(one.camera, one.fan) - here for one in deviations]).reshape(len(deviations), -1).T
+    # a target of another size has its stripes where they were: it made all of space as much larger when it was
+    # calibrated with
+    by[:, [one.source in SCALES for one in deviations]] = 0.0
     by_pose = stripes.distances(planes, [settled], np.zeros(PARAMETERS)).by_pose.reshape(-1, 6)
     form = fan.stripe_sd_mm if np.isfinite(fan.stripe_sd_mm) else FORM_MM
     own = np.repeat(np.hypot(stripes.noise_mm(planes, [settled]), form), stripes.parts)

@@ -44,8 +44,8 @@ class Table(BaseModel):
 class _Printed(Table):
     """What any target may say of how it was made."""
 
-    scale_sd: float = Field(
-        0.0, ge=0, le=0.1, allow_inf_nan=False, description="a standard uncertainty as a share of the size, 0 to 0.1"
+    scale_sd: float | None = Field(
+        None, ge=0, le=0.1, allow_inf_nan=False, description="a standard uncertainty as a share of the size, 0 to 0.1"
     )
     flatness_mm: float | None = Field(None, ge=0, le=100, allow_inf_nan=False, description="a length in mm, 0 to 100")
     margin_mm: float | None = Field(None, ge=0, le=5000, allow_inf_nan=False, description="a length in mm, 0 to 5000")
@@ -387,7 +387,7 @@ def _tolerance(table: TargetTable) -> BoardTolerance:
 
 
 def _tolerance_table(tolerance: BoardTolerance) -> dict[str, Any]:
-    return _present({"flatness_mm": tolerance.flatness_mm, "scale_sd": tolerance.scale_sd or None})
+    return _present({"flatness_mm": tolerance.flatness_mm, "scale_sd": tolerance.scale_sd})
 
 
 def _target_table(target: Target) -> dict[str, Any]:

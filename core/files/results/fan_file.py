@@ -80,6 +80,7 @@ class _PlanesFile(ResultFile):
     covariance: list[list[Finite]] | None = Field(None, description="3N × 3N finite numbers for N planes")
     by_camera: list[list[Finite]] | None = Field(None, description="3N × 10 finite numbers for N planes")
     scale_sd: Finite = Field(0.0, ge=0, le=0.1, description="a share of the target's size from 0 to 0.1")
+    scale_assumed: bool = False
     cross_validation_mm: OrNan = math.nan
     stripe_sd_mm: OrNan = math.nan
     corner_scale: OrNan = math.nan
@@ -173,6 +174,7 @@ def write_fan(path: Path, calibration: FanCalibration, camera: Camera) -> None:
             "covariance": calibration.fan.covariance,
             "by_camera": calibration.by_camera,
             "scale_sd": calibration.scale_sd,
+            "scale_assumed": calibration.scale_assumed,
             "camera": _corrected_camera(calibration),
             "board": board_table(calibration.board) if calibration.board.values.any() else None,
             "bends": calibration.bends,
@@ -233,6 +235,7 @@ def read_fan(path: Path, camera: Camera) -> FanCalibration:
         notes=tuple(file.notes),
         by_camera=None if file.by_camera is None else np.array(file.by_camera),
         scale_sd=file.scale_sd,
+        scale_assumed=file.scale_assumed,
         cross_validation_mm=file.cross_validation_mm,
         stripe_sd_mm=file.stripe_sd_mm,
         corner_scale=file.corner_scale,

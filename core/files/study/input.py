@@ -52,6 +52,8 @@ class Repeats:
         "mm" or "deg".
     limits
         Asked of the quantity by all scans alike, in `unit`; else None.
+    doubted
+        Labels of those whose results say that they prove nothing.
     """
 
     name: str
@@ -62,6 +64,7 @@ class Repeats:
     budgets: tuple[tuple[Contribution, ...], ...]
     unit: str
     limits: Limits | None = None
+    doubted: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -247,6 +250,7 @@ def _of_results(paths: Sequence[Path], found: Sequence[Measured], name: str) -> 
         tuple(one.budget for one in found) if all(one.budget for one in found) else (),
         units.pop(),
         found[0].limits if all(one.limits == found[0].limits for one in found) else None,
+        tuple(label for label, one in zip(labels, found, strict=True) if not one.complete),
     )
 
 

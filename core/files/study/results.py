@@ -30,6 +30,8 @@ class Measured:
         What u is made of.
     limits
         What was asked of it, in `unit`; None for nothing.
+    complete
+        Whether u holds all that is known to act on it; else it proves nothing.
     """
 
     value: float
@@ -38,6 +40,7 @@ class Measured:
     budget: tuple[Contribution, ...]
     unit: str
     limits: Limits | None = None
+    complete: bool = True
 
 
 def measured_in(folder: Path, name: str) -> Measured:
@@ -52,12 +55,12 @@ def measured_in(folder: Path, name: str) -> Measured:
     if not math.isfinite(found.value) or not math.isfinite(found.u):
         raise InputError(Message("study.unknown_quantity", "the {name} is not known", name=name), where=folder)
     if found.quantity == "length":
-        return Measured(found.value, found.u, found.k, found.budget, "mm", found.limits)
+        return Measured(found.value, found.u, found.k, found.budget, "mm", found.limits, found.complete)
     degree = math.degrees(1.0)
     rows = tuple(replace(row, u_mm=row.u_mm * degree) for row in found.budget)
     asked = found.limits
     limits = None if asked is None else Limits(asked.nominal * degree, asked.lower * degree, asked.upper * degree)
-    return Measured(found.value * degree, found.u * degree, found.k, rows, "deg", limits)
+    return Measured(found.value * degree, found.u * degree, found.k, rows, "deg", limits, found.complete)
 
 
 def _find(folder: Path, name: str) -> Characteristic:

@@ -79,6 +79,7 @@ def _repeats(study: RepeatStudy) -> dict[str, Any]:
         "histogram": {"edges": study.histogram.edges, "counts": study.histogram.counts},
         "budget_of_mean": budget_values(study.budget),
         "budget_is_complete": study.complete,
+        "doubted": list(study.doubted),
         "decision": None if study.zones is None else zones_values(study.zones),
     }
 
@@ -254,6 +255,7 @@ class _Repeats(ResultFile):
     nominal: Finite | None = None
     budget_of_mean: _Budget
     budget_is_complete: bool
+    doubted: list[str] = Field(default_factory=list)
     decision: _Decision | None = None
 
     def study(self) -> RepeatStudy:
@@ -271,6 +273,7 @@ class _Repeats(ResultFile):
             labels=[one.scan for one in self.scans],
             U=[math.nan if one.U is None else one.U for one in self.scans],
             asked=Requirement(self.nominal, limits, 1.0 if asked is None else asked.r),
+            doubted=self.doubted,
         )
 
 

@@ -18,7 +18,9 @@ CAMERA = Message("inspection.cause_camera", "camera calibration")
 FAN_CALIBRATION = Message("inspection.cause_fan", "fan calibration")
 BENT_LIGHT = Message("inspection.cause_bent_light", "light of the fan that lies in no planes")
 SCALE = Message("inspection.cause_scale", "scale of the targets")
+SCALE_ASSUMED = Message("inspection.cause_scale_assumed", "scale of the targets (assumed)")
 CHANGE = Message("inspection.cause_change", "change since the calibration")
+CHANGE_ASSUMED = Message("inspection.cause_change_assumed", "change since the calibration (assumed)")
 
 PART_TEMPERATURE = Message("inspection.cause_part_temperature", "temperature of the part")
 PART_EXPANSION = Message("inspection.cause_part_expansion", "expansion coefficient of the part")
@@ -38,7 +40,9 @@ CALIBRATIONS: Mapping[str, Message] = {
     "fan": FAN_CALIBRATION,
     "bend": BENT_LIGHT,
     "scale": SCALE,
+    "assumed scale": SCALE_ASSUMED,
     "change": CHANGE,
+    "assumed change": CHANGE_ASSUMED,
 }
 """By the sources of `core.calibrate.deviations`: what errs in all points of a scan at once."""
 

@@ -124,7 +124,7 @@ def _judged(
     if found.check:
         checked, of_check = check_poses(measure_check(found, camera, options, progress), camera, fan, deviations)
         evidence += of_check
-    change = judge(camera, fan.fan, deviations, evidence, found.rig.stability or DEFAULT_STABILITY)
+    change = judge(camera, fan.fan, deviations, evidence, found.rig.stability)
     reasons = [(one.located.features.name, one.located.reason) for one in checked if one.located.reason is not None]
     if any(reason.code == ELSEWHERE for _, reason in reasons):
         change = replace(change, p=0.0, times=math.inf)

@@ -133,18 +133,14 @@ def solve_planes(
 def fan_options(rig: Rig, options: Options) -> FanOptions:
     """What is known of the laser, and whether its planes may be held to one pencil."""
     constrained: Constrained = "auto" if options.constrain_fan else "never"
-    board = rig.plane_board
-    return FanOptions(rig.lines, rig.angle or None, constrained, board.scale_sd, board.flatness_mm)
+    return FanOptions(rig.lines, rig.angle or None, constrained, rig.plane_board)
 
 
 def planes_settings(rig: Rig, options: Options) -> dict[str, object]:
     """What the fan's calibration is told, for run.json."""
     fan = fan_options(rig, options)
     told: dict[str, object] = {"lines": fan.lines, "angle_rad": fan.angle, "constrained": fan.constrained}
-    if fan.scale_sd:
-        told["scale_sd"] = fan.scale_sd
-    if fan.flatness_mm is not None:
-        told["flatness_mm"] = fan.flatness_mm
+    told |= {"scale_sd": fan.target.size_sd, "flatness_mm": fan.target.flatness_sd_mm}
     if options.plane_stripe is not None:
         told["stripe"] = {"width_px": options.plane_stripe.width_px, "contrast": options.plane_stripe.contrast}
     if options.adjust_camera:

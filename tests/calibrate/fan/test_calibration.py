@@ -3,6 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from core.calibrate.board_shape import TRUE, BoardTolerance
 from core.calibrate.camera.reprojection import camera_of, parameters_of
 from core.calibrate.fan.calibration import FanOptions, fit_fan
 from core.calibrate.fan.pencil import Pencil, pencil_near, plane_distances
@@ -201,7 +202,7 @@ def test_a_fan_from_a_bowed_target_is_right_within_its_covariance_once_the_bow_i
     shaped, blind = [], []
     for seed in (2, 4, 5):
         seen = features(poses(9, 300 + seed), Noise(), seed, shape=bowed(0.3, 0.4, 0.0))
-        shaped.append(fit_fan(seen, CAMERA, replace(THREE, constrained="always", flatness_mm=0.3)))
+        shaped.append(fit_fan(seen, CAMERA, replace(THREE, constrained="always", target=BoardTolerance(0.3, 0.0))))
         blind.append(fit_fan(seen, CAMERA, replace(THREE, constrained="always")))
         assert worst_mm(shaped[-1].fan.pis, PAPER) < 0.5 * worst_mm(blind[-1].fan.pis, PAPER)
         assert shaped[-1].cross_validation_mm < 0.8 * blind[-1].cross_validation_mm
@@ -214,12 +215,23 @@ def test_a_fan_from_a_bowed_target_is_right_within_its_covariance_once_the_bow_i
     assert any("plane target is bowed by 0." in str(note) for note in shaped[0].notes)
 
 
+def test_an_unstated_target_is_taken_for_a_print_and_the_technician_is_told():
+    seen = features(poses(9, 303), Noise(), 3, points=GRID)
+    unstated, true = (fit_fan(seen, CAMERA, replace(THREE, target=one)) for one in (BoardTolerance(), TRUE))
+    assert [note.code for note in unstated.notes[-2:]] == ["target.size_assumed", "target.flatness_assumed"]
+    assert (true.scale_sd, true.scale_assumed, true.board.values.any()) == (0.0, False, False)
+    assert np.trace(unstated.fan.covariance) > np.trace(true.fan.covariance)
+    assert unstated.board.values.any()
+
+
 def test_a_flat_target_of_uncertain_flatness_is_found_flat_and_costs_little():
     """On the whole: how far leaving out single poses moves the planes, which σ holds, varies from set to set."""
     costs = []
     for seed in (3, 4, 5):
         seen = features(poses(9, 300 + seed), Noise(), seed, points=GRID)
-        unsure, flat = (fit_fan(seen, CAMERA, replace(THREE, flatness_mm=flatness)) for flatness in (0.3, 0.0))
+        unsure, flat = (
+            fit_fan(seen, CAMERA, replace(THREE, target=BoardTolerance(flatness, 0.0))) for flatness in (0.3, 0.0)
+        )
         assert (np.abs(unsure.board.values[:3]) < 3.5 * unsure.board.sd[:3]).all()
         assert unsure.notes == flat.notes
         assert not flat.board.values.any()
@@ -229,7 +241,7 @@ def test_a_flat_target_of_uncertain_flatness_is_found_flat_and_costs_little():
 
 def test_twist_of_a_target_is_told_by_its_points():
     seen = features(WHERE, Noise(), 12, points=GRID, shape=bowed(0.0, 0.0, 0.4))
-    result = fit_fan(seen, CAMERA, replace(THREE, flatness_mm=0.3))
+    result = fit_fan(seen, CAMERA, replace(THREE, target=BoardTolerance(0.3, 0.0)))
     assert np.abs(result.board.values[2]) > 10 * result.board.sd[2]
     assert worst_mm(result.fan.pis, PAPER) < 0.01
 

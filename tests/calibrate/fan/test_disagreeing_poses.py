@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from core.calibrate.board_shape import BoardShape
+from core.calibrate.board_shape import BoardShape, BoardTolerance
 from core.calibrate.fan.calibration import FanOptions, fit_fan
 from core.calibrate.results import FanCalibration
 from core.errors import InputError
@@ -87,8 +87,8 @@ def test_nearly_parallel_boards_are_refused_with_the_missing_tilt():
 
 def test_a_bow_beyond_what_was_stated_is_refused():
     seen = features(poses(9, 302), Noise(), 2, points=GRID, shape=bowed(3.0, 3.0, 0.0))
-    with pytest.raises(InputError, match="times its stated flatness"):
-        fit_fan(seen, CAMERA, FanOptions(3, THREE.angle, flatness_mm=0.05))
+    with pytest.raises(InputError, match="times its flatness of"):
+        fit_fan(seen, CAMERA, FanOptions(3, THREE.angle, target=BoardTolerance(0.05, 0.0)))
 
 
 def seen_by_camera(*bow: float) -> BoardShape:

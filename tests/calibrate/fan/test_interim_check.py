@@ -74,6 +74,18 @@ def test_what_a_turn_does_to_a_step_is_what_it_does_to_its_light(calibrated):
     assert abs(whole) > 0.05
 
 
+def test_a_check_says_nothing_of_the_size_of_the_target_it_is_made_with(calibrated):
+    """A fan calibrated with a target that is larger than stated has its stripes where they were, on that target."""
+    larger = Deviation("scale", CAMERA, moved_fan(calibrated.fan, -5e-4 * calibrated.fan.pis.ravel()))
+    shown = features(poses(4, 45)[1:-1], Noise(), 5, pis=PAPER, points=SQUARE)
+    deviations = (*deviations_of(calibrated), larger)
+    _, evidence = check_poses(shown, CAMERA, calibrated, deviations)
+    assert evidence.information[0, 0] > 0
+    left = judge(CAMERA, calibrated.fan, deviations, evidence, DEFAULT_STABILITY).deviations
+    steps = np.array([one.fan.pis.ravel() - calibrated.fan.pis.ravel() for one in left if one.source == "scale"])
+    assert np.linalg.norm(steps) == pytest.approx(np.linalg.norm(larger.fan.pis - calibrated.fan.pis), rel=0.01)
+
+
 @pytest.mark.accuracy
 def test_a_hundred_rigs_that_have_not_changed_raise_two_alarms_at_most():
     alarms, squares = 0, []

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from core.calibrate.board_shape import SUSPECTED_SCALE, BoardTolerance
 from core.calibrate.change import PROVES_NOTHING, displaced_fan
 from core.errors import InputError
 from core.files.recording.options import Options
@@ -97,9 +98,23 @@ def test_what_may_have_changed_is_a_row_of_the_budget(unchanged, tmp_path, with_
     work = work_in(unchanged, tmp_path, with_check=with_check)
     scan_step(work, COARSE)
     gauge = gauge_step(work)
-    (row,) = [row for row in gauge.budget if row.source.code == "inspection.cause_change"]
+    (row,) = [row for row in gauge.budget if row.source.code == "inspection.cause_change_assumed"]
     assert abs(gauge.thickness_mm - 50) <= gauge.U_mm
     assert (row.u_mm < 0.025) if with_check else (0.02 < row.u_mm < 0.2)
+
+
+def test_what_nobody_states_of_the_plane_target_is_assumed_told_and_in_the_budget(unchanged, tmp_path):
+    work = work_in(unchanged, tmp_path)
+    unstated = replace(work.found, rig=replace(work.found.rig, plane_board=BoardTolerance()))
+    work = Workspace.open(unstated, work.out)
+    fan = planes_step(work)
+    assert (fan.scale_sd, fan.scale_assumed) == (SUSPECTED_SCALE, True)
+    assert {"target.size_assumed", "target.flatness_assumed"} <= {note.code for note in fan.notes}
+    scan_step(work, COARSE)
+    gauge = gauge_step(work)
+    (row,) = [row for row in gauge.budget if row.source.code == "inspection.cause_scale_assumed"]
+    assert row.u_mm == pytest.approx(SUSPECTED_SCALE * gauge.thickness_mm, rel=0.05)
+    assert abs(gauge.thickness_mm - 50) <= gauge.U_mm
 
 
 def test_a_mount_that_turned_unseen_is_within_what_could_not_be_excluded(turned, tmp_path):

@@ -9,6 +9,7 @@ from typing import Any, Literal
 
 from PySide6.QtCore import QObject, Signal
 
+from core.calibrate.board_shape import MADE, BoardTolerance
 from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid, Target
 from core.image.targets.kinds import USUAL, USUAL_MARKER
 from workbench.bench import Bench
@@ -80,6 +81,31 @@ def changed_target(target: Target, field: str, value: Any) -> Target:
     return target_of({**usual, "marker_mm": USUAL_MARKER * size, "dictionary": DICTIONARIES[0], "asymmetric": False})
 
 
+MADE_FIELDS = ("made", "size_per_mille", "flatness_mm")
+"""Fields that say how true a target is."""
+
+
+def values_of_tolerance(tolerance: BoardTolerance) -> dict[str, Any]:
+    """How true a target is, as fields of a form; "made" is "" where nothing is stated, "stated" of own values."""
+    usual = next((name for name, one in MADE.items() if one == tolerance), "stated")
+    scale = tolerance.scale_sd
+    return {
+        "made": "" if tolerance == BoardTolerance() else usual,
+        "size_per_mille": None if scale is None else round(scale * 1e3, 9),
+        "flatness_mm": tolerance.flatness_mm,
+    }
+
+
+def changed_tolerance(tolerance: BoardTolerance, field: str, value: Any) -> BoardTolerance:
+    """How true a target is with one of MADE_FIELDS changed; "made" sets both others, but for "stated"."""
+    match field:
+        case "made":
+            return tolerance if value == "stated" else MADE.get(value, BoardTolerance())
+        case "size_per_mille":
+            return replace(tolerance, scale_sd=None if value is None else value / 1e3)
+    return replace(tolerance, flatness_mm=value)
+
+
 class TargetChoice(QObject):
     """`which` target of the rig; `label` names the edit, as "change the camera's target"."""
 
@@ -91,6 +117,7 @@ class TargetChoice(QObject):
     ) -> None:
         super().__init__(parent)
         self._bench, self._model, self._which, self._label = bench, bench.model, which, label
+        self._board = {"camera_target": "camera_board", "plane_target": "plane_board"}[which]
 
     @property
     def target(self) -> Target:
@@ -100,20 +127,33 @@ class TargetChoice(QObject):
 
     def target_values(self) -> dict[str, Any]:
         """The target as the fields of a form."""
-        return values_of(self.target)
+        rig = self._model.project.rig
+        values = values_of(self.target) | values_of_tolerance(getattr(rig, self._board))
+        return values | {"margin_mm": rig.plane_margin_mm} if self._which == "plane_target" else values
 
     def set_target(self, field: str, value: Any) -> None:
-        """Change one field; undoable. What cannot be is refused with a sentence."""
+        """Change one field; undoable. What cannot be is refused with a sentence. Another kind is another plate."""
         try:
-            target = changed_target(self.target, field, value)
+            changed = self._changed(field, value)
         except ValueError as error:
             self.target_refused.emit(field, text_of(error))
             return
         self.target_refused.emit(field, "")
         project = self._model.project
-        changed: dict[str, Any] = {self._which: target}
         after = replace(project, rig=replace(project.rig, **changed))
         self._model.edit(self._label, after, f"{self._which} {field}")
+
+    def _changed(self, field: str, value: Any) -> dict[str, Any]:
+        """Fields of the rig that change; ValueError as `changed_target`."""
+        if field == "margin_mm":
+            return {"plane_margin_mm": value}
+        if field in MADE_FIELDS:
+            return {self._board: changed_tolerance(getattr(self._model.project.rig, self._board), field, value)}
+        changed: dict[str, Any] = {self._which: changed_target(self.target, field, value)}
+        if field == "kind" and value != self.target_values()["kind"]:
+            changed[self._board] = BoardTolerance()
+            changed |= {"plane_margin_mm": None} if self._which == "plane_target" else {}
+        return changed
 
     def print_target(self, path: Path, paper: str) -> None:
         """Write the target to scale as a PDF."""

@@ -8,6 +8,7 @@ from typing import Any, Protocol
 from PySide6.QtCore import QCoreApplication, Qt, SignalInstance
 from PySide6.QtWidgets import QComboBox, QPushButton, QVBoxLayout, QWidget
 
+from core.calibrate.board_shape import MADE
 from workbench.pages.calibration.target import DICTIONARIES, PAPERS
 from workbench.theme import icon
 from workbench.views import ask
@@ -84,8 +85,40 @@ class TargetPanel(QWidget):
             )
         if kind == "circle_grid":
             form.add_check("asymmetric", self.tr("Every second row moved"))
+        self._add_truth(form)
         form.edited.connect(self._presenter.set_target, Qt.ConnectionType.QueuedConnection)
         self._put_before_the_paper(old)
+
+    def _add_truth(self, form: SettingsForm) -> None:
+        """How true it is: nobody need state it, but then it is assumed, and said to be."""
+        made = [
+            ("", self.tr("Not stated")),
+            ("laser printer", self.tr("Printed here")),
+            ("print shop", self.tr("By a print shop")),
+            ("chrome on glass", self.tr("Chrome on glass")),
+            ("stated", self.tr("As stated below")),
+        ]
+        form.add_choice(
+            "made", self.tr("Made"), made,
+            self.tr("How true it is goes into every uncertainty; take the values of its certificate where it has one."),
+        )  # fmt: skip
+        unknown = MADE["laser printer"]
+        form.add_number(
+            "size_per_mille", self.tr("u of its size"), "‰", self.tr("Standard uncertainty of all its lengths."),
+            minimum=0.0, maximum=100.0, decimals=3, step=0.05, none_text=self.tr("assumed"),
+            first=unknown.size_sd * 1e3,
+        )  # fmt: skip
+        form.add_number(
+            "flatness_mm", self.tr("Flatness"), "mm", self.tr("Standard deviation of its edges from its plane."),
+            minimum=0.0, maximum=100.0, decimals=3, step=0.05, none_text=self.tr("assumed"),
+            first=unknown.flatness_sd_mm,
+        )  # fmt: skip
+        if "margin_mm" in self._presenter.target_values():
+            form.add_number(
+                "margin_mm", self.tr("Margin"), "mm",
+                self.tr("How far the plate goes on beyond what is printed on it: stripes are looked for on it only."),
+                minimum=0.0, maximum=5000.0, decimals=1, step=1.0, none_text=self.tr("not known"), first=10.0,
+            )  # fmt: skip
 
     def _put_before_the_paper(self, old: QWidget) -> None:
         """New fields come last when one goes on by Tab: let them come where they are seen."""

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from core.calibrate.board_shape import MADE
 from core.errors import InputError
 from core.files.pictures import write_picture
 from core.files.project.data import Sources
@@ -208,9 +209,22 @@ def test_the_target_is_changed_with_usual_sizes_and_undone(presenter):
     presenter.target.set_target("kind", "charuco")
     assert presenter.target.target_values() == {
         "kind": "charuco", "columns": 12, "rows": 9, "size_mm": 15.0, "marker_mm": 11.25, "dictionary": "DICT_4X4_50",
+        "made": "", "size_per_mille": None, "flatness_mm": None,
     }  # fmt: skip
     presenter.model.undo_stack.undo()
     assert presenter.target.target_values()["kind"] == "checkerboard"
+
+
+def test_how_a_target_was_made_says_how_true_it_is_until_another_kind_is_shown(presenter):
+    presenter.target.set_target("made", "print shop")
+    assert presenter.project.rig.camera_board == MADE["print shop"]
+    presenter.target.set_target("size_per_mille", 0.1)
+    values = presenter.target.target_values()
+    assert (values["made"], values["size_per_mille"], values["flatness_mm"]) == ("stated", 0.1, 0.1)
+    presenter.target.set_target("kind", "charuco")
+    assert presenter.target.target_values()["made"] == ""
+    presenter.model.undo_stack.undo()
+    assert presenter.project.rig.camera_board.scale_sd == 1e-4
 
 
 def test_a_target_that_cannot_be_is_refused_with_a_sentence(presenter, qtbot):
