@@ -14,7 +14,7 @@ from core.messages import Message
 RATE_HZ = 10.0
 ANY_RATE_HZ = (0.0, 10_000.0)
 
-HOLDS: dict[Step, int] = {"camera": 12, "planes": 25, "scan": 1}
+HOLDS: dict[Step, int] = {"camera": 12, "planes": 25, "scan": 1, "check": 25}
 """For how many frames a picture of a recording is shown: in a recording of targets each one was held still."""
 
 Listing = Callable[[Step, Lasers], Sequence[Path]]

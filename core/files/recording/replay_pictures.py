@@ -8,7 +8,7 @@ from pathlib import Path
 from core.acquire.source import Lasers, Step
 from core.files.pictures import is_picture
 
-_PARTS: tuple[Step, ...] = ("camera", "planes", "scan")
+_PARTS: tuple[Step, ...] = ("camera", "planes", "scan", "check")
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,7 +28,7 @@ class ReplayPictures:
     def __call__(self, step: Step, lasers: Lasers) -> tuple[Path, ...]:
         """The pictures of a step taken under these lasers, in the order of their names; empty if there are none."""
         pictures = self._all(self.folder / step if self.is_set else self.folder)
-        if step == "planes":
+        if step in ("planes", "check"):
             off = {path.stem.removesuffix("_off"): path for path in pictures if path.stem.endswith("_off")}
             shown = [path for path in pictures if path not in off.values()]
             if lasers.fan:

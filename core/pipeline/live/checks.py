@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
+from datetime import datetime
 
 import numpy as np
 
 from core.errors import InputError
 from core.files.project.calibration_store import read_stored_poses
+from core.files.results.check_file import InterimCheck
 from core.image.stripes.centreline import Centreline
 from core.messages import Message
 from core.pipeline.live.commands import LiveRequest
@@ -72,9 +74,25 @@ class ScanChecks:
             age_s=None if request.calibrated_s is None else max(0.0, time.time() - request.calibrated_s),
             stripe_px=self._stripe_px,
         ).checks()
+        checks = (*checks, rig_check(request.check, datetime.now().astimezone()))
         if checks != self._told:
             self._told = checks
             self._desk.emit(LiveChecks(checks))
+
+
+def rig_check(check: InterimCheck | None, now: datetime) -> Check:
+    """Whether camera and laser were checked on the day of `now`, which has a time zone, and what came of it."""
+    if check is None or check.taken_at.astimezone(now.tzinfo).date() != now.date():
+        return Check(
+            "check",
+            "unknown",
+            Message(
+                "live.not_checked_today",
+                "Camera and laser are not checked today: before the scan, press Take pictures on the card of the check "
+                "and hold the plane target into the fan.",
+            ),
+        )
+    return Check("check", "ok" if check.passed else "failed", check.sentence)
 
 
 def calibrated_stripe_px(request: LiveRequest) -> float | None:

@@ -9,6 +9,7 @@ from core.acquire.source import Lasers, SourceChoice, SourceSettings, Step
 from core.files.recording.options import Options
 from core.files.recording.recorder import Ending
 from core.files.recording.rig import Rig
+from core.files.results.check_file import InterimCheck
 from core.image.targets.target_view import TargetView
 from core.model import Camera, Fan
 
@@ -45,6 +46,8 @@ class LiveRequest:
         Of the files of a scan's frames: ".png" takes half the room, ".pgm" a tenth of the time.
     kept_fan
         The project whose history holds the fan, and its id there: it says how sharp the fan's stripes were then.
+    check
+        The last interim check of these calibrations; None if there is none.
     """
 
     step: Step
@@ -62,6 +65,7 @@ class LiveRequest:
     calibrated_s: float | None = None
     ending: Ending = ".png"
     kept_fan: tuple[Path, str] | None = None
+    check: InterimCheck | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,7 @@
-"""Live poses of the plane target: the fan on it, taken with the fan on and off when the target is still and sharp."""
+"""Live poses of the plane target: the fan on it, taken with the fan on and off when the target is still and sharp.
+
+An interim check takes the same pictures, but ends by itself when it has enough of them.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +10,7 @@ from typing import Literal
 
 import numpy as np
 
-from core.acquire.source import Frame, Lasers, Picture
+from core.acquire.source import Ended, Frame, Lasers, Picture
 from core.calibrate.camera.capture import HOLD_STILL, TAKEN, CaptureJudge, moved_px
 from core.calibrate.camera.missing import PLANE_POSES
 from core.calibrate.fan.plane_pose import TARGET_MOVED
@@ -23,6 +26,9 @@ from core.pipeline.live.pose import MeasuredPair, PoseLook, look_at_pose, measur
 
 MOST_TRIES = 5
 """So many pictures with the fan off are tried: the first may still have been exposed with the fan on."""
+
+CHECK_POSES = 3
+"""So many poses of an interim check are enough; one will do."""
 
 _ANOTHER_POSE_PX = 10.0
 """A target that has moved so far since it was refused may be tried again."""
@@ -44,14 +50,14 @@ class _Pending:
 
 
 class LivePlanes:
-    """The planes step of a live recording."""
+    """The planes step of a live recording, and that of an interim check."""
 
     paired = False
 
     def __init__(self, desk: Desk) -> None:
         self._desk, request = desk, desk.request
         self._target, self._camera, self._lines = request.rig.plane_target, request.camera, request.rig.lines
-        self._auto, self._capture = request.auto, False
+        self._checks, self._auto, self._capture = request.step == "check", request.auto, False
         self._settings = request.options.stripe
         self._judge: CaptureJudge | None = None
         self._look: PoseLook | None = None
@@ -186,6 +192,10 @@ class LivePlanes:
         if self._desk.switch(_FAN_OFF):
             self._stage = "second picture"
             return
+        if self._checks:  # where a person switches the laser, a check does without
+            self._desk.switch(_FAN_ON)
+            self._measure(self._pending, None)
+            return
         self._stage = "asking"
         leave = Message(
             "live.leave_target_fan_off",
@@ -219,6 +229,8 @@ class LivePlanes:
             judge.taken(named(pending.view, name), pending.on.time_s)
             self._sentence, self._missing = TAKEN, judge.missing()
             self._desk.took(name, pending.on.picture)
+            if self._checks and self._desk.recorded >= CHECK_POSES:
+                raise Ended
         self._pending, self._stage = None, "looking"
         if off is not None and not self._desk.switch(_FAN_ON):
             self._desk.notice(

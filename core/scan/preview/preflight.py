@@ -13,7 +13,7 @@ from core.image.stripes.centreline import Centreline
 from core.messages import Message, plural_message
 from core.model import Camera, Fan
 
-Name = Literal["reference", "lines", "exposure", "focus", "calibration"]
+Name = Literal["reference", "lines", "exposure", "focus", "calibration", "check"]
 State = Literal["ok", "failed", "unknown"]
 
 FRESH_DAYS = 30.0

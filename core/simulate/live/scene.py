@@ -33,6 +33,7 @@ from core.simulate.sweep import sweep_range
 
 CAMERA_RESTS, CAMERA_REST_S, CAMERA_MOVE_S = 16, 1.2, 1.3
 PLANE_RESTS, PLANE_REST_S, PLANE_MOVE_S = 10, 2.5, 1.3
+CHECK_RESTS = 5
 """Poses at which a plate is held still, and the times in s of a rest and of a move: more poses than a calibration asks
 for, rests long enough for a view to be taken (for two pictures of the plane target, fan on and off)."""
 
@@ -97,7 +98,12 @@ class LiveScene:
             "camera": printed(camera_target or PLATES[scenario.camera_target]),
             "planes": printed(plane_target or PLATES[scenario.plane_target]),
         }
-        self._motions = {"camera": self._camera_motion(), "planes": self._plane_motion()}
+        self._plates["check"] = self._plates["planes"]
+        self._motions = {
+            "camera": self._camera_motion(),
+            "planes": self._plane_motion(PLANE_RESTS, "live plane poses"),
+            "check": self._plane_motion(CHECK_RESTS, "live check poses"),
+        }
         reach = sweep_range(self._scene, aim_of(self._scene))
         self._hand = HandPath(self.rig, reach, generator(scenario.seed, "live sweeps"))
         self._rays: Map | None = None
@@ -153,9 +159,9 @@ class LiveScene:
             ) from error
         return PlateMotion(poses, outline.mean(axis=0), CAMERA_REST_S, CAMERA_MOVE_S)
 
-    def _plane_motion(self) -> PlateMotion:
+    def _plane_motion(self, rests: int, kind: str) -> PlateMotion:
         outline = self._plates["planes"].outline
-        poses = plane_poses(fan_centres(self.rig, PLANE_RESTS), outline, self._generator("live plane poses"))
+        poses = plane_poses(fan_centres(self.rig, rests), outline, self._generator(kind))
         return PlateMotion(poses, outline.mean(axis=0), PLANE_REST_S, PLANE_MOVE_S)
 
     def _generator(self, kind: str) -> np.random.Generator:

@@ -7,6 +7,7 @@ from core.files.recording.rig import Rig
 from core.image.targets import BlackSquare, Checkerboard
 from core.pipeline.live.commands import LiveRequest, Stop
 from core.pipeline.live.events import LiveTaken, LiveView
+from core.pipeline.live.planes import CHECK_POSES
 from core.pipeline.live.session import run_live
 from core.pipeline.live.sources import make_source
 from core.simulate.scene.stage import table_pose
@@ -49,3 +50,16 @@ def test_views_of_the_board_are_taken_at_its_rests(tmp_path):
     ended = run_live(request, window.next_command, window.hear, window.ready)
     assert ended.recorded == 3
     assert {"Hold still.", "Taken."} <= {str(detail.sentence) for detail in window.details}
+
+
+def test_the_pictures_of_a_check_are_taken_by_themselves_and_end(tmp_path):
+    truth = make_source(CHOICE, RIG).truth
+    window = Window()
+    request = LiveRequest(
+        "check", CHOICE, SourceSettings(rate_hz=12), RIG, tmp_path / "check", camera=truth.camera, fan=truth.fan
+    )
+    ended = run_live(request, window.next_command, window.hear, window.ready)
+    assert ended.error is None
+    assert ended.recorded == CHECK_POSES == len(window.all(LiveTaken))
+    names = sorted(path.name for path in ended.folder.glob("*.png"))
+    assert names == [f"pose{n:02d}{end}.png" for n in range(CHECK_POSES) for end in ("", "_off")]

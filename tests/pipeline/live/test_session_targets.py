@@ -246,3 +246,15 @@ def test_a_pose_that_was_refused_is_not_tried_over_and_over(monkeypatch, tmp_pat
     record(monkeypatch, source, window, "planes", RIG, tmp_path / "planes", camera=plates.camera)
     assert sum(call == Lasers(fan=False, hand=False) for call in source.calls) == 1
     assert refused[0] > 40
+
+
+def test_a_check_does_without_pictures_with_the_fan_off_where_a_person_switches_it(monkeypatch, tmp_path, plates):
+    window = Window(after(1, LiveTaken, Stop()))
+    shown = OneAfterAnother([plates.poses[0][0]])
+    ended = views_taken(
+        monkeypatch, tmp_path, plates, window, shown, "check", frames=UNTIL_STOPPED, switches=False,
+        camera=plates.camera,
+    )  # fmt: skip
+    assert ended.recorded == 1
+    assert [path.name for path in ended.folder.glob("*.png")] == ["pose00.png"]
+    assert not window.all(LiveAsk), "nobody is asked to switch the laser for it"

@@ -72,6 +72,7 @@ class LiveEnding(QObject):
             "camera": self.tr("record views of the target"),
             "planes": self.tr("record poses of the plate"),
             "scan": self.tr("record a scan"),
+            "check": self.tr("take the pictures of the check"),
         }[self._step]
 
     def _forget_note(self, project: Path) -> None:

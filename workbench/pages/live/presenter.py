@@ -14,6 +14,7 @@ from PySide6.QtCore import QObject, QTimer, Signal
 
 from core.acquire.source import Step
 from core.errors import InputError
+from core.files.results.check_file import InterimCheck
 from core.image.targets.target_view import TargetView
 from core.messages import plain
 from core.model import Camera, Fan
@@ -58,10 +59,10 @@ WELL_EXPOSED = LiveAdvice()
 class LivePresenter(QObject):
     """Starts, steers and ends the live recordings of one step.
 
-    `calibration`, `cannot_start`, `there` and `pairs` may be set by the page: what is known of camera and fan when a
-    recording starts, why none can start now ("" if it can), the views that count in the pictures new ones may be added
-    to, and whether poses are taken with the laser on and off. Each `view`
-    must be answered by one `shown()` when it is on the screen; no other comes before. When a recording ends, its folder
+    `calibration`, `check`, `cannot_start`, `there` and `pairs` may be set by the page: what is known of camera and fan
+    when a recording starts, what their last check said, why none can start now ("" if it can), the views that count in
+    the pictures new ones may be added to, and whether poses are taken with the laser on and off. Each `view` must be
+    answered by one `shown()` when it is on the screen; no other comes before. When a recording ends, its folder
     becomes the step's source by an undoable edit, then `ended` is emitted.
     """
 
@@ -113,6 +114,7 @@ class LivePresenter(QObject):
         self._task: Task | None = None
         self._ending = LiveEnding(bench, step, self)
         self.calibration: Callable[[], tuple[Camera | None, Fan | None]] = lambda: (None, None)
+        self.check: Callable[[], InterimCheck | None] = lambda: None
         self.cannot_start: Callable[[], str] = lambda: ""
         self.there: Callable[[], tuple[TargetView, ...]] = tuple
         self.pairs = True
@@ -218,7 +220,7 @@ class LivePresenter(QObject):
         match self.step:
             case "camera":
                 return tr("{count} views taken", count=n)
-            case "planes":
+            case "planes" | "check":
                 return tr("{count} poses taken", count=n)
         return tr("{count} frames recorded", count=n)
 
@@ -227,7 +229,7 @@ class LivePresenter(QObject):
     @property
     def can_add(self) -> bool:
         """Whether there are pictures that new ones can be added to."""
-        return self.step != "scan" and folder_of(self.model, self.step) is not None
+        return self.step in ("camera", "planes") and folder_of(self.model, self.step) is not None
 
     def set_adding(self, on: bool) -> None:
         """Add the pictures of the next recording to those in use, instead of replacing them."""
@@ -381,6 +383,7 @@ class LivePresenter(QObject):
             there=self.there() if self.adding and self.can_add else (),
             calibrated_s=calibrated_s(self.model.results),
             ending=self.settings.ending,
+            check=self.check(),
             kept_fan=(project, self.model.project.accepted.fan) if self.model.project.accepted.fan else None,
         )
 

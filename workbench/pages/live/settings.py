@@ -28,9 +28,11 @@ class LiveSettings(QObject):
     changed = Signal()
     devices_changed = Signal()
 
+    _step: Step
+
     def __init__(self, bench: Bench, step: Step, parent: QObject | None = None) -> None:
         super().__init__(parent)
-        self._bench, self._step = bench, step
+        self._bench, self._step = bench, "planes" if step == "check" else step  # both show the plane target
         self._known: dict[SourceChoice, Capabilities] = {}
         self.devices: tuple[SourceInfo, ...] = ()
         self.looking = False

@@ -259,6 +259,7 @@ class ProjectActions(QObject):
             "camera": tr("Views of the camera's target were being recorded when the program ended."),
             "planes": tr("Poses of the plate were being recorded when the program ended."),
             "scan": tr("A scan was being recorded when the program ended."),
+            "check": tr("Pictures of the check were being taken when the program ended."),
         }[unfinished.step]
         kept = tr(
             "{count} pictures are kept in {folder}. Use them?", count=unfinished.pictures, folder=unfinished.folder
@@ -267,7 +268,7 @@ class ProjectActions(QObject):
         answers = [self.tr("Use them"), self.tr("Leave them there")]
         if ask.ask(self._window, self.tr("Interrupted recording"), text, answers) == 0:
             put_source(self.model, unfinished.step, unfinished.folder, self.tr("use an interrupted recording"))
-            self.go_to.emit(unfinished.step)
+            self.go_to.emit("scan" if unfinished.step == "check" else unfinished.step)
         try:
             forget_recording(folder)
         except InputError as error:

@@ -65,6 +65,11 @@ class RigCheck(QObject):
         return CheckStage.CHOSEN if self._model.project.sources.check else CheckStage.NONE
 
     @property
+    def valid(self) -> InterimCheck | None:
+        """The result, if it is of the calibrations and pictures in force."""
+        return self.look if self.stage is CheckStage.CHECKED else None
+
+    @property
     def problem(self) -> str:
         """Why the last check of the project as it is gave no result, or ""."""
         return self._problem[1] if self._problem[0] == _key(self._model.project) else ""

@@ -8,13 +8,16 @@ from PySide6.QtCore import QEvent
 from PySide6.QtWidgets import QFrame, QLabel, QPushButton, QWidget
 
 from core.files.results.check_file import InterimCheck
+from core.pipeline.live.events import Detail, PlanesDetail
 from workbench.language import text_of, tr
+from workbench.pages.live.presenter import LivePresenter
 from workbench.pages.scan.check import CheckStage, RigCheck
 from workbench.pages.words import capital, mm, px
 from workbench.theme import icon, shades
 from workbench.views import ask
 from workbench.views.colours import Level
 from workbench.views.common import IconLabel, dress
+from workbench.views.forms.live_panel import ask_to_stop_other
 from workbench.views.layouts import enable, heading, in_column, in_row, muted, say
 from workbench.views.lists.value_rows import LEVEL_ICONS, ValueRow, ValueRows
 
@@ -24,34 +27,50 @@ LEVELS: dict[str, Level] = {"passed": "good", "doubtful": "warn", "failed": "bad
 class CheckCard(QFrame):
     """A traffic light in words: icon and word, a sentence on what to do, the figures, and the buttons."""
 
-    def __init__(self, check: RigCheck, parent: QWidget | None = None) -> None:
+    def __init__(self, check: RigCheck, live: LivePresenter, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.setObjectName("card")
-        self._check = check
+        self._check, self._live, self._seen = check, live, ""
         self.sign, self.word, self.sentence, self.rows = IconLabel(18), QLabel(), muted(), ValueRows()
-        self.choose, self.run = QPushButton(self.tr("Pictures …")), QPushButton()
+        self.take, self.choose, self.run = QPushButton(), QPushButton(self.tr("Folder …")), QPushButton()
         self.choose.setIcon(icon("mdi6.folder-open-outline"))
+        self.take.clicked.connect(self._take)
         self.choose.clicked.connect(self._choose)
         self.run.clicked.connect(self._run)
+        live.other_running.connect(lambda question: ask_to_stop_other(self, live, question))
         light = in_row(self.sign, (self.word, 1), spacing=6)
-        self.buttons = in_row(self.choose, (self.run, 1), spacing=6)
+        buttons = in_row((self.take, 1), self.choose, (self.run, 1), spacing=6)
         title = heading(self.tr("Check of camera and laser"))
-        in_column(title, light, self.sentence, self.rows, self.buttons, on=self, margins=(10, 8, 10, 10), spacing=5)
+        in_column(title, light, self.sentence, self.rows, buttons, on=self, margins=(10, 8, 10, 10), spacing=5)
 
     def refresh(self) -> None:
         """Show how far the check is."""
         check, stage = self._check, self._check.stage
-        level, word, sentence = self._said(stage)
+        taking = self._live.running
+        level, word, sentence = self._taking() if taking else self._said(stage)
         symbol, colour = LEVEL_ICONS[level] if level else ("mdi6.help-circle-outline", "muted")
         self.sign.show_icon(symbol, colour)
         self.sign.setAccessibleName(word)
         self.word.setText(word)
         dress(self.word, f"color: {getattr(shades(), colour)}; font-weight: 600;")
         say(self.sentence, sentence)
-        shown = check.look if stage in (CheckStage.CHECKED, CheckStage.OUTDATED) else None
+        shown = check.look if stage in (CheckStage.CHECKED, CheckStage.OUTDATED) and not taking else None
         self.rows.set_rows(figures(shown))
         self.rows.setVisible(shown is not None)
         checking = stage is CheckStage.CHECKING
+        self.take.setText(self.tr("Stop") if taking else self.tr("Take pictures"))
+        self.take.setIcon(icon("mdi6.stop" if taking else "mdi6.camera-iris"))
+        why_not = self.tr("Stopping …") if self._live.stopping else "" if taking else self._live.cannot_start()
+        enable(
+            self.take,
+            why_not,
+            self.tr("Check with the pictures taken so far")
+            if taking
+            else self.tr(
+                "Hold the plane target into the fan: up to three pictures are taken by themselves, then checked"
+            ),
+        )
+        self.choose.setEnabled(not taking)
         self.choose.setToolTip(
             tr("Choose the folder with pictures of the plane target in the fan, taken today (now: {folder})",
                folder=check.folder or tr("none"))
@@ -61,12 +80,27 @@ class CheckCard(QFrame):
         tip = self.tr("Stop checking; the result before is kept") if checking else self.tr(
             "Compare the stripes in the pictures with where the calibrations have them"
         )  # fmt: skip
-        enable(self.run, "" if checking else check.cannot_check, tip)
+        cannot = self.tr("Pictures of the check are being taken.") if taking else check.cannot_check
+        enable(self.run, "" if checking else cannot, tip)
+
+    def show_detail(self, detail: Detail | None) -> None:
+        """What is thought of the picture that is seen now."""
+        sentence = detail.sentence if isinstance(detail, PlanesDetail) else None
+        seen = text_of(sentence) if sentence is not None else ""
+        if seen != self._seen:
+            self._seen = seen
+            self.refresh()
 
     def changeEvent(self, event: QEvent) -> None:
         super().changeEvent(event)
         if event.type() == QEvent.Type.PaletteChange:
             self.refresh()
+
+    def _taking(self) -> tuple[Level, str, str]:
+        """Level, word and sentence while pictures are taken."""
+        hold = self.tr("Hold the plane target into the fan where the parts will be, each time tilted another way.")
+        live = self._live
+        return "", live.counts_text() or live.state_text(), f"{hold}\n{self._seen}" if self._seen else hold
 
     def _said(self, stage: CheckStage) -> tuple[Level, str, str]:
         """Level, word and sentence of a stage."""
@@ -74,8 +108,8 @@ class CheckCard(QFrame):
         match stage:
             case CheckStage.NONE:
                 return "", self.tr("Not checked"), self.tr(
-                    "Hold the plane target into the fan where the parts will be, and take one to three pictures, with "
-                    "the fan on and off: they show whether anything has moved since the calibration."
+                    "One to three pictures of the plane target in the fan, taken today, show whether anything has "
+                    "moved since the calibration."
                 )  # fmt: skip
             case CheckStage.CHOSEN:
                 return "", self.tr("Not checked yet"), check.cannot_check or self.tr("Press Check.")
@@ -96,6 +130,10 @@ class CheckCard(QFrame):
             self._check.cancel()
         else:
             self._check.start()
+
+    def _take(self) -> None:
+        self._seen = ""
+        self._live.toggle()
 
     def _choose(self) -> None:
         start = self._check.folder or Path.home()

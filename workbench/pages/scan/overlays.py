@@ -8,10 +8,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from core.image.stripes.centreline import Centreline
+from core.pipeline.live.events import PlanesDetail
 from core.scan.preview.hints import HintLimits
 from core.scan.preview.shown import FramePreview
 from workbench.language import text_of, tr
 from workbench.views.colours import (
+    CORNER,
     COVERED,
     CROSSING_GOOD,
     CROSSING_LEFT_OUT,
@@ -54,6 +56,22 @@ def show_fan_pieces(image: ImageView, pieces: Sequence[Centreline], line: Sequen
     unknown = [piece.uv for piece, of in zip(pieces, line, strict=True) if of == _UNKNOWN]
     if unknown:
         image.set_lines("fan ?", unknown, colour=EXCLUDED, width=1.4, title=tr("fan, line not known"))
+
+
+def show_target(image: ImageView, detail: PlanesDetail) -> None:
+    """The plane target and the stripes on it, each with its line where that is clear."""
+    if detail.uv is None:
+        image.remove_layer("target")
+    else:
+        image.set_points("target", detail.uv, colour=CORNER.colour, symbol=CORNER.symbol, size=10, title=tr("target"))
+    names = []
+    for line in sorted(set(detail.line)):
+        names.append(f"stripe {line}")
+        pieces = [uv for uv, of in zip(detail.stripes, detail.line, strict=True) if of == line]
+        colour = EXCLUDED if line == _UNKNOWN else fan_colour(line + 1)
+        title = tr("fan, line not known") if line == _UNKNOWN else tr("fan, line {number}", number=line + 1)
+        image.set_lines(names[-1], pieces, colour=colour, width=2.0, title=title)
+    _remove_others(image, "stripe ", names)
 
 
 def show_sweep(

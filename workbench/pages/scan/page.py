@@ -43,12 +43,14 @@ class ScanPage(StepPage):
     def __init__(self, presenter: ScanPresenter, parent: QWidget | None = None) -> None:
         super().__init__(presenter, parent)
         self.strip, self.views = LiveStrip(presenter.live), SideBySide()
+        self.check_strip = LiveStrip(presenter.check_live)
         self.picture = ScanPicture(presenter, lambda: self.source.choose())
         self.cloud = ScanCloud(presenter)
         self.views.add_view(self.tr("Picture"), self.picture)
         self.views.add_view(self.tr("Points"), self.cloud)
         self.running, self.bar = RunningPanel(), FrameBar(presenter)
         self.centre.addWidget(self.strip)
+        self.centre.addWidget(self.check_strip)
         self.centre.addWidget(self.views, 1)
         self.below = QStackedWidget()  # one as high as the other: the views keep their size
         self.below.addWidget(self.bar)
@@ -58,7 +60,7 @@ class ScanPage(StepPage):
 
         self.stage = ScanCard(presenter)
         self.add_to_side(self.stage)
-        self.check = CheckCard(presenter.check)
+        self.check = CheckCard(presenter.check, presenter.check_live)
         self.add_to_side(self.check)
         self.checks = ChecksCard()
         self.add_to_side(self.checks)
@@ -122,6 +124,8 @@ class ScanPage(StepPage):
         self.bar.choose(View.CROSSINGS)
         p.live.started.connect(self._begin_live)
         p.live.show_by(self._show_live)
+        p.check_live.started.connect(lambda _: self.picture.refresh())
+        p.check_live.show_by(self._show_check)
         p.run.started.connect(self._begin_measuring)
         p.run.frame_seen.connect(self._show_measured)
         p.model.opened.connect(self._opened)
@@ -172,6 +176,10 @@ class ScanPage(StepPage):
         self.cloud.show_live(view)
         detail = view.detail if isinstance(view.detail, ScanDetail) else None
         self.running.show_detail(detail, view.picture.shape[1] * view.scale)
+
+    def _show_check(self, view: LiveView) -> None:
+        self.picture.show_check(view)
+        self.check.show_detail(view.detail)
 
     def _show_measured(self, detail: ScanDetail, picture: Any, scale: int) -> None:
         try:

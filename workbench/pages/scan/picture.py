@@ -10,7 +10,7 @@ import numpy as np
 from PySide6.QtWidgets import QWidget
 
 from core.image.stripes.centreline import Centreline
-from core.pipeline.live.events import LiveView, ScanDetail
+from core.pipeline.live.events import LiveView, PlanesDetail, ScanDetail
 from workbench.pages.scan import overlays
 from workbench.pages.scan.presenter import ScanPresenter
 from workbench.views.image.view import ImageView
@@ -48,9 +48,10 @@ class ScanPicture(QWidget):
     def refresh(self) -> None:
         """Show what the presenter says now."""
         p = self._presenter
-        if p.live.running:
-            if self._shown != "live" and not p.live.live:
-                self._clear(p.live.state_text())
+        running = next((live for live in (p.live, p.check_live) if live.running), None)
+        if running is not None:
+            if self._shown not in ("live", "check") and not running.live:
+                self._clear(running.state_text())
         elif p.scrubbing:
             self._show_frame()
         elif not p.run.measuring and p.work.frames is not None:  # while they are listed, the last picture stands
@@ -68,6 +69,13 @@ class ScanPicture(QWidget):
         self.image.set_picture(view.picture, scale=view.scale)
         if isinstance(view.detail, ScanDetail):
             self._show_detail(view.detail)
+
+    def show_check(self, view: LiveView) -> None:
+        """A picture taken for the check: the plane target and the stripes on it."""
+        self._begin("check")
+        self.image.set_picture(view.picture, scale=view.scale)
+        if isinstance(view.detail, PlanesDetail):
+            overlays.show_target(self.image, view.detail)
 
     def show_measured(self, detail: ScanDetail, picture: Any, scale: int) -> None:
         """A frame of the recording that is being measured."""

@@ -62,6 +62,10 @@ class ScanPresenter(StepPresenter):
         self.work = ScanWork(bench, self)
         self.run = ScanRun(bench, self)
         self.check = RigCheck(bench, self)
+        self.check_live = LivePresenter(bench, "check", self)
+        self.check_live.calibration = self.live.calibration
+        self.check_live.cannot_start = self._cannot_take
+        self.live.check = lambda: self.check.valid
         self.scrub = FrameScrub(bench, self.work, self)
         self.thumbnails = FrameThumbnails(bench, self)
         self.live_stage = ""
@@ -73,6 +77,8 @@ class ScanPresenter(StepPresenter):
         self.work.changed.connect(self._look_again)
         self.run.changed.connect(self._look_again)
         self.check.changed.connect(self.changed)
+        self.check_live.changed.connect(self._look_again)
+        self.check_live.ended.connect(self._check_taken)
         self.scrub.changed.connect(self.changed)
         self.model.results_changed.connect(self._results_changed)
 
@@ -101,7 +107,8 @@ class ScanPresenter(StepPresenter):
     @property
     def scrubbing(self) -> bool:
         """Whether single frames of the recording are looked at: nothing runs, and there are frames."""
-        return self.stage not in (Stage.LIVE, Stage.MEASURING) and bool(self.work.frames)
+        running = self.check_live.running or self.stage in (Stage.LIVE, Stage.MEASURING)
+        return not running and bool(self.work.frames)
 
     def blocker(self) -> str:
         stage = self.stage
@@ -228,11 +235,14 @@ class ScanPresenter(StepPresenter):
         self.measure()
 
     def do_live(self) -> None:
-        self.live.toggle()
+        (self.check_live if self.check_live.running else self.live).toggle()
 
     def do_capture(self) -> None:
-        """What the recording asks for is done: take the reference, start."""
-        self.live.answer()
+        """What the recording asks for is done: take the reference, start; or take this picture of the check."""
+        if self.check_live.running:
+            self.check_live.capture()
+        else:
+            self.live.answer()
 
     # ---- what happens elsewhere
 
@@ -283,9 +293,26 @@ class ScanPresenter(StepPresenter):
         """Why no recording can start now, or ""."""
         if self.run.measuring:
             return tr("The scan is being measured; wait for it, or cancel it.")
+        if self.check_live.running:
+            return tr("Pictures of the check are being taken.")
         if not self.work.calibrations_read:
             return tr("The calibrations are being read.")
         return ""
+
+    def _cannot_take(self) -> str:
+        """Why no pictures of a check can be taken now, or ""."""
+        if not self.calibrated:
+            return tr("Accept camera and laser planes first: they are what is checked.")
+        if self.live.running:
+            return tr("Stop the recording first.")
+        if not self.work.calibrations_read:
+            return tr("The calibrations are being read.")
+        return ""
+
+    def _check_taken(self, ended: LiveEnded) -> None:
+        """The pictures are the check's by now: check."""
+        if ended.recorded and self.check.folder == ended.folder and not self._leaving:
+            self.check.start()
 
     def _live_started(self) -> None:
         self._leaving = False

@@ -16,7 +16,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from workbench.language import text_of
+from workbench.language import text_of, tr
 from workbench.refresh import Refresh
 from workbench.theme import icon
 from workbench.views import ask
@@ -128,13 +128,15 @@ class LivePanel(QWidget):
         self.add.clicked.connect(lambda on: live.set_adding(on))
         live.changed.connect(self.refresh)
         live.view.connect(self._on_view)
-        live.other_running.connect(self._ask_to_stop_other)
+        live.other_running.connect(lambda question: ask_to_stop_other(self, live, question))
         live.settings.devices_changed.connect(self.refresh)
 
-    def _ask_to_stop_other(self, question: str) -> None:
-        answers = [self.tr("Stop it and start here"), self.tr("Leave it running")]
-        if ask.ask(self, self.tr("Live source"), question, answers) == 0:
-            self.live.start(stop_other=True)
+
+def ask_to_stop_other(parent: QWidget, live: Any, question: str) -> None:
+    """Another recording runs: ask whether it is to be stopped for that of `live`."""
+    answers = [tr("Stop it and start here"), tr("Leave it running")]
+    if ask.ask(parent, tr("Live source"), question, answers) == 0:
+        live.start(stop_other=True)
 
 
 class LiveStrip(QWidget):

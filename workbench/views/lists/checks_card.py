@@ -83,4 +83,5 @@ class ChecksCard(QFrame):
             "exposure": self.tr("Exposure"),
             "focus": self.tr("Focus"),
             "calibration": self.tr("Calibration"),
+            "check": self.tr("Check"),
         }

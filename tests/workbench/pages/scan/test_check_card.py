@@ -3,13 +3,16 @@
 from dataclasses import replace
 from typing import cast
 
+import numpy as np
 import pytest
 from PySide6.QtCore import Qt
 
 from core.errors import InputError
 from core.files.project.data import Accepted
+from core.messages import plain
+from core.pipeline.live.events import LiveEnded, LiveStarted, LiveView, PlanesDetail
+from tests.check_cases import check, nowhere
 from tests.workbench.hand_lane import HandLane
-from tests.workbench.pages.check_cases import check, nowhere
 from workbench.pages.scan.check import CheckStage
 from workbench.pages.scan.page import ScanPage
 from workbench.pages.scan.presenter import ScanPresenter
@@ -133,3 +136,75 @@ def test_a_project_opened_again_shows_its_check(chosen, measuring, scan_bench, q
     scan_bench.model.open(folder)
     card = shown(chosen, qtbot, CheckStage.CHECKED)
     assert card.word.text() == "In doubt"
+
+
+# ---- pictures taken now
+
+
+@pytest.fixture
+def lane(scan_bench):
+    return cast(HandLane, scan_bench.live)
+
+
+@pytest.fixture
+def taking(page, lane, qtbot):
+    """The live source shows the plane target."""
+    qtbot.waitUntil(lambda: not page.presenter.bench.quick.busy)
+    page.refresh()
+    qtbot.mouseClick(page.check.take, LEFT)
+    lane.current.reported.emit(LiveStarted("Camera 1", (64, 48)))
+    return page
+
+
+def seen(sentence):
+    detail = PlanesDetail(
+        0, np.array([[20.0, 20.0], [40.0, 20.0]]), (np.array([[10.0, 30.0], [50.0, 30.0]]),), (0,), plain(sentence),
+        np.zeros((6, 8), bool), (), 1, True,
+    )  # fmt: skip
+    return LiveView(np.full((24, 32), 40, np.uint8), 2, 0, 12.0, 1, 0, detail)
+
+
+def test_the_live_picture_shows_the_target_and_what_to_do(taking, lane):
+    lane.current.view.emit(seen("Hold still."))
+    taking.refresh()
+    card = taking.check
+    assert card.take.text() == "Stop" and card.word.text() == "1 poses taken · 12 frames/s"
+    assert "Hold still." in card.sentence.text()
+    assert {"target", "stripe 0"} <= set(taking.picture.image.layer_names())
+    assert "being taken" in card.run.toolTip() and not taking.live_panel.start.isEnabled()
+
+
+def test_pictures_taken_are_checked_when_there_are_enough(taking, lane, measuring, qtbot):
+    request = taking.presenter.check_live
+    folder = taking.presenter.model.folder / "recordings" / "check-1"
+    folder.mkdir(parents=True)
+    (folder / "pose00.png").write_bytes(b"")
+    assert request.running
+    lane.finish(LiveEnded(folder, 1, 0))
+    shown(taking, qtbot, CheckStage.CHECKING)
+    assert taking.presenter.project.sources.check == "recordings/check-1"
+    measuring.finish(check())
+    shown(taking, qtbot, CheckStage.CHECKED)
+
+
+def test_nothing_taken_checks_nothing(taking, lane, qtbot):
+    lane.finish(LiveEnded(taking.presenter.model.folder / "recordings" / "check-1", 0, 0))
+    shown(taking, qtbot, CheckStage.NONE)
+
+
+def test_without_calibrations_there_is_nothing_to_check(page):
+    model = page.presenter.model
+    model.edit("forget", replace(model.project, accepted=Accepted()))
+    page.refresh()
+    assert not page.check.take.isEnabled() and "Accept camera and laser planes" in page.check.take.toolTip()
+
+
+def test_the_scan_is_told_what_the_check_said(chosen, measuring, qtbot):
+    assert chosen.presenter.live.check() is None
+    look = check()
+    measuring.finish(look)
+    shown(chosen, qtbot, CheckStage.CHECKED)
+    assert chosen.presenter.live.check() is look
+    model = chosen.presenter.model
+    model.edit("accept", replace(model.project, accepted=Accepted("camera-1", "fan-2")))
+    assert chosen.presenter.live.check() is None, "a check of other calibrations says nothing of these"

@@ -8,6 +8,7 @@ from PySide6.QtCore import Qt
 from core.calibrate.results import LEFT_OUT
 from tests.workbench.watchdog import LIMIT_MS, Watchdog
 from workbench.bench import Bench
+from workbench.pages.scan.check import CheckStage
 from workbench.pages.scan.page import ScanPage
 from workbench.pages.scan.picture import View
 from workbench.pages.scan.presenter import ScanPresenter, Stage
@@ -109,3 +110,25 @@ def test_a_live_scan_of_the_simulated_rig_becomes_a_measured_one(page, qtbot):
         idle(page, qtbot)
     assert dog.longest_ms < LIMIT_MS, [str(absence) for absence in dog.worst(3)]
     assert p.stage is Stage.MEASURED and p.work.look.frames_used > 10
+
+
+def test_the_simulated_rig_is_checked_live_and_the_next_scan_is_told(page, qtbot):
+    p = page.presenter
+    p.live.settings.set_id("scale = 0.25")
+    with Watchdog() as dog:
+        qtbot.mouseClick(page.check.take, Qt.MouseButton.LeftButton)
+        qtbot.waitUntil(lambda: p.check.stage is CheckStage.CHECKING, timeout=90_000)
+        qtbot.waitUntil(lambda: p.check.stage is CheckStage.CHECKED, timeout=90_000)
+        idle(page, qtbot)
+    assert dog.longest_ms < LIMIT_MS, [str(absence) for absence in dog.worst(3)]
+    assert p.check.look.used == 3 and p.check.look.passed, str(p.check.look.sentence)
+    assert p.project.sources.check.startswith("recordings/check-")
+    assert p.stage is Stage.OUTDATED, "the scan rests on the pictures of the check"
+    p.do_live()
+    qtbot.waitUntil(lambda: bool(p.live.checks), timeout=30_000)
+    (told,) = [check for check in p.live.checks if check.name == "check"]
+    assert told.state == "ok"
+    p.do_live()
+    qtbot.waitUntil(lambda: not p.live.running, timeout=20_000)
+    p.cancel()
+    idle(page, qtbot)
