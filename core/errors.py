@@ -2,7 +2,14 @@
 
 from __future__ import annotations
 
-from core.messages import ENGLISH, Language, Message, plain
+from core.messages import ENGLISH, Language, Message, plain, visible
+
+LONGEST = 300
+"""Characters of a sentence; what a file says at greater length is cut within it."""
+_PART = 90
+"""Characters that each part of a sentence keeps at least: place, what is wrong, what to do."""
+_WORD = 40
+"""Characters that a word keeps at least."""
 
 
 class InputError(Exception):
@@ -34,8 +41,9 @@ class InputError(Exception):
     def told(self, language: Language = ENGLISH) -> str:
         """The sentence in a reader's language."""
         where, todo = self.where, language(self.todo)
-        front = f"{language(where) if isinstance(where, Message) else where}: " if where else ""
-        return f"{front}{language(self.what)}{f'; {todo}' if todo else ''}."
+        parts = [language(where) if isinstance(where, Message) else where, language(self.what), todo]
+        where, what, todo = _shortened([visible(part) for part in parts])
+        return f"{f'{where}: ' if where else ''}{what}{f'; {todo}' if todo else ''}."
 
     @property
     def message(self) -> Message:
@@ -53,6 +61,24 @@ class InputError(Exception):
 
     def __reduce__(self) -> tuple[object, ...]:
         return _restored, (type(self), self.what, self.where, self.todo)
+
+
+def _shortened(parts: list[str]) -> list[str]:
+    """The parts of a sentence, cut so that it ends at LONGEST characters: long words first, which keep their ends."""
+
+    def excess() -> int:
+        return sum(map(len, parts)) + len(": ; .") - LONGEST
+
+    while excess() > 0:
+        longest = max((word for part in parts for word in part.split(" ")), key=len)
+        if len(longest) <= _WORD:
+            break
+        end = longest[len(longest) - max(_WORD, len(longest) - excess()) + 1 :]
+        parts = [part.replace(longest, f"…{end}") for part in parts]
+    for number, part in sorted(enumerate(parts), key=lambda one: -len(one[1])):
+        if excess() > 0:
+            parts[number] = f"{part[: max(_PART, len(part) - excess()) - 1]}…"
+    return parts
 
 
 def _restored(kind: type[InputError], what: Message, where: Message | str, todo: Message) -> InputError:

@@ -12,6 +12,7 @@ language writes it in its own way. A sequence takes how it is joined as its form
 from __future__ import annotations
 
 import json
+import re
 import string
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -20,6 +21,15 @@ from types import MappingProxyType
 from typing import Any
 
 MINUS, NO_BREAK_SPACE = "\N{MINUS SIGN}", "\N{NO-BREAK SPACE}"
+
+
+_CONTROLS = re.compile("[\\x00-\\x1f\\x7f-\\x9f\\u200e\\u200f\\u2028-\\u202e\\u2066-\\u2069\\ud800-\\udfff]")
+"""Characters that a terminal obeys, that turn the direction of a text, or that no text can be written with."""
+
+
+def visible(text: str, *, keep: str = "") -> str:
+    """A text from outside with its control characters written out by their codes, all but those in `keep`."""
+    return _CONTROLS.sub(lambda found: found[0] if found[0] in keep else ascii(found[0])[1:-1], text)
 
 
 @dataclass(frozen=True, slots=True)
@@ -172,7 +182,7 @@ class Language:
 
     def __call__(self, message: Message) -> str:
         """The text of a message, its places filled."""
-        return _Formatter(self).vformat(self._text(message), (), message.values)
+        return visible(_Formatter(self).vformat(self._text(message), (), message.values), keep="\n")
 
     def label(self, english: str, /, **values: Any) -> str:
         """Fixed words in this language; in English where they are not known in it."""
@@ -225,7 +235,7 @@ class _Formatter(string.Formatter):
             return language.joined([self.format_field(one, "") for one in value], format_spec)
         if isinstance(value, (int, float)) and not isinstance(value, bool):
             return language.number(value, format_spec)
-        return format(value, format_spec)
+        return visible(format(value, format_spec))
 
 
 ENGLISH = Language()

@@ -1,8 +1,9 @@
 """`trisect`: what each command takes, and what its exit code says.
 
 0: done, and conforming if a verdict was asked for. 1: measured, but out of tolerance or not proven. 2: bad input, told
-in one sentence on standard error. 130: interrupted. Numbers come from the rooms below; here is only talk. Those rooms
-are imported by the command that needs them: so `trisect --help` answers at once.
+in one sentence on standard error. 70: a fault of the program, in one sentence that names the report of it. 130:
+interrupted. Numbers come from the rooms below; here is only talk. Those rooms are imported by the command that needs
+them: so `trisect --help` answers at once.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ from core.cli.result_commands import commands as results
 from core.cli.simulating import commands as simulating
 from core.cli.study_commands import studies
 from core.errors import Cancelled, InputError
+from core.messages import Message
 from core.messages import as_json as as_json_message
 
 
@@ -84,6 +86,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
     except BrokenPipeError:
         # Whoever read our output has left; Python would complain once more when it closes standard output.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    except Exception as error:  # noqa: BLE001  the one door for whatever nobody foresaw
+        _refuse(_fault(words, error), as_json="--json" in words)
+        sys.exit(ExitCode.FAULT)
 
 
 def _run(words: list[str]) -> None:
@@ -92,6 +97,17 @@ def _run(words: list[str]) -> None:
         app(words, prog_name="trisect")
     finally:
         sys.stdout.flush()  # here, where a closed pipe can still be told apart from a failure
+
+
+def _fault(words: Sequence[str], error: Exception) -> InputError:
+    """What nobody foresaw, as a sentence; the rest stands in a report."""
+    from core.files.fault_report import write_fault_report
+
+    path = write_fault_report(words, error)
+    what = Message("cli.fault", "a fault of the program kept it from going on ({name})", name=type(error).__name__)
+    if path is None:
+        return InputError(what)
+    return InputError(what, todo=Message("advice.send_report", "please send the report {path}", path=path))
 
 
 def _refuse(error: InputError, *, as_json: bool) -> None:

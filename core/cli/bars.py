@@ -24,7 +24,12 @@ def bars() -> Iterator[Progress]:
         if not sys.stderr.isatty():
             yield lambda step, done, total: check()
             return
-        columns = (TextColumn("{task.description:<28}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+        columns = (
+            TextColumn("{task.description:<28}", markup=False),
+            BarColumn(),
+            MofNCompleteColumn(),
+            TimeElapsedColumn(),
+        )
         with RichProgress(*columns, console=Console(stderr=True), transient=True) as drawn:
             tasks: dict[str, TaskID] = {}
 

@@ -11,7 +11,7 @@ from core.cli import output
 from core.cli.bars import bars
 from core.files.recording.import_pictures import IMPORTED, Imported, import_pictures, require_free
 from core.files.recording.import_plan import ImportedPicture, ImportPlan, ImportRequest, Order, Where, plan_import
-from core.messages import Message
+from core.messages import Message, visible
 from core.report.wording import count
 
 _COLUMNS = ("name in the set", "picture", "fan off", "taken at")
@@ -54,7 +54,7 @@ def _print_pictures(pictures: Sequence[ImportedPicture]) -> None:
         table.add_column(name, overflow="fold")
     for one in pictures:
         values = dict(zip(_COLUMNS, _row(one), strict=True))
-        table.add_row(*(values[name] for name in columns))
+        table.add_row(*(visible(values[name]) for name in columns))
     output.console().print(table)
 
 

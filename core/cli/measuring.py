@@ -19,8 +19,8 @@ from core.files.recording.recording_set import excluded_names, open_set
 from core.files.results.check_file import InterimCheck
 from core.image.stripes.stripe import StripeSettings
 from core.inspect.results import GaugeResult
-from core.messages import Message
-from core.pipeline.steps.batch import SetResult, run_batch
+from core.messages import Message, visible
+from core.pipeline.steps.batch import FAULT, SetResult, run_batch
 from core.pipeline.steps.camera_step import camera_step
 from core.pipeline.steps.check_step import check_step
 from core.pipeline.steps.executors import executor_of
@@ -214,8 +214,14 @@ def run_sets(
 
 
 def batch_exit_code(results: Sequence[SetResult]) -> ExitCode:
-    """The worst of the sets' own: 2 where one could not be measured, 1 where one is not proven to conform, else 0."""
-    if any(result.error for result in results):
+    """The worst of the sets' own.
+
+    70 where the program was at fault, 2 where one could not be measured, 1 where one is not proven to conform, else 0.
+    """
+    errors = [result.error for result in results if result.error]
+    if any(error.code == FAULT for error in errors):
+        return ExitCode.FAULT
+    if errors:
         return ExitCode.BAD_INPUT
     return max((exit_code(result.verdict) for result in results), default=ExitCode.DONE)
 
@@ -230,11 +236,11 @@ def show_sets(results: Sequence[SetResult], *, as_json: bool) -> None:
     for name in _SET_COLUMNS:
         table.add_column(name, justify="left" if name in ("set", "verdict") else "right")
     for result in results:
-        table.add_row(*_set_row(result))
+        table.add_row(*map(visible, _set_row(result)))
     console.print(table)
     for result in results:
         if result.error:
-            console.print(f"{result.folder.name}: {result.error}", markup=False, soft_wrap=True)
+            console.print(visible(f"{result.folder.name}: {result.error}"), soft_wrap=True)
 
 
 def _set_values(result: SetResult) -> dict[str, Any]:

@@ -10,7 +10,10 @@ import typer
 
 from core.scan.method import Method
 
-EPILOG = "Exit code: 0 done, 1 measured but out of tolerance or not proven, 2 bad input, 130 interrupted."
+EPILOG = (
+    "Exit code: 0 done, 1 measured but out of tolerance or not proven, 2 bad input, "
+    "70 a fault of the program, 130 interrupted."
+)
 
 
 class ExitCode(IntEnum):
@@ -19,6 +22,8 @@ class ExitCode(IntEnum):
     DONE = 0
     NOT_PROVEN = 1
     BAD_INPUT = 2
+    FAULT = 70
+    """As sysexits.h of BSD calls it: EX_SOFTWARE."""
     INTERRUPTED = 130
 
 

@@ -17,7 +17,7 @@ from core.files.results.check_file import InterimCheck
 from core.files.results.gauge_file import gauge_summary
 from core.files.results.profile_file import PictureStep
 from core.inspect.results import GaugeResult
-from core.messages import Message
+from core.messages import Message, visible
 from core.report.wording import count, decimals_of, fixed, grouped, thickness_line, with_uncertainty
 from core.scan.features.frames import NO_REASON
 from core.scan.results import FrameRecord
@@ -36,7 +36,7 @@ def print_json(values: Mapping[str, Any]) -> None:
 
 def console() -> Console:
     """Standard output, as wide as a screen or, in a pipe, as its lines."""
-    out = Console(highlight=False)
+    out = Console(highlight=False, markup=False, emoji=False)
     if not out.is_terminal:
         out.width = PIPE_WIDTH
     return out
@@ -49,14 +49,14 @@ def print_rows(rows: Rows, notes: Sequence[Message | str] = (), files: Mapping[s
     table.add_column(style="dim", no_wrap=True)
     table.add_column(overflow="fold")
     for label, value in rows:
-        table.add_row(label, value)
+        table.add_row(label, visible(value))
     if files:
         folder = next(iter(files.values())).parent
         table.add_row("written", f"{folder}: {', '.join(path.name for path in files.values())}")
     if table.rows:
         out.print(table)
     for note in notes:
-        out.print(f"note: {note}", markup=False, soft_wrap=True)
+        out.print(f"note: {visible(str(note))}", soft_wrap=True)
 
 
 def print_times(seconds: Mapping[str, float], wall_s: float) -> None:

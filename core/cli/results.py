@@ -21,7 +21,7 @@ from core.files.results.export_list import EXPORTS
 from core.files.results.inspection_file import inspection_values
 from core.inspect.characteristic import Characteristic
 from core.inspect.evaluate import Inspection
-from core.messages import Message
+from core.messages import Message, visible
 from core.pipeline.project.handing_over import export_results, import_camera, with_template
 from core.pipeline.steps.inspect_step import inspect_step
 from core.pipeline.steps.mesh_step import MeshOptions, mesh_step
@@ -55,7 +55,7 @@ def show_inspection(inspection: Inspection, written: Path | None, *, as_json: bo
     for name in _COLUMNS:
         table.add_column(name, justify="left" if name in ("characteristic", "verdict") else "right", overflow="fold")
     for row in inspection.characteristics:
-        table.add_row(*_cells(row))
+        table.add_row(*map(visible, _cells(row)))
     output.console().print(table)
     output.print_rows([], (*inspection.problems, *inspection.notes), files)
 

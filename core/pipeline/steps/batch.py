@@ -22,6 +22,10 @@ STOP = ".stop"
 STEP = label("measuring sets")
 _LOOK_EVERY_S = 0.5
 _LET_END_S = 30.0
+FAULT = "set.fault"
+"""Code of what a set failed by when the program was at fault, not the set."""
+_LONGEST_REASON = 200
+"""Characters of another library's words."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -188,7 +192,7 @@ def _result(future: Future[SetResult], folder: Path, out: Path) -> SetResult:
 
 def _fault(error: Exception) -> Message:
     kind, reason = type(error).__name__, str(error)
-    return Message("set.fault", "an error in the program: {kind}: {reason}", kind=kind, reason=reason)
+    return Message("set.fault", "an error in the program: {kind}: {reason}", kind=kind, reason=reason[:_LONGEST_REASON])
 
 
 def _remove(stop: Path) -> None:
