@@ -141,7 +141,7 @@ class Planner:
         deviations = calibration_deviations(camera, fan)
         common = solve_common(features, scan, camera.camera, fan.fan, deviations, progress=told.within_step)
         cloud = replace(scan.cloud, sigma_common=common.sigma(scan.cloud))
-        errors = PointErrors.of_scan(features, scan.covariance, common, scan.speckle)
+        errors = PointErrors.of_scan(features, scan.covariance, common, scan.speckle, scan.pis.shape[1])
         gauge = measure_gauge(cloud, errors=errors, progress=told.within_step)
         if abs(gauge.thickness_mm / height_mm - 1) > 0.1:
             raise InputError(

@@ -94,9 +94,11 @@ def _stripes(features: ScanFeatures, scan: ScanResult, camera: Camera, fan: Fan,
     for piece, (line, number) in enumerate(zip(features.fan, scan.fan_lines.line, strict=True)):
         if number != UNASSIGNED and len(line):
             yield Stripe.of(-1 - number, -1, piece, line, fan.planes[number].pi, camera, bends)
-    for pi, frame in zip(scan.pis, scan.sweep_frames.tolist(), strict=True):
+    for numbers, frame in zip(scan.pis, scan.sweep_frames.tolist(), strict=True):
         for piece, line in enumerate(features.frames[frame].centrelines):
             if len(line):
+                middle = np.median(line.uv[:, 1], keepdims=True)
+                pi = scan.read_out.planes(numbers[None], middle)[0]
                 yield Stripe.of(frame, frame, piece, line, pi, camera, bends)
 
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -22,6 +23,7 @@ from core.progress import Progress, StepProgress, silent
 from core.scan.features.crossings import Index
 from core.scan.features.extraction import ScanFeatures
 from core.scan.method import Method
+from core.scan.network.read_out import row_planes
 from core.scan.results import ScanResult
 from core.scan.surface.cloud import FAN, Cloud
 from core.scan.sweeps.locate import locate_each, locate_together, numbered
@@ -43,6 +45,7 @@ class CommonErrors:
         (1 + K, L, 3) light planes of the fan in 1/mm, first those calibrated.
     sweeps
         (1 + K, S, 3) light planes of the sweeps, numbered as in the cloud, in 1/mm; first those of the scan itself.
+        More than 3 where rows are read one after another (`core.scan.network.read_out`).
     bends
         (1 + K, L, 3, 3) of the fan's light as in `core.model.Fan`; None where it lies in planes each time.
     """
@@ -56,7 +59,7 @@ class CommonErrors:
 
     def __post_init__(self) -> None:
         count = 1 + len(self.sources)
-        for name, shape in (("cameras", (count, 10)), ("fans", (count, None, 3)), ("sweeps", (count, None, 3))):
+        for name, shape in (("cameras", (count, 10)), ("fans", (count, None, 3)), ("sweeps", (count, None, None))):
             set_field(self, name, frozen_array(getattr(self, name), shape, name))
         if self.bends is not None:
             set_field(self, "bends", frozen_array(self.bends, (count, self.fans.shape[1], 3, 3), "bends"))
@@ -74,15 +77,19 @@ class CommonErrors:
             variance += change[:, 2] ** 2
         return np.asarray(np.sqrt(variance), dtype=np.float64)
 
-    def planes(self, sweep: Index, row: int = 0) -> Array:
-        """Light planes (N, 3) in 1/mm of points of `sweep` (N,) as calibrated, or with the displacement `row` − 1."""
-        by_number = np.concatenate([self.fans[row][::-1], self.sweeps[row]])  # fan line k is sweep FAN − k = −1 − k
-        pis: Array = by_number[sweep + len(self.fans[row])]
-        return pis
+    def planes(self, uv: Array, sweep: Index, row: int = 0) -> Array:
+        """Light planes (N, 3) in 1/mm of points seen at `uv` (N, 2) px in `sweep` (N,).
+
+        As calibrated, or with the displacement `row` − 1.
+        """
+        fan, sweeps = self.fans[row], self.sweeps[row]
+        still = np.pad(fan[::-1], ((0, 0), (0, sweeps.shape[1] - 3)))  # fan line k is sweep FAN − k = −1 − k
+        coefficients = np.concatenate([still, sweeps])[sweep + len(fan)]
+        return row_planes(coefficients, uv[:, 1], self.image_size[1])
 
     def _points(self, row: int, uv: Array, sweep: Index) -> Array:
         rays = camera_of(self.cameras[row], self.image_size).rays(uv)
-        pis = self.planes(sweep, row)
+        pis = self.planes(uv, sweep, row)
         if self.bends is not None and self.bends[row].any():
             mine = sweep < 0
             pis[mine] = bent_pis(pis[mine], self.bends[row][FAN - sweep[mine]], rays[mine])
@@ -121,12 +128,12 @@ def solve_common(
     """
     reported = StepProgress(progress)
     reported("calibration uncertainty", 0, len(deviations))
-    solve = locate_together if method == Method.NETWORK else locate_each
+    solve = partial(locate_together, read_out=scan.read_out) if method == Method.NETWORK else locate_each
     crossings, line = numbered(features.crossings, scan.fan_lines)
     crossings, line = crossings.select(scan.of_solved), line[scan.of_solved]
     sweeps = [scan.pis]
     for number, one in enumerate(deviations):
-        again = solve(crossings, line, one.camera, one.fan, reported.within_step)
+        again = solve(crossings, line, one.camera, one.fan, progress=reported.within_step)
         sweeps.append(again.pis[np.searchsorted(again.frames, scan.sweep_frames)])
         reported("calibration uncertainty", number + 1, len(deviations))
     return CommonErrors(

@@ -21,6 +21,7 @@ from core.scan.features.extraction import ScanFeatures
 from core.scan.method import Method
 from core.scan.network.datum import Datum, datum_of
 from core.scan.network.fan_speckle import FanSpeckle, fan_speckle
+from core.scan.network.read_out import AT_ONCE, ReadOut
 from core.scan.records import frame_records, reasons_of
 from core.scan.results import ScanResult
 from core.scan.standstill import still_part
@@ -28,10 +29,14 @@ from core.scan.surface.cloud import FAN, Cloud
 from core.scan.surface.triangulate import OwnLine, join, triangulate
 from core.scan.sweeps.fan_lines import UNASSIGNED, FanLines
 from core.scan.sweeps.locate import LocatedSweeps, by_sweep, locate_each, locate_together, number_fan_lines, numbered
+from core.scan.sweeps.moving import hand_notes, read_out_of
 
 SIGMA_CUT_MM = 0.05
 """Standard uncertainty of depth in mm above which points are left out, unless another is asked for (the method's
 default)."""
+
+MANY_LOST = 0.1
+"""Share of the points that are lost to a moving hand from which on it is told."""
 
 NEAREST_SHARE, FARTHEST_SHARE = 0.6, 1.5
 """Of the nearest and the farthest depth at which the fan sees the object: points beyond are reflections."""
@@ -41,11 +46,13 @@ NEAREST_SHARE, FARTHEST_SHARE = 0.6, 1.5
 class ReconstructOptions:
     """Options of solving a scan.
 
-    `method`: how sweeps are located. Points with a σ above `sigma_cut_mm` are left out.
+    `method`: how sweeps are located. Points with a σ above `sigma_cut_mm` are left out. `row_time_us` is the time from
+    one row of a picture to the next, 0 where all are taken at once, None where nothing is stated.
     """
 
     method: Method = Method.NETWORK
     sigma_cut_mm: float = SIGMA_CUT_MM
+    row_time_us: float | None = None
 
 
 def reconstruct(
@@ -80,13 +87,12 @@ def reconstruct(
                 "sweep the single line across the fan's lines, and check that the fan was on",
             ),
         )
-    solved = _solve(
-        options.method, crossings, line, camera, fan, [frame.name for frame in features.frames], reported.within_step
-    )
+    names = [frame.name for frame in features.frames]
+    solved = _solve(options, crossings, line, camera, fan, names, reported.within_step)
     sweeps = solved.sweeps
     progress("network", 1, 3)
-    clouds = _fan_clouds(features, lines, camera, fan) + _sweep_clouds(features, sweeps, camera)
-    cloud = _cut(join(clouds), options.sigma_cut_mm)
+    found = join(_fan_clouds(features, lines, camera, fan) + _sweep_clouds(features, sweeps, camera))
+    cloud = _cut(found, options.sigma_cut_mm)
     progress("network", 2, 3)
     if not np.any(cloud.sweep >= 0):
         raise InputError(
@@ -111,10 +117,11 @@ def reconstruct(
         crossing_weights=solved.weights,
         fan_lines=lines,
         scale=sweeps.scale,
-        notes=features.notes + solved.notes + _fan_notes(lines),
+        notes=features.notes + solved.notes + _unsure(found, cloud, solved, options) + _fan_notes(lines),
         datum=solved.datum,
         speckle=_speckle(features, lines, sweeps, camera, fan) if options.method == Method.NETWORK else None,
         crossing_reasons=solved.reasons,
+        read_out=solved.read_out,
     )
 
 
@@ -127,10 +134,11 @@ class _Solved:
     reasons: NDArray[np.int64]
     notes: tuple[Message, ...]
     datum: Datum | None = None
+    read_out: ReadOut = AT_ONCE
 
 
 def _solve(
-    method: Method,
+    options: ReconstructOptions,
     crossings: CrossingTable,
     line: NDArray[np.int64],
     camera: Camera,
@@ -138,25 +146,29 @@ def _solve(
     names: Sequence[str],
     progress: Progress,
 ) -> _Solved:
-    if method != Method.NETWORK:
+    if options.method != Method.NETWORK:
         sweeps = locate_each(crossings, line, camera, fan, progress)
         everywhere = np.ones(len(crossings), dtype=np.bool_)
         located = np.isin(crossings.a, sweeps.frames) & crossings.with_fan
         reasons = reasons_of(crossings.with_fan, sweeps.weights, everywhere, located)
         return _Solved(sweeps, sweeps.weights, reasons, sweeps.notes)
-    part = still_part(crossings, line, camera, fan, names, progress)
+    read_out = read_out_of(crossings, line, camera, fan, options.row_time_us, progress)
+    part = still_part(crossings, line, camera, fan, names, progress, read_out)
     kept = part.kept
     among = crossings.select(kept)
-    sweeps = locate_together(among, line[kept], camera, fan, progress)
+    sweeps = locate_together(among, line[kept], camera, fan, progress, read_out)
     weights = np.zeros(len(crossings))
     weights[kept] = sweeps.weights
-    datum = datum_of(sweeps.pis, sweeps.covariance, by_sweep(among, sweeps.frames), camera)
+    of_hand = hand_notes(sweeps, among, camera, read_out, stated=options.row_time_us is not None)
+    middle, covariance = sweeps.middle_planes
+    datum = datum_of(middle, covariance, by_sweep(among, sweeps.frames), camera)
     return _Solved(
         sweeps,
         weights,
         reasons_of(crossings.with_fan, weights, kept, np.ones(len(crossings), dtype=np.bool_)),
-        part.note(names, len(sweeps.frames)) + sweeps.notes + (datum.note,),
+        part.note(names, len(sweeps.frames)) + of_hand + sweeps.notes + (datum.note,),
         datum,
+        read_out,
     )
 
 
@@ -178,9 +190,9 @@ def _speckle(features: ScanFeatures, lines: FanLines, sweeps: LocatedSweeps, cam
 
 def _sweep_clouds(features: ScanFeatures, sweeps: LocatedSweeps, camera: Camera) -> list[Cloud]:
     clouds: list[Cloud] = []
-    cell_px = features.crossings.half_length_px
+    cell_px, size = features.crossings.half_length_px, sweeps.pis.shape[1]
     for sweep, frame in enumerate(sweeps.frames):
-        block = slice(3 * sweep, 3 * sweep + 3)
+        block = slice(size * sweep, size * sweep + size)
         mine = sweeps.line_cells[:, 0] == sweep
         cells, covariance = sweeps.line_cells[mine, 1:], sweeps.line_covariance[mine]
         for number, piece in enumerate(features.frames[frame].centrelines):
@@ -193,7 +205,7 @@ def _sweep_clouds(features: ScanFeatures, sweeps: LocatedSweeps, camera: Camera)
 
 def _by_cell(mine: NDArray[np.bool_], cell: NDArray[np.int64], covariance: Array) -> Array:
     """Rows of `covariance` (Q, 3) that are `mine` (Q,) in the order of their cells from 0, zero where there is none."""
-    ordered = np.zeros((int(cell[mine].max(initial=-1)) + 1, 3))
+    ordered = np.zeros((int(cell[mine].max(initial=-1)) + 1, covariance.shape[1]))
     known = mine & (cell >= 0)
     ordered[cell[known]] = covariance[known]
     return ordered
@@ -205,6 +217,22 @@ def _cut(cloud: Cloud, sigma_cut_mm: float) -> Cloud:
     own = depth[cloud.sweep <= FAN]
     near, far = (NEAREST_SHARE * own.min(), FARTHEST_SHARE * own.max()) if len(own) else (0.0, np.inf)
     return cloud.select((cloud.sigma <= sigma_cut_mm) & (depth > near) & (depth < far))
+
+
+def _unsure(found: Cloud, cloud: Cloud, solved: _Solved, options: ReconstructOptions) -> tuple[Message, ...]:
+    """A note if many points of a moving hand are too unsure to be used."""
+    swept, left = np.count_nonzero(found.sweep >= 0), np.count_nonzero(cloud.sweep >= 0)
+    if not solved.read_out.shifts_mm or left >= (1 - MANY_LOST) * swept:
+        return ()
+    return (
+        Message(
+            "scan.points_unsure_by_motion",
+            "{percent:.0f} % of the points are left out: the hand's motion while rows were read out leaves them less "
+            "sure than {cut_mm:g} mm. Move slower, rest the hand, or take more sweeps.",
+            percent=100 * (1 - left / swept),
+            cut_mm=options.sigma_cut_mm,
+        ),
+    )
 
 
 def _no_points(sigma_cut_mm: float, notes: tuple[Message, ...]) -> Message:

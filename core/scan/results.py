@@ -13,6 +13,7 @@ from core.scan.features.crossings import CrossingTable
 from core.scan.features.frames import FrameRecord
 from core.scan.network.datum import Datum
 from core.scan.network.fan_speckle import FanSpeckle
+from core.scan.network.read_out import AT_ONCE, ReadOut
 from core.scan.surface.cloud import Cloud
 from core.scan.sweeps.fan_lines import FanLines
 
@@ -28,9 +29,9 @@ class ScanResult:
     cloud
         All points whose σ is within the cut, the fan's own included.
     pis
-        (S, 3) light planes of the sweeps in 1/mm.
+        (S, 3) light planes of the sweeps in 1/mm; (S, 3·(1 + K)) where `read_out` says that they change with the rows.
     covariance
-        (3S, 3S) of them, without what camera and fan have in common.
+        (3S, 3S) or larger of them stacked, without what camera and fan have in common.
     sweep_frames
         (S,) the frame of each sweep.
     frames
@@ -49,6 +50,8 @@ class ScanResult:
         Strength with which the fan fixes scale and place; None when frames were solved each on its own.
     speckle
         The error common to the fan's own points and the sweeps; None when frames were solved each on its own.
+    read_out
+        How planes change while the camera reads its rows out.
     """
 
     cloud: Cloud
@@ -64,6 +67,7 @@ class ScanResult:
     datum: Datum | None = None
     speckle: FanSpeckle | None = None
     crossing_reasons: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    read_out: ReadOut = AT_ONCE
 
     @property
     def of_solved(self) -> NDArray[np.bool_]:

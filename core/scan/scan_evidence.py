@@ -48,7 +48,8 @@ def scan_evidence(
     crossings, line = numbered(features.crossings, scan.fan_lines)
     table = by_sweep(crossings.select(scan.of_solved), scan.sweep_frames)
     geometry = CrossingRays.of(table, camera)
-    equations = Adjustment(table, geometry, line[scan.of_solved], fan, len(scan.pis), LineErrors.of(table))
+    errors, line = LineErrors.of(table), line[scan.of_solved]
+    equations = Adjustment(table, geometry, line, fan, len(scan.pis), errors, scan.read_out)
     solution = replace(equations.start(), pis=scan.pis)
     for _ in range(_ROUNDS):
         solution = equations.improve(solution, scan.crossing_weights[scan.of_solved])
@@ -58,7 +59,7 @@ def scan_evidence(
     weight = solution.weights / solution.sigma**2
     eliminated = cho_solve(solution.factor, solution.design.T @ (weight[:, None] * changes), check_finite=False)
     felt = weight[:, None] * (changes - solution.design @ eliminated)
-    noise, cells = equations.noise(solution).T @ felt, eliminated[3 * equations.sweeps :]
+    noise, cells = equations.noise(solution).T @ felt, eliminated[equations.unknowns :]
     scatter = max(1.0, scan.scale) ** 2 * (noise.T @ noise + cells.T @ cells)
     gradient = -changes.T @ (weight * solution.residuals * solution.sigma)
     return Evidence(changes.T @ felt, scatter, gradient)

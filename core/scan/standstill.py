@@ -40,6 +40,7 @@ from core.scan.network.datum import main_plane
 from core.scan.network.equations import Adjustment, Solution
 from core.scan.network.geometry import CrossingRays
 from core.scan.network.line_errors import LineErrors
+from core.scan.network.read_out import AT_ONCE, ReadOut
 from core.scan.sweeps.locate import by_sweep, locate_together, sweeping_frames
 
 # The test for a movement. Held by tests/scan/test_standstill.py on scans in which nothing moved and in which something
@@ -77,7 +78,9 @@ class Movement:
     score: float
 
 
-def find_movement(crossings: CrossingTable, line: Index, camera: Camera, fan: Fan) -> Movement | None:
+def find_movement(
+    crossings: CrossingTable, line: Index, camera: Camera, fan: Fan, read_out: ReadOut = AT_ONCE
+) -> Movement | None:
     """Find when something moved most noticeably during the scan; None if nothing did.
 
     `line` (M,) is the fan's line of each crossing, −1 between sweeps.
@@ -87,7 +90,7 @@ def find_movement(crossings: CrossingTable, line: Index, camera: Camera, fan: Fa
         return None
     table = by_sweep(crossings, frames)
     geometry = CrossingRays.of(crossings, camera)
-    equations = Adjustment(table, geometry, line, fan, len(frames), LineErrors.of(crossings))
+    equations = Adjustment(table, geometry, line, fan, len(frames), LineErrors.of(crossings), read_out)
     solution = equations.start()
     for _ in range(_ROUNDS):
         solution = equations.improve(solution, huber_weights(solution.residuals, HUBER_AT))
@@ -120,7 +123,8 @@ class _Scores:
         table = equations.crossings
         b = np.where(table.with_fan, -1, table.b)
         rays = equations.geometry.rays
-        inverse = np.einsum("mi,mi->m", rays, solution.pis[table.a]) - 0.5 * np.einsum(
+        planes = equations.read_out.planes(solution.pis[table.a], table.uv[:, 1])
+        inverse = np.einsum("mi,mi->m", rays, planes) - 0.5 * np.einsum(
             "mi,mi->m", rays, equations.differences(solution.pis)
         )
         pattern = _movements(rays, inverse)
@@ -142,7 +146,7 @@ class _Scores:
         score = moved.T @ (weight * solution.residuals * solution.sigma)
         gain = weight[:, None] * moved - weighted @ pulled
         of_noise = equations.noise(solution).T @ gain
-        of_cells = pulled[3 * equations.sweeps :]
+        of_cells = pulled[equations.unknowns :]
         own = np.sqrt(np.maximum(np.sum(weight[:, None] * moved**2, axis=0), 1e-300))
         return (
             _chi_square(score / own, (of_noise.T @ of_noise + of_cells.T @ of_cells) / np.outer(own, own)) / self.scale
@@ -206,6 +210,7 @@ def still_part(
     fan: Fan,
     names: Sequence[str],
     progress: Progress = silent,
+    read_out: ReadOut = AT_ONCE,
 ) -> StillPart:
     """Choose the larger part of a scan, before or after each movement, that agrees with itself and with the fan.
 
@@ -217,7 +222,7 @@ def still_part(
         If too little is left.
     """
     kept, movements = np.ones(len(crossings), dtype=np.bool_), []
-    while movement := find_movement(crossings.select(kept), line[kept], camera, fan):
+    while movement := find_movement(crossings.select(kept), line[kept], camera, fan, read_out):
         movements.append(movement)
         later_a, later_b = crossings.a >= movement.first_after, crossings.b >= movement.first_after
         parts = [
@@ -228,7 +233,7 @@ def still_part(
         for part in parts:
             count = _sweeps(crossings, part)
             if count >= LEAST_SWEEPS and np.count_nonzero(crossings.with_fan & part) >= LEAST_SWEEPS:
-                scale = locate_together(crossings.select(part), line[part], camera, fan, progress).scale
+                scale = locate_together(crossings.select(part), line[part], camera, fan, progress, read_out).scale
                 solved.append((count, scale, part))
         if not solved:
             raise InputError(

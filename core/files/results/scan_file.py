@@ -54,9 +54,10 @@ class ScanFile:
     features
         What the pictures showed.
     pis
-        (S, 3) light planes of the sweeps in 1/mm.
+        (S, 3) light planes of the sweeps in 1/mm; (S, 3·(1 + K)) where they change with the rows
+        (`core.scan.network.read_out`).
     covariance
-        (3S, 3S) of them, without what camera and fan have in common.
+        (3S, 3S) or larger of them stacked, without what camera and fan have in common.
     sweep_frames
         (S,) the frame of each.
     fan_line
@@ -131,7 +132,8 @@ def read_scan(path: Path) -> ScanFile:
     """
     arrays = read_arrays(path, ("calibration_id", "pis", "covariance", "sweep_frames", "image_size"), todo=_TODO)
     sweeps = len(arrays["sweep_frames"])
-    for name, shape in (("pis", (sweeps, 3)), ("covariance", (3 * sweeps, 3 * sweeps))):
+    size = 3 * max(1, arrays["pis"].size // max(3 * sweeps, 1))
+    for name, shape in (("pis", (sweeps, size)), ("covariance", (size * sweeps, size * sweeps))):
         if arrays[name].shape != shape:
             what = Message(
                 "file.array_shape", "the array {name} has shape {shape}, not {wanted}",
@@ -189,6 +191,8 @@ def _common(arrays: Arrays, image_size: tuple[int, int]) -> CommonErrors | None:
     common = CommonErrors(image_size, sources, cameras, fans, sweeps, arrays.get("common_bends"))
     if common.sweeps.shape[1] != len(arrays["sweep_frames"]):
         raise ValueError(f"common_sweeps holds {common.sweeps.shape[1]} sweeps, not {len(arrays['sweep_frames'])}")
+    if common.sweeps.shape[2] != arrays["pis"].shape[1]:
+        raise ValueError(f"common_sweeps has {common.sweeps.shape[2]} numbers a sweep, not {arrays['pis'].shape[1]}")
     return common
 
 
@@ -197,9 +201,8 @@ def _speckle(arrays: Arrays) -> FanSpeckle | None:
     if f"speckle_{_SPECKLE[0]}" not in arrays:
         return None
     speckle = FanSpeckle(**{name: arrays[f"speckle_{name}"] for name in _SPECKLE})
-    sweeps = len(arrays["sweep_frames"])
-    if len(speckle.covariance) != 3 * sweeps:
-        raise ValueError(f"speckle_covariance has {len(speckle.covariance)} rows, not {3 * sweeps}")
+    if len(speckle.covariance) != arrays["pis"].size:
+        raise ValueError(f"speckle_covariance has {len(speckle.covariance)} rows, not {arrays['pis'].size}")
     return speckle
 
 

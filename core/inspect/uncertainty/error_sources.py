@@ -103,7 +103,7 @@ class Sources:
 
         # A stretch of which the robust fit has silenced most is known less well.
         alive = np.clip(np.bincount(stretch, share * weights) / max(float(np.median(weights)), 1e-12), 0.05, 1.0)
-        lever = np.column_stack([mean(-gain * depth**2 * rays[:, axis]) for axis in range(3)])
+        lever = np.column_stack([mean(-gain * depth**2 * form) for form in errors.forms(rays, cloud.uv).T])
         form = np.zeros((count, int(patch.max()) + 1))
         np.add.at(form, (stretch, patch), share)
         noise = mean(own)
@@ -143,7 +143,7 @@ def _gain_of_noise(cloud: Cloud, direction: Array, gain: Array, errors: PointErr
     """
     if errors.common is None:
         return np.copysign(np.maximum(np.abs(gain), GRAZING), gain)
-    pis, depth = errors.common.planes(cloud.sweep), cloud.points[:, 2]
+    pis, depth = errors.common.planes(cloud.uv, cloud.sweep), cloud.points[:, 2]
     along = np.cross(pis, direction)
     seen = along[:, :2] - cloud.points[:, :2] / depth[:, None] * along[:, 2:]
     across = np.column_stack([seen[:, 1], -seen[:, 0]])
@@ -162,7 +162,7 @@ def _of_sweeps(sweep: NDArray[np.int64], lever: Array, errors: PointErrors) -> t
     shared = np.zeros((len(covariance), cells)) if speckle is None else speckle.covariance
 
     def effect(of_planes: Array) -> Array:
-        blocks = of_planes.reshape(errors.sweeps, 3, of_planes.shape[1])
+        blocks = of_planes.reshape(errors.sweeps, errors.sweep_size, of_planes.shape[1])
         acting = np.einsum("ji,jik->jk", lever, blocks[np.maximum(sweep, 0)])
         acting[sweep < 0] = 0.0
         return np.asarray(acting)

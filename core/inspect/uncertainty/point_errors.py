@@ -24,6 +24,7 @@ from core.model.arrays import Array
 from core.scan.common_errors import CommonErrors
 from core.scan.features.extraction import ScanFeatures
 from core.scan.network.fan_speckle import FanSpeckle
+from core.scan.network.read_out import row_forms
 from core.scan.surface.cloud import Cloud
 
 PATCHES = 6
@@ -39,8 +40,8 @@ class PointErrors:
     Parameters
     ----------
     sweep_covariance
-        (3S, 3S) of the network's stacked π in 1/mm²; `Cloud.sweep` counts its blocks. None: not known; then all of a
-        point's σ counts as its own noise, which makes u too small where sweeps dominate.
+        (3S, 3S) of the network's stacked π in 1/mm²; `Cloud.sweep` counts its blocks, of `sweep_size` rows each. None:
+        not known; then all of a point's σ counts as its own noise, which makes u too small where sweeps dominate.
     common
         What displaced calibrations do to the points; None: not known.
     correlation_px, speckle_px
@@ -60,6 +61,10 @@ class PointErrors:
     speckle: FanSpeckle | None = None
     stripe_px: float = 0.0
     doubt: Message | None = None
+    sweep_size: int = 3
+    """How many numbers describe a sweep: more than 3 where planes change with the rows."""
+    image_rows: int = 1
+    """Rows of a picture."""
 
     @property
     def complete(self) -> bool:
@@ -73,12 +78,17 @@ class PointErrors:
         sweep_covariance: Array,
         common: CommonErrors | None,
         speckle: FanSpeckle | None = None,
+        sweep_size: int = 3,
     ) -> PointErrors:
-        """Of the points of a scan with these features, its sweeps' covariance and what displaced calibrations do."""
+        """Of the points of a scan with these features, its sweeps' covariance and what displaced calibrations do.
+
+        `sweep_size` numbers describe a sweep.
+        """
         swept = [piece for frame in features.frames for piece in frame.centrelines]
         lengths = _correlation_px(swept), _correlation_px(features.fan)
         width = float(np.median(np.concatenate([piece.width for piece in swept]))) if swept else 0.0
-        return cls(sweep_covariance, common, *lengths, speckle, width)
+        rows = features.image_size[1]
+        return cls(sweep_covariance, common, *lengths, speckle, width, sweep_size=sweep_size, image_rows=rows)
 
     @classmethod
     def of_fan(cls, pieces: Sequence[Centreline], common: CommonErrors) -> PointErrors:
@@ -115,7 +125,11 @@ class PointErrors:
     @property
     def sweeps(self) -> int:
         """How many sweeps the covariance holds."""
-        return 0 if self.sweep_covariance is None else len(self.sweep_covariance) // 3
+        return 0 if self.sweep_covariance is None else len(self.sweep_covariance) // self.sweep_size
+
+    def forms(self, rays: Array, uv: Array) -> Array:
+        """(N, sweep_size) what the numbers of a sweep are multiplied by at `rays` (N, 3) of pixels `uv` (N, 2)."""
+        return row_forms(rays, uv[:, 1], self.image_rows, self.sweep_size)
 
     def own_sigma(self, cloud: Cloud) -> Array:
         """σ (N,) of each depth in mm less the share of its sweep's plane.
@@ -127,12 +141,12 @@ class PointErrors:
         """
         if self.sweep_covariance is None:
             return cloud.sigma
-        blocks = self.sweep_covariance.reshape(self.sweeps, 3, -1, 3)
+        blocks = self.sweep_covariance.reshape(self.sweeps, self.sweep_size, -1, self.sweep_size)
         if cloud.sweep.max(initial=-1) >= len(blocks):
             raise ValueError(f"the covariance holds {len(blocks)} sweeps, the cloud counts to {cloud.sweep.max()}")
         swept = np.flatnonzero(cloud.sweep >= 0)
         depth = cloud.points[swept, 2]
-        rays = cloud.points[swept] / depth[:, None]
+        rays = self.forms(cloud.points[swept] / depth[:, None], cloud.uv[swept])
         diagonal = blocks[np.arange(len(blocks)), :, np.arange(len(blocks)), :]
         plane = depth**4 * np.einsum("ni,nij,nj->n", rays, diagonal[cloud.sweep[swept]], rays)
         own = cloud.sigma**2

@@ -94,7 +94,7 @@ def scan_step(
         features = kept_features(earlier, found, options, camera, progress) if earlier is not None else None
         if features is None or features.image_size != camera.image_size:
             features = _look(found, calibration, options, progress, watch)
-        solving = ReconstructOptions(method=options.method, sigma_cut_mm=options.sigma_cut_mm)
+        solving = ReconstructOptions(options.method, options.sigma_cut_mm, found.rig.row_time_us)
         even, scan = reconstruct_twice(features, camera, fan, solving, progress)
         of_scan = partial(scan_evidence, even, scan, camera, fan) if options.method == Method.NETWORK else None
         change = since_calibration(found, calibration, options, progress, of_scan)

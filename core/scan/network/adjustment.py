@@ -25,6 +25,7 @@ from core.scan.features.crossings import CrossingTable, Index
 from core.scan.network.equations import GRADIENT_FLOOR, Adjustment, Solution
 from core.scan.network.geometry import CrossingRays
 from core.scan.network.line_errors import LineErrors
+from core.scan.network.read_out import AT_ONCE, ReadOut
 
 # Residuals in standard deviations. The limits are wider than those of full efficiency (1.345 and 4.685,
 # `core.model.robust`), so that crossings of a still-wrong solution are not rejected. Held by tests/scan/network/
@@ -57,9 +58,9 @@ class Network:
     Parameters
     ----------
     pis
-        (S, 3) in 1/mm.
+        (S, 3) in 1/mm, or (S, 3·(1 + K)) where rows are read one after another (`core.scan.network.read_out`).
     covariance
-        (3S, 3S) of the stacked π; without the camera's and the fan's own.
+        Of the stacked `pis`; without the camera's and the fan's own.
     residuals
         (M,) of each crossing in standard deviations, observed − adjusted.
     weights
@@ -77,7 +78,7 @@ class Network:
     line_cells
         (Q, 3) sweep, centreline and cell along it of each cell of the sweeps' own centrelines.
     line_covariance
-        (Q, 3) of the error of the sweep's π with that of the cell.
+        (Q, 3) of the error of the sweep's π with that of the cell; with K as many as a sweep has numbers.
     """
 
     pis: Array
@@ -100,8 +101,11 @@ def solve_network(
     fan: Fan,
     sweeps: int,
     progress: Progress = silent,
+    read_out: ReadOut = AT_ONCE,
 ) -> Network:
     """Adjust all `sweeps` planes to all `crossings`; `line` (M,) is the fan's line from 0, −1 between sweeps.
+
+    Where a `read_out` says that rows see different planes, these follow the hand.
 
     Raises
     ------
@@ -110,7 +114,7 @@ def solve_network(
     """
     if not np.any(crossings.with_fan):
         raise ValueError("no sweep crosses the fan")
-    equations = Adjustment(crossings, geometry, line, fan, sweeps, LineErrors.of(crossings))
+    equations = Adjustment(crossings, geometry, line, fan, sweeps, LineErrors.of(crossings), read_out)
     solution, silenced = _adjust(equations, progress, redescend=True), False
     if _share_silenced(crossings, solution.weights) > MOST_FAN_REJECTED:
         solution, silenced = _adjust(equations, progress, redescend=False), True

@@ -10,6 +10,7 @@ A crossing says (π_a − π_b)·r = gain_a·ε_a + gain_b·ε_b with ε the err
       x̂ = H⁻¹ Aᵀ W y,   cov = H⁻¹ (Aᵀ W V W A + P) H⁻¹,   H = Aᵀ W A + P
 
   with V the whole covariance of the crossings and P the prior's weight;
+- a plane that changes while rows are read out is linear in more than three numbers (`core.scan.network.read_out`);
 - the crossings' rays are noisy too, so the equations are taken at adjusted crossings (Gauss–Helmert).
 
 References
@@ -30,6 +31,7 @@ from core.model.arrays import Array
 from core.scan.features.crossings import CrossingTable, Index
 from core.scan.network.geometry import CrossingRays, floored, inverse_depth_gradient, noise_gains
 from core.scan.network.line_errors import LineErrors
+from core.scan.network.read_out import AT_ONCE, ReadOut
 from core.scan.network.sweep_plane import PRIOR_SD
 
 GRADIENT_FLOOR = 0.1
@@ -50,7 +52,7 @@ class Solution:
     Parameters
     ----------
     pis
-        (S, 3) in 1/mm.
+        (S, 3) in 1/mm, or (S, 3·(1 + K)) where rows are read one after another (`core.scan.network.read_out`).
     cells
         (F,) errors of the fan's cells, in standard deviations.
     residuals
@@ -61,8 +63,10 @@ class Solution:
         (M, 2) how an error of a's and of b's centreline moves the misclosure, in 1/(mm px).
     sigma
         (M,) standard deviation of the misclosure without the fan's cells, in 1/mm.
+    motion
+        Sum of the squares of what planes change with the rows, in standard deviations before anything is measured.
     design, factor
-        Derivatives (M, 3S + F) of the equations by the unknowns, and the Cholesky factor of H.
+        Derivatives (M, 3·(1 + K)·S + F) of the equations by the unknowns, and the Cholesky factor of H.
     """
 
     pis: Array
@@ -74,10 +78,12 @@ class Solution:
     design: csr_array
     factor: tuple[Array, bool]
 
+    motion: float
+
     @property
     def misfit(self) -> float:
-        """Sum of the weighted squares of all residuals, those of the fan's cells from their prior included."""
-        return float(self.weights @ self.residuals**2 + self.cells @ self.cells)
+        """Sum of the weighted squares of all residuals, those of cells and hand from their priors included."""
+        return float(self.weights @ self.residuals**2 + self.cells @ self.cells + self.motion)
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -93,6 +99,12 @@ class Adjustment:
     fan: Fan
     sweeps: int
     errors: LineErrors
+    read_out: ReadOut = AT_ONCE
+
+    @property
+    def unknowns(self) -> int:
+        """How many numbers describe all sweeps."""
+        return self.read_out.size * self.sweeps
 
     def start(self) -> Solution:
         """Solve for the first time: every difference of planes counts as the typical one and lies across the fan."""
@@ -118,9 +130,10 @@ class Adjustment:
         noise = solution.design.T @ (diags_array(solution.weights / solution.sigma**2) @ self.noise(solution))
         middle = (noise @ noise.T).toarray()
         middle[np.diag_indices(len(middle))] += self._prior()
+        self._add_motion(middle)
         gained = cho_solve(solution.factor, middle, check_finite=False)
-        covariance = cho_solve(solution.factor, gained.T, check_finite=False)[: 3 * self.sweeps, : 3 * self.sweeps]
-        expected = np.sum(solution.weights) + len(solution.cells) - np.trace(gained)
+        covariance = cho_solve(solution.factor, gained.T, check_finite=False)[: self.unknowns, : self.unknowns]
+        expected = np.sum(solution.weights) + len(solution.cells) + (self.unknowns - 3 * self.sweeps) - np.trace(gained)
         return np.asarray((covariance + covariance.T) / 2), float(expected)
 
     def shared_with_fan(self, solution: Solution) -> Array:
@@ -130,9 +143,9 @@ class Adjustment:
         them with P = 1: so it is minus the block of H⁻¹.
         """
         of_cells = np.zeros((len(solution.factor[0]), len(solution.cells)))
-        of_cells[3 * self.sweeps :] = np.eye(len(solution.cells))
+        of_cells[self.unknowns :] = np.eye(len(solution.cells))
         inverse = cho_solve(solution.factor, of_cells, check_finite=False)
-        return np.asarray(-inverse[: 3 * self.sweeps])
+        return np.asarray(-inverse[: self.unknowns])
 
     def shared_with_own_lines(self, solution: Solution) -> Array:
         """(Q, 3) covariance of π̂ − π of a sweep with the errors z of the cells of its own centrelines.
@@ -141,9 +154,9 @@ class Adjustment:
         """
         shared = self.noise(solution)[:, : self.errors.sweep_a.shape[1]]
         felt = solution.design.T @ (diags_array(solution.weights / solution.sigma**2) @ shared)
-        moved = -cho_solve(solution.factor, felt.toarray(), check_finite=False)[: 3 * self.sweeps]
+        moved = -cho_solve(solution.factor, felt.toarray(), check_finite=False)[: self.unknowns]
         sweep = self.errors.sweep_cells[:, 0]
-        return np.asarray(moved.reshape(self.sweeps, 3, -1)[sweep, :, np.arange(len(sweep))])
+        return np.asarray(moved.reshape(self.sweeps, self.read_out.size, -1)[sweep, :, np.arange(len(sweep))])
 
     def noise(self, solution: Solution) -> csr_array:
         """(M, …) that turns independent standard normal numbers into the misclosures in 1/mm, less the fan's cells."""
@@ -188,32 +201,42 @@ class Adjustment:
         """One weighted linear solution of (π_a − π_b)·`rays` + `moved` = noise."""
         table, with_fan = self.crossings, self.crossings.with_fan
         sigma, between = self._sigma(gains), np.flatnonzero(~with_fan)
-        rows = np.concatenate([np.repeat(np.arange(len(table)), 3), np.repeat(between, 3)])
-        of_a, of_b = 3 * table.a[:, None] + np.arange(3), 3 * table.b[between, None] + np.arange(3)
-        values = np.concatenate([rays.ravel(), -rays[between].ravel()])
+        size, forms = self.read_out.size, self.read_out.forms(rays, table.uv[:, 1])
+        rows = np.concatenate([np.repeat(np.arange(len(table)), size), np.repeat(between, size)])
+        of_a, of_b = size * table.a[:, None] + np.arange(size), size * table.b[between, None] + np.arange(size)
+        values = np.concatenate([forms.ravel(), -forms[between].ravel()])
         columns = np.concatenate([of_a.ravel(), of_b.ravel()])
-        planes = csr_array((values, (rows, columns)), shape=(len(table), 3 * self.sweeps))
+        planes = csr_array((values, (rows, columns)), shape=(len(table), self.unknowns))
         design = hstack([planes, -(diags_array(gains[:, 1]) @ self.errors.fan)], format="csr")
         observed = np.where(with_fan, np.einsum("mi,mi->m", rays, self._fan_pis()), 0.0) - moved
         root = np.sqrt(weights) / sigma
         weighted = diags_array(root) @ design
         information = (weighted.T @ weighted).toarray()
         information[np.diag_indices(len(information))] += self._prior() + RIDGE * information.diagonal()
+        self._add_motion(information)
         factor = cho_factor(information, lower=True, overwrite_a=True, check_finite=False)
         solution = cho_solve(factor, weighted.T @ (root * observed), check_finite=False)
         residuals = (observed - design @ solution) / sigma
-        pis, cells = solution[: 3 * self.sweeps].reshape(-1, 3), solution[3 * self.sweeps :]
-        return Solution(pis, cells, residuals, weights, gains, sigma, design, factor)
+        pis, cells = solution[: self.unknowns].reshape(-1, size), solution[self.unknowns :]
+        motion = float(pis.ravel() @ (self.read_out.weight(self.sweeps) @ pis.ravel())) if self.read_out.moves else 0.0
+        return Solution(pis, cells, residuals, weights, gains, sigma, design, factor, motion)
 
     def _prior(self) -> Array:
-        """Weight of the prior on each unknown."""
-        return np.concatenate([np.full(3 * self.sweeps, 1 / PRIOR_SD**2), np.ones(self.errors.fan.shape[1])])
+        """Weight of the prior on each unknown but the hand's motion."""
+        of_sweep = np.repeat([1 / PRIOR_SD**2, 0.0], [3, self.read_out.size - 3])
+        return np.concatenate([np.tile(of_sweep, self.sweeps), np.ones(self.errors.fan.shape[1])])
+
+    def _add_motion(self, matrix: Array) -> None:
+        """Add the weight of the prior on the hand's motion to the upper left of `matrix`."""
+        if self.read_out.moves:
+            weight = self.read_out.weight(self.sweeps).tocoo()
+            matrix[weight.coords] += weight.data
 
     def differences(self, pis: Array) -> Array:
-        """π_a − π_b (M, 3) of every crossing."""
-        table = self.crossings
-        other = np.where(table.with_fan[:, None], self._fan_pis(), pis[table.b])
-        return np.asarray(pis[table.a] - other)
+        """π_a − π_b (M, 3) of every crossing, in its row."""
+        table, v = self.crossings, self.crossings.uv[:, 1]
+        other = np.where(table.with_fan[:, None], self._fan_pis(), self.read_out.planes(pis[table.b], v))
+        return np.asarray(self.read_out.planes(pis[table.a], v) - other)
 
     def _fan_pis(self) -> Array:
         return self.fan.pis_at(np.maximum(self.line, 0), self.geometry.rays)

@@ -10,6 +10,7 @@ from core.image.stripes.centreline import Centreline
 from core.image.stripes.runs import arc_length
 from core.model import Camera
 from core.model.arrays import Array
+from core.scan.network.read_out import row_forms, row_planes
 from core.scan.surface.cloud import Cloud
 
 LEAST_VARIANCE_SHARE = 0.2
@@ -22,14 +23,15 @@ LEAST_INVERSE_DEPTH = 1e-5
 class OwnLine:
     """Covariance of a light plane with the centreline it is triangulated with, for crossings on that line fixed it.
 
-    `covariance` (C, 3) in 1/mm of π̂ − π with the errors z of the line's cells of `cell_px`, from its beginning on; see
+    `covariance` (C, 3) in 1/mm of π̂ − π with the errors z of the line's cells of `cell_px`, from its beginning on, or
+    (C, 3·(1 + K)) where planes change with the rows; see
     `core.scan.network.adjustment.Network.line_covariance`.
     """
 
     covariance: Array
     cell_px: float
 
-    def with_noise(self, centreline: Centreline, rays: Array, slope: Array, focal: float) -> Array:
+    def with_noise(self, centreline: Centreline, rays: Array, forms: Array, slope: Array, focal: float) -> Array:
         """Covariance (N,) in 1/mm² of r·(π̂ − π) with what the line's own noise does to w.
 
         A cell's mean is off by z times its standard deviation. Points are averages over cells; the covariance changes
@@ -39,7 +41,7 @@ class OwnLine:
         cells = np.arange(len(self.covariance))
         here = np.column_stack([np.interp(middle, cells, column) for column in self.covariance.T])
         of_cell = float(np.median(centreline.sigma)) * np.sqrt(centreline.correlation_px / self.cell_px)
-        return np.asarray(slope * of_cell * np.einsum("ni,ni->n", rays, here))
+        return np.asarray(slope * of_cell * np.einsum("ni,ni->n", forms, here))
 
 
 def triangulate(
@@ -53,16 +55,19 @@ def triangulate(
 ) -> Cloud:
     """Triangulate one centreline on the light plane `pi` (3,), with `covariance` (3, 3).
 
+    Both are larger where each row sees another plane (`core.scan.network.read_out`).
     With r the ray and n the centreline's normal, in inverse depth w = π·r: var(w) = rᵀ Σ r + (∂w/∂(u,v)·n)² σ² + 2 c,
     and σ_z = z² σ_w. The plane goes where its crossings are, so it follows the line's noise and undoes some of it: c,
     by `own`, is mostly negative. Points that the plane puts behind the camera, and saturated ones, are left out.
     """
-    rays = camera.rays(centreline.uv)
-    inverse_depth = rays @ pi
-    slope = np.einsum("i,nij,nj->n", pi[:2], camera.ray_jacobian(rays), centreline.normal)
-    variance = np.einsum("ni,ij,nj->n", rays, covariance, rays) + (slope * centreline.sigma) ** 2
+    rays, rows = camera.rays(centreline.uv), camera.image_size[1]
+    forms = row_forms(rays, centreline.uv[:, 1], rows, len(pi))
+    inverse_depth = forms @ pi
+    plane = np.broadcast_to(row_planes(pi[None], centreline.uv[:, 1], rows)[:, :2], (len(rays), 2))
+    slope = np.einsum("ni,nij,nj->n", plane, camera.ray_jacobian(rays), centreline.normal)
+    variance = np.einsum("ni,ij,nj->n", forms, covariance, forms) + (slope * centreline.sigma) ** 2
     if own is not None and len(own.covariance):
-        common = own.with_noise(centreline, rays, slope, camera.focal)
+        common = own.with_noise(centreline, rays, forms, slope, camera.focal)
         variance = np.maximum(variance + 2 * common, LEAST_VARIANCE_SHARE * variance)
     keep = (inverse_depth > LEAST_INVERSE_DEPTH) & ~centreline.saturated & np.isfinite(inverse_depth)
     centreline, rays, inverse_depth = centreline.select(keep), rays[keep], inverse_depth[keep]

@@ -18,6 +18,7 @@ from core.progress import Progress, silent, steps
 from core.scan.features.crossings import CrossingTable
 from core.scan.network.adjustment import solve_network
 from core.scan.network.geometry import CrossingRays, inverse_depth_gradient, noise_gains
+from core.scan.network.read_out import AT_ONCE, ReadOut
 from core.scan.network.sweep_plane import solve_sweep_plane
 from core.scan.sweeps.fan_lines import UNASSIGNED, FanLines, possible_fan_lines, settle_by_sweeps
 
@@ -45,6 +46,14 @@ class LocatedSweeps:
     fan_covariance: Array = field(default_factory=lambda: np.zeros((0, 0)))
     line_cells: NDArray[np.int64] = field(default_factory=lambda: np.zeros((0, 3), dtype=np.int64))
     line_covariance: Array = field(default_factory=lambda: np.zeros((0, 3)))
+
+    @property
+    def middle_planes(self) -> tuple[Array, Array]:
+        """Planes (S, 3) in 1/mm in the middle of the read-out, and their covariance (3S, 3S)."""
+        if self.pis.shape[1] == 3:
+            return self.pis, self.covariance
+        middle = np.arange(self.pis.size).reshape(self.pis.shape)[:, :3].ravel()
+        return self.pis[:, :3], self.covariance[np.ix_(middle, middle)]
 
 
 def number_fan_lines(
@@ -110,9 +119,16 @@ def numbered(crossings: CrossingTable, lines: FanLines) -> tuple[CrossingTable, 
 
 
 def locate_together(
-    crossings: CrossingTable, line: NDArray[np.int64], camera: Camera, fan: Fan, progress: Progress = silent
+    crossings: CrossingTable,
+    line: NDArray[np.int64],
+    camera: Camera,
+    fan: Fan,
+    progress: Progress = silent,
+    read_out: ReadOut = AT_ONCE,
 ) -> LocatedSweeps:
     """Locate all sweeps in one adjustment; `line` (M,) is the fan line of each crossing, −1 between sweeps.
+
+    Where a `read_out` says that rows see different planes, these follow the hand.
 
     Raises
     ------
@@ -121,7 +137,7 @@ def locate_together(
     """
     frames = np.unique(np.concatenate([crossings.a, crossings.b[~crossings.with_fan]]))
     renumbered = crossings.renumber(np.searchsorted(frames, np.arange(frames[-1] + 1)))
-    network = solve_network(renumbered, CrossingRays.of(crossings, camera), line, fan, len(frames), progress)
+    network = solve_network(renumbered, CrossingRays.of(crossings, camera), line, fan, len(frames), progress, read_out)
     notes: tuple[Message, ...] = ()
     if network.fan_silenced:
         notes = (

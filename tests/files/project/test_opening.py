@@ -47,7 +47,7 @@ def full_project():
         ProjectInfo("Block 50", "gauge", "S/N 7", "Ö. Ärzt", "ACME", "Lab 3", 20.5, 21, 'quotes " and\nlines — σ'),
         Rig(Charuco(9, 7, 20, 15), CircleGrid(7, 6, 37.5), 2, math.radians(4.0), GaugeSpec(50, 0.2, POLYGON, POLYGON),
             "green", BoardTolerance(0.1, 2e-4), BoardTolerance(0.05, 3e-4),
-            plane_margin_mm=12.0, stability=Stability(5e-5, 0.01, 0.1, 5e-5)),
+            plane_margin_mm=12.0, stability=Stability(5e-5, 0.01, 0.1, 5e-5), row_time_us=26.0),
         Sources("/data/set/camera", "recordings/planes-1", "C:/pictures/scan", "recordings/check-1"),
         Options("three-crossings", 0.3, CameraOptions(False, frozenset({"p1", "k2"}), True, "all"), "my part",
                 StripeSettings(8.5, 120), frozenset({"camera/b.png", "planes/pose02", "scan/ä ö.png"}), False, True,
@@ -117,6 +117,7 @@ WHOLE = {
     ("rig", "gauge"),
     ("rig", "unstated"),
     ("rig", "stability"),
+    ("rig", "row_time_us"),
     ("options", "stripe"),
     ("options", "plane_stripe"),
 } | {("inspection", of) for of in ("frame", "temperature", "master")}
