@@ -9,8 +9,12 @@ needed, and what points have in common stays common.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+<<<<<<< HEAD
 from dataclasses import dataclass
 from functools import partial
+=======
+from dataclasses import dataclass, replace
+>>>>>>> 67a6f7b (Channels by step and bends of a profile are back where they were lost)
 
 import numpy as np
 
@@ -105,6 +109,7 @@ class CommonErrors:
             np.array([parameters_of(camera), *(parameters_of(one.camera) for one in deviations)]),
             np.array([fan.pis, *(one.fan.pis for one in deviations)]),
             np.zeros((1 + len(deviations), 0, 3)),
+            _bends(fan, deviations),
         )
 
 
@@ -136,14 +141,8 @@ def solve_common(
         again = solve(crossings, line, one.camera, one.fan, progress=reported.within_step)
         sweeps.append(again.pis[np.searchsorted(again.frames, scan.sweep_frames)])
         reported("calibration uncertainty", number + 1, len(deviations))
-    return CommonErrors(
-        features.image_size,
-        tuple(one.source for one in deviations),
-        np.array([parameters_of(camera), *(parameters_of(one.camera) for one in deviations)]),
-        np.array([fan.pis, *(one.fan.pis for one in deviations)]),
-        np.array(sweeps),
-        _bends(fan, deviations),
-    )
+    of_fan = CommonErrors.of_fan(camera, fan, deviations)
+    return replace(of_fan, image_size=features.image_size, sweeps=np.array(sweeps))
 
 
 def _bends(fan: Fan, deviations: Sequence[Deviation]) -> Array | None:

@@ -1,15 +1,20 @@
 """Thickness by the step on light profiles: faces found, tilt told or taken, uncertainty as large as the errors."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from core.calibrate.deviations import Deviation
 from core.inspect.profile_faces import faces_of, stretches
 from core.inspect.step_height import NO_FACES, NO_TILT, NOT_PLANE, KnownTilt, Step, measure_steps, step_of
+from core.inspect.uncertainty.causes import CALIBRATIONS
 from core.inspect.uncertainty.point_errors import PointErrors
 from core.messages import Message
+from core.scan.common_errors import CommonErrors
 from core.scan.surface.cloud import FAN, Cloud
 from core.scan.surface.triangulate import join
-from tests.inspect.profile_pictures import NORMAL, RIG, errors, fan_of, picture
+from tests.inspect.profile_pictures import CORRELATION_PX, NORMAL, RIG, errors, fan_of, picture
 from tests.shared import REAL_SETS
 
 REAL = REAL_SETS / "gaugeblock"
@@ -157,3 +162,20 @@ def test_a_real_profile_of_a_block_gives_the_published_height():
     assert isinstance(found, Step)
     assert found.thickness_mm == pytest.approx(19.876, abs=0.05)  # published; 19.835 to 20.070 by choice of baseline
     assert 0.01 < found.own_mm < 0.1
+
+
+def test_light_that_is_bent_widens_the_uncertainty_of_a_step():
+    form = np.zeros((RIG.fan.lines, 3, 3))
+    form[:, 0, 0] = 1e-5  # light is this times x² off its plane: 0.1 mm at 100 mm aside
+    bent = Deviation("bend", RIG.camera, replace(RIG.fan, bends=form))
+    cloud = picture(BLOCK, noise_px=0.02)
+    known, unknown = (
+        step_of(cloud, PointErrors(common=CommonErrors.of_fan(RIG.camera, RIG.fan, of), speckle_px=CORRELATION_PX))
+        for of in ((bent,), ())
+    )
+    assert isinstance(known, Step)
+    assert isinstance(unknown, Step)
+    of_bend = [one for one in known.effects if one.source == CALIBRATIONS["bend"]]
+    assert len(of_bend) == 1
+    assert np.linalg.norm(of_bend[0].factor) > 1e-3
+    assert len(known.effects) == len(unknown.effects) + 1

@@ -104,8 +104,9 @@ class RecordingSet:
             If it is damaged or unreadable; names the file.
         """
         data = read_bytes(path)
-        self.hashes[self.name_of(path)] = hashlib.sha256(data).hexdigest()
-        return decode_picture(data, path, self.rig.channel)
+        name = self.name_of(path)
+        self.hashes[name] = hashlib.sha256(data).hexdigest()
+        return decode_picture(data, path, self.rig.channel_of(name.partition("/")[0]))
 
     def id_of(self, paths: Iterable[Path]) -> str:
         """Twelve hex digits that name some pictures by what is in them, as far as they have been read."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Annotated, Any, Literal, TypeAlias
 
@@ -32,6 +32,7 @@ _A_LENGTH = label("a length in mm above 0 and at most 5000")
 _TWO_COUNTS = label("two whole numbers from 3 to 500, [columns, rows]")
 _Vertex = Annotated[list[Annotated[float, Field(allow_inf_nan=False)]], Field(min_length=2, max_length=2)]
 _Polygon = Annotated[list[_Vertex], Field(min_length=3)]
+_A_CHANNEL = '"red", "green" or "blue"'
 _A_POLYGON = label("a list of three or more [u, v] in pixels")
 
 
@@ -219,6 +220,14 @@ class _Camera(Table):
     )
 
 
+class _Channels(Table):
+    """[channels]: what each step looks at, where that is not the `channel` of all."""
+
+    camera: Channel | None = Field(None, description=_A_CHANNEL)
+    planes: Channel | None = Field(None, description=_A_CHANNEL)
+    scan: Channel | None = Field(None, description=_A_CHANNEL)
+
+
 class RigTables(Table):
     """What rig.toml holds, and project.json under "rig"; a step that wants a table that is not there complains."""
 
@@ -227,7 +236,8 @@ class RigTables(Table):
     laser_fan: _LaserFan | None = Field(None, description="a table [laser_fan] with lines and angle_deg")
     gauge: GaugeTable | None = Field(None, description="a table [gauge]")
     camera: _Camera | None = Field(None, description="a table [camera] with row_time_us")
-    channel: Literal["red", "green", "blue"] | None = Field(None, description='"red", "green" or "blue"')
+    channel: Channel | None = Field(None, description=_A_CHANNEL)
+    channels: _Channels | None = Field(None, description="a table [channels] with camera, planes or scan")
     plan: PlanTable | None = Field(None, description="a table [plan]")
     stability: _Stability | None = Field(
         None, description="a table [stability] with turn_urad, shift_um, centre_px and focal_ppm"
@@ -268,11 +278,21 @@ class GaugeSpec:
 
 
 @dataclass(frozen=True, slots=True)
+class Channels:
+    """The channel of colour pictures that each step looks at; None where it is the one of all."""
+
+    camera: Channel | None = None
+    planes: Channel | None = None
+    scan: Channel | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class Rig:
     """What rig.toml says. `angle` between neighbouring lines is in rad (0 with one line).
 
     `camera_board` and `plane_board` say how true the two targets are, `plane_margin_mm` how far the plate of the second
-    goes on beyond what is printed on it, None if that is not known. `unstated` are the tables that rig.toml does not
+    goes on beyond what is printed on it, None if that is not known. `channels` are those of steps that look at another
+    channel of colour pictures than `channel`, see :meth:`channel_of`. `unstated` are the tables that rig.toml does not
     have: what they would say is as in the paper's rig, and no step may rest on it (:func:`require_tables`).
     """
 
@@ -290,6 +310,12 @@ class Rig:
     """How far it may have changed since its calibration; None: nothing is stated."""
     row_time_us: float | None = None
     """Time from one row of a picture to the next of a rolling shutter, 0 for a global one; None: not stated."""
+    channels: Channels = Channels()
+
+    def channel_of(self, part: str) -> Channel | None:
+        """The channel in which a part of a set ("camera", "planes", "scan", "check") is looked at, if any."""
+        own: Channel | None = getattr(self.channels, "planes" if part == "check" else part, None)
+        return own or self.channel
 
 
 def default_rig() -> Rig:
@@ -346,6 +372,8 @@ def rig_of(tables: RigTables, path: Path, within: str = "") -> Rig:
         stated["stability"] = tables.stability.stability()
     if tables.camera is not None:
         stated["row_time_us"] = tables.camera.row_time_us
+    if tables.channels is not None:
+        stated["channels"] = Channels(**tables.channels.model_dump())
     unstated = frozenset(name for name in STEP_TABLES if getattr(tables, name) is None)
     return replace(
         rig, gauge=_gauge(tables.gauge) if tables.gauge else None, channel=tables.channel, unstated=unstated, **stated
@@ -356,6 +384,7 @@ def rig_tables(rig: Rig) -> dict[str, Any]:
     """The tables of `rig` as rig.toml has them, without those that are not there; `RigTables` checks them."""
     tables = {
         "channel": rig.channel,
+        "channels": _present(asdict(rig.channels)) or None,
         "camera_target": _target_table(rig.camera_target) | _tolerance_table(rig.camera_board),
         "plane_target": _target_table(rig.plane_target)
         | _tolerance_table(rig.plane_board)

@@ -139,7 +139,9 @@ class _Recording:
         written = reference.stat().st_mtime_ns if reference is not None and reference.exists() else 0
         taken = tuple(taken_frames(found, options)) or found.frames
         seen = taken if reference is None else taken[:LOOK_AHEAD]
-        return cls(reference, written, seen, found.rig.channel, options.stripe, settled, found, options, progress)
+        return cls(
+            reference, written, seen, found.rig.channel_of("scan"), options.stripe, settled, found, options, progress
+        )
 
 
 @lru_cache(maxsize=2)

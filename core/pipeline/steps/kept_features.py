@@ -64,7 +64,7 @@ def features_key(found: RecordingSet, options: Options, camera: Camera) -> str:
     pictures = [(found.name_of(path), found.hashes.get(found.name_of(path), "")) for path in _pictures(found, options)]
     rests_on = {
         "program": program_text(_SCAN_ROOMS),
-        "channel": found.rig.channel,
+        "channel": found.rig.channel_of("scan"),
         "camera": [camera.matrix.tolist(), camera.distortion.tolist()],
         "stripe": asdict(options.stripe) if options.stripe else None,
         "frames": [found.name_of(path) for path in found.frames],
@@ -139,22 +139,22 @@ def _path(project_folder: Path, step: str) -> Path:
 
 
 def _views_key(project: Project, found: RecordingSet) -> str:
-    return _key(project, "camera_target", found, found.camera)
+    return _key(project, "camera", found, found.camera)
 
 
 def _poses_key(project: Project, found: RecordingSet) -> str:
-    return _key(project, "plane_target", found, _pose_pictures(found), project.accepted.camera)
+    return _key(project, "planes", found, _pose_pictures(found), project.accepted.camera)
 
 
 def _pose_pictures(found: RecordingSet) -> list[Path]:
     return [path for pair in found.planes for path in (pair.on, pair.off) if path is not None]
 
 
-def _key(project: Project, target: str, found: RecordingSet, pictures: Sequence[Path], camera: str = "") -> str:
+def _key(project: Project, step: str, found: RecordingSet, pictures: Sequence[Path], camera: str = "") -> str:
     rests_on: dict[str, Any] = {
         "program": program_text(_CALIBRATION_ROOMS),
-        "target": rig_tables(project.rig)[target],
-        "channel": project.rig.channel,
+        "target": rig_tables(project.rig)["camera_target" if step == "camera" else "plane_target"],
+        "channel": project.rig.channel_of(step),
         "camera": camera,
         "pictures": [(found.name_of(path), found.hashes.get(found.name_of(path), "")) for path in pictures],
     }

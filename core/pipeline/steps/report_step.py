@@ -185,8 +185,8 @@ def _rig_in_words(rig: Rig, image_size: tuple[int, int], words: Words) -> Mappin
     size = {"width": image_size[0], "height": image_size[1]}
     angle = words.general(math.degrees(rig.angle))
     said = {
-        label("Picture"): words("{width} × {height} px, {channel} channel", **size, channel=rig.channel)
-        if rig.channel
+        label("Picture"): words("{width} × {height} px, {channel} channel", **size, channel=rig.channel_of("scan"))
+        if rig.channel_of("scan")
         else words("{width} × {height} px", **size),
         label("Camera target"): target_in_words(rig.camera_target, words),
         label("Plane target"): target_in_words(rig.plane_target, words),

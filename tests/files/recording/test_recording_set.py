@@ -142,3 +142,13 @@ def test_two_references(folder):
     (folder / "scan" / "reference.bmp").write_bytes(cv2.imencode(".bmp", picture())[1].tobytes())
     with pytest.raises(InputError, match="there are 2 references"):
         open_set(folder)
+
+
+def test_pictures_are_read_in_the_channel_of_their_step(tmp_path):
+    bgr = np.zeros((20, 20, 3), np.uint8) + np.array([10, 20, 30], np.uint8)
+    for part in ("camera", "planes", "scan"):
+        (tmp_path / part).mkdir()
+        cv2.imwrite(str(tmp_path / part / "a.png"), bgr)
+    (tmp_path / "rig.toml").write_text('channel = "green"\n[channels]\ncamera = "blue"\nscan = "red"\n', "utf-8")
+    found = open_set(tmp_path)
+    assert [int(found.read(tmp_path / part / "a.png")[0, 0]) for part in ("camera", "planes", "scan")] == [10, 20, 30]

@@ -270,3 +270,19 @@ def test_a_polygon_belongs_to_its_rig_alone():
         spec.upper_polygon_px[0, 0] = 7
     with pytest.raises(ValueError, match="upper_polygon_px has shape"):
         GaugeSpec(upper_polygon_px=np.zeros(6))
+
+
+def test_each_step_may_have_a_channel_of_its_own(tmp_path):
+    path = tmp_path / "rig.toml"
+    path.write_text('channel = "green"\n[channels]\ncamera = "blue"\nscan = "red"\n', encoding="utf-8")
+    rig = read_rig(path)
+    assert [rig.channel_of(part) for part in ("camera", "planes", "check", "scan")] == ["blue", "green", "green", "red"]
+    path.write_text(rig_to_toml(rig), encoding="utf-8")
+    assert read_rig(path) == rig
+
+
+def test_an_unknown_channel_of_a_step_is_refused(tmp_path):
+    path = tmp_path / "rig.toml"
+    path.write_text('[channels]\nscan = "violet"\n', encoding="utf-8")
+    with pytest.raises(InputError, match="red"):
+        read_rig(path)

@@ -60,7 +60,7 @@ class Look(QObject):
             self,
             jobs.READ_PICTURE,
             path,
-            self._model.project.rig.channel,
+            self._model.project.rig.channel_of(self._work.STEP),
             label=self._label,
             on_done=lambda found: self.picture.emit(name, found) if name == self.current else None,
             offers={},

@@ -59,7 +59,7 @@ class StepPictures(QObject):
     def follow(self) -> None:
         """The project is another: list its pictures, unless that was done."""
         project, folder = self._model.project, folder_of(self._model, self._step)
-        of = f"{getattr(project.sources, self._step)}|{project.rig.channel}"
+        of = f"{getattr(project.sources, self._step)}|{project.rig.channel_of(self._step)}"
         if of == self._listed:
             return
         if of != self._thumbnails_of:
@@ -94,7 +94,12 @@ class StepPictures(QObject):
                 self._make_thumbnails(of, later)
 
         self._bench.run_quick(
-            self, jobs.THUMBNAILS, list(now), self._model.project.rig.channel, label=tr("Small pictures"), on_done=made
+            self,
+            jobs.THUMBNAILS,
+            list(now),
+            self._model.project.rig.channel_of(self._step),
+            label=tr("Small pictures"),
+            on_done=made,
         )
 
 

@@ -206,7 +206,7 @@ class InspectPresenter(StepPresenter):
             self,
             jobs.READ_PICTURE,
             scans / Path(name).name,
-            self.project.rig.channel,
+            self.project.rig.channel_of("scan"),
             label=self.tr("Reading a picture"),
             on_done=lambda picture: self.picture_ready.emit(name, picture) if name == self.picture else None,
             on_failed=lambda _: self.choose_picture(RELIEF),

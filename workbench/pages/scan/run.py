@@ -137,7 +137,7 @@ class ScanRun(QObject):
             self,
             jobs.DISPLAY_PICTURE,
             folder / short(detail.preview.name),
-            self._model.project.rig.channel,
+            self._model.project.rig.channel_of("scan"),
             DISPLAY_PX,
             label=self.tr("Reading a picture"),
             on_done=lambda answer: self._seen(detail, *answer),

@@ -112,7 +112,7 @@ class FrameScrub(QObject):
             self.current,
             self._model.folder,
             project.sources.scan,
-            project.rig.channel,
+            project.rig.channel_of("scan"),
             project.accepted,
             options.stripe,
             options.excluded_in("scan"),

@@ -69,7 +69,7 @@ class FrameThumbnails(QObject):
             self,
             jobs.STRIPE_THUMBNAILS,
             [folder / short(name) for name in names],
-            self._model.project.rig.channel,
+            self._model.project.rig.channel_of("scan"),
             label=self.tr("Small pictures"),
             on_done=ended,
             on_failed=lambda _: ended((None,) * len(names)),
@@ -78,4 +78,4 @@ class FrameThumbnails(QObject):
 
     def _source(self) -> str:
         project = self._model.project
-        return f"{self._model.folder}|{project.sources.scan}|{project.rig.channel}"
+        return f"{self._model.folder}|{project.sources.scan}|{project.rig.channel_of('scan')}"
