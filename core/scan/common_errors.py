@@ -9,12 +9,8 @@ needed, and what points have in common stays common.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-<<<<<<< HEAD
-from dataclasses import dataclass
-from functools import partial
-=======
 from dataclasses import dataclass, replace
->>>>>>> 67a6f7b (Channels by step and bends of a profile are back where they were lost)
+from functools import partial
 
 import numpy as np
 

@@ -47,7 +47,6 @@ def full_project():
         ProjectInfo("Block 50", "gauge", "S/N 7", "Ö. Ärzt", "ACME", "Lab 3", 20.5, 21, 'quotes " and\nlines — σ'),
         Rig(Charuco(9, 7, 20, 15), CircleGrid(7, 6, 37.5), 2, math.radians(4.0), GaugeSpec(50, 0.2, POLYGON, POLYGON),
             "green", BoardTolerance(0.1, 2e-4), BoardTolerance(0.05, 3e-4),
-            "green", BoardTolerance(0.1, 2e-4), BoardTolerance(0.05, 3e-4),
             plane_margin_mm=12.0, stability=Stability(5e-5, 0.01, 0.1, 5e-5), row_time_us=26.0,
             channels=Channels("red", "blue", "red")),
         Sources("/data/set/camera", "recordings/planes-1", "C:/pictures/scan", "recordings/check-1"),
