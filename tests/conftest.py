@@ -1,20 +1,35 @@
 import faulthandler
 import gc
+import itertools
 import os
+import shutil
+import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
+from core.files.results.rig_history import DATA
 from tests.shared import SAID_ALOUD, made_once
+
+_TESTS = itertools.count()
 
 
 @pytest.hookimpl(trylast=True)
 def pytest_configure(config: pytest.Config) -> None:
     """A crash tells of the thread that crashed, not of all: logs that are cut short lose the one that matters."""
     config.stash[SAID_ALOUD] = os.dup(2)
+    own = tempfile.mkdtemp(prefix="trisect-data-")  # histories of rigs: not those of whoever runs the tests
+    os.environ[DATA] = own
+    config.add_cleanup(lambda: shutil.rmtree(own, ignore_errors=True))
     if faulthandler.is_enabled():
         faulthandler.enable(config.stash[SAID_ALOUD], all_threads=False)
+
+
+@pytest.fixture(autouse=True)
+def own_history(monkeypatch: pytest.MonkeyPatch) -> None:
+    """No test knows the checks of another one."""
+    monkeypatch.setenv(DATA, f"{os.environ[DATA]}/{next(_TESTS)}")
 
 
 @pytest.hookimpl(wrapper=True)

@@ -15,8 +15,10 @@ from core.cli import output
 from core.cli.options import ExitCode
 from core.errors import InputError
 from core.files.recording.options import Options, StatedTilt
-from core.files.recording.recording_set import excluded_names, open_set
+from core.files.recording.recording_set import RIG, excluded_names, open_set
+from core.files.recording.rig import read_rig
 from core.files.results.check_file import InterimCheck
+from core.files.results.rig_history import RigHistory, history_file
 from core.image.stripes.stripe import StripeSettings
 from core.inspect.results import GaugeResult
 from core.messages import Message, visible
@@ -29,7 +31,8 @@ from core.pipeline.steps.planes_step import planes_step
 from core.pipeline.steps.profile_step import profile_step
 from core.pipeline.steps.run import RunResult, run
 from core.pipeline.steps.scan_step import scan_step
-from core.pipeline.steps.workspace import Workspace
+from core.pipeline.steps.validity import history_of
+from core.pipeline.steps.workspace import Workspace, read_calibration
 from core.progress import Progress
 from core.report.wording import grouped, with_uncertainty
 from core.scan.method import Method
@@ -151,11 +154,25 @@ def run_planes(folder: Path, out: Path, chosen: Options, progress: Progress) -> 
     return _shown(work, "planes", output.fan_rows(calibration), output.fan_json(calibration), "planes")
 
 
-def run_check(folder: Path, out: Path, chosen: Options, progress: Progress) -> tuple[InterimCheck, Shown]:
-    """Check step."""
+def run_check(
+    folder: Path, out: Path, chosen: Options, progress: Progress, celsius: float | None = None
+) -> tuple[InterimCheck, Shown]:
+    """Check step; `celsius` is the temperature of the air."""
     work = _open(folder, out)
-    check = check_step(work, chosen, progress)
+    check = check_step(work, chosen, progress, celsius)
     return check, _shown(work, "check", output.check_rows(check), output.check_json(check), "check")
+
+
+def rig_history(folder: Path, out: Path) -> tuple[RigHistory, Shown]:
+    """The checks so far of the rig of the set in `folder`, with the calibrations in `out`."""
+    calibration = read_calibration(out)
+    history = history_of(read_rig(folder / RIG), calibration.id)
+    values = {
+        "rig": history.name,
+        "checks": [output.past_check_json(one, history.chart(one)) for one in history.checks],
+    }
+    file = history_file(history.name)
+    return history, Shown(output.history_rows(history), values, files={"history": file} if file.exists() else {})
 
 
 def run_scan(folder: Path, out: Path, chosen: Options, progress: Progress) -> Shown:

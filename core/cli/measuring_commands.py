@@ -127,13 +127,29 @@ def planes(
 
 
 @commands.command(epilog=EPILOG)
-def check(folder: Set, out: Out, stripe_width: StripeWidth = 0.0, contrast: Contrast = 0.0, json: Json = False) -> None:
+def check(
+    folder: Set,
+    out: Out,
+    stripe_width: StripeWidth = 0.0,
+    contrast: Contrast = 0.0,
+    celsius: Annotated[
+        float | None, typer.Option(metavar="°C", help="Temperature of the air, for the rig's history.")
+    ] = None,
+    history: Annotated[
+        bool, typer.Option("--history", help="Check nothing: show the checks of this rig so far, with their limits.")
+    ] = False,
+    json: Json = False,
+) -> None:
     """Check by pictures of the day in SET/check whether camera and laser are where they were calibrated, in DIR."""
     from core.cli import measuring
 
+    if history:
+        past, shown = measuring.rig_history(folder, out)
+        shown.show(as_json=json)
+        raise typer.Exit(measuring.exit_code(past.checks[-1].verdict if past.checks else "", good=("passed",)))
     options = measuring.plane_options(False, False, stripe_width, contrast)
     with bars() as progress:
-        result, shown = measuring.run_check(folder, out, options, progress)
+        result, shown = measuring.run_check(folder, out, options, progress, celsius)
     shown.show(as_json=json)
     raise typer.Exit(measuring.exit_code("conforming" if result.passed else "changed"))
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import sys
 from collections.abc import Mapping, Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -16,11 +17,14 @@ from core.files.json_text import to_json
 from core.files.results.check_file import InterimCheck
 from core.files.results.gauge_file import gauge_summary
 from core.files.results.profile_file import PictureStep
+from core.files.results.rig_history import PastCheck, RigHistory
 from core.inspect.results import GaugeResult
 from core.messages import Message, visible
+from core.pipeline.steps.validity import date_of
 from core.report.wording import count, decimals_of, fixed, grouped, thickness_line, with_uncertainty
 from core.scan.features.frames import NO_REASON
 from core.scan.results import FrameRecord
+from core.study.control_chart import ControlChart
 
 Rows = list[tuple[str, str]]
 _NAMES_SHOWN = 3
@@ -158,6 +162,33 @@ def check_json(check: InterimCheck) -> dict[str, Any]:
         "error_mm": check.error_mm,
         "unseen_mm": check.unseen_mm,
     }
+
+
+def history_rows(history: RigHistory) -> Rows:
+    """Each check of a rig: when, what came of it, by how much a step was off, and within which limits."""
+    if not history.checks:
+        return [("rig", f"{history.name}: never checked on this computer")]
+    return [
+        ("rig", history.name),
+        *((date_of(one.taken_at), _past_check(one, history.chart(one))) for one in history.checks),
+    ]
+
+
+def _past_check(check: PastCheck, chart: ControlChart) -> str:
+    where = "within" if chart.holds(check.error_mm) else "outside"
+    rule = f"by {chart.n} checks before" if chart.own else "by its stated stability"
+    warm = "" if check.celsius is None else f", {check.celsius:g} °C"
+    return (
+        f"{check.verdict}, {check.offset_px:.2f} px, {check.offset_mm:.3f} mm, p = {check.p:.2g}; "
+        f"{check.step_mm:g} mm off by {check.error_mm:+.3f} mm, {where} {chart.lower:+.3f} … {chart.upper:+.3f} mm "
+        f"{rule}{warm}"
+    )
+
+
+def past_check_json(check: PastCheck, chart: ControlChart) -> dict[str, Any]:
+    """The same for programs."""
+    limits = {"lower_mm": chart.lower, "upper_mm": chart.upper, "own": chart.own, "n": chart.n}
+    return {**asdict(check), "taken_at": check.taken_at.isoformat(), "limits": limits}
 
 
 def frame_rows(frames: Sequence[FrameRecord], points: int) -> Rows:

@@ -129,8 +129,9 @@ def _scan(project: Project) -> dict[str, str]:
     options, stripe = project.options, project.options.stripe
     settings = [options.method, options.sigma_cut_mm, [stripe.width_px, stripe.contrast] if stripe else None]
     tables = rig_tables(project.rig)
-    stability, camera = tables.get("stability"), tables.get("camera")
+    stability, camera, validity = (tables.get(name) for name in ("stability", "camera", "validity"))
     stated = {label("stability of the rig"): _digest(stability)} if stability else {}
+    stated |= {label("validity of calibration and check"): _digest(validity)} if validity else {}
     stated |= {label("row time of the camera"): _digest(camera)} if camera else {}
     if project.sources.check:
         stated[label("pictures of the interim check")] = project.sources.check

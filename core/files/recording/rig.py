@@ -228,6 +228,17 @@ class _Channels(Table):
     scan: Channel | None = Field(None, description=_A_CHANNEL)
 
 
+_DAYS = Annotated[float, Field(gt=0, le=36500, allow_inf_nan=False)]
+_A_TIME_IN_DAYS = label("a number of days above 0")
+
+
+class _Validity(Table):
+    """[validity]: how long a calibration holds, and how long a check of it."""
+
+    calibration_days: _DAYS | None = Field(None, description=_A_TIME_IN_DAYS)
+    check_days: _DAYS | None = Field(None, description=_A_TIME_IN_DAYS)
+
+
 class RigTables(Table):
     """What rig.toml holds, and project.json under "rig"; a step that wants a table that is not there complains."""
 
@@ -241,6 +252,12 @@ class RigTables(Table):
     plan: PlanTable | None = Field(None, description="a table [plan]")
     stability: _Stability | None = Field(
         None, description="a table [stability] with turn_urad, shift_um, centre_px and focal_ppm"
+    )
+    validity: _Validity | None = Field(None, description="a table [validity] with calibration_days, check_days or both")
+    name: str | None = Field(
+        None,
+        pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]{0,39}$",
+        description="a name of at most 40 letters, digits, - and _",
     )
 
 
@@ -287,6 +304,14 @@ class Channels:
 
 
 @dataclass(frozen=True, slots=True)
+class Validity:
+    """For how many days a calibration holds, and for how many a check of it; None: without limit."""
+
+    calibration_days: float | None = None
+    check_days: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class Rig:
     """What rig.toml says. `angle` between neighbouring lines is in rad (0 with one line).
 
@@ -308,6 +333,9 @@ class Rig:
     unstated: frozenset[str] = frozenset()
     stability: Stability | None = None
     """How far it may have changed since its calibration; None: nothing is stated."""
+    validity: Validity = field(default_factory=Validity)
+    name: str = ""
+    """What its history is kept by; nothing: each calibration has a history of its own."""
     row_time_us: float | None = None
     """Time from one row of a picture to the next of a rolling shutter, 0 for a global one; None: not stated."""
     channels: Channels = Channels()
@@ -370,19 +398,27 @@ def rig_of(tables: RigTables, path: Path, within: str = "") -> Rig:
         stated |= {"lines": tables.laser_fan.lines, "angle": math.radians(tables.laser_fan.angle_deg or 0.0)}
     if tables.stability is not None:
         stated["stability"] = tables.stability.stability()
+    if tables.validity is not None:
+        stated["validity"] = Validity(tables.validity.calibration_days, tables.validity.check_days)
     if tables.camera is not None:
         stated["row_time_us"] = tables.camera.row_time_us
     if tables.channels is not None:
         stated["channels"] = Channels(**tables.channels.model_dump())
     unstated = frozenset(name for name in STEP_TABLES if getattr(tables, name) is None)
     return replace(
-        rig, gauge=_gauge(tables.gauge) if tables.gauge else None, channel=tables.channel, unstated=unstated, **stated
+        rig,
+        gauge=_gauge(tables.gauge) if tables.gauge else None,
+        channel=tables.channel,
+        unstated=unstated,
+        name=tables.name or "",
+        **stated,
     )
 
 
 def rig_tables(rig: Rig) -> dict[str, Any]:
     """The tables of `rig` as rig.toml has them, without those that are not there; `RigTables` checks them."""
     tables = {
+        "name": rig.name or None,
         "channel": rig.channel,
         "channels": _present(asdict(rig.channels)) or None,
         "camera_target": _target_table(rig.camera_target) | _tolerance_table(rig.camera_board),
@@ -392,6 +428,7 @@ def rig_tables(rig: Rig) -> dict[str, Any]:
         "laser_fan": _present({"lines": rig.lines, "angle_deg": _in_degrees(rig.angle) if rig.angle else None}),
         "gauge": None if rig.gauge is None else _gauge_table(rig.gauge),
         "stability": None if rig.stability is None else _stability_table(rig.stability),
+        "validity": _present(asdict(rig.validity)) or None,
         "camera": None if rig.row_time_us is None else {"row_time_us": rig.row_time_us},
     }
     return {name: table for name, table in _present(tables).items() if name not in rig.unstated}

@@ -76,6 +76,8 @@ class ScanFile:
         What the fan's own points and the sweeps are both wrong by; None if not known.
     change_p
         Probability that chance alone sets calibrations and pictures of the scan so far apart; 1 if not known.
+    doubt
+        Why nothing measured in the scan proves conformity, if calibration or check did not hold on its day; else None.
     """
 
     features: ScanFeatures
@@ -90,6 +92,7 @@ class ScanFile:
     common: CommonErrors | None = None
     speckle: FanSpeckle | None = None
     change_p: float = 1.0
+    doubt: Message | None = None
 
 
 def write_scan(path: Path, scan: ScanFile) -> None:
@@ -112,6 +115,7 @@ def write_scan(path: Path, scan: ScanFile) -> None:
         "notes": pack_messages(features.notes),
         "stripes": _stripes(features.fan_stripe, features.sweep_stripe),
         "change_p": np.array(scan.change_p),
+        "doubt": pack_messages((scan.doubt,)),
         **({f"common_{name}": np.asarray(getattr(common, name)) for name in _COMMON} if common else {}),
         **({} if common is None or common.bends is None else {"common_bends": common.bends}),
         **({f"speckle_{name}": getattr(speckle, name) for name in _SPECKLE} if speckle else {}),
@@ -179,6 +183,7 @@ def _unpacked(arrays: Arrays) -> ScanFile:
         common=_common(arrays, (width, height)),
         speckle=_speckle(arrays),
         change_p=float(arrays.get("change_p", 1.0)),
+        doubt=next(iter(unpack_messages(arrays["doubt"])), None) if "doubt" in arrays else None,
     )
 
 

@@ -18,7 +18,7 @@ from core.pipeline.live.desk import Desk
 from core.pipeline.live.events import LiveChecks
 from core.pipeline.live.exposure import ExposureAdviser
 from core.pipeline.live.preview import ScanPreviewer
-from core.scan.preview.preflight import Check, Preflight
+from core.scan.preview.preflight import FRESH_DAYS, Check, Preflight
 
 CHECK_EVERY_S = 1.0
 """How often it is looked whether the reference still holds, while nothing is recorded."""
@@ -73,6 +73,7 @@ class ScanChecks:
             fan=request.fan,
             age_s=None if request.calibrated_s is None else max(0.0, time.time() - request.calibrated_s),
             stripe_px=self._stripe_px,
+            fresh_days=request.rig.validity.calibration_days or FRESH_DAYS,
         ).checks()
         checks = (*checks, rig_check(request.check, datetime.now().astimezone()))
         if checks != self._told:

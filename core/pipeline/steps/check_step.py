@@ -24,18 +24,26 @@ from core.files.recording.options import Options
 from core.files.recording.recording_set import CHECK, RecordingSet
 from core.files.recording.set_listing import taken_at
 from core.files.results.check_file import CheckedLine, CheckedPicture, InterimCheck, write_check
+from core.files.results.rig_history import PastCheck, keep_check
 from core.messages import Message
 from core.model import Camera
 from core.pipeline.steps.planes_step import measure_poses
+from core.pipeline.steps.validity import history_name, stated_validity
 from core.pipeline.steps.workspace import Calibration, Workspace
 from core.progress import Progress, silent
 
+SAME_DAY = 1.0
+"""Days within which a check says something of a scan."""
 STEP_MM = 50.0
 """Height of the step whose error is told where no nominal thickness is stated."""
 
 
-def check_step(work: Workspace, options: Options | None = None, progress: Progress = silent) -> InterimCheck:
+def check_step(
+    work: Workspace, options: Options | None = None, progress: Progress = silent, celsius: float | None = None
+) -> InterimCheck:
     """Check the calibrations in camera.json and planes.json by the pictures in SET/check, and write check.json.
+
+    The check goes into the rig's history, with the temperature of the air if it is known.
 
     Raises
     ------
@@ -79,10 +87,23 @@ def check_step(work: Workspace, options: Options | None = None, progress: Progre
                 stated_mm=float(np.linalg.norm(of_changes * stability.over_default)),
             )
         log.notes.append(check.sentence)
+        log.notes.extend(_kept(found, check, celsius))
+        log.notes.extend(stated_validity(found.rig))
         log.notes.extend(change.left_out)
         log.notes.extend(note for pose in checked for note in pose.located.features.notes)
         write_check(work.path("check"), check)
     return check
+
+
+def _kept(found: RecordingSet, check: InterimCheck, celsius: float | None) -> tuple[Message, ...]:
+    """Keep a check in the rig's history; what that says of it, or why it could not be kept."""
+    past = PastCheck.of(check, celsius)
+    try:
+        history = keep_check(history_name(found.rig, check.calibration_id), past)
+    except InputError as error:
+        return (Message("check.not_kept", "The check is not in the rig's history: {reason}", reason=error.message),)
+    outside = history.beyond(past)
+    return () if outside is None else (outside,)
 
 
 def since_calibration(
@@ -106,7 +127,25 @@ def since_calibration(
     InputError
         If the check's pictures have another size than the camera's.
     """
-    return _judged(found, calibration, options, progress, of_measured)[-1]
+    apart = _days_apart(found)
+    if apart <= SAME_DAY:
+        return _judged(found, calibration, options, progress, of_measured)[-1]
+    change = _judged(replace(found, check=()), calibration, options, progress, of_measured)[-1]
+    other_day = Message(
+        "check.another_day",
+        "The pictures of the check were taken {days:.0f} days from those of the scan: they say nothing of its day and "
+        "were not used; check again.",
+        days=apart,
+    )
+    return replace(change, left_out=(other_day,))
+
+
+def _days_apart(found: RecordingSet) -> float:
+    """Days between the pictures of the check and those measured; 0 where one of them is missing."""
+    if not found.check or not found.frames:
+        return 0.0
+    apart = taken_at([pair.on for pair in found.check]) - taken_at(found.frames)
+    return abs(apart.total_seconds()) / 86_400.0
 
 
 def _judged(

@@ -58,7 +58,7 @@ def gauge_step(work: Workspace, progress: Progress = silent) -> GaugeResult:
 def point_errors(scan: ScanFile) -> PointErrors:
     """How the errors of a scan's points hang together."""
     errors = PointErrors.of_scan(scan.features, scan.covariance, scan.common, scan.speckle, scan.pis.shape[1])
-    return replace(errors, doubt=CHANGED) if scan.change_p < PROVES_NOTHING else errors
+    return replace(errors, doubt=CHANGED if scan.change_p < PROVES_NOTHING else scan.doubt)
 
 
 def gauge_if_possible(work: Workspace, progress: Progress = silent) -> tuple[GaugeResult | None, Message | None]:

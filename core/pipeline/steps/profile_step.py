@@ -26,6 +26,7 @@ from core.model.arrays import Array
 from core.pipeline.steps.check_step import assumed_stability, since_calibration
 from core.pipeline.steps.gauge_step import CHANGED
 from core.pipeline.steps.scan_step import feature_options, taken_frames
+from core.pipeline.steps.validity import doubt_of_the_day
 from core.pipeline.steps.workspace import Calibration, Workspace, check_size
 from core.progress import Progress, silent
 from core.scan.common_errors import CommonErrors
@@ -119,8 +120,9 @@ def profile_step(
         )
         shown = next(one for one in steps if one.faces.planes.normal is gauge.normal)
         cloud = _cloud(seen, shown.frame, common)
-        if change.p < PROVES_NOTHING:
-            gauge = doubted(gauge, CHANGED)
+        doubt = CHANGED if change.p < PROVES_NOTHING else doubt_of_the_day(work, calibration)
+        if doubt is not None:
+            gauge = doubted(gauge, doubt)
         notes = (*change.notes, *gauge.notes, *_assumed(fan.lines, tilt, shown), *assumed_stability(found))
         gauge = replace(gauge, notes=notes)
         log.frames.extend(_records(pictures, seen))

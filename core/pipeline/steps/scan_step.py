@@ -21,6 +21,7 @@ from core.messages import Message, from_json, plain, plural_message
 from core.model import Camera
 from core.pipeline.steps.check_step import assumed_stability, since_calibration
 from core.pipeline.steps.kept_features import features_key, kept_features
+from core.pipeline.steps.validity import doubt_of_the_day
 from core.pipeline.steps.workspace import Calibration, Workspace, check_size
 from core.progress import Progress, silent, steps
 from core.scan.bend_correction import reconstruct_twice
@@ -101,7 +102,9 @@ def scan_step(
         common = solve_common(even, scan, camera, fan, change.deviations, options.method, progress)
         cloud = replace(scan.cloud, sigma_common=common.sigma(scan.cloud))
         scan = replace(scan, cloud=with_normals(cloud, progress=progress))
-        scan = replace(scan, notes=change.notes + scan.notes + assumed_stability(found))
+        doubt = doubt_of_the_day(work, calibration)
+        said = (*change.notes, *([doubt] if doubt else []))
+        scan = replace(scan, notes=(*said, *scan.notes, *assumed_stability(found)))
         log.frames.extend(scan.frames)
         log.notes.extend(left_out_notes(scan.frames))
         log.notes.extend(scan.notes)
@@ -110,7 +113,7 @@ def scan_step(
         mesh = build_mesh(surface, progress=progress)
         file = _file(features, scan, calibration.id, features_key(found, options, camera))
         with stage(progress if isinstance(progress, StageTimes) else None, "writing"):
-            _write(work, scan, mesh, replace(file, common=common, change_p=change.p))
+            _write(work, scan, mesh, replace(file, common=common, change_p=change.p, doubt=doubt))
     return Measured(scan, mesh)
 
 

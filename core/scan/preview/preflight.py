@@ -64,6 +64,8 @@ class Preflight:
         Time since the older of the two was made; None if that is not known.
     stripe_px
         Median width (σ) of the fan's stripes when it was calibrated; None if that is not known.
+    fresh_days
+        For how many days a calibration holds.
     """
 
     lines: int
@@ -75,6 +77,7 @@ class Preflight:
     fan: Fan | None = None
     age_s: float | None = None
     stripe_px: float | None = None
+    fresh_days: float = FRESH_DAYS
 
     def checks(self) -> tuple[Check, ...]:
         """Make all checks, the reference first: the next three rest on it."""
@@ -185,7 +188,7 @@ class Preflight:
             unknown = Message("scan.check_age_unknown", "It is not known when camera and fan were calibrated.")
             return Check("calibration", "unknown", unknown)
         days = self.age_s / _DAY_S
-        if days > FRESH_DAYS:
+        if days > self.fresh_days:
             old = Message("scan.check_old", "The calibration is {n:.0f} days old: calibrate again.", n=days)
             return Check(*failed, old)
         if days < 1:

@@ -1,6 +1,7 @@
 """The interim check on rendered pictures, and what it makes of a measurement."""
 
 import json
+import os
 from dataclasses import replace
 
 import numpy as np
@@ -11,6 +12,7 @@ from core.calibrate.change import PROVES_NOTHING, displaced_fan
 from core.errors import InputError
 from core.files.recording.options import Options
 from core.files.recording.recording_set import open_set
+from core.files.recording.rig import Validity
 from core.files.results.gauge_file import read_thickness
 from core.files.results.scan_file import read_scan
 from core.inspect.conformity import Verdict
@@ -26,6 +28,7 @@ from core.report.wording import decision_sentence, verdict_sentence
 from core.simulate.recording import simulate_set
 from core.simulate.scenario import Scenario
 from tests.shared import made_once
+from tests.simulated import trisect
 
 RIG = Scenario(scale=0.25, frames=24, camera_views=10, plane_poses=8, check_poses=2, seed=5)
 COARSE = Options(sigma_cut_mm=0.3)
@@ -151,3 +154,40 @@ def test_a_whole_run_checks_first(unchanged, tmp_path):
 def test_a_set_without_pictures_of_a_check_says_what_to_record(unchanged, tmp_path):
     with pytest.raises(InputError, match="check: there are no pictures of an interim check; hold the plane target"):
         check_step(work_in(unchanged, tmp_path, with_check=False))
+
+
+def test_a_check_of_another_day_says_nothing_of_this_scan(unchanged, tmp_path):
+    work = work_in(unchanged, tmp_path)
+    pictures = []
+    for pair in work.found.check:
+        path = tmp_path / pair.on.name
+        path.write_bytes(pair.on.read_bytes())
+        os.utime(path, (0, 0))
+        pictures.append(replace(pair, on=path, off=None))
+    change = since_calibration(replace(work.found, check=tuple(pictures)), work.calibration(), Options())
+    without = since_calibration(replace(work.found, check=()), work.calibration(), Options())
+    assert {note.code for note in change.notes} == {"check.another_day"}
+    assert change.p == without.p
+
+
+def test_a_rig_to_be_checked_daily_that_was_not_proves_nothing(unchanged, tmp_path):
+    work = work_in(unchanged, tmp_path, with_check=False)
+    daily = replace(work.found.rig, validity=Validity(check_days=1.0))
+    work = replace(work, found=replace(work.found, rig=daily))
+    measured = scan_step(work, COARSE)
+    assert measured.scan.notes[0].code == "validity.never_checked"
+    gauge = gauge_step(work)
+    assert not gauge.complete and gauge.verdict is Verdict.NOT_PROVEN
+    assert gauge.notes[0].code == "validity.never_checked"
+
+
+def test_each_check_is_in_the_history_of_the_rig_and_is_shown(unchanged, tmp_path):
+    made, out = unchanged / "set", work_in(unchanged, tmp_path).out
+    said = trisect("check", made, "--out", out, "--celsius", 21.5)
+    assert said.code == 0, said.err
+    assert "[validity] in rig.toml" in said.out, "that nothing lapses is said"
+    said = trisect("check", made, "--out", out, "--history")
+    assert said.code == 0, said.err
+    assert "passed" in said.out and "by its stated stability, 21.5 °C" in said.out
+    (one,) = json.loads(trisect("check", made, "--out", out, "--history", "--json").out)["checks"]
+    assert one["limits"]["lower_mm"] < one["error_mm"] < one["limits"]["upper_mm"]

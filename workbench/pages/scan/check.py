@@ -10,6 +10,7 @@ from PySide6.QtCore import QObject, Signal
 from core.files.project.data import Project
 from core.files.project.keys import changed, finished, rests_on
 from core.files.results.check_file import InterimCheck
+from core.files.results.rig_history import PastCheck, RigHistory
 from workbench.bench import Bench
 from workbench.language import text_of, tr
 from workbench.pages.sources import folder_of, put_source
@@ -31,12 +32,14 @@ class CheckStage(StrEnum):
 class RigCheck(QObject):
     """Checks the accepted calibrations by pictures of the day, and records the result in the project.
 
-    `look` is the last result, whatever it was made from; None if there is none, or until it is read.
+    `look` is the last result, whatever it was made from; None if there is none, or until it is read. `history` are the
+    checks of the rig so far; None until they are read.
     """
 
     changed = Signal()
 
     look: InterimCheck | None
+    history: RigHistory | None
 
     def __init__(self, bench: Bench, parent: QObject | None = None) -> None:
         super().__init__(parent)
@@ -46,7 +49,7 @@ class RigCheck(QObject):
         self._forget()
 
     def _forget(self) -> None:
-        self.look, self._looked = None, ""
+        self.look, self.history, self._looked = None, None, ""
 
     @property
     def folder(self) -> Path | None:
@@ -87,6 +90,15 @@ class RigCheck(QObject):
         if not project.sources.check:
             return tr("Choose the pictures of the check first.")
         return ""
+
+    @property
+    def past(self) -> PastCheck | None:
+        """The result as the history has it."""
+        look, history = self.look, self.history
+        if look is None or history is None:
+            return None
+        same = (look.pictures_id, look.calibration_id)
+        return next((one for one in history.checks if (one.pictures_id, one.calibration_id) == same), None)
 
     def changed_since(self) -> tuple[str, ...]:
         """What the result rests on and is not what it was."""
@@ -144,9 +156,12 @@ class RigCheck(QObject):
         def read(look: InterimCheck | None) -> None:
             if self._looked == wanted:
                 self.look = look
+                self._read_history()
                 self.changed.emit()
 
-        self._bench.run_quick(self, jobs.SHOW_CHECK, folder, label=self.tr("Reading the check"), on_done=read)
+        self._bench.run_quick(
+            self, jobs.SHOW_CHECK, folder, label=self.tr("Reading the check"), on_done=read, offers={}
+        )
 
     def _checked(self, task: Task, folder: Path, project: Project, look: InterimCheck) -> None:
         if task is not self._task:
@@ -156,7 +171,25 @@ class RigCheck(QObject):
             done = finished("check", project, self._model.results)
             self.look, self._looked = look, f"{folder}|{done.key}|{done.at}"
             self._model.record("check", done)
+            self._read_history()
         self.changed.emit()
+
+    def _read_history(self) -> None:
+        wanted = self._looked
+
+        def read(history: RigHistory) -> None:
+            if self._looked == wanted:
+                self.history = history
+                self.changed.emit()
+
+        self._bench.run_quick(
+            self,
+            jobs.CHECK_HISTORY,
+            self._model.project,
+            label=self.tr("Reading the history of the rig"),
+            on_done=read,
+            offers={},
+        )
 
     def _not_checked(self, task: Task, project: Project, problem: str) -> None:
         if task is self._task:

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from PySide6.QtCore import QEvent
 from PySide6.QtWidgets import QFrame, QLabel, QPushButton, QWidget
 
 from core.files.results.check_file import InterimCheck
+from core.files.results.rig_history import PastCheck, RigHistory
 from core.pipeline.live.events import Detail, PlanesDetail
-from workbench.language import text_of, tr
+from workbench.language import number, text_of, tr
 from workbench.pages.live.presenter import LivePresenter
 from workbench.pages.scan.check import CheckStage, RigCheck
 from workbench.pages.words import capital, mm, px
@@ -20,6 +22,7 @@ from workbench.views.common import IconLabel, dress
 from workbench.views.forms.live_panel import ask_to_stop_other
 from workbench.views.layouts import enable, heading, in_column, in_row, muted, say
 from workbench.views.lists.value_rows import LEVEL_ICONS, ValueRow, ValueRows
+from workbench.views.plots.control import ControlPlot
 
 LEVELS: dict[str, Level] = {"passed": "good", "doubtful": "warn", "failed": "bad"}
 
@@ -32,7 +35,10 @@ class CheckCard(QFrame):
         self.setObjectName("card")
         self._check, self._live, self._seen = check, live, ""
         self.sign, self.word, self.sentence, self.rows = IconLabel(18), QLabel(), muted(), ValueRows()
-        self.take, self.choose, self.run = QPushButton(), QPushButton(self.tr("Folder …")), QPushButton()
+        self.chart = ControlPlot()
+        self.take, self.choose, self.run = QPushButton(), QPushButton(), QPushButton()
+        self.choose.setAccessibleName(self.tr("Folder with the pictures of the check"))
+        self.choose.setFixedWidth(36)  # three buttons fit side by side where the panel is narrow
         self.choose.setIcon(icon("mdi6.folder-open-outline"))
         self.take.clicked.connect(self._take)
         self.choose.clicked.connect(self._choose)
@@ -41,7 +47,9 @@ class CheckCard(QFrame):
         light = in_row(self.sign, (self.word, 1), spacing=6)
         buttons = in_row((self.take, 1), self.choose, (self.run, 1), spacing=6)
         title = heading(self.tr("Check of camera and laser"))
-        in_column(title, light, self.sentence, self.rows, buttons, on=self, margins=(10, 8, 10, 10), spacing=5)
+        in_column(
+            title, light, self.sentence, self.rows, self.chart, buttons, on=self, margins=(10, 8, 10, 10), spacing=5
+        )
 
     def refresh(self) -> None:
         """Show how far the check is."""
@@ -55,7 +63,9 @@ class CheckCard(QFrame):
         dress(self.word, f"color: {getattr(shades(), colour)}; font-weight: 600;")
         say(self.sentence, sentence)
         shown = check.look if stage in (CheckStage.CHECKED, CheckStage.OUTDATED) and not taking else None
-        self.rows.set_rows(figures(shown))
+        past = check.past if shown is not None else None
+        self.rows.set_rows(figures(shown, limits(check.history, past)))
+        self._show_chart(check.history, past)
         self.rows.setVisible(shown is not None)
         checking = stage is CheckStage.CHECKING
         self.take.setText(self.tr("Stop") if taking else self.tr("Take pictures"))
@@ -122,8 +132,24 @@ class CheckCard(QFrame):
             what = ", ".join(check.changed_since())
             return "warn", self.tr("Out of date"), tr("Changed since the check: {what}; check again.", what=what)
         words = {"good": self.tr("In order"), "warn": self.tr("In doubt"), "bad": self.tr("Changed")}
-        level = LEVELS[check.look.verdict]
-        return level, words[level], text_of(check.look.sentence)
+        level, said = LEVELS[check.look.verdict], [check.look.sentence]
+        outside = check.history.beyond(check.past) if check.history is not None and check.past is not None else None
+        if outside is not None:
+            level, said = "bad" if level == "bad" else "warn", [*said, outside]
+        return level, words[level], " ".join(map(text_of, said))
+
+    def _show_chart(self, history: RigHistory | None, past: PastCheck | None) -> None:
+        """All checks with these calibrations, each scaled to the height of the last one's step."""
+        checks = history.of_calibration(past.calibration_id) if history is not None and past is not None else ()
+        self.chart.setVisible(len(checks) > 1)
+        if history is None or past is None or len(checks) < 2:
+            return
+        values = [one.error_mm / one.step_mm * past.step_mm for one in checks]
+        tips = [when(one) + (f", {number(one.celsius, '.1f')} °C" if one.celsius is not None else "") for one in checks]
+        chart = history.chart(past)
+        self.chart.set_values(
+            values, [one.verdict == "passed" for one in checks], tips, (chart.lower, chart.centre, chart.upper)
+        )
 
     def _run(self) -> None:
         if self._check.stage is CheckStage.CHECKING:
@@ -142,8 +168,35 @@ class CheckCard(QFrame):
             self._check.use_folder(folder)
 
 
-def figures(look: InterimCheck | None) -> list[ValueRow]:
-    """How far off: label, value with unit, tip, level."""
+def when(check: PastCheck | InterimCheck) -> str:
+    """When its pictures were taken."""
+    return check.taken_at.astimezone().strftime("%Y-%m-%d %H:%M")
+
+
+def limits(history: RigHistory | None, past: PastCheck | None) -> list[ValueRow]:
+    """Where a step's error is to lie by the rig's history."""
+    if history is None or past is None:
+        return []
+    chart = history.chart(past)
+    tip = (
+        tr("Mean ± 3 standard deviations of the {n} checks before with these calibrations", n=chart.n)
+        if chart.own
+        else tr("Three standard uncertainties of what is stated or assumed of the rig's stability; after eight checks "
+                "their own scatter takes its place")
+    )  # fmt: skip
+    text = tr("{lower} … {upper} mm", lower=number(chart.lower, "+.3f"), upper=number(chart.upper, "+.3f"))
+    return [
+        (
+            tr("Its history allows") if chart.own else tr("Its stability allows"),
+            text,
+            tip,
+            "" if history.beyond(past) is None else "warn",
+        )
+    ]
+
+
+def figures(look: InterimCheck | None, allowed: Sequence[ValueRow]) -> list[ValueRow]:
+    """How far off, and what is `allowed`: label, value with unit, tip, level."""
     if look is None:
         return []
     step = tr("{step:g} mm", step=look.step_mm)
@@ -156,13 +209,14 @@ def figures(look: InterimCheck | None) -> list[ValueRow]:
             tr("By how much it would be measured too high now; nothing is corrected by it"),
             "",
         ),
+        *allowed,
         (
-            tr("Smallest error it would find"),
+            tr("Detects errors from"),
             mm(look.unseen_mm),
             tr("An error of a thickness of {step} up to this could have been overlooked (k = 2)", step=step),
             "",
         ),
-        (tr("Pictures taken"), look.taken_at.astimezone().strftime("%Y-%m-%d %H:%M"), tr("The newest of them"), ""),
+        (tr("Pictures taken"), when(look), tr("The newest of them"), ""),
     ]
     rows += [
         (pose.name, tr("left out"), capital(text_of(pose.reason)), "warn")

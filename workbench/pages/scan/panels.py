@@ -13,7 +13,7 @@ from core.scan.method import Method
 from core.scan.preview.hints import HintLimits
 from workbench.language import text_of, tr
 from workbench.pages.scan import words
-from workbench.pages.scan.presenter import ScanPresenter, Stage
+from workbench.pages.scan.presenter import VALIDITY, ScanPresenter, Stage
 from workbench.pages.scan.stability import STABILITY
 from workbench.views.forms.form import SettingsForm
 from workbench.views.layouts import heading, in_column, muted
@@ -150,6 +150,12 @@ class SettingsPanel(QWidget):
             form.add_number(
                 key, tr(label), unit, tr("Standard uncertainty; empty: {usual:g} {unit}.", usual=usual, unit=unit),
                 minimum=0.0, maximum=10_000.0, decimals=decimals, step=usual / 10, none_text=tr("assumed"), first=usual,
+            )  # fmt: skip
+        form.add_section(self.tr("What is recorded later proves nothing"))
+        for key, label, usual in VALIDITY:
+            form.add_number(
+                key, tr(label), self.tr("days"), self.tr("Empty: without limit."),
+                minimum=0.1, maximum=36500.0, decimals=1, step=1.0, none_text=self.tr("no limit"), first=usual,
             )  # fmt: skip
         form.edited.connect(presenter.set_setting, Qt.ConnectionType.QueuedConnection)
         in_column(form, on=self)

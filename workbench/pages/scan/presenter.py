@@ -13,6 +13,7 @@ from core.files.project.data import Project
 from core.files.project.keys import changed, rests_on
 from core.files.recording.options import Options
 from core.image.stripes.stripe import StripeSettings
+from core.messages import label
 from core.pipeline.live.events import LiveEnded, LiveView, ScanDetail
 from core.scan.features.frames import FrameRecord
 from core.scan.preview.shown import ShownScan
@@ -31,6 +32,13 @@ from workbench.step_state import State
 
 USUAL_STRIPE = StripeSettings(6.0, 60.0)
 """Where width and contrast start when they are to be given and nothing has been measured yet."""
+
+
+VALIDITY: tuple[tuple[str, str, float], ...] = (
+    ("calibration_days", label("Calibration holds"), 30.0),
+    ("check_days", label("Check holds"), 1.0),
+)
+"""Key, name, and where it starts when a limit is first stated, in days."""
 
 
 class Stage(StrEnum):
@@ -201,7 +209,12 @@ class ScanPresenter(StepPresenter):
 
     def settings(self) -> dict[str, Any]:
         """How the scan is measured, as the fields of a form."""
-        return {**values_of(self.project.options, self.work.look), **stability.shown(self.project.rig.stability)}
+        rig = self.project.rig
+        return {
+            **values_of(self.project.options, self.work.look),
+            **stability.shown(rig.stability),
+            **{key: getattr(rig.validity, key) for key, *_ in VALIDITY},
+        }
 
     def set_setting(self, field: str, value: Any) -> None:
         """Change a setting; undoable. What cannot be is refused with a sentence."""
@@ -209,6 +222,11 @@ class ScanPresenter(StepPresenter):
             rig = self.project.rig
             after = replace(self.project, rig=replace(rig, stability=stability.stated(rig.stability, field, value)))
             self.model.edit(tr("change what is known of the rig's stability"), after, f"scan {field}")
+            return
+        if any(field == key for key, *_ in VALIDITY):
+            rig = self.project.rig
+            after = replace(self.project, rig=replace(rig, validity=replace(rig.validity, **{field: value})))
+            self.model.edit(tr("change how long calibration and check hold"), after, f"scan {field}")
             return
         try:
             options = changed_options(self.project.options, self.work.look, field, value)

@@ -9,9 +9,10 @@ from PySide6.QtCore import Qt
 
 from core.errors import InputError
 from core.files.project.data import Accepted
+from core.files.results.check_file import write_check
 from core.messages import plain
 from core.pipeline.live.events import LiveEnded, LiveStarted, LiveView, PlanesDetail
-from tests.check_cases import check, nowhere
+from tests.check_cases import chart, check, nowhere
 from tests.workbench.hand_lane import HandLane
 from workbench.pages.scan.check import CheckStage
 from workbench.pages.scan.page import ScanPage
@@ -96,7 +97,7 @@ def test_it_shows_how_far_off_and_what_could_be_overlooked(chosen, measuring, qt
     assert rows.text_of("Stripes off by") == "0.050 px"
     assert rows.text_of("At the part") == "0.010 mm"
     assert rows.text_of("A step of 50 mm is off by") == "0.012 mm"
-    assert rows.text_of("Smallest error it would find") == "0.050 mm"
+    assert rows.text_of("Detects errors from") == "0.050 mm"
     assert rows.text_of("check/c") == "left out"
     assert rows.isVisible()
 
@@ -129,9 +130,10 @@ def test_pictures_that_say_nothing_are_told_and_the_result_before_stays(chosen, 
 def test_a_project_opened_again_shows_its_check(chosen, measuring, scan_bench, qtbot):
     measuring.finish(check())
     shown(chosen, qtbot, CheckStage.CHECKED)
-    cast(HandLane, scan_bench.quick).answers[jobs.SHOW_CHECK] = lambda folder: check(0.005)
     scan_bench.model.save()
     folder = scan_bench.model.folder
+    (folder / "check").mkdir()
+    write_check(folder / "check" / "check.json", check(0.005))
     scan_bench.model.close()
     scan_bench.model.open(folder)
     card = shown(chosen, qtbot, CheckStage.CHECKED)
@@ -208,3 +210,34 @@ def test_the_scan_is_told_what_the_check_said(chosen, measuring, qtbot):
     model = chosen.presenter.model
     model.edit("accept", replace(model.project, accepted=Accepted("camera-1", "fan-2")))
     assert chosen.presenter.live.check() is None, "a check of other calibrations says nothing of these"
+
+
+# ---- the history
+
+
+def with_history(page, measuring, qtbot, look, before):
+    """The check is made; the rig has so many checks before it."""
+    quick = cast(HandLane, page.presenter.bench.quick)
+    quick.answers[jobs.CHECK_HISTORY] = lambda project: chart(look, before)
+    measuring.finish(look)
+    qtbot.waitUntil(lambda: page.presenter.check.past is not None)
+    return shown(page, qtbot, CheckStage.CHECKED)
+
+
+def test_a_check_within_its_history_stays_green_and_is_charted(chosen, measuring, qtbot):
+    card = with_history(chosen, measuring, qtbot, check(), 9)
+    assert card.word.text() == "In order"
+    assert card.chart.isVisible() and card.chart.axis_text("left") == "step off by [mm]"
+    assert card.rows.text_of("Its history allows") == "+0.005 … +0.017 mm"
+
+
+def test_a_drift_that_the_pictures_alone_do_not_show_is_amber(chosen, measuring, qtbot):
+    card = with_history(chosen, measuring, qtbot, replace(check(), error_mm=0.06), 9)
+    assert card.word.text() == "In doubt" and card.sign.shown[0] == "mdi6.alert-outline"
+    assert "the 9 checks before" in card.sentence.text()
+
+
+def test_a_first_check_is_held_to_what_is_stated_without_a_chart(chosen, measuring, qtbot):
+    card = with_history(chosen, measuring, qtbot, check(), 0)
+    assert card.chart.isHidden()
+    assert card.rows.text_of("Its stability allows") == "−0.090 … +0.090 mm"

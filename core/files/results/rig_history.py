@@ -1,0 +1,169 @@
+"""The history of a rig: every check of it, in one file in the user's own folder.
+
+Layout::
+
+    FOLDER/rigs/NAME.json       of the rig that rig.toml names, else of one calibration by its id
+
+Written whole or not at all. A check of the same pictures with the same calibration takes the place of the one before.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from dataclasses import asdict, dataclass
+from datetime import datetime
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+import platformdirs
+from pydantic import Field
+
+from core.files.atomic import make_folder
+from core.files.complaints import checked
+from core.files.json_text import write_json
+from core.files.reading import read_json
+from core.files.results.check_file import CheckVerdict, InterimCheck
+from core.files.tables import Finite, OrNan, ResultFile, Time
+from core.messages import Message
+from core.study.control_chart import ControlChart, control_chart
+
+DATA = "TRISECT_DATA"
+"""Environment variable that names another folder than the user's own, as one that a laboratory shares."""
+
+_TODO = Message("advice.mend_history", "mend the file, or move it away: the history begins anew then")
+
+
+@dataclass(frozen=True, slots=True)
+class PastCheck:
+    """One check of a rig, in short; lengths as in `core.files.results.check_file.InterimCheck`.
+
+    `celsius` is the temperature of the air; None where nobody took it.
+    """
+
+    taken_at: datetime
+    calibration_id: str
+    pictures_id: str
+    verdict: CheckVerdict
+    p: float
+    step_mm: float
+    offset_px: float = math.nan
+    offset_mm: float = math.nan
+    error_mm: float = math.nan
+    unseen_mm: float = math.nan
+    stated_mm: float = math.nan
+    celsius: float | None = None
+
+    @classmethod
+    def of(cls, check: InterimCheck, celsius: float | None = None) -> PastCheck:
+        """A check that has just been made."""
+        return cls(
+            check.taken_at, check.calibration_id, check.pictures_id, check.verdict, check.p, check.step_mm,
+            check.offset_px, check.offset_mm, check.error_mm, check.unseen_mm, check.stated_mm, celsius,
+        )  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class RigHistory:
+    """The checks of the rig called `name`, in the order their pictures were taken."""
+
+    name: str
+    checks: tuple[PastCheck, ...] = ()
+
+    def of_calibration(self, calibration_id: str) -> tuple[PastCheck, ...]:
+        """Those with these calibrations."""
+        return tuple(check for check in self.checks if check.calibration_id == calibration_id)
+
+    def chart(self, check: PastCheck) -> ControlChart:
+        """The limits for a check: by the others with its calibrations, taken before it, that have not failed.
+
+        What is charted is the error of a step in parts of its height, times the height of this one: parts differ.
+        """
+        before = [
+            one.error_mm / one.step_mm * check.step_mm
+            for one in self.of_calibration(check.calibration_id)
+            if one.taken_at < check.taken_at and one.verdict != "failed"
+        ]
+        return control_chart(np.array(before), check.stated_mm)
+
+    def beyond(self, check: PastCheck) -> Message | None:
+        """What to say of a check that lies outside its limits; None within them, or where no stripe was found."""
+        chart = self.chart(check)
+        if math.isnan(check.error_mm) or chart.holds(check.error_mm):
+            return None
+        values = {"step_mm": check.step_mm, "error_mm": check.error_mm, "lower": chart.lower, "upper": chart.upper}
+        if chart.own:
+            return Message(
+                "check.beyond_history",
+                "A step of {step_mm:g} mm is off by {error_mm:+.3f} mm, outside {lower:+.3f} … {upper:+.3f} mm, where "
+                "the {n} checks before had it: look for what changed.",
+                n=chart.n,
+                **values,
+            )
+        return Message(
+            "check.beyond_stated",
+            "A step of {step_mm:g} mm is off by {error_mm:+.3f} mm, outside {lower:+.3f} … {upper:+.3f} mm, which the "
+            "rig's stability as stated or assumed allows: look for what changed.",
+            **values,
+        )
+
+    def added(self, check: PastCheck) -> RigHistory:
+        """The history with another check."""
+        same = (check.pictures_id, check.calibration_id)
+        others = (one for one in self.checks if (one.pictures_id, one.calibration_id) != same)
+        return RigHistory(self.name, tuple(sorted((*others, check), key=lambda one: one.taken_at)))
+
+
+class _Check(ResultFile):
+    taken_at: Time
+    calibration_id: str
+    pictures_id: str
+    verdict: Annotated[CheckVerdict, Field(description='"passed", "doubtful" or "failed"')]
+    p: Finite = Field(ge=0, le=1, description="a probability, 0 to 1")
+    step_mm: Finite = Field(gt=0, description="a length in mm above 0")
+    offset_px: OrNan = math.nan
+    offset_mm: OrNan = math.nan
+    error_mm: OrNan = math.nan
+    unseen_mm: OrNan = math.nan
+    stated_mm: OrNan = math.nan
+    celsius: Finite | None = None
+
+
+class _HistoryFile(ResultFile):
+    rig: str
+    checks: list[_Check]
+
+
+def history_file(name: str) -> Path:
+    """Where the history of the rig called `name` lies: in the user's own folder, or in that which DATA names."""
+    own = os.environ.get(DATA) or platformdirs.user_data_path("trisect", appauthor=False)
+    return Path(own) / "rigs" / f"{name}.json"
+
+
+def read_history(name: str) -> RigHistory:
+    """The history of the rig called `name`, empty where there is none yet; InputError if it is damaged."""
+    path = history_file(name)
+    if not path.exists():
+        return RigHistory(name)
+    file = checked(_HistoryFile, read_json(path, todo=_TODO), path)
+    return RigHistory(file.rig, tuple(PastCheck(**dict(check)) for check in file.checks))
+
+
+def keep_check(name: str, check: PastCheck) -> RigHistory:
+    """Add a check to the history of the rig called `name`; returns it all.
+
+    Raises
+    ------
+    InputError
+        If the history is damaged, or cannot be written.
+    """
+    history = read_history(name).added(check)
+    path = history_file(name)
+    make_folder(path.parent)
+    write_json(path, {"rig": name, "checks": [_table(one) for one in history.checks]})
+    return history
+
+
+def _table(check: PastCheck) -> dict[str, Any]:
+    return {**asdict(check), "taken_at": check.taken_at.isoformat()}

@@ -1,0 +1,134 @@
+"""Whether calibration and check held when a part was measured: by `[validity]` in rig.toml and the rig's history."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from datetime import datetime, timedelta
+
+from core.errors import InputError
+from core.files.recording.recording_set import RecordingSet
+from core.files.recording.rig import Rig
+from core.files.recording.set_listing import taken_at
+from core.files.results.rig_history import PastCheck, RigHistory, read_history
+from core.files.results.run_file import RunRecord
+from core.messages import Message, plural_message
+from core.pipeline.steps.workspace import Calibration, Workspace
+
+_DAY_S = 86_400.0
+"""Seconds of a day."""
+
+
+def history_name(rig: Rig, calibration_id: str) -> str:
+    """What the history of a rig is kept by: its name, else the calibration."""
+    return rig.name or calibration_id
+
+
+def history_of(rig: Rig, calibration_id: str) -> RigHistory:
+    """Every check of a rig; InputError if the file is damaged."""
+    return read_history(history_name(rig, calibration_id))
+
+
+def doubt_of_the_day(work: Workspace, calibration: Calibration) -> Message | None:
+    """Why nothing measured proves conformity on the day it was recorded; None if calibration and check held.
+
+    The check nearest in time counts, before the recording or after it. What is not stated has no limit.
+    """
+    found = work.found
+    when = taken_at(found.frames)
+    try:
+        checks = history_of(found.rig, calibration.id).of_calibration(calibration.id)
+    except InputError as error:
+        return Message(
+            "validity.history_unreadable",
+            "The history of this rig's checks cannot be read ({reason}): nothing measured proves conformity.",
+            reason=error.message,
+        )
+    nearest = min(checks, key=lambda check: abs(check.taken_at - when), default=None)
+    if nearest is not None and nearest.verdict == "failed":
+        return Message(
+            "validity.check_failed",
+            "The check of camera and laser of {date} failed: nothing measured with these calibrations proves "
+            "conformity; calibrate again.",
+            date=date_of(nearest.taken_at),
+        )
+    return _calibration_lapsed(found, work.record(), when) or _check_lapsed(found.rig, nearest, when)
+
+
+def stated_validity(rig: Rig) -> tuple[Message, ...]:
+    """A note where no limit is stated."""
+    if rig.validity.calibration_days is not None and rig.validity.check_days is not None:
+        return ()
+    return (
+        Message(
+            "validity.not_stated",
+            "How long a calibration or a check holds is not stated in full ([validity] in rig.toml): what is not "
+            "stated has no limit.",
+        ),
+    )
+
+
+def date_of(time: datetime) -> str:
+    """A date as files have it, in local time."""
+    return time.astimezone().strftime("%Y-%m-%d %H:%M")
+
+
+def _calibration_lapsed(found: RecordingSet, record: RunRecord, when: datetime) -> Message | None:
+    days = found.rig.validity.calibration_days
+    if days is None:
+        return None
+    made = list(_made(found, record))
+    if not made:
+        return Message(
+            "validity.calibration_undated",
+            "It is not known when camera and laser were calibrated, and a calibration holds for {days:g} days only: "
+            "nothing measured proves conformity.",
+            days=days,
+        )
+    age = _days(when, min(made))
+    if age <= days:
+        return None
+    return plural_message(
+        "validity.calibration_lapsed",
+        "Camera and laser were calibrated {n} day before this was recorded, and a calibration holds for {days:g}: "
+        "nothing measured proves conformity; calibrate again.",
+        "Camera and laser were calibrated {n} days before this was recorded, and a calibration holds for {days:g}: "
+        "nothing measured proves conformity; calibrate again.",
+        n=math.ceil(age),
+        days=days,
+    )
+
+
+def _check_lapsed(rig: Rig, nearest: PastCheck | None, when: datetime) -> Message | None:
+    days = rig.validity.check_days
+    if days is None or (nearest is not None and abs(_days(when, nearest.taken_at)) <= days):
+        return None
+    if nearest is None:
+        return Message(
+            "validity.never_checked",
+            "Camera and laser were never checked with these calibrations, and are to be every {days:g} days: nothing "
+            "measured proves conformity; check.",
+            days=days,
+        )
+    return Message(
+        "validity.check_lapsed",
+        "The check of camera and laser nearest to this recording is of {date}, and they are to be checked every "
+        "{days:g} days: nothing measured proves conformity; check again.",
+        date=date_of(nearest.taken_at),
+        days=days,
+    )
+
+
+def _made(found: RecordingSet, record: RunRecord) -> Iterator[datetime]:
+    """When the camera and the laser planes were calibrated, by their pictures or by the run, whichever is older."""
+    pictures = {"camera": found.camera, "planes": tuple(pair.on for pair in found.planes)}
+    for step, paths in pictures.items():
+        known = [record.made_at[step]] if step in record.made_at else []
+        if there := [path for path in paths if path.exists()]:
+            known.append(taken_at(there))
+        if known:
+            yield min(known)
+
+
+def _days(later: datetime, earlier: datetime) -> float:
+    return (later - earlier) / timedelta(seconds=_DAY_S)

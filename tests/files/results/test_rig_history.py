@@ -1,0 +1,65 @@
+"""The history of a rig's checks on the disk."""
+
+from dataclasses import replace
+from datetime import timedelta
+
+import pytest
+
+from core.errors import InputError
+from core.files.results.rig_history import PastCheck, RigHistory, history_file, keep_check, read_history
+from tests.check_cases import check, nowhere
+
+FIRST = PastCheck.of(check(), 21.5)
+
+
+def later(days, error_mm=0.01, **more):
+    return replace(
+        FIRST, taken_at=FIRST.taken_at + timedelta(days=days), pictures_id=f"pictures-{days}", error_mm=error_mm, **more
+    )
+
+
+def test_checks_are_kept_in_the_order_of_their_pictures():
+    keep_check("bench", later(2))
+    keep_check("bench", FIRST)
+    history = keep_check("bench", PastCheck.of(nowhere()))
+    assert [one.taken_at for one in read_history("bench").checks] == sorted(one.taken_at for one in history.checks)
+    assert read_history("bench").checks[-1] == later(2)
+    assert read_history("other").checks == ()
+
+
+def test_the_same_pictures_checked_again_are_one_check():
+    keep_check("bench", FIRST)
+    history = keep_check("bench", replace(FIRST, p=0.2))
+    assert [one.p for one in history.checks] == [0.2]
+    assert len(keep_check("bench", replace(FIRST, calibration_id="another")).checks) == 2
+
+
+def test_a_damaged_history_is_named():
+    keep_check("bench", FIRST)
+    history_file("bench").write_text('{"rig": "bench", "checks": [{"p": 2}]}')
+    with pytest.raises(InputError, match=r"bench\.json.*taken_at"):
+        read_history("bench")
+    with pytest.raises(InputError):
+        keep_check("bench", FIRST)
+
+
+def test_a_drift_beyond_the_rigs_own_scatter_is_told_though_the_pictures_pass():
+    scatter = (0.010, 0.012, 0.009, 0.011, 0.010, 0.012, 0.011, 0.009)
+    history = RigHistory("bench", tuple(later(day, mm) for day, mm in enumerate(scatter)))
+    steady, drifted = later(9, 0.012), later(9, 0.05)
+    assert history.added(steady).beyond(steady) is None
+    assert history.added(drifted).beyond(drifted).code == "check.beyond_history"
+    failed = tuple(replace(one, verdict="failed") for one in history.checks)
+    assert RigHistory("bench", failed).beyond(drifted) is None, "failed checks are no history to go by"
+
+
+def test_before_there_is_a_history_what_is_stated_counts():
+    assert RigHistory("bench").beyond(later(0, 0.08)) is None
+    assert RigHistory("bench").beyond(later(0, 0.10)).code == "check.beyond_stated"
+
+
+def test_parts_of_another_height_have_the_same_chart():
+    history = RigHistory("bench", tuple(later(day, 0.01 + 0.001 * (day % 3), step_mm=50.0) for day in range(9)))
+    half = later(10, 0.0055, step_mm=25.0)
+    assert history.chart(half).centre == pytest.approx(0.5 * history.chart(later(10)).centre)
+    assert history.beyond(half) is None
