@@ -20,7 +20,7 @@ SCREEN_ONLY := $(filter-out $(BOTH_WAYS),$(wildcard tests/workbench/test_behavio
 
 SCREEN := $(shell command -v xvfb-run >/dev/null && echo 'xvfb-run -a -s "-screen 0 1920x1080x24"')
 
-.PHONY: demo app test quick proofs accuracy bench soak check docs translations notice screenshots pictures wheel compile clean
+.PHONY: demo app test quick proofs accuracy bench soak fuzz check docs translations notice screenshots pictures wheel compile clean
 
 demo: $(READY)            ## measure the embedded sample: cloud, mesh and report of a 50 mm gauge block in ./out
 	$(BIN)/trisect demo --out $(OUT)
@@ -53,6 +53,10 @@ accuracy: proofs          ## measure the manual's accuracy table anew: about 80 
 soak: export OPENBLAS_NUM_THREADS = 1
 soak: $(READY)            ## ten minutes of an emulated camera at full size through the live scan page: counts, memory, freezes
 	$(BIN)/python -m tests.soak --window --seconds 600
+
+fuzz: export OPENBLAS_NUM_THREADS = 1
+fuzz: $(READY)            ## 100,000 files of strangers, each time others: no trace, no crash, no wait; an hour or so
+	$(BIN)/python -m tests.hostile
 
 bench: export OPENBLAS_NUM_THREADS = 1
 bench: export OMP_NUM_THREADS = 1

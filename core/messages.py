@@ -272,7 +272,15 @@ def as_text(message: Message | None) -> str:
 
 
 def from_text(kept: str) -> Message | None:
-    """A message that a file kept as a text; a sentence of an older file is told as it is; None for ''."""
+    """A message that a file kept as a text; a sentence of an older file is told as it is; None for ''.
+
+    Raises
+    ------
+    KeyError, TypeError, ValueError
+        If it is not what `as_text` wrote.
+    """
+    if not isinstance(kept, str):
+        raise TypeError("a message is no text")
     if not kept:
         return None
     return from_json(json.loads(kept) if kept.startswith('{"code": ') else kept)

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from core.errors import InputError
 from core.files.atomic import write_bytes
+from core.files.limits import LARGEST
 from core.files.reading import MISSING, read_bytes
 from core.image.stripes.centreline import Centreline
 from core.messages import Message, as_text, from_text
@@ -61,10 +62,19 @@ def read_arrays(path: Path, names: Sequence[str], *, todo: Message) -> Arrays:
         if name not in arrays:
             raise InputError(_missing(name), where=path, todo=todo)
     for name, array in arrays.items():
-        if array.dtype.kind == "f" and not np.isfinite(array).all():
+        if array.dtype.kind == "f" and not (np.abs(array) <= min(LARGEST, float(np.finfo(array.dtype).max))).all():
             what = Message("file.array_not_finite", "the array {name} holds values that are not finite", name=name)
             raise InputError(what, where=path, todo=todo)
     return arrays
+
+
+def whole_numbers(arrays: Arrays, name: str, path: Path, *, todo: Message) -> NDArray[np.int64]:
+    """A row of whole numbers among `arrays`; InputError if it is something else."""
+    array = arrays[name]
+    if array.ndim != 1 or array.dtype != np.int64:
+        what = Message("file.array_of_no_numbers", "the array {name} is no row of whole numbers", name=name)
+        raise InputError(what, where=path, todo=todo)
+    return array
 
 
 def _members(data: bytes) -> dict[str, NDArray[Any]]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import fields, is_dataclass
 from difflib import get_close_matches
 from pathlib import Path
@@ -63,6 +64,16 @@ def checked_json(model: type[_Model], tables: object, path: Path) -> _Model:
         return model.model_validate_json(json.dumps(tables))
     except ValidationError as error:
         raise InputError(_complaint(error, model), where=path) from error
+
+
+@contextmanager
+def fitting(path: Path) -> Iterator[None]:
+    """Tell as InputError that values of `path`, each of its kind, do not fit each other, which the model refuses."""
+    try:
+        yield
+    except (ValueError, TypeError, LookupError, OverflowError) as error:
+        what = Message("file.values_do_not_fit", "its values do not fit together ({reason})", reason=str(error))
+        raise InputError(what, where=path) from error
 
 
 def _complaint(error: ValidationError, model: type[BaseModel]) -> Message:

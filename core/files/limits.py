@@ -29,6 +29,8 @@ DEPTH = 60
 """Of lists and tables within each other, and of a key's parts: ours have 8."""
 DIGITS = 100
 """Of one number: 17 say all of a double."""
+LARGEST = 1e60
+"""Of any number in a file: what is computed of it, up to the fifth power, stays finite."""
 PIXELS = 160_000_000
 """Of one picture: the largest area sensors have 151 million."""
 
@@ -99,18 +101,18 @@ def check_depth(value: object, path: Path | str) -> None:
     raise _too_deep(path)
 
 
-def check_pixels(width: int, height: int, path: Path) -> None:
-    """InputError if a picture declares no pixels, or more than any has."""
+def check_pixels(width: int, height: int, path: Path, most: int = PIXELS) -> None:
+    """InputError if a picture declares no pixels, or more than `most`."""
     if width < 1 or height < 1:
         raise InputError(Message("limits.no_pixels", "the picture has no pixels"), where=path)
-    if width * height > PIXELS:
+    if width * height > most:
         raise InputError(
             Message(
                 "limits.too_many_pixels",
                 "the picture is said to have {width} × {height} pixels, and at most {most} million are read",
                 width=min(width, 10**9),
                 height=min(height, 10**9),
-                most=PIXELS // 1_000_000,
+                most=most // 1_000_000,
             ),
             where=path,
         )

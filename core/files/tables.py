@@ -7,9 +7,11 @@ from collections.abc import Mapping
 from datetime import datetime
 from typing import Annotated, Any
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, PlainValidator, WrapValidator
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, PlainValidator, WrapValidator
+from pydantic_core import PydanticCustomError
 
 from core.calibrate.results import PlanePose, ViewQuality
+from core.files.limits import LARGEST
 from core.inspect.results import Contribution
 from core.inspect.uncertainty.causes import known_cause
 from core.messages import Message, as_json, from_json, label
@@ -29,7 +31,13 @@ A_TIME = label("a date and time with its zone, as in 2025-01-31T12:00:00+00:00")
 Time = Annotated[datetime, BeforeValidator(_aware), Field(description=A_TIME)]
 
 
-Finite = Annotated[float, Field(allow_inf_nan=False)]
+def _bounded(value: float) -> float:
+    if abs(value) > LARGEST:
+        raise PydanticCustomError("finite_number", "a finite number")
+    return value
+
+
+Finite = Annotated[float, Field(allow_inf_nan=False), AfterValidator(_bounded)]
 OrNan = Annotated[Finite, WrapValidator(lambda value, check: math.nan if value is None else check(value))]
 """A number, NaN where the file has none: null, or nothing at all."""
 OrInfinite = Annotated[Finite, WrapValidator(lambda value, check: math.inf if value is None else check(value))]

@@ -27,6 +27,8 @@ from pydantic import Field
 
 from core.errors import InputError
 from core.files.complaints import checked
+from core.files.limits import check_pixels
+from core.files.picture_size import declared_sizes
 from core.files.reading import read_bytes, read_toml
 from core.files.recording.rig import Table
 from core.messages import Message
@@ -34,16 +36,24 @@ from core.report.template import LANGUAGES, PAPERS, SECTIONS, Paper, ReportTempl
 
 _LARGEST_LOGO = 4_000_000
 """Bytes of a logo: it is in every report."""
+_LOGO_PIXELS = 20_000_000
+
+
+_Line = Annotated[str, Field(max_length=200)]
 
 
 class _Template(Table):
-    name: str = ""
-    address: list[str] = Field(default_factory=list, description="a list of lines")
+    name: _Line = Field("", description="a text of at most 200 characters")
+    address: list[_Line] = Field(
+        default_factory=list, max_length=10, description="a list of at most 10 lines of at most 200 characters"
+    )
     logo: str = ""
     accent: Annotated[str, Field(pattern=r"^#[0-9A-Fa-f]{6}$")] = Field("#14586E", description='a colour as "#14586E"')
-    footer: str = ""
-    text: str = ""
-    signatures: list[str] = Field(default_factory=list, max_length=6, description="a list of at most 6 names")
+    footer: str = Field("", max_length=500, description="a text of at most 500 characters")
+    text: str = Field("", max_length=5000, description="a text of at most 5000 characters")
+    signatures: list[_Line] = Field(
+        default_factory=list, max_length=6, description="a list of at most 6 names of at most 200 characters"
+    )
     without: list[str] = Field(default_factory=list, description="a list of names of sections")
     paper: Paper | None = Field(None, description=" or ".join(f'"{one}"' for one in PAPERS))
     language: str | None = Field(
@@ -95,6 +105,8 @@ def _logo(path: Path) -> bytes:
             where=path,
             todo=Message("advice.make_logo_smaller", "make it smaller than 4 MB"),
         )
+    for width, height in declared_sizes(data):
+        check_pixels(width, height, path, _LOGO_PIXELS)
     try:
         with Image.open(io.BytesIO(data), formats=("PNG", "JPEG")) as picture:
             picture.load()

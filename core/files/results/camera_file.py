@@ -13,7 +13,7 @@ from pydantic import Field, model_validator
 from core import __version__
 from core.calibrate.board_shape import SHAPE_PARAMETERS, Board, BoardShape
 from core.calibrate.results import CAMERA_PARAMETERS, CameraCalibration, ViewQuality
-from core.files.complaints import Clash, checked
+from core.files.complaints import Clash, checked, fitting
 from core.files.json_text import rounded, write_json
 from core.files.reading import read_json
 from core.files.tables import (
@@ -48,8 +48,15 @@ class _View(CountedPose):
     points_mm: list[Row3]
     uv_px: list[Row2]
     sigma_px: list[Finite]
-    residuals_px: list[list[Finite | None]]
+    residuals_px: list[Annotated[list[Finite | None], Field(min_length=2, max_length=2)]]
     counted: list[bool] = Field(default_factory=list)
+
+    @model_validator(mode="after")
+    def _as_many_of_each(self) -> _View:
+        for name in ("uv_px", "sigma_px", "residuals_px", *(["counted"] if self.counted else [])):
+            if len(getattr(self, name)) != len(self.points_mm):
+                raise Clash(name, Message("camera.view_lengths", "is not of as many points as points_mm"))
+        return self
 
 
 class BoardTable(ResultFile):
@@ -150,6 +157,11 @@ def read_camera(path: Path) -> CameraCalibration:
         ),
     )
     file = checked(_CameraFile, tables, path)
+    with fitting(path):
+        return _calibration(file)
+
+
+def _calibration(file: _CameraFile) -> CameraCalibration:
     distortion = file.distortion
     camera = Camera(
         (file.image_size[0], file.image_size[1]),

@@ -13,7 +13,7 @@ from pydantic import Field, model_validator
 from core import __version__
 from core.calibrate.results import CAMERA_PARAMETERS, FanCalibration, PlanePose
 from core.errors import InputError
-from core.files.complaints import Clash, checked
+from core.files.complaints import Clash, checked, fitting
 from core.files.json_text import write_json
 from core.files.reading import read_json
 from core.files.results.camera_file import BoardTable, board_shape, board_table, camera_id
@@ -217,6 +217,11 @@ def read_fan(path: Path, camera: Camera) -> FanCalibration:
                 command=Command("trisect planes SET --out DIR"),
             ),
         )
+    with fitting(path):
+        return _calibration(file, camera, path)
+
+
+def _calibration(file: _PlanesFile, camera: Camera, path: Path) -> FanCalibration:
     fan = Fan(
         tuple(LightPlane(np.array(plane.pi)) for plane in file.planes),
         None if file.covariance is None else np.array(file.covariance),

@@ -12,7 +12,7 @@ from pydantic import BeforeValidator, Field
 
 from core import __version__
 from core.errors import InputError
-from core.files.arrays_file import read_arrays, write_arrays
+from core.files.arrays_file import read_arrays, whole_numbers, write_arrays
 from core.files.atomic import write_text
 from core.files.complaints import checked
 from core.files.json_text import to_json
@@ -171,9 +171,9 @@ def _face(face: _Face, indices: NDArray[np.int64], flatness_mm: float, cloud: Cl
 def _members(path: Path, count: int) -> dict[str, NDArray[np.int64]]:
     """Indices of the points of each face, checked against a cloud of `count` points."""
     arrays = read_arrays(path, ("upper", "lower"), todo=_TODO)
-    members = {name: np.asarray(arrays[name], dtype=np.int64) for name in ("upper", "lower")}
+    members = {name: whole_numbers(arrays, name, path, todo=_TODO) for name in ("upper", "lower")}
     for name, indices in members.items():
-        if indices.ndim != 1 or (len(indices) and (indices.min() < 0 or indices.max() >= count)):
+        if len(indices) and (indices.min() < 0 or indices.max() >= count):
             raise InputError(
                 Message("file.points_beyond_cloud", "{name} names points that the cloud does not have", name=name),
                 where=path,

@@ -14,7 +14,7 @@ from pydantic import Field
 
 from core import __version__
 from core.errors import InputError
-from core.files.arrays_file import read_arrays, write_arrays
+from core.files.arrays_file import read_arrays, whole_numbers, write_arrays
 from core.files.atomic import write_text
 from core.files.complaints import checked
 from core.files.json_text import to_json
@@ -152,7 +152,7 @@ def read_inspection(path: Path) -> InspectionFile:
     members = path.with_suffix(".npz")
     arrays = read_arrays(members, (), todo=_TODO) if members.exists() else {}
     points = {
-        feature.name: np.asarray(arrays[f"points_{number}"], dtype=np.int64)
+        feature.name: whole_numbers(arrays, f"points_{number}", members, todo=_TODO)
         for number, feature in enumerate(file.features)
         if f"points_{number}" in arrays
     }

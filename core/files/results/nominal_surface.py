@@ -33,7 +33,8 @@ def read_nominal(path: Path) -> Triangles:
         )
     check_file(path, most=STL_BYTES)
     try:
-        loaded = trimesh.load_mesh(str(path), file_type="stl", process=False)
+        with np.errstate(all="ignore"):  # of numbers that are none; looked for below
+            loaded = trimesh.load_mesh(str(path), file_type="stl", process=False)
         corners = np.asarray(loaded.triangles, dtype=np.float64)
     except (OSError, ValueError, AttributeError, IndexError, KeyError) as problem:
         raise InputError(

@@ -13,6 +13,7 @@ from difflib import get_close_matches
 from pathlib import Path
 
 from core.errors import InputError
+from core.files.limits import LARGEST
 from core.files.reading import csv_rows, read_text
 from core.messages import Message
 
@@ -93,7 +94,7 @@ class Table:
             value = float(cell.replace(",", ".") if self.decimal_comma else cell)
         except ValueError:
             value = math.nan
-        if not math.isfinite(value):
+        if not abs(value) <= LARGEST:
             line = self.lines[row]
             raise InputError(
                 Message(

@@ -141,11 +141,21 @@ def _grid(columns: int, rows: int, step: float) -> Array:
     return np.column_stack([x * step, y * step, np.zeros(columns * rows)])
 
 
+_MOST = 500
+"""In a row or column: as many as rig.toml may state."""
+_SHORTEST_MM, _LONGEST_MM = 1e-3, 5000.0
+"""From a photomask's to the largest that rig.toml may state."""
+
+
 def _check_grid(columns: int, rows: int, least: int, what: str) -> None:
     if min(columns, rows) < least:
         raise ValueError(f"{columns} × {rows} {what} are too few: at least {least} × {least}")
+    if max(columns, rows) > _MOST:
+        raise ValueError(f"{columns} × {rows} {what} are too many: at most {_MOST} in a row")
 
 
 def _check_length(value: float, name: str) -> None:
     if not (np.isfinite(value) and value > 0):
         raise ValueError(f"{name} must be positive, not {value!r}")
+    if not _SHORTEST_MM <= value <= _LONGEST_MM:
+        raise ValueError(f"{name} must be from {_SHORTEST_MM:g} to {_LONGEST_MM:g} mm, not {value:g}")

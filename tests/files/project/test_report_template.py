@@ -76,3 +76,18 @@ def test_a_picture_cut_short_is_no_logo(tmp_path):
     (tmp_path / "logo.png").write_bytes(logo()[:-30])
     with pytest.raises(InputError, match="no PNG or JPEG picture"):
         read(tmp_path, 'logo = "logo.png"')
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (f"address = {['x'] * 5000}", "address is .*, not a list of at most 10 lines"),
+        (f"address = ['{'x' * 5000}']", "address must be a list of at most 10 lines of at most 200"),
+        (f"text = '{'x ' * 50_000}'", "not a text of at most 5000 characters"),
+        ("logo = '/dev/zero'", "this is a pipe, a socket or a device"),
+    ],
+)
+def test_a_template_that_no_page_holds_is_refused(tmp_path, text, said):
+    (tmp_path / "t.toml").write_text(text)
+    with pytest.raises(InputError, match=said):
+        read_report_template(tmp_path / "t.toml")

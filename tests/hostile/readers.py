@@ -1,0 +1,197 @@
+"""Every reader of a file that a stranger may have written, with a good file of each kind to begin with."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from collections.abc import Callable
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+import cv2
+import numpy as np
+
+from core.files.exchange.opencv_calibration import read_opencv, write_opencv
+from core.files.exchange.ros_camera_info import read_camera_info
+from core.files.pictures import compression_grey, read_picture
+from core.files.plan.plan_file import read_plan, write_plan
+from core.files.project.data import ProjectFile, new_project
+from core.files.project.folder import read_project, write_project
+from core.files.project.report_template import read_report_template
+from core.files.recording.features_file import read_poses
+from core.files.recording.import_plan import _taken_at
+from core.files.recording.recording_log import read_log
+from core.files.recording.rig import read_rig
+from core.files.recording.set_listing import check_sizes
+from core.files.results.camera_file import read_camera
+from core.files.results.check_file import read_check
+from core.files.results.fan_file import fan_id, read_fan
+from core.files.results.gauge_file import read_gauge, read_thickness
+from core.files.results.inspection_file import read_inspection
+from core.files.results.mesh_export import write_stl
+from core.files.results.nominal_surface import read_nominal
+from core.files.results.ply import read_cloud, read_mesh
+from core.files.results.run_file import read_run
+from core.files.results.scan_file import read_scan
+from core.files.study.input import read_crossed, read_readings, read_repeats
+from core.files.study.study_file import read_study, write_study
+from core.files.study.table import read_table
+from core.simulate.scenario import Scenario
+from tests.files.plan.test_plan_file import EVERYTHING
+from tests.files.study.test_study_file import STUDIES
+from tests.report.report_samples import camera_calibration
+
+
+@dataclass(frozen=True, slots=True)
+class Reader:
+    """What is read of `file`, a path within the folder of good files."""
+
+    file: str
+    read: Callable[[Path], Any]
+
+
+def _poses(path: Path) -> object:
+    return read_poses(path, fan_id(read_fan(path.with_name("planes.json"), _camera(path)).fan))
+
+
+def _camera(path: Path) -> Any:
+    return read_camera(path.with_name("camera.json")).camera
+
+
+def _picture(path: Path) -> None:
+    compression_grey(path)
+    check_sizes([path, path.with_name("other.png")] if path.suffix == "" else [path])
+    _taken_at(path)
+    read_picture(path)
+
+
+READERS = {
+    "rig": Reader("rig.toml", read_rig),
+    "plan": Reader("plan.toml", read_plan),
+    "template": Reader("template.toml", read_report_template),
+    "logo": Reader("logo.png", lambda path: read_report_template(path.with_name("template.toml"))),
+    "scenario": Reader("scenario.toml", Scenario.read),
+    "project": Reader("project/project.json", read_project),
+    "camera": Reader("camera.json", read_camera),
+    "planes": Reader("planes.json", lambda path: read_fan(path, _camera(path))),
+    "poses": Reader("planes.npz", _poses),
+    "scan": Reader("scan.npz", read_scan),
+    "gauge": Reader("gauge.json", lambda path: read_gauge(path, read_cloud(path.with_name("cloud.ply")).cloud)),
+    "thickness": Reader("gauge.json", read_thickness),
+    "faces": Reader("gauge.npz", lambda path: read_gauge(path.with_suffix(".json"), _cloud(path))),
+    "run": Reader("run.json", read_run),
+    "check": Reader("check.json", read_check),
+    "inspection": Reader("inspection.json", read_inspection),
+    "cloud": Reader("small.ply", read_cloud),
+    "mesh": Reader("mesh.ply", read_mesh),
+    "nominal": Reader("part.stl", read_nominal),
+    "log": Reader("log/recording.csv", lambda path: read_log(path.parent)),
+    "table": Reader("table.csv", read_table),
+    "repeats": Reader("repeats.csv", lambda path: read_repeats([path])),
+    "crossed": Reader("crossed.csv", read_crossed),
+    "readings": Reader("readings.csv", read_readings),
+    "opencv yaml": Reader("opencv.yml", read_opencv),
+    "opencv json": Reader("opencv.json", read_opencv),
+    "opencv xml": Reader("opencv.xml", read_opencv),
+    "ros": Reader("ros.yaml", read_camera_info),
+    **{f"picture {end}": Reader(f"picture.{end}", _picture) for end in ("png", "jpg", "tif", "bmp", "pgm")},
+    **{f"study {name}": Reader(f"study-{place}.json", read_study) for place, name in enumerate(STUDIES)},
+}
+
+
+def _cloud(path: Path) -> Any:
+    return read_cloud(path.with_name("cloud.ply")).cloud
+
+
+_NOTE = {"code": "scan.fan_disagrees", "text": "3 of them.", "values": {"n": 3}}
+CHECK = {
+    "calibration_id": "a", "pictures_id": "b", "taken_at": "2026-01-01T00:00:00+00:00", "p": 0.5, "step_mm": 50.0,
+    "error_mm": 0.1, "unseen_mm": 0.2, "stated_mm": None,
+    "poses": [{"name": "p", "reason": None, "lines": [
+        {"line": 1, "offset_mm": 0.1, "offset_px": 0.2, "sd_mm": 0.01},
+        {"line": 2, "offset_mm": 0.1, "offset_px": 0.2, "sd_mm": 0.1},
+    ]}, {"name": "q", "reason": _NOTE, "lines": []}],
+}  # fmt: skip
+INSPECTION = {
+    "schema_version": 1, "calibration_id": "a", "notes": [_NOTE, "a note"],
+    "features": [{"name": "top", "kind": "plane"}, {"name": "side", "kind": "plane", "problem": _NOTE}],
+    "characteristics": [{
+        "name": "top flatness", "feature": "top", "kind": "plane", "value": 0.02, "u": 0.004, "k": 2.0,
+        "quantity": "length",
+        "limits": {"nominal": 0.0, "lower": None, "upper": 0.05}, "complete": True, "rule": _NOTE, "notes": [],
+        "budget": [{"source": "camera", "u": 0.001, "point_mm": 1.0, "distribution": "normal", "dof": None}],
+    }],
+}  # fmt: skip
+"""As the programs of an interim check and of a plan write them."""
+
+
+def good_files(folder: Path, recording: Path, results: Path) -> None:
+    """Write a good file of each kind into `folder`, from a recording set and what was measured of it."""
+    shutil.copytree(results, folder)
+    shutil.copy(recording / "rig.toml", folder)
+    write_plan(folder / "plan.toml", EVERYTHING)
+    for place, study in enumerate(STUDIES.values()):
+        shutil.move(write_study(folder / "study", study), folder / f"study-{place}.json")
+    template = (
+        'name = "A"\naddress = ["B", "C"]\nlogo = "logo.png"\naccent = "#14586E"\ntext = "D"\nwithout = ["frame"]'
+    )
+    (folder / "template.toml").write_text(template)
+    (folder / "scenario.toml").write_text('object = "block"\nscale = 0.25\nframes = 20\nseed = 3\n')
+    (folder / "check.json").write_text(json.dumps(CHECK))
+    (folder / "inspection.json").write_text(json.dumps(INSPECTION))
+    _pictures(folder)
+    _tables(folder)
+    _cameras(folder)
+    (folder / "project").mkdir()
+    write_project(folder / "project", ProjectFile(new_project("a")))
+    mesh = read_mesh(folder / "mesh.ply")
+    write_stl(folder / "part.stl", mesh)
+    data = (folder / "cloud.ply").read_bytes()
+    head, _, _ = data.partition(b"end_header\n")
+    small = b"element vertex 50"
+    lines = [small if line.startswith(b"element vertex") else line for line in head.split(b"\n")]
+    body = data[len(head) + 11 :]
+    (folder / "small.ply").write_bytes(b"\n".join(lines) + b"end_header\n" + body[: 50 * (len(body) // _count(head))])
+
+
+def _count(head: bytes) -> int:
+    return int(next(line.split()[2] for line in head.split(b"\n") if line.startswith(b"element vertex")))
+
+
+def _pictures(folder: Path) -> None:
+    grey = np.random.default_rng(0).integers(0, 255, (20, 30)).astype(np.uint8)
+    for end in ("png", "jpg", "tif", "bmp", "pgm"):
+        cv2.imwrite(str(folder / f"picture.{end}"), grey)
+    cv2.imwrite(str(folder / "logo.png"), grey)
+
+
+def _tables(folder: Path) -> None:
+    (folder / "log").mkdir()
+    rows = "".join(f"frame{i}.png,{i},{i / 30:.6f},0\n" for i in range(9))
+    (folder / "log" / "recording.csv").write_text(f"name,index,time_s,dropped\n{rows}")
+    (folder / "table.csv").write_text("a;b;c\n1,5;2;x\n3;4;y\n")
+    (folder / "repeats.csv").write_text("value\n" + "".join(f"50.{i}\n" for i in range(9)))
+    rows = "".join(f"p{p},o{o},{p + o / 10 + r / 100}\n" for p in range(3) for o in range(2) for r in range(2))
+    (folder / "crossed.csv").write_text(f"part,operator,value\n{rows}")
+    (folder / "readings.csv").write_text(
+        "quantity,position,measured_mm,calibrated_mm\nsize,left,30.01,30.0\nform,left,0.02,\n"
+    )
+
+
+def _cameras(folder: Path) -> None:
+    calibration = camera_calibration()
+    for end in ("yml", "json"):
+        write_opencv(folder / f"opencv.{end}", calibration, datetime(2026, 1, 1, tzinfo=UTC))
+    storage = cv2.FileStorage(str(folder / "opencv.xml"), cv2.FILE_STORAGE_WRITE)
+    storage.write("image_width", 640)
+    storage.write("image_height", 480)
+    storage.write("camera_matrix", np.array([[500.0, 0, 320], [0, 501, 240], [0, 0, 1]]))
+    storage.write("distortion_coefficients", np.zeros((5, 1)))
+    storage.release()
+    matrix = "{rows: 3, cols: 3, data: [500, 0, 320, 0, 500, 240, 0, 0, 1]}"
+    (folder / "ros.yaml").write_text(
+        f"image_width: 640\nimage_height: 480\ncamera_matrix: {matrix}\n"
+        "distortion_model: plumb_bob\ndistortion_coefficients: {data: [0.1, 0, 0, 0]}\n"
+    )
