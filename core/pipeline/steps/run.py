@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from core.calibrate.results import CameraCalibration, FanCalibration
+from core.files.folder_lock import alone_in
 from core.files.recording.options import Options
 from core.files.recording.recording_set import open_set, require_camera, require_planes, require_scan
 from core.inspect.results import GaugeResult
@@ -64,6 +65,12 @@ def run(set_folder: Path, out_folder: Path, options: Options | None = None, prog
     require_planes(found)
     require_scan(found)
     work = Workspace.open(found, out_folder, options.part)
+    with alone_in(work.out):
+        return _measured(work, options, progress)
+
+
+def _measured(work: Workspace, options: Options, progress: Progress) -> RunResult:
+    found = work.found
     work.clear()
     camera = camera_step(work, options, progress)
     fan = planes_step(work, options, progress)

@@ -44,6 +44,12 @@ FILES = {
 }
 """Fixed names of the results."""
 
+CLEARED = (
+    *("report", "gauge", "faces", "inspection", "inspected", "profile", "profile_table", "profiles"),
+    *("mesh", "cloud", "scan", "check", "planes", "poses", "camera", "run"),
+)
+"""The same in the order in which they go: what rests on another goes before it, and what tells of all of them last."""
+
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Calibration:
@@ -90,9 +96,9 @@ class Workspace:
         """Where the result `name`, a key of FILES, lies."""
         return self.out / FILES[name]
 
-    def clear(self, names: Sequence[str] = tuple(FILES)) -> None:
-        """Remove results of an earlier run, so that old and new never stand side by side."""
-        for name in names:
+    def clear(self, names: Sequence[str] = CLEARED) -> None:
+        """Remove results of an earlier run, so that old and new never stand side by side, wherever it is cut off."""
+        for name in sorted(names, key=CLEARED.index):
             try:
                 self.path(name).unlink(missing_ok=True)
             except OSError as error:

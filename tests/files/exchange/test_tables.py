@@ -15,6 +15,7 @@ from core.files.exchange.dfq import write_dfq
 from core.files.exchange.result_csv import write_result_csv
 from core.files.exchange.result_json import write_result_json
 from core.files.exchange.xlsx import write_xlsx
+from core.messages import visible
 
 WRITERS = {"csv": write_result_csv, "json": write_result_json, "xlsx": write_xlsx, "dfq": write_dfq}
 
@@ -36,7 +37,7 @@ def test_a_spreadsheet_reads_a_line_for_each_characteristic(tmp_path, content):
     write_result_csv(tmp_path / "r.csv", content)
     with (tmp_path / "r.csv").open(newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
-    assert [row["name"] for row in rows] == [one.name for one in content.inspected]
+    assert [row["name"].lstrip("'") for row in rows] == [one.name for one in content.inspected]
     first, angle, ball = rows[0], rows[3], rows[5]
     assert (float(first["value"]), first["unit"], float(first["U"])) == (50.0123, "mm", 0.01)
     assert (first["decision"], float(first["lower_limit"])) == ("conforming", 49.8)
@@ -177,3 +178,13 @@ def test_dfq_with_letters_beyond_latin_is_utf_8_with_its_mark(tmp_path, content)
 def test_times_of_another_zone_stay_what_the_clock_there_showed(tmp_path, content):
     write_dfq(tmp_path / "r.dfq", replace(content, timestamp=datetime(2026, 12, 1, 7, 8, 9, tzinfo=UTC)))
     assert keys_of(tmp_path / "r.dfq", "cp1252")["K0004/1"] == "1.12.2026/07:08:09"
+
+
+@pytest.mark.parametrize("name", ['=HYPERLINK("http://x")', "+1", "-1+1", "@SUM(A1)", "\t=1", " =1", "\r=1"])
+def test_no_name_becomes_a_formula_and_numbers_stay_numbers(tmp_path, content, name):
+    first = replace(content.inspected[0], name=name, value=-1.5)
+    write_result_csv(tmp_path / "r.csv", replace(content, inspected=(first,)))
+    with (tmp_path / "r.csv").open(newline="", encoding="utf-8") as file:
+        (row,) = csv.DictReader(file)
+    assert row["name"] == visible(f"'{name}")
+    assert float(row["value"]) == -1.5

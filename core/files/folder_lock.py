@@ -1,0 +1,58 @@
+"""One program at a time in a folder of results; what a killed one left half written is swept."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import re
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from core.errors import InputError
+from core.messages import Message
+
+_LEFTOVER = re.compile(r"^\..+\.[0-9a-f]{8}\.part$")
+"""As `core.files.atomic` names what is not whole yet."""
+
+
+@contextmanager
+def alone_in(folder: Path) -> Iterator[None]:
+    """Hold `folder` for as long as this lasts; the system lets go of it even if the program is killed.
+
+    The lock is of the folder itself and leaves no file. Windows, which locks files only, goes without.
+
+    Raises
+    ------
+    InputError
+        If another program holds it.
+    """
+    if sys.platform == "win32":
+        yield
+        return
+    import fcntl
+
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        try:
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError as error:
+            raise InputError(
+                Message("file.folder_in_use", "another run writes its results here"),
+                where=folder,
+                todo=Message("advice.wait_or_another_out", "wait for its end, or choose another --out"),
+            ) from error
+        except OSError:
+            pass  # a disk of the network that cannot lock
+        _sweep(folder)
+        yield
+    finally:
+        os.close(handle)
+
+
+def _sweep(folder: Path) -> None:
+    for path in folder.iterdir():
+        if _LEFTOVER.match(path.name):
+            with contextlib.suppress(OSError):
+                path.unlink()
