@@ -11,9 +11,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from core.compiled import compiled, inlined
 from core.image.crossings.kriging import log_odds_of_break
 from core.image.crossings.line_bins import ARC, INFORMATION, U, V, in_frame
 from core.model.arrays import Array
@@ -32,7 +32,7 @@ _PRIOR = math.log(1 / 50 / (0.6 * 0.15))
 """Log of: a break in one bin of 50, jump and kink spread over 0.6 px and 0.15 rad. Larger ones are cut before."""
 
 
-@njit(cache=True, nogil=True)
+@compiled()
 def breaks(bins: Array, reach: float) -> NDArray[np.bool_]:
     """Find the `bins` of a line in which it has a kink or a jump, judged from ± `reach` px: (B,) True there."""
     count = len(bins)
@@ -55,7 +55,7 @@ def breaks(bins: Array, reach: float) -> NDArray[np.bool_]:
     return broken
 
 
-@njit(cache=True, nogil=True)
+@inlined()
 def _is_break(bins: Array, at: int, broken: NDArray[np.bool_], reach: float) -> bool:
     first, last = at, at
     while first > 0 and not broken[first - 1] and bins[at, ARC] - bins[first - 1, ARC] <= reach:
@@ -72,7 +72,7 @@ def _is_break(bins: Array, at: int, broken: NDArray[np.bool_], reach: float) -> 
     return bool(log_odds_of_break(right, left, widest) + _PRIOR - math.log(widest) > 0)
 
 
-@njit(cache=True, nogil=True)
+@inlined()
 def _outwards(x: Array) -> int:
     """How many of the first `x` grow from 0 on: beyond, the line has turned back."""
     before = 0.0
@@ -83,7 +83,7 @@ def _outwards(x: Array) -> int:
     return len(x)
 
 
-@njit(cache=True, nogil=True)
+@inlined()
 def _frame(bins: Array, first: int, last: int, at: int) -> Array:
     first, last = max(first, at - _LEAST_BINS), min(last, at + _LEAST_BINS)
     tu, tv = bins[last, U] - bins[first, U], bins[last, V] - bins[first, V]
@@ -91,7 +91,7 @@ def _frame(bins: Array, first: int, last: int, at: int) -> Array:
     return np.array([bins[at, U], bins[at, V], tu / length, tv / length])
 
 
-@njit(cache=True, nogil=True)
+@inlined()
 def _explained(bins: Array, at: int, arm: int, reach: float) -> tuple[float, float]:
     """χ² that a jump and a kink in bin `at` take off a parabola over ± `arm` bins, and χ² per bin that is left.
 

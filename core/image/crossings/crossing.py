@@ -19,8 +19,8 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
-from numba import njit
 
+from core.compiled import inlined
 from core.image.crossings.local_fit import BEND, FIT, PLACE, REACH, SIGMA, SLOPE, T_U, T_V, LineAt, local_fit
 from core.image.crossings.segments import CELL_REACH, CELLS, Stack, meeting_segments
 from core.image.stripes.centreline import Centreline
@@ -202,7 +202,7 @@ def _cross_at(of_a: Stack, i: int, k: int, of_b: Stack, j: int, m: int, min_angl
     )
 
 
-@njit(cache=True, nogil=True)
+@inlined()
 def _arm_too_short(line: LineAt, origin: Array, reach: float) -> bool:
     """Whether a line has too few points to either side of its segment within `reach` px of it."""
     points, at, least = line.points, line.segment, max(_LEAST_POINTS, _SHORTEST_ARM * line.correlation_px)
@@ -218,7 +218,7 @@ def _arm_too_short(line: LineAt, origin: Array, reach: float) -> bool:
     return bool(min(behind, ahead) < least)
 
 
-@njit(cache=True, nogil=True)
+@inlined()
 def cross_segments(a: LineAt, b: LineAt, half: float, min_angle: float, share: Array) -> Array:
     """Meet the local fits of two lines near one segment of each: (MEETING,) figures, named by REASON and the others.
 

@@ -30,8 +30,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
+from core.compiled import inlined
 from core.model.arrays import Array
 
 X, Y, INFORMATION, SPREAD = 0, 1, 2, 3
@@ -55,7 +55,7 @@ _NEGLIGIBLE = 15.0
 """A log-likelihood so far below the best has no weight (e⁻¹⁵), nor have those of still larger δ."""
 
 
-@njit(cache=True, nogil=True)
+@inlined()
 def krige(right: Array, left: Array, reach: float) -> Array:
     """Estimate a line at x = 0: (6,) y, y', y'', variance of y, number of the likeliest choice and its variance.
 
@@ -89,7 +89,7 @@ def krige(right: Array, left: Array, reach: float) -> Array:
     return result
 
 
-@njit(cache=True, nogil=True)
+@inlined()
 def influence(right: Array, left: Array, reach: float, sigma: float, change: int) -> float:
     """Compute y at x = 0 for the choice `change` of `krige`, which is linear in the bins' y."""
     delta, correlation = _change(change, reach, sigma)
@@ -102,7 +102,7 @@ def influence(right: Array, left: Array, reach: float, sigma: float, change: int
     return float(found[0])
 
 
-@njit(cache=True, nogil=True)
+@inlined()
 def log_odds_of_break(right: Array, left: Array, reach: float) -> float:
     """Logarithm of how much likelier two lines are, ending at x = 0, than one; per px² of jump·kink·reach.
 
@@ -125,13 +125,13 @@ def log_odds_of_break(right: Array, left: Array, reach: float) -> float:
     return float(odds - math.log(np.exp(scores[0] - whole).sum()))
 
 
-@njit(cache=True, nogil=True)
+@inlined()
 def straight_sigma(right: Array, left: Array) -> float:
     """Standard uncertainty in px of a straight line in its middle."""
     return 1 / math.sqrt(right[:, INFORMATION].sum() + left[:, INFORMATION].sum())
 
 
-@njit(cache=True, nogil=True)
+@inlined()
 def _change(change: int, reach: float, sigma: float) -> tuple[float, float]:
     """δ·reach² in px and ℓ in px of a number."""
     if change == 0:
@@ -140,12 +140,12 @@ def _change(change: int, reach: float, sigma: float) -> tuple[float, float]:
     return _LEAST_CHANGE * _CHANGE_FACTOR**step * sigma, _LENGTHS[length] * reach
 
 
-@njit(cache=True, nogil=True)
+@inlined()
 def _log_prior(change: int) -> float:
     return math.log(_PRIOR_PARABOLA if change == 0 else (1 - _PRIOR_PARABOLA) / (_CHOICES - 1))
 
 
-@njit(cache=True, nogil=True)
+@inlined()
 def _joined(ahead: Array, behind: Array) -> Array:
     """Both sides as one; x runs outwards in each, so y' counts the other way on the left."""
     side = ahead + behind
@@ -154,7 +154,7 @@ def _joined(ahead: Array, behind: Array) -> Array:
     return side
 
 
-@njit(cache=True, nogil=True)
+@inlined()
 def _solve(side: Array, kappa: float, found: Array) -> float:
     """Log-likelihood if y''·reach² has the standard deviation κ; into `found` y, y'·reach, y''·reach², var y."""
     l00, l01, l02, l11, l12 = side[0], side[1], side[2], side[3], side[4]
@@ -171,7 +171,7 @@ def _solve(side: Array, kappa: float, found: Array) -> float:
     return float(side[9] + 0.5 * (fit - math.log(determinant)) - math.log(kappa))
 
 
-@njit(cache=True, nogil=True)
+@inlined()
 def _side(bins: Array, reach: float, delta: float, length: float) -> Array:
     """Likelihood of (y, y'·reach, y''·reach²) at x = 0 from one side; `reach` is negative on the left.
 

@@ -13,9 +13,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from core.compiled import compiled, inlined
 from core.model.arrays import Array
 
 ARC, U, V, INFORMATION, SPREAD = 0, 1, 2, 3, 4
@@ -30,7 +30,7 @@ def bin_length(cell_px: float, correlation_px: float) -> float:
     return cell_px / max(1, math.floor(cell_px / max(correlation_px, _SHORTEST_PX)))
 
 
-@njit(cache=True, nogil=True)
+@compiled()
 def binned(points: Array, arc: Array, length: float, correlation: float) -> Array:
     """Reduce one line, `points` (N, 3) u, v, 1/σ² and `arc` (N,), to the bins (B, 5) of `length` px with a weight."""
     count = len(points)
@@ -59,7 +59,7 @@ def binned(points: Array, arc: Array, length: float, correlation: float) -> Arra
     return bins[:kept].copy()
 
 
-@njit(cache=True, nogil=True)
+@inlined()
 def in_frame(bins: Array, rows: NDArray[np.int64], frame: Array) -> Array:
     """Transform the bins `rows` for kriging: (N, 4) x, y in the `frame` (u, v, t_u, t_v), 1/σ², spread."""
     found = np.empty((len(rows), 4))

@@ -6,9 +6,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from core.compiled import inlined
 from core.image.crossings.kriging import INFORMATION, X, influence, krige, straight_sigma
 from core.image.crossings.line_bins import ARC, U, V, in_frame
 from core.model.arrays import Array
@@ -52,7 +52,7 @@ class LineAt(NamedTuple):
     first_cell: int
 
 
-@njit(cache=True, nogil=True)
+@inlined()
 def local_fit(line: LineAt, origin: Array, reach: float, cell: float, fit: Array, share: Array) -> bool:
     """Fit a line within ± `reach` px of its segment, in a frame at `origin` (2,); False if it cannot be fitted.
 
@@ -88,7 +88,7 @@ def local_fit(line: LineAt, origin: Array, reach: float, cell: float, fit: Array
     return True
 
 
-@njit(cache=True, nogil=True)
+@inlined()
 def _window(bins: Array, broken: NDArray[np.bool_], arc: float, middle: int, reach: float) -> tuple[int, int]:
     """First and last of the bins within `reach` and on this side of every kink and jump."""
     low, high = middle, middle - 1
@@ -99,7 +99,7 @@ def _window(bins: Array, broken: NDArray[np.bool_], arc: float, middle: int, rea
     return low, high
 
 
-@njit(cache=True, nogil=True)
+@inlined()
 def _graph(bins: Array) -> int:
     """How many of the bins from the origin outwards are the graph of a function of x."""
     for k in range(1, len(bins)):
@@ -109,7 +109,7 @@ def _graph(bins: Array) -> int:
     return len(bins)
 
 
-@njit(cache=True, nogil=True)
+@inlined()
 def _share(
     right: Array,
     left: Array,

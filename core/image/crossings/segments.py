@@ -9,9 +9,9 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from core.compiled import compiled, inlined
 from core.image.crossings.breaks import breaks
 from core.image.crossings.line_bins import bin_length, binned
 from core.image.stripes.centreline import Centreline
@@ -92,7 +92,7 @@ class Stack:
         return StackedPiece(self.points[part], self.arc[part], self.bins[i], self.broken[i], correlation)
 
 
-@njit(cache=True, nogil=True)
+@compiled()
 def _chunks(points: Array, starts: NDArray[np.int64]) -> Array:
     """Bounding boxes of up to _SEGMENTS_PER_BOX segments: (K, 7) piece, first, last point, u and v from, to."""
     count = 0
@@ -110,7 +110,7 @@ def _chunks(points: Array, starts: NDArray[np.int64]) -> Array:
     return boxes[:k]
 
 
-@njit(cache=True, nogil=True)
+@compiled()
 def meeting_segments(
     a: Array, starts_a: NDArray[np.int64], boxes_a: Array, b: Array, starts_b: NDArray[np.int64], boxes_b: Array
 ) -> NDArray[np.int64]:
@@ -132,7 +132,7 @@ def meeting_segments(
     return found[:count]
 
 
-@njit(cache=True, nogil=True)
+@inlined()
 def _overlapping(a: Array, b: Array) -> NDArray[np.int64]:
     """Pairs (K, 2) of boxes that have something in common; boxes of `b` are passed over by the group."""
     groups = np.empty((-(-len(b) // _BOXES_PER_GROUP), 7))
@@ -155,13 +155,13 @@ def _overlapping(a: Array, b: Array) -> NDArray[np.int64]:
     return pairs[:count]
 
 
-@njit(cache=True, nogil=True)
+@inlined()
 def boxes_apart(one: Array, other: Array) -> bool:
     """Whether the boxes of two runs have nothing in common."""
     return bool(one[5] < other[3] or other[5] < one[3] or one[6] < other[4] or other[6] < one[4])
 
 
-@njit(cache=True, nogil=True)
+@inlined()
 def segment_apart(p: Array, q: Array, box: Array) -> bool:
     """Whether the segment from p to q passes a run's box on one of its sides."""
     return bool(
@@ -169,7 +169,7 @@ def segment_apart(p: Array, q: Array, box: Array) -> bool:
     )
 
 
-@njit(cache=True, nogil=True)
+@inlined()
 def segments_cut(p: Array, q: Array, r: Array, s: Array) -> bool:
     """Whether the segment from p to q cuts the one from r to s; the last point belongs to the next segment."""
     du, dv, eu, ev = q[0] - p[0], q[1] - p[1], s[0] - r[0], s[1] - r[1]

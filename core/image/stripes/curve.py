@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
+from core.compiled import inlined
 from core.image.stripes.running_statistics import quantile_of_magnitudes
 from core.model.arrays import Array
 
@@ -17,7 +17,7 @@ _LARGEST_ANGLE = 0.2  # rad from the middle of a window to its end: beyond, a pa
 _BEND_SAMPLE = 4  # points: every so many tell the run's curvature, which changes as slowly as the window is long
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract", "arcp"})
+@inlined(fastmath={"contract", "arcp"})
 def parabolas(run: Array, arc: Array, weight: Array, arm: float) -> Array:
     """Fit parabolas u(s), v(s) over ± `arm` px of arc around every point of a run: (N, 5) u, v, n_u, n_v, curvature.
 
@@ -70,7 +70,7 @@ def parabolas(run: Array, arc: Array, weight: Array, arm: float) -> Array:
     return result
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract", "arcp"})
+@inlined(fastmath={"contract", "arcp"})
 def _solve(m: Array, x: float, fit: Array) -> bool:
     """Value, slope and bend of u and of v at `x` from a window's sums (11,), into `fit` (6,); False if too few."""
     s0 = m[0]
@@ -94,7 +94,7 @@ def _solve(m: Array, x: float, fit: Array) -> bool:
     return True
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inlined()
 def smooth_curve(run: Array, arc: Array, weight: Array, filter_px: float) -> Array:
     """Fit the curve through a run (N, ≥ 2) by `parabolas` over ± 8 filter σ, shorter ones where the run is bent."""
     curve = parabolas(run, arc, weight, _ARM * filter_px)

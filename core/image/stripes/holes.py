@@ -12,9 +12,9 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from core.compiled import compiled
 from core.image.stripes.joining import crosses
 from core.image.stripes.tracing.linking import HOLD
 from core.image.stripes.tracing.pixel_state import SATURATED
@@ -57,7 +57,7 @@ def _is_hidden(ends: Array, state: NDArray[np.uint8], others: Sequence[Array]) -
     return 2 * saturated > len(u) or any(crosses(ends, other, math.inf) for other in others if len(other) > 1)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled()
 def _suspects(run: Array, kept: NDArray[np.intp], longest: float) -> NDArray[np.intp]:
     """Positions in `kept` of the points that do not follow the one before them along the line, or not near enough."""
     found = np.empty(len(kept), dtype=np.intp)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
+from core.compiled import compiled, inlined
 from core.model.arrays import Array
 
 NEIGHBOUR_DISTANCE = 3.5
@@ -33,7 +33,7 @@ def distances_to_neighbours(runs: list[Array], bridges: list[Array], touching: f
     return apart_px
 
 
-@njit(cache=True, nogil=True)
+@compiled()
 def _boxes(run: Array) -> Array:
     """Bounding boxes (K, 4) from u, v to u, v of _BOXED points each."""
     boxes = np.empty(((len(run) + _BOXED - 1) // _BOXED, 4))
@@ -42,14 +42,14 @@ def _boxes(run: Array) -> Array:
     return boxes
 
 
-@njit(cache=True, nogil=True)
+@inlined()
 def _box(points: Array) -> Array:
     """Bounding box (4,) from u, v to u, v of points (N, ≥ 2), N ≥ 1."""
     u, v = points[:, 0], points[:, 1]
     return np.array([u.min(), v.min(), u.max(), v.max()])
 
 
-@njit(cache=True, nogil=True)
+@compiled()
 def _add_nearest(
     run: Array, boxes: Array, other: Array, others: Array, touching: float, reach: float, apart_px: Array
 ) -> None:

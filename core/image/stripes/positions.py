@@ -6,9 +6,9 @@ import math
 from dataclasses import dataclass, field
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from core.compiled import compiled
 from core.image.stripes.curve import smooth_curve
 from core.image.stripes.likelihood.refinement import Refined, StripeModel, refine, residuals
 from core.image.stripes.noise import NoiseModel
@@ -112,7 +112,7 @@ def _speckle(
     return measure_speckle(cuts, settings.stripe_px)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled()
 def _difference(run: Array, better: Array, sigma: Array, usable: NDArray[np.bool_]) -> tuple[int, float, float]:
     """Number of the usable points of two lines, and mean and variance of how far across they are apart, in px."""
     number, total, square = 0, 0.0, 0.0
@@ -142,7 +142,7 @@ def _joined(piece: Piece, line: Refined, better: Refined) -> Refined:
     return Refined(run, np.where(there, sigma, added_in_squares(line.sigma, extra)), better.correlation_px)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled()
 def _is_near(run: Array, better: Array, width: Array) -> NDArray[np.bool_]:
     """Whether points (N, ≥ 2) of two lines are the same place of a stripe of σ `width` (N,)."""
     near = np.empty(len(run), dtype=np.bool_)
@@ -158,7 +158,7 @@ def _steger_line(piece: Piece, curve: Array, settings: StripeSettings, noise: No
     return Refined(_bias_corrected(piece.run, curve, light, g), noise_sigma(profiles, noise, g), correlation_length(g))
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled()
 def _bias_corrected(points: Array, curve: Array, light: tuple[Array, Array, Array, Array], filter_px: float) -> Array:
     """`points` (N, ≥ 2) less the pulls of the `curve` (N, 5) and of the background's slope where it is significant."""
     height, width, slope, slope_sigma = light

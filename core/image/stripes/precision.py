@@ -17,9 +17,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from core.compiled import compiled, inlined
 from core.image.stripes.noise import NoiseModel
 from core.image.stripes.profile import Profiles
 from core.image.stripes.tracing.pixel_state import SATURATED, bits_within
@@ -68,7 +68,7 @@ def compression_sigma(height: Array, noise: NoiseModel) -> Array:
     return np.asarray(COMPRESSION_SHARE * noise.compression_grey / np.maximum(height, 1.0))
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
+@compiled(fastmath=True)
 def _noise_sigma(height: Array, width: Array, background: Array, read: float, shot: float, filter_px: float) -> Array:
     sigma, square = np.empty(len(height)), filter_px * filter_px
     for k in range(len(height)):
@@ -95,7 +95,7 @@ def roughness(lines: list[tuple[Array, Array]], correlation: float) -> list[floa
     return [math.sqrt(max(0.0, (total + prior * overall) / (n + prior))) for total, n in sums]
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract", "reassoc", "arcp", "nsz"})
+@compiled(fastmath={"contract", "reassoc", "arcp", "nsz"})
 def _excess(points: Array, sigma: Array, lag: int, correlation: float) -> tuple[float, float]:
     """Sum of the excess variance over independent third differences, and their number, both weighted."""
     count = max(0, len(points) - 3 * lag)
@@ -124,7 +124,7 @@ def _excess(points: Array, sigma: Array, lag: int, correlation: float) -> tuple[
     return total / lag, counted / lag
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
+@compiled(fastmath=True)
 def saturated_points(state: NDArray[np.uint8], points: Array, filter_px: float) -> NDArray[np.bool_]:
     """Flag the points (N, ≥ 2) with more than 1 % of the filter's weight on saturated pixels, (N,)."""
     reach = math.ceil(_SATURATED_REACH * filter_px)
@@ -140,7 +140,7 @@ def saturated_points(state: NDArray[np.uint8], points: Array, filter_px: float) 
     return saturated
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
+@inlined(fastmath=True)
 def _around(shape: tuple[int, int], points: Array, reach: int) -> tuple[int, int, int, int]:
     """The pixels within `reach` of the box of some points: columns from, to behind; rows from, to behind."""
     left, right, top, bottom = points[0, 0], points[0, 0], points[0, 1], points[0, 1]
@@ -155,7 +155,7 @@ def _around(shape: tuple[int, int], points: Array, reach: int) -> tuple[int, int
     )
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
+@inlined(fastmath=True)
 def _weight_of_saturated(state: NDArray[np.uint8], point: Array, reach: int, filter_px: float) -> float:
     """Σ exp(−d²/2g²) over the saturated pixels within `reach` of a point (1, ≥ 2), d being their distance from it."""
     u, v, inverse, total = point[0, 0], point[0, 1], 0.5 / (filter_px * filter_px), 0.0

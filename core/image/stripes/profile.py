@@ -16,9 +16,9 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from core.compiled import compiled, inlined
 from core.image.stripes.running_statistics import running_mean, running_median
 from core.image.stripes.runs import arc_length
 from core.image.stripes.section_fit import fit_sections
@@ -115,7 +115,7 @@ def profiles_along(arc: Array, part: slice, fits: Fits, stripe_px: float, filter
     return Profiles(*_along(arc, fits.at[first:last] - part.start, fits.figures[first:last], short, long))
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled()
 def _along(arc: Array, at: NDArray[np.int64], figures: Array, short: int, long: int) -> Array:
     """Height, background, slope, its σ and width (5, N) from those fitted at some of the points."""
     smooth = np.empty((5, len(at)))
@@ -128,7 +128,7 @@ def _along(arc: Array, at: NDArray[np.int64], figures: Array, short: int, long: 
     return _interpolated(arc, arc[at], smooth)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled()
 def _smoothed(height: Array, background: Array, width: Array, at: NDArray[np.int64], length: int) -> Array:
     """Height, background and width (3, N), both as pixels blur them, from running medians at some of the points."""
     smooth = np.empty((3, len(at)))
@@ -141,7 +141,7 @@ def _smoothed(height: Array, background: Array, width: Array, at: NDArray[np.int
     return found
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inlined()
 def _interpolated(x: Array, at: Array, values: Array) -> Array:
     """Figures (C, N) at rising `x`, on straight lines between `values` (C, K) at rising places; level beyond them."""
     found = np.empty((len(values), len(x)))
@@ -163,7 +163,7 @@ def _stride(filter_px: float) -> int:
     return max(1, round(_STRIDE * filter_px))
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled()
 def _places(count: int, stride: int) -> NDArray[np.int64]:
     """Every `stride`-th of `count` points, and the last."""
     at = np.arange(0, count - 1 + stride, stride)

@@ -3,26 +3,26 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from core.compiled import compiled, inlined
 from core.model.arrays import Array
 from core.model.robust import MAD_TO_SD
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled()
 def median(values: Array) -> float:
     """Median of `values` (N,), N ≥ 1."""
     return float(np.median(values))
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inlined()
 def quantile_of_magnitudes(values: Array, share: float) -> float:
     """The size |value| that `share` of the `values` (N,) do not exceed."""
     k = min(int(share * len(values)), len(values) - 1)
     return float(np.partition(np.abs(values), k)[k])
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inlined()
 def running_median(values: Array, length: int) -> Array:
     """Median of the `length` (odd) values around each of `values` (N,); the first and last go on beyond the ends."""
     count, half = len(values), length // 2
@@ -45,7 +45,7 @@ def running_median(values: Array, length: int) -> Array:
     return medians
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inlined()
 def running_mean(values: Array, length: int) -> tuple[Array, Array]:
     """Mean over `length` (odd) neighbours, fewer at the ends, and its standard error, (N,) each; outliers clipped.
 

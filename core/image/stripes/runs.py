@@ -8,8 +8,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
+from core.compiled import compiled, inlined
 from core.image.stripes.tracing.ridge import kernel_radius
 from core.model.arrays import Array
 
@@ -33,7 +33,7 @@ _NARROWED = 0.9  # share of width² further in: with less it is a shadow
 _MEAN_REACH = 1.5  # filter σ on either side over which width² is averaged
 
 
-@njit(cache=True, nogil=True)
+@inlined()
 def arc_length(run: Array) -> Array:
     """Length along a run (N, ≥ 2) up to each point, in pixels."""
     arc = np.zeros(len(run))
@@ -60,7 +60,7 @@ def cut_ends(run: Array, filter_px: float, shape: tuple[int, ...]) -> Array:
     return run[first:last]
 
 
-@njit(cache=True, nogil=True)
+@compiled()
 def _lit(
     run: Array, arc: Array, filter_px: float, trim: float, border: float, shape: tuple[int, int]
 ) -> tuple[int, int]:
@@ -74,7 +74,7 @@ def _lit(
     return int(np.searchsorted(arc, start)), int(np.searchsorted(arc, end, side="right"))
 
 
-@njit(cache=True, nogil=True)
+@inlined()
 def _leaves_picture(arc: Array, run: Array, filter_px: float, border: float, shape: tuple[int, int]) -> bool:
     """Whether a run starts at the border of the picture as bright as it is further in."""
     u, v = run[0, 0], run[0, 1]
@@ -85,7 +85,7 @@ def _leaves_picture(arc: Array, run: Array, filter_px: float, border: float, sha
     return usual > 0 and run[: at_end + 1, 4].min() >= _UNDIMMED * usual
 
 
-@njit(cache=True, nogil=True)
+@inlined()
 def _usual_response(arc: Array, response: Array, filter_px: float) -> float:
     """The response a little way in from the start of a run; 0 for one that is too short."""
     first, last = (
@@ -95,7 +95,7 @@ def _usual_response(arc: Array, response: Array, filter_px: float) -> float:
     return float(np.median(response[first:last])) if last > first else 0.0
 
 
-@njit(cache=True, nogil=True)
+@inlined()
 def _real_end(arc: Array, response: Array, filter_px: float) -> float:
     """Length in px at which the response first reaches half of what it is further in."""
     half = _END_HEIGHT * _usual_response(arc, response, filter_px)
@@ -107,7 +107,7 @@ def _real_end(arc: Array, response: Array, filter_px: float) -> float:
     return 0.0
 
 
-@njit(cache=True, nogil=True)
+@compiled()
 def fully_lit(arc: Array, height: Array, width: Array, filter_px: float) -> tuple[int, int]:
     """Find first and past-the-last point between shadows at a run's ends, from height and width (N,) of its section.
 
@@ -122,7 +122,7 @@ def fully_lit(arc: Array, height: Array, width: Array, filter_px: float) -> tupl
     return first, max(first, last)
 
 
-@njit(cache=True, nogil=True)
+@inlined()
 def _fading(arc: Array, height: Array, square: Array, filter_px: float) -> int:
     """How many points at the start are in a shadow's edge: less light than the stretch behind them, and narrower."""
     reach = min(_FADE_REACH * filter_px, _FADE_SHARE * arc[-1])

@@ -8,9 +8,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from core.compiled import compiled, inlined
 from core.image.stripes.tracing.pixel_state import IGNORED, SATURATED
 from core.image.stripes.tracing.seeds import Picture
 from core.model.arrays import Array
@@ -38,7 +38,7 @@ _DAMPING = 1e-9  # relative to the diagonal: a fit without a unique answer stays
 DARK = 16.0  # exponent from which on exp(−y) counts as 0: 1e-7
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
+@compiled(fastmath=True)
 def fit_sections(picture: Picture, state: NDArray[np.uint8], places: Array, stripe_px: float, along_px: float) -> Array:
     """Fit cross-sections at `places` (K, ≥ 4) u, v, n_u, n_v: height, background, slope, width (K, 4).
 
@@ -71,7 +71,7 @@ def fit_sections(picture: Picture, state: NDArray[np.uint8], places: Array, stri
     return fits
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
+@inlined(fastmath=True)
 def _average_across(
     picture: Picture, state: NDArray[np.uint8], place: Array, reach: float, along_px: float, section: Array
 ) -> None:
@@ -104,7 +104,7 @@ def _average_across(
             section[2, k] /= section[0, k]
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
+@inlined(fastmath=True)
 def _range(section: Array, stripe_px: float) -> tuple[float, float]:
     """Lowest and highest grey value; twice 0 where too little is seen: both flanks, the top may be saturated."""
     low, high, left, right = np.inf, -np.inf, 0, 0
@@ -118,7 +118,7 @@ def _range(section: Array, stripe_px: float) -> tuple[float, float]:
     return low, high
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
+@inlined(fastmath=True)
 def _fit(section: Array, stripe_px: float, x: Array, work: Array) -> bool:
     """Gauss–Newton from `x` (5,): background, slope, height, centre, width; whether it settles."""
     normal, step = work[:_UNKNOWNS], work[_UNKNOWNS]
@@ -155,13 +155,13 @@ def _fit(section: Array, stripe_px: float, x: Array, work: Array) -> bool:
     return False
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
+@inlined(fastmath=True)
 def _is_likely(x: Array, stripe_px: float) -> bool:
     """Whether a fit `x` (5,) can be the section of a stripe of about this σ."""
     return bool(x[2] > 0 and _NARROWEST * stripe_px < x[4] < _WIDEST * stripe_px and abs(x[3]) < _FARTHEST * stripe_px)
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
+@inlined(fastmath=True)
 def _solve(normal: Array, x: Array) -> bool:
     """Solve by Cholesky from the lower triangle, lightly damped; `x` comes as the right side. False if singular."""
     for a in range(_UNKNOWNS):
@@ -187,7 +187,7 @@ def _solve(normal: Array, x: Array) -> bool:
     return True
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
+@inlined(fastmath=True)
 def exp_negative(y: float) -> float:
     """exp(−y) for y ≥ 0, within 1e-7: Taylor's series of the sixteenth part, squared four times."""
     t = min(y, DARK) * (1 / 16)

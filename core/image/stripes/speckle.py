@@ -14,8 +14,8 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
+from core.compiled import compiled, inlined
 from core.image.stripes.running_statistics import running_median
 from core.model.arrays import Array
 
@@ -75,7 +75,7 @@ def measure_speckle(stripes: list[Array], width_px: float) -> Speckle:
     return Speckle(min(contrast, _LARGEST_CONTRAST), grain)
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
+@compiled(fastmath=True)
 def _products(r: Array, m: Array) -> Array:
     """Sums of products of neighbours in each cut, of residuals and of the model, (_LAGS, 2)."""
     sums, width = np.zeros((_LAGS, 2)), m.shape[1]
@@ -87,7 +87,7 @@ def _products(r: Array, m: Array) -> Array:
     return sums
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
+@compiled(fastmath=True)
 def _levelled(r: Array, m: Array) -> Array:
     """Residuals freed of brightness that changes along the stripe, of the section's shape, and of what stands out."""
     cuts, width = m.shape
@@ -115,7 +115,7 @@ def _levelled(r: Array, m: Array) -> Array:
     return levelled
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inlined()
 def _median_share(r: Array, m: Array) -> float:
     """Median of |r/m| where m > 0; 1 if that is nowhere."""
     shares, count = np.empty(m.size), 0

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from core.compiled import compiled, inlined
 from core.image.stripes.runs import correlation_length
 from core.model.arrays import Array
 
@@ -56,7 +56,7 @@ def _stretches(flags: NDArray[np.bool_]) -> NDArray[np.int64]:
     return edges.reshape(-1, 2)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled()
 def _break_scores(
     run: Array, arc: Array, sigma: Array, gap: float, arm: float, correlation: float
 ) -> tuple[Array, Array]:
@@ -110,7 +110,7 @@ def _break_scores(
     return score, misfit
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inlined()
 def _smooth_misfit(run: Array, arc: Array, gap: float, arm: float, stride: int) -> Array:
     """Sum of squares (N,) in px² that parabolas u(s), v(s) leave over what a broken curve is fitted to.
 
@@ -147,7 +147,7 @@ def _smooth_misfit(run: Array, arc: Array, gap: float, arm: float, stride: int) 
     return misfit
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inlined()
 def _left_over(m: Array, x: float, u: float, v: float) -> float:
     """Sum of squares that parabolas leave of a window's sums `m` (13,), moved to the origin (x, u, v)."""
     s0 = m[0]

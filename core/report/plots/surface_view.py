@@ -11,9 +11,9 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from core.compiled import compiled
 from core.model import LightPlane
 from core.model.arrays import Array
 from core.progress import Progress, silent
@@ -150,7 +150,7 @@ def _edges(depth: Array, scale: float) -> Array:
     return darkening
 
 
-@njit(cache=True)
+@compiled()
 def _fill_triangles(corners: Array, triangles: NDArray[np.int64], layers: Array) -> None:
     """Each pixel keeps the nearest triangle's depth, height and shade, linear between its corners."""
     _, rows, columns = layers.shape
@@ -178,7 +178,7 @@ def _fill_triangles(corners: Array, triangles: NDArray[np.int64], layers: Array)
                     layers[2, y, x] = wa * a[4] + wb * b[4] + wc * c[4]
 
 
-@njit(cache=True)
+@compiled()
 def _splat_points(corners: Array, reach: int, layers: Array) -> None:
     """Each point as a small square; the nearest wins."""
     _, rows, columns = layers.shape

@@ -14,9 +14,9 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from core.compiled import compiled, inlined
 from core.image.crossings.crossing import MEETING, REASON, SIGMAS, TANGENTS, UV, cross_segments
 from core.image.crossings.local_fit import LineAt
 from core.image.crossings.segments import CELL_REACH, CELLS, Stack, boxes_apart, segment_apart, segments_cut
@@ -84,7 +84,7 @@ def meetings_of(lines: Stack, picture: Index) -> Meetings:
     )
 
 
-@njit(cache=True, nogil=True)
+@compiled()
 def _meeting_runs(
     points: Array, boxes: Array, picture: Index, low: Array, squares: Array, side: float
 ) -> tuple[Index, int]:
@@ -199,7 +199,7 @@ class _Pieces(NamedTuple):
         )
 
 
-@njit(cache=True, nogil=True)
+@compiled()
 def _fit(piece: Index, point: Index, pieces: _Pieces, cell_px: float, min_angle: float, into: _Into) -> None:
     """Fit the centrelines at some meetings, see `Meetings`, and put what comes out `into` arrays."""
     arc = pieces.arc
@@ -214,7 +214,7 @@ def _fit(piece: Index, point: Index, pieces: _Pieces, cell_px: float, min_angle:
         rows[n] = cross_segments(a, b, cell_px, min_angle, share[n])
 
 
-@njit(cache=True, nogil=True)
+@inlined()
 def _line_at(pieces: _Pieces, i: int, point: int, along: float, cell: int) -> LineAt:
     """Piece `i` at the segment from a `point` among those of all pieces, `along` px from the piece's first point."""
     start, end, bins = pieces.starts[i], pieces.starts[i + 1], slice(pieces.bin_starts[i], pieces.bin_starts[i + 1])

@@ -11,9 +11,9 @@ from dataclasses import dataclass, field, replace
 
 import cv2
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from core.compiled import compiled
 from core.errors import InputError
 from core.image.stripes.centreline import Centreline
 from core.image.stripes.extraction import extract_centrelines
@@ -66,7 +66,7 @@ def picture_difference(picture: Picture, base: Picture) -> NDArray[np.int16] | N
     return np.asarray(cv2.subtract(picture, base, dtype=cv2.CV_32F), dtype=np.float32)
 
 
-@njit(cache=True, nogil=True)
+@compiled()
 def _difference(picture: Picture, base: Picture) -> NDArray[np.int16]:
     height, width = picture.shape
     found = np.empty((height, width), np.int16)
@@ -113,7 +113,7 @@ def check_reference(difference: NDArray[np.int16] | NDArray[np.float32], fan: Se
     return ReferenceCheck(worst, lost, light)
 
 
-@njit(cache=True, nogil=True)
+@compiled()
 def _sample(picture: NDArray[np.int16] | NDArray[np.float32], uv: Array) -> Array:
     """Bilinear values (N,) of `picture` at `uv` (N, 2), which lie inside it or count as on its rim."""
     height, width = picture.shape

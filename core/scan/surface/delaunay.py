@@ -18,9 +18,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from core.compiled import compiled, inlined
 from core.model.arrays import Array
 
 Index = NDArray[np.int64]
@@ -79,7 +79,7 @@ def delaunay(uv: Array) -> Index:
     return np.asarray(order[found], dtype=np.int64)
 
 
-@njit(cache=True, nogil=True)
+@compiled()
 def _triangulated(xy: Index) -> Index:
     """Triangles over points sorted by their distance from the first."""
     count = len(xy)
@@ -109,7 +109,7 @@ def _triangulated(xy: Index) -> Index:
     return edges.start[:used].copy().reshape(-1, 3)
 
 
-@njit(cache=True, nogil=True)
+@inlined()
 def _joined(i: int, xy: Index, edges: _Edges, hull: _Hull, used: int, stack: Index) -> tuple[int, Index]:
     """Join point i, which lies outside the hull, to all that it sees of it; how many half-edges there are then."""
     first = hull.before[_seen_towards(i, xy, hull)]
@@ -144,21 +144,21 @@ def _joined(i: int, xy: Index, edges: _Edges, hull: _Hull, used: int, stack: Ind
     return used, stack
 
 
-@njit(cache=True, nogil=True)
+@inlined()
 def _add(edges: _Edges, at: int, corners: tuple[int, int, int], twins: tuple[int, int, int]) -> None:
     for k in range(3):
         edges.start[at + k] = corners[k]
         _link(edges, at + k, twins[k])
 
 
-@njit(cache=True, nogil=True)
+@inlined()
 def _link(edges: _Edges, one: int, other: int) -> None:
     edges.twin[one] = other
     if other >= 0:
         edges.twin[other] = one
 
 
-@njit(cache=True, nogil=True)
+@inlined()
 def _legalised(a: int, xy: Index, edges: _Edges, hull: _Hull, stack: Index) -> tuple[int, Index]:
     r"""Flip edge a, opposite to a new point, and those that come to be opposite, until all circles are empty.
 
@@ -200,7 +200,7 @@ def _legalised(a: int, xy: Index, edges: _Edges, hull: _Hull, stack: Index) -> t
         a = stack[depth]
 
 
-@njit(cache=True, nogil=True)
+@inlined()
 def _seen_towards(i: int, xy: Index, hull: _Hull) -> int:
     """A vertex of the hull in about the direction of point i or the next one anticlockwise."""
     size = len(hull.near)
@@ -212,7 +212,7 @@ def _seen_towards(i: int, xy: Index, hull: _Hull) -> int:
     raise ValueError("the hull is empty")
 
 
-@njit(cache=True, nogil=True)
+@inlined()
 def _direction(xy: Index, i: int, size: int) -> int:
     """In which of `size` directions, anticlockwise, point i lies from the first."""
     dx, dy = float(xy[i, 0] - xy[0, 0]), float(xy[i, 1] - xy[0, 1])
@@ -221,14 +221,14 @@ def _direction(xy: Index, i: int, size: int) -> int:
     return int((3.0 - share if dy > 0 else 1.0 + share) / 4.0 * size) % size
 
 
-@njit(cache=True, nogil=True)
+@inlined()
 def _turn(xy: Index, a: int, b: int, c: int) -> int:
     """Above 0 where a, b, c run anticlockwise, 0 where they are on one line; exact."""
     ax, ay = xy[a, 0], xy[a, 1]
     return int((xy[b, 0] - ax) * (xy[c, 1] - ay) - (xy[b, 1] - ay) * (xy[c, 0] - ax))
 
 
-@njit(cache=True, nogil=True)
+@inlined()
 def _in_circle(xy: Index, a: int, b: int, c: int, d: int) -> bool:
     """Whether d lies within the circle through a, b, c, which run anticlockwise; exact."""
     ax, ay = xy[a, 0] - xy[d, 0], xy[a, 1] - xy[d, 1]

@@ -13,9 +13,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from core.compiled import compiled, inlined
 from core.errors import InputError
 from core.messages import Message
 from core.model.arrays import Array
@@ -101,7 +101,7 @@ def fuse(
 Index = NDArray[np.int64]
 
 
-@njit(cache=True, nogil=True)
+@compiled()
 def cells_of(points: Array, uv: Array, sigma: Array, shape: tuple[int, int], cell_px: float) -> Index:
     """Find the cell (N,) of each point in a grid of `shape` (rows, columns); −1 for what cannot be fused.
 
@@ -117,7 +117,7 @@ def cells_of(points: Array, uv: Array, sigma: Array, shape: tuple[int, int], cel
     return found
 
 
-@njit(cache=True, nogil=True)
+@compiled()
 def sorted_by_cell(cell_of: Index, cells: int) -> tuple[Index, Index]:
     """Sort points by their cell, those of −1 left out; also where in that order each of the `cells` begins and ends."""
     starts = np.zeros(cells + 1, dtype=np.int64)
@@ -158,7 +158,7 @@ class FusedCells(NamedTuple):
     member: Index
 
 
-@njit(cache=True, nogil=True)
+@compiled()
 def fuse_cells(order: Index, starts: Index, cells: Index, measured: Measured, gap: float, slope: float) -> FusedCells:
     """Fuse the points of each of the occupied `cells` (M,).
 
@@ -200,7 +200,7 @@ def fuse_cells(order: Index, starts: Index, cells: Index, measured: Measured, ga
     return FusedCells(means, total, count, member)
 
 
-@njit(cache=True, nogil=True)
+@inlined()
 def _sort_by_depth(inside: Index, points: Array) -> None:
     """Sort the few points of a cell in place, those of one depth as they came."""
     if len(inside) > 64:
@@ -214,7 +214,7 @@ def _sort_by_depth(inside: Index, points: Array) -> None:
         inside[at] = i
 
 
-@njit(cache=True, nogil=True)
+@inlined()
 def _largest_layer(inside: Index, points: Array, sigma: Array, gap: float, slope: float) -> tuple[int, int]:
     """First and past-the-last of the points, sorted by depth, of the layer with most of them; of equals the nearest."""
     best_first, best_last, first = 0, 0, 0

@@ -14,9 +14,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from core.compiled import compiled, inlined
 from core.errors import InputError
 from core.messages import Message
 from core.model.arrays import Array
@@ -106,7 +106,7 @@ def _continuous(
     return np.asarray(turned[kept], dtype=np.int64)
 
 
-@njit(cache=True, nogil=True)
+@compiled()
 def _longest(uv: Array, triangles: NDArray[np.int64]) -> Array:
     """Length (T,) in pixels of the longest edge of each triangle."""
     longest = np.empty(len(triangles))
@@ -136,7 +136,7 @@ class _Limits(NamedTuple):
     kink: float
 
 
-@njit(cache=True, nogil=True)
+@compiled()
 def _kept(vertices: _Vertices, triangles: NDArray[np.int64], limits: _Limits) -> NDArray[np.bool_]:
     """Which triangles stay; each is turned in place towards the camera, and those seen edge-on are left out."""
     points = vertices.points
@@ -157,7 +157,7 @@ def _kept(vertices: _Vertices, triangles: NDArray[np.int64], limits: _Limits) ->
     return kept
 
 
-@njit(cache=True, nogil=True)
+@inlined()
 def _joins(vertices: _Vertices, a: int, b: int, limits: _Limits) -> bool:
     """Whether the edge from a to b lies on one continuous surface; see the module's docstring."""
     points, uv, sigma, facing = vertices

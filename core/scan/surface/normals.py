@@ -11,10 +11,10 @@ from dataclasses import replace
 from typing import NamedTuple, TypeVar
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from core.compiled import compiled, inlined
 from core.model.arrays import Array
 from core.model.robust import TUKEY
 from core.progress import Progress, silent
@@ -158,7 +158,7 @@ class _PointGrid(NamedTuple):
     angle: float
 
 
-@njit(cache=True, nogil=True)
+@compiled()
 def _fit_all(points: _PointGrid) -> Array:
     """A robust plane in inverse depth around each point; see the module's docstring."""
     xyz, sigma, radius, angle = points.xyz, points.sigma, points.radius, points.angle
@@ -193,7 +193,7 @@ def _fit_all(points: _PointGrid) -> Array:
     return normals
 
 
-@njit(cache=True, nogil=True)
+@inlined()
 def _neighbours(i: int, points: _PointGrid, near: NDArray[np.int64]) -> int:
     """Neighbours of point i on its own surface into `near`, evenly thinned to about MOST_NEIGHBOURS; how many."""
     xyz, uv, sigma, starts = points.xyz, points.uv, points.sigma, points.starts
@@ -220,7 +220,7 @@ def _neighbours(i: int, points: _PointGrid, near: NDArray[np.int64]) -> int:
     return count
 
 
-@njit(cache=True, nogil=True)
+@inlined()
 def _inverse_depth_plane(
     i: int, points: _PointGrid, near: NDArray[np.int64], weights: Array, count: int
 ) -> tuple[float, float, float, float]:
@@ -257,7 +257,7 @@ def _inverse_depth_plane(
     return mq - b * mu - c * mv, b, c, narrow
 
 
-@njit(cache=True, nogil=True)
+@inlined()
 def _reweight(
     i: int, points: _PointGrid, near: NDArray[np.int64], weights: Array, count: int, plane: tuple[float, float, float]
 ) -> float:

@@ -10,10 +10,10 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 from scipy.special import erf
 
+from core.compiled import compiled
 from core.simulate.rig import Optics
 from core.simulate.scene.rays import Map
 
@@ -110,7 +110,7 @@ class Sensor:
         return rng.standard_normal(shape, dtype=np.float32)
 
 
-@njit(cache=True, nogil=True)
+@compiled()
 def _expose(light, noise, figures, picture):  # type: ignore[no-untyped-def]
     brightness, electrons, read_variance, strength, black, unit, white = figures
     for v in range(light.shape[0]):

@@ -13,9 +13,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from core.compiled import compiled
 from core.model import LightPlane
 from core.model.arrays import Array, frozen_array, set_field
 from core.simulate.rig import Beam, Rig
@@ -124,7 +124,7 @@ def _near(maps: SurfaceMaps, plane: LightPlane, reach: float) -> tuple[NDArray[n
     return rows, columns
 
 
-@njit(cache=True, nogil=True)
+@compiled()
 def _near_in_tiles(tiles, points, normal, distance, reach):  # type: ignore[no-untyped-def]
     height, width = points.shape[:2]
     rows, columns = np.empty(len(tiles) * TILE * TILE, np.int64), np.empty(len(tiles) * TILE * TILE, np.int64)

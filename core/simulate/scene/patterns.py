@@ -10,9 +10,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 from numpy.typing import ArrayLike
 
+from core.compiled import compiled, inlined
 from core.model import Pose
 from core.model.arrays import Array, frozen_array, set_field
 from core.simulate.scene.rays import Map
@@ -75,7 +75,7 @@ def draw_pattern(pattern: Pattern, pose_cam_target: Pose, rays: Map) -> tuple[Ma
     return points, albedo
 
 
-@njit(cache=True, nogil=True)
+@inlined()
 def _on_plate(x, y, rotation, translation):  # type: ignore[no-untyped-def]
     """Plate coordinates and depth of the point at which ray (x, y, 1) meets the plate; depth 0 if it does not."""
     facing = rotation[0, 2] * x + rotation[1, 2] * y + rotation[2, 2]
@@ -89,7 +89,7 @@ def _on_plate(x, y, rotation, translation):  # type: ignore[no-untyped-def]
     return px, py, z
 
 
-@njit(cache=True, nogil=True)
+@inlined()
 def _share(distance, gradient_u, gradient_v):  # type: ignore[no-untyped-def]
     """Share of a pixel beyond a straight edge.
 
@@ -110,7 +110,7 @@ def _share(distance, gradient_u, gradient_v):  # type: ignore[no-untyped-def]
     return 0.5 + distance / long
 
 
-@njit(cache=True, nogil=True)
+@inlined()
 def _widest_step(rays):  # type: ignore[no-untyped-def]
     """Largest step of a ray coordinate from pixel to pixel, looked for here and there: distortion is smooth."""
     height, width = rays.shape[:2]
@@ -123,7 +123,7 @@ def _widest_step(rays):  # type: ignore[no-untyped-def]
     return widest
 
 
-@njit(cache=True, nogil=True)
+@inlined()
 def _stepped(ascending, i, value):  # type: ignore[no-untyped-def]
     """How many of `ascending` are below `value`, looked for from `i` on: the neighbouring pixel's answer."""
     while i < len(ascending) and ascending[i] < value:
@@ -133,7 +133,7 @@ def _stepped(ascending, i, value):  # type: ignore[no-untyped-def]
     return i
 
 
-@njit(cache=True, nogil=True)
+@compiled()
 def _draw_cells(x_edges, y_edges, cells, rotation, translation, rays):  # type: ignore[no-untyped-def]
     height, width = rays.shape[:2]
     points = np.zeros((height, width, 3), np.float32)
@@ -167,7 +167,7 @@ def _draw_cells(x_edges, y_edges, cells, rotation, translation, rays):  # type: 
     return points, albedo
 
 
-@njit(cache=True, nogil=True)
+@compiled()
 def _draw_dots(dots, dot, rotation, translation, rays, points, albedo):  # type: ignore[no-untyped-def]
     radius, dark = dot
     height, width = rays.shape[:2]

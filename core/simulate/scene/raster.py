@@ -7,9 +7,9 @@ and depth are exact whatever the lens distorts; distortion only matters for the 
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from core.compiled import compiled
 from core.model import Camera
 from core.model.arrays import Array
 from core.simulate.scene.rays import Map
@@ -39,7 +39,7 @@ def draw_triangles(triangles: Array, camera: Camera, rays: Map, depth: Map, face
     _draw(triangles, visible, first, last, rays, depth, face)
 
 
-@njit(cache=True, nogil=True)
+@compiled()
 def _draw(triangles, visible, first, last, rays, depth, face):  # type: ignore[no-untyped-def]
     for i in range(len(visible)):
         t = visible[i]

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from core.compiled import compiled
 from core.model import Camera
 
 Map = NDArray[np.float32]
@@ -25,7 +25,7 @@ def ray_map(camera: Camera) -> Map:
     return rays
 
 
-@njit(cache=True, nogil=True)
+@compiled()
 def _ray_map(width, height, alpha, beta, offset, distortion):  # type: ignore[no-untyped-def]
     skew, u0, v0 = offset
     k1, k2, p1, p2, k3 = distortion

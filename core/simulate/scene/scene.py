@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from core.compiled import compiled
 from core.model import Camera, Pose
 from core.model.arrays import Array, frozen_array, set_field
 from core.simulate.scene.raster import draw_triangles
@@ -153,7 +153,7 @@ def surface_maps(scene: Scene, camera: Camera, rays: Map | None = None) -> Surfa
     return SurfaceMaps(points, normals, albedo, table)
 
 
-@njit(cache=True, nogil=True)
+@compiled()
 def _extent_by_tile(points):  # type: ignore[no-untyped-def]
     height, width = points.shape[:2]
     extent = np.empty((2, (height + TILE - 1) // TILE, (width + TILE - 1) // TILE, 3), np.float32)

@@ -9,9 +9,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from core.compiled import compiled, inlined
 from core.model import LightPlane
 from core.model.arrays import Array
 from core.simulate.scene.scene import Scene
@@ -76,7 +76,7 @@ def _sector_angle(plane_coordinates: Array) -> Array:
     return (angle + np.pi) * (SECTORS / (2 * np.pi))
 
 
-@njit(cache=True, nogil=True)
+@compiled()
 def _sees(points, caster):  # type: ignore[no-untyped-def]
     emitter, frame, triangles, start, members, centres, radii = caster
     visible = np.ones(len(points), np.bool_)
@@ -96,7 +96,7 @@ def _sees(points, caster):  # type: ignore[no-untyped-def]
     return visible
 
 
-@njit(cache=True, nogil=True)
+@inlined()
 def _hits_triangle(triangle, origin, ray, limit):  # type: ignore[no-untyped-def]
     """Whether origin + t ray, 0 < t < limit, meets the triangle (Möller–Trumbore)."""
     ax, ay, az = triangle[0]
@@ -118,7 +118,7 @@ def _hits_triangle(triangle, origin, ray, limit):  # type: ignore[no-untyped-def
     return 0.0 < t < limit
 
 
-@njit(cache=True, nogil=True)
+@inlined()
 def _hits_sphere(to_centre, radius, ray, limit):  # type: ignore[no-untyped-def]
     """Whether the ray enters the sphere at 0 < t < limit."""
     a = np.dot(ray, ray)

@@ -9,9 +9,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from core.compiled import inlined
 from core.model.arrays import Array
 
 # Held by tests/image/stripes/likelihood/test_refinement.py (other light) on stripes beside other light.
@@ -62,7 +62,7 @@ class CutModel(NamedTuple):
     per_light: float
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
+@inlined(fastmath=True)
 def cut_model(run: Array, light: Light, near: int, upright: bool) -> CutModel:
     """Make the model of the cut at point `near` of a `run` (N, 5) of this `light`."""
     model, noise = light.sections, light.noise

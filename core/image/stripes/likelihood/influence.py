@@ -22,9 +22,9 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.polynomial import chebyshev
 
+from core.compiled import compiled
 from core.image.stripes.noise import NoiseModel
 from core.image.stripes.speckle import Speckle
 from core.model.arrays import Array
@@ -61,7 +61,7 @@ def influences(
     return _stacked(heights, _figures(background, width_px, noise, speckle))
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
+@compiled(fastmath=True)
 def weight_at(x: float, weight: Array) -> float:
     """ψ per pixel at `x` stripe σ from the middle, 0 beyond REACH: x·Σ weight_k·τ^k with τ = 2 (x/REACH)² − 1."""
     tau = 2 * (x / REACH) ** 2 - 1

@@ -29,9 +29,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from core.compiled import compiled, inlined
 from core.image.stripes.curve import smooth_curve
 from core.image.stripes.likelihood.cut_model import Light
 from core.image.stripes.likelihood.influence import influences
@@ -129,7 +129,7 @@ def refine(
     return Refined(curve, sigma, 2 * math.sqrt(math.pi) * filter_px * grown)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled()
 def _likeliest(
     picture: Picture,
     state: NDArray[np.uint8],
@@ -184,7 +184,7 @@ def _weights(sections: Sections, noise: NoiseModel, speckle: Speckle) -> tuple[N
     return kind, *influences(tuple(heights.tolist()), background, width, noise, speckle)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled()
 def _height_classes(height: Array) -> tuple[NDArray[np.int64], Array]:
     """For each point which of some heights (K,) is nearest to its own."""
     level = np.empty(len(height), dtype=np.int64)
@@ -202,7 +202,7 @@ def _height_classes(height: Array) -> tuple[NDArray[np.int64], Array]:
     return (np.cumsum(number) - 1)[level - lowest], heights
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inlined()
 def cuts_of(run: Array, arc: Array) -> Array:
     """Find where rows or columns of the picture cut a `run` (N, ≥ 4).
 
@@ -230,7 +230,7 @@ def cuts_of(run: Array, arc: Array) -> Array:
     return cuts[:count]
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
+@compiled(fastmath=True)
 def cut_residuals(
     picture: Picture, state: NDArray[np.uint8], run: Array, cuts: Array, model: Array, half: int
 ) -> Array:
@@ -255,7 +255,7 @@ def cut_residuals(
     return found
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inlined()
 def averages(arc: Array, at: Array, sums: Array, window: float) -> Array:
     """Average the scores at each point: (N, 3) offset t in px, its variance in px², weight of all cuts it rests on.
 
@@ -282,7 +282,7 @@ def averages(arc: Array, at: Array, sums: Array, window: float) -> Array:
     return found
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inlined()
 def _evenly_known(arc: Array, found: Array, first: int, stride: int) -> bool:
     """Whether there is no hole among four points `stride` apart, and their variances are much the same."""
     least, most = np.inf, 0.0
@@ -292,7 +292,7 @@ def _evenly_known(arc: Array, found: Array, first: int, stride: int) -> bool:
     return bool(arc[first + 3 * stride] - arc[first] < 3 * stride + 1 and most < 2 * least)
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract", "reassoc", "arcp", "nsz"})
+@inlined(fastmath={"contract", "reassoc", "arcp", "nsz"})
 def _average(place: float, at: Array, sums: Array, window: float, found: Array) -> None:
     """The three figures `found` at one `place`."""
     reach, scale = 3 * window, 1 / window

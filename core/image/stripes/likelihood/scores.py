@@ -10,9 +10,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from core.compiled import inlined
 from core.image.stripes.likelihood.cut_model import TAIL, Light, cut_model
 from core.image.stripes.likelihood.influence import DEGREE, REACH
 from core.image.stripes.section_fit import DARK
@@ -50,7 +50,7 @@ class _Block(NamedTuple):
     figures: Float32
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
+@inlined(fastmath=True)
 def score_cuts(
     picture: Picture,
     state: NDArray[np.uint8],
@@ -92,7 +92,7 @@ def score_cuts(
     return sums
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
+@inlined(fastmath=True)
 def _usable(
     shape: tuple[int, int], run: Array, cuts: Array, clear: NDArray[np.bool_], model: Array
 ) -> NDArray[np.int64]:
@@ -109,7 +109,7 @@ def _usable(
     return found[:count]
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
+@inlined(fastmath=True)
 def _prepare(shape: tuple[int, int], run: Array, cuts: Array, light: Light, block: _Block) -> int:
     """Fill in the figures of the cuts of a block and their first pixels; how many pixels each has."""
     upright, figures, pixels = cuts[block.cut[0], 4] > 0, block.figures, 0
@@ -134,7 +134,7 @@ def _prepare(shape: tuple[int, int], run: Array, cuts: Array, light: Light, bloc
     return pixels
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
+@inlined(fastmath=True)
 def _read(picture: Picture, state: NDArray[np.uint8], cuts: Array, pixels: int, block: _Block) -> bool:
     """Copy the pixels of a block; whether one of them is saturated or to be ignored."""
     bits, upright, grey = 0, cuts[block.cut[0], 4] > 0, block.grey
@@ -168,7 +168,7 @@ def _read(picture: Picture, state: NDArray[np.uint8], cuts: Array, pixels: int, 
     return True
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
+@inlined(fastmath=True)
 def _work_out(grey: Float32, seen: Float32, figures: Float32, weight: Float32, results: Float32) -> None:
     """Into `results` (7, lanes) the sums over the pixels of each cut that `_score` asks for.
 
@@ -213,7 +213,7 @@ def _work_out(grey: Float32, seen: Float32, figures: Float32, weight: Float32, r
             et[k] += light * x
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
+@inlined(fastmath=True)
 def _score(results: Float32, k: int, height: float, width: float) -> tuple[float, float]:
     """Σ ψ·(I − model) and Σ ψ·d; where pixels are left out, the height is estimated together with the place."""
     n, nt, e, eh = results[0, k], results[1, k], results[3, k], results[5, k]

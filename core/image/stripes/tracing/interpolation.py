@@ -5,21 +5,21 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
+from core.compiled import compiled, inlined
 from core.model.arrays import Array
 
 _FILTER_PER_STEP = 1.1  # filter σ to a step, at least: a point between then errs by less than 0.001 px (measured)
 _HOLE_PX = 0.6  # more than usual from one point to the next: what lies between is not known
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inlined()
 def tracing_step(filter_px: float) -> int:
     """Largest distance in px, a whole number, of points that tell all a filter of σ `filter_px` leaves of a line."""
     return max(1, int(filter_px / _FILTER_PER_STEP))
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled()
 def with_points_between(run: Array, stride: int) -> Array:
     """Interpolate a run (N, 5) u, v, n_u, n_v, response traced `stride` px apart to points one pixel apart.
 
@@ -52,7 +52,7 @@ def with_points_between(run: Array, stride: int) -> Array:
     return out[:number]
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inlined()
 def cubic_weights(stride: int) -> Array:
     """Lagrange's weights (stride, 4) of four points for the place k/stride of the way from the second to the third."""
     weights = np.empty((stride, 4))
@@ -63,7 +63,7 @@ def cubic_weights(stride: int) -> Array:
     return weights
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inlined()
 def _on_chord(here: Array, behind: Array, x: float, chord: float, point: Array) -> None:
     """The `point` (5,) at the share `x` of the way, by Hermite's cubic with tangents as long as the chord."""
     y = 1 - x
@@ -74,7 +74,7 @@ def _on_chord(here: Array, behind: Array, x: float, chord: float, point: Array) 
     point[1] += lean * (here[1] - behind[1]) + from_here * here[2] - from_behind * behind[2]
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inlined()
 def _chord(run: Array, k: int) -> float:
     """From point k to the next; infinite where there is none."""
     if k + 1 >= len(run):

@@ -21,9 +21,9 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from core.compiled import compiled, inlined
 from core.image.stripes.tracing.interpolation import tracing_step, with_points_between
 from core.image.stripes.tracing.pixel_state import IGNORED, SATURATED
 from core.image.stripes.tracing.ridge import (
@@ -125,7 +125,7 @@ def link(
     return [with_points_between(run, stride) for run in runs] if stride > 1 else runs
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
+@compiled(fastmath=True)
 def _trace_all(
     picture: Picture,
     state: NDArray[np.uint8],
@@ -197,13 +197,13 @@ def _trace_all(
     return points[:count], ends[:runs]
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
+@inlined(fastmath=True)
 def _inside(u: float, v: float, width: int, height: int, radius: int) -> bool:
     margin = radius + 0.5
     return margin < u < width - 1 - margin and margin < v < height - 1 - margin
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
+@inlined(fastmath=True)
 def _follow(
     picture: Picture,
     state: NDArray[np.uint8],
@@ -272,14 +272,14 @@ def _follow(
     return count
 
 
-@njit(cache=True, nogil=True)
+@inlined()
 def empty_point_grid(shape: tuple[int, int], reach: int, count: int) -> PointGrid:
     """No points yet: for a picture of (height, width) px, `count` points and distances up to `reach` px."""
     cell = _cell(reach)
     return PointGrid(np.zeros((shape[0] // cell + 1, shape[1] // cell + 1), np.int32), np.empty(count, np.int32))
 
 
-@njit(cache=True, nogil=True)
+@inlined()
 def enlarged_point_grid(grid: PointGrid, count: int) -> PointGrid:
     """The same points, with room for `count`."""
     before = np.empty(count, np.int32)
@@ -287,7 +287,7 @@ def enlarged_point_grid(grid: PointGrid, count: int) -> PointGrid:
     return PointGrid(grid.last, before)
 
 
-@njit(cache=True, nogil=True)
+@inlined()
 def add_point(grid: PointGrid, points: Array, number: int, reach: int) -> None:
     """Add the point of this `number` among the `points` (N, ≥ 2)."""
     last, before = grid
@@ -297,7 +297,7 @@ def add_point(grid: PointGrid, points: Array, number: int, reach: int) -> None:
     last[row, column] = number + 1
 
 
-@njit(cache=True, nogil=True)
+@inlined()
 def is_near_point(grid: PointGrid, points: Array, u: float, v: float, reach: int) -> bool:
     """Whether the pixel of (u, v) is within `reach` px of the pixel of a point in the grid."""
     last, before = grid
@@ -314,7 +314,7 @@ def is_near_point(grid: PointGrid, points: Array, u: float, v: float, reach: int
     return False
 
 
-@njit(cache=True, nogil=True)
+@inlined()
 def _cell(reach: int) -> int:
     """Side of a cell in px: whatever is within `reach` of a place lies in four of them at most."""
     return 2 * reach + 1

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from core.compiled import inlined
 
 SATURATED, IGNORED = 1, 2
 """Bits of the picture's state map."""
@@ -12,7 +13,7 @@ SATURATED, IGNORED = 1, 2
 _AT_ONCE = 32  # pixels tested in one instruction, if a loop has as many rounds
 
 
-@njit(cache=True, nogil=True)
+@inlined()
 def bits_within(state: NDArray[np.uint8], left: int, right: int, top: int, bottom: int) -> int:
     """Collect the bits set in columns `left` … `right` − 1 and rows `top` … `bottom` − 1, perhaps some columns more."""
     bits, last = np.uint8(0), state.shape[1] - _AT_ONCE

@@ -16,8 +16,9 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from core.compiled import inlined
 
 KERNEL_REACH = 4.0
 """Half width of the kernels in filter σ; cut earlier, the pixels that enter and leave shift the point by 0.001 px."""
@@ -67,7 +68,7 @@ def kernel_table(filter_px: float) -> NDArray[np.float32]:
     return table
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
+@inlined(fastmath=True)
 def ridge_at(
     picture: NDArray[np.float32] | NDArray[np.int16],
     width: int,
@@ -120,7 +121,7 @@ def ridge_at(
     return float(across), float(nu), float(nv), float(beside - (ru * nu + rv * nv) / across)
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath=True, inline="always")
+@inlined(fastmath=True)
 def _filter_columns(
     picture: NDArray[np.float32] | NDArray[np.int16],
     first: int,

@@ -11,9 +11,9 @@ import math
 
 import cv2
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from core.compiled import compiled
 from core.image.stripes.tracing.ridge import ridge_response
 from core.model.arrays import Array
 
@@ -77,7 +77,7 @@ def coarse_crests(picture: Picture, block: int, threshold: float) -> Array:
     return crests
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@compiled(fastmath=True)
 def _crest_of_rows(picture: Picture, every: int, box: int, apart: int) -> NDArray[np.float32]:
     """Sums over `box` px of every `every`-th row, twice, less those `apart` px to either side; (R, W)."""
     height, width = picture.shape
@@ -97,7 +97,7 @@ def _crest_of_rows(picture: Picture, every: int, box: int, apart: int) -> NDArra
     return crest
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@compiled(fastmath=True)
 def _crest_of_columns(picture: Picture, every: int, box: int, step: int, apart: int) -> NDArray[np.float32]:
     """The same of every `every`-th column, `box` px wide, read every `step` px; `apart` counts such steps. (C, J)."""
     height, width = picture.shape
@@ -116,7 +116,7 @@ def _crest_of_columns(picture: Picture, every: int, box: int, step: int, apart: 
     return np.ascontiguousarray(crest.T)
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@compiled(fastmath=True)
 def _maxima(crest: NDArray[np.float32], limit: np.float32) -> Array:
     """Values above `limit` (≥ 0) that are a maximum along their row: (K, 3) row, place, value."""
     rows, width = crest.shape
@@ -142,7 +142,7 @@ def _maxima(crest: NDArray[np.float32], limit: np.float32) -> Array:
     return found[:count]
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@compiled(fastmath=True)
 def _crests(blocks: NDArray[np.float32], threshold: np.float32) -> Array:
     """Blocks that are a ridge stronger than `threshold` and a maximum across it: (K, 3) column, row, response."""
     height, width = blocks.shape

@@ -1,0 +1,171 @@
+"""Compiled loops: functions of Python that numba turns into machine code, kept on the disk for the next start.
+
+`compiled` is for functions that Python calls, `inlined` for those that only compiled functions call, or both.
+What a compiled function answers must not depend on what was compiled or loaded before it, so
+
+- every option is stated: what is not (`fastmath`) a function would inherit from whichever caller compiles it first;
+- what a compiled function calls becomes part of it: a copy of its own could be replaced by that of another function;
+- the processor's instructions are pinned to what all processors of ten years have, not those of this one.
+
+Saved code lies in one folder, named after a hash over all files with compiled functions and those they take numbers
+from, the libraries' versions and the processor: code of yesterday's files is never found. Where a package brings saved
+code along, it is used from there.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import pickle
+import platform
+import re
+import shutil
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from importlib.metadata import version
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar, cast
+
+import platformdirs
+from llvmlite import binding
+
+if TYPE_CHECKING:
+    from numba.core.dispatcher import Dispatcher
+
+Function = TypeVar("Function", bound=Callable[..., object])
+
+_PACKAGE = Path(__file__).parent
+SHIPPED = _PACKAGE / "saved_code"
+"""Saved code that came with the package, in folders as in the user's cache."""
+_IMPORT = b"from core.compiled import"
+"""What a file with compiled functions says."""
+_IMPORTED = re.compile(rb"^from (core[\w.]*) import", re.MULTILINE)
+_SWEPT_AFTER_S = 14 * 24 * 3600.0
+"""Saved code of other versions is removed once nobody has used it for so long, in s."""
+_V3 = ("avx2", "bmi", "bmi2", "f16c", "fma", "lzcnt", "movbe")
+"""What x86-64-v3 adds to its forerunner (psABI of AMD64, table 3.1), as LLVM names it."""
+
+
+def _processor() -> str:
+    """The family of processors code is made for, as LLVM names it."""
+    if platform.machine().lower() not in ("x86_64", "amd64"):
+        return "generic"
+    has = binding.get_host_cpu_features()
+    return "x86-64-v3" if all(has.get(feature) for feature in _V3) else "x86-64"
+
+
+os.environ["NUMBA_CPU_NAME"] = PROCESSOR = _processor()
+os.environ["NUMBA_CPU_FEATURES"] = ""
+os.environ["NUMBA_DISABLE_INTEL_SVML"] = "1"  # another library of exp and log would give other digits
+
+import numba  # noqa: E402 - reads the lines above
+from numba.core.compiler import CompileResult  # noqa: E402
+from numba.core.serialize import dumps  # noqa: E402
+
+numba.core.config.reload_config()  # type: ignore[no-untyped-call]  # should it have been imported before
+
+
+def compiled(*, fastmath: bool | set[str] = False, inline: bool = False) -> Callable[[Function], Dispatcher[Function]]:
+    """Declare a compiled function: without Python's lock, division by zero as in numpy.
+
+    With `fastmath` sums may be reordered, or only what a set of LLVM's flags allows.
+    """
+
+    def declare(function: Function) -> Dispatcher[Function]:
+        options: dict[str, Any] = {
+            "nogil": True,
+            "error_model": "numpy",
+            "no_cfunc_wrapper": True,
+            "forceinline": inline,
+        }
+        dispatcher: Dispatcher[Function] = numba.njit(fastmath=fastmath, **options)(function)
+        cast(Any, dispatcher)._cache = _Saved(function)
+        return dispatcher
+
+    return declare
+
+
+def inlined(*, fastmath: bool | set[str] = False) -> Callable[[Function], Dispatcher[Function]]:
+    """Declare a compiled function that becomes part of the compiled functions that call it."""
+    return compiled(fastmath=fastmath, inline=True)
+
+
+def _files(package: Path) -> dict[Path, bytes]:
+    """The files with compiled functions, those they take numbers from, and this one, as they are now."""
+    texts = {file: file.read_bytes() for file in sorted(package.rglob("*.py"))}
+    own = [file for file, text in texts.items() if _IMPORT in text]
+    modules = {name.decode() for file in own for name in _IMPORTED.findall(texts[file])}
+    known = {package.parent.joinpath(*module.split(".")) for module in modules}
+    return {file: text for file, text in texts.items() if file in own or file.with_suffix("") in known}
+
+
+def _key(files: dict[Path, bytes]) -> str:
+    """One number over what the files say, what makes the code and what it is made for."""
+    says = [(file.relative_to(_PACKAGE).as_posix(), text) for file, text in files.items()]
+    made_by = (sys.implementation.cache_tag, *(version(name) for name in ("numba", "llvmlite", "numpy")))
+    made_for = (binding.get_process_triple(), PROCESSOR)
+    return hashlib.sha256(repr((says, made_by, made_for)).encode()).hexdigest()[:16]
+
+
+def _folder(name: str) -> Path:
+    """The folder of saved code of this name, made if need be; one for this process alone where none can be written."""
+    base = os.environ.get("NUMBA_CACHE_DIR") or platformdirs.user_cache_dir("trisect", appauthor=False)
+    folder = Path(base) / "compiled" / name
+    try:
+        if not folder.exists():
+            folder.mkdir(parents=True)
+            _sweep(folder.parent)
+        os.utime(folder)
+    except OSError:
+        return Path(tempfile.mkdtemp(prefix="trisect-compiled-"))
+    return folder
+
+
+def _sweep(base: Path) -> None:
+    """Remove the saved code that nobody has used for long."""
+    for old in base.iterdir():
+        if time.time() - old.stat().st_mtime > _SWEPT_AFTER_S:
+            shutil.rmtree(old, ignore_errors=True)
+
+
+_FILES = _files(_PACKAGE)
+FOLDER = _folder(_key(_FILES))
+"""Where this version's saved code is."""
+
+
+class _Saved:
+    """The saved code of one function, as numba's dispatchers ask for it.
+
+    One file for each combination of types: numba's own index of them can be garbled by two processes that save at once.
+    """
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        self._name = f"{function.__module__}.{function.__qualname__}"
+
+    def _file(self, signature: object) -> str:
+        return f"{self._name}-{hashlib.sha256(repr(signature).encode()).hexdigest()[:16]}"
+
+    def load_overload(self, signature: object, target_context: Any) -> Any:
+        """The code for these types; None where it was not saved, or not whole."""
+        target_context.refresh()
+        for folder in (FOLDER, SHIPPED / FOLDER.name):
+            try:
+                saved = (folder / self._file(signature)).read_bytes()
+            except FileNotFoundError:
+                continue
+            if hashlib.sha256(saved[32:]).digest() == saved[:32]:
+                return CompileResult._rebuild(target_context, *pickle.loads(saved[32:]))  # type: ignore[no-untyped-call]
+        return None
+
+    def save_overload(self, signature: object, code: Any) -> None:
+        """Keep the code, unless a file has changed since this process read it."""
+        if code.library.has_dynamic_globals:
+            raise TypeError(f"{self._name} holds an array or address of this process and cannot be saved")
+        if any(file.read_bytes() != text for file, text in _FILES.items()):
+            return
+        content: bytes = dumps(code._reduce())  # type: ignore[no-untyped-call]
+        with tempfile.NamedTemporaryFile(dir=FOLDER, delete=False) as beside:
+            beside.write(hashlib.sha256(content).digest() + content)
+        Path(beside.name).replace(FOLDER / self._file(signature))
