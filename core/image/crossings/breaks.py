@@ -17,6 +17,7 @@ from core.compiled import compiled, inlined
 from core.image.crossings.kriging import log_odds_of_break
 from core.image.crossings.line_bins import ARC, INFORMATION, U, V, in_frame
 from core.model.arrays import Array
+from core.model.small_arrays import first_rows, invert, new_flags, new_row, new_table, row_of, zero_table
 
 # All in bins, about 8 px long. Held by tests/image/crossings/test_crossing_bound.py (ridge of a roof, step) on roofs
 # and steps of several sizes.
@@ -36,23 +37,31 @@ _PRIOR = math.log(1 / 50 / (0.6 * 0.15))
 def breaks(bins: Array, reach: float) -> NDArray[np.bool_]:
     """Find the `bins` of a line in which it has a kink or a jump, judged from ± `reach` px: (B,) True there."""
     count = len(bins)
-    broken = np.zeros(count, dtype=np.bool_)
-    best = np.full(count, np.inf)  # misfit of the broken curve where a break explains much
+    broken, suspected = new_flags(count), new_flags(count)
+    best = row_of(count, math.inf)  # misfit of the broken curve where a break explains much
     for at in range(_LEAST_BINS, count - _LEAST_BINS):
         for arm in _ARMS:
             explained, misfit = _explained(bins, at, arm, reach)
             if explained > _SUSPECT:
                 best[at] = min(best[at], misfit)
-    for at in np.argsort(best):
-        if not best[at] < np.inf:
-            break
+    while True:
+        at = -1  # the likeliest suspect that was not looked at yet
+        for k in range(count):
+            if not suspected[k] and best[k] < (best[at] if at >= 0 else math.inf):
+                at = k
+        if at < 0:
+            return broken
+        suspected[at] = True
         # a fit beside the break is spoilt by it too: the break is where the broken curve fits best
-        first, end = max(_LEAST_BINS, at - _NEIGHBOURS), min(count - _LEAST_BINS, at + _NEIGHBOURS + 1)
-        if best[at] > best[first:end].min() or broken[max(0, at - _LEAST_BINS) : at + _LEAST_BINS + 1].any():
+        likeliest = True
+        for k in range(max(_LEAST_BINS, at - _NEIGHBOURS), min(count - _LEAST_BINS, at + _NEIGHBOURS + 1)):
+            likeliest &= best[at] <= best[k]
+        for k in range(max(0, at - _LEAST_BINS), min(count, at + _LEAST_BINS + 1)):
+            likeliest &= not broken[k]
+        if not likeliest:
             continue
         for place in range(max(_LEAST_BINS, at - 1), min(count - _LEAST_BINS, at + 2)):
             broken[at] |= _is_break(bins, place, broken, reach)
-    return broken
 
 
 @inlined()
@@ -63,9 +72,9 @@ def _is_break(bins: Array, at: int, broken: NDArray[np.bool_], reach: float) -> 
     while last + 1 < len(bins) and not broken[last + 1] and bins[last + 1, ARC] - bins[at, ARC] <= reach:
         last += 1
     frame = _frame(bins, first, last, at)
-    left = in_frame(bins, np.arange(at - 1, first - 1, -1), frame)
-    right = in_frame(bins, np.arange(at + 1, last + 1), frame)
-    left, right = left[: _outwards(-left[:, 0])], right[: _outwards(right[:, 0])]
+    left = in_frame(bins, at - 1, first - 1, -1, frame)
+    right = in_frame(bins, at + 1, last + 1, 1, frame)
+    left, right = left[: _outwards(left, -1.0)], right[: _outwards(right, 1.0)]
     if min(len(left), len(right)) < _LEAST_BINS:
         return False
     widest = max(right[-1, 0], -left[-1, 0])
@@ -73,22 +82,22 @@ def _is_break(bins: Array, at: int, broken: NDArray[np.bool_], reach: float) -> 
 
 
 @inlined()
-def _outwards(x: Array) -> int:
-    """How many of the first `x` grow from 0 on: beyond, the line has turned back."""
+def _outwards(bins: Array, side: float) -> int:
+    """How many of the first bins (N, 4) of a `side` (1 or −1) go outwards from 0 on: beyond, the line turns back."""
     before = 0.0
-    for k in range(len(x)):
-        if x[k] <= before:
+    for k in range(len(bins)):
+        if side * bins[k, 0] <= before:
             return k
-        before = x[k]
-    return len(x)
+        before = side * bins[k, 0]
+    return len(bins)
 
 
 @inlined()
-def _frame(bins: Array, first: int, last: int, at: int) -> Array:
+def _frame(bins: Array, first: int, last: int, at: int) -> tuple[float, float, float, float]:
     first, last = max(first, at - _LEAST_BINS), min(last, at + _LEAST_BINS)
     tu, tv = bins[last, U] - bins[first, U], bins[last, V] - bins[first, V]
     length = math.hypot(tu, tv)
-    return np.array([bins[at, U], bins[at, V], tu / length, tv / length])
+    return bins[at, U], bins[at, V], tu / length, tv / length
 
 
 @inlined()
@@ -99,7 +108,7 @@ def _explained(bins: Array, at: int, arm: int, reach: float) -> tuple[float, flo
     """
     first, last = max(0, at - arm), min(len(bins) - 1, at + arm)
     frame = _frame(bins, first, last, at)
-    normal, rhs, row = np.zeros((5, 5)), np.zeros(5), np.empty(5)
+    normal, rhs, row = zero_table(5, 5), row_of(5, 0.0), new_row(5)
     square, used, before = 0.0, 0, 0
     for k in range(first, last + 1):
         if k == at or abs(bins[k, ARC] - bins[at, ARC]) > reach:
@@ -116,10 +125,19 @@ def _explained(bins: Array, at: int, arm: int, reach: float) -> tuple[float, flo
             for j in range(5):
                 normal[i, j] += bins[k, INFORMATION] * row[i] * row[j]
     if min(before, used - before) < _LEAST_BINS:
-        return 0.0, np.inf
+        return 0.0, math.inf
     for i in range(5):
         normal[i, i] *= 1 + 1e-9
-    with_break = np.linalg.solve(normal, rhs)
-    without = np.linalg.solve(normal[:3, :3].copy(), rhs[:3].copy())
-    by_both = np.sum(with_break * rhs)
-    return float(by_both - np.sum(without * rhs[:3])), float(square - by_both) / max(1, used - 5)
+    by_curve, by_both = _taken_off(normal, rhs, 3), _taken_off(normal, rhs, 5)
+    return by_both - by_curve, (square - by_both) / max(1, used - 5)
+
+
+@inlined()
+def _taken_off(normal: Array, rhs: Array, size: int) -> float:
+    """What the first `size` unknowns of a least-squares problem take off the sum of squares."""
+    inverse, total = new_table(size, size), 0.0
+    invert(first_rows(normal, size), inverse, size)
+    for i in range(size):
+        for k in range(size):
+            total += rhs[i] * inverse[i, k] * rhs[k]
+    return total

@@ -20,11 +20,12 @@ from typing import Literal
 
 import numpy as np
 
-from core.compiled import inlined
+from core.compiled import compiled, inlined
 from core.image.crossings.local_fit import BEND, FIT, PLACE, REACH, SIGMA, SLOPE, T_U, T_V, LineAt, local_fit
 from core.image.crossings.segments import CELL_REACH, CELLS, Stack, meeting_segments
 from core.image.stripes.centreline import Centreline
 from core.model.arrays import Array, frozen_array, set_field
+from core.model.small_arrays import new_row, zero_table
 
 NoCrossing = Literal["angle too small", "arm too short", "do not meet"]
 """Why two lines whose segments cut each other give no crossing."""
@@ -177,7 +178,8 @@ def _cross_at(of_a: Stack, i: int, k: int, of_b: Stack, j: int, m: int, min_angl
     share = np.zeros((2, CELLS))
     at_a = LineAt(piece_a.points, k, piece_a.bins, piece_a.broken, arc_a, piece_a.correlation_px, cell_a)
     at_b = LineAt(piece_b.points, m, piece_b.bins, piece_b.broken, arc_b, piece_b.correlation_px, cell_b)
-    row = cross_segments(at_a, at_b, cell, min_angle, share)
+    row = np.empty(MEETING)
+    _cross(at_a, at_b, cell, min_angle, share, row)
     if row[REASON] > 0:
         return _REASONS[int(row[REASON]) - 1]
     _, u, v, tau, tav, tbu, tbv, sigma_a, sigma_b, curved = row.tolist()
@@ -202,8 +204,13 @@ def _cross_at(of_a: Stack, i: int, k: int, of_b: Stack, j: int, m: int, min_angl
     )
 
 
+@compiled()
+def _cross(a: LineAt, b: LineAt, half: float, min_angle: float, share: Array, result: Array) -> None:
+    cross_segments(a, b, half, min_angle, share, result)
+
+
 @inlined()
-def _arm_too_short(line: LineAt, origin: Array, reach: float) -> bool:
+def _arm_too_short(line: LineAt, origin: tuple[float, float], reach: float) -> bool:
     """Whether a line has too few points to either side of its segment within `reach` px of it."""
     points, at, least = line.points, line.segment, max(_LEAST_POINTS, _SHORTEST_ARM * line.correlation_px)
     behind, ahead = 0, 0
@@ -219,8 +226,8 @@ def _arm_too_short(line: LineAt, origin: Array, reach: float) -> bool:
 
 
 @inlined()
-def cross_segments(a: LineAt, b: LineAt, half: float, min_angle: float, share: Array) -> Array:
-    """Meet the local fits of two lines near one segment of each: (MEETING,) figures, named by REASON and the others.
+def cross_segments(a: LineAt, b: LineAt, half: float, min_angle: float, share: Array, result: Array) -> None:
+    """Meet the local fits of two lines near one segment of each.
 
     Parameters
     ----------
@@ -232,11 +239,17 @@ def cross_segments(a: LineAt, b: LineAt, half: float, min_angle: float, share: A
         Lines at a smaller angle in rad are no crossing.
     share
         (2, K), filled with what the fits have in common with others on the same line: see `local_fit`.
+    result
+        (MEETING,), filled with the figures that REASON and the others name.
     """
-    result = np.zeros(MEETING)
-    fits = np.zeros((2, FIT))
+    for i in range(MEETING):
+        result[i] = 0.0
+    fits, tangents, normals, heights = zero_table(2, FIT), zero_table(2, 2), zero_table(2, 2), new_row(2)
     k, m = a.segment, b.segment
-    origin = 0.25 * (a.points[k, :2] + a.points[k + 1, :2] + b.points[m, :2] + b.points[m + 1, :2])
+    origin = (
+        0.25 * (a.points[k, 0] + a.points[k + 1, 0] + b.points[m, 0] + b.points[m + 1, 0]),
+        0.25 * (a.points[k, 1] + a.points[k + 1, 1] + b.points[m, 1] + b.points[m + 1, 1]),
+    )
     reach = CELL_REACH * half
     if (
         _arm_too_short(a, origin, reach)
@@ -245,13 +258,12 @@ def cross_segments(a: LineAt, b: LineAt, half: float, min_angle: float, share: A
         or not local_fit(b, origin, reach, half, fits[1], share[1])
     ):
         result[REASON] = 2
-        return result
+        return
     u, v = 0.0, 0.0  # from the origin
-    tangents = np.zeros((2, 2))
-    step = np.inf
+    step = math.inf
     for _ in range(_ROUNDS):
-        normals, heights = np.empty((2, 2)), np.empty(2)
-        for i, fit in enumerate(fits):
+        for i in range(2):
+            fit = fits[i]
             tu, tv = fit[T_U], fit[T_V]
             x, y = u * tu + v * tv, v * tu - u * tv
             slope = fit[SLOPE] + 2 * fit[BEND] * x
@@ -262,7 +274,7 @@ def cross_segments(a: LineAt, b: LineAt, half: float, min_angle: float, share: A
         determinant = normals[0, 0] * normals[1, 1] - normals[0, 1] * normals[1, 0]
         if abs(determinant) < _SINGULAR:
             result[REASON] = 1
-            return result
+            return
         du = -(heights[0] * normals[1, 1] - heights[1] * normals[0, 1]) / determinant
         dv = -(normals[0, 0] * heights[1] - normals[1, 0] * heights[0]) / determinant
         u, v, step = u + du, v + dv, math.hypot(du, dv)
@@ -270,16 +282,17 @@ def cross_segments(a: LineAt, b: LineAt, half: float, min_angle: float, share: A
             break
     if abs(tangents[0, 0] * tangents[1, 1] - tangents[0, 1] * tangents[1, 0]) < math.sin(min_angle):
         result[REASON] = 1
-        return result
+        return
     if step > _NOT_MET_PX or math.hypot(u, v) > 0.5 * half:
         result[REASON] = 3
-        return result
+        return
     result[UV], result[UV + 1] = origin[0] + u, origin[1] + v
-    result[TANGENTS : TANGENTS + 2], result[TANGENTS + 2 : TANGENTS + 4] = tangents[0], tangents[1]
-    for i, fit in enumerate(fits):
+    for i in range(2):
+        fit = fits[i]
+        result[TANGENTS + 2 * i], result[TANGENTS + 2 * i + 1] = tangents[i, 0], tangents[i, 1]
         along_normal = 1 / math.hypot(1.0, fit[SLOPE])
         result[SIGMAS + i] = fit[SIGMA] * along_normal
-        share[i] *= along_normal
+        for cell in range(share.shape[1]):
+            share[i, cell] *= along_normal
         if abs(fit[BEND]) * fit[REACH] ** 2 / 3 > _SIGNIFICANT_BEND * fit[SIGMA]:
             result[CURVED] = 1.0
-    return result

@@ -29,10 +29,9 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from core.compiled import inlined
 from core.model.arrays import Array
+from core.model.small_arrays import new_row, new_table, row_of, zero_table
 
 X, Y, INFORMATION, SPREAD = 0, 1, 2, 3
 """Columns of a bin: its place in the frame, 1/σ² of y in px⁻², the variance in px² of its points along the line."""
@@ -51,6 +50,9 @@ _CURVATURE_SD = 0.02
 """Standard deviation in 1/px that a curvature has before the line is seen: free, unless the window is very short."""
 _VARIANCE_FACTOR = 1.1
 """Of the variance where the curvature changes: a window shows δ by a few bends only."""
+_Side = tuple[float, float, float, float, float, float, float, float, float, float]
+_SIDE = 10
+"""Number of figures of a side."""
 _NEGLIGIBLE = 15.0
 """A log-likelihood so far below the best has no weight (e⁻¹⁵), nor have those of still larger δ."""
 
@@ -63,29 +65,35 @@ def krige(right: Array, left: Array, reach: float) -> Array:
     """
     sigma = straight_sigma(right, left)
     kappa = _CURVATURE_SD * reach**2
-    score = np.full(_CHOICES, -np.inf)
-    found = np.zeros((_CHOICES, 4))
-    best = -np.inf
+    score, found = row_of(_CHOICES, -math.inf), zero_table(_CHOICES, 4)
+    side, best = new_row(_SIDE), -math.inf
     for length in range(len(_LENGTHS)):
         for step in range(_STEPS + 1):
             change = 0 if step == 0 else length * _STEPS + step
             if change == 0 and length > 0:
                 continue
             delta, correlation = _change(change, reach, sigma)
-            ahead, behind = _side(right, reach, delta, correlation), _side(left, -reach, delta, correlation)
-            score[change] = _solve(_joined(ahead, behind), kappa, found[change]) + _log_prior(change)
+            _join(_side(right, reach, delta, correlation), _side(left, -reach, delta, correlation), side)
+            score[change] = _solve(side, kappa, found[change]) + _log_prior(change)
             if score[change] < best - _NEGLIGIBLE and step > 1 and score[change] < score[change - 1]:
                 break
             best = max(best, score[change])
-    weight = np.exp(score - best)
-    weight /= weight.sum()
-    result = np.zeros(6)
-    for i in range(3):
-        result[i] = np.sum(weight * found[:, i]) / reach**i
-    variance = weight * (found[:, 3] + (found[:, 0] - result[0]) ** 2)
-    result[3] = variance[0] + _VARIANCE_FACTOR * variance[1:].sum()
-    result[4] = np.argmax(score)
-    result[5] = found[int(result[4]), 3]
+    weight, total, likeliest = new_row(_CHOICES), 0.0, 0
+    for change in range(_CHOICES):
+        weight[change] = math.exp(score[change] - best)
+        total += weight[change]
+        if score[change] > score[likeliest]:
+            likeliest = change
+    result, bends = row_of(6, 0.0), 0.0
+    for change in range(_CHOICES):
+        weight[change] /= total
+        for i in range(3):
+            result[i] += weight[change] * found[change, i]
+    for change in range(1, _CHOICES):
+        bends += weight[change] * (found[change, 3] + (found[change, 0] - result[0]) ** 2)
+    result[3] = weight[0] * (found[0, 3] + (found[0, 0] - result[0]) ** 2) + _VARIANCE_FACTOR * bends
+    result[1], result[2] = result[1] / reach, result[2] / reach**2
+    result[4], result[5] = likeliest, found[likeliest, 3]
     return result
 
 
@@ -93,12 +101,9 @@ def krige(right: Array, left: Array, reach: float) -> Array:
 def influence(right: Array, left: Array, reach: float, sigma: float, change: int) -> float:
     """Compute y at x = 0 for the choice `change` of `krige`, which is linear in the bins' y."""
     delta, correlation = _change(change, reach, sigma)
-    found = np.zeros(4)
-    _solve(
-        _joined(_side(right, reach, delta, correlation), _side(left, -reach, delta, correlation)),
-        _CURVATURE_SD * reach**2,
-        found,
-    )
+    found, side = new_row(4), new_row(_SIDE)
+    _join(_side(right, reach, delta, correlation), _side(left, -reach, delta, correlation), side)
+    _solve(side, _CURVATURE_SD * reach**2, found)
     return float(found[0])
 
 
@@ -110,25 +115,41 @@ def log_odds_of_break(right: Array, left: Array, reach: float) -> float:
     must not be the less likely for having two curvatures.
     """
     sigma = straight_sigma(right, left)
-    scores = np.full((3, _CHOICES, _STEPS), -np.inf)
-    found = np.zeros(4)
+    scores, found, sides = new_table(3, _CHOICES * _STEPS), new_row(4), new_table(3, _SIDE)
     for change in range(_CHOICES):
         delta, correlation = _change(change, reach, sigma)
         ahead, behind = _side(right, reach, delta, correlation), _side(left, -reach, delta, correlation)
-        for which, side in enumerate((_joined(ahead, behind), ahead, behind)):
+        _join(ahead, behind, sides[0])
+        for k in range(_SIDE):
+            sides[1, k], sides[2, k] = ahead[k], behind[k]
+        for which in range(3):
             for step in range(_STEPS):
                 kappa = _LEAST_CHANGE * _CHANGE_FACTOR**step * sigma
-                scores[which, change, step] = _solve(side, kappa, found) + _log_prior(change) - math.log(_STEPS)
-    whole, one, other = scores[0].max(), scores[1].max(), scores[2].max()
-    odds = one + other - whole
-    odds += math.log(np.exp(scores[1] - one).sum()) + math.log(np.exp(scores[2] - other).sum())
-    return float(odds - math.log(np.exp(scores[0] - whole).sum()))
+                fit = _solve(sides[which], kappa, found)
+                scores[which, change * _STEPS + step] = fit + _log_prior(change) - math.log(_STEPS)
+    return _log_sum(scores[1]) + _log_sum(scores[2]) - _log_sum(scores[0])
+
+
+@inlined()
+def _log_sum(scores: Array) -> float:
+    """Logarithm of the sum of what the `scores` (N,) are logarithms of."""
+    best, total = scores[0], 0.0
+    for k in range(len(scores)):
+        best = max(best, scores[k])
+    for k in range(len(scores)):
+        total += math.exp(scores[k] - best)
+    return float(best + math.log(total))
 
 
 @inlined()
 def straight_sigma(right: Array, left: Array) -> float:
     """Standard uncertainty in px of a straight line in its middle."""
-    return 1 / math.sqrt(right[:, INFORMATION].sum() + left[:, INFORMATION].sum())
+    ahead, behind = 0.0, 0.0
+    for k in range(len(right)):
+        ahead += right[k, INFORMATION]
+    for k in range(len(left)):
+        behind += left[k, INFORMATION]
+    return 1 / math.sqrt(ahead + behind)
 
 
 @inlined()
@@ -146,12 +167,10 @@ def _log_prior(change: int) -> float:
 
 
 @inlined()
-def _joined(ahead: Array, behind: Array) -> Array:
+def _join(ahead: _Side, behind: _Side, side: Array) -> None:
     """Both sides as one; x runs outwards in each, so y' counts the other way on the left."""
-    side = ahead + behind
-    for odd in (1, 4, 7):
-        side[odd] = ahead[odd] - behind[odd]
-    return side
+    for k in range(_SIDE):
+        side[k] = ahead[k] - behind[k] if k in (1, 4, 7) else ahead[k] + behind[k]
 
 
 @inlined()
@@ -172,7 +191,7 @@ def _solve(side: Array, kappa: float, found: Array) -> float:
 
 
 @inlined()
-def _side(bins: Array, reach: float, delta: float, length: float) -> Array:
+def _side(bins: Array, reach: float, delta: float, length: float) -> _Side:
     """Likelihood of (y, y'·reach, y''·reach²) at x = 0 from one side; `reach` is negative on the left.
 
     From bin to bin y'' is autoregressive and runs straight: x_k = F x_{k−1} + g w with F = [[1, d, d²(1/3 + ρ/6)],
@@ -203,4 +222,4 @@ def _side(bins: Array, reach: float, delta: float, length: float) -> Array:
         l22 = f0 * a02 + f1 * a12 + rho * a22
         l12, l11, l01, l02 = d * a02 + a12, d * a01 + a11, a01, a02
         e1, e2 = d * e0 + e1, f0 * e0 + f1 * e1 + rho * e2
-    return np.array([l00, l01, l02, l11, l12, l22, e0, e1, e2, score])
+    return l00, l01, l02, l11, l12, l22, e0, e1, e2, score

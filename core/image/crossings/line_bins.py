@@ -12,11 +12,9 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-from numpy.typing import NDArray
-
 from core.compiled import compiled, inlined
 from core.model.arrays import Array
+from core.model.small_arrays import first_rows, new_table, zero_table
 
 ARC, U, V, INFORMATION, SPREAD = 0, 1, 2, 3, 4
 """Columns of a bin: length along the line, place, 1/σ² across it in px⁻², variance of its points along it in px²."""
@@ -34,7 +32,7 @@ def bin_length(cell_px: float, correlation_px: float) -> float:
 def binned(points: Array, arc: Array, length: float, correlation: float) -> Array:
     """Reduce one line, `points` (N, 3) u, v, 1/σ² and `arc` (N,), to the bins (B, 5) of `length` px with a weight."""
     count = len(points)
-    bins = np.zeros((int(arc[-1] / length) + 1, 5))
+    bins = zero_table(int(arc[-1] / length) + 1, 5)
     for k in range(count):
         before = min(arc[k] - arc[k - 1], _LONGEST_SHARE_PX) if k > 0 else 0.0
         after = min(arc[k + 1] - arc[k], _LONGEST_SHARE_PX) if k + 1 < count else 0.0
@@ -56,14 +54,18 @@ def binned(points: Array, arc: Array, length: float, correlation: float) -> Arra
         bins[kept, INFORMATION] = weight
         bins[kept, SPREAD] = max(0.0, bins[kept, SPREAD] - bins[kept, ARC] ** 2)
         kept += 1
-    return bins[:kept].copy()
+    return first_rows(bins, kept)
 
 
 @inlined()
-def in_frame(bins: Array, rows: NDArray[np.int64], frame: Array) -> Array:
-    """Transform the bins `rows` for kriging: (N, 4) x, y in the `frame` (u, v, t_u, t_v), 1/σ², spread."""
-    found = np.empty((len(rows), 4))
-    for k, row in enumerate(rows):
+def in_frame(bins: Array, first: int, behind: int, step: int, frame: tuple[float, float, float, float]) -> Array:
+    """Transform bins for kriging: (N, 4) x, y in the `frame` (u, v, t_u, t_v), 1/σ², spread.
+
+    Those from `first` on to before `behind`, upwards or downwards as `step` (1 or −1) says.
+    """
+    found = new_table(max(0, (behind - first) * step), 4)
+    for k in range(len(found)):
+        row = first + k * step
         du, dv = bins[row, U] - frame[0], bins[row, V] - frame[1]
         found[k, 0], found[k, 1] = du * frame[2] + dv * frame[3], dv * frame[2] - du * frame[3]
         found[k, 2], found[k, 3] = bins[row, INFORMATION], bins[row, SPREAD]

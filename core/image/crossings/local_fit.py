@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.compiled import inlined
-from core.image.crossings.kriging import INFORMATION, X, influence, krige, straight_sigma
+from core.image.crossings.kriging import INFORMATION, X, Y, influence, krige, straight_sigma
 from core.image.crossings.line_bins import ARC, U, V, in_frame
 from core.model.arrays import Array
+from core.model.small_arrays import first_rows, new_indices
 
 T_U, T_V, PLACE, SLOPE, BEND, SIGMA, REACH = 0, 1, 2, 3, 4, 5, 6
 """Of a fit: unit tangent of its frame; y, y' and y''/2 at the origin; σ of y; how far its window reaches. In pixels."""
@@ -53,16 +54,20 @@ class LineAt(NamedTuple):
 
 
 @inlined()
-def local_fit(line: LineAt, origin: Array, reach: float, cell: float, fit: Array, share: Array) -> bool:
-    """Fit a line within ± `reach` px of its segment, in a frame at `origin` (2,); False if it cannot be fitted.
+def local_fit(line: LineAt, origin: tuple[float, float], reach: float, cell: float, fit: Array, share: Array) -> bool:
+    """Fit a line within ± `reach` px of its segment, in a frame at `origin`, u and v; False if it cannot be fitted.
 
     The curve goes into `fit` (FIT,); into `share` (K,) what the errors of the cells of `cell` px do to its place, in
     pixels for one standard deviation of the mean of a cell's bins.
     """
     bins, broken, arc = line.bins, line.broken, line.arc
     count = len(bins)
-    middle = min(max(int(np.searchsorted(bins[:, ARC], arc)), 1), count - 1) if count > 1 else 0
-    if count < 2 or broken[middle if bins[middle, ARC] - arc < arc - bins[middle - 1, ARC] else middle - 1]:
+    if count < 2:
+        return False
+    middle = 1
+    while middle < count - 1 and bins[middle, ARC] < arc:
+        middle += 1
+    if broken[middle if bins[middle, ARC] - arc < arc - bins[middle - 1, ARC] else middle - 1]:
         return False
     low, high = _window(bins, broken, arc, middle, reach)
     start, end = max(low, middle - _CHORD), min(high, middle - 1 + _CHORD)
@@ -70,22 +75,36 @@ def local_fit(line: LineAt, origin: Array, reach: float, cell: float, fit: Array
     chord = math.hypot(tu, tv)
     if high - low < 1 or chord == 0.0:
         return False
-    frame = np.array([origin[0], origin[1], tu / chord, tv / chord])
-    rows = np.arange(low, high + 1)
-    placed = in_frame(bins, rows, frame)
-    split = int(np.searchsorted(placed[:, X], 0.0))
-    right, left = placed[split:], placed[:split][::-1].copy()
-    right, left = right[: _graph(right)].copy(), left[: _graph(left)].copy()
+    frame = (origin[0], origin[1], tu / chord, tv / chord)
+    split = _first_ahead(bins, low, high, frame)
+    right, left = in_frame(bins, split, high + 1, 1, frame), in_frame(bins, split - 1, low - 1, -1, frame)
+    right, left = right[: _graph(right)], left[: _graph(left)]
     if min(len(right), len(left)) == 0:
         return False
     widest = max(right[-1, X], -left[-1, X])
     found = krige(right, left, widest)
     fit[T_U], fit[T_V], fit[PLACE], fit[SLOPE], fit[BEND] = frame[2], frame[3], found[0], found[1], 0.5 * found[2]
     fit[SIGMA], fit[REACH] = math.sqrt(found[3]), widest
-    cells = np.floor(bins[rows, ARC] / cell).astype(np.int64) - line.first_cell
-    ends = (split, split + len(right), split - len(left))
-    _share(right, left, cells[ends[0] : ends[1]], cells[ends[2] : ends[0]][::-1].copy(), found, widest, share)
+    cells_right, cells_left = new_indices(len(right)), new_indices(len(left))
+    for k in range(len(right)):
+        cells_right[k] = math.floor(bins[split + k, ARC] / cell) - line.first_cell
+    for k in range(len(left)):
+        cells_left[k] = math.floor(bins[split - 1 - k, ARC] / cell) - line.first_cell
+    _share(right, left, cells_right, cells_left, found, widest, share)
     return True
+
+
+@inlined()
+def _first_ahead(bins: Array, low: int, high: int, frame: tuple[float, float, float, float]) -> int:
+    """The first of the bins from `low` to `high` that is at x ≥ 0 in the frame, found by halving."""
+    behind = high + 1
+    while low < behind:
+        middle = (low + behind) // 2
+        if (bins[middle, U] - frame[0]) * frame[2] + (bins[middle, V] - frame[1]) * frame[3] < 0.0:
+            low = middle + 1
+        else:
+            behind = middle
+    return low
 
 
 @inlined()
@@ -125,10 +144,19 @@ def _share(
     """
     sigma = straight_sigma(right, left)
     whole = math.sqrt(found[3] / found[5])
+    one, other = first_rows(right, len(right)), first_rows(left, len(left))
     for cell in range(len(share)):
-        one, other = right.copy(), left.copy()
-        one[:, 1], other[:, 1] = np.where(cells_right == cell, 1.0, 0.0), np.where(cells_left == cell, 1.0, 0.0)
-        information = np.sum(one[:, 1] * one[:, INFORMATION]) + np.sum(other[:, 1] * other[:, INFORMATION])
+        information = _only(one, cells_right, cell) + _only(other, cells_left, cell)
         share[cell] = 0.0
         if information > 0:
             share[cell] = whole * influence(one, other, reach, sigma, int(found[4])) / math.sqrt(information)
+
+
+@inlined()
+def _only(bins: Array, cells: NDArray[np.int64], cell: int) -> float:
+    """Put y of the bins to 1 in one cell and to 0 elsewhere; how much information that cell has."""
+    information = 0.0
+    for k in range(len(bins)):
+        bins[k, Y] = 1.0 if cells[k] == cell else 0.0
+        information += bins[k, Y] * bins[k, INFORMATION]
+    return information

@@ -17,6 +17,7 @@ from core.image.crossings.line_bins import bin_length, binned
 from core.image.stripes.centreline import Centreline
 from core.image.stripes.runs import arc_length
 from core.model.arrays import Array
+from core.model.small_arrays import doubled_index_table, new_index_table, new_table
 
 _SEGMENTS_PER_BOX, _BOXES_PER_GROUP = 16, 8  # chosen by speed
 
@@ -98,14 +99,17 @@ def _chunks(points: Array, starts: NDArray[np.int64]) -> Array:
     count = 0
     for i in range(len(starts) - 1):
         count += max(0, (starts[i + 1] - starts[i] - 2) // _SEGMENTS_PER_BOX + 1)
-    boxes = np.empty((count, 7))
+    boxes = new_table(count, 7)
     k = 0
     for i in range(len(starts) - 1):
         for first in range(starts[i], starts[i + 1] - 1, _SEGMENTS_PER_BOX):
             last = min(first + _SEGMENTS_PER_BOX, starts[i + 1] - 1)
             boxes[k, 0], boxes[k, 1], boxes[k, 2] = i, first, last
-            boxes[k, 3], boxes[k, 5] = points[first : last + 1, 0].min(), points[first : last + 1, 0].max()
-            boxes[k, 4], boxes[k, 6] = points[first : last + 1, 1].min(), points[first : last + 1, 1].max()
+            for axis in range(2):
+                least, most = points[first, axis], points[first, axis]
+                for p in range(first + 1, last + 1):
+                    least, most = min(least, points[p, axis]), max(most, points[p, axis])
+                boxes[k, 3 + axis], boxes[k, 5 + axis] = least, most
             k += 1
     return boxes[:k]
 
@@ -115,7 +119,7 @@ def meeting_segments(
     a: Array, starts_a: NDArray[np.int64], boxes_a: Array, b: Array, starts_b: NDArray[np.int64], boxes_b: Array
 ) -> NDArray[np.int64]:
     """Find segments that cut each other: (K, 4) piece and first point within it, of a and of b."""
-    found, count = np.empty((16, 4), dtype=np.int64), 0
+    found, count = new_index_table(16, 4), 0
     for p, q in _overlapping(boxes_a, boxes_b):
         for k in range(int(boxes_a[p, 1]), int(boxes_a[p, 2])):
             if segment_apart(a[k], a[k + 1], boxes_b[q]):
@@ -124,7 +128,7 @@ def meeting_segments(
                 if not segments_cut(a[k], a[k + 1], b[m], b[m + 1]):
                     continue
                 if count == len(found):
-                    found = np.concatenate((found, np.empty_like(found)))
+                    found = doubled_index_table(found)
                 i, j = int(boxes_a[p, 0]), int(boxes_b[q, 0])
                 found[count, 0], found[count, 1] = i, k - starts_a[i]
                 found[count, 2], found[count, 3] = j, m - starts_b[j]
@@ -135,12 +139,15 @@ def meeting_segments(
 @inlined()
 def _overlapping(a: Array, b: Array) -> NDArray[np.int64]:
     """Pairs (K, 2) of boxes that have something in common; boxes of `b` are passed over by the group."""
-    groups = np.empty((-(-len(b) // _BOXES_PER_GROUP), 7))
-    for g in range(len(groups)):
-        part = b[g * _BOXES_PER_GROUP : (g + 1) * _BOXES_PER_GROUP]
-        groups[g, 3], groups[g, 4] = part[:, 3].min(), part[:, 4].min()
-        groups[g, 5], groups[g, 6] = part[:, 5].max(), part[:, 6].max()
-    pairs, count = np.empty((64, 2), dtype=np.int64), 0
+    groups = new_table(-(-len(b) // _BOXES_PER_GROUP), 7)
+    for q in range(len(b)):
+        g = q // _BOXES_PER_GROUP
+        for axis in range(2):
+            low, high = b[q, 3 + axis], b[q, 5 + axis]
+            begins = q % _BOXES_PER_GROUP == 0
+            groups[g, 3 + axis] = low if begins else min(groups[g, 3 + axis], low)
+            groups[g, 5 + axis] = high if begins else max(groups[g, 5 + axis], high)
+    pairs, count = new_index_table(64, 2), 0
     for p in range(len(a)):
         for g in range(len(groups)):
             if boxes_apart(a[p], groups[g]):
@@ -149,7 +156,7 @@ def _overlapping(a: Array, b: Array) -> NDArray[np.int64]:
                 if boxes_apart(a[p], b[q]):
                     continue
                 if count == len(pairs):
-                    pairs = np.concatenate((pairs, np.empty_like(pairs)))
+                    pairs = doubled_index_table(pairs)
                 pairs[count, 0], pairs[count, 1] = p, q
                 count += 1
     return pairs[:count]

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from core.compiled import inlined
 from core.image.stripes.running_statistics import quantile_of_magnitudes
 from core.model.arrays import Array
+from core.model.small_arrays import mean_of, new_row, new_table, zero_table
 
 # Windows of the local parabolas. Held by tests/image/stripes/likelihood/test_refinement.py (bent stripes, tightest
 # circles) on rendered arcs.
@@ -39,8 +38,8 @@ def parabolas(run: Array, arc: Array, weight: Array, arm: float) -> Array:
     chord's direction and no curvature.
     """
     count = len(run)
-    middle, centre_u, centre_v = 0.5 * (arc[0] + arc[-1]), np.mean(run[:, 0]), np.mean(run[:, 1])
-    sums = np.zeros((count + 1, 11))  # Σ w x⁰…⁴, Σ w x⁰…² u, Σ w x⁰…² v
+    middle, centre_u, centre_v = 0.5 * (arc[0] + arc[-1]), mean_of(run, 0), mean_of(run, 1)
+    sums = zero_table(count + 1, 11)  # Σ w x⁰…⁴, Σ w x⁰…² u, Σ w x⁰…² v
     for k in range(count):
         x, power = (arc[k] - middle) / arm, weight[k]
         for a in range(5):
@@ -49,7 +48,7 @@ def parabolas(run: Array, arc: Array, weight: Array, arm: float) -> Array:
                 sums[k + 1, 5 + a] = sums[k, 5 + a] + power * (run[k, 0] - centre_u)
                 sums[k + 1, 8 + a] = sums[k, 8 + a] + power * (run[k, 1] - centre_v)
             power *= x
-    result, window, fit = np.empty((count, 5)), np.empty(11), np.empty(6)
+    result, window, fit = new_table(count, 5), new_row(11), new_row(6)
     left, right = 0, 0
     for k in range(count):
         at = min(max(arc[k], arc[0] + arm), arc[-1] - arm)
@@ -98,7 +97,10 @@ def _solve(m: Array, x: float, fit: Array) -> bool:
 def smooth_curve(run: Array, arc: Array, weight: Array, filter_px: float) -> Array:
     """Fit the curve through a run (N, ≥ 2) by `parabolas` over ± 8 filter σ, shorter ones where the run is bent."""
     curve = parabolas(run, arc, weight, _ARM * filter_px)
-    bend = quantile_of_magnitudes(curve[::_BEND_SAMPLE, 4], 0.9)
+    sample = new_row((len(curve) + _BEND_SAMPLE - 1) // _BEND_SAMPLE)
+    for k in range(len(sample)):
+        sample[k] = curve[k * _BEND_SAMPLE, 4]
+    bend = quantile_of_magnitudes(sample, 0.9)
     if bend * _ARM * filter_px > _LARGEST_ANGLE:
         curve = parabolas(run, arc, weight, max(_LARGEST_ANGLE / bend, _SHORTEST_ARM * filter_px))
     return curve

@@ -6,8 +6,9 @@ import math
 
 import numpy as np
 
-from core.compiled import compiled, inlined
+from core.compiled import compiled
 from core.model.arrays import Array
+from core.model.small_arrays import new_indices, new_row, new_table
 
 NEIGHBOUR_DISTANCE = 3.5
 """In filtered widths √(s² + g²): lines nearer than that bias each other by more than 0.003 px (measured on rendered
@@ -24,7 +25,7 @@ def distances_to_neighbours(runs: list[Array], bridges: list[Array], touching: f
     """
     apart_px = [np.full(len(run), np.inf) for run in runs]
     chunks = [_boxes(run) for run in runs]
-    boxes = np.array([_box(run) for run in runs]).reshape(-1, 4)
+    boxes = np.array([_around(chunk) for chunk in chunks]).reshape(-1, 4)
     first, last = boxes[:, None, :2] - reach, boxes[:, None, 2:] + reach
     for i, j in np.argwhere(((first <= boxes[:, 2:]) & (boxes[:, :2] <= last)).all(axis=2)):
         if i != j:
@@ -36,17 +37,19 @@ def distances_to_neighbours(runs: list[Array], bridges: list[Array], touching: f
 @compiled()
 def _boxes(run: Array) -> Array:
     """Bounding boxes (K, 4) from u, v to u, v of _BOXED points each."""
-    boxes = np.empty(((len(run) + _BOXED - 1) // _BOXED, 4))
-    for k in range(len(boxes)):
-        boxes[k] = _box(run[k * _BOXED : (k + 1) * _BOXED])
+    boxes = new_table((len(run) + _BOXED - 1) // _BOXED, 4)
+    for k in range(len(run)):
+        box = k // _BOXED
+        for axis in range(2):
+            first, here = k % _BOXED == 0, run[k, axis]
+            boxes[box, axis] = here if first else min(boxes[box, axis], here)
+            boxes[box, 2 + axis] = here if first else max(boxes[box, 2 + axis], here)
     return boxes
 
 
-@inlined()
-def _box(points: Array) -> Array:
-    """Bounding box (4,) from u, v to u, v of points (N, ≥ 2), N ≥ 1."""
-    u, v = points[:, 0], points[:, 1]
-    return np.array([u.min(), v.min(), u.max(), v.max()])
+def _around(boxes: Array) -> Array:
+    """The box (4,) around some boxes (K, 4)."""
+    return np.concatenate([boxes[:, :2].min(axis=0), boxes[:, 2:].max(axis=0)])
 
 
 @compiled()
@@ -54,10 +57,10 @@ def _add_nearest(
     run: Array, boxes: Array, other: Array, others: Array, touching: float, reach: float, apart_px: Array
 ) -> None:
     """Lower `apart_px` (N,) to the distance of the nearest point of the `other` run lying beside it or touching."""
-    square, nearest = np.empty(_BOXED), np.empty(_BOXED, dtype=np.int64)
+    square, nearest = new_row(_BOXED), new_indices(_BOXED)
     for k in range(len(boxes)):
-        square[:] = reach * reach
-        nearest[:] = -1
+        for i in range(_BOXED):
+            square[i], nearest[i] = reach * reach, -1
         part = run[k * _BOXED : (k + 1) * _BOXED]
         for m in range(len(others)):
             if (

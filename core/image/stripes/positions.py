@@ -19,6 +19,7 @@ from core.image.stripes.speckle import Speckle, measure_speckle
 from core.image.stripes.stripe import PIXEL_VARIANCE, StripeSettings
 from core.image.stripes.tracing.seeds import Picture
 from core.model.arrays import Array, set_field
+from core.model.small_arrays import first_rows, new_flags
 
 _CUTS_FOR_SPECKLE = 3000  # cuts; more tell nothing new of the speckle
 _LARGEST_DISAGREEMENT_PX = 0.03
@@ -145,7 +146,7 @@ def _joined(piece: Piece, line: Refined, better: Refined) -> Refined:
 @compiled()
 def _is_near(run: Array, better: Array, width: Array) -> NDArray[np.bool_]:
     """Whether points (N, ≥ 2) of two lines are the same place of a stripe of σ `width` (N,)."""
-    near = np.empty(len(run), dtype=np.bool_)
+    near = new_flags(len(run))
     for k in range(len(run)):
         near[k] = math.hypot(better[k, 0] - run[k, 0], better[k, 1] - run[k, 1]) <= _LARGEST_MOVE * width[k]
     return near
@@ -162,7 +163,7 @@ def _steger_line(piece: Piece, curve: Array, settings: StripeSettings, noise: No
 def _bias_corrected(points: Array, curve: Array, light: tuple[Array, Array, Array, Array], filter_px: float) -> Array:
     """`points` (N, ≥ 2) less the pulls of the `curve` (N, 5) and of the background's slope where it is significant."""
     height, width, slope, slope_sigma = light
-    run, square = curve.copy(), filter_px * filter_px
+    run, square = first_rows(curve, len(curve)), filter_px * filter_px
     for k in range(len(run)):
         shift = run[k, 4] * (square + PIXEL_VARIANCE) / 2
         shift = min(max(shift, -_LARGEST_BEND_PULL * filter_px), _LARGEST_BEND_PULL * filter_px)

@@ -25,6 +25,7 @@ from core.image.stripes.profile import Profiles
 from core.image.stripes.tracing.pixel_state import SATURATED, bits_within
 from core.image.stripes.tracing.ridge import ridge_response
 from core.model.arrays import Array
+from core.model.small_arrays import median_of, new_row
 
 FLOOR_PX = 0.001
 """Standard uncertainty in px left of all biases on a clean stripe; phase errors are below it
@@ -70,7 +71,7 @@ def compression_sigma(height: Array, noise: NoiseModel) -> Array:
 
 @compiled(fastmath=True)
 def _noise_sigma(height: Array, width: Array, background: Array, read: float, shot: float, filter_px: float) -> Array:
-    sigma, square = np.empty(len(height)), filter_px * filter_px
+    sigma, square = new_row(len(height)), filter_px * filter_px
     for k in range(len(height)):
         light, s = max(height[k], 1e-6), width[k] * width[k]
         blur = 1 + square / (2 * s)
@@ -99,7 +100,7 @@ def roughness(lines: list[tuple[Array, Array]], correlation: float) -> list[floa
 def _excess(points: Array, sigma: Array, lag: int, correlation: float) -> tuple[float, float]:
     """Sum of the excess variance over independent third differences, and their number, both weighted."""
     count = max(0, len(points) - 3 * lag)
-    observed, law = np.empty(count), np.empty(count)
+    observed, law = new_row(count), new_row(count)
     # a third difference of points with correlation ρ one lag apart has variance 20 − 30 ρ
     gain = 20 - 30 * math.exp(-((lag / correlation) ** 2) * math.pi)
     number, longest = 0, (_LONGEST_SPAN * lag) ** 2
@@ -115,8 +116,11 @@ def _excess(points: Array, sigma: Array, lag: int, correlation: float) -> tuple[
         number += 1
     if number == 0:
         return 0.0, 0.0
-    usual = np.median(observed[:number])
-    total, counted, least = 0.0, 0.0, law[:number].min() + usual
+    usual = median_of(observed, 0, number)
+    total, counted, least = 0.0, 0.0, law[0]
+    for k in range(1, number):
+        least = min(least, law[k])
+    least += usual
     for k in range(number):
         weight = (least / (law[k] + usual)) ** 2  # where a line is faint its noise hides what is looked for
         total += weight * (min(observed[k], _OUTLIER * usual) - law[k])

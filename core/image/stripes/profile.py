@@ -12,6 +12,7 @@ and asymmetry; there for bar-shaped lines).
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -25,6 +26,7 @@ from core.image.stripes.section_fit import fit_sections
 from core.image.stripes.stripe import PIXEL_VARIANCE
 from core.image.stripes.tracing.seeds import Picture
 from core.model.arrays import Array
+from core.model.small_arrays import column, new_row, new_table
 
 # Lengths along the stripe in filter σ. Held by tests/image/stripes/test_extraction.py (width and strength, sloping
 # background) on speckled stripes and on steps of the width.
@@ -118,33 +120,46 @@ def profiles_along(arc: Array, part: slice, fits: Fits, stripe_px: float, filter
 @compiled()
 def _along(arc: Array, at: NDArray[np.int64], figures: Array, short: int, long: int) -> Array:
     """Height, background, slope, its σ and width (5, N) from those fitted at some of the points."""
-    smooth = np.empty((5, len(at)))
-    smooth[0], smooth[1] = running_median(figures[:, 0].copy(), short), running_median(figures[:, 1].copy(), short)
-    width = running_median(figures[:, 3].copy(), short)
+    smooth, places = new_table(5, len(at)), new_row(len(at))
+    height, background = running_median(column(figures, 0), short), running_median(column(figures, 1), short)
+    width = running_median(column(figures, 3), short)
     # the slope moves the point itself, so it must be far less noisy than a point: average it over a long stretch
-    smooth[2], smooth[3] = running_mean(figures[:, 2].copy(), long)
-    smooth[4] = np.sqrt(np.maximum(width**2 - PIXEL_VARIANCE, _LEAST_VARIANCE))
-    smooth[0] *= width / smooth[4]  # the pixel lowers what it widens
-    return _interpolated(arc, arc[at], smooth)
+    slope, slope_sigma = running_mean(column(figures, 2), long)
+    for k in range(len(at)):
+        without_pixel = math.sqrt(max(width[k] * width[k] - PIXEL_VARIANCE, _LEAST_VARIANCE))
+        smooth[0, k] = height[k] * (width[k] / without_pixel)  # the pixel lowers what it widens
+        smooth[1, k], smooth[2, k], smooth[3, k] = background[k], slope[k], slope_sigma[k]
+        smooth[4, k], places[k] = without_pixel, arc[at[k]]
+    return _interpolated(arc, places, smooth)
 
 
 @compiled()
 def _smoothed(height: Array, background: Array, width: Array, at: NDArray[np.int64], length: int) -> Array:
     """Height, background and width (3, N), both as pixels blur them, from running medians at some of the points."""
-    smooth = np.empty((3, len(at)))
-    smooth[0], smooth[1] = running_median(height[at], length), running_median(background[at], length)
-    smooth[2] = running_median(width[at], length)
-    found = _interpolated(np.arange(len(height)).astype(np.float64), at.astype(np.float64), smooth)
-    blurred = np.sqrt(found[2] ** 2 + PIXEL_VARIANCE)
-    found[0] *= found[2] / blurred
-    found[2] = blurred
+    smooth, places, numbers = new_table(3, len(at)), new_row(len(at)), new_row(len(height))
+    picked = new_row(len(at))
+    for row, values in enumerate((height, background, width)):
+        for k in range(len(at)):
+            picked[k] = values[at[k]]
+        middle = running_median(picked, length)
+        for k in range(len(at)):
+            smooth[row, k] = middle[k]
+    for k in range(len(at)):
+        places[k] = at[k]
+    for k in range(len(height)):
+        numbers[k] = k
+    found = _interpolated(numbers, places, smooth)
+    for k in range(len(height)):
+        blurred = math.sqrt(found[2, k] * found[2, k] + PIXEL_VARIANCE)
+        found[0, k] *= found[2, k] / blurred
+        found[2, k] = blurred
     return found
 
 
 @inlined()
 def _interpolated(x: Array, at: Array, values: Array) -> Array:
     """Figures (C, N) at rising `x`, on straight lines between `values` (C, K) at rising places; level beyond them."""
-    found = np.empty((len(values), len(x)))
+    found = new_table(len(values), len(x))
     k = 0
     for i in range(len(x)):
         while k + 1 < len(at) and at[k + 1] < x[i]:
@@ -163,10 +178,9 @@ def _stride(filter_px: float) -> int:
     return max(1, round(_STRIDE * filter_px))
 
 
-@compiled()
 def _places(count: int, stride: int) -> NDArray[np.int64]:
     """Every `stride`-th of `count` points, and the last."""
-    at = np.arange(0, count - 1 + stride, stride)
+    at = np.arange(0, count - 1 + stride, stride, dtype=np.int64)
     at[-1] = count - 1
     return at
 

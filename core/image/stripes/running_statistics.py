@@ -2,39 +2,43 @@
 
 from __future__ import annotations
 
-import numpy as np
+import math
 
 from core.compiled import compiled, inlined
 from core.model.arrays import Array
 from core.model.robust import MAD_TO_SD
+from core.model.small_arrays import first_not_below, median_of, new_row, row_of, smallest, sort, zero_table
 
 
 @compiled()
 def median(values: Array) -> float:
     """Median of `values` (N,), N ≥ 1."""
-    return float(np.median(values))
+    return median_of(values, 0, len(values))
 
 
 @inlined()
 def quantile_of_magnitudes(values: Array, share: float) -> float:
     """The size |value| that `share` of the `values` (N,) do not exceed."""
     k = min(int(share * len(values)), len(values) - 1)
-    return float(np.partition(np.abs(values), k)[k])
+    sizes = new_row(len(values))
+    for i in range(len(values)):
+        sizes[i] = abs(values[i])
+    return smallest(sizes, k)
 
 
 @inlined()
 def running_median(values: Array, length: int) -> Array:
     """Median of the `length` (odd) values around each of `values` (N,); the first and last go on beyond the ends."""
     count, half = len(values), length // 2
-    window = np.empty(length)
+    window = new_row(length)
     for k in range(length):
         window[k] = values[min(max(k - half, 0), count - 1)]
-    window.sort()
-    medians = np.empty(count)
+    sort(window)
+    medians = new_row(count)
     for at in range(count):
         medians[at] = window[half]
         gone, new = values[max(at - half, 0)], values[min(at + half + 1, count - 1)]
-        k = np.searchsorted(window, gone)
+        k = first_not_below(window, gone)
         while k + 1 < length and window[k + 1] < new:
             window[k] = window[k + 1]
             k += 1
@@ -52,13 +56,15 @@ def running_mean(values: Array, length: int) -> tuple[Array, Array]:
     Two values give no standard error: it is infinite.
     """
     count, half = len(values), length // 2
-    centre = np.median(values)
-    spread = MAD_TO_SD * np.median(np.abs(values - centre)) + 1e-12
-    sums = np.zeros((count + 1, 2))
+    centre = median_of(values, 0, count)
+    mean, error = new_row(count), row_of(count, math.inf)
+    for k in range(count):
+        mean[k] = abs(values[k] - centre)
+    spread = MAD_TO_SD * median_of(mean, 0, count) + 1e-12
+    sums = zero_table(count + 1, 2)
     for k in range(count):
         away = min(max(values[k] - centre, -4 * spread), 4 * spread)
         sums[k + 1, 0], sums[k + 1, 1] = sums[k, 0] + away, sums[k, 1] + away * away
-    mean, error = np.empty(count), np.full(count, np.inf)
     for k in range(count):
         first, last = max(k - half, 0), min(k + half + 1, count)
         number = last - first
@@ -66,5 +72,5 @@ def running_mean(values: Array, length: int) -> tuple[Array, Array]:
         variance = max((sums[last, 1] - sums[first, 1]) / number - away * away, 0.0)
         mean[k] = centre + away
         if number >= 3:
-            error[k] = np.sqrt(variance / (number - 1))
+            error[k] = math.sqrt(variance / (number - 1))
     return mean, error

@@ -7,11 +7,10 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from core.compiled import compiled, inlined
 from core.image.stripes.tracing.ridge import kernel_radius
 from core.model.arrays import Array
+from core.model.small_arrays import backwards, column, first_above, first_not_below, median_of, new_row
 
 # Ends of a stripe: the filter sees only half of it there. Held by tests/image/stripes/test_extraction.py (ends are
 # trimmed) on stripes that end.
@@ -36,7 +35,8 @@ _MEAN_REACH = 1.5  # filter σ on either side over which width² is averaged
 @inlined()
 def arc_length(run: Array) -> Array:
     """Length along a run (N, ≥ 2) up to each point, in pixels."""
-    arc = np.zeros(len(run))
+    arc = new_row(len(run))
+    arc[0] = 0.0
     for k in range(1, len(run)):
         du, dv = run[k, 0] - run[k - 1, 0], run[k, 1] - run[k - 1, 1]
         arc[k] = arc[k - 1] + math.sqrt(du * du + dv * dv)
@@ -65,34 +65,49 @@ def _lit(
     run: Array, arc: Array, filter_px: float, trim: float, border: float, shape: tuple[int, int]
 ) -> tuple[int, int]:
     """First and past-the-last point of a run between its ends and `trim` px more."""
-    whole, back = arc[-1], run[::-1]
+    whole, last = arc[-1], len(run) - 1
     start, end = 0.0, whole
-    if not _leaves_picture(arc, run, filter_px, border, shape):
-        start = _real_end(arc, run[:, 4], filter_px) + trim
-    if not _leaves_picture(whole - arc[::-1], back, filter_px, border, shape):
-        end = whole - _real_end(whole - arc[::-1], back[:, 4], filter_px) - trim
-    return int(np.searchsorted(arc, start)), int(np.searchsorted(arc, end, side="right"))
+    arc_back, response = _from_its_end(arc), column(run, 4)
+    response_back = backwards(response)
+    if not _leaves_picture(arc, response, filter_px, _inside(run, 0, shape), border):
+        start = _real_end(arc, response, filter_px) + trim
+    if not _leaves_picture(arc_back, response_back, filter_px, _inside(run, last, shape), border):
+        end = whole - _real_end(arc_back, response_back, filter_px) - trim
+    return first_not_below(arc, start), first_above(arc, end)
 
 
 @inlined()
-def _leaves_picture(arc: Array, run: Array, filter_px: float, border: float, shape: tuple[int, int]) -> bool:
+def _from_its_end(arc: Array) -> Array:
+    """The length along a run (N,), counted from its last point."""
+    back, whole = backwards(arc), arc[-1]
+    for k in range(len(back)):
+        back[k] = whole - back[k]
+    return back
+
+
+@inlined()
+def _inside(run: Array, k: int, shape: tuple[int, int]) -> float:
+    """How far in px a point of a run is from the border of the picture."""
+    u, v = run[k, 0], run[k, 1]
+    return min(min(u, shape[1] - 1 - u), min(v, shape[0] - 1 - v))
+
+
+@inlined()
+def _leaves_picture(arc: Array, response: Array, filter_px: float, inside: float, border: float) -> bool:
     """Whether a run starts at the border of the picture as bright as it is further in."""
-    u, v = run[0, 0], run[0, 1]
-    if min(min(u, shape[1] - 1 - u), min(v, shape[0] - 1 - v)) > border:
+    if inside > border:
         return False
-    usual = _usual_response(arc, run[:, 4], filter_px)
-    at_end = np.searchsorted(arc, filter_px)  # a few points tell it more surely than one
-    return usual > 0 and run[: at_end + 1, 4].min() >= _UNDIMMED * usual
+    usual, dimmest = _usual_response(arc, response, filter_px), math.inf
+    for k in range(min(first_not_below(arc, filter_px) + 1, len(arc))):  # a few points tell it more surely than one
+        dimmest = min(dimmest, response[k])
+    return usual > 0 and dimmest >= _UNDIMMED * usual
 
 
 @inlined()
 def _usual_response(arc: Array, response: Array, filter_px: float) -> float:
     """The response a little way in from the start of a run; 0 for one that is too short."""
-    first, last = (
-        np.searchsorted(arc, _FURTHER_IN[0] * filter_px),
-        np.searchsorted(arc, _FURTHER_IN[1] * filter_px, side="right"),
-    )
-    return float(np.median(response[first:last])) if last > first else 0.0
+    first, last = first_not_below(arc, _FURTHER_IN[0] * filter_px), first_above(arc, _FURTHER_IN[1] * filter_px)
+    return median_of(response, first, last) if last > first else 0.0
 
 
 @inlined()
@@ -116,9 +131,11 @@ def fully_lit(arc: Array, height: Array, width: Array, filter_px: float) -> tupl
     dimmer and wider, or brighter and narrower. Where a surface turns away from the laser that falls too, but the stripe
     gets no narrower as it fades: that is no shadow.
     """
-    square = width * width
+    square = new_row(len(width))
+    for k in range(len(width)):
+        square[k] = width[k] * width[k]
     first = _fading(arc, height, square, filter_px)
-    last = len(arc) - _fading(arc[-1] - arc[::-1], height[::-1], square[::-1], filter_px)
+    last = len(arc) - _fading(_from_its_end(arc), backwards(height), backwards(square), filter_px)
     return first, max(first, last)
 
 
@@ -126,16 +143,22 @@ def fully_lit(arc: Array, height: Array, width: Array, filter_px: float) -> tupl
 def _fading(arc: Array, height: Array, square: Array, filter_px: float) -> int:
     """How many points at the start are in a shadow's edge: less light than the stretch behind them, and narrower."""
     reach = min(_FADE_REACH * filter_px, _FADE_SHARE * arc[-1])
-    first, last = np.searchsorted(arc, reach), np.searchsorted(arc, _UNFADED * reach, side="right")
+    first, last = first_not_below(arc, reach), first_above(arc, _UNFADED * reach)
     if last <= first:
         return 0
-    enough = _FADED * np.median(height[first:last] * square[first:last])
+    light = new_row(last - first)
+    for k in range(first, last):
+        light[k - first] = height[k] * square[k]
+    enough = _FADED * median_of(light, 0, last - first)
     faded = 0
     while height[faded] * square[faded] < enough and arc[faded] < reach:
         faded += 1
-    narrow = _NARROWED * np.median(square[first:last])
+    narrow = _NARROWED * median_of(square, first, last)
     half = round(_MEAN_REACH * filter_px)
     for k in range(faded - 1, -1, -1):
-        if np.mean(square[max(k - half, 0) : k + half + 1]) < narrow:
+        total, start, end = 0.0, max(k - half, 0), min(k + half + 1, len(square))
+        for i in range(start, end):
+            total += square[i]
+        if total / (end - start) < narrow:
             return k + 1
     return 0

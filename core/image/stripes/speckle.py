@@ -18,6 +18,7 @@ import numpy as np
 from core.compiled import compiled, inlined
 from core.image.stripes.running_statistics import running_median
 from core.model.arrays import Array
+from core.model.small_arrays import median_of, new_row, new_table, row_of, zero_table
 
 # Limits of what is measured. Held by tests/image/stripes/likelihood/test_refinement.py (speckle is measured, neither
 # noise nor a section) on speckle of known contrast and grain and on stripes without any.
@@ -78,7 +79,7 @@ def measure_speckle(stripes: list[Array], width_px: float) -> Speckle:
 @compiled(fastmath=True)
 def _products(r: Array, m: Array) -> Array:
     """Sums of products of neighbours in each cut, of residuals and of the model, (_LAGS, 2)."""
-    sums, width = np.zeros((_LAGS, 2)), m.shape[1]
+    sums, width = zero_table(_LAGS, 2), m.shape[1]
     for c in range(len(m)):
         for lag in range(_LAGS):
             for i in range(width - lag):
@@ -91,7 +92,7 @@ def _products(r: Array, m: Array) -> Array:
 def _levelled(r: Array, m: Array) -> Array:
     """Residuals freed of brightness that changes along the stripe, of the section's shape, and of what stands out."""
     cuts, width = m.shape
-    height, levelled = np.empty(cuts), np.empty_like(r)
+    height, levelled = new_row(cuts), new_table(cuts, width)
     for c in range(cuts):
         product, square = 0.0, 1e-9
         for i in range(width):
@@ -99,7 +100,7 @@ def _levelled(r: Array, m: Array) -> Array:
             square += m[c, i] * m[c, i]
         height[c] = product / square
     height = running_median(height, _LEVEL_CUTS)
-    shape, light = np.zeros(width), np.zeros(width)
+    shape, light = row_of(width, 0.0), row_of(width, 0.0)
     for c in range(cuts):
         for i in range(width):
             levelled[c, i] = r[c, i] - height[c] * m[c, i]
@@ -108,7 +109,7 @@ def _levelled(r: Array, m: Array) -> Array:
     for c in range(cuts):
         for i in range(width):
             levelled[c, i] -= shape[i] / max(light[i], 1e-9) * m[c, i]
-    limit = _OUTLIER * _median_share(levelled[::_MEDIAN_SAMPLE], m[::_MEDIAN_SAMPLE])
+    limit = _OUTLIER * _median_share(levelled, m)
     for c in range(cuts):
         for i in range(width):
             levelled[c, i] = min(max(levelled[c, i], -limit * m[c, i]), limit * m[c, i])
@@ -117,11 +118,11 @@ def _levelled(r: Array, m: Array) -> Array:
 
 @inlined()
 def _median_share(r: Array, m: Array) -> float:
-    """Median of |r/m| where m > 0; 1 if that is nowhere."""
-    shares, count = np.empty(m.size), 0
-    for c in range(len(m)):
+    """Median of |r/m| where m > 0, of a sample of the cuts; 1 if that is nowhere."""
+    shares, count = new_row(len(m) * m.shape[1]), 0
+    for c in range(0, len(m), _MEDIAN_SAMPLE):
         for i in range(m.shape[1]):
             if m[c, i] > 0:
                 shares[count] = abs(r[c, i]) / m[c, i]
                 count += 1
-    return float(np.median(shares[:count])) if count else 1.0
+    return median_of(shares, 0, count) if count else 1.0

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from core.compiled import compiled, inlined
 from core.image.stripes.runs import correlation_length
 from core.model.arrays import Array
+from core.model.small_arrays import invert, mean_of, new_row, row_of, zero_table
 
 # What counts as a break of a smooth line; also used where lines are joined. Held by
 # tests/image/stripes/test_extraction.py (jump, kink, smooth curve): above speckle's roughness, below the smallest depth
@@ -62,9 +63,8 @@ def _break_scores(
 ) -> tuple[Array, Array]:
     """Jump or kink over the largest allowed (1 = the limit), and the misfit of the broken curve, (N,) each."""
     count = len(run)
-    score = np.zeros(count)
-    misfit = np.full(count, np.inf)
-    row = np.empty(5)
+    score, misfit, row = row_of(count, 0.0), row_of(count, math.inf), new_row(5)
+    normal, inverse, rhs, solution = zero_table(5, 5), zero_table(5, 5), new_row(5), new_row(5)
     left, right = 0, 0
     stride = max(1, round(gap / 4))
     smooth = _smooth_misfit(run, arc, gap, arm, stride)
@@ -81,9 +81,11 @@ def _break_scores(
         tu, tv = run[right, 0] - run[left, 0], run[right, 1] - run[left, 1]
         length = math.hypot(tu, tv)
         tu, tv = tu / length, tv / length
-        normal = np.zeros((5, 5))
-        rhs = np.zeros(5)
         square, used = 0.0, 0
+        for a in range(5):
+            rhs[a] = solution[a] = 0.0
+            for b in range(5):
+                normal[a, b] = 1e-9 if a == b else 0.0
         for k in range(left, right + 1):
             du, dv = run[k, 0] - run[i, 0], run[k, 1] - run[i, 1]
             x, y = du * tu + dv * tv, dv * tu - du * tv
@@ -99,14 +101,16 @@ def _break_scores(
             used += 1
         if used < _LEAST_POINTS:
             continue
-        inverse = np.linalg.inv(normal + 1e-9 * np.eye(5))
-        solution = inverse @ rhs
-        misfit[i] = (square - np.sum(solution * rhs)) / used
+        invert(normal, inverse, 5)
+        for a in range(5):
+            for b in range(5):
+                solution[a] += inverse[a, b] * rhs[b]
+            square -= solution[a] * rhs[a]
         scatter = sigma[i] * math.sqrt(correlation)
         jump = max(SIGNIFICANT * scatter * math.sqrt(inverse[3, 3]), SMALLEST_JUMP_PX)
         kink = max(SIGNIFICANT * scatter * math.sqrt(inverse[4, 4]), SMALLEST_KINK)
-        score[i : i + stride] = max(abs(solution[3]) / jump, abs(solution[4]) / kink)
-        misfit[i : i + stride] = misfit[i]
+        for k in range(i, min(i + stride, count)):
+            score[k], misfit[k] = max(abs(solution[3]) / jump, abs(solution[4]) / kink), square / used
     return score, misfit
 
 
@@ -117,9 +121,9 @@ def _smooth_misfit(run: Array, arc: Array, gap: float, arm: float, stride: int) 
     Known at every `stride`-th point; 0 where a window is cut short. Running sums make the cost independent of `arm`.
     """
     count = len(run)
-    misfit = np.zeros(count)
-    sums = np.zeros((count + 1, 13))  # Σ x⁰…⁴, Σ x⁰…² u, Σ x⁰…² v, Σ u², Σ v²
-    middle, centre_u, centre_v = 0.5 * (arc[0] + arc[-1]), np.mean(run[:, 0]), np.mean(run[:, 1])
+    misfit = row_of(count, 0.0)
+    sums = zero_table(count + 1, 13)  # Σ x⁰…⁴, Σ x⁰…² u, Σ x⁰…² v, Σ u², Σ v²
+    middle, centre_u, centre_v = 0.5 * (arc[0] + arc[-1]), mean_of(run, 0), mean_of(run, 1)
     for k in range(count):
         x, u, v = (arc[k] - middle) / arm, run[k, 0] - centre_u, run[k, 1] - centre_v
         power = 1.0
@@ -130,7 +134,7 @@ def _smooth_misfit(run: Array, arc: Array, gap: float, arm: float, stride: int) 
                 sums[k + 1, 8 + a] = sums[k, 8 + a] + power * v
             power *= x
         sums[k + 1, 11], sums[k + 1, 12] = sums[k, 11] + u * u, sums[k, 12] + v * v
-    window = np.empty(13)
+    window = new_row(13)
     left, before, after, right = 0, 0, 0, 0
     for i in range(0, count, stride):
         while arc[i] - arc[left] > arm:

@@ -23,6 +23,7 @@ from core.image.crossings.segments import CELL_REACH, CELLS, Stack, boxes_apart,
 from core.image.stripes.centreline import Centreline
 from core.image.stripes.shading import shading_sigma
 from core.model.arrays import Array
+from core.model.small_arrays import doubled_index_table, indices_of, new_index_table, new_indices
 from core.progress import Progress, silent
 from core.scan.features.crossings import CrossingTable, CrossingWindow, Index
 
@@ -90,22 +91,25 @@ def _meeting_runs(
 ) -> tuple[Index, int]:
     """Segments that cut each other: (M, 6) picture, run and first point of a and of b; how many runs were compared."""
     columns, rows = int(squares[0]), int(squares[1])
-    reach = np.empty((len(boxes), 4), dtype=np.int64)
-    starts = np.zeros(columns * rows + 1, dtype=np.int64)
+    reach, starts = new_index_table(len(boxes), 4), indices_of(columns * rows + 1, 0)
     for p in range(len(boxes)):
         for side_of in range(2):
             reach[p, side_of] = int((boxes[p, 3 + side_of] - low[side_of]) / side)
             reach[p, 2 + side_of] = int((boxes[p, 5 + side_of] - low[side_of]) / side)
         for row in range(reach[p, 1], reach[p, 3] + 1):
-            starts[row * columns + reach[p, 0] + 1 : row * columns + reach[p, 2] + 2] += 1
-    starts = np.cumsum(starts)
-    filled, runs = starts[:-1].copy(), np.empty(starts[-1], dtype=np.int64)
+            for square in range(row * columns + reach[p, 0], row * columns + reach[p, 2] + 1):
+                starts[square + 1] += 1
+    filled = new_indices(columns * rows)
+    for square in range(columns * rows):
+        filled[square] = starts[square]
+        starts[square + 1] += starts[square]
+    runs = new_indices(starts[columns * rows])
     for p in range(len(boxes)):
         for row in range(reach[p, 1], reach[p, 3] + 1):
             for square in range(row * columns + reach[p, 0], row * columns + reach[p, 2] + 1):
                 runs[filled[square]] = p
                 filled[square] += 1
-    found, count, compared = np.empty((16, 6), dtype=np.int64), 0, 0
+    found, count, compared = new_index_table(16, 6), 0, 0
     for square in range(len(starts) - 1):
         for first in range(starts[square], starts[square + 1]):
             p = runs[first]
@@ -126,7 +130,7 @@ def _meeting_runs(
                         if not segments_cut(points[k], points[k + 1], points[m], points[m + 1]):
                             continue
                         if count == len(found):
-                            found = np.concatenate((found, np.empty_like(found)))
+                            found = doubled_index_table(found)
                         found[count, 0], found[count, 1], found[count, 2] = picture[int(boxes[a, 0])], a, k
                         found[count, 3], found[count, 4], found[count, 5] = picture[int(boxes[b, 0])], b, m
                         count += 1
@@ -211,7 +215,7 @@ def _fit(piece: Index, point: Index, pieces: _Pieces, cell_px: float, min_angle:
             cell[n, end] = max(0, math.floor(along[n, end] / cell_px) - CELL_REACH)
         a = _line_at(pieces, piece[n, 0], point[n, 0], along[n, 0], cell[n, 0])
         b = _line_at(pieces, piece[n, 1], point[n, 1], along[n, 1], cell[n, 1])
-        rows[n] = cross_segments(a, b, cell_px, min_angle, share[n])
+        cross_segments(a, b, cell_px, min_angle, share[n], rows[n])
 
 
 @inlined()

@@ -15,6 +15,7 @@ Lawson, Software for C¹ surface interpolation, Mathematical Software III (1977)
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -22,6 +23,7 @@ from numpy.typing import NDArray
 
 from core.compiled import compiled, inlined
 from core.model.arrays import Array
+from core.model.small_arrays import doubled_indices, indices_of, new_index_table, new_indices
 
 Index = NDArray[np.int64]
 
@@ -90,23 +92,29 @@ def _triangulated(xy: Index) -> Index:
     while third < count and _turn(xy, 0, second, third) == 0:
         third += 1
     if third >= count:
-        return np.empty((0, 3), dtype=np.int64)
-    edges = _Edges(np.empty(6 * count, dtype=np.int64), np.empty(6 * count, dtype=np.int64))
-    hull = _Hull(
-        np.arange(count), np.arange(count), np.full(count, -1), np.full(max(8, int(np.ceil(np.sqrt(count)))), -1)
-    )
-    ring = (0, second, third) if _turn(xy, 0, second, third) > 0 else (0, third, second)
-    _add(edges, 0, ring, (-1, -1, -1))
+        return new_index_table(0, 3)
+    edges = _Edges(new_indices(6 * count), new_indices(6 * count))
+    near = indices_of(max(8, math.ceil(math.sqrt(count))), -1)
+    hull = _Hull(new_indices(count), new_indices(count), indices_of(count, -1), near)
+    for k in range(count):
+        hull.before[k], hull.following[k] = k, k
+    if _turn(xy, 0, second, third) > 0:
+        _add(edges, 0, 0, second, third)
+    else:
+        _add(edges, 0, 0, third, second)
     for k in range(3):
-        one, other = ring[k], ring[(k + 1) % 3]
+        one, other = edges.start[k], edges.start[(k + 1) % 3]
         hull.following[one], hull.before[other], hull.edge[one] = other, one, k
         hull.near[_direction(xy, one, len(hull.near))] = one
-    stack = np.empty(64, dtype=np.int64)
+    stack = new_indices(64)
     used = 3
     for i in range(second + 1, count):
         if i != third:
             used, stack = _joined(i, xy, edges, hull, used, stack)
-    return edges.start[:used].copy().reshape(-1, 3)
+    triangles = new_index_table(used // 3, 3)
+    for e in range(used):
+        triangles[e // 3, e % 3] = edges.start[e]
+    return triangles
 
 
 @inlined()
@@ -119,19 +127,24 @@ def _joined(i: int, xy: Index, edges: _Edges, hull: _Hull, used: int, stack: Ind
         if e == first:
             return used, stack  # it sees nothing: it falls together with a point of the hull
     last = hull.following[e]
-    _add(edges, used, (e, i, last), (-1, -1, hull.edge[e]))
+    _add(edges, used, e, i, last)
+    _link(edges, used + 2, hull.edge[e])
     hull.edge[e] = used
     hull.edge[i], stack = _legalised(used + 2, xy, edges, hull, stack)
     used += 3
     while _turn(xy, last, hull.following[last], i) < 0:
         beyond = hull.following[last]
-        _add(edges, used, (last, i, beyond), (hull.edge[i], -1, hull.edge[last]))
+        _add(edges, used, last, i, beyond)
+        _link(edges, used, hull.edge[i])
+        _link(edges, used + 2, hull.edge[last])
         hull.following[last] = last
         hull.edge[i], stack = _legalised(used + 2, xy, edges, hull, stack)
         used, last = used + 3, beyond
     while e == first and _turn(xy, hull.before[e], e, i) < 0:
         beyond = hull.before[e]
-        _add(edges, used, (beyond, i, e), (-1, hull.edge[e], hull.edge[beyond]))
+        _add(edges, used, beyond, i, e)
+        _link(edges, used + 1, hull.edge[e])
+        _link(edges, used + 2, hull.edge[beyond])
         hull.edge[beyond] = used
         _, stack = _legalised(used + 2, xy, edges, hull, stack)
         hull.following[e] = e
@@ -145,10 +158,11 @@ def _joined(i: int, xy: Index, edges: _Edges, hull: _Hull, used: int, stack: Ind
 
 
 @inlined()
-def _add(edges: _Edges, at: int, corners: tuple[int, int, int], twins: tuple[int, int, int]) -> None:
+def _add(edges: _Edges, at: int, a: int, b: int, c: int) -> None:
+    """Add the triangle a, b, c as half-edges that have no twins yet."""
+    edges.start[at], edges.start[at + 1], edges.start[at + 2] = a, b, c
     for k in range(3):
-        edges.start[at + k] = corners[k]
-        _link(edges, at + k, twins[k])
+        edges.twin[at + k] = -1
 
 
 @inlined()
@@ -190,7 +204,7 @@ def _legalised(a: int, xy: Index, edges: _Edges, hull: _Hull, stack: Index) -> t
                 _link(edges, b, edges.twin[ar])
                 _link(edges, ar, bl)
                 if depth == len(stack):
-                    stack = np.concatenate((stack, np.empty_like(stack)))
+                    stack = doubled_indices(stack)
                 stack[depth] = br
                 depth += 1
                 continue
@@ -209,7 +223,7 @@ def _seen_towards(i: int, xy: Index, hull: _Hull) -> int:
         vertex = hull.near[(towards + step) % size]
         if vertex >= 0 and hull.following[vertex] != vertex:
             return int(vertex)
-    raise ValueError("the hull is empty")
+    return 0  # never: a hull has vertices
 
 
 @inlined()
@@ -241,7 +255,8 @@ def _in_circle(xy: Index, a: int, b: int, c: int, d: int) -> bool:
     if abs(total) > _DOUBT * (abs(one) + abs(two) + abs(three)):
         return bool(total > 0)
     high, middle, low = 0, 0, 0
-    for lift, area in ((lift_a, area_a), (lift_b, area_b), (lift_c, area_c)):
+    for k in range(3):
+        lift, area = (lift_a, area_a) if k == 0 else ((lift_b, area_b) if k == 1 else (lift_c, area_c))
         high += (lift >> _LIMB) * (area >> _LIMB)
         middle += (lift >> _LIMB) * (area & _LIMB_MASK) + (lift & _LIMB_MASK) * (area >> _LIMB)
         low += (lift & _LIMB_MASK) * (area & _LIMB_MASK)

@@ -10,6 +10,7 @@ The points of one cell are averaged with weights 1/σ², but
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -19,6 +20,7 @@ from core.compiled import compiled, inlined
 from core.errors import InputError
 from core.messages import Message
 from core.model.arrays import Array
+from core.model.small_arrays import indices_of, new_indices, row_of, zero_table
 from core.progress import Progress, silent
 from core.scan.surface.cloud import Cloud
 from core.scan.surface.fused_surface import Surface, grid_shape
@@ -99,6 +101,8 @@ def fuse(
 
 
 Index = NDArray[np.int64]
+_FEW = 64
+"""Points of a cell that are sorted by insertion; with more, merging is quicker."""
 
 
 @compiled()
@@ -108,11 +112,11 @@ def cells_of(points: Array, uv: Array, sigma: Array, shape: tuple[int, int], cel
     Positions `uv` (N, 2) on the rim belong to the outermost cells. A point needs a depth and a σ above 0.
     """
     rows, columns = shape
-    found = np.full(len(points), -1, dtype=np.int64)
+    found = indices_of(len(points), -1)
     for i in range(len(points)):
         place = points[i, 0] + points[i, 1] + points[i, 2] + uv[i, 0] + uv[i, 1]
-        if np.isfinite(place) and points[i, 2] > 0 and sigma[i] > 0:
-            row, column = np.floor((uv[i, 1] + 0.5) / cell_px), np.floor((uv[i, 0] + 0.5) / cell_px)
+        if math.isfinite(place) and points[i, 2] > 0 and sigma[i] > 0:
+            row, column = float(math.floor((uv[i, 1] + 0.5) / cell_px)), float(math.floor((uv[i, 0] + 0.5) / cell_px))
             found[i] = int(min(max(row, 0.0), rows - 1.0)) * columns + int(min(max(column, 0.0), columns - 1.0))
     return found
 
@@ -120,13 +124,14 @@ def cells_of(points: Array, uv: Array, sigma: Array, shape: tuple[int, int], cel
 @compiled()
 def sorted_by_cell(cell_of: Index, cells: int) -> tuple[Index, Index]:
     """Sort points by their cell, those of −1 left out; also where in that order each of the `cells` begins and ends."""
-    starts = np.zeros(cells + 1, dtype=np.int64)
-    for cell in cell_of:
-        if cell >= 0:
-            starts[cell + 1] += 1
+    starts, filled = indices_of(cells + 1, 0), new_indices(cells)
+    for i in range(len(cell_of)):
+        if cell_of[i] >= 0:
+            starts[cell_of[i] + 1] += 1
     for k in range(cells):
+        filled[k] = starts[k]
         starts[k + 1] += starts[k]
-    order, filled = np.empty(starts[-1], dtype=np.int64), starts[:-1].copy()
+    order = new_indices(starts[cells])
     for i in range(len(cell_of)):
         cell = cell_of[i]
         if cell >= 0:
@@ -172,18 +177,21 @@ def fuse_cells(order: Index, starts: Index, cells: Index, measured: Measured, ga
         Depths of one layer leave no gap larger than `gap` standard uncertainties plus `slope` times the depth.
     """
     points, uv, intensity, sigma, sweep = measured
-    means, total = np.zeros((len(cells), 6)), np.zeros(len(cells))
-    count, member = np.zeros(len(cells), dtype=np.int64), np.full(len(sigma), -1, dtype=np.int64)
-    first_sweep = sweep.min()
-    of_sweep = np.zeros(int(sweep.max() - first_sweep) + 1, dtype=np.int64)
+    means, total = zero_table(len(cells), 6), row_of(len(cells), 0.0)
+    count, member = new_indices(len(cells)), indices_of(len(sigma), -1)
+    first_sweep, last_sweep = sweep[0], sweep[0]
+    for i in range(len(sweep)):
+        first_sweep, last_sweep = min(first_sweep, sweep[i]), max(last_sweep, sweep[i])
+    of_sweep = indices_of(last_sweep - first_sweep + 1, 0)
     for m in range(len(cells)):
         inside = order[starts[cells[m]] : starts[cells[m] + 1]]
         _sort_by_depth(inside, points)
         first, last = _largest_layer(inside, points, sigma, gap, slope)
         layer = inside[first:last]
-        for i in layer:
-            of_sweep[sweep[i] - first_sweep] += 1
-        for i in layer:
+        for k in range(len(layer)):
+            of_sweep[sweep[layer[k]] - first_sweep] += 1
+        for n in range(len(layer)):
+            i = layer[n]
             # summed over a sweep: its mean weight
             weight = 1 / (sigma[i] * sigma[i]) / of_sweep[sweep[i] - first_sweep]
             total[m] += weight
@@ -193,18 +201,19 @@ def fuse_cells(order: Index, starts: Index, cells: Index, measured: Measured, ga
             means[m, 4] += weight * uv[i, 1]
             means[m, 5] += weight * intensity[i]
             member[i] = m
-        for i in layer:
-            of_sweep[sweep[i] - first_sweep] = 0
+        for k in range(len(layer)):
+            of_sweep[sweep[layer[k]] - first_sweep] = 0
         count[m] = len(layer)
-        means[m] /= total[m]
+        for k in range(6):
+            means[m, k] /= total[m]
     return FusedCells(means, total, count, member)
 
 
 @inlined()
 def _sort_by_depth(inside: Index, points: Array) -> None:
     """Sort the few points of a cell in place, those of one depth as they came."""
-    if len(inside) > 64:
-        inside[:] = inside[np.argsort(points[inside, 2], kind="mergesort")]
+    if len(inside) > _FEW:
+        _merge_by_depth(inside, points)
         return
     for k in range(1, len(inside)):
         i, at = inside[k], k
@@ -215,13 +224,34 @@ def _sort_by_depth(inside: Index, points: Array) -> None:
 
 
 @inlined()
+def _merge_by_depth(inside: Index, points: Array) -> None:
+    """The same for many points: sorted runs are merged two by two."""
+    count, length = len(inside), 1
+    other = new_indices(count)
+    while length < count:
+        for start in range(0, count, 2 * length):
+            middle, end = min(start + length, count), min(start + 2 * length, count)
+            left, right = start, middle
+            for k in range(start, end):
+                if right == end or (left < middle and points[inside[left], 2] <= points[inside[right], 2]):
+                    other[k] = inside[left]
+                    left += 1
+                else:
+                    other[k] = inside[right]
+                    right += 1
+        for k in range(count):
+            inside[k] = other[k]
+        length *= 2
+
+
+@inlined()
 def _largest_layer(inside: Index, points: Array, sigma: Array, gap: float, slope: float) -> tuple[int, int]:
     """First and past-the-last of the points, sorted by depth, of the layer with most of them; of equals the nearest."""
     best_first, best_last, first = 0, 0, 0
     for k in range(1, len(inside) + 1):
         if k < len(inside):
             i, before = inside[k], inside[k - 1]
-            gate = gap * np.hypot(sigma[i], sigma[before]) + slope * points[i, 2]
+            gate = gap * math.hypot(sigma[i], sigma[before]) + slope * points[i, 2]
             if points[i, 2] - points[before, 2] <= gate:
                 continue
         if k - first > best_last - best_first:

@@ -142,17 +142,17 @@ def _kept(vertices: _Vertices, triangles: NDArray[np.int64], limits: _Limits) ->
     points = vertices.points
     kept = np.zeros(len(triangles), dtype=np.bool_)
     for t in range(len(triangles)):
-        a, b, c = triangles[t]
-        u, v = points[b] - points[a], points[c] - points[a]
+        a, b, c = triangles[t, 0], triangles[t, 1], triangles[t, 2]
+        ux, uy, uz = points[b, 0] - points[a, 0], points[b, 1] - points[a, 1], points[b, 2] - points[a, 2]
+        vx, vy, vz = points[c, 0] - points[a, 0], points[c, 1] - points[a, 1], points[c, 2] - points[a, 2]
         away = (
-            (u[1] * v[2] - u[2] * v[1]) * points[a, 0]
-            + (u[2] * v[0] - u[0] * v[2]) * points[a, 1]
-            + (u[0] * v[1] - u[1] * v[0]) * points[a, 2]
+            (uy * vz - uz * vy) * points[a, 0] + (uz * vx - ux * vz) * points[a, 1] + (ux * vy - uy * vx) * points[a, 2]
         )
         if away > 0:
             triangles[t, 1], triangles[t, 2] = c, b
         kept[t] = away != 0
-        for one, other in ((a, b), (b, c), (c, a)):
+        for k in range(3):
+            one, other = (a, b) if k == 0 else ((b, c) if k == 1 else (c, a))
             kept[t] &= _joins(vertices, one, other, limits)
     return kept
 

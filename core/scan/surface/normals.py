@@ -7,6 +7,7 @@ the steepest slope a surface can show, the rest by Tukey's biweight.
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import NamedTuple, TypeVar
 
@@ -17,6 +18,7 @@ from scipy.spatial import cKDTree
 from core.compiled import compiled, inlined
 from core.model.arrays import Array
 from core.model.robust import TUKEY
+from core.model.small_arrays import new_indices, new_row, zero_table
 from core.progress import Progress, silent
 from core.scan.surface.cloud import Cloud
 from core.scan.surface.fused_surface import Surface
@@ -162,9 +164,7 @@ class _PointGrid(NamedTuple):
 def _fit_all(points: _PointGrid) -> Array:
     """A robust plane in inverse depth around each point; see the module's docstring."""
     xyz, sigma, radius, angle = points.xyz, points.sigma, points.radius, points.angle
-    normals = np.zeros((len(xyz), 3))
-    near = np.empty(4 * MOST_NEIGHBOURS, dtype=np.int64)
-    weights = np.empty(4 * MOST_NEIGHBOURS)
+    normals, near, weights = zero_table(len(xyz), 3), new_indices(4 * MOST_NEIGHBOURS), new_row(4 * MOST_NEIGHBOURS)
     for i in range(len(xyz)):
         count = _neighbours(i, points, near)
         if count < LEAST_NEIGHBOURS:
@@ -185,9 +185,9 @@ def _fit_all(points: _PointGrid) -> Array:
         x, y, z = xyz[i, 0], xyz[i, 1], xyz[i, 2]
         px, py = b / angle, c / angle
         pz = a - px * x / z - py * y / z
-        size = np.sqrt(px * px + py * py + pz * pz)
+        size = math.sqrt(px * px + py * py + pz * pz)
         effective = max(count / CORRELATED, 1.0)
-        tilt = scale * sigma[i] / (z * z) / np.sqrt(effective * narrow) / angle / size
+        tilt = scale * sigma[i] / (z * z) / math.sqrt(effective * narrow) / angle / size
         if tilt < WORST_TILT:
             normals[i, 0], normals[i, 1], normals[i, 2] = -px / size, -py / size, -pz / size
     return normals
@@ -208,10 +208,10 @@ def _neighbours(i: int, points: _PointGrid, near: NDArray[np.int64]) -> int:
     for r in range(max(row - 1, 0), min(row + 1, rows - 1) + 1):
         for j in range(starts[r * columns + left], starts[r * columns + right + 1], stride):
             du, dv = uv[j, 0] - uv[i, 0], uv[j, 1] - uv[i, 1]
-            apart = np.sqrt(du * du + dv * dv)
+            apart = math.sqrt(du * du + dv * dv)
             if apart > points.radius:
                 continue
-            noise = np.sqrt(sigma[i] ** 2 + sigma[j] ** 2)
+            noise = math.sqrt(sigma[i] ** 2 + sigma[j] ** 2)
             if abs(xyz[j, 2] - xyz[i, 2]) > LAYER_SIGMAS * noise + STEEPEST * apart * points.angle * xyz[i, 2]:
                 continue
             if count < len(near):
@@ -247,7 +247,7 @@ def _inverse_depth_plane(
         cross += w * du * dv
         uq += w * du * dq
         vq += w * dv * dq
-    half = np.sqrt(((uu - vv) / 2) ** 2 + cross * cross)
+    half = math.sqrt(((uu - vv) / 2) ** 2 + cross * cross)
     narrow = (uu + vv) / 2 - half
     determinant = uu * vv - cross * cross
     if narrow <= 0 or determinant <= 0:
@@ -271,7 +271,7 @@ def _reweight(
         e = (1 / xyz[j, 2] - predicted) * xyz[j, 2] ** 2 / sigma[j]
         total += weights[k]
         squares += weights[k] * e * e
-    scale = max(np.sqrt(squares / total), 1.0) if total > 0 else 1.0
+    scale = max(math.sqrt(squares / total), 1.0) if total > 0 else 1.0
     for k in range(count):
         j = near[k]
         predicted = a + b * (uv[j, 0] - uv[i, 0]) + c * (uv[j, 1] - uv[i, 1])

@@ -47,6 +47,7 @@ from core.image.stripes.tracing.interpolation import cubic_weights, tracing_step
 from core.image.stripes.tracing.pixel_state import IGNORED, SATURATED
 from core.image.stripes.tracing.seeds import Picture
 from core.model.arrays import Array
+from core.model.small_arrays import column, first_not_below, first_rows, new_indices, new_table
 
 # Held by tests/image/stripes/likelihood/test_refinement.py against the Cramér–Rao bound on rendered stripes.
 _CORE = 1.6  # stripe σ on either side in which speckle is measured
@@ -140,15 +141,15 @@ def _likeliest(
     filter_px: float,
 ) -> tuple[Array, Array, Array]:
     """The curve (N, 5), the variance of its points and the weight of all cuts they rest on, (N,)."""
-    curve, arc, last = start.copy(), arc_length(start), False
+    curve, arc, last = first_rows(start, len(start)), arc_length(start), False
     while True:
         cuts = cuts_of(curve, arc)
         sums = score_cuts(picture, state, curve, cuts, clear, light)
-        found = averages(arc, cuts[:, 0], sums, filter_px)
+        found = averages(arc, column(cuts, 0), sums, filter_px)
         near = True
         for k in range(len(curve)):
             if abs(found[k, 0]) > _FARTHEST * light.sections[k, 1]:
-                found[k, 0], found[k, 1] = 0.0, np.inf
+                found[k, 0], found[k, 1] = 0.0, math.inf
             curve[k, 0] += found[k, 0] * curve[k, 2]
             curve[k, 1] += found[k, 0] * curve[k, 3]
             near &= abs(found[k, 0]) < _NEAR * light.sections[k, 1]
@@ -179,27 +180,25 @@ def residuals(
 
 def _weights(sections: Sections, noise: NoiseModel, speckle: Speckle) -> tuple[NDArray[np.int64], Array, Array]:
     """Which weight suits each point (N,), the weights (K, DEGREE + 1), and the share of speckle in their variance."""
-    kind, heights = _height_classes(sections.height)
+    level = _height_levels(sections.height)
+    lowest = int(level.min())
+    present = np.flatnonzero(np.bincount(level - lowest))  # as few as there are heights
+    kind, heights = np.searchsorted(present, level - lowest), np.exp((present + lowest) * _HEIGHT_CLASS)
     background, width = (median(figure[::_SECTION_SAMPLE]) for figure in (sections.background, sections.width))
     return kind, *influences(tuple(heights.tolist()), background, width, noise, speckle)
 
 
 @compiled()
-def _height_classes(height: Array) -> tuple[NDArray[np.int64], Array]:
-    """For each point which of some heights (K,) is nearest to its own."""
-    level = np.empty(len(height), dtype=np.int64)
-    here, from_height, to_height = 0, np.inf, -np.inf
+def _height_levels(height: Array) -> NDArray[np.int64]:
+    """The logarithm of each point's height, as a whole number of classes."""
+    level = new_indices(len(height))
+    here, from_height, to_height = 0, math.inf, -math.inf
     for k in range(len(height)):
         if not from_height <= height[k] < to_height:  # seldom: heights change slowly
             here = round(math.log(max(height[k], 1e-3)) / _HEIGHT_CLASS)
             from_height, to_height = math.exp((here - 0.5) * _HEIGHT_CLASS), math.exp((here + 0.5) * _HEIGHT_CLASS)
         level[k] = here
-    lowest = level.min()
-    number = np.zeros(level.max() - lowest + 1, dtype=np.int64)
-    for k in range(len(level)):
-        number[level[k] - lowest] = 1
-    heights = np.exp((np.flatnonzero(number) + lowest) * _HEIGHT_CLASS)
-    return (np.cumsum(number) - 1)[level - lowest], heights
+    return level
 
 
 @inlined()
@@ -209,7 +208,7 @@ def cuts_of(run: Array, arc: Array) -> Array:
     (K, 5), in order along the run: length along it; number of the row (column); the place in it; the nearest point;
     1 for a row.
     """
-    cuts = np.empty((2 * len(run) + 8, 5))
+    cuts = new_table(2 * len(run) + 8, 5)
     count = 0
     upright = abs(run[0, 2]) > 0.7
     for k in range(len(run) - 1):
@@ -264,7 +263,7 @@ def averages(arc: Array, at: Array, sums: Array, window: float) -> Array:
     (`core.image.stripes.tracing.interpolation`).
     """
     count, stride = len(arc), tracing_step(window)
-    found, weights = np.empty((count, 3)), cubic_weights(stride)
+    found, weights = new_table(count, 3), cubic_weights(stride)
     for k in range(0, count, stride):
         _average(arc[k], at, sums, window, found[k])
     for k in range(count):
@@ -285,7 +284,7 @@ def averages(arc: Array, at: Array, sums: Array, window: float) -> Array:
 @inlined()
 def _evenly_known(arc: Array, found: Array, first: int, stride: int) -> bool:
     """Whether there is no hole among four points `stride` apart, and their variances are much the same."""
-    least, most = np.inf, 0.0
+    least, most = math.inf, 0.0
     for i in range(4):
         variance = found[first + i * stride, 1]
         least, most = min(least, variance), max(most, variance)
@@ -298,7 +297,7 @@ def _average(place: float, at: Array, sums: Array, window: float, found: Array) 
     reach, scale = 3 * window, 1 / window
     m0, m1, m2, n0, n1 = 0.0, 0.0, 0.0, 0.0, 0.0
     q0, q1, q2, support = 0.0, 0.0, 0.0, 0.0
-    for c in range(np.searchsorted(at, place - reach), len(at)):
+    for c in range(first_not_below(at, place - reach), len(at)):
         if at[c] > place + reach:
             break
         if sums[c, 1] > 0:
@@ -311,7 +310,7 @@ def _average(place: float, at: Array, sums: Array, window: float, found: Array) 
             q0, q1, q2 = q0 + m, q1 + m * x, q2 + m * x * x
             support += w
     determinant = m0 * m2 - m1 * m1
-    found[0], found[1], found[2] = 0.0, np.inf, support
+    found[0], found[1], found[2] = 0.0, math.inf, support
     if determinant > 1e-3 * m0 * m0:
         found[0] = (m2 * n0 - m1 * n1) / determinant
         found[1] = (m2 * m2 * q0 - 2 * m1 * m2 * q1 + m1 * m1 * q2) / (determinant * determinant)

@@ -19,6 +19,7 @@ from core.image.stripes.section_fit import DARK
 from core.image.stripes.tracing.pixel_state import IGNORED, SATURATED
 from core.image.stripes.tracing.seeds import Picture
 from core.model.arrays import Array
+from core.model.small_arrays import new_indices, new_single_table, zero_table
 
 Float32 = NDArray[np.float32]
 F = np.float32
@@ -60,15 +61,16 @@ def score_cuts(
     light: Light,
 ) -> Array:
     """Compute Σ ψ·(I − model) and Σ ψ·d of each cut of a `run` (N, 5): (K, 2), zeros where it cannot be used."""
-    model, sums, longest = light.sections, np.zeros((len(cuts), 2)), max(picture.shape)
+    model, sums, longest = light.sections, zero_table(len(cuts), 2), max(picture.shape[0], picture.shape[1])
     block = _Block(
-        np.empty(_CUTS_AT_ONCE, dtype=np.int64),
-        np.empty(_CUTS_AT_ONCE, dtype=np.int64),
-        np.empty((longest, _CUTS_AT_ONCE), dtype=np.float32),
-        np.ones((longest, _CUTS_AT_ONCE), dtype=np.float32),
-        np.empty((_FIGURES, _CUTS_AT_ONCE), dtype=np.float32),
+        new_indices(_CUTS_AT_ONCE),
+        new_indices(_CUTS_AT_ONCE),
+        new_single_table(longest, _CUTS_AT_ONCE),
+        new_single_table(longest, _CUTS_AT_ONCE),
+        new_single_table(_FIGURES, _CUTS_AT_ONCE),
     )
-    results, single = np.empty((7, _CUTS_AT_ONCE), dtype=np.float32), light.weights.astype(np.float32)
+    _see_all(block.seen, longest)
+    results, weight = new_single_table(7, _CUTS_AT_ONCE), new_single_table(1, DEGREE + 1)[0]
     usable = _usable(picture.shape, run, cuts, clear, model)
     begin = 0
     while begin < len(usable):
@@ -80,10 +82,12 @@ def score_cuts(
             block.cut[lane] = usable[max(end - 1 - lane, begin) if backwards else min(begin + lane, end - 1)]
         pixels = _prepare(picture.shape, run, cuts, light, block)
         marked = _read(picture, state, cuts, pixels, block)
-        weight = single[light.kind[int(cuts[usable[(begin + end) // 2], 3])]]
+        kind = light.kind[int(cuts[usable[(begin + end) // 2], 3])]
+        for k in range(DEGREE + 1):
+            weight[k] = light.weights[kind, k]
         _work_out(block.grey[:pixels], block.seen[:pixels], block.figures, weight, results)
         if marked:
-            block.seen[:pixels] = F(1)
+            _see_all(block.seen, pixels)
         for lane in range(end - begin):
             c = block.cut[lane]
             near = int(cuts[c, 3])
@@ -93,11 +97,19 @@ def score_cuts(
 
 
 @inlined(fastmath=True)
+def _see_all(seen: Float32, pixels: int) -> None:
+    """All of the first pixels can be used."""
+    for i in range(pixels):
+        for k in range(_CUTS_AT_ONCE):
+            seen[i, k] = F(1)
+
+
+@inlined(fastmath=True)
 def _usable(
     shape: tuple[int, int], run: Array, cuts: Array, clear: NDArray[np.bool_], model: Array
 ) -> NDArray[np.int64]:
     """The numbers of the cuts that are clear and lie wholly within the picture."""
-    found, count = np.empty(len(cuts), dtype=np.int64), 0
+    found, count = new_indices(len(cuts)), 0
     for c in range(len(cuts)):
         near, upright = int(cuts[c, 3]), cuts[c, 4] > 0
         lines, length = shape if upright else shape[::-1]
@@ -126,7 +138,8 @@ def _prepare(shape: tuple[int, int], run: Array, cuts: Array, light: Light, bloc
             figures[_BACKGROUND, lane], figures[_SLOPE, lane] = model.background, model.slope
             figures[_OTHER, lane], figures[_PER_LIGHT, lane] = model.other, model.per_light
         pixels = max(pixels, int(last - first) + 1)
-        block.first[begin : begin + _TOGETHER] = int(first)
+        for lane in range(begin, begin + _TOGETHER):
+            block.first[lane] = int(first)
     length = shape[1] if upright else shape[0]
     for lane in range(_CUTS_AT_ONCE):
         block.first[lane] = min(block.first[lane], length - pixels)
@@ -179,7 +192,9 @@ def _work_out(grey: Float32, seen: Float32, figures: Float32, weight: Float32, r
     w0, w1, w2, w3, w4, w5 = weight[0], weight[1], weight[2], weight[3], weight[4], weight[5]
     w6, w7, w8, w9, w10 = weight[6], weight[7], weight[8], weight[9], weight[DEGREE]
     n, nt, nh, e, et, eh, lost = results[0], results[1], results[2], results[3], results[4], results[5], results[6]
-    results[:] = F(0)
+    for a in range(7):
+        for k in range(grey.shape[1]):
+            results[a, k] = F(0)
     for i in range(len(grey)):
         row, use, step = grey[i], seen[i], F(np.int32(i))
         for k in range(grey.shape[1]):

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from core.compiled import compiled, inlined
 from core.model.arrays import Array
+from core.model.small_arrays import new_table
 
 _FILTER_PER_STEP = 1.1  # filter σ to a step, at least: a point between then errs by less than 0.001 px (measured)
 _HOLE_PX = 0.6  # more than usual from one point to the next: what lies between is not known
@@ -28,10 +27,11 @@ def with_points_between(run: Array, stride: int) -> Array:
     between differs from one that was looked for by less than 0.001 px.
     """
     count, hole = len(run), stride + _HOLE_PX
-    out, weights = np.empty((stride * count, 5)), cubic_weights(stride)
+    out, weights = new_table(stride * count, 5), cubic_weights(stride)
     number, before, chord = 0, math.inf, _chord(run, 0)
     for k in range(count):
-        out[number] = run[k]
+        for a in range(5):
+            out[number, a] = run[k, a]
         number += 1
         after = _chord(run, k + 1)
         if chord <= hole:
@@ -55,7 +55,7 @@ def with_points_between(run: Array, stride: int) -> Array:
 @inlined()
 def cubic_weights(stride: int) -> Array:
     """Lagrange's weights (stride, 4) of four points for the place k/stride of the way from the second to the third."""
-    weights = np.empty((stride, 4))
+    weights = new_table(stride, 4)
     for k in range(stride):
         x = k / stride
         weights[k, 0], weights[k, 3] = -x * (1 - x) * (2 - x) / 6, -x * (1 - x) * (1 + x) / 6

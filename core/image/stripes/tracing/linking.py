@@ -36,6 +36,7 @@ from core.image.stripes.tracing.ridge import (
 )
 from core.image.stripes.tracing.seeds import Picture, seeds
 from core.model.arrays import Array
+from core.model.small_arrays import doubled_indices, new_indices, new_single_table, new_table
 
 # Chosen for speed at the same points: tests/image/stripes/test_extraction.py and tests/image/test_rendered_lines.py
 # hold them.
@@ -138,13 +139,9 @@ def _trace_all(
     """Trace both ways from every seed that no run has come near yet; all points and where each run ends."""
     height, width = state.shape
     high, stride = limits.high, limits.step_px
-    ahead = np.empty((4 * (height + width), 5))
-    behind = np.empty_like(ahead)
-    points, grid = np.empty((16384, 5)), empty_point_grid((height, width), reach, 16384)
-    ends, detector = (
-        np.empty(64, dtype=np.int64),
-        Detector(radius, kernels, np.empty(3 * COLUMNS_AT_ONCE, dtype=np.float32)),
-    )
+    ahead, behind = new_table(4 * (height + width), 5), new_table(4 * (height + width), 5)
+    points, grid = new_table(16384, 5), empty_point_grid((height, width), reach, 16384)
+    ends, detector = new_indices(64), Detector(radius, kernels, new_single_table(1, 3 * COLUMNS_AT_ONCE)[0])
     count, runs = 0, 0
     for k in range(len(starts)):
         u, v = starts[k, 0], starts[k, 1]
@@ -177,21 +174,26 @@ def _trace_all(
         forwards = 0 if closed else _follow(picture, state, so_far, (u, v, nu, nv), limits, detector, ahead)
         needed = backwards + 1 + forwards
         if len(points) < count + needed:
-            more = np.empty((2 * (count + needed), 5))
-            more[:count] = points[:count]
+            more = new_table(2 * (count + needed), 5)
+            for i in range(count):
+                for a in range(5):
+                    more[i, a] = points[i, a]
             points, grid = more, enlarged_point_grid(grid, len(more))
         run = points[count : count + needed]
         for i in range(backwards):
             for a in range(5):
-                run[i, a] = behind[backwards - 1 - i, a] if a not in (2, 3) else -behind[backwards - 1 - i, a]
+                there = behind[backwards - 1 - i, a]
+                run[i, a] = -there if a == 2 or a == 3 else there
         run[backwards, 0], run[backwards, 1], run[backwards, 2], run[backwards, 3] = u, v, nu, nv
         run[backwards, 4] = response
-        run[backwards + 1 :] = ahead[:forwards]
+        for i in range(forwards):
+            for a in range(5):
+                run[backwards + 1 + i, a] = ahead[i, a]
         for i in range(0, needed + _MARK_EVERY - 1, _MARK_EVERY):
             add_point(grid, points, count + min(i, needed - 1), reach)
         count += needed
         if runs == len(ends):
-            ends = np.concatenate((ends, np.empty_like(ends)))
+            ends = doubled_indices(ends)
         ends[runs] = count
         runs += 1
     return points[:count], ends[:runs]
@@ -283,7 +285,8 @@ def empty_point_grid(shape: tuple[int, int], reach: int, count: int) -> PointGri
 def enlarged_point_grid(grid: PointGrid, count: int) -> PointGrid:
     """The same points, with room for `count`."""
     before = np.empty(count, np.int32)
-    before[: len(grid.before)] = grid.before
+    for k in range(len(grid.before)):
+        before[k] = grid.before[k]
     return PointGrid(grid.last, before)
 
 

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from core.compiled import compiled
 from core.image.stripes.tracing.ridge import ridge_response
 from core.model.arrays import Array
+from core.model.small_arrays import new_single_table, new_table
 
 Picture = NDArray[np.float32] | NDArray[np.int16]
 
@@ -113,7 +114,11 @@ def _crest_of_columns(picture: Picture, every: int, box: int, step: int, apart: 
         above, here, below, out = sums[j - apart], sums[j], sums[j + apart], crest[j]
         for k in range(columns):
             out[k] = 2 * here[k] - above[k] - below[k]
-    return np.ascontiguousarray(crest.T)
+    turned = new_single_table(columns, rows)
+    for k in range(columns):
+        for j in range(rows):
+            turned[k, j] = crest[j, k]
+    return turned
 
 
 @compiled(fastmath=True)
@@ -125,8 +130,8 @@ def _maxima(crest: NDArray[np.float32], limit: np.float32) -> Array:
     for j in range(rows):
         for k in range(width // _SEGMENT + 1):
             highest = np.float32(0)
-            for value in crest[j, k * _SEGMENT : (k + 1) * _SEGMENT]:
-                highest = max(highest, value)
+            for i in range(k * _SEGMENT, min((k + 1) * _SEGMENT, width)):
+                highest = max(highest, crest[j, i])
             worth[j, k] = highest > limit
             number += bool(highest > limit)
     found, count = np.empty((number * _SEGMENT, 3)), 0
@@ -146,8 +151,7 @@ def _maxima(crest: NDArray[np.float32], limit: np.float32) -> Array:
 def _crests(blocks: NDArray[np.float32], threshold: np.float32) -> Array:
     """Blocks that are a ridge stronger than `threshold` and a maximum across it: (K, 3) column, row, response."""
     height, width = blocks.shape
-    found = np.empty((1024, 3))
-    count = 0
+    found, count = new_table(1024, 3), 0
     for j in range(1, height - 1):
         for i in range(1, width - 1):
             here = blocks[j, i]
@@ -166,7 +170,10 @@ def _crests(blocks: NDArray[np.float32], threshold: np.float32) -> Array:
             elif blocks[j - 1, i] > here or blocks[j + 1, i] > here:
                 continue
             if count == len(found):
-                found = np.concatenate((found, np.empty_like(found)))
+                more = new_table(2 * count, 3)
+                for k in range(count):
+                    more[k, 0], more[k, 1], more[k, 2] = found[k, 0], found[k, 1], found[k, 2]
+                found = more
             found[count, 0] = i
             found[count, 1] = j
             found[count, 2] = response

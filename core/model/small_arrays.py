@@ -1,0 +1,232 @@
+"""What compiled loops ask of small arrays: new ones, the median, a sort, a search, the solution of a few equations.
+
+Of numpy's own functions numba compiles a copy for every loop that calls one; these are compiled once and then only
+become part of the loop.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.compiled import inlined
+from core.model.arrays import Array
+
+Index = NDArray[np.int64]
+
+
+@inlined()
+def new_row(count: int) -> Array:
+    """An array (count,) that is still to be filled."""
+    return np.empty(count)
+
+
+@inlined()
+def new_table(rows: int, columns: int) -> Array:
+    """An array (rows, columns) that is still to be filled."""
+    return np.empty((rows, columns))
+
+
+@inlined()
+def zero_table(rows: int, columns: int) -> Array:
+    """An array (rows, columns) of zeros."""
+    return np.zeros((rows, columns))
+
+
+@inlined()
+def new_single_table(rows: int, columns: int) -> NDArray[np.float32]:
+    """An array (rows, columns) of single precision that is still to be filled."""
+    return np.empty((rows, columns), np.float32)
+
+
+@inlined()
+def row_of(count: int, value: float) -> Array:
+    """An array (count,) of one value."""
+    row = np.empty(count)
+    for k in range(count):
+        row[k] = value
+    return row
+
+
+@inlined()
+def new_indices(count: int) -> Index:
+    """An array (count,) of whole numbers that is still to be filled."""
+    return np.empty(count, np.int64)
+
+
+@inlined()
+def new_index_table(rows: int, columns: int) -> Index:
+    """An array (rows, columns) of whole numbers that is still to be filled."""
+    return np.empty((rows, columns), np.int64)
+
+
+@inlined()
+def indices_of(count: int, value: int) -> Index:
+    """An array (count,) of one whole number."""
+    row = np.empty(count, np.int64)
+    for k in range(count):
+        row[k] = value
+    return row
+
+
+@inlined()
+def new_flags(count: int) -> NDArray[np.bool_]:
+    """An array (count,) of False."""
+    return np.zeros(count, np.bool_)
+
+
+@inlined()
+def doubled_index_table(table: Index) -> Index:
+    """`table` (N, C) with room for as many rows again."""
+    rows, columns = table.shape
+    larger = np.empty((2 * rows, columns), np.int64)
+    for i in range(rows):
+        for k in range(columns):
+            larger[i, k] = table[i, k]
+    return larger
+
+
+@inlined()
+def doubled_indices(row: Index) -> Index:
+    """`row` (N,) with room for as many again."""
+    larger = np.empty(2 * len(row), np.int64)
+    for k in range(len(row)):
+        larger[k] = row[k]
+    return larger
+
+
+@inlined()
+def first_rows(table: Array, count: int) -> Array:
+    """A copy of the first rows of a `table` (N, C)."""
+    copy = np.empty((count, table.shape[1]))
+    for i in range(count):
+        for k in range(table.shape[1]):
+            copy[i, k] = table[i, k]
+    return copy
+
+
+@inlined()
+def column(table: Array, k: int) -> Array:
+    """A copy of column `k` of a `table` (N, C)."""
+    copy = np.empty(len(table))
+    for i in range(len(table)):
+        copy[i] = table[i, k]
+    return copy
+
+
+@inlined()
+def mean_of(table: Array, k: int) -> float:
+    """Mean of column `k` of a `table` (N, C)."""
+    total = 0.0
+    for i in range(len(table)):
+        total += table[i, k]
+    return total / len(table)
+
+
+@inlined()
+def backwards(row: Array) -> Array:
+    """A copy of `row` (N,) from its end."""
+    copy = np.empty(len(row))
+    for k in range(len(row)):
+        copy[k] = row[len(row) - 1 - k]
+    return copy
+
+
+@inlined()
+def smallest(values: Array, k: int) -> float:
+    """The value that `k` of the `values` (N,) are not above; they change their places. Hoare's selection.
+
+    Hoare, C. A. R., Algorithm 65: Find, Communications of the ACM 4 (1961), doi:10.1145/366622.366647.
+    """
+    low, high = 0, len(values) - 1
+    while low < high:
+        pivot, i, j = values[k], low, high
+        while i <= j:
+            while values[i] < pivot:
+                i += 1
+            while pivot < values[j]:
+                j -= 1
+            if i <= j:
+                values[i], values[j] = values[j], values[i]
+                i += 1
+                j -= 1
+        if j < k:
+            low = i
+        if k < i:
+            high = j
+    return float(values[k])
+
+
+@inlined()
+def median_of(values: Array, first: int, behind: int) -> float:
+    """Median of the `values` (N,) from `first` to before `behind`, at least one."""
+    count = behind - first
+    copy = np.empty(count)
+    for k in range(count):
+        copy[k] = values[first + k]
+    upper = smallest(copy, count // 2)
+    if count % 2 == 1:
+        return upper
+    lower = copy[0]
+    for k in range(1, count // 2):
+        lower = max(lower, copy[k])
+    return 0.5 * (lower + upper)
+
+
+@inlined()
+def sort(values: Array) -> None:
+    """Sort a few `values` (N,) in place, by insertion."""
+    for k in range(1, len(values)):
+        value, at = values[k], k
+        while at > 0 and values[at - 1] > value:
+            values[at] = values[at - 1]
+            at -= 1
+        values[at] = value
+
+
+@inlined()
+def first_not_below(values: Array, limit: float) -> int:
+    """How many of the rising `values` (N,) are below the limit."""
+    low, high = 0, len(values)
+    while low < high:
+        middle = (low + high) // 2
+        if values[middle] < limit:
+            low = middle + 1
+        else:
+            high = middle
+    return low
+
+
+@inlined()
+def first_above(values: Array, limit: float) -> int:
+    """How many of the rising `values` (N,) are not above the limit."""
+    low, high = 0, len(values)
+    while low < high:
+        middle = (low + high) // 2
+        if values[middle] <= limit:
+            low = middle + 1
+        else:
+            high = middle
+    return low
+
+
+@inlined()
+def invert(matrix: Array, inverse: Array, size: int) -> None:
+    """Put into `inverse` that of the first `size` rows and columns of a positive definite `matrix`, which is lost.
+
+    Gauss and Jordan's elimination, which needs no search for pivots where a matrix is positive definite.
+    """
+    for i in range(size):
+        for k in range(size):
+            inverse[i, k] = 1.0 if i == k else 0.0
+    for pivot in range(size):
+        scale = 1 / matrix[pivot, pivot]
+        for k in range(size):
+            matrix[pivot, k] *= scale
+            inverse[pivot, k] *= scale
+        for i in range(size):
+            factor = matrix[i, pivot]
+            if i != pivot and factor != 0.0:
+                for k in range(size):
+                    matrix[i, k] -= factor * matrix[pivot, k]
+                    inverse[i, k] -= factor * inverse[pivot, k]
