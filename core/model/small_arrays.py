@@ -170,7 +170,7 @@ def median_of(values: Array, first: int, behind: int) -> float:
     lower = copy[0]
     for k in range(1, count // 2):
         lower = max(lower, copy[k])
-    return 0.5 * (lower + upper)
+    return float(0.5 * (lower + upper))
 
 
 @inlined()

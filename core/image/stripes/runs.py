@@ -89,7 +89,7 @@ def _from_its_end(arc: Array) -> Array:
 def _inside(run: Array, k: int, shape: tuple[int, int]) -> float:
     """How far in px a point of a run is from the border of the picture."""
     u, v = run[k, 0], run[k, 1]
-    return min(min(u, shape[1] - 1 - u), min(v, shape[0] - 1 - v))
+    return float(min(min(u, shape[1] - 1 - u), min(v, shape[0] - 1 - v)))
 
 
 @inlined()
