@@ -85,12 +85,15 @@ check: $(READY)
 docs: $(READY)            ## the manual as pages for a browser, in build/manual; dead links are errors
 	$(BIN)/sphinx-build -n -W --keep-going -q -b html resources/manual build/manual
 
-wheel: $(READY)           ## build the wheel and try it in an empty environment
-	rm -rf build/wheel && mkdir -p build/wheel
-	$(BIN)/python -m build --wheel --outdir build/wheel .
+wheel: compile            ## build the wheel, with compiled loops in it, and try it in an empty environment: it compiles nothing
+	rm -rf build/wheel core/saved_code && mkdir -p build/wheel core/saved_code
+	$(BIN)/trisect demo --quick --out build/wheel/first
+	cp -r "$$($(BIN)/python -c 'from core.compiled import FOLDER; print(FOLDER)')" core/saved_code/
+	$(BIN)/python -m build --wheel --outdir build/wheel . ; built=$$?; rm -rf core/saved_code; exit $$built
 	$(PYTHON) -m venv build/wheel/venv
 	build/wheel/venv/bin/pip install --quiet --constraint constraints.txt build/wheel/trisect-*.whl
-	cd build/wheel && venv/bin/trisect demo --quick --out demo
+	cd build/wheel && NUMBA_CACHE_DIR=cache venv/bin/trisect demo --quick --out demo
+	test -z "$$(find build/wheel/cache -type f)"
 
 $(READY): pyproject.toml constraints.txt
 	$(PYTHON) -m venv $(VENV)
