@@ -66,10 +66,13 @@ class BoardTolerance:
         if self.scale_sd is not None and not 0 <= self.scale_sd <= 0.1:
             raise ValueError(f"a relative uncertainty of {self.scale_sd} of the size is not between 0 and 0.1")
 
-    def notes(self, target: Literal["camera_target", "plane_target"]) -> tuple[Message, ...]:
+    def notes(
+        self, target: Literal["camera_target", "plane_target"], *, shape_known: bool = False
+    ) -> tuple[Message, ...]:
         """What is assumed of a target of which rig.toml says nothing, as far as the step of that `target` rests on it.
 
-        A bow of the camera's target is found in its views, so only the plane target's flatness is ever assumed.
+        A bow of the camera's target is found in its views, so only the plane target's flatness is ever assumed, and
+        that not where its shape is known from them.
         """
         size = Message(
             "target.size_assumed",
@@ -84,7 +87,7 @@ class BoardTolerance:
             field=Field(f"{target}.flatness_mm", whole=True),
             mm=SUSPECTED_MM,
         )
-        unknown_bow = self.flatness_mm is None and target == "plane_target"
+        unknown_bow = self.flatness_mm is None and target == "plane_target" and not shape_known
         return (*[size] * (self.scale_sd is None), *[flatness] * unknown_bow)
 
     @property

@@ -92,6 +92,11 @@ class FanOptions:
         if self.angle is not None and self.lines > 1 and not 0 < self.angle < np.pi / 2:
             raise ValueError(f"the angle between neighbouring lines must be between 0 and π/2 rad, not {self.angle}")
 
+    @property
+    def seen_bowed(self) -> BoardShape | None:
+        """The target's shape, where the camera's calibration has found it bowed."""
+        return self.board if self.board is not None and self.board.values[:BOWS].any() else None
+
 
 def fit_fan(
     features: Sequence[PoseFeatures],
@@ -145,7 +150,7 @@ def fit_fan(
     summary = summarise(located, free, used, verdict, errors, further)
     return replace(
         summary,
-        notes=(*summary.notes, *options.target.notes("plane_target")),
+        notes=(*summary.notes, *options.target.notes("plane_target", shape_known=options.seen_bowed is not None)),
         scale_sd=options.target.size_sd,
         scale_assumed=options.target.scale_sd is None,
     )
@@ -295,8 +300,8 @@ def _missing_tilt(stripes: Sequence[StripeLine], ends: Array, spread: float) -> 
 def _check_bow(fit: Bundle, options: FanOptions) -> None:
     """InputError if the target comes out far more bowed than it was said that it may be, or than the camera saw it."""
     bow, flatness_mm = float(np.abs(fit.shape.values[:BOWS]).max()), options.target.flatness_sd_mm
-    if options.board is not None and options.board.values[:BOWS].any():
-        _check_bow_against(options.board, fit.shape)
+    if options.seen_bowed is not None:
+        _check_bow_against(options.seen_bowed, fit.shape)
         return
     if not flatness_mm or bow <= MOST_BOWED * flatness_mm:
         return
@@ -341,9 +346,10 @@ def _check_bow_against(seen: BoardShape, found: BoardShape) -> None:
 
 def _plate(located: Sequence[LocatedPose], options: FanOptions) -> Plate | None:
     """The part of the target that points and stripes are on, if it may be bowed."""
-    if options.board is not None and options.board.values[:BOWS].any():
-        known = options.board.covariance[:BOWS, :BOWS] + BENDS_MM**2 * np.eye(BOWS)
-        return Plate(options.board.board, options.board.values[:BOWS], known)
+    seen = options.seen_bowed
+    if seen is not None:
+        known = seen.covariance[:BOWS, :BOWS] + BENDS_MM**2 * np.eye(BOWS)
+        return Plate(seen.board, seen.values[:BOWS], known)
     flatness_mm = options.target.flatness_sd_mm
     if not flatness_mm:
         return None
