@@ -99,7 +99,7 @@ class TargetPanel(QWidget):
             ("stated", self.tr("As stated below")),
         ]
         form.add_choice(
-            "made", self.tr("Made"), made,
+            "made", self.tr("How it was made"), made,
             self.tr("How true it is goes into every uncertainty; take the values of its certificate where it has one."),
         )  # fmt: skip
         unknown = MADE["laser printer"]
