@@ -17,11 +17,13 @@ from core.errors import InputError
 from core.files.recording.options import Options, StatedTilt
 from core.files.recording.recording_set import RIG, excluded_names, open_set
 from core.files.recording.rig import read_rig
+from core.files.results.artefact_register import artefact_named
 from core.files.results.check_file import InterimCheck
 from core.files.results.rig_history import RigHistory, history_file
 from core.image.stripes.stripe import StripeSettings
 from core.inspect.results import GaugeResult
 from core.messages import Message, visible
+from core.pipeline.steps.artefact_step import artefact_step
 from core.pipeline.steps.batch import FAULT, SetResult, run_batch
 from core.pipeline.steps.camera_step import camera_step
 from core.pipeline.steps.check_step import check_step
@@ -37,6 +39,7 @@ from core.progress import Progress
 from core.report.wording import grouped, with_uncertainty
 from core.scan.method import Method
 from core.stage_times import StageTimes
+from core.study.artefact_check import ArtefactCheck
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -161,6 +164,12 @@ def run_check(
     work = _open(folder, out)
     check = check_step(work, chosen, progress, celsius)
     return check, _shown(work, "check", output.check_rows(check), output.check_json(check), "check")
+
+
+def run_artefact(folder: Path, out: Path, id_: str, celsius: float | None) -> tuple[ArtefactCheck, Shown]:
+    """Compare the thickness in `out` with the certificate of the artefact called `id_`."""
+    check = artefact_step(_open(folder, out), artefact_named(id_, folder), celsius)
+    return check, Shown(output.artefact_rows(check), output.artefact_json(check))
 
 
 def rig_history(folder: Path, out: Path) -> tuple[RigHistory, Shown]:

@@ -29,6 +29,8 @@ from core.scan.method import Method
 
 commands = typer.Typer()
 
+Celsius = Annotated[float | None, typer.Option(metavar="°C", help="Temperature of the air, for the rig's history.")]
+
 
 @commands.command(epilog=EPILOG)
 def run(
@@ -132,9 +134,7 @@ def check(
     out: Out,
     stripe_width: StripeWidth = 0.0,
     contrast: Contrast = 0.0,
-    celsius: Annotated[
-        float | None, typer.Option(metavar="°C", help="Temperature of the air, for the rig's history.")
-    ] = None,
+    celsius: Celsius = None,
     history: Annotated[
         bool, typer.Option("--history", help="Check nothing: show the checks of this rig so far, with their limits.")
     ] = False,
@@ -152,6 +152,22 @@ def check(
         result, shown = measuring.run_check(folder, out, options, progress, celsius)
     shown.show(as_json=json)
     raise typer.Exit(measuring.exit_code("conforming" if result.passed else "changed"))
+
+
+@commands.command(epilog=EPILOG)
+def artefact(
+    folder: Set,
+    out: Out,
+    id: Annotated[str, typer.Option("--id", metavar="ID", help="The artefact, as artefacts.toml calls it.")],
+    celsius: Celsius = None,
+    json: Json = False,
+) -> None:
+    """Compare the thickness in DIR with the certificate of the artefact that was measured; the rig's history has it."""
+    from core.cli import measuring
+
+    result, shown = measuring.run_artefact(folder, out, id, celsius)
+    shown.show(as_json=json)
+    raise typer.Exit(measuring.exit_code(result.verdict, good=("passed",)))
 
 
 @commands.command()

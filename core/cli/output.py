@@ -24,6 +24,7 @@ from core.pipeline.steps.validity import date_of
 from core.report.wording import count, decimals_of, fixed, grouped, thickness_line, with_uncertainty
 from core.scan.features.frames import NO_REASON
 from core.scan.results import FrameRecord
+from core.study.artefact_check import ArtefactCheck
 from core.study.control_chart import ControlChart
 
 Rows = list[tuple[str, str]]
@@ -164,6 +165,33 @@ def check_json(check: InterimCheck) -> dict[str, Any]:
     }
 
 
+def artefact_rows(check: ArtefactCheck) -> Rows:
+    """What was measured of an artefact, and how that agrees with its certificate."""
+    known = check.artefact
+    return [
+        ("artefact", " ".join(part for part in (known.id, known.certificate and f"({known.certificate})") if part)),
+        ("certified", f"{known.value_mm:.4f} mm ± {known.U_mm:.4f} mm (k = {known.k:g})"),
+        ("measured", f"{' ± '.join(with_uncertainty(check.measured_mm, 2 * check.u_mm))} mm (k = 2)"),
+        ("E_n", f"{check.e_n:.2f}"),
+        ("detects", f"errors from {2 * check.u_error_mm:.3f} mm (k = 2)"),
+        ("verdict", str(check.sentence)),
+    ]
+
+
+def artefact_json(check: ArtefactCheck) -> dict[str, Any]:
+    """The same for programs."""
+    return {
+        "artefact": check.artefact.id,
+        "verdict": check.verdict,
+        "measured_mm": check.measured_mm,
+        "u_mm": check.u_mm,
+        "certified_mm": check.artefact.value_mm,
+        "error_mm": check.error_mm,
+        "e_n": check.e_n,
+        "unseen_mm": 2 * check.u_error_mm,
+    }
+
+
 def history_rows(history: RigHistory) -> Rows:
     """Each check of a rig: when, what came of it, by how much a step was off, and within which limits."""
     if not history.checks:
@@ -178,8 +206,11 @@ def _past_check(check: PastCheck, chart: ControlChart) -> str:
     where = "within" if chart.holds(check.error_mm) else "outside"
     rule = f"by {chart.n} checks before" if chart.own else "by its stated stability"
     warm = "" if check.celsius is None else f", {check.celsius:g} °C"
+    by = f"{check.offset_px:.2f} px, {check.offset_mm:.3f} mm, p = {check.p:.2g}"
+    if check.artefact:
+        by = f"{check.artefact}: E_n = {check.e_n:.2f}"
     return (
-        f"{check.verdict}, {check.offset_px:.2f} px, {check.offset_mm:.3f} mm, p = {check.p:.2g}; "
+        f"{check.verdict}, {by}; "
         f"{check.step_mm:g} mm off by {check.error_mm:+.3f} mm, {where} {chart.lower:+.3f} … {chart.upper:+.3f} mm "
         f"{rule}{warm}"
     )

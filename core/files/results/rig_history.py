@@ -1,4 +1,4 @@
-"""The history of a rig: every check of it, in one file in the user's own folder.
+"""The history of a rig: every check of it, by pictures or by an artefact, in one file in the user's own folder.
 
 Layout::
 
@@ -39,7 +39,8 @@ _TODO = Message("advice.mend_history", "mend the file, or move it away: the hist
 class PastCheck:
     """One check of a rig, in short; lengths as in `core.files.results.check_file.InterimCheck`.
 
-    `celsius` is the temperature of the air; None where nobody took it.
+    `celsius` is the temperature of the air; None where nobody took it. Of a check by an artefact `artefact` is its id
+    and `e_n` its normalised error, the step is its certified length, and there are no stripes; else there is none.
     """
 
     taken_at: datetime
@@ -54,6 +55,8 @@ class PastCheck:
     unseen_mm: float = math.nan
     stated_mm: float = math.nan
     celsius: float | None = None
+    artefact: str = ""
+    e_n: float = math.nan
 
     @classmethod
     def of(cls, check: InterimCheck, celsius: float | None = None) -> PastCheck:
@@ -75,14 +78,18 @@ class RigHistory:
         """Those with these calibrations."""
         return tuple(check for check in self.checks if check.calibration_id == calibration_id)
 
+    def like(self, check: PastCheck) -> tuple[PastCheck, ...]:
+        """Those with the same calibrations by the same means: pictures, or one artefact."""
+        return tuple(one for one in self.of_calibration(check.calibration_id) if one.artefact == check.artefact)
+
     def chart(self, check: PastCheck) -> ControlChart:
-        """The limits for a check: by the others with its calibrations, taken before it, that have not failed.
+        """The limits for a check: by those like it, taken before it, that have not failed.
 
         What is charted is the error of a step in parts of its height, times the height of this one: parts differ.
         """
         before = [
             one.error_mm / one.step_mm * check.step_mm
-            for one in self.of_calibration(check.calibration_id)
+            for one in self.like(check)
             if one.taken_at < check.taken_at and one.verdict != "failed"
         ]
         return control_chart(np.array(before), check.stated_mm)
@@ -128,6 +135,8 @@ class _Check(ResultFile):
     unseen_mm: OrNan = math.nan
     stated_mm: OrNan = math.nan
     celsius: Finite | None = None
+    artefact: str = ""
+    e_n: OrNan = math.nan
 
 
 class _HistoryFile(ResultFile):
@@ -135,10 +144,14 @@ class _HistoryFile(ResultFile):
     checks: list[_Check]
 
 
+def own_folder() -> Path:
+    """The user's own folder for the program's data, or that which DATA names."""
+    return Path(os.environ.get(DATA) or platformdirs.user_data_path("trisect", appauthor=False))
+
+
 def history_file(name: str) -> Path:
     """Where the history of the rig called `name` lies: in the user's own folder, or in that which DATA names."""
-    own = os.environ.get(DATA) or platformdirs.user_data_path("trisect", appauthor=False)
-    return Path(own) / "rigs" / f"{name}.json"
+    return own_folder() / "rigs" / f"{name}.json"
 
 
 def read_history(name: str) -> RigHistory:

@@ -63,3 +63,13 @@ def test_parts_of_another_height_have_the_same_chart():
     half = later(10, 0.0055, step_mm=25.0)
     assert history.chart(half).centre == pytest.approx(0.5 * history.chart(later(10)).centre)
     assert history.beyond(half) is None
+
+
+def test_an_artefact_has_a_chart_of_its_own():
+    pictures = tuple(later(day, 0.01) for day in range(9))
+    block = later(10, 0.03, artefact="GB 50-7", e_n=0.8)
+    history = RigHistory("bench", pictures).added(block)
+    assert history.like(block) == (block,)
+    assert not history.chart(block).own and history.chart(later(11)).own
+    keep_check("bench", block)
+    assert read_history("bench").checks == (block,)

@@ -2,6 +2,7 @@
 
 import json
 import os
+import shutil
 from dataclasses import replace
 
 import numpy as np
@@ -22,6 +23,7 @@ from core.pipeline.steps.gauge_step import gauge_step
 from core.pipeline.steps.planes_step import planes_step
 from core.pipeline.steps.run import run
 from core.pipeline.steps.scan_step import scan_step
+from core.pipeline.steps.validity import doubt_of_the_day
 from core.pipeline.steps.workspace import Workspace
 from core.report.content import thickness_characteristic
 from core.report.wording import decision_sentence, verdict_sentence
@@ -191,3 +193,21 @@ def test_each_check_is_in_the_history_of_the_rig_and_is_shown(unchanged, tmp_pat
     assert "passed" in said.out and "by its stated stability, 21.5 °C" in said.out
     (one,) = json.loads(trisect("check", made, "--out", out, "--history", "--json").out)["checks"]
     assert one["limits"]["lower_mm"] < one["error_mm"] < one["limits"]["upper_mm"]
+
+
+def test_an_artefact_is_held_to_its_certificate_and_kept_in_the_same_history(measured, simulated, tmp_path):
+    made, out = shutil.copytree(simulated, tmp_path / "set"), shutil.copytree(measured, tmp_path / "out")
+    found = read_thickness(out / "gauge.json")
+    block = f'[[artefact]]\nid = "GB 7"\nvalue_mm = {found.value - 0.5 * found.U:.6f}\nU_mm = 0.0004\n'
+    (made / "artefacts.toml").write_text(block + block.replace("GB 7", "GB 8").replace("value_mm = ", "value_mm = 1"))
+    said = trisect("artefact", made, "--out", out, "--id", "GB 7")
+    assert said.code == 0, said.err
+    assert "0.50" in said.out and "as its certificate and the uncertainty allow" in said.out
+    history = json.loads(trisect("check", made, "--out", out, "--history", "--json").out)["checks"]
+    assert [(one["artefact"], one["verdict"]) for one in history] == [("GB 7", "passed")]
+    wrong = trisect("artefact", made, "--out", out, "--id", "GB 8", "--json")
+    assert wrong.code == 1 and json.loads(wrong.out)["verdict"] == "failed"
+    assert trisect("artefact", made, "--out", out, "--id", "GB 9").code == 2
+    work = Workspace.open(open_set(made), out)
+    told = doubt_of_the_day(work, work.calibration())
+    assert told is not None and told.code == "validity.check_failed", "what was measured then proves nothing"

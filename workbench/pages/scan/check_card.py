@@ -140,7 +140,7 @@ class CheckCard(QFrame):
 
     def _show_chart(self, history: RigHistory | None, past: PastCheck | None) -> None:
         """All checks with these calibrations, each scaled to the height of the last one's step."""
-        checks = history.of_calibration(past.calibration_id) if history is not None and past is not None else ()
+        checks = history.like(past) if history is not None and past is not None else ()
         self.chart.setVisible(len(checks) > 1)
         if history is None or past is None or len(checks) < 2:
             return

@@ -1,0 +1,104 @@
+"""A check by a known artefact: its measured length against its certificate.
+
+References
+----------
+ISO/IEC 17043:2010, B.3.1.3 (normalised error E_n).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from datetime import date
+from typing import Literal
+
+from core.messages import Message
+
+
+@dataclass(frozen=True, slots=True)
+class Artefact:
+    """A block or a step whose length a certificate states.
+
+    Parameters
+    ----------
+    id
+        What is engraved on it.
+    value_mm, U_mm, k
+        Its length at 20 °C, the expanded uncertainty of that, and its coverage factor.
+    certificate
+        Number of the certificate.
+    due
+        The last day on which the certificate holds; None: nothing is stated.
+    """
+
+    id: str
+    value_mm: float
+    U_mm: float
+    k: float = 2.0
+    certificate: str = ""
+    due: date | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class ArtefactCheck:
+    """An artefact as it was measured on a `day`: in mm, with the standard uncertainty of that."""
+
+    artefact: Artefact
+    measured_mm: float
+    u_mm: float
+    day: date
+
+    @property
+    def error_mm(self) -> float:
+        """Measured − certified."""
+        return self.measured_mm - self.artefact.value_mm
+
+    @property
+    def u_error_mm(self) -> float:
+        """Standard uncertainty of the error, of measurement and certificate together."""
+        return math.hypot(self.u_mm, self.artefact.U_mm / self.artefact.k)
+
+    @property
+    def e_n(self) -> float:
+        """Normalised error: error over its expanded uncertainty (k = 2), with its sign."""
+        return self.error_mm / (2 * self.u_error_mm)
+
+    @property
+    def p(self) -> float:
+        """Probability that chance alone makes so large an error, of a normal distribution."""
+        return math.erfc(abs(self.error_mm) / (self.u_error_mm * math.sqrt(2)))
+
+    @property
+    def lapsed(self) -> bool:
+        """Whether the certificate did not hold any more."""
+        return self.artefact.due is not None and self.day > self.artefact.due
+
+    @property
+    def verdict(self) -> Literal["passed", "doubtful", "failed"]:
+        """Failed where |E_n| is above 1; else doubtful if the certificate has lapsed."""
+        return "failed" if abs(self.e_n) > 1 else "doubtful" if self.lapsed else "passed"
+
+    @property
+    def sentence(self) -> Message:
+        """What came of it, and what to do."""
+        values = {"id": self.artefact.id, "error_mm": self.error_mm, "e_n": self.e_n}
+        if self.verdict == "failed":
+            return Message(
+                "artefact.failed",
+                "{id} is measured wrong by {error_mm:+.3f} mm (E_n = {e_n:.2f}, above 1): look for what changed, and "
+                "calibrate again.",
+                **values,
+            )
+        if self.lapsed:
+            return Message(
+                "artefact.lapsed",
+                "{id} is measured to {error_mm:+.3f} mm (E_n = {e_n:.2f}), but its certificate holds only until {due}: "
+                "have it calibrated.",
+                due=str(self.artefact.due),
+                **values,
+            )
+        return Message(
+            "artefact.passed",
+            "{id} is measured to {error_mm:+.3f} mm (E_n = {e_n:.2f}), as its certificate and the uncertainty allow.",
+            **values,
+        )

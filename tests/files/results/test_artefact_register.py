@@ -1,0 +1,45 @@
+"""The register of artefacts: the user's own, and that beside rig.toml."""
+
+from datetime import date
+
+import pytest
+
+from core.errors import InputError
+from core.files.results.artefact_register import REGISTER, artefact_named, read_register
+from core.files.results.rig_history import own_folder
+from core.study.artefact_check import Artefact
+
+BLOCK = '[[artefact]]\nid = "GB 50-7"\nvalue_mm = 50.0003\nU_mm = 0.0004\ncertificate = "D-K-15070"\ndue = 2028-03-01\n'
+
+
+@pytest.fixture
+def own():
+    own_folder().mkdir(parents=True)
+    return own_folder() / REGISTER
+
+
+def test_artefacts_are_the_users_own_and_those_beside_the_rig(own, tmp_path):
+    own.write_text(BLOCK + '[[artefact]]\nid = "step 10"\nvalue_mm = 10.0\nU_mm = 0.001\nk = 3.0\n')
+    assert artefact_named("GB 50-7", tmp_path) == Artefact(
+        "GB 50-7", 50.0003, 0.0004, 2.0, "D-K-15070", date(2028, 3, 1)
+    )
+    (tmp_path / REGISTER).write_text(BLOCK.replace("50.0003", "50.0001"))
+    assert artefact_named("GB 50-7", tmp_path).value_mm == 50.0001, "the one beside the rig counts"
+    assert artefact_named("step 10", tmp_path).k == 3.0
+
+
+def test_an_artefact_that_is_in_no_register_is_told_with_those_that_are(own, tmp_path):
+    assert read_register(tmp_path) == {}
+    own.write_text(BLOCK)
+    with pytest.raises(InputError, match=r"there is no artefact GB 50-8 in artefacts\.toml, which has GB 50-7"):
+        artefact_named("GB 50-8", tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "field"),
+    [("U_mm = -1", "U_mm"), ("U_mm = 0.1\ndue = 7", "due"), ("U_mm = 0.1\ncolour = 1", "colour"), ("", "U_mm")],
+)
+def test_a_wrong_register_is_named_with_the_field(tmp_path, wrong, field):
+    (tmp_path / REGISTER).write_text(f'[[artefact]]\nid = "a"\nvalue_mm = 50.0\n{wrong}\n')
+    with pytest.raises(InputError, match=rf"artefacts\.toml.*{field}"):
+        read_register(tmp_path)
