@@ -10,6 +10,7 @@ from PySide6.QtGui import QKeyEvent, QKeySequence, QShortcut
 from PySide6.QtWidgets import QSizePolicy, QStackedWidget, QWidget
 
 from core.pipeline.live.events import LiveView, ScanDetail
+from core.scan.preview.preflight import Check
 from workbench.language import tr
 from workbench.pages.scan import words
 from workbench.pages.scan.bar import FrameBar
@@ -30,6 +31,12 @@ from workbench.views.lists.view_list import ListRow, ViewList
 
 BEFORE = ("reference", "ready")
 """Stages of a live scan in which nothing is recorded yet; later only those checks are shown that failed."""
+
+
+def unchecked(check: Check) -> bool:
+    """Whether it is that nobody has checked camera and laser today: that is told as long as it is so."""
+    return check.name == "check" and check.state == "unknown"
+
 
 _STEPS = {Qt.Key.Key_Left: -1, Qt.Key.Key_Right: 1}
 """Keys that go through the frames."""
@@ -86,7 +93,7 @@ class ScanPage(StepPage):
         self.stage.refresh()
         self.check.refresh()
         before = p.live_stage in BEFORE
-        self.checks.show_checks([check for check in p.live.checks if before or check.state == "failed"])
+        self.checks.show_checks([one for one in p.live.checks if before or one.state == "failed" or unchecked(one)])
         self.source.set_folder(p.folder, self._folder_words())
         self.live_panel.set_primary(stage in (Stage.NONE, Stage.EMPTY))
         self.live_panel.refresh()

@@ -151,10 +151,10 @@ class SettingsPanel(QWidget):
                 key, tr(label), unit, tr("Standard uncertainty; empty: {usual:g} {unit}.", usual=usual, unit=unit),
                 minimum=0.0, maximum=10_000.0, decimals=decimals, step=usual / 10, none_text=tr("assumed"), first=usual,
             )  # fmt: skip
-        form.add_section(self.tr("What is recorded later proves nothing"))
+        form.add_section(self.tr("How long calibration and check hold"))
         for key, label, usual in VALIDITY:
             form.add_number(
-                key, tr(label), self.tr("days"), self.tr("Empty: without limit."),
+                key, tr(label), self.tr("days"), self.tr("What is recorded later proves nothing; empty: no limit."),
                 minimum=0.1, maximum=36500.0, decimals=1, step=1.0, none_text=self.tr("no limit"), first=usual,
             )  # fmt: skip
         form.edited.connect(presenter.set_setting, Qt.ConnectionType.QueuedConnection)

@@ -35,8 +35,8 @@ USUAL_STRIPE = StripeSettings(6.0, 60.0)
 
 
 VALIDITY: tuple[tuple[str, str, float], ...] = (
-    ("calibration_days", label("Calibration holds"), 30.0),
-    ("check_days", label("Check holds"), 1.0),
+    ("calibration_days", label("Calibration"), 30.0),
+    ("check_days", label("Check"), 1.0),
 )
 """Key, name, and where it starts when a limit is first stated, in days."""
 

@@ -11,8 +11,10 @@ from core.errors import InputError
 from core.files.project.data import Accepted
 from core.files.results.check_file import write_check
 from core.messages import plain
-from core.pipeline.live.events import LiveEnded, LiveStarted, LiveView, PlanesDetail
-from tests.check_cases import chart, check, nowhere
+from core.pipeline.live.checks import rig_check
+from core.pipeline.live.events import LiveChecks, LiveEnded, LiveStarted, LiveView, PlanesDetail
+from core.scan.preview.preflight import Check
+from tests.check_cases import TAKEN, chart, check, nowhere
 from tests.workbench.hand_lane import HandLane
 from workbench.pages.scan.check import CheckStage
 from workbench.pages.scan.page import ScanPage
@@ -241,3 +243,15 @@ def test_a_first_check_is_held_to_what_is_stated_without_a_chart(chosen, measuri
     card = with_history(chosen, measuring, qtbot, check(), 0)
     assert card.chart.isHidden()
     assert card.rows.text_of("Its stability allows") == "−0.090 … +0.090 mm"
+
+
+def test_that_nobody_checked_today_stays_in_sight_while_it_is_scanned(page, lane, qtbot):
+    qtbot.waitUntil(lambda: not page.presenter.bench.quick.busy)
+    page.presenter.do_live()
+    lane.current.reported.emit(LiveStarted("Camera 1", (64, 48)))
+    others = (Check("focus", "unknown", plain("?")), Check("lines", "ok", plain("All lines.")))
+    lane.current.reported.emit(LiveChecks((*others, rig_check(None, TAKEN))))
+    page.presenter.live_stage = "scanning"
+    page.refresh()
+    (sentence,) = page.checks.sentences
+    assert "not checked today" in sentence
