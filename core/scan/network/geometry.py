@@ -63,9 +63,11 @@ def floored(gradient: Array, floor: float) -> Array:
     """Lengthen the vectors of `gradient` (M, 2) that are shorter than `floor` to it.
 
     Near a solution in which all planes fall together the gradient vanishes and weights run away; the rig's own
-    geometry, not the current solution, sets how small it can be.
+    geometry, not the current solution, sets how small it can be. One that has vanished has no direction: those of
+    sweeps that cross each other and never the fan, whose planes stay zero; any will do.
     """
     length = np.linalg.norm(gradient, axis=1)
-    safe = np.where(length > 0, length, 1.0)
-    longer: Array = gradient * (np.maximum(length, floor) / safe)[:, None]
+    gone = length == 0
+    longer: Array = gradient * (np.maximum(length, floor) / np.where(gone, 1.0, length))[:, None]
+    longer[gone] = floor / np.sqrt(2)
     return longer

@@ -92,3 +92,20 @@ def test_without_the_fan_nothing_is_solved():
     keep = ~scan.table.with_fan
     with pytest.raises(ValueError, match="no sweep crosses the fan"):
         solve_network(scan.table.select(keep), CrossingRays.of(scan.table, CAMERA), scan.line[keep], FAN, len(truth))
+
+
+def test_sweeps_that_cross_each_other_and_never_the_fan_make_no_warning():
+    """Nothing holds them: their planes stay zero and equal, and no gradient is left to weigh their crossings by."""
+    truth = sweeps(30, 5)
+    scan = network(truth, NOISE_PX, 5, fan_noise_px=0.03)
+    alone = {7, 8}
+    apart = np.array([(a in alone) == (b in alone) for a, b in zip(scan.table.a, scan.table.b, strict=True)])
+    keep = np.where(scan.table.with_fan, ~np.isin(scan.table.a, list(alone)), apart)
+    table = scan.table.select(keep)
+    assert np.any(np.isin(table.a, list(alone)))
+    with np.errstate(divide="raise", invalid="raise"):
+        result = solve_network(table, CrossingRays.of(table, CAMERA), scan.line[keep], FAN, len(truth))
+    assert np.isfinite(result.pis).all()
+    assert np.isfinite(result.covariance).all()
+    errors, _ = depth_errors(result, truth, 3)
+    assert np.median(np.abs(errors)) < 0.1
