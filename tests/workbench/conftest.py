@@ -117,7 +117,7 @@ def window(bench: Bench, qapp: QApplication, monkeypatch: pytest.MonkeyPatch) ->
     yield made
     bench.close()  # whatever a failed test left running is not asked about
     with monkeypatch.context() as patch:
-        patch.setattr(ask, "ask", lambda *_: 0)
+        patch.setattr(ask, "ask", lambda *_, **__: 0)
         made.leave()
     made.deleteLater()
     del made

@@ -340,7 +340,7 @@ def _end(window: MainWindow, bench: Bench, monkey: Monkey) -> None:
     while (blocking := QApplication.activePopupWidget() or QApplication.activeModalWidget()) is not None:
         blocking.close()
         QCoreApplication.processEvents()
-    with mock.patch.object(ask, "ask", lambda *_: 0):
+    with mock.patch.object(ask, "ask", lambda *_, **__: 0):
         deadline = time.monotonic() + LEFT_WITHIN_S
         while not window.leave() and time.monotonic() < deadline:
             QCoreApplication.processEvents()

@@ -143,7 +143,9 @@ class CalibrationPresenter(StepPresenter):
             return tr("Accept a camera calibration first.")
         if not getattr(self.project.sources, self.step):
             return tr("Choose or record pictures first.")
-        return self._missing()[Stage.SEARCHING] if self.work.searching else ""
+        if self.work.searching or self.work.solving:
+            return self._missing()[Stage.SEARCHING if self.work.searching else Stage.SOLVING]
+        return ""
 
     @property
     def can_accept(self) -> str:

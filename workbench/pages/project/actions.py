@@ -208,7 +208,7 @@ class ProjectActions(QObject):
             return True
         text = tr("{running} What is recorded is kept. Stop it and leave?", running=" ".join(running))
         answers = [self.tr("Stop and leave"), self.tr("Stay")]
-        return ask.ask(self._window, self.tr("Leave the project"), text, answers) == 0
+        return ask.ask(self._window, self.tr("Leave the project"), text, answers, destructive=True) == 0
 
     def _saved(self) -> bool:
         """Save; False if that cannot be done, and the changes are not to be lost."""
@@ -219,7 +219,7 @@ class ProjectActions(QObject):
             return True
         text = self.tr("The project cannot be saved. Leave and lose the changes?")
         answers = [self.tr("Leave without saving"), self.tr("Stay")]
-        return ask.ask(self._window, self.tr("Leave the project"), text, answers) == 0
+        return ask.ask(self._window, self.tr("Leave the project"), text, answers, destructive=True) == 0
 
     def _take_typed(self) -> None:
         """What is being typed counts, too: an editor tells its text when it loses the focus."""

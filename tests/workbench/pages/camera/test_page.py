@@ -233,3 +233,11 @@ def test_everything_can_be_reached_by_the_tab_key(solved, qtbot):
         widget = widget.nextInFocusChain()
     for needed in (solved.card.buttons["accept"], solved.tabs.tabBar(), solved.picture.factor):
         assert needed in reached and needed.focusPolicy() & Qt.FocusPolicy.TabFocus
+
+
+def test_while_it_is_solved_it_cannot_be_calibrated(solved, monkeypatch):
+    assert solved.card.buttons["run"].isEnabled()
+    monkeypatch.setattr(solved.presenter.work, "solving", True)
+    solved.card.refresh()
+    assert not solved.card.buttons["run"].isEnabled()
+    assert "being solved" in solved.card.buttons["run"].toolTip()

@@ -41,7 +41,7 @@ class Asked:
         self.questions: list[tuple[str, list[str]]] = []
         self.answer = ""
 
-    def __call__(self, _parent: Any, _title: str, text: str, answers: list[str]) -> int:
+    def __call__(self, _parent: Any, _title: str, text: str, answers: list[str], **_: Any) -> int:
         self.questions.append((text, list(answers)))
         return next(
             (n for n, one in enumerate(answers) if self.answer and one.startswith(self.answer)), len(answers) - 1
