@@ -12,6 +12,7 @@ from core.errors import InputError
 from core.files.project.data import Project
 from core.files.project.keys import changed, rests_on
 from core.files.recording.options import Options
+from core.files.recording.recording_set import CHECK
 from core.image.stripes.stripe import StripeSettings
 from core.messages import label
 from core.pipeline.live.events import LiveEnded, LiveView, ScanDetail
@@ -173,10 +174,13 @@ class ScanPresenter(StepPresenter):
         return folder_of(self.model, "scan")
 
     def use_folder(self, folder: Path) -> None:
-        """Measure another recording."""
+        """Measure another recording; with that of a recording set comes the check of its day."""
         self.live.stop()
         self.run.cancel()
         put_source(self.model, "scan", folder, tr("choose the recording of the scan"))
+        its_check = folder.parent / CHECK
+        if folder.name == "scan" and its_check.is_dir():
+            self.check.use_folder(its_check)
 
     # ---- frames
 

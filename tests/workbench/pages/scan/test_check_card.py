@@ -255,3 +255,14 @@ def test_that_nobody_checked_today_stays_in_sight_while_it_is_scanned(page, lane
     page.refresh()
     (sentence,) = page.checks.sentences
     assert "not checked today" in sentence
+
+
+def test_with_the_recording_of_a_set_comes_the_check_of_its_day(page, scan_folder, measuring, qtbot):
+    p = page.presenter
+    (scan_folder.parent / "check").mkdir()
+    p.use_folder(scan_folder)
+    shown(page, qtbot, CheckStage.CHECKING)
+    assert p.check.folder == scan_folder.parent / "check"
+    p.check.cancel()
+    p.model.undo_stack.undo()
+    assert p.check.folder is None and p.folder == scan_folder
