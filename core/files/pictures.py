@@ -126,6 +126,11 @@ def read_picture(path: Path, channel: Channel | None = None) -> Picture:
 
 def decode_picture(data: bytes, path: Path, channel: Channel | None = None) -> Picture:
     """Decode the bytes of a picture file; `path` names it in messages. Else as :func:`read_picture`."""
+    return to_grey(decode_colours(data, path), channel)
+
+
+def decode_colours(data: bytes, path: Path) -> NDArray[Any]:
+    """Decode with all channels, in OpenCV's order: (height, width), or (height, width, 1 … 4). Else as above."""
     damage = _damage(data)
     if damage is not None:
         raise InputError(
@@ -156,7 +161,7 @@ def decode_picture(data: bytes, path: Path, channel: Channel | None = None) -> P
             where=path,
             todo=Message("advice.save_with_8_or_16_bit", "save it with 8 or 16 bit"),
         )
-    return to_grey(picture, channel)
+    return picture
 
 
 def compression_grey(path: Path) -> float:

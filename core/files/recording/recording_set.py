@@ -23,8 +23,9 @@ from pathlib import Path
 
 from core.acquire.folder import read_ahead
 from core.errors import InputError
-from core.files.pictures import Picture, decode_picture
+from core.files.pictures import Picture, decode_colours, decode_picture
 from core.files.reading import read_bytes
+from core.files.recording.laser_channel import LaserChannel, laser_channel
 from core.files.recording.rig import Rig, read_rig, require_tables, rig_to_toml
 from core.files.recording.set_listing import PlanePair, check_sizes, pictures_in, plane_pairs, scan_frames
 from core.messages import Message
@@ -35,6 +36,9 @@ PARTS = ("camera", "planes", "scan")
 CHECK = "check"
 """The folder of the interim check, beside the parts: a set need not have one."""
 RIG = "rig.toml"
+
+_LOOKED_AT = 3
+"""Pictures that decide on the channel of a part."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -49,6 +53,8 @@ class RecordingSet:
         By part: the folder it lies in, whatever that is called. A part that is not there may have none.
     hashes
         Fills up with the SHA-256 of every file as it is read, by its name within the set.
+    chosen
+        Fills up with the channel that shows the laser best, by part, as pictures are read whose channel is not stated.
     """
 
     name: str
@@ -60,6 +66,7 @@ class RecordingSet:
     frames: tuple[Path, ...]
     check: tuple[PlanePair, ...] = ()
     hashes: dict[str, str] = field(default_factory=dict)
+    chosen: dict[str, LaserChannel] = field(default_factory=dict)
 
     def name_of(self, path: Path) -> str:
         """The name of a picture within the set, as "camera/view00.png", wherever it lies."""
@@ -106,7 +113,37 @@ class RecordingSet:
         data = read_bytes(path)
         name = self.name_of(path)
         self.hashes[name] = hashlib.sha256(data).hexdigest()
-        return decode_picture(data, path, self.rig.channel_of(name.partition("/")[0]))
+        return decode_picture(data, path, self.laser_channel(name.partition("/")[0]).channel)
+
+    def laser_channel(self, part: str) -> LaserChannel:
+        """The channel in which the pictures of a part are looked at.
+
+        Where none is stated, it is the one that shows the laser best; the camera's target is looked at in grey then.
+        """
+        stated = self.rig.channel_of(part)
+        if stated is not None or part == "camera":
+            return LaserChannel(stated)
+        if part not in self.chosen:
+            self.chosen[part] = self._best_channel(part)
+        return self.chosen[part]
+
+    def _best_channel(self, part: str) -> LaserChannel:
+        """By three pictures of a part; grey where the first one is grey, or they cannot be read."""
+        if part == "scan":
+            pairs = [(frame, self.reference) for frame in self.frames]
+        else:
+            pairs = [(pair.on, pair.off) for pair in (self.planes or self.check)]
+        pictures = []
+        for on, off in pairs[:: max(1, len(pairs) // _LOOKED_AT)][:_LOOKED_AT]:
+            try:
+                seen = [None if path is None else decode_colours(read_bytes(path), path) for path in (on, off)]
+            except InputError:
+                continue  # told when it is measured
+            if seen[0] is None or seen[0].ndim < 3 or seen[0].shape[2] < 3:
+                return LaserChannel()
+            same = seen[1] is not None and seen[1].shape == seen[0].shape
+            pictures.append((seen[0], seen[1] if same else None))
+        return laser_channel(pictures)
 
     def id_of(self, paths: Iterable[Path]) -> str:
         """Twelve hex digits that name some pictures by what is in them, as far as they have been read."""

@@ -140,7 +140,15 @@ class _Recording:
         taken = tuple(taken_frames(found, options)) or found.frames
         seen = taken if reference is None else taken[:LOOK_AHEAD]
         return cls(
-            reference, written, seen, found.rig.channel_of("scan"), options.stripe, settled, found, options, progress
+            reference,
+            written,
+            seen,
+            found.laser_channel("scan").channel,
+            options.stripe,
+            settled,
+            found,
+            options,
+            progress,
         )
 
 

@@ -100,6 +100,8 @@ def measure_poses(
     for pose in ordered_map(measure, found.planes, idle=lambda: progress("plane poses", len(features), total)):
         features.append(pose)
         progress("plane poses", len(features), total)
+    chosen = found.laser_channel("planes").notes("planes")
+    features[0] = replace(features[0], notes=(*chosen, *features[0].notes))
     return tuple(features)
 
 

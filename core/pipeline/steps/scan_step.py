@@ -154,7 +154,8 @@ def _look(
     frames, total = stream_frames(found, options, times), len(found.frames)
     show = _shown_to(watch, Preview(reference, camera, calibration.fan.fan)) if watch else None
     features = extract_features(reference, frames, total, looking, progress, show, times)
-    return replace(features, notes=(*note, *features.notes))
+    chosen = found.laser_channel("scan").notes("scan")
+    return replace(features, notes=(*chosen, *note, *features.notes))
 
 
 def _shown_to(watch: Callable[[FramePreview], None], preview: Preview) -> Callable[[FrameFeatures], None]:
