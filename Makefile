@@ -29,7 +29,7 @@ app: $(READY)             ## open the workbench
 	$(BIN)/trisect-workbench
 
 compile: $(READY)         ## once, so that test processes do not all compile the same at the same time
-	$(BIN)/python -c 'from core.pipeline.live.warm_up import stages; [stage() for stage in stages()]'
+	$(BIN)/python -c 'from core.pipeline.compile_ahead import compile_ahead; compile_ahead()'
 
 test: check compile       ## format, lint, types, rooms, examples, every test; windows offscreen and on a virtual screen
 	$(BIN)/pytest -q --doctest-modules --doctest-glob='*.md' core resources/manual

@@ -14,6 +14,7 @@ code along, it is used from there.
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import os
 import pickle
@@ -169,3 +170,23 @@ class _Saved:
         with tempfile.NamedTemporaryFile(dir=FOLDER, delete=False) as beside:
             beside.write(hashlib.sha256(content).digest() + content)
         Path(beside.name).replace(FOLDER / self._file(signature))
+
+
+_COMPLETE = "complete"
+"""A file of this name says that all a measurement needs was saved."""
+
+
+def is_complete() -> bool:
+    """Whether all that a measurement needs was saved, here or with the package."""
+    return any((folder / _COMPLETE).exists() for folder in (FOLDER, SHIPPED / FOLDER.name))
+
+
+def keep_complete() -> None:
+    """Remember that all was saved; where nothing can be kept it is looked for again."""
+    with contextlib.suppress(OSError):
+        (FOLDER / _COMPLETE).touch()
+
+
+def saved_functions() -> int:
+    """How many functions were saved, for each combination of types."""
+    return sum(1 for _ in FOLDER.iterdir())

@@ -23,6 +23,7 @@ from core.files.results.rig_history import RigHistory, history_file
 from core.image.stripes.stripe import StripeSettings
 from core.inspect.results import GaugeResult
 from core.messages import Message, visible
+from core.pipeline.compile_ahead import compile_ahead
 from core.pipeline.steps.artefact_step import artefact_step
 from core.pipeline.steps.batch import FAULT, SetResult, run_batch
 from core.pipeline.steps.camera_step import camera_step
@@ -123,7 +124,8 @@ def exit_code(verdict: str, good: Sequence[str] = ("conforming",)) -> ExitCode:
 
 
 def run_all(folder: Path, out: Path, chosen: Options, progress: Progress) -> RunResult:
-    """The whole way."""
+    """The whole way; loops that were never compiled before are made ready first."""
+    compile_ahead(progress)
     return run(folder, out, chosen, progress)
 
 

@@ -1,6 +1,6 @@
 """Getting compiled functions ready before they are waited for.
 
-`stages` compiles what a measurement needs and keeps it on the disk: about a minute after an installation or an update,
+`stages` compiles what a measurement needs and keeps it on the disk: a minute or two after an installation or an update,
 else a moment. Every process loads it anew: without `get_ready_for_live` a live scan's reference and its first frames
 would take a second, so a tiny scan is previewed beforehand, in every way a real one is.
 """
@@ -14,9 +14,12 @@ import numpy as np
 
 from core.acquire.source import Frame, Picture
 from core.files.recording.options import Options
+from core.image.stripes.centreline import Centreline
 from core.model import Camera, Fan, LightPlane
 from core.model.arrays import Array
 from core.pipeline.live.preview import ScanPreviewer
+from core.scan.features.crossing_search import all_crossings
+from core.scan.features.crossings import CrossingWindow
 from core.scan.features.extraction import extract_features
 from core.scan.features.reference import FeatureOptions
 from core.scan.surface.cloud import Cloud
@@ -77,9 +80,17 @@ _FAN_PX = (70.0, 84.0, 170.0)
 _SWEEPS_PX = (90.0, 150.0, 210.0)
 
 
-def stages() -> tuple[Callable[[], None], ...]:
-    """What there is to be compiled, each part by itself; none takes much longer than half a minute."""
-    return lambda: _stripes(np.uint8), lambda: _stripes(np.uint16), _surface
+Stages = tuple[Callable[[], None], ...]
+
+
+def stages() -> Stages:
+    """What there is to be compiled, each part by itself; none takes much longer than a minute."""
+    return tuple(stage for share in shares() for stage in share)
+
+
+def shares() -> tuple[Stages, Stages]:
+    """The stages in two shares, for two processes: they compile little twice."""
+    return (lambda: _stripes(np.uint8), lambda: _stripes(np.uint16)), (_crossings, _surface)
 
 
 def _stripes(levels: Levels) -> None:
@@ -95,6 +106,22 @@ def _picture(levels: Levels, rows: tuple[float, ...], column: float | None = Non
     if column is not None:
         light = light + np.exp(-0.5 * ((u - column - 0.1 * v) / 2.0) ** 2)
     return exposed(levels, light)
+
+
+def _crossings() -> None:
+    """Level lines crossed by upright ones, all of them with a kink, which wants a judgement."""
+    along = np.arange(20.0, 220.0)
+    level = [_line(np.column_stack([along, row + 0.3 * np.abs(along - 120)])) for row in _FAN_PX]
+    upright = [[_line(np.column_stack([column + 0.3 * np.abs(along - 120), along]))] for column in _SWEEPS_PX]
+    all_crossings(level, upright, CrossingWindow())
+
+
+def _line(uv: Array) -> Centreline:
+    count = len(uv)
+    t = np.gradient(uv, axis=0)
+    normal = np.column_stack([t[:, 1], -t[:, 0]]) / np.hypot(t[:, 0], t[:, 1])[:, None]
+    level = np.ones(count)
+    return Centreline(uv, normal, 2 * level, 100 * level, 0.02 * level, np.zeros(count, bool), correlation_px=7.0)
 
 
 def _surface() -> None:

@@ -1,0 +1,46 @@
+"""Compiled loops made ready by two processes at once, before a first measurement waits for them one by one."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import time
+
+from core.compiled import is_complete, keep_complete, saved_functions
+from core.pipeline.live.warm_up import shares
+from core.progress import Progress, silent
+
+STEP = "preparing"
+_LOOK_EVERY_S = 0.2
+_ABOUT = 240
+"""Functions that a measurement needs; for the bar alone."""
+
+
+def compile_ahead(progress: Progress = silent) -> None:
+    """Compile what a measurement needs and was not yet; no time where that was done before, or came with the package.
+
+    What cannot be made ready here is compiled where it is needed.
+    """
+    if is_complete():
+        return
+    program = (sys.executable, "-P", "-m", __name__)
+    running = [
+        subprocess.Popen((*program, str(number)), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        for number in range(len(shares()))
+    ]
+    try:
+        while any(process.poll() is None for process in running):
+            progress(STEP, min(saved_functions(), _ABOUT - 1), _ABOUT)
+            time.sleep(_LOOK_EVERY_S)
+    finally:
+        for process in running:
+            process.terminate()
+            process.wait()
+    progress(STEP, _ABOUT, _ABOUT)
+    if not any(process.returncode for process in running):
+        keep_complete()
+
+
+if __name__ == "__main__":
+    for stage in shares()[int(sys.argv[1])]:
+        stage()
