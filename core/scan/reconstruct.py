@@ -16,15 +16,16 @@ from core.messages import Field, Message, plural_message
 from core.model import Camera, Fan
 from core.model.arrays import Array
 from core.progress import Progress, StepProgress, silent
+from core.scan.fan_watch import LEAST_FRAMES, Watched, watch_fan
 from core.scan.features.crossings import CrossingTable
-from core.scan.features.extraction import ScanFeatures
+from core.scan.features.extraction import LOST, MOVED, ScanFeatures
 from core.scan.method import Method
 from core.scan.network.datum import Datum, datum_of
 from core.scan.network.fan_speckle import FanSpeckle, fan_speckle
 from core.scan.network.read_out import AT_ONCE, ReadOut
 from core.scan.records import frame_records, reasons_of
 from core.scan.results import ScanResult
-from core.scan.standstill import still_part
+from core.scan.standstill import HOLD_STILL, LEAST_SWEEPS, still_part
 from core.scan.surface.cloud import FAN, Cloud
 from core.scan.surface.triangulate import OwnLine, join, triangulate
 from core.scan.sweeps.fan_lines import UNASSIGNED, FanLines
@@ -88,7 +89,9 @@ def reconstruct(
             ),
         )
     names = [frame.name for frame in features.frames]
-    solved = _solve(options, crossings, line, camera, fan, names, reported.within_step)
+    watched = watch_fan(features, lines, camera, fan)
+    _require_rest(features, watched)
+    solved = _solve(options, crossings, line, camera, fan, names, watched, reported.within_step)
     sweeps = solved.sweeps
     progress("network", 1, 3)
     found = join(_fan_clouds(features, lines, camera, fan) + _sweep_clouds(features, sweeps, camera))
@@ -117,11 +120,12 @@ def reconstruct(
         crossing_weights=solved.weights,
         fan_lines=lines,
         scale=sweeps.scale,
-        notes=features.notes + solved.notes + _unsure(found, cloud, solved, options) + _fan_notes(lines),
+        notes=_ordered(features.notes, solved) + _unsure(found, cloud, solved, options) + _fan_notes(lines),
         datum=solved.datum,
         speckle=_speckle(features, lines, sweeps, camera, fan) if options.method == Method.NETWORK else None,
         crossing_reasons=solved.reasons,
         read_out=solved.read_out,
+        moved=solved.moved or _left_out(features) >= LEAST_FRAMES,
     )
 
 
@@ -135,6 +139,7 @@ class _Solved:
     notes: tuple[Message, ...]
     datum: Datum | None = None
     read_out: ReadOut = AT_ONCE
+    moved: bool = False
 
 
 def _solve(
@@ -144,6 +149,7 @@ def _solve(
     camera: Camera,
     fan: Fan,
     names: Sequence[str],
+    watched: Watched,
     progress: Progress,
 ) -> _Solved:
     if options.method != Method.NETWORK:
@@ -152,9 +158,11 @@ def _solve(
         located = np.isin(crossings.a, sweeps.frames) & crossings.with_fan
         reasons = reasons_of(crossings.with_fan, sweeps.weights, everywhere, located)
         return _Solved(sweeps, sweeps.weights, reasons, sweeps.notes)
-    read_out = read_out_of(crossings, line, camera, fan, options.row_time_us, progress)
-    part = still_part(crossings, line, camera, fan, names, progress, read_out)
-    kept = part.kept
+    kept = watched.at_rest[crossings.a] & (crossings.with_fan | watched.at_rest[crossings.b])
+    among, of_among = crossings.select(kept), line[kept]
+    read_out = read_out_of(among, of_among, camera, fan, options.row_time_us, progress)
+    part = still_part(among, of_among, camera, fan, names, progress, read_out)
+    kept[kept] = part.kept
     among = crossings.select(kept)
     sweeps = locate_together(among, line[kept], camera, fan, progress, read_out)
     weights = np.zeros(len(crossings))
@@ -166,9 +174,14 @@ def _solve(
         sweeps,
         weights,
         reasons_of(crossings.with_fan, weights, kept, np.ones(len(crossings), dtype=np.bool_)),
-        part.note(names, len(sweeps.frames)) + of_hand + sweeps.notes + (datum.note,),
+        watched.note(names, len(sweeps.frames))
+        + part.note(names, len(sweeps.frames))
+        + of_hand
+        + sweeps.notes
+        + (datum.note,),
         datum,
         read_out,
+        bool(watched.first_after or part.movements),
     )
 
 
@@ -217,6 +230,35 @@ def _cut(cloud: Cloud, sigma_cut_mm: float) -> Cloud:
     own = depth[cloud.sweep <= FAN]
     near, far = (NEAREST_SHARE * own.min(), FARTHEST_SHARE * own.max()) if len(own) else (0.0, np.inf)
     return cloud.select((cloud.sigma <= sigma_cut_mm) & (depth > near) & (depth < far))
+
+
+def _ordered(of_features: tuple[Message, ...], solved: _Solved) -> tuple[Message, ...]:
+    """What moved comes first."""
+    return solved.notes + of_features if solved.moved else of_features + solved.notes
+
+
+def _left_out(features: ScanFeatures) -> int:
+    """How many frames show the fan's light elsewhere, or not at all."""
+    return sum(frame.reason in (MOVED, LOST) for frame in features.frames)
+
+
+def _require_rest(features: ScanFeatures, watched: Watched) -> None:
+    """InputError if something moved and too few frames are left between which nothing did."""
+    left = [frame for frame in features.frames if frame.centrelines and watched.at_rest[frame.index]]
+    moved = [frame for frame in features.frames if frame.reason in (MOVED, LOST) or not watched.at_rest[frame.index]]
+    if len(left) >= LEAST_SWEEPS or len(moved) < LEAST_FRAMES:
+        return
+    raise InputError(
+        Message(
+            "scan.moved_too_early",
+            "object, table or camera moved during the scan, the first frame after it is {name}, and only {n} frames "
+            "with a stripe agree with the reference",
+            name=moved[0].name,
+            n=len(left),
+        ),
+        where="scan",
+        todo=HOLD_STILL,
+    )
 
 
 def _unsure(found: Cloud, cloud: Cloud, solved: _Solved, options: ReconstructOptions) -> tuple[Message, ...]:

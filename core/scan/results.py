@@ -50,6 +50,8 @@ class ScanResult:
         Strength with which the fan fixes scale and place; None when frames were solved each on its own.
     speckle
         The error common to the fan's own points and the sweeps; None when frames were solved each on its own.
+    moved
+        Whether object, table or camera moved within the scan.
     read_out
         How planes change while the camera reads its rows out.
     """
@@ -68,6 +70,7 @@ class ScanResult:
     speckle: FanSpeckle | None = None
     crossing_reasons: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     read_out: ReadOut = AT_ONCE
+    moved: bool = False
 
     @property
     def of_solved(self) -> NDArray[np.bool_]:

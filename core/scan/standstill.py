@@ -66,6 +66,9 @@ MUCH_WORSE = 1.5
 """The larger part is not taken if it disagrees with the fan so many times more than the smaller."""
 
 
+HOLD_STILL = Message("scan.advice_hold_still", "hold both still and scan again")
+
+
 @dataclass(frozen=True, slots=True)
 class Movement:
     """Something moved between frame `last_before` and frame `first_after`, both crossed by others.
@@ -243,7 +246,7 @@ def still_part(
                     when=_when(movements, names),
                 ),
                 where="scan",
-                todo=Message("scan.advice_hold_still", "hold both still and scan again"),
+                todo=HOLD_STILL,
             )
         solved.sort(key=lambda one: -one[0])
         worse = len(solved) > 1 and solved[0][1] > MUCH_WORSE * max(solved[1][1], 1.0)

@@ -16,12 +16,9 @@ FRAMES, AT = 48, 30
 
 
 @pytest.mark.accuracy
-@pytest.mark.parametrize(("seed", "late"), [(3, 0), (4, 0), (1, 7)])
-def test_frames_after_the_push_are_not_used(seed, late):
-    """Where few crossings tie the first frames after the push to those before it, it is found some frames late.
-
-    Of five seeds that were tried, one more (5) is refused as a whole, and the push of another (2) is not found.
-    """
+@pytest.mark.parametrize("seed", [1, 2, 3, 4, 5])
+def test_frames_after_the_push_are_not_used(seed):
+    """Crossings alone find it in two of these scans at once, in one seven frames late, in one not at all."""
     scenario = Scenario(object="mask", scale=0.4, frames=FRAMES, seed=seed)
     stage, sheets, _ = scan_of(scenario)
     pushed = ScanStage(
@@ -36,7 +33,7 @@ def test_frames_after_the_push_are_not_used(seed, late):
     camera = stage.rig.camera
     features = extract_features(stage.reference(), pictures, FRAMES, FeatureOptions(camera=camera))
     result = reconstruct(features, camera, stage.rig.fan, ReconstructOptions(sigma_cut_mm=0.2))
-    assert {frame.reason for frame in result.frames[AT + late :]} <= {MOVED, MOVED_FRAME}
+    assert {frame.reason for frame in result.frames[AT:]} <= {MOVED, MOVED_FRAME}
     assert sum(frame.used for frame in result.frames[:AT]) > 0.8 * AT
     assert result.datum.scale < 0.003
     assert "moved" in " ".join(map(str, result.notes))

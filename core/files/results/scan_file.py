@@ -116,6 +116,7 @@ def write_scan(path: Path, scan: ScanFile) -> None:
         "stripes": _stripes(features.fan_stripe, features.sweep_stripe),
         "change_p": np.array(scan.change_p),
         "doubt": pack_messages((scan.doubt,)),
+        **_pack_shifts(features),
         **({f"common_{name}": np.asarray(getattr(common, name)) for name in _COMMON} if common else {}),
         **({} if common is None or common.bends is None else {"common_bends": common.bends}),
         **({f"speckle_{name}": getattr(speckle, name) for name in _SPECKLE} if speckle else {}),
@@ -154,6 +155,8 @@ def _unpacked(arrays: Arrays) -> ScanFile:
         unpack_centrelines("sweep", arrays),
         unpack_messages(arrays["frame_reasons"]),
         arrays["frame_shift_px"].tolist(),
+        [0.0] * len(arrays["frame_names"]),
+        _unpack_shifts(arrays),
         strict=True,
     )
     width, height = arrays["image_size"].tolist()
@@ -185,6 +188,23 @@ def _unpacked(arrays: Arrays) -> ScanFile:
         change_p=float(arrays.get("change_p", 1.0)),
         doubt=next(iter(unpack_messages(arrays["doubt"])), None) if "doubt" in arrays else None,
     )
+
+
+def _pack_shifts(features: ScanFeatures) -> dict[str, NDArray[Any]]:
+    """Shifts (F, C) of the fan's stretches, and of which frames (F,) they are known."""
+    known = np.array([len(frame.fan_shifts_px) > 0 for frame in features.frames], dtype=np.bool_)
+    widest = max((len(frame.fan_shifts_px) for frame in features.frames), default=0)
+    shifts = np.zeros((len(known), widest))
+    for row, frame in zip(shifts, features.frames, strict=True):
+        row[: len(frame.fan_shifts_px)] = frame.fan_shifts_px
+    return {"frame_fan_shifts_px": shifts, "frame_fan_known": known}
+
+
+def _unpack_shifts(arrays: Arrays) -> list[Array]:
+    if "frame_fan_known" not in arrays:
+        return [np.zeros(0)] * len(arrays["frame_names"])
+    rows = zip(arrays["frame_fan_known"].tolist(), arrays["frame_fan_shifts_px"], strict=True)
+    return [shifts if known else np.zeros(0) for known, shifts in rows]
 
 
 def _common(arrays: Arrays, image_size: tuple[int, int]) -> CommonErrors | None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 
 from core.calibrate.change import PROVES_NOTHING
@@ -17,6 +19,8 @@ from core.messages import Message, as_json
 from core.model.arrays import Array
 from core.pipeline.steps.workspace import Workspace, check_calibration
 from core.progress import Progress, silent
+from core.scan.fan_watch import MOVED_WITHIN
+from core.scan.standstill import HOLD_STILL
 
 CHANGED = Message(
     "inspection.rig_has_changed",
@@ -39,14 +43,15 @@ def gauge_step(work: Workspace, progress: Progress = silent) -> GaugeResult:
         scan = read_scan(work.path("scan"))
         check_calibration(work.path("scan"), scan.calibration_id, calibration)
         cloud, spec = file.cloud, work.found.rig.gauge or GaugeSpec()
-        gauge = measure_gauge(
-            cloud,
-            errors=point_errors(scan),
-            regions=_regions(spec),
-            nominal_mm=spec.nominal_mm,
-            tolerance_mm=spec.tolerance_mm,
-            progress=progress,
-        )
+        with _said_first(scan):
+            gauge = measure_gauge(
+                cloud,
+                errors=point_errors(scan),
+                regions=_regions(spec),
+                nominal_mm=spec.nominal_mm,
+                tolerance_mm=spec.tolerance_mm,
+                progress=progress,
+            )
         rule = None if gauge.rule is None else as_json(gauge.rule)
         log.settings.update({"nominal_mm": spec.nominal_mm, "tolerance_mm": spec.tolerance_mm, "rule": rule})
         log.notes.extend(gauge.notes)
@@ -55,9 +60,30 @@ def gauge_step(work: Workspace, progress: Progress = silent) -> GaugeResult:
     return read_gauge(work.path("gauge"), cloud)
 
 
+@contextmanager
+def _said_first(scan: ScanFile) -> Iterator[None]:
+    """A complaint about faces begins with what moved in the scan, if anything did: that is why."""
+    try:
+        yield
+    except InputError as error:
+        if scan.doubt != MOVED_WITHIN:
+            raise
+        raise InputError(
+            Message(
+                "gauge.moved_and_no_faces",
+                "something moved during the scan; of what is left: {reason}",
+                reason=error.what,
+            ),
+            where=error.where,
+            todo=HOLD_STILL,
+        ) from error
+
+
 def point_errors(scan: ScanFile) -> PointErrors:
     """How the errors of a scan's points hang together."""
     errors = PointErrors.of_scan(scan.features, scan.covariance, scan.common, scan.speckle, scan.pis.shape[1])
+    if scan.doubt == MOVED_WITHIN:
+        return replace(errors, doubt=scan.doubt)
     return replace(errors, doubt=CHANGED if scan.change_p < PROVES_NOTHING else scan.doubt)
 
 

@@ -26,6 +26,7 @@ from core.pipeline.steps.workspace import Calibration, Workspace, check_size
 from core.progress import Progress, silent, steps
 from core.scan.bend_correction import reconstruct_twice
 from core.scan.common_errors import solve_common
+from core.scan.fan_watch import MOVED_WITHIN
 from core.scan.features.extraction import (
     FeatureOptions,
     Frame,
@@ -102,12 +103,13 @@ def scan_step(
         common = solve_common(even, scan, camera, fan, change.deviations, options.method, progress)
         cloud = replace(scan.cloud, sigma_common=common.sigma(scan.cloud))
         scan = replace(scan, cloud=with_normals(cloud, progress=progress))
-        doubt = doubt_of_the_day(work, calibration)
+        doubt = MOVED_WITHIN if scan.moved else doubt_of_the_day(work, calibration)
         said = (*change.notes, *([doubt] if doubt else []))
-        scan = replace(scan, notes=(*said, *scan.notes, *assumed_stability(found)))
+        notes = (*scan.notes, *said) if scan.moved else (*said, *scan.notes)
+        scan = replace(scan, notes=(*notes, *assumed_stability(found)))
         log.frames.extend(scan.frames)
-        log.notes.extend(left_out_notes(scan.frames))
-        log.notes.extend(scan.notes)
+        left_out = left_out_notes(scan.frames)
+        log.notes.extend((*scan.notes, *left_out) if scan.moved else (*left_out, *scan.notes))
         log.notes.extend(_lost(found))
         surface = with_normals(fuse(scan.cloud, camera.image_size, progress=progress), progress=progress)
         mesh = build_mesh(surface, progress=progress)

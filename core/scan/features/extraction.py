@@ -234,14 +234,14 @@ class FrameReader:
         if check.lost:
             return FrameFeatures(index, name, (), LOST, check.shift_px, light)
         if check.shift_px > self.move_limit_px:
-            return FrameFeatures(index, name, (), MOVED, check.shift_px, light)
+            return FrameFeatures(index, name, (), MOVED, check.shift_px, light, check.shifts_px)
         if self.stripe is None:
-            return FrameFeatures(index, name, (), NO_STRIPE, check.shift_px, light)
+            return FrameFeatures(index, name, (), NO_STRIPE, check.shift_px, light, check.shifts_px)
         with stage(self.times, "extraction"):
             saturated = saturated_pixels(picture)
             pieces = extract_centrelines(difference, self.stripe, noise=self.reference.noise, saturated=saturated)
         reason = None if pieces else NO_STRIPE
-        return FrameFeatures(index, name, pieces, reason, check.shift_px, light)
+        return FrameFeatures(index, name, pieces, reason, check.shift_px, light, check.shifts_px)
 
 
 def saturated_pixels(picture: Picture) -> NDArray[np.bool_]:

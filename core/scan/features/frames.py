@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import IntEnum
+
+import numpy as np
 
 from core.image.stripes.centreline import Centreline
 from core.messages import Message
+from core.model.arrays import Array
 
 NO_REASON = Message("scan.no_reason", "no reason recorded")
 MOVED = Message(
@@ -31,8 +34,9 @@ _NAMED = 3
 class FrameFeatures:
     """The sweep's centrelines in one frame, or the `reason` there are none.
 
-    Against the reference: `shift_px` of the fan's light, and `light_change` of the background as a share of it, 0 where
-    it is too small to tell.
+    Against the reference: `shift_px` of the fan's light, `fan_shifts_px` (C,) of each of its stretches
+    (`core.scan.features.reference.fan_stretches`; none where not known), and `light_change` of the background as a
+    share of it, 0 where it is too small to tell.
     """
 
     index: int
@@ -41,6 +45,7 @@ class FrameFeatures:
     reason: Message | None = None
     shift_px: float = 0.0
     light_change: float = 0.0
+    fan_shifts_px: Array = field(default_factory=lambda: np.zeros(0))
 
 
 class CrossingUse(IntEnum):

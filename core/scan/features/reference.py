@@ -77,17 +77,24 @@ def _difference(picture: Picture, base: Picture) -> NDArray[np.int16]:
     return found
 
 
-@dataclass(frozen=True, slots=True)
+STRETCH = 48
+"""Points of a stretch of the fan's light whose shift is watched: short enough to see a part that turns, long
+enough that a sweep across it does not matter to its median."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
 class ReferenceCheck:
     """How far a frame has departed from the reference.
 
     `shift_px` is the largest median shift of any of the fan's centrelines across itself; `lost` says that a whole
-    stretch of the fan's light is gone; `light` the change of the background in grey levels.
+    stretch of the fan's light is gone; `light` the change of the background in grey levels. `shifts_px` (C,) are the
+    median shifts across itself of the fan's light, stretch by stretch as `fan_stretches` cuts it.
     """
 
     shift_px: float
     lost: bool
     light: float
+    shifts_px: Array
 
 
 def check_reference(difference: NDArray[np.int16] | NDArray[np.float32], fan: Sequence[Centreline]) -> ReferenceCheck:
@@ -110,7 +117,29 @@ def check_reference(difference: NDArray[np.int16] | NDArray[np.float32], fan: Se
         shift = abs(median((flank_plus - flank_minus) / slope))
         lost = lost or median((centre - light) / strength) < -0.5
         worst = max(worst, shift)
-    return ReferenceCheck(worst, lost, light)
+    return ReferenceCheck(worst, lost, light, _shifts(difference, fan))
+
+
+def fan_stretches(fan: Sequence[Centreline]) -> list[tuple[int, slice]]:
+    """Piece and points of the stretches, of STRETCH points each, in which the fan's light is watched."""
+    return [
+        (number, slice(first, first + STRETCH))
+        for number, piece in enumerate(fan)
+        for first in range(0, len(piece) - STRETCH + 1, STRETCH)
+    ]
+
+
+def _shifts(difference: NDArray[np.int16] | NDArray[np.float32], fan: Sequence[Centreline]) -> Array:
+    """Median shift (C,) in px of each stretch along its normals."""
+    found = [np.zeros(0)]
+    for piece in fan:
+        count = len(piece) // STRETCH * STRETCH
+        width = piece.width[:count]
+        offset = piece.normal[:count] * width[:, None]
+        flanks = _sample(difference, piece.uv[:count] + offset) - _sample(difference, piece.uv[:count] - offset)
+        shift = flanks * width / (2 * np.exp(-0.5) * piece.strength[:count])
+        found.append(np.median(shift.reshape(-1, STRETCH), axis=1))
+    return np.concatenate(found)
 
 
 @compiled()

@@ -1,0 +1,188 @@
+"""Watch of the fan's light over a scan: what moved, in which frame, and how far.
+
+The fan and the object stand still, and every frame shows the fan's light. A stretch of it that lies elsewhere than in
+the reference says that the surface under it, the camera or the fan has moved; hundreds of stretches over tens of frames
+see a hundredth of a pixel, long before crossings between sweeps disagree. The frames are split where the sum of the
+absolute deviations from the medians before and after is least, again and again while both sides differ by more than
+chance and by more than MOVED_PX.
+
+References
+----------
+Scott, A. J., Knott, M., A cluster analysis method for grouping means in the analysis of variance, Biometrics 30 (1974),
+doi:10.2307/2529204 (binary segmentation).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.messages import Message
+from core.model import Camera, Fan
+from core.model.arrays import Array
+from core.model.robust import mad_sd
+from core.scan.features.extraction import ScanFeatures
+from core.scan.features.reference import fan_stretches
+from core.scan.sweeps.fan_lines import UNASSIGNED, FanLines
+
+# What counts as a movement. Held by tests/scan/test_fan_watch.py on scans in which nothing moved and in which something
+# did.
+MOVED_PX = 0.02
+"""RMS shift of the stretches that moved, in px, from which on it matters: a tenth of a centreline's noise."""
+LEAST_FRAMES = 3
+"""Frames on either side of a movement: a hand in the light for a moment is none."""
+LEAST_STRETCHES = 3
+"""Stretches that must have moved, each by SURELY of its own noise."""
+SURELY = 5.0
+"""Standard deviations by which a stretch has surely moved."""
+LEAST_NOISE_PX = 2e-3
+"""No median of a stretch over frames is known better."""
+_PLACES = 60
+"""Places tried, about, in a long scan; then those about the best. Chosen by the time it takes."""
+NEARLY_ALL = 0.8
+"""Share of the stretches that moved from which on it was not the part alone: table, camera or fan."""
+
+MOVED_WITHIN = Message(
+    "inspection.moved_during_scan", "Something moved during the scan: nothing measured proves conformity."
+)
+THE_PART = Message("scan.the_part", "the part")
+EVERYTHING = Message("scan.everything", "the camera, the fan, or the table with the part")
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Watched:
+    """What the fan's light tells of a scan.
+
+    Parameters
+    ----------
+    at_rest
+        (F,) the frames that agree with the reference; all where nothing moved.
+    first_after
+        The first frame of each part of the scan but the first, in order.
+    shift_px, shift_mm, share
+        Of the stretches that moved: median shift in the picture and in depth, and how many of all they are.
+    """
+
+    at_rest: NDArray[np.bool_]
+    first_after: tuple[int, ...] = ()
+    shift_px: float = 0.0
+    shift_mm: float = 0.0
+    share: float = 0.0
+
+    def note(self, names: Sequence[str], frames: int) -> tuple[Message, ...]:
+        """Note for the technician if anything moved; `frames` frames are used."""
+        if not self.first_after:
+            return ()
+        return (
+            Message(
+                "scan.fan_shifted",
+                "Something moved during the scan, {what}, {when:and}: {percent:.0f} % of the fan's light lies about "
+                "{shift_px:.2g} px aside, which is {shift_mm:.2g} mm in depth. Only {n} frames between which nothing "
+                "moved are used. Hold part and camera still and scan again.",
+                what=EVERYTHING if self.share > NEARLY_ALL else THE_PART,
+                when=self.when(names),
+                percent=100 * self.share,
+                shift_px=self.shift_px,
+                shift_mm=self.shift_mm,
+                n=frames,
+            ),
+        )
+
+    def when(self, names: Sequence[str]) -> list[Message]:
+        """Between which frames it moved."""
+        return [
+            Message("scan.between_frames", "between {first} and {second}", first=names[first - 1], second=names[first])
+            for first in self.first_after
+        ]
+
+
+def watch_fan(features: ScanFeatures, lines: FanLines, camera: Camera, fan: Fan) -> Watched:
+    """Find which frames of a scan saw the fan's light where it was in the reference."""
+    count = len(features.frames)
+    known = np.array([i for i, frame in enumerate(features.frames) if len(frame.fan_shifts_px)], dtype=np.int64)
+    if len(known) < 2 * LEAST_FRAMES:
+        return Watched(np.ones(count, dtype=np.bool_))
+    shifts = np.array([features.frames[i].fan_shifts_px for i in known])
+    noise = np.array([mad_sd(step) for step in np.diff(shifts, axis=0).T]) / np.sqrt(2)
+    splits = sorted(_splits(shifts, np.maximum(noise, LEAST_NOISE_PX), 0))
+    if not splits:
+        return Watched(np.ones(count, dtype=np.bool_))
+    parts = np.split(np.arange(len(known)), splits)
+    middles = np.array([np.median(shifts[part], axis=0) for part in parts])
+    off = np.sqrt(np.mean(middles**2, axis=1))
+    rest = int(np.argmin(off))
+    same = np.array(
+        [not _moved(middles[rest], one, noise, len(part)) for one, part in zip(middles, parts, strict=True)]
+    )
+    at_rest = np.ones(count, dtype=np.bool_)
+    for part, still in zip(parts, same, strict=True):
+        at_rest[known[part[0]] : known[part[-1]] + 1] = still
+    farthest = int(np.argmax(off))
+    change = middles[farthest] - middles[rest]
+    moved = np.abs(change) > np.maximum(SURELY * noise / np.sqrt(len(parts[farthest])), MOVED_PX)
+    in_depth = np.abs(change * _depth_per_px(features, lines, camera, fan))[moved]
+    return Watched(
+        at_rest,
+        tuple(int(known[split]) for split in splits),
+        float(np.median(np.abs(change[moved]))) if moved.any() else 0.0,
+        float(np.nanmedian(in_depth)) if np.isfinite(in_depth).any() else 0.0,
+        float(np.mean(moved)),
+    )
+
+
+def _splits(shifts: Array, noise: Array, first: int) -> list[int]:
+    """Where the frames from `first` on split into parts whose light lies elsewhere."""
+    count = len(shifts)
+    if count < 2 * LEAST_FRAMES:
+        return []
+
+    def spread(k: int) -> float:
+        return _spread(shifts[:k], noise) + _spread(shifts[k:], noise)
+
+    last, stride = count - LEAST_FRAMES, max(1, count // _PLACES)
+    about = min(range(LEAST_FRAMES, last + 1, stride), key=spread)
+    at = min(range(max(LEAST_FRAMES, about - stride + 1), min(last, about + stride - 1) + 1), key=spread)
+    before, after = shifts[:at], shifts[at:]
+    if not _moved(np.median(before, axis=0), np.median(after, axis=0), noise, min(at, count - at)):
+        return [first + edge for edge in _for_a_while(shifts, noise)]
+    return [*_splits(before, noise, first), first + at, *_splits(after, noise, first + at)]
+
+
+def _for_a_while(shifts: Array, noise: Array) -> list[int]:
+    """Where frames begin and end that lie aside for a while within others, which no single split tells."""
+    middle = np.median(shifts, axis=0)
+    aside = np.array([_moved(middle, one, noise, 1) for one in shifts])
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], aside, [False]])))
+    runs = [(begin, end) for begin, end in edges.reshape(-1, 2).tolist() if end - begin >= LEAST_FRAMES]
+    return [edge for run in runs for edge in run if 0 < edge < len(shifts)]
+
+
+def _spread(shifts: Array, noise: Array) -> float:
+    """Sum of the absolute deviations (frames, stretches) from their medians, in standard deviations at most SURELY."""
+    away = np.abs(shifts - np.median(shifts, axis=0)) / noise
+    return float(np.sum(np.minimum(away, SURELY)))
+
+
+def _moved(before: Array, after: Array, noise: Array, frames: int) -> bool:
+    """Whether medians (C,) differ by more than chance, and by enough to matter; of so many `frames`."""
+    change = np.abs(after - before)
+    sure = change > np.maximum(SURELY * np.sqrt(np.pi / frames) * noise, MOVED_PX)
+    return bool(np.count_nonzero(sure) >= LEAST_STRETCHES)
+
+
+def _depth_per_px(features: ScanFeatures, lines: FanLines, camera: Camera, fan: Fan) -> Array:
+    """Change (C,) of depth in mm by a shift of 1 px across the light; NaN where the fan's line is not known."""
+    per_px = []
+    for number, points in fan_stretches(features.fan):
+        line = lines.line[number]
+        if line == UNASSIGNED:
+            per_px.append(float("nan"))
+            continue
+        piece, pi = features.fan[number].select(np.arange(points.start, points.stop)), fan.planes[line].pi
+        rays = camera.rays(piece.uv)
+        slope = np.einsum("i,nij,nj->n", pi[:2], camera.ray_jacobian(rays), piece.normal)
+        per_px.append(float(np.median(slope / (rays @ pi) ** 2)))
+    return np.array(per_px)

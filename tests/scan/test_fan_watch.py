@@ -1,0 +1,76 @@
+"""Things that move within a rendered scan: which frames, how far, and what is kept."""
+
+from dataclasses import replace
+from functools import cache
+
+import pytest
+
+from core.errors import InputError
+from core.scan.features.extraction import FeatureOptions, extract_features
+from core.scan.reconstruct import ReconstructOptions, reconstruct
+from core.scan.records import MOVED_FRAME
+from core.simulate.recording import moved_stage, scan_of
+from core.simulate.scenario import Scenario
+
+AT = 16
+SEEDS = pytest.mark.parametrize("seed", [1, *(pytest.param(seed, marks=pytest.mark.accuracy) for seed in (2, 3))])
+BLOCK = Scenario(object="block", scale=0.25, frames=30, seed=1, moved_frame=AT)
+
+
+@cache
+def features_of(scenario):
+    stage, sheets, _ = scan_of(scenario)
+    later = moved_stage(scenario, stage.rig) or stage
+    pictures = (
+        (f"frame{i:04d}", (stage if i < scenario.moved_frame else later).frame(i, sheet))
+        for i, sheet in enumerate(sheets)
+    )
+    options = FeatureOptions(camera=stage.rig.camera)
+    return extract_features(stage.reference(), pictures, len(sheets), options), stage.rig
+
+
+def measured(**changes):
+    features, rig = features_of(replace(BLOCK, **changes))
+    return reconstruct(features, rig.camera, rig.fan, ReconstructOptions(sigma_cut_mm=0.2))
+
+
+@SEEDS
+def test_a_scan_at_rest_is_not_suspected(seed):
+    result = measured(seed=seed)
+    assert not result.moved
+    assert "scan.fan_shifted" not in [note.code for note in result.notes]
+
+
+@pytest.mark.parametrize(
+    ("what", "who"),
+    [
+        ({"lifted_mm": 0.4}, "scan.the_part"),
+        ({"table_mm": 0.4}, "scan.everything"),
+        ({"bumped_px": 0.2}, "scan.everything"),
+    ],
+)
+@SEEDS
+def test_what_moved_is_told_first_with_its_frames_and_by_how_far(what, who, seed):
+    result = measured(seed=seed, **what)
+    first = result.notes[0]
+    assert result.moved
+    assert first.code == "scan.fan_shifted"
+    assert first.values["what"].code == who
+    assert f"between frame{AT - 1:04d} and frame{AT:04d}" in str(first)
+    if "bumped_px" not in what:
+        assert 0.25 < first.values["shift_mm"] < 0.5
+    assert {frame.reason for frame in result.frames[AT:]} == {MOVED_FRAME}
+
+
+def test_a_part_that_is_put_back_is_used_before_and_after():
+    features, rig = features_of(BLOCK)
+    lifted, _ = features_of(replace(BLOCK, lifted_mm=0.4, moved_frame=0))
+    frames = tuple(lifted.frames[i] if 10 <= i < 15 else frame for i, frame in enumerate(features.frames))
+    result = reconstruct(replace(features, frames=frames), rig.camera, rig.fan, ReconstructOptions(sigma_cut_mm=0.2))
+    assert [frame.reason == MOVED_FRAME for frame in result.frames] == [10 <= i < 15 for i in range(30)]
+    assert "between frame0009 and frame0010 and between frame0014 and frame0015" in str(result.notes[0])
+
+
+def test_a_camera_bumped_early_is_refused_with_what_happened_and_when():
+    with pytest.raises(InputError, match="the first frame after it is frame0006, and only 6 frames"):
+        measured(bumped_px=2.0, moved_frame=6)
