@@ -85,6 +85,7 @@ class RigHistory:
     def chart(self, check: PastCheck) -> ControlChart:
         """The limits for a check: by those like it, taken before it, that have not failed.
 
+        Until there are enough of them, by what is stated of the rig and the check's own uncertainty.
         What is charted is the error of a step in parts of its height, times the height of this one: parts differ.
         """
         before = [
@@ -92,7 +93,7 @@ class RigHistory:
             for one in self.like(check)
             if one.taken_at < check.taken_at and one.verdict != "failed"
         ]
-        return control_chart(np.array(before), check.stated_mm)
+        return control_chart(np.array(before), math.hypot(check.stated_mm, check.unseen_mm / 2))
 
     def beyond(self, check: PastCheck) -> Message | None:
         """What to say of a check that lies outside its limits; None within them, or where no stripe was found."""

@@ -55,7 +55,13 @@ def test_a_drift_beyond_the_rigs_own_scatter_is_told_though_the_pictures_pass():
 
 def test_before_there_is_a_history_what_is_stated_counts():
     assert RigHistory("bench").beyond(later(0, 0.08)) is None
-    assert RigHistory("bench").beyond(later(0, 0.10)).code == "check.beyond_stated"
+    assert RigHistory("bench").beyond(later(0, 0.12)).code == "check.beyond_stated"
+
+
+def test_a_rig_that_nothing_can_change_is_held_to_what_its_check_can_see():
+    stable = later(0, 0.04, stated_mm=0.0)
+    assert RigHistory("bench").beyond(stable) is None, "within ± 3 u of the check itself, u = 0.025"
+    assert RigHistory("bench").beyond(replace(stable, error_mm=0.08)) is not None
 
 
 def test_parts_of_another_height_have_the_same_chart():

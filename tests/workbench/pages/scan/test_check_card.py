@@ -242,7 +242,7 @@ def test_a_drift_that_the_pictures_alone_do_not_show_is_amber(chosen, measuring,
 def test_a_first_check_is_held_to_what_is_stated_without_a_chart(chosen, measuring, qtbot):
     card = with_history(chosen, measuring, qtbot, check(), 0)
     assert card.chart.isHidden()
-    assert card.rows.text_of("Its stability allows") == "−0.090 … +0.090 mm"
+    assert card.rows.text_of("Its stability allows") == "−0.117 … +0.117 mm"
 
 
 def test_that_nobody_checked_today_stays_in_sight_while_it_is_scanned(page, lane, qtbot):
