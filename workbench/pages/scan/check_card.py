@@ -43,13 +43,16 @@ class CheckCard(QFrame):
         self.take.clicked.connect(self._take)
         self.choose.clicked.connect(self._choose)
         self.run.clicked.connect(self._run)
-        live.other_running.connect(lambda question: ask_to_stop_other(self, live, question))
+        live.other_running.connect(self._ask_to_stop_other)
         light = in_row(self.sign, (self.word, 1), spacing=6)
         buttons = in_row((self.take, 1), self.choose, (self.run, 1), spacing=6)
         title = heading(self.tr("Check of camera and laser"))
         in_column(
             title, light, self.sentence, self.rows, self.chart, buttons, on=self, margins=(10, 8, 10, 10), spacing=5
         )
+
+    def _ask_to_stop_other(self, question: str) -> None:
+        ask_to_stop_other(self, self._live, question)
 
     def refresh(self) -> None:
         """Show how far the check is."""

@@ -131,7 +131,7 @@ class ScanPage(StepPage):
         self.bar.choose(View.CROSSINGS)
         p.live.started.connect(self._begin_live)
         p.live.show_by(self._show_live)
-        p.check_live.started.connect(lambda _: self.picture.refresh())
+        p.check_live.started.connect(self._begin_check)
         p.check_live.show_by(self._show_check)
         p.run.started.connect(self._begin_measuring)
         p.run.frame_seen.connect(self._show_measured)
@@ -142,6 +142,9 @@ class ScanPage(StepPage):
             shortcut = QShortcut(QKeySequence(key), self)
             shortcut.setContext(Qt.ShortcutContext.WidgetWithChildrenShortcut)
             shortcut.activated.connect(lambda by=by: self._step(by))
+
+    def _begin_check(self, _: object) -> None:
+        self.picture.refresh()
 
     def eventFilter(self, watched: Any, event: QEvent) -> bool:
         """The arrows go through the frames on a picture that is shown whole, too: there is nothing to pan."""

@@ -128,8 +128,11 @@ class LivePanel(QWidget):
         self.add.clicked.connect(lambda on: live.set_adding(on))
         live.changed.connect(self.refresh)
         live.view.connect(self._on_view)
-        live.other_running.connect(lambda question: ask_to_stop_other(self, live, question))
+        live.other_running.connect(self._ask_to_stop_other)
         live.settings.devices_changed.connect(self.refresh)
+
+    def _ask_to_stop_other(self, question: str) -> None:
+        ask_to_stop_other(self, self.live, question)
 
 
 def ask_to_stop_other(parent: QWidget, live: Any, question: str) -> None:
