@@ -74,7 +74,8 @@ def _shortened(parts: list[str]) -> list[str]:
         if len(longest) <= _WORD:
             break
         end = longest[len(longest) - max(_WORD, len(longest) - excess()) + 1 :]
-        parts = [part.replace(longest, f"…{end}") for part in parts]
+        opening = longest[0] if longest[0] in "([" else ""
+        parts = [part.replace(longest, f"{opening}…{end}") for part in parts]
     for number, part in sorted(enumerate(parts), key=lambda one: -len(one[1])):
         if excess() > 0:
             parts[number] = f"{part[: max(_PART, len(part) - excess()) - 1]}…"

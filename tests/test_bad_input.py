@@ -229,14 +229,25 @@ def darkest_patch(picture, size):
     return np.unravel_index(np.argmin(inside), inside.shape)
 
 
-def test_the_object_moves_half_way(folder, out):
-    for frame in frames_of(folder)[SMALL.frames // 2 :]:
+def move_from(folder, first):
+    for frame in frames_of(folder)[first:]:
         write_picture(frame, np.roll(read_picture(frame), (2, 3), axis=(0, 1)))
+
+
+def test_the_object_moves_towards_the_end(folder, out):
+    move_from(folder, 14)
     said = trisect("scan", folder, "--out", out, *CUT, "--json")
     assert said.code == 0, said.err
     moved = [record for record in frame_records(out) if record["reason"] and "moved" in record["reason"]["text"]]
-    assert [record["index"] for record in moved] == list(range(SMALL.frames // 2, SMALL.frames))
+    assert [record["index"] for record in moved] == list(range(14, SMALL.frames))
     assert any("moved" in note for note in json.loads(said.out)["notes"])
+
+
+def test_the_object_moves_before_enough_is_seen(folder, out):
+    move_from(folder, 10)
+    said = trisect("scan", folder, "--out", out, *CUT)
+    assert said.code == 2
+    assert "moved during the scan, the first frame after it is scan/frame0010.png, and only 10 frames" in said.sentence
 
 
 @pytest.mark.parametrize(
