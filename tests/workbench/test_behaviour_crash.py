@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 
+from core.compiled import FOLDER
 from core.files.pictures import read_picture
 from core.files.project.data import new_project
 from core.files.project.folder import read_project, recoverable, write_project
@@ -33,6 +34,7 @@ class Running:
             "QT_QPA_PLATFORM": "offscreen",
             "TRISECT_NO_OPENGL": "none",
             "HOME": str(home),
+            "NUMBA_CACHE_DIR": str(FOLDER.parents[1]),  # compiled code of the true home
             "XDG_CONFIG_HOME": str(home / "config"),
             "XDG_STATE_HOME": str(home / "state"),
         }
