@@ -87,8 +87,12 @@ class BoardTolerance:
             field=Field(f"{target}.flatness_mm", whole=True),
             mm=SUSPECTED_MM,
         )
-        unknown_bow = self.flatness_mm is None and target == "plane_target" and not shape_known
-        return (*[size] * (self.scale_sd is None), *[flatness] * unknown_bow)
+        notes = []
+        if self.scale_sd is None:
+            notes.append(size)
+        if self.flatness_mm is None and target == "plane_target" and not shape_known:
+            notes.append(flatness)
+        return tuple(notes)
 
     @property
     def size_sd(self) -> float:

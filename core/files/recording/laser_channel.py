@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from core.acquire.grey import Channel, to_grey
 from core.messages import Message
+from core.model.robust import mad_sd
 
 CLEARLY = 1.5
 """A channel is taken if it is so many times better than grey: less is no reason to leave what everybody expects."""
@@ -83,6 +84,6 @@ def _contrast(pictures: Sequence[tuple[NDArray[Any], NDArray[Any] | None]], chan
         difference = level - without
         lit = difference >= np.quantile(difference, 1 - _LIT_SHARE)
         saturated = float((light[lit] == np.iinfo(light.dtype).max).mean())
-        noise = 1.4826 * float(np.median(np.abs(difference - np.median(difference))))
+        noise = mad_sd(np.asarray(difference - np.median(difference), dtype=np.float64))
         heights.append((1 - saturated) * float(np.median(difference[lit])) / max(noise, _LEAST_NOISE))
     return float(np.median(heights))

@@ -111,9 +111,12 @@ class RecordingSet:
             If it is damaged or unreadable; names the file.
         """
         data = read_bytes(path)
-        name = self.name_of(path)
-        self.hashes[name] = hashlib.sha256(data).hexdigest()
-        return decode_picture(data, path, self.laser_channel(name.partition("/")[0]).channel)
+        self.hashes[self.name_of(path)] = hashlib.sha256(data).hexdigest()
+        return decode_picture(data, path, self.laser_channel(self.part_of(path)).channel)
+
+    def part_of(self, path: Path) -> str:
+        """The part that a picture belongs to, as "camera"."""
+        return self.name_of(path).partition("/")[0]
 
     def laser_channel(self, part: str) -> LaserChannel:
         """The channel in which the pictures of a part are looked at.
@@ -169,6 +172,8 @@ class RecordingSet:
                 return str(error.what)
 
         first: tuple[str, Picture] | None = None
+        if paths:
+            self.laser_channel(self.part_of(paths[0]))  # chosen once, before several threads ask for it
         for path, result in read_ahead(paths, attempt):
             name = self.name_of(path)
             if not isinstance(result, str):

@@ -79,6 +79,8 @@ def measure_poses(
         If there are no poses, or their pictures have another size than the camera's.
     """
     require_planes(found)
+    part = found.part_of(found.planes[0].on)  # an interim check has its pictures in a folder of its own
+    chosen = found.laser_channel(part).notes(part)
 
     def measure(pair: PlanePair) -> PoseFeatures:
         try:
@@ -100,7 +102,6 @@ def measure_poses(
     for pose in ordered_map(measure, found.planes, idle=lambda: progress("plane poses", len(features), total)):
         features.append(pose)
         progress("plane poses", len(features), total)
-    chosen = found.laser_channel("planes").notes("planes")
     features[0] = replace(features[0], notes=(*chosen, *features[0].notes))
     return tuple(features)
 

@@ -6,19 +6,7 @@ import pytest
 
 from core.files.recording.laser_channel import LaserChannel, laser_channel
 from core.files.recording.recording_set import open_set
-
-RIG = """
-[camera_target]
-kind = "checkerboard"
-inner_corners = [9, 6]
-square_mm = 10.0
-[plane_target]
-kind = "black_square"
-side_mm = 60.0
-[laser_fan]
-lines = 3
-angle_deg = 5.0
-"""
+from core.files.recording.rig import default_rig, rig_to_toml
 
 
 def lit(colour, seed, light=True, room=60.0):
@@ -58,7 +46,7 @@ def test_a_channel_that_is_saturated_is_not_chosen():
 def colour_set(folder, head="", colour=RED):
     for part in ("camera", "planes", "scan"):
         (folder / part).mkdir(parents=True)
-    (folder / "rig.toml").write_text(head + RIG)
+    (folder / "rig.toml").write_text(head + rig_to_toml(default_rig()))
     cv2.imwrite(str(folder / "camera" / "a.png"), lit(WHITE, 1))
     cv2.imwrite(str(folder / "planes" / "a.png"), lit(colour, 2))
     cv2.imwrite(str(folder / "planes" / "a_off.png"), lit(colour, 3, light=False))
