@@ -23,16 +23,16 @@ from core.files.results.rig_history import RigHistory, history_file
 from core.image.stripes.stripe import StripeSettings
 from core.inspect.results import GaugeResult
 from core.messages import Message, visible
+from core.pipeline.batch import FAULT, SetResult, run_batch
 from core.pipeline.compile_ahead import compile_ahead
+from core.pipeline.executors import executor_of
+from core.pipeline.run import RunResult, run
 from core.pipeline.steps.artefact_step import artefact_step
-from core.pipeline.steps.batch import FAULT, SetResult, run_batch
 from core.pipeline.steps.camera_step import camera_step
 from core.pipeline.steps.check_step import check_step
-from core.pipeline.steps.executors import executor_of
 from core.pipeline.steps.gauge_step import gauge_step
 from core.pipeline.steps.planes_step import planes_step
 from core.pipeline.steps.profile_step import profile_step
-from core.pipeline.steps.run import RunResult, run
 from core.pipeline.steps.scan_step import scan_step
 from core.pipeline.steps.validity import history_of
 from core.pipeline.steps.workspace import Workspace, read_calibration

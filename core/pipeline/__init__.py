@@ -1,1 +1,1 @@
-"""From pictures to results: the steps of a recording set, a live camera, a project of the window."""
+"""From pictures to results: one recording set, many of them, a live camera, a project of the window."""

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from core.calibrate.camera.adjustment import CameraOptions
 from core.calibrate.camera.calibration import calibrate_camera
 from core.calibrate.fan.calibration import FanOptions, fit_fan
-from core.calibrate.fan.pose_features import PoseFeatures
+from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.calibrate.results import CameraCalibration, FanCalibration
 from core.errors import InputError
 from core.image.stripes.centreline import Centreline

@@ -19,7 +19,7 @@ import numpy as np
 
 from core.calibrate.camera.reprojection import linearise, ray_changes
 from core.calibrate.fan.pencil import FreePlanes, PlaneSet, pencil_near
-from core.calibrate.fan.target_plane import target_plane_changes
+from core.calibrate.fan.poses.target_plane import target_plane_changes
 from core.image.stripes.noise import ROUNDING_VARIANCE, NoiseModel
 from core.image.stripes.speckle import NO_SPECKLE, Speckle
 from core.image.stripes.stripe import PIXEL_VARIANCE

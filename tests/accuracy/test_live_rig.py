@@ -10,7 +10,7 @@ import pytest
 
 from core.acquire.source import Lasers
 from core.files.recording.recorder import Recorder
-from core.pipeline.steps.run import run
+from core.pipeline.run import run
 from core.simulate.calibration import rig_toml
 from core.simulate.live.scene import (
     CAMERA_MOVE_S,

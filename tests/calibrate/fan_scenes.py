@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from core.calibrate.board_shape import Board, BoardShape
 from core.calibrate.fan.pencil import pencil_near
-from core.calibrate.fan.pose_features import PoseFeatures
+from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.image.stripes.centreline import Centreline
 from core.image.targets import BlackSquare, Checkerboard
 from core.image.targets.target_view import TargetView

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from core.calibrate.camera.views import SeenViews
-from core.calibrate.fan.pose_features import PoseFeatures
+from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.calibrate.results import CameraCalibration, FanCalibration
 from core.files.project.data import Accepted, Project
 from core.files.project.folder import project_from_set

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from core.calibrate.fan.pose_stages import NOT_SEEN
+from core.calibrate.fan.poses.pose_stages import NOT_SEEN
 from core.errors import Cancelled, InputError
 from core.files.project.data import Accepted
 from core.files.project.folder import results_folder

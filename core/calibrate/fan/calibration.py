@@ -19,15 +19,15 @@ import numpy as np
 from core.calibrate.board_shape import TRUE, Board, BoardShape, BoardTolerance
 from core.calibrate.fan.bundle import Bundle, solve
 from core.calibrate.fan.cross_validation import prediction_errors
-from core.calibrate.fan.line_assignment import NOT_SEEN, assign_lines
-from core.calibrate.fan.located_pose import LocatedPose, locate
 from core.calibrate.fan.observations import BundlePose, Plate
 from core.calibrate.fan.pencil import FreePlanes, PlaneSet
-from core.calibrate.fan.pose_features import PoseFeatures
+from core.calibrate.fan.poses.line_assignment import NOT_SEEN, assign_lines
+from core.calibrate.fan.poses.located_pose import LocatedPose, locate
+from core.calibrate.fan.poses.pose_features import PoseFeatures
+from core.calibrate.fan.poses.stripe_lines import StripeLine
+from core.calibrate.fan.poses.target_plane import on_target
 from core.calibrate.fan.stripe_distances import BOWS
-from core.calibrate.fan.stripe_lines import StripeLine
 from core.calibrate.fan.summary import summarise
-from core.calibrate.fan.target_plane import on_target
 from core.calibrate.fan.verdict import Constrained, judge
 from core.calibrate.results import LEFT_OUT, FanCalibration
 from core.errors import InputError
@@ -111,7 +111,7 @@ def fit_fan(
     Parameters
     ----------
     features
-        What the pictures of each pose show, from :func:`core.calibrate.fan.plane_pose.measure_plane_pose`.
+        What the pictures of each pose show, from :func:`core.calibrate.fan.poses.plane_pose.measure_plane_pose`.
     camera
         The calibrated camera. May differ a little from the one the features were measured with, so that a fit can be
         repeated to see how the camera's uncertainty goes on into the fan's.

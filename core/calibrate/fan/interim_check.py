@@ -15,13 +15,13 @@ import numpy as np
 from core.calibrate.camera.reprojection import linearise, moved, parameters_of
 from core.calibrate.change import Evidence
 from core.calibrate.deviations import SCALES, Deviation
-from core.calibrate.fan.located_pose import LocatedPose, locate
 from core.calibrate.fan.pencil import FreePlanes
-from core.calibrate.fan.pose_features import PoseFeatures
-from core.calibrate.fan.pose_stages import NOT_SEEN, line_numbers
+from core.calibrate.fan.poses.located_pose import LocatedPose, locate
+from core.calibrate.fan.poses.pose_features import PoseFeatures
+from core.calibrate.fan.poses.pose_stages import NOT_SEEN, line_numbers
+from core.calibrate.fan.poses.stripe_lines import StripeLine
+from core.calibrate.fan.poses.target_plane import on_target
 from core.calibrate.fan.stripe_distances import Stripes
-from core.calibrate.fan.stripe_lines import StripeLine
-from core.calibrate.fan.target_plane import on_target
 from core.calibrate.results import FanCalibration
 from core.image.targets.target_view import TargetView
 from core.messages import Message

@@ -27,8 +27,8 @@ from core.calibrate.board_shape import SHAPE_PARAMETERS, Board, BoardShape
 from core.calibrate.camera import reprojection
 from core.calibrate.fan.pencil import PlaneSet
 from core.calibrate.fan.pose_equations import PoseEquations, inverse
+from core.calibrate.fan.poses.stripe_lines import StripeLine
 from core.calibrate.fan.stripe_distances import BOWS, Distances, Stripes
-from core.calibrate.fan.stripe_lines import StripeLine
 from core.image.targets.target_view import TargetView
 from core.model import Camera, Pose
 from core.model.arrays import Array

@@ -13,9 +13,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from core.calibrate.board_shape import BoardShape
-from core.calibrate.fan.located_pose import LocatedPose
-from core.calibrate.fan.stripe_lines import StripeLine
-from core.calibrate.fan.target_plane import on_target
+from core.calibrate.fan.poses.located_pose import LocatedPose
+from core.calibrate.fan.poses.stripe_lines import StripeLine
+from core.calibrate.fan.poses.target_plane import on_target
 from core.messages import Message
 from core.model import LightPlane, Pose
 from core.model.arrays import Array

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from core.calibrate.board_shape import Board
 from core.calibrate.fan.pencil import PlaneSet, plane_distances
-from core.calibrate.fan.stripe_lines import StripeLine
-from core.calibrate.fan.target_plane import on_target, target_plane_changes
+from core.calibrate.fan.poses.stripe_lines import StripeLine
+from core.calibrate.fan.poses.target_plane import on_target, target_plane_changes
 from core.model import Pose
 from core.model.arrays import Array
 

@@ -10,9 +10,9 @@ import numpy as np
 
 from core.calibrate.board_shape import BoardShape
 from core.calibrate.fan.bundle import Bundle
-from core.calibrate.fan.located_pose import LocatedPose
+from core.calibrate.fan.poses.located_pose import LocatedPose
+from core.calibrate.fan.poses.target_plane import on_target
 from core.calibrate.fan.straightness import bends_of, judge_lines, notes_on_lines, off_planes_mm
-from core.calibrate.fan.target_plane import on_target
 from core.calibrate.fan.verdict import Verdict, fan_of
 from core.calibrate.results import LEFT_OUT, FanCalibration, PlanePose
 from core.messages import Field, Message

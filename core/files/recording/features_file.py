@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.calibrate.camera.views import SeenView, SeenViews
-from core.calibrate.fan.pose_features import PoseFeatures
+from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.files.arrays_file import (
     Arrays,
     pack_centrelines,

@@ -15,7 +15,8 @@ class Centreline:
     """One unbroken run of stripe points, in order along the stripe, about one pixel apart.
 
     A stripe cut by a depth edge or a dark gap gives several centrelines. Neighbouring points are further apart only
-    across dark grains and where another stripe crosses (`core.image.stripes.holes`); each lies ahead of the one before.
+    across dark grains and where another stripe crosses (`core.image.stripes.lines.holes`); each lies ahead of the one
+    before.
 
     Parameters
     ----------

@@ -18,7 +18,7 @@ end of a stripe, kink, jump        4 px (2.5 g) and 2 g are left out, but nothin
                                    picture's border; a piece never crosses them
 neighbour, crossing line           points nearer than 3.5·√(s² + g²) are left out, nearer than 8.1 s they stay
                                    Steger's, freed of the pull of curvature and background; behind a crossing a line
-                                   goes on as one (`core.image.stripes.joining`)
+                                   goes on as one (`core.image.stripes.lines.joining`)
 border of the picture              points nearer than 4 g are never found; cuts that leave the picture are not used
 skewed section, halo               0.1 to 0.2 px for flanks that differ by 10 %, whatever the estimator, and twice
                                    that with the weights that speckle asks for; so where they disagree by more than
@@ -43,11 +43,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.image.stripes.centreline import Centreline
-from core.image.stripes.holes import unbroken_parts
-from core.image.stripes.joining import joined_at_crossings
 from core.image.stripes.likelihood.influence import REACH
 from core.image.stripes.likelihood.refinement import Refined
-from core.image.stripes.neighbours import NEIGHBOUR_DISTANCE, distances_to_neighbours
+from core.image.stripes.lines.holes import unbroken_parts
+from core.image.stripes.lines.joining import joined_at_crossings
+from core.image.stripes.lines.neighbours import NEIGHBOUR_DISTANCE, distances_to_neighbours
+from core.image.stripes.lines.splitting import split_at_breaks
 from core.image.stripes.noise import NoiseModel
 from core.image.stripes.positions import Piece, estimate_positions
 from core.image.stripes.precision import (
@@ -62,7 +63,6 @@ from core.image.stripes.precision import (
 from core.image.stripes.profile import fit_profiles, profiles_along
 from core.image.stripes.runs import arc_length, correlation_length, cut_ends, fully_lit
 from core.image.stripes.settings import choose_settings
-from core.image.stripes.splitting import split_at_breaks
 from core.image.stripes.stripe import StripeSettings
 from core.image.stripes.tracing.linking import HOLD, Hysteresis, link
 from core.image.stripes.tracing.pixel_state import IGNORED

@@ -13,7 +13,7 @@ import numpy as np
 from core.acquire.source import Ended, Frame, Lasers, Picture
 from core.calibrate.camera.capture import HOLD_STILL, TAKEN, CaptureJudge, moved_px
 from core.calibrate.camera.missing import PLANE_POSES
-from core.calibrate.fan.plane_pose import TARGET_MOVED
+from core.calibrate.fan.poses.plane_pose import TARGET_MOVED
 from core.image.targets.target_view import TargetView
 from core.messages import Message, label
 from core.model.arrays import Array

@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from core.acquire.source import Frame, Picture
-from core.calibrate.fan.plane_pose import measure_plane_pose
-from core.calibrate.fan.pose_features import PoseFeatures
-from core.calibrate.fan.stripe_lines import straight_lines
+from core.calibrate.fan.poses.plane_pose import measure_plane_pose
+from core.calibrate.fan.poses.pose_features import PoseFeatures
+from core.calibrate.fan.poses.stripe_lines import straight_lines
 from core.image.sharpness import edge_blur_px
 from core.image.stripes.stripe import WIDTH_IN_SIGMA, StripeSettings
 from core.image.targets import Target

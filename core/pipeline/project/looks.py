@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
-from core.calibrate.fan.pose_features import PoseFeatures
-from core.calibrate.fan.pose_stages import PoseStages
+from core.calibrate.fan.poses.pose_features import PoseFeatures
+from core.calibrate.fan.poses.pose_stages import PoseStages
 from core.calibrate.results import FanCalibration
 from core.errors import InputError
 from core.files.project.calibration_store import read_stored_fan, read_stored_poses

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from core.calibrate.fan.pose_features import PoseFeatures
-from core.calibrate.fan.pose_stages import PoseStages, numbered_stripes
+from core.calibrate.fan.poses.pose_features import PoseFeatures
+from core.calibrate.fan.poses.pose_stages import PoseStages, numbered_stripes
 from core.errors import InputError
 from core.files.recording.recording_set import RecordingSet
 from core.image.display import in_8_bit, white_level

@@ -1,1 +1,1 @@
-"""The steps from a recording set to results, each a module, and all of them in one call (`run`)."""
+"""The steps from a recording set to results, each a module; all of them in one call: `core.pipeline.run`."""

@@ -18,7 +18,7 @@ from core.calibrate.change import (
 )
 from core.calibrate.deviations import Deviation, calibration_deviations
 from core.calibrate.fan.interim_check import ELSEWHERE, CheckedPose, check_poses, step_errors
-from core.calibrate.fan.pose_features import PoseFeatures
+from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.errors import InputError
 from core.files.recording.options import Options
 from core.files.recording.recording_set import CHECK, RecordingSet

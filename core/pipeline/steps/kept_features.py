@@ -17,7 +17,7 @@ from typing import Any
 
 import core
 from core.calibrate.camera.views import SeenViews
-from core.calibrate.fan.pose_features import PoseFeatures
+from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.errors import InputError
 from core.files.atomic import make_folder
 from core.files.project.calibration_store import FOLDER

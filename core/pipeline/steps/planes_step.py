@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from core.calibrate.fan.calibration import FanOptions, fit_fan
-from core.calibrate.fan.plane_pose import measure_plane_pose
-from core.calibrate.fan.pose_features import PoseFeatures
+from core.calibrate.fan.poses.plane_pose import measure_plane_pose
+from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.calibrate.fan.verdict import Constrained
 from core.calibrate.results import CameraCalibration, FanCalibration
 from core.errors import InputError

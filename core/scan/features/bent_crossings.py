@@ -4,8 +4,8 @@ Crossings are found by local fits over long windows (`core.image.crossings.cross
 flat faces. On
 a bent surface such a fit cuts the corner: by less than its standard uncertainty, which counts that, but by the same on
 all stripes, and a ball of 50 mm comes out 0.02 mm too small (half resolution). Centrelines averaged along themselves
-(`core.image.stripes.smoothing`) are held to a tenth of their own uncertainty there; where they meet is off by a tenth
-of that.
+(`core.image.stripes.lines.smoothing`) are held to a tenth of their own uncertainty there; where they meet is off by a
+tenth of that.
 """
 
 from __future__ import annotations

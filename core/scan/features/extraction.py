@@ -17,9 +17,9 @@ from core.calibrate.results import LEFT_OUT
 from core.errors import InputError
 from core.image.stripes.centreline import Centreline
 from core.image.stripes.extraction import extract_centrelines
+from core.image.stripes.lines.smoothing import smooth
 from core.image.stripes.settings import choose_settings
 from core.image.stripes.shading import shading_sigma
-from core.image.stripes.smoothing import smooth
 from core.image.stripes.stripe import StripeSettings
 from core.messages import Message
 from core.progress import Progress, StepProgress, silent, steps

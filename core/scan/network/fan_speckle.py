@@ -3,8 +3,8 @@
 The fan stands still, so one picture of its speckle is in every crossing with it and in its own points. The network
 calls the errors of the fan's centrelines z, standard normal, one for each cell of 40 px
 (`core.scan.network.line_errors`). What it says of the sweeps is then correlated with z, and the fan's own points depend
-on the same z by how they were averaged along their line (`core.image.stripes.smoothing`): a parabola over a window,
-linear in the line's errors.
+on the same z by how they were averaged along their line (`core.image.stripes.lines.smoothing`): a parabola over a
+window, linear in the line's errors.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ _WINDOW_OF_MEAN = 9 / 8
 mean's."""
 _END_SHARE = 0.3
 """Share of its half length that a smoothing window keeps at an end of the line, as in
-`core.image.stripes.smoothing`."""
+`core.image.stripes.lines.smoothing`."""
 _SHORTEST_PX = 2.5
 """Half length in px of the shortest window: five points."""
 _SINGULAR = 1e-6

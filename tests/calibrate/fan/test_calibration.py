@@ -7,7 +7,7 @@ from core.calibrate.board_shape import TRUE, BoardTolerance
 from core.calibrate.camera.reprojection import camera_of, parameters_of
 from core.calibrate.fan.calibration import FanOptions, fit_fan
 from core.calibrate.fan.pencil import Pencil, pencil_near, plane_distances
-from core.calibrate.fan.pose_features import PoseFeatures
+from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.calibrate.results import LEFT_OUT, FanCalibration
 from core.errors import InputError
 from core.image.targets.target_view import TargetView

@@ -8,8 +8,8 @@ import pytest
 
 from core.calibrate.camera.calibration import calibrate_camera
 from core.calibrate.fan.calibration import FanOptions, fit_fan
-from core.calibrate.fan.plane_pose import measure_plane_pose
-from core.calibrate.fan.pose_features import PoseFeatures
+from core.calibrate.fan.poses.plane_pose import measure_plane_pose
+from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.calibrate.results import FanCalibration
 from core.image.targets import CircleGrid
 from core.model import Camera

@@ -9,7 +9,7 @@ import pytest
 import trimesh
 
 from core.calibrate.board_shape import Board, BoardShape
-from core.calibrate.fan.pose_features import PoseFeatures
+from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.errors import InputError
 from core.files.json_text import to_json
 from core.files.recording.features_file import read_poses, write_poses

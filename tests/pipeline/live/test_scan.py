@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from core.acquire.source import Frame, Lasers, SourceSettings
-from core.calibrate.fan.pose_features import PoseFeatures
+from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.errors import InputError
 from core.files.pictures import is_picture, read_picture, write_picture
 from core.files.recording.features_file import write_poses

@@ -17,11 +17,11 @@ from core.files.recording.rig import Validity
 from core.files.results.gauge_file import read_thickness
 from core.files.results.scan_file import read_scan
 from core.inspect.conformity import Verdict
+from core.pipeline.run import run
 from core.pipeline.steps.camera_step import camera_step
 from core.pipeline.steps.check_step import check_step, since_calibration
 from core.pipeline.steps.gauge_step import gauge_step
 from core.pipeline.steps.planes_step import planes_step
-from core.pipeline.steps.run import run
 from core.pipeline.steps.scan_step import scan_step
 from core.pipeline.steps.validity import doubt_of_the_day
 from core.pipeline.steps.workspace import Workspace

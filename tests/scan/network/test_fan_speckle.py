@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from core.image.stripes.lines.smoothing import smooth
 from core.image.stripes.runs import arc_length
-from core.image.stripes.smoothing import smooth
 from core.scan.network.fan_speckle import fan_speckle
 from core.simulate.scenario import Scenario
 from tests.scan.centreline_scan import ExactScan, Noise

@@ -12,8 +12,8 @@ from typing import Any, cast
 
 import numpy as np
 
-from core.calibrate.fan.pose_features import PoseFeatures
-from core.calibrate.fan.pose_stages import NumberedStripe, PoseStages
+from core.calibrate.fan.poses.pose_features import PoseFeatures
+from core.calibrate.fan.poses.pose_stages import NumberedStripe, PoseStages
 from core.calibrate.results import FanCalibration
 from core.errors import InputError
 from core.files.pictures import write_picture

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from PySide6.QtCore import Signal
 
-from core.calibrate.fan.pose_features import PoseFeatures
+from core.calibrate.fan.poses.pose_features import PoseFeatures
 from workbench.pages.calibration.look import Look
 from workbench.pages.planes.work import PlanesWork
 from workbench.work import jobs

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-from core.calibrate.fan.pose_features import PoseFeatures
+from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.calibrate.results import FanCalibration, PlanePose
 from workbench.language import text_of, tr
 from workbench.pages.calibration.words import history_row, used_row

@@ -4,15 +4,15 @@ import numpy as np
 import pytest
 
 from core.calibrate.fan.calibration import FanOptions, fit_fan
-from core.calibrate.fan.plane_pose import measure_plane_pose
-from core.calibrate.fan.plate import Plate
-from core.calibrate.fan.stripe_lines import straight_lines
+from core.calibrate.fan.poses.plane_pose import measure_plane_pose
+from core.calibrate.fan.poses.plate import Plate
+from core.calibrate.fan.poses.stripe_lines import straight_lines
 from core.image.targets import BlackSquare, Checkerboard
 from core.image.targets.target_view import TargetView
 from core.model import Pose
 from tests.calibrate import fan_scenes
+from tests.calibrate.fan.poses.test_plane_pose import CAMERA, POSE, TARGET, Pair, misses_px, render
 from tests.calibrate.fan.test_calibration import worst_mm
-from tests.calibrate.fan.test_plane_pose import CAMERA, POSE, TARGET, Pair, misses_px, render
 from tests.calibrate.fan_scenes import ALPHA, PAPER
 
 U, V = np.meshgrid(np.arange(CAMERA.image_size[0]), np.arange(CAMERA.image_size[1]))

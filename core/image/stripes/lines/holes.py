@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.compiled import compiled
-from core.image.stripes.joining import crosses
+from core.image.stripes.lines.joining import crosses
 from core.image.stripes.tracing.linking import HOLD
 from core.image.stripes.tracing.pixel_state import SATURATED
 from core.model.arrays import Array

@@ -29,7 +29,8 @@ from core.image.stripes.centreline import Centreline
 from core.image.stripes.runs import arc_length
 from core.model.arrays import Array
 
-# Held by tests/image/stripes/test_smoothing.py on straight lines, bends and arcs, and on arcs as a sphere shows them.
+# Held by tests/image/stripes/lines/test_smoothing.py on straight lines, bends and arcs, and on arcs as a sphere shows
+# them.
 WINDOWS = (9.0, 13.0, 19.0, 28.0, 41.0, 60.0, 88.0)
 """Half lengths in px of the windows tried, each about 1.46 times the one before."""
 AGREEMENT = 1.0

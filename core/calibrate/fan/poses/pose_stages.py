@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from core.calibrate.fan.located_pose import locate
-from core.calibrate.fan.pose_features import PoseFeatures
-from core.calibrate.fan.stripe_lines import StripeLine
-from core.calibrate.fan.target_plane import on_target
+from core.calibrate.fan.poses.located_pose import locate
+from core.calibrate.fan.poses.pose_features import PoseFeatures
+from core.calibrate.fan.poses.stripe_lines import StripeLine
+from core.calibrate.fan.poses.target_plane import on_target
 from core.messages import Message
 from core.model import Camera, Fan, LightPlane, Pose
 from core.model.arrays import Array

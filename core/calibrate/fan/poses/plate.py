@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from core.calibrate.fan.stripe_lines import CHUNK, straight_lines
+from core.calibrate.fan.poses.stripe_lines import CHUNK, straight_lines
 from core.image.stripes.centreline import Centreline
 from core.image.targets import Target
 from core.image.targets.kinds import BlackSquare, Charuco, Checkerboard, CircleGrid
@@ -24,7 +24,7 @@ from core.image.targets.target_view import TargetView
 from core.model import Camera
 from core.model.arrays import Array
 
-# Held by tests/calibrate/fan/test_clutter.py on rendered clutter and by photographs of three rigs.
+# Held by tests/calibrate/fan/poses/test_clutter.py on rendered clutter and by photographs of three rigs.
 FAINTEST = 0.15
 """Of the height of the light that most of the stripes have: a fainter line on equally light plate is no line of the
 laser. A fan's outer lines have a third of the middle one's light."""

@@ -1,8 +1,8 @@
 """The straight lines among a picture's centrelines: on a flat target a plane of light is one straight line of rays.
 
 A stripe that leaves the target for the table behind it goes on along another line, a reflection or the edge of a
-mark is a line of its own: all of them come out, longest first, and :mod:`core.calibrate.fan.line_assignment` decides by
-all poses together which of them the fan drew.
+mark is a line of its own: all of them come out, longest first, and :mod:`core.calibrate.fan.poses.line_assignment`
+decides by all poses together which of them the fan drew.
 """
 
 from __future__ import annotations

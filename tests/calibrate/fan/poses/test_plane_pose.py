@@ -6,8 +6,8 @@ import pytest
 from scipy.special import expit
 
 from core.calibrate.fan.calibration import FanOptions, fit_fan
-from core.calibrate.fan.plane_pose import measure_plane_pose
-from core.calibrate.fan.pose_features import PoseFeatures
+from core.calibrate.fan.poses.plane_pose import measure_plane_pose
+from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.image.targets import BlackSquare, TargetNotFound, detect
 from core.model import Pose
 from tests.calibrate import fan_scenes

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from core.image.stripes.centreline import Centreline
-from core.image.stripes.smoothing import smooth
+from core.image.stripes.lines.smoothing import smooth
 
 SIGMA_PX = 0.1
 CORRELATION_PX = 7.0

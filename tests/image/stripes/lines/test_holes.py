@@ -9,7 +9,7 @@ import pytest
 from core.files.pictures import read_picture
 from core.image.stripes.centreline import Centreline
 from core.image.stripes.extraction import StripeSettings, extract_centrelines
-from core.image.stripes.holes import longest_hole_px, unbroken_parts
+from core.image.stripes.lines.holes import longest_hole_px, unbroken_parts
 from core.image.stripes.noise import estimate_noise
 from core.image.stripes.tracing.pixel_state import SATURATED
 from tests.shared import REAL_SETS

@@ -4,7 +4,7 @@ With a picture of the same pose without laser, the stripes come from the differe
 without; without one, both come from the only picture, and only the light plate around the marks counts. Where the
 plate's own brightness changes across a stripe, at the edge of a mark, the stripe's centre is pulled to the lighter
 side: those points are left out. Light beside the plate, and what does not look like the laser's lines on it, is left
-out as well (`core.calibrate.fan.plate`).
+out as well (`core.calibrate.fan.poses.plate`).
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import map_coordinates
 
-from core.calibrate.fan.plate import Plate, without_clutter
-from core.calibrate.fan.pose_features import PoseFeatures
+from core.calibrate.fan.poses.plate import Plate, without_clutter
+from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.image.stripes.centreline import Centreline
 from core.image.stripes.extraction import StripeSettings, choose_settings, extract_centrelines
 from core.image.stripes.noise import estimate_noise, estimate_noise_of_pair, free_of_structure

@@ -13,7 +13,7 @@ from core.errors import Cancelled, InputError
 from core.files.atomic import cannot_write, make_folder
 from core.files.recording.options import Options
 from core.messages import Message, label
-from core.pipeline.steps.run import RunResult, run
+from core.pipeline.run import RunResult, run
 from core.progress import Progress, silent
 
 STOP = ".stop"

@@ -24,7 +24,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from core.calibrate.fan.stripe_lines import StripeLine
+from core.calibrate.fan.poses.stripe_lines import StripeLine
 from core.model.arrays import Array
 
 NOT_SEEN = -1

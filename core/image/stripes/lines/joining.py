@@ -13,14 +13,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from core.image.stripes.lines.splitting import SIGNIFICANT, SMALLEST_JUMP_PX, SMALLEST_KINK
 from core.image.stripes.positions import Piece
 from core.image.stripes.profile import Profiles
 from core.image.stripes.runs import correlation_length
-from core.image.stripes.splitting import SIGNIFICANT, SMALLEST_JUMP_PX, SMALLEST_KINK
 from core.model.arrays import Array
 
-# Where two ends may belong together, in filter σ. Held by tests/image/stripes/test_joining.py on stripes that cross at
-# 20° to 90°.
+# Where two ends may belong together, in filter σ. Held by tests/image/stripes/lines/test_joining.py on stripes that
+# cross at 20° to 90°.
 _SKIPPED = 12.0  # at each end: so far the other stripe's light reaches at 20°
 _ARM, _SHORTEST_ARM = 24.0, 5.0  # fitted on either side of the gap, and at least
 _LONGEST_GAP = 40.0  # between the ends

@@ -15,10 +15,10 @@ import pytest
 from core.errors import Cancelled, InputError
 from core.files.pictures import read_picture, write_picture
 from core.files.recording.options import Options
-from core.pipeline.steps import batch
-from core.pipeline.steps.batch import STEP, STOP, run_batch
-from core.pipeline.steps.executors import executor_of
-from core.pipeline.steps.run import run
+from core.pipeline import batch
+from core.pipeline.batch import STEP, STOP, run_batch
+from core.pipeline.executors import executor_of
+from core.pipeline.run import run
 from core.scan.method import Method
 from tests.simulated import trisect
 

@@ -6,10 +6,10 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from core.calibrate.fan.line_assignment import PoseLines
-from core.calibrate.fan.pose_features import PoseFeatures
-from core.calibrate.fan.stripe_lines import StripeLine, straight_lines
-from core.calibrate.fan.target_plane import target_plane, target_plane_covariance
+from core.calibrate.fan.poses.line_assignment import PoseLines
+from core.calibrate.fan.poses.pose_features import PoseFeatures
+from core.calibrate.fan.poses.stripe_lines import StripeLine, straight_lines
+from core.calibrate.fan.poses.target_plane import target_plane, target_plane_covariance
 from core.image.targets import TargetNotFound, estimate_pose
 from core.messages import Message
 from core.model import Camera, Pose

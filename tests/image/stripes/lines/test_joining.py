@@ -46,7 +46,7 @@ def test_both_lines_are_whole_through_every_crossing(angle_deg: float, width: fl
         place = np.sort(along(line, angle))
         assert place[0] < -130 and place[-1] > 130
         gap = np.diff(place).max()
-        pulled = 3.5 * np.hypot(1, 1.4) * width  # by the other light, see core.image.stripes.neighbours
+        pulled = 3.5 * np.hypot(1, 1.4) * width  # by the other light, see core.image.stripes.lines.neighbours
         assert gap < 2 * pulled / np.sin(np.radians(angle_deg)) + 12 * 1.4 * width
         error = np.abs(truth(*line.uv.T))
         assert np.sqrt(np.mean((error / line.sigma) ** 2)) < (1.5 if contrast else 1.3)
