@@ -19,7 +19,7 @@ from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import chi2
+from scipy.special import chdtrc
 
 from core.messages import Field, Message
 from core.model.arrays import Array
@@ -184,7 +184,7 @@ class BoardShape:
         bow = self.values[:3]
         if not bow.any():
             return False
-        chance = float(chi2.sf(bow @ np.linalg.pinv(self.covariance[:3, :3], hermitian=True) @ bow, len(bow)))
+        chance = float(chdtrc(len(bow), bow @ np.linalg.pinv(self.covariance[:3, :3], hermitian=True) @ bow))
         return chance < SURE
 
     def shaped(self, points: Array) -> Array:

@@ -28,7 +28,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
-from scipy.stats import chi2
+from scipy.special import chdtrc
 
 from core.calibrate.camera.reprojection import camera_of, parameters_of
 from core.calibrate.deviations import UNEXPLAINED, Deviation, Source, moved_fan
@@ -215,7 +215,7 @@ def judge(
     bent = tuple(one for one in deviations if one.source == UNEXPLAINED)  # no parameter of camera and fan
     m = np.array([one.source == "change" for one in deviations], dtype=np.bool_)
     squares, freedom = _squares(evidence, m)
-    p = float(chi2.sf(squares, freedom)) if freedom else 1.0
+    p = float(chdtrc(freedom, squares)) if freedom else 1.0
     times = float(np.sqrt(squares / max(freedom, 1)))
     if not stability.over_default.any():
         return Change(tuple(one for one in deviations if one.source != "change"), p, times)

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from scipy.stats import f as f_distribution
+from scipy.special import fdtrc
 
 from core.calibrate.fan.bundle import Bundle
 from core.calibrate.fan.pencil import FreePlanes, Pencil, PlaneSet, pencil_near
@@ -114,7 +114,7 @@ def _trial(free: Bundle, angle: float | None) -> _Trial:
     if constraints == 0:
         return _Trial(solution.state, 1.0)
     excess = solution.linear.cost / constraints
-    return _Trial(solution.state, float(f_distribution.sf(excess, constraints, max(free.freedom, 1.0))))
+    return _Trial(solution.state, float(fdtrc(constraints, max(free.freedom, 1.0), excess)))
 
 
 def _onto(pi: Array, points: Array) -> Array:

@@ -37,8 +37,9 @@ def dark_squares(picture: NDArray[np.uint8]) -> DarkSquares:
     found: list[Array] = []
     for width in STRIPE_WIDTHS:
         opened = picture if width == 1 else without_stripes(picture, width)
+        darkest, lightest = np.quantile(opened[::4, ::4], [0.01, 0.99])
         for mask in _thresholded(opened):
-            whole, cut = _quadrilaterals(opened, mask)
+            whole, cut = _quadrilaterals(opened, mask, float(lightest - darkest))
             cut_off = max(cut_off, cut)
             large = [quad for quad in whole if _sides(quad).min() >= 3 * width]
             found.extend(quad for quad in large if width == 1 or _mostly_dark(picture, opened, quad))
@@ -62,7 +63,7 @@ def _thresholded(picture: NDArray[np.uint8]) -> Iterator[NDArray[np.uint8]]:
     yield np.where(smooth < 0.8 * mean, 255, 0).astype(np.uint8)
 
 
-def _quadrilaterals(picture: NDArray[np.uint8], mask: NDArray[np.uint8]) -> tuple[list[Array], int]:
+def _quadrilaterals(picture: NDArray[np.uint8], mask: NDArray[np.uint8], contrast: float) -> tuple[list[Array], int]:
     """Whole dark quadrilaterals of `mask`, and how many convex dark regions the picture's border cuts."""
     found, _ = cv2.findContours(mask, cv2.RETR_LIST, cv2.CHAIN_APPROX_SIMPLE)
     contours = [np.asarray(contour, dtype=np.int32) for contour in found]
@@ -82,7 +83,7 @@ def _quadrilaterals(picture: NDArray[np.uint8], mask: NDArray[np.uint8]) -> tupl
         if len(corners) != 4 or not 0.9 < area / cv2.contourArea(corners) < 1.1:
             continue
         quad = clockwise(corners.reshape(4, 2).astype(np.float64))
-        if _sides(quad).min() >= LEAST_SIDE and _dark_on_light(picture, quad):
+        if _sides(quad).min() >= LEAST_SIDE and _dark_on_light(picture, quad, contrast):
             whole.append(quad)
     return whole, cut
 
@@ -101,9 +102,8 @@ def _touches_border(contour: NDArray[np.int32], shape: tuple[int, ...]) -> bool:
     return left <= 1 or top <= 1 or left + width >= shape[1] - 1 or top + height >= shape[0] - 1
 
 
-def _dark_on_light(picture: NDArray[np.uint8], quad: Array) -> bool:
-    """Whether the inside is dark throughout and lighter ground lies beyond every side."""
-    low, high = np.quantile(picture[::4, ::4], [0.01, 0.99])
+def _dark_on_light(picture: NDArray[np.uint8], quad: Array, contrast: float) -> bool:
+    """Whether the inside is dark throughout and lighter ground lies beyond every side, by the picture's contrast."""
     centre = quad.mean(axis=0)
     shares = np.linspace(0.15, 0.85, 25)[:, None]
     inside: list[float] = []
@@ -116,7 +116,7 @@ def _dark_on_light(picture: NDArray[np.uint8], quad: Array) -> bool:
         inside.extend(_levels(picture, side - reach * out))
         inside.extend(_levels(picture, centre + 0.4 * (side - centre)))
     step = min(outside) - float(np.median(inside))
-    return step > 0.15 * (high - low) and float(np.mean(np.array(inside) < min(outside) - 0.4 * step)) > 0.8
+    return step > 0.15 * contrast and float(np.mean(np.array(inside) < min(outside) - 0.4 * step)) > 0.8
 
 
 def _mostly_dark(picture: NDArray[np.uint8], opened: NDArray[np.uint8], quad: Array) -> bool:
@@ -124,8 +124,12 @@ def _mostly_dark(picture: NDArray[np.uint8], opened: NDArray[np.uint8], quad: Ar
 
     Otherwise it is a pattern whose gaps were taken for stripes.
     """
+    corners = np.rint(quad).astype(np.int32)
+    left, top, width, height = cv2.boundingRect(corners)
+    box = slice(top, top + height), slice(left, left + width)
+    picture, opened = picture[box], opened[box]
     inside = np.zeros(picture.shape, dtype=np.uint8)
-    cv2.fillConvexPoly(inside, np.rint(quad).astype(np.int32), 1)
+    cv2.fillConvexPoly(inside, corners - (left, top), 1)
     before, after = picture[inside > 0], opened[inside > 0]
     lightest = float(np.quantile(before, 0.98))
     middle = (float(np.median(after)) + lightest) / 2
