@@ -73,9 +73,9 @@ def _shortened(parts: list[str]) -> list[str]:
         longest = max((word for part in parts for word in part.split(" ")), key=len)
         if len(longest) <= _WORD:
             break
-        end = longest[len(longest) - max(_WORD, len(longest) - excess()) + 1 :]
-        opening = longest[0] if longest[0] in "([" else ""
-        parts = [part.replace(longest, f"{opening}…{end}") for part in parts]
+        opening = f"{longest[0] if longest[0] in '([' else ''}…"
+        kept = max(_WORD, len(longest) - excess()) - len(opening)  # one character less at least: this ends
+        parts = [part.replace(longest, opening + longest[-kept:]) for part in parts]
     for number, part in sorted(enumerate(parts), key=lambda one: -len(one[1])):
         if excess() > 0:
             parts[number] = f"{part[: max(_PART, len(part) - excess()) - 1]}…"

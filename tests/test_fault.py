@@ -67,6 +67,16 @@ def test_a_sentence_has_an_end():
     assert str(short) == f"{'/some' * 50}/file.toml: a reason."
 
 
+@pytest.mark.parametrize("word", ["/{}", "(/{}", "[/{}"])
+def test_a_sentence_that_is_too_long_by_any_number_of_characters_has_an_end(word):
+    for more in range(LONGEST + 50):
+        told = str(
+            InputError(f"there is no scan ({word.format('x' * more)})", where=word.format("y" * 80), todo="scan")
+        )
+        assert len(told) <= LONGEST
+        assert told.endswith("scan.")
+
+
 def test_names_are_never_read_as_markup(capsys):
     print_rows([("frame [/b]", "[/b] \x1b[31m:smile: [red]x")], [plain("[/i] note")], {"cloud": Path("[/b]") / "c.ply"})
     said = capsys.readouterr().out
