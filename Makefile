@@ -2,6 +2,10 @@
 PYTHON ?= python3
 VENV   := .venv
 BIN    := $(VENV)/bin
+PIP    := $(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt
+# What is installed: enough to measure, the window as well, or all that tests and tools want.
+CORE   := $(VENV)/.core
+WINDOW := $(VENV)/.window
 READY  := $(VENV)/.ready
 OUT    ?= out
 
@@ -22,10 +26,10 @@ SCREEN := $(shell command -v xvfb-run >/dev/null && echo 'xvfb-run -a -s "-scree
 
 .PHONY: demo app test quick proofs accuracy bench soak fuzz check docs translations notice screenshots pictures wheel compile clean
 
-demo: $(READY)            ## measure the embedded sample: cloud, mesh and report of a 50 mm gauge block in ./out
+demo: $(CORE)             ## measure the embedded sample: cloud, mesh and report of a 50 mm gauge block in ./out
 	$(BIN)/trisect demo --out $(OUT)
 
-app: $(READY)             ## open the workbench
+app: $(WINDOW)            ## open the workbench
 	$(BIN)/trisect-workbench
 
 compile: $(READY)         ## once, so that test processes do not all compile the same at the same time
@@ -91,14 +95,24 @@ wheel: compile            ## build the wheel, with compiled loops in it, and try
 	cp -r "$$($(BIN)/python -c 'from core.compiled import FOLDER; print(FOLDER)')" core/saved_code/
 	$(BIN)/python -m build --wheel --outdir build/wheel . ; built=$$?; rm -rf core/saved_code; exit $$built
 	$(PYTHON) -m venv build/wheel/venv
-	build/wheel/venv/bin/pip install --quiet --constraint constraints.txt build/wheel/trisect-*.whl
+	build/wheel/venv/bin/pip install --quiet --disable-pip-version-check --constraint constraints.txt build/wheel/trisect-*.whl
 	cd build/wheel && NUMBA_CACHE_DIR=cache venv/bin/trisect demo --quick --out demo
 	test -z "$$(find build/wheel/cache -type f)"
 
+$(CORE): pyproject.toml constraints.txt
+	$(PYTHON) -m venv $(VENV)
+	$(PIP) --editable .
+	touch $@
+
+$(WINDOW): pyproject.toml constraints.txt
+	$(PYTHON) -m venv $(VENV)
+	$(PIP) --editable '.[window]'
+	touch $(CORE) $@
+
 $(READY): pyproject.toml constraints.txt
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/pip install --quiet --constraint constraints.txt --editable '.[dev]'
-	touch $(READY)
+	$(PIP) --editable '.[dev]'
+	touch $(CORE) $(WINDOW) $@
 
 clean:
 	rm -rf $(VENV) build dist $(OUT) screenshots

@@ -1,8 +1,24 @@
-"""`python -m workbench` opens the window."""
+"""`trisect-workbench` and `python -m workbench` open the window."""
 
 import sys
+from importlib.util import find_spec
 
-from workbench.app import main
+from core.messages import Message
+
+INSTALL = Message(
+    "window.install", "The window needs PySide6 and what else draws it: install them with pip install 'trisect[window]'"
+)
+
+
+def main() -> int:
+    """Open the workbench, or say what is to be installed first; returns the exit code."""
+    if find_spec("PySide6") is None:
+        sys.stderr.write(f"{INSTALL}.\n")
+        return 2
+    from workbench.app import main as open_window
+
+    return open_window()
+
 
 if __name__ == "__main__":
     sys.exit(main())

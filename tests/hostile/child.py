@@ -41,8 +41,7 @@ def main() -> None:
     cv2.utils.logging.setLogLevel(cv2.utils.logging.LOG_LEVEL_SILENT)
     warnings.simplefilter("error", RuntimeWarning)
     shutil.copytree(good, work, dirs_exist_ok=True)
-    for name in ("trimesh", "core.files.results.nominal_surface"):
-        __import__(name)
+    __import__("core.files.results.nominal_surface")
     resource.setrlimit(resource.RLIMIT_DATA, (MEMORY_BYTES, MEMORY_BYTES))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     for number in range(first, last):

@@ -18,8 +18,8 @@ from itertools import count
 from pathlib import Path
 from typing import Any
 from uuid import UUID
-
-from lxml import etree
+from xml.etree import ElementTree
+from xml.etree.ElementTree import Element
 
 from core.files.atomic import write_bytes
 from core.files.exchange.records import one_line, result_row, unit_of
@@ -48,16 +48,18 @@ STATUS = {"conforming": "PASS", "not conforming": "FAIL", "not proven": "INDETER
 
 def write_qif(path: Path, content: ReportContent) -> None:
     """Write the results as a QIF 3.0 document; InputError if it cannot be written."""
-    data = etree.tostring(qif_document(content), xml_declaration=True, encoding="UTF-8", pretty_print=True)
-    write_bytes(path, data)
+    root = qif_document(content)
+    ElementTree.indent(root)
+    data = ElementTree.tostring(root, encoding="UTF-8", xml_declaration=True)
+    write_bytes(path, data + b"\n")
 
 
-def qif_document(content: ReportContent) -> Any:
+def qif_document(content: ReportContent) -> Element:
     """The document's root element."""
     ids = count(1)
     component, results, device, standard = (next(ids) for _ in range(4))
     rows = [(one, [next(ids) for _ in range(4)]) for one in content.characteristics]
-    root = etree.Element(f"{{{NAMESPACE}}}QIFDocument", nsmap={None: NAMESPACE})
+    root = Element("QIFDocument", xmlns=NAMESPACE)
     root.set("versionQIF", VERSION)
     root.set("idMax", f"{next(ids) - 1}")
     _put(root, "QPId", f"{_uuid(content, 'document')}")
@@ -82,7 +84,7 @@ def qif_document(content: ReportContent) -> Any:
     return root
 
 
-def _units(root: Any) -> None:
+def _units(root: Element) -> None:
     primary = _put(_put(root, "FileUnits"), "PrimaryUnits")
     for element, si, name, factor in (
         ("AngularUnit", "radian", "deg", f"{math.radians(1.0):.17g}"),
@@ -102,7 +104,7 @@ def _kind(one: Characteristic) -> str:
     return LINEAR.get(one.kind, "Length")
 
 
-def _characteristics(parent: Any, rows: list[tuple[Characteristic, list[int]]], device: int) -> None:
+def _characteristics(parent: Element, rows: list[tuple[Characteristic, list[int]]], device: int) -> None:
     """What is asked of each (definition), its target (nominal), and that it is asked of this part (item)."""
     definitions = _put(parent, "CharacteristicDefinitions", n=f"{len(rows)}")
     nominals = _put(parent, "CharacteristicNominals", n=f"{len(rows)}")
@@ -128,7 +130,7 @@ def _characteristics(parent: Any, rows: list[tuple[Characteristic, list[int]]], 
         _put(item, "CharacteristicNominalId", f"{nominal_id}")
 
 
-def _tolerance(definition: Any, row: Mapping[str, Any]) -> None:
+def _tolerance(definition: Element, row: Mapping[str, Any]) -> None:
     """Limits as limits; a value with neither is only measured."""
     if row["upper_limit"] is None and row["lower_limit"] is None:
         _put(definition, "NonTolerance", "MEASURED")
@@ -141,7 +143,7 @@ def _tolerance(definition: Any, row: Mapping[str, Any]) -> None:
 
 
 def _results(
-    parent: Any, content: ReportContent, rows: list[tuple[Characteristic, list[int]]], component: int, results: int
+    parent: Element, content: ReportContent, rows: list[tuple[Characteristic, list[int]]], component: int, results: int
 ) -> None:
     measured = _put(_put(parent, "MeasurementResultsSet", n="1"), "MeasurementResults", id=f"{results}")
     trace = _put(measured, "InspectionTraceability")
@@ -169,7 +171,7 @@ def _results(
 
 
 def _measurement(
-    parent: Any, one: Characteristic, item_id: int, own_id: int, component: int, content: ReportContent
+    parent: Element, one: Characteristic, item_id: int, own_id: int, component: int, content: ReportContent
 ) -> None:
     """Status and value of one, with its standard uncertainty."""
     row, (unit, factor) = result_row(one), unit_of(one)
@@ -195,8 +197,8 @@ def _uuid(content: ReportContent, what: str) -> UUID:
     )
 
 
-def _put(parent: Any, element_name: str, text: str = "", /, **attributes: str) -> Any:
-    element = etree.SubElement(parent, f"{{{NAMESPACE}}}{element_name}", attributes)
+def _put(parent: Element, element_name: str, text: str = "", /, **attributes: str) -> Element:
+    element = ElementTree.SubElement(parent, element_name, attributes)
     if text:
         element.text = "".join(c for c in text if c.isprintable() or c in "\t\n")
     return element

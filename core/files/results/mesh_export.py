@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from core import __version__
 from core.files.atomic import write_bytes, write_text
+from core.files.stl import HEAD, TRIANGLE
 from core.model.arrays import Array
 from core.scan.surface.fused_surface import Mesh
 
@@ -99,10 +100,6 @@ def _object(number: int, name: str, vertices: Array, triangles: NDArray[np.int64
     return f'<object id="{number}" type="surface" name={quoteattr(name)}>{shape}</object>'
 
 
-_HEAD = 80
-_TRIANGLE = np.dtype([("normal", "<f4", (3,)), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
-
-
 def write_stl(path: Path, mesh: Mesh, calibration_id: str = "") -> None:
     """Write the triangles of `mesh` as binary STL, in mm, in the camera frame; normals point towards the camera.
 
@@ -111,12 +108,12 @@ def write_stl(path: Path, mesh: Mesh, calibration_id: str = "") -> None:
     InputError
         If it cannot be written.
     """
-    triangles = np.zeros(len(mesh.triangles), dtype=_TRIANGLE)
+    triangles = np.zeros(len(mesh.triangles), dtype=TRIANGLE)
     corners = mesh.vertices[mesh.triangles]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     lengths = np.linalg.norm(normals, axis=1, keepdims=True)
     triangles["normal"] = np.divide(normals, lengths, out=np.zeros_like(normals), where=lengths > 0)
     triangles["corners"] = corners
-    head = f"Trisect {__version__}; unit mm; calibration {calibration_id}".encode("ascii", "replace")[:_HEAD]
+    head = f"Trisect {__version__}; unit mm; calibration {calibration_id}".encode("ascii", "replace")[:HEAD]
     count = np.array(len(triangles), dtype="<u4")
-    write_bytes(path, head.ljust(_HEAD) + count.tobytes() + triangles.tobytes())
+    write_bytes(path, head.ljust(HEAD) + count.tobytes() + triangles.tobytes())

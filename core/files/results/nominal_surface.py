@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from core.errors import InputError
-from core.files.limits import STL_BYTES, check_file
+from core.files.stl import read_corners
 from core.inspect.plan.inspection_plan import InspectionPlan
 from core.messages import Message
 from core.scan.surface.triangles import Triangles
@@ -23,20 +23,15 @@ def read_nominal(path: Path) -> Triangles:
     InputError
         If it is missing, no STL, or holds no usable triangle.
     """
-    import trimesh  # slow to import, and only this function needs it
-
     if not path.is_file():
         raise InputError(
             Message("inspection.nominal_surface_missing", "the nominal surface is missing"),
             where=path,
             todo=Message("advice.name_stl_beside_plan", "name an STL file beside the plan"),
         )
-    check_file(path, most=STL_BYTES)
     try:
-        with np.errstate(all="ignore"):  # of numbers that are none; looked for below
-            loaded = trimesh.load_mesh(str(path), file_type="stl", process=False)
-        corners = np.asarray(loaded.triangles, dtype=np.float64)
-    except (OSError, ValueError, AttributeError, IndexError, KeyError) as problem:
+        corners = read_corners(path)
+    except (OSError, ValueError) as problem:
         raise InputError(
             Message(
                 "inspection.nominal_unreadable", "it cannot be read as an STL mesh ({reason})", reason=str(problem)

@@ -11,7 +11,6 @@ from core.calibrate.results import CameraCalibration
 from core.errors import InputError
 from core.files.atomic import write_bytes
 from core.files.exchange.dfq import write_dfq
-from core.files.exchange.e57 import write_e57
 from core.files.exchange.opencv_calibration import write_opencv
 from core.files.exchange.qif import write_qif
 from core.files.exchange.result_csv import write_result_csv
@@ -102,6 +101,12 @@ def _points(results: Results, path: Path, progress: Progress) -> None:
 
 
 def _e57(results: Results, path: Path, _: Progress) -> None:
+    try:
+        from core.files.exchange.e57 import write_e57  # its library is an extra
+    except ImportError as missing:
+        raise InputError(
+            Message("export.install_pye57", "E57 needs pye57: install it with pip install 'trisect[e57]'"), where=path
+        ) from missing
     content = results.content
     calibration = "-".join(mark.id for mark in content.calibrations)
     write_e57(path, content.cloud, content.timestamp, name=content.part, calibration_id=calibration)

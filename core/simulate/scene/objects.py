@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from core.errors import InputError
-from core.files.limits import STL_BYTES, check_file
+from core.files.stl import read_corners
 from core.messages import Message, plain
 from core.model.arrays import Array
 from core.simulate.scene.scene import OBJECT_ALBEDO, Mesh
@@ -108,13 +108,9 @@ def stl(path: Path) -> Mesh:
     InputError
         If the file cannot be read as a mesh of triangles.
     """
-    import trimesh  # slow to import, and only this function needs it
-
-    check_file(path, most=STL_BYTES)
     try:
-        loaded = trimesh.load_mesh(str(path), file_type="stl")
-        triangles: Array = np.asarray(loaded.triangles, dtype=np.float64)
-    except (OSError, ValueError, AttributeError, IndexError, KeyError) as problem:
+        triangles = read_corners(path)
+    except (OSError, ValueError) as problem:
         raise InputError(
             Message("simulate.bad_stl", "it cannot be read as an STL mesh ({why})", why=plain(str(problem))), where=path
         ) from problem

@@ -1,0 +1,25 @@
+"""What is installed only by an extra: without it one sentence says what to install."""
+
+import sys
+from pathlib import Path
+
+import pytest
+
+from core.errors import InputError
+from core.pipeline.steps.export_kinds import WRITERS
+from workbench import __main__ as start
+
+
+def test_the_window_asks_for_its_extra(monkeypatch, capsys):
+    monkeypatch.setattr(start, "find_spec", lambda name: None)
+    assert start.main() == 2
+    said = capsys.readouterr().err
+    assert said.endswith("pip install 'trisect[window]'.\n")
+    assert said.count("\n") == 1
+
+
+def test_e57_asks_for_its_extra(monkeypatch):
+    monkeypatch.delitem(sys.modules, "core.files.exchange.e57", raising=False)
+    monkeypatch.setitem(sys.modules, "pye57", None)
+    with pytest.raises(InputError, match=r"pip install 'trisect\[e57\]'"):
+        WRITERS["e57"](None, Path("cloud.e57"), None)
