@@ -1,5 +1,6 @@
 """What is installed only by an extra: without it one sentence says what to install."""
 
+import subprocess
 import sys
 from pathlib import Path
 
@@ -8,6 +9,26 @@ import pytest
 from core.errors import InputError
 from core.pipeline.steps.export_kinds import WRITERS
 from workbench import __main__ as start
+
+
+def test_the_command_line_is_imported_without_any_extra():
+    of_extras = (
+        "PySide6",
+        "pyqtgraph",
+        "pyvista",
+        "vtkmodules",
+        "qtawesome",
+        "superqt",
+        "pypdfium2",
+        "pye57",
+        "pypylon",
+    )
+    program = (
+        "import sys, core.cli.measuring, core.cli.preparing, core.cli.results, core.cli.studying, core.cli.importing; "
+        f"print([name for name in {of_extras} if name in sys.modules])"
+    )
+    said = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert said.stdout.strip() == "[]"
 
 
 def test_the_window_asks_for_its_extra(monkeypatch, capsys):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-import pypdfium2 as pdfium
 from numpy.typing import NDArray
 
 from core.progress import Progress, silent, steps
@@ -20,6 +19,8 @@ def page_pictures(pdf: bytes, width_px: int = 900, progress: Progress = silent) 
     pypdfium2.PdfiumError
         If these bytes are no PDF.
     """
+    import pypdfium2 as pdfium  # comes with the window, which alone shows pages
+
     document = pdfium.PdfDocument(pdf)
     try:
         drawn = []
