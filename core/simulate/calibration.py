@@ -57,9 +57,7 @@ def rig_toml(scenario: Scenario) -> str:
             angle=math.radians(5.0) if scenario.fan_lines > 1 else 0.0,
             gauge=gauge,
             stability=STABLE,
-            row_time_us=1000 * scenario.readout_ms / round(FULL_SIZE[1] * scenario.scale)
-            if scenario.readout_ms
-            else None,
+            row_time_us=1000 * scenario.readout_ms / round(FULL_SIZE[1] * scenario.scale),
             camera_board=TRUE,
             plane_board=TRUE,
         )

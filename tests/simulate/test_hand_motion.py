@@ -69,5 +69,5 @@ def test_the_row_time_is_stated_where_rows_roll(tmp_path):
     few = {"camera_views": 0, "plane_poses": 0, "frames": 1}
     simulate_set(replace(STILL, **few), tmp_path / "global")
     simulate_set(replace(ROLLING, **few), tmp_path / "rolling")
-    assert "row_time_us" not in (tmp_path / "global" / "rig.toml").read_text()
+    assert "row_time_us = 0.0" in (tmp_path / "global" / "rig.toml").read_text()
     assert "row_time_us = 258.18" in (tmp_path / "rolling" / "rig.toml").read_text()

@@ -17,7 +17,7 @@ from core.files.recording.recording_log import lost_frames, read_log
 from core.files.recording.recording_set import RecordingSet, require_scan
 from core.files.results.ply import write_cloud, write_mesh
 from core.files.results.scan_file import ScanFile, write_scan
-from core.messages import Message, from_json, plain, plural_message
+from core.messages import Field, Message, from_json, plain, plural_message
 from core.model import Camera
 from core.pipeline.steps.check_step import assumed_stability, since_calibration
 from core.pipeline.steps.kept_features import features_key, kept_features
@@ -106,7 +106,7 @@ def scan_step(
         doubt = MOVED_WITHIN if scan.moved else doubt_of_the_day(work, calibration)
         said = (*change.notes, *([doubt] if doubt else []))
         notes = (*scan.notes, *said) if scan.moved else (*said, *scan.notes)
-        scan = replace(scan, notes=(*notes, *assumed_stability(found)))
+        scan = replace(scan, notes=(*notes, *assumed_stability(found), *_assumed_shutter(found, scan)))
         log.frames.extend(scan.frames)
         left_out = left_out_notes(scan.frames)
         log.notes.extend((*scan.notes, *left_out) if scan.moved else (*left_out, *scan.notes))
@@ -117,6 +117,21 @@ def scan_step(
         with stage(progress if isinstance(progress, StageTimes) else None, "writing"):
             _write(work, scan, mesh, replace(file, common=common, change_p=change.p, doubt=doubt))
     return Measured(scan, mesh)
+
+
+def _assumed_shutter(found: RecordingSet, scan: ScanResult) -> tuple[Message, ...]:
+    """A note if nothing says how the camera reads its rows out, nor do the sweeps; those of a steady hand do not."""
+    if found.rig.row_time_us is not None or scan.read_out.moves:
+        return ()
+    return (
+        Message(
+            "scan.shutter_assumed",
+            "Whether the camera's shutter is global or rolling is not stated ({field} in rig.toml); assumed is a "
+            "global one. With a rolling one and a hand that moves, points are off by more than their σ says. State 0 "
+            "for a global shutter.",
+            field=Field("[camera] row_time_us"),
+        ),
+    )
 
 
 def _lost(found: RecordingSet) -> tuple[Message, ...]:

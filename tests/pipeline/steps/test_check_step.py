@@ -122,6 +122,14 @@ def test_what_nobody_states_of_the_plane_target_is_assumed_told_and_in_the_budge
     assert abs(gauge.thickness_mm - 50) <= gauge.U_mm
 
 
+@pytest.mark.parametrize(("stated", "said"), [(None, True), (0.0, False)])
+def test_a_shutter_of_which_nothing_is_stated_is_told_as_assumed(unchanged, tmp_path, stated, said):
+    work = work_in(unchanged, tmp_path, with_check=False)
+    work = Workspace.open(replace(work.found, rig=replace(work.found.rig, row_time_us=stated)), work.out)
+    notes = scan_step(work, COARSE).scan.notes
+    assert ("scan.shutter_assumed" in {note.code for note in notes}) is said
+
+
 def test_a_mount_that_turned_unseen_is_within_what_could_not_be_excluded(turned, tmp_path):
     work = work_in(turned, tmp_path, with_check=False)
     scan_step(work, COARSE)

@@ -145,6 +145,12 @@ class SettingsPanel(QWidget):
             self.tr("Height above the background where the stripe is rather faint."),
             minimum=1.0, maximum=65535.0, decimals=0, step=5.0,
         )  # fmt: skip
+        form.add_section(self.tr("Shutter of the camera"))
+        form.add_number(
+            "row_time_us", self.tr("Time from row to row"), "µs",
+            self.tr("0: a global shutter. Empty: not known, a global one is assumed."),
+            minimum=0.0, maximum=1e5, decimals=2, step=1.0, none_text=self.tr("assumed"), first=0.0,
+        )  # fmt: skip
         form.add_section(self.tr("Since its calibration the rig may have changed by"))
         for key, label, unit, decimals, usual in STABILITY:
             form.add_number(

@@ -218,6 +218,7 @@ class ScanPresenter(StepPresenter):
             **values_of(self.project.options, self.work.look),
             **stability.shown(rig.stability),
             **{key: getattr(rig.validity, key) for key, *_ in VALIDITY},
+            "row_time_us": rig.row_time_us,
         }
 
     def set_setting(self, field: str, value: Any) -> None:
@@ -226,6 +227,10 @@ class ScanPresenter(StepPresenter):
             rig = self.project.rig
             after = replace(self.project, rig=replace(rig, stability=stability.stated(rig.stability, field, value)))
             self.model.edit(tr("change what is known of the rig's stability"), after, f"scan {field}")
+            return
+        if field == "row_time_us":
+            after = replace(self.project, rig=replace(self.project.rig, row_time_us=value))
+            self.model.edit(tr("change what is known of the camera's shutter"), after, f"scan {field}")
             return
         if any(field == key for key, *_ in VALIDITY):
             rig = self.project.rig

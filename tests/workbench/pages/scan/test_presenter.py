@@ -240,6 +240,18 @@ def test_every_setting_is_an_edit_that_is_undone(measured, field, value, read):
     assert measured.stage is Stage.MEASURED
 
 
+def test_a_shutter_of_which_nothing_is_known_is_stated_and_undone(measured):
+    before = measured.settings()["row_time_us"]
+    measured.set_setting("row_time_us", 26.0)
+    assert measured.project.rig.row_time_us == 26.0
+    assert measured.stage is Stage.OUTDATED
+    measured.set_setting("row_time_us", None)
+    assert measured.settings()["row_time_us"] is None
+    measured.model.undo_stack.undo()
+    measured.model.undo_stack.undo()
+    assert measured.settings()["row_time_us"] == before
+
+
 def test_a_stripe_that_is_to_be_given_starts_as_it_was_found(measured):
     assert measured.settings()["automatic"] is True
     measured.set_setting("automatic", False)
