@@ -82,6 +82,11 @@ def _shortened(parts: list[str]) -> list[str]:
     return parts
 
 
+def refuse(error: InputError) -> None:
+    """Raise `error`: a job that must not be done is told as one that failed."""
+    raise error
+
+
 def _restored(kind: type[InputError], what: Message, where: Message | str, todo: Message) -> InputError:
     """An InputError that came from another process."""
     return kind(what, where=where, todo=todo)

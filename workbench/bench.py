@@ -17,6 +17,15 @@ from workbench.work.tasks import Lane, Task
 ONE_THREAD: Mapping[str, str] = {name: "1" for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")}
 """Linear algebra on one core: for many small problems beside other work, more threads are slower."""
 
+WRITING = frozenset(
+    {
+        *(jobs.FIND_VIEWS, jobs.ACCEPT_CAMERA, jobs.FIND_POSES, jobs.ACCEPT_FAN, jobs.MEASURE_SCAN, jobs.WATCH_SCAN),
+        *(jobs.MEASURE_PROFILES, jobs.CHECK_RIG, jobs.MEASURE_GAUGE, jobs.MEASURE_FEATURES, jobs.MAKE_REPORT),
+        *(jobs.CHOOSE_TEMPLATE, jobs.KEEP_STUDY, jobs.KEEP_TYPE1, jobs.ADD_RECORDING),
+    }
+)
+"""Jobs that put something into the folder of the open project: none is done where somebody else has it."""
+
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Bench:
@@ -37,13 +46,23 @@ class Bench:
         """Run a short job whose result is shown at once, as `Lane.run` does; a notice tells what went wrong."""
         return self._run(self.quick, receiver, job, *args, label=label, **more)
 
-    def _run(self, lane: Lane, *args: Any, on_failed: Callable[[Any], None] | None = None, **more: Any) -> Task:
+    def _run(
+        self,
+        lane: Lane,
+        receiver: QObject,
+        job: jobs.Job,
+        *args: Any,
+        on_failed: Callable[[Any], None] | None = None,
+        **more: Any,
+    ) -> Task:
         def failed(problem: Any) -> None:
             self.notices.failed(problem)
             if on_failed is not None:
                 on_failed(problem)
 
-        return lane.run(*args, on_failed=failed, **more)
+        if job in WRITING and (refused := self.model.why_read_only()) is not None:
+            job, args, more["offers"] = jobs.REFUSE, (refused,), {}
+        return lane.run(receiver, job, *args, on_failed=failed, **more)
 
     def close(self) -> None:
         """End all processes, without waiting for them."""

@@ -281,6 +281,8 @@ class MainWindow(QMainWindow):
             self.setWindowModified(False)
             return
         name = self.model.project.info.name or tr("Unnamed project")
+        if self.model.is_read_only:
+            name = tr("{name} (read only)", name=name)
         self.setWindowTitle(f"{name}[*] – Trisect")
         self.setWindowModified(self.model.is_modified)
 

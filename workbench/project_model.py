@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from enum import StrEnum
 from pathlib import Path
 
 from PySide6.QtCore import QObject, QTimer, Signal
@@ -11,7 +12,16 @@ from PySide6.QtGui import QUndoCommand, QUndoStack
 
 from core.errors import InputError
 from core.files.project.data import Done, Project, ProjectFile, new_project
-from core.files.project.folder import read_project, recoverable, remove_autosave, write_autosave, write_project
+from core.files.project.folder import (
+    can_be_saved,
+    create_project,
+    read_project,
+    recoverable,
+    remove_autosave,
+    write_autosave,
+    write_project,
+)
+from core.files.project.lock import ProjectLock, take_lock
 from core.messages import Message
 from workbench.step_state import StepState, step_states
 
@@ -20,6 +30,18 @@ CALIBRATIONS = {"camera": "camera", "planes": "fan"}
 
 AUTOSAVE_MS = 1000
 """An edit is on disk at most so long after it was made."""
+SAVE_MS = 10_000
+"""It is saved, as by hand, at most so long after it was made; what was measured is saved at once."""
+KEEP_S = 600.0
+"""What is saved by itself leaves a version in backups no more often than this."""
+
+
+class Access(StrEnum):
+    """How a project is opened: to change it, alone; the same, taken from whoever has it; or only to look at it."""
+
+    ALONE = "alone"
+    TAKE_OVER = "take over"
+    READ_ONLY = "read only"
 
 
 class Edit(QUndoCommand):
@@ -84,6 +106,8 @@ class ProjectModel(QObject):
         self._file = ProjectFile(new_project(""))
         self._saved: ProjectFile | None = None
         self._complaint = ""
+        self._lock: ProjectLock | None = None
+        self._access = Access.ALONE
         self._states_of: ProjectFile | None = None
         self._states: Mapping[str, StepState] = {}
         self._accepted: dict[tuple[str, str], Done] = {}
@@ -93,6 +117,10 @@ class ProjectModel(QObject):
         self._autosave.setSingleShot(True)
         self._autosave.setInterval(AUTOSAVE_MS)
         self._autosave.timeout.connect(self.autosave)
+        self._save = QTimer(self)
+        self._save.setSingleShot(True)
+        self._save.setInterval(SAVE_MS)
+        self._save.timeout.connect(self.save_by_itself)
 
     @property
     def project(self) -> Project:
@@ -131,6 +159,28 @@ class ProjectModel(QObject):
         """Whether project.json says something else."""
         return self.is_open and self._file != self._saved
 
+    @property
+    def is_read_only(self) -> bool:
+        """Whether the open project cannot be changed on the disk: it is somebody else's, gone, or write-protected."""
+        return self.folder is not None and (not can_be_saved(self.folder) or self.why_read_only() is not None)
+
+    def why_read_only(self) -> InputError | None:
+        """Why nothing of the open project may be changed on the disk; None where it may, as far as it can be."""
+        if self.folder is None:
+            return None
+        if self._access is Access.READ_ONLY:
+            return InputError(
+                Message("project.opened_read_only", "is open read only: nothing here is saved"),
+                where=self.folder,
+                todo=Message("advice.go_on_in_copy", "go on in a copy (File, Save a copy)"),
+            )
+        try:
+            if self._lock is not None:
+                self._lock.check()
+        except InputError as error:
+            return error
+        return None
+
     def create(self, folder: Path, project: Project) -> None:
         """Make a new project in `folder` and open it.
 
@@ -146,32 +196,44 @@ class ProjectModel(QObject):
                 todo=Message("project.choose_name", "choose another name, or open it"),
             )
         file = ProjectFile(project)
-        write_project(folder, file)
-        self._take(folder, file, saved=file)
+        create_project(folder, file)
+        self._take(folder, file, saved=file, access=Access.ALONE)
 
-    def open(self, path: Path, *, recover: bool = False, version: ProjectFile | None = None) -> None:
+    def open(
+        self,
+        path: Path,
+        *,
+        recover: bool = False,
+        version: ProjectFile | None = None,
+        access: Access = Access.ALONE,
+    ) -> None:
         """Open a project folder; with `recover`, its autosaved state; with `version`, that state, to be saved.
 
         Raises
         ------
+        ProjectInUse
+            If somebody has it open, unless `access` says that it is to be taken over, or only looked at.
         InputError
             If there is none, or it is damaged or of a newer program; neither matters with a `version`.
         """
         folder = path.parent if path.name == "project.json" else path
-        if version is not None:
-            self._take(folder, version, saved=None)
+        saved = None
+        if version is None:
+            version = saved = read_project(folder)
+        if saved is None:
+            self._take(folder, version, saved=None, access=access)
             self._autosave.start()
             return
-        saved = read_project(folder)
         rescued = recoverable(folder) if recover else None
-        self._take(folder, rescued or saved, saved=saved)
-        if not recover:
+        self._take(folder, rescued or version, saved=saved, access=access)
+        if access is not Access.READ_ONLY and not recover:
             remove_autosave(folder)
 
     def close(self) -> None:
         """Forget the project; save first if it is to be kept."""
         self._autosave.stop()
-        self._take(None, ProjectFile(new_project("")), saved=None)
+        self._save.stop()
+        self._take(None, ProjectFile(new_project("")), saved=None, access=Access.READ_ONLY)
 
     def edit(self, label: str, after: Project, merge_key: str = "") -> None:
         """Put `after` in force, undoable under the name `label`; nothing happens if it is the same."""
@@ -190,6 +252,7 @@ class ProjectModel(QObject):
         for step, result in new.items():
             self._remember(step, result)
         self._touched()
+        self.save_by_itself()
         self.results_changed.emit()
 
     def recording_begins(self, who: QObject) -> None:
@@ -210,25 +273,45 @@ class ProjectModel(QObject):
         InputError
             If it cannot be written.
         """
-        if self.folder is None:
-            return
-        self._autosave.stop()
-        write_project(self.folder, self._file)
-        remove_autosave(self.folder)
-        self._saved = self._file
+        self._write(keep_s=0.0)
         self.undo_stack.setClean()
-        self.modified.emit(False)
+
+    def save_by_itself(self) -> None:
+        """Save without being asked to; what keeps it from being saved is told once."""
+        if self.is_modified:
+            self._tell_once(lambda: self._write(keep_s=KEEP_S))
 
     def autosave(self) -> None:
         """Write the state beside project.json, for recovery after a crash; what was undone is not to be recovered."""
         self._autosave.stop()
+        self._tell_once(self._write_autosave)
+
+    def _write(self, keep_s: float) -> None:
         if self.folder is None:
             return
-        try:
+        self._autosave.stop()
+        self._save.stop()
+        if (refused := self.why_read_only()) is not None:
+            raise refused
+        write_project(self.folder, self._file, keep_s=keep_s)
+        remove_autosave(self.folder)
+        self._saved = self._file
+        self.modified.emit(False)
+
+    def _write_autosave(self) -> None:
+        if self.folder is None:
+            return
+        if (refused := self.why_read_only()) is not None:
             if self.is_modified:
-                write_autosave(self.folder, self._file)
-            else:
-                remove_autosave(self.folder)
+                raise refused
+        elif self.is_modified:
+            write_autosave(self.folder, self._file)
+        else:
+            remove_autosave(self.folder)
+
+    def _tell_once(self, write: Callable[[], None]) -> None:
+        try:
+            write()
             self._complaint = ""
         except InputError as error:
             if str(error) != self._complaint:  # said once, not at every edit
@@ -258,9 +341,17 @@ class ProjectModel(QObject):
     def _touched(self) -> None:
         if self.is_open:
             self._autosave.start()
+            if not self._save.isActive():  # not begun anew by each edit: it would wait for a pause
+                self._save.start()
             self.modified.emit(self.is_modified)
 
-    def _take(self, folder: Path | None, file: ProjectFile, saved: ProjectFile | None) -> None:
+    def _take(self, folder: Path | None, file: ProjectFile, saved: ProjectFile | None, access: Access) -> None:
+        lock = None
+        if folder is not None and access is not Access.READ_ONLY and can_be_saved(folder):
+            lock = take_lock(folder, take_over=access is Access.TAKE_OVER)
+        if self._lock is not None:
+            self._lock.release()
+        self._lock, self._access = lock, access
         self.folder, self._file, self._saved, self._complaint = folder, file, saved, ""
         self.undo_stack.clear()
         self._accepted.clear()

@@ -105,6 +105,22 @@ def make_folder(path: Path) -> Path:
     return path
 
 
+def make_inner_folder(folder: Path, name: str) -> Path:
+    """Make the folder `name` within `folder` as :func:`make_folder`; InputError if `folder` itself is gone."""
+    if not folder.is_dir():
+        raise vanished(folder)
+    return make_folder(folder / name)
+
+
+def vanished(folder: Path) -> InputError:
+    """The sentence for a project whose folder was moved, or is on a disk that was taken out."""
+    return InputError(
+        Message("project.vanished", "the project's folder is gone; none is made in its place"),
+        where=folder,
+        todo=Message("advice.bring_folder_back", "connect its disk or move it back, then try again"),
+    )
+
+
 def cannot_write(path: Path, error: OSError) -> InputError:
     """The sentence for a file or folder that could not be written."""
     what, todo = _REASONS.get(error.errno or 0, (plain(error.strerror or str(error)), ANOTHER_OUT))

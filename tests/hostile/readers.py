@@ -18,7 +18,7 @@ from core.files.exchange.ros_camera_info import read_camera_info
 from core.files.pictures import compression_grey, read_picture
 from core.files.plan.plan_file import read_plan, write_plan
 from core.files.project.data import ProjectFile, new_project
-from core.files.project.folder import read_project, write_project
+from core.files.project.folder import create_project, read_project
 from core.files.project.report_template import read_report_template
 from core.files.recording.features_file import read_poses
 from core.files.recording.import_plan import _taken_at
@@ -145,7 +145,7 @@ def good_files(folder: Path, recording: Path, results: Path) -> None:
     _tables(folder)
     _cameras(folder)
     (folder / "project").mkdir()
-    write_project(folder / "project", ProjectFile(new_project("a")))
+    create_project(folder / "project", ProjectFile(new_project("a")))
     mesh = read_mesh(folder / "mesh.ply")
     write_stl(folder / "part.stl", mesh)
     data = (folder / "cloud.ply").read_bytes()

@@ -160,7 +160,7 @@ def measured_project(finished_project_folder: Path, tmp_path: Path) -> Path:
 
 
 def _finish_project(folder: Path, pictures: Path) -> None:
-    from core.files.project.folder import project_from_set, stored_source, write_project
+    from core.files.project.folder import create_project, project_from_set, stored_source
     from core.pipeline.project.sample_project import finished_project
 
     recordings = Path(shutil.copytree(pictures, folder / "recordings"))
@@ -172,7 +172,7 @@ def _finish_project(folder: Path, pictures: Path) -> None:
         sources=replace(project.sources, **inside),
         options=replace(project.options, sigma_cut_mm=0.3),
     )
-    write_project(folder, finished_project(folder, project))
+    create_project(folder, finished_project(folder, project))
 
 
 # ---- nothing is left behind

@@ -15,7 +15,7 @@ import pytest
 from core.compiled import FOLDER
 from core.files.pictures import read_picture
 from core.files.project.data import new_project
-from core.files.project.folder import read_project, recoverable, write_project
+from core.files.project.folder import create_project, read_project, recoverable
 from core.files.recording.set_listing import scan_frames
 from tests.workbench.technician import Technician
 
@@ -101,7 +101,7 @@ def project(tmp_path: Path) -> Path:
     from core.files.project.data import ProjectFile
 
     folder = tmp_path / "project"
-    write_project(folder, ProjectFile(new_project("Crash")))
+    create_project(folder, ProjectFile(new_project("Crash")))
     return folder
 
 

@@ -9,9 +9,10 @@ import pytest
 
 from core.errors import InputError
 from core.files.project.data import Project, new_project
-from core.files.project.folder import read_project, recoverable
+from core.files.project.folder import backups, read_project, recoverable
 from core.files.project.keys import finished
-from workbench.project_model import ProjectModel
+from core.files.project.lock import LOCK, ProjectInUse
+from workbench.project_model import Access, ProjectModel
 from workbench.step_state import State, step_states
 
 
@@ -61,10 +62,11 @@ def test_results_are_facts_and_survive_an_undo(model: ProjectModel) -> None:
 
 def test_saving_keeps_project_and_results(model: ProjectModel) -> None:
     model.edit("rename", renamed(model.project, "Other"))
-    model.record("camera", finished("camera", model.project, model.results))
     before = model.is_modified
     model.save()
     assert (before, model.is_modified) == (True, False)
+    model.record("camera", finished("camera", model.project, model.results))
+    assert not model.is_modified  # what was measured is saved at once
     assert model.folder is not None
     stored = read_project(model.folder)
     assert stored.project == model.project
@@ -77,7 +79,7 @@ def test_an_edit_is_on_disk_soon_without_saving(model: ProjectModel, qtbot: Any)
     assert folder is not None
     qtbot.waitUntil(lambda: recoverable(folder) is not None, timeout=3000)
     again = ProjectModel()
-    again.open(folder, recover=True)
+    again.open(folder, recover=True, access=Access.TAKE_OVER)
     assert again.project.info.name == "Other"
     assert again.is_modified
     again.save()
@@ -90,7 +92,7 @@ def test_opening_without_recovery_forgets_the_autosave(model: ProjectModel) -> N
     folder = model.folder
     assert folder is not None
     again = ProjectModel()
-    again.open(folder)
+    again.open(folder, access=Access.TAKE_OVER)
     assert again.project.info.name == "Block"
     assert recoverable(folder) is None
 
@@ -110,6 +112,80 @@ def test_a_project_is_never_created_over_another(model: ProjectModel) -> None:
     assert model.folder is not None
     with pytest.raises(InputError, match="there is a project already"):
         ProjectModel().create(model.folder, new_project("x"))
+
+
+def test_a_project_that_is_open_elsewhere_can_be_looked_at_and_nothing_of_it_is_changed(model: ProjectModel) -> None:
+    folder, other = model.folder, ProjectModel()
+    assert folder is not None
+    model.edit("rename", renamed(model.project, "Mine"))
+    model.autosave()
+    with pytest.raises(ProjectInUse, match="is open elsewhere"):
+        other.open(folder)
+    assert not other.is_open
+    other.open(folder, access=Access.READ_ONLY)
+    other.edit("rename", renamed(other.project, "Theirs"))
+    told: list[InputError] = []
+    other.failed.connect(told.append)
+    other.autosave()
+    other.autosave()
+    assert [error.code for error in told] == ["project.opened_read_only"]
+    with pytest.raises(InputError, match="is open read only"):
+        other.save()
+    other.close()
+    left = recoverable(folder)
+    assert left is not None
+    assert left.project.info.name == "Mine"
+    model.save()
+    assert read_project(folder).project.info.name == "Mine"
+
+
+def test_who_loses_a_project_to_somebody_else_overwrites_nothing_and_is_told(model: ProjectModel) -> None:
+    folder, other = model.folder, ProjectModel()
+    assert folder is not None
+    other.open(folder, access=Access.TAKE_OVER)
+    other.edit("rename", renamed(other.project, "Theirs"))
+    other.save()
+    model.edit("rename", renamed(model.project, "Mine"))
+    with pytest.raises(InputError, match="was taken over by"):
+        model.save()
+    model.autosave()
+    assert model.is_read_only
+    assert model.project.info.name == "Mine"  # to be taken along into a copy
+    model.close()
+    other.save()
+    assert read_project(folder).project.info.name == "Theirs"
+    other.close()
+    assert not (folder / LOCK).exists()
+
+
+def test_a_project_whose_folder_is_gone_is_not_made_anew_and_can_be_saved_once_it_is_back(
+    model: ProjectModel, tmp_path: Path
+) -> None:
+    folder = model.folder
+    assert folder is not None
+    model.edit("rename", renamed(model.project, "Other"))
+    folder.rename(tmp_path / "away")
+    told: list[InputError] = []
+    model.failed.connect(told.append)
+    model.autosave()
+    assert [error.code for error in told] == ["project.vanished"]
+    with pytest.raises(InputError, match="none is made in its place"):
+        model.save()
+    assert not folder.exists()
+    (tmp_path / "away").rename(folder)
+    model.save()
+    assert read_project(folder).project.info.name == "Other"
+
+
+def test_edits_are_saved_by_themselves_and_the_version_before_is_kept_once(model: ProjectModel) -> None:
+    folder = model.folder
+    assert folder is not None
+    for name in ("A", "B", "C"):
+        model.edit("rename", renamed(model.project, name))
+        model.save_by_itself()
+        assert not model.is_modified
+        assert read_project(folder).project.info.name == name
+    assert [read_project(path).project.info.name for path in backups(folder)] == ["Block"]
 
 
 def test_the_result_of_an_accepted_calibration_comes_back_with_it(model: ProjectModel) -> None:

@@ -75,6 +75,8 @@ EXPORT_STUDY = Job("core.pipeline.steps.study_step:export_study")
 TYPE1_STUDY = Job("core.study.type1:type1_study")
 COMPILE_AHEAD = Job("core.pipeline.live.warm_up:stages")
 
+REFUSE = Job("core.errors:refuse")
+
 
 def resolve(job: Job) -> Any:
     """The function behind the name; imports its module."""

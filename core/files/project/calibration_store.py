@@ -21,7 +21,7 @@ from pydantic import ConfigDict, Field, RootModel
 from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.calibrate.results import CameraCalibration, FanCalibration
 from core.errors import InputError
-from core.files.atomic import make_folder, write_bytes
+from core.files.atomic import make_folder, make_inner_folder, write_bytes
 from core.files.complaints import checked_json
 from core.files.json_text import write_json
 from core.files.project.data import Accepted
@@ -102,7 +102,7 @@ def keep_camera(
         If it cannot be written.
     """
     id_ = camera_id(calibration.camera)
-    folder = make_folder(project_folder / FOLDER)
+    folder = make_inner_folder(project_folder, FOLDER)
     write_camera(_path(folder, "camera", id_), calibration)
     about = {
         **_counts([view.used for view in calibration.views]),
@@ -133,7 +133,7 @@ def keep_fan(
         If it cannot be written.
     """
     id_ = fan_id(calibration.fan)
-    folder = make_folder(project_folder / FOLDER)
+    folder = make_inner_folder(project_folder, FOLDER)
     path = _path(folder, "fan", id_)
     write_poses(path.with_suffix(".npz"), id_, poses)
     write_fan(path, calibration, camera)

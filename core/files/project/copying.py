@@ -9,10 +9,11 @@ from pathlib import Path
 from core.errors import InputError
 from core.files.atomic import cannot_write
 from core.files.project.folder import AUTOSAVE
+from core.files.project.lock import LOCK
 from core.messages import Message
 from core.progress import Progress, silent, steps
 
-_LEFT_BEHIND = (AUTOSAVE, ".new")
+_LEFT_BEHIND = (AUTOSAVE, LOCK, ".new")
 """What belongs to a program that is at work, or was killed."""
 
 

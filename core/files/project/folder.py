@@ -4,6 +4,7 @@ Layout::
 
     PROJECT/project.json            the project
     PROJECT/NAME.trisect            what a double click opens the project by; says nothing itself
+    PROJECT/.lock.json              who has the project open
     PROJECT/.autosave.json          changes that are not saved yet; there only while a project is open, or after a crash
     PROJECT/backups/                the last versions of project.json
     PROJECT/recordings/             raw frames, one folder for each recording
@@ -15,13 +16,14 @@ from __future__ import annotations
 
 import os
 import re
+import time
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from datetime import datetime
 from pathlib import Path
 
 from core.errors import InputError
-from core.files.atomic import ANOTHER_OUT, cannot_write, make_folder, write_bytes, write_text
+from core.files.atomic import ANOTHER_OUT, cannot_write, make_folder, vanished, write_bytes, write_text
 from core.files.project.data import Project, ProjectFile, ProjectInfo, Sources
 from core.files.project.json_form import project_text, read_project_text
 from core.files.recording.recording_set import CHECK, PARTS
@@ -72,16 +74,44 @@ def read_project(path: Path) -> ProjectFile:
     return read_project_text(file)
 
 
-def write_project(folder: Path, file: ProjectFile) -> None:
+def create_project(folder: Path, file: ProjectFile) -> None:
+    """Write a project into `folder`, which is made if it is not there; else as :func:`write_project`."""
+    try:
+        make_folder(folder)
+    except InputError as error:
+        raise _unsaved(folder, error) from error
+    _write(folder, file, keep_s=0.0)
+
+
+def write_project(folder: Path, file: ProjectFile, *, keep_s: float = 0.0) -> None:
     """Write project.json, whole or not at all; what it said before goes to backups. Left alone if it says the same.
 
-    `created` is kept from the version before, if `file` does not say; `saved` becomes now.
+    Parameters
+    ----------
+    folder
+        Where the project is. If nothing of it is there any more, its disk was taken out, or it was moved: nothing is
+        made in its place.
+    file
+        What is to be said. `created` is kept from the version before, if it does not say; `saved` becomes now.
+    keep_s
+        Keep the version before only if none was kept within so many seconds.
 
     Raises
     ------
     InputError
-        If nothing can be written there, or a value is not what it must be.
+        If the folder is gone, nothing can be written there, or a value is not what it must be.
     """
+    require_project_folder(folder)
+    _write(folder, file, keep_s)
+
+
+def require_project_folder(folder: Path) -> None:
+    """InputError if nothing of a project is in `folder`: no later step may make a hollow one there."""
+    if not any((folder / name).exists() for name in (PROJECT, AUTOSAVE, BACKUPS)):
+        raise vanished(folder)
+
+
+def _write(folder: Path, file: ProjectFile, keep_s: float) -> None:
     path = folder / PROJECT
     before = _readable(path)
     if before == file:
@@ -90,9 +120,8 @@ def write_project(folder: Path, file: ProjectFile) -> None:
     created = file.created or (before.created if before else None) or now
     text = project_text(replace(file, created=created, saved=now), path)
     try:
-        make_folder(folder)
         if path.exists():
-            _keep(folder / BACKUPS, path)
+            _keep(folder / BACKUPS, path, keep_s)
         write_text(path, text)
     except (InputError, OSError) as error:
         raise _unsaved(path, error) from error
@@ -113,7 +142,8 @@ def backups(folder: Path) -> tuple[Path, ...]:
 
 
 def write_autosave(folder: Path, file: ProjectFile) -> None:
-    """Write the state beside project.json, whole or not at all; InputError if it cannot be written."""
+    """Write the state beside project.json, whole or not at all; InputError as :func:`write_project`."""
+    require_project_folder(folder)
     path = folder / AUTOSAVE
     text = project_text(replace(file, saved=datetime.now().astimezone()), path)
     try:
@@ -239,16 +269,18 @@ def _unsaved(path: Path, error: InputError | OSError) -> InputError:
     return InputError(told.what, where=told.where, todo=todo)
 
 
-def _keep(folder: Path, path: Path) -> None:
+def _keep(folder: Path, path: Path, keep_s: float) -> None:
     """Copy project.json into the folder of its versions, and let go of the oldest ones."""
     data = path.read_bytes()
     make_folder(folder)
     numbered = _numbered(folder)
     newest = max(numbered, default=0)
+    if newest and 0 <= time.time() - numbered[newest].stat().st_mtime < keep_s:
+        return
     if newest and numbered[newest].read_bytes() == data:
         return  # kept by an attempt to save that failed afterwards
-    time = datetime.fromtimestamp(path.stat().st_mtime).astimezone()
-    copy = folder / f"project-{newest + 1:05d}-{time:%Y%m%d-%H%M%S}.json"
+    saved = datetime.fromtimestamp(path.stat().st_mtime).astimezone()
+    copy = folder / f"project-{newest + 1:05d}-{saved:%Y%m%d-%H%M%S}.json"
     write_bytes(copy, data, sync=False)
     for _, oldest in sorted({**numbered, newest + 1: copy}.items())[:-KEPT]:
         oldest.unlink(missing_ok=True)

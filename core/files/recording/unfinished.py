@@ -9,7 +9,7 @@ from typing import get_args
 
 from core.acquire.source import Step
 from core.errors import InputError
-from core.files.atomic import cannot_write, make_folder, write_text
+from core.files.atomic import cannot_write, make_inner_folder, write_text
 from core.files.reading import read_json
 from core.files.recording.set_listing import pictures_in
 
@@ -28,7 +28,7 @@ class Unfinished:
 
 def note_recording(project: Path, step: Step, folder: Path) -> None:
     """Note that `folder` is being recorded for `step`; InputError if nothing can be written there."""
-    make_folder((project / NOTE).parent)
+    make_inner_folder(project, NOTE.parent.name)
     write_text(project / NOTE, json.dumps({"step": step, "folder": folder.name}), sync=False)
 
 

@@ -10,11 +10,11 @@ from dataclasses import replace
 from pathlib import Path
 
 from core.errors import InputError
-from core.files.atomic import cannot_write, make_folder
+from core.files.atomic import cannot_write, make_folder, make_inner_folder
 from core.files.json_text import to_json
 from core.files.project.calibration_store import StoredCalibration, put_in_place, read_stored
 from core.files.project.data import Project
-from core.files.project.folder import results_folder
+from core.files.project.folder import RESULTS
 from core.files.project.results import ScanSummary
 from core.files.recording.recording_set import RecordingSet, require_scan
 from core.files.results.run_file import write_run
@@ -59,7 +59,7 @@ def measure_scan(
     """
     found = project_set(folder, project)
     require_scan(found)
-    results = results_folder(folder)
+    results = make_inner_folder(folder, RESULTS)
     with staged(results, _OF_A_SCAN) as beside:
         put_in_place(folder, project.accepted, beside)
         work = Workspace.open(found, beside, part_name(project))

@@ -9,7 +9,7 @@ from pathlib import Path
 from core.errors import InputError
 from core.files.atomic import cannot_write, make_folder, remove_leftovers
 from core.files.project.data import Accepted, Done, Project, ProjectFile
-from core.files.project.folder import project_from_set, write_project
+from core.files.project.folder import create_project, project_from_set
 from core.files.project.keys import finished
 from core.messages import Message, label
 from core.pipeline.project.calibration import (
@@ -49,7 +49,7 @@ def sample_project(folder: Path, progress: Progress = silent) -> Path:
     try:
         with tempfile.TemporaryDirectory(prefix=f".{folder.name}.", dir=folder.parent) as beside:
             made = make_folder(Path(beside) / "project")
-            write_project(made, finished_project(made, _described(project_from_set(pictures, "Sample")), progress))
+            create_project(made, finished_project(made, _described(project_from_set(pictures, "Sample")), progress))
             made.rename(folder)
     except OSError as error:
         raise cannot_write(folder, error) from error

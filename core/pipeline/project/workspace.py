@@ -8,8 +8,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from core.files.atomic import make_inner_folder
 from core.files.project.data import Project
-from core.files.project.folder import results_folder, source_folder
+from core.files.project.folder import RESULTS, source_folder
 from core.files.recording.recording_set import RecordingSet, gather_set
 from core.pipeline.steps.workspace import Workspace
 
@@ -35,4 +36,4 @@ def part_name(project: Project) -> str:
 
 def project_workspace(folder: Path, project: Project) -> Workspace:
     """The project's pictures and results, to be worked on; InputError as `project_set` and `Workspace.open` say."""
-    return Workspace.open(project_set(folder, project), results_folder(folder), part_name(project))
+    return Workspace.open(project_set(folder, project), make_inner_folder(folder, RESULTS), part_name(project))

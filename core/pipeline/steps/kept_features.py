@@ -19,7 +19,7 @@ import core
 from core.calibrate.camera.views import SeenViews
 from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.errors import InputError
-from core.files.atomic import make_folder
+from core.files.atomic import make_inner_folder
 from core.files.project.calibration_store import FOLDER
 from core.files.project.data import Project
 from core.files.reading import read_bytes
@@ -103,7 +103,7 @@ _CALIBRATION_ROOMS = ("acquire", "calibrate", "image", "model")
 def keep_views(project_folder: Path, project: Project, found: RecordingSet, seen: SeenViews) -> None:
     """Keep what the pictures of the camera's target showed; in a folder that cannot be written to, it is not kept."""
     with suppress(InputError):
-        make_folder(project_folder / FOLDER)
+        make_inner_folder(project_folder, FOLDER)
         write_views(_path(project_folder, "camera"), _views_key(project, found), seen)
 
 
@@ -119,7 +119,7 @@ def kept_views(project_folder: Path, project: Project, found: RecordingSet, prog
 def keep_poses(project_folder: Path, project: Project, found: RecordingSet, poses: Sequence[PoseFeatures]) -> None:
     """Keep what the pictures of the plate showed; in a folder that cannot be written to, it is not kept."""
     with suppress(InputError):
-        make_folder(project_folder / FOLDER)
+        make_inner_folder(project_folder, FOLDER)
         write_poses(_path(project_folder, "planes"), _poses_key(project, found), poses)
 
 

@@ -8,14 +8,14 @@ from pathlib import Path
 from typing import Literal, cast
 
 from core.errors import InputError
-from core.files.atomic import write_bytes, write_text
+from core.files.atomic import make_inner_folder, write_bytes, write_text
 from core.files.json_text import to_json
 from core.files.project.data import KeptStudy
 from core.files.project.folder import is_project, read_project, results_folder
 from core.files.reading import read_bytes, read_text
 from core.files.study.input import THICKNESS, crossed_of, readings_of
 from core.files.study.results import measured_in
-from core.files.study.study_file import Study, read_study, study_path, study_values, write_study
+from core.files.study.study_file import STUDIES, Study, read_study, study_path, study_values, write_study
 from core.files.study.table import table_of
 from core.messages import Message
 from core.pipeline.steps.acceptance_step import Artefact, read_positions
@@ -179,6 +179,7 @@ def _cell(value: object) -> str:
 def _kept(folder: Path, study: Study, table: str) -> KeptStudy:
     """Write a study into a folder called after what it says."""
     id_ = hashlib.sha256(to_json(study_values(study)).encode()).hexdigest()[:_ID]
+    make_inner_folder(folder, STUDIES)
     path = study_path(folder, id_)
     write_study(path.parent, study)
     write_text(path.with_name(TABLE), table)

@@ -5,13 +5,13 @@ import pytest
 from core.errors import Cancelled, InputError
 from core.files.project.copying import copy_project
 from core.files.project.data import ProjectFile, new_project
-from core.files.project.folder import read_project, write_autosave, write_project
+from core.files.project.folder import create_project, read_project, write_autosave
 
 
 @pytest.fixture
 def folder(tmp_path):
     place = tmp_path / "original"
-    write_project(place, ProjectFile(new_project("Block")))
+    create_project(place, ProjectFile(new_project("Block")))
     (place / "recordings" / "scan-1").mkdir(parents=True)
     (place / "recordings" / "scan-1" / "frame0000.png").write_bytes(b"picture")
     (place / "results" / ".new").mkdir(parents=True)
@@ -33,7 +33,7 @@ def test_the_copy_of_what_is_read_only_can_be_written_to(folder, tmp_path):
     (folder / "project.json").chmod(0o444)
     to = copy_project(folder, tmp_path / "copy")
     assert (to / "project.json").stat().st_mode & 0o200
-    write_project(to, ProjectFile(new_project("Changed")))
+    create_project(to, ProjectFile(new_project("Changed")))
 
 
 def test_a_place_that_is_taken_or_inside_the_project_is_refused(folder, tmp_path):

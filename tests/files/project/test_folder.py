@@ -15,6 +15,7 @@ from core.errors import InputError
 from core.files.project.data import Done, ProjectFile, ProjectInfo, Sources, new_project
 from core.files.project.folder import (
     backups,
+    create_project,
     is_project,
     project_from_set,
     read_autosave,
@@ -52,7 +53,7 @@ def names_in(folder):
 
 
 def test_a_project_opens_by_its_folder_and_by_its_file(tmp_path):
-    write_project(tmp_path / "deep" / "project", named("x"))
+    create_project(tmp_path / "deep" / "project", named("x"))
     folder = tmp_path / "deep" / "project"
     assert read_project(folder) == read_project(folder / "project.json") == named("x")
     assert is_project(folder)
@@ -78,20 +79,20 @@ def test_what_is_no_project(tmp_path):
 
 def test_a_project_knows_when_it_was_made_and_saved(tmp_path):
     begun = datetime.now(UTC)
-    write_project(tmp_path, named("x"))
+    create_project(tmp_path, named("x"))
     first = read_project(tmp_path)
     assert begun <= first.created == first.saved <= datetime.now(UTC)
-    write_project(tmp_path, named("y"))
+    create_project(tmp_path, named("y"))
     second = read_project(tmp_path)
     assert second.created == first.created
     assert second.saved > first.saved
 
 
 def test_saving_the_same_again_changes_no_byte(tmp_path):
-    write_project(tmp_path, named("x"))
-    write_project(tmp_path, named("y"))
+    create_project(tmp_path, named("x"))
+    create_project(tmp_path, named("y"))
     before = (tmp_path / "project.json").read_bytes()
-    write_project(tmp_path, named("y"))
+    create_project(tmp_path, named("y"))
     assert (tmp_path / "project.json").read_bytes() == before
     assert len(backups(tmp_path)) == 1
 
@@ -99,7 +100,7 @@ def test_saving_the_same_again_changes_no_byte(tmp_path):
 def test_the_last_five_versions_are_kept_byte_by_byte(tmp_path):
     versions = []
     for number in range(8):
-        write_project(tmp_path, named(f"version {number}"))
+        create_project(tmp_path, named(f"version {number}"))
         versions.append((tmp_path / "project.json").read_bytes())
     kept = backups(tmp_path)
     assert [path.read_bytes() for path in kept] == versions[-2:-7:-1]
@@ -110,19 +111,19 @@ def test_the_last_five_versions_are_kept_byte_by_byte(tmp_path):
 
 
 def test_versions_stay_in_order_beyond_any_number_of_digits_and_beside_other_files(tmp_path):
-    write_project(tmp_path, named("a"))
+    create_project(tmp_path, named("a"))
     (tmp_path / "backups").mkdir()
     (tmp_path / "backups" / "notes.txt").write_text("mine")
     (tmp_path / "backups" / "project-99999-20260101-120000.json").write_text("{}")
-    write_project(tmp_path, named("b"))
-    write_project(tmp_path, named("c"))
+    create_project(tmp_path, named("b"))
+    create_project(tmp_path, named("c"))
     assert [path.name[:14] for path in backups(tmp_path)] == ["project-100001", "project-100000", "project-99999-"]
     assert (tmp_path / "backups" / "notes.txt").read_text() == "mine"
 
 
 def test_a_damaged_project_is_kept_too_when_it_is_written_over(tmp_path):
     (tmp_path / "project.json").write_bytes(b"half a pro")
-    write_project(tmp_path, named("x"))
+    create_project(tmp_path, named("x"))
     assert [path.read_bytes() for path in backups(tmp_path)] == [b"half a pro"]
     assert read_project(tmp_path) == named("x")
 
@@ -145,15 +146,15 @@ Path.replace = killed
 """
 
 
-@pytest.mark.parametrize(("call", "name"), [("write_project", "project.json"), ("write_autosave", ".autosave.json")])
+@pytest.mark.parametrize(("call", "name"), [("create_project", "project.json"), ("write_autosave", ".autosave.json")])
 def test_killed_between_writing_and_renaming_the_old_state_is_whole(tmp_path, call, name):
     for version in ("older", "old"):
-        write_project(tmp_path, named(version))
+        create_project(tmp_path, named(version))
         write_autosave(tmp_path, named(version))
     program = textwrap.dedent(KILLED).format(name=name, call=call, folder=str(tmp_path))
     assert subprocess.run([sys.executable, "-c", program], check=False).returncode == -9
     assert read_project(tmp_path) == read_autosave(tmp_path) == named("old")
-    write_project(tmp_path, named("new"))  # and it can be saved afterwards
+    create_project(tmp_path, named("new"))  # and it can be saved afterwards
     assert read_project(tmp_path) == named("new")
     assert [read_project(path).project.info.name for path in backups(tmp_path)] == ["old", "older"]
 
@@ -170,11 +171,11 @@ def failing(number):
     (errno.EACCES, "there is no permission to write here; make the folder writable"),
     (errno.ENOSPC, "the disk is full; free some space"),
 ])  # fmt: skip
-@pytest.mark.parametrize("write", [write_project, write_autosave])
+@pytest.mark.parametrize("write", [create_project, write_autosave])
 def test_where_nothing_can_be_written_one_sentence_says_so_and_the_old_state_stays(
     tmp_path, monkeypatch, write, number, said
 ):
-    write_project(tmp_path, named("old"))
+    create_project(tmp_path, named("old"))
     with monkeypatch.context() as patch:
         patch.setattr(tempfile, "TemporaryFile", failing(number))
         patch.setattr("core.files.atomic.os.fsync", failing(number))
@@ -190,35 +191,35 @@ def test_where_nothing_can_be_written_one_sentence_says_so_and_the_old_state_sta
 
 def test_a_failed_save_does_not_push_versions_out(tmp_path, monkeypatch):
     for number in range(3):
-        write_project(tmp_path, named(str(number)))
+        create_project(tmp_path, named(str(number)))
     with monkeypatch.context() as patch:
         patch.setattr("core.files.project.folder.write_text", failing(errno.ENOSPC))
         for _ in range(6):
             with pytest.raises(InputError, match="the disk is full"):
-                write_project(tmp_path, named("new"))
-    write_project(tmp_path, named("new"))
+                create_project(tmp_path, named("new"))
+    create_project(tmp_path, named("new"))
     assert [read_project(path).project.info.name for path in backups(tmp_path)] == ["2", "1", "0"]
 
 
 def test_a_file_where_the_folder_should_be_is_named(tmp_path):
     (tmp_path / "file").write_text("x")
     with pytest.raises(InputError, match="a file stands where a folder is needed"):
-        write_project(tmp_path / "file" / "project", named("x"))
-    write_project(tmp_path, named("x"))
+        create_project(tmp_path / "file" / "project", named("x"))
+    create_project(tmp_path, named("x"))
     (tmp_path / "backups").write_text("x")
     with pytest.raises(InputError, match="a file stands where a folder is needed"):
-        write_project(tmp_path, named("y"))
+        create_project(tmp_path, named("y"))
 
 
 def test_autosaved_changes_can_be_recovered_until_they_are_saved(tmp_path):
     results = {"camera": Done("key", {"views": "1"})}
-    write_project(tmp_path, named("saved"))
+    create_project(tmp_path, named("saved"))
     assert read_autosave(tmp_path) is None
     assert recoverable(tmp_path) is None
     changed = ProjectFile(new_project("saved"), results)
     write_autosave(tmp_path, changed)
     assert recoverable(tmp_path) == read_autosave(tmp_path) == changed
-    write_project(tmp_path, changed)
+    create_project(tmp_path, changed)
     assert recoverable(tmp_path) is None  # also when the program died before it could remove the autosaved state
     remove_autosave(tmp_path)
     assert names_in(tmp_path) == sorted(["backups", "project.json", f"{tmp_path.name}.trisect"])
@@ -226,14 +227,15 @@ def test_autosaved_changes_can_be_recovered_until_they_are_saved(tmp_path):
 
 
 def test_an_autosave_older_than_the_project_is_none(tmp_path):
+    create_project(tmp_path, named("saved"))
     write_autosave(tmp_path, named("stale"))
-    write_project(tmp_path, named("saved later"))
+    create_project(tmp_path, named("saved later"))
     assert read_autosave(tmp_path) == named("stale")
     assert recoverable(tmp_path) is None
 
 
 def test_a_damaged_autosave_is_none_and_a_damaged_project_leaves_the_autosave(tmp_path):
-    write_project(tmp_path, named("saved"))
+    create_project(tmp_path, named("saved"))
     (tmp_path / ".autosave.json").write_bytes(b'{"schema')
     assert recoverable(tmp_path) is None
     with pytest.raises(InputError, match=r"\.autosave\.json"):
@@ -280,7 +282,7 @@ def test_a_recording_set_becomes_a_project_that_measures_it_where_it_lies(tmp_pa
     assert replace(project, info=ProjectInfo(), sources=Sources(), rig=new_project("").rig) == replace(
         new_project(""), info=ProjectInfo()
     )
-    write_project(tmp_path / "project", ProjectFile(project))
+    create_project(tmp_path / "project", ProjectFile(project))
     assert read_project(tmp_path / "project").project == project
 
 
@@ -290,8 +292,32 @@ def test_a_folder_without_rig_is_no_recording_set(tmp_path):
 
 
 def test_clocks_that_differ_do_not_hide_a_state_to_recover(tmp_path):
-    write_project(tmp_path, named("saved"))
+    create_project(tmp_path, named("saved"))
     write_autosave(tmp_path, named("changed"))
     later = datetime.now(UTC) + timedelta(seconds=60)
     os.utime(tmp_path / "project.json", (later.timestamp(), later.timestamp()))  # a copy has other times of its files
     assert recoverable(tmp_path) == named("changed")
+
+
+@pytest.mark.parametrize("write", [write_project, write_autosave])
+def test_a_project_whose_folder_is_gone_is_not_made_anew(tmp_path, write):
+    folder = tmp_path / "block"
+    create_project(folder, named("old"))
+    folder.rename(tmp_path / "elsewhere")
+    with pytest.raises(InputError, match="folder is gone; none is made in its place"):
+        write(folder, named("new"))
+    assert not folder.exists()
+    folder.mkdir()  # where a disk was: the empty place of it
+    with pytest.raises(InputError, match="folder is gone; none is made in its place"):
+        write(folder, named("new"))
+    assert not list(folder.iterdir())
+    write(tmp_path / "elsewhere", named("new"))
+
+
+def test_a_version_is_kept_no_sooner_than_asked_for(tmp_path):
+    create_project(tmp_path, named("a"))
+    for name in ("b", "c", "d"):
+        write_project(tmp_path, named(name), keep_s=600.0)
+    assert [read_project(path).project.info.name for path in backups(tmp_path)] == ["a"]
+    write_project(tmp_path, named("e"))
+    assert [read_project(path).project.info.name for path in backups(tmp_path)] == ["d", "a"]

@@ -24,7 +24,7 @@ from core.files.project.data import (
     Sources,
     new_project,
 )
-from core.files.project.folder import read_project, write_project
+from core.files.project.folder import create_project, read_project
 from core.files.project.json_form import SCHEMA, project_text
 from core.files.recording.options import Options
 from core.files.recording.rig import Channels, GaugeSpec, Rig, Validity, default_rig, read_rig, rig_to_toml
@@ -85,7 +85,7 @@ def full_file():
 
 
 def written(folder, file):
-    write_project(folder, file)
+    create_project(folder, file)
     return read_project(folder)
 
 
@@ -179,7 +179,7 @@ def test_a_time_without_zone_is_local(tmp_path):
 
 
 def spoilt(tmp_path, change):
-    write_project(tmp_path, full_file())
+    create_project(tmp_path, full_file())
     path = tmp_path / "project.json"
     tables = json.loads(path.read_text(encoding="utf-8"))
     change(tables)
@@ -237,7 +237,7 @@ def test_what_a_project_cannot_do_without_is_missed(tmp_path, key):
 
 
 def test_what_is_not_there_is_as_usual(tmp_path):
-    write_project(tmp_path, full_file())
+    create_project(tmp_path, full_file())
     path = tmp_path / "project.json"
     tables = json.loads(path.read_text())
     path.write_text(json.dumps({"schema_version": 1, "info": {"name": "x"}, "rig": tables["rig"]}))
@@ -251,7 +251,7 @@ def test_a_newer_project_is_refused_in_one_sentence_whatever_else_it_holds(tmp_p
 
 
 def test_an_older_project_is_brought_up_to_date_step_by_step(tmp_path, monkeypatch):
-    write_project(tmp_path, ProjectFile(new_project("x")))
+    create_project(tmp_path, ProjectFile(new_project("x")))
     path = tmp_path / "project.json"
     tables = json.loads(path.read_text())
     tables["info"]["title"] = tables["info"].pop("name")
@@ -270,7 +270,7 @@ def test_an_older_project_is_brought_up_to_date_step_by_step(tmp_path, monkeypat
 
 
 def test_a_project_from_before_reports_had_a_language_is_english_and_without_template(tmp_path):
-    write_project(tmp_path, ProjectFile(full_project()))
+    create_project(tmp_path, ProjectFile(full_project()))
     tables = json.loads((tmp_path / "project.json").read_text())
     tables["schema_version"] = 2
     del tables["report"]["language"], tables["report"]["template"]
@@ -294,7 +294,7 @@ def test_a_damaged_project_says_so(tmp_path, data, said):
 
 def test_what_could_not_be_read_again_is_not_written(tmp_path):
     good = ProjectFile(new_project("good"))
-    write_project(tmp_path, good)
+    create_project(tmp_path, good)
     wrong = [
         replace(good.project, rig=replace(default_rig(), lines=99)),
         replace(good.project, info=ProjectInfo(air_celsius=math.nan, part_celsius=-500.0)),
@@ -302,7 +302,7 @@ def test_what_could_not_be_read_again_is_not_written(tmp_path):
     ]
     for project in wrong:
         with pytest.raises(InputError, match=r"project\.json"):
-            write_project(tmp_path, ProjectFile(project))
+            create_project(tmp_path, ProjectFile(project))
     assert read_project(tmp_path) == good
 
 

@@ -5,7 +5,7 @@ import os
 import pytest
 
 from core.files.project.data import ProjectFile, new_project
-from core.files.project.folder import can_be_saved, read_project, rescues, write_autosave, write_project
+from core.files.project.folder import can_be_saved, create_project, read_project, rescues, write_autosave
 from core.files.project.json_form import NewerProject
 
 
@@ -15,7 +15,7 @@ def named(name):
 
 def damaged(folder, *names):
     for name in names:
-        write_project(folder, named(name))
+        create_project(folder, named(name))
     (folder / "project.json").write_bytes(b'{"schema_version": 1, "info": {"na')
     return folder
 

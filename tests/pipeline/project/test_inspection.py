@@ -10,7 +10,7 @@ import pytest
 from core.errors import InputError
 from core.files.plan.plan_file import write_plan
 from core.files.project.data import ProjectFile
-from core.files.project.folder import results_folder, write_project
+from core.files.project.folder import create_project, results_folder
 from core.files.results.mesh_export import write_stl
 from core.files.results.ply import read_mesh
 from core.inspect.plan.feature_kind import FeatureKind
@@ -158,7 +158,7 @@ def test_without_a_scan_it_is_one_sentence(done, tmp_path):
 
 def test_a_master_is_taken_from_a_project_as_it_was_measured(done, folder):
     project = replace(done.project, info=replace(done.project.info, part="Block 50", serial="no. 7"))
-    write_project(folder, ProjectFile(project))
+    create_project(folder, ProjectFile(project))
     thickness = done.summary.gauge
     master = measured_master(folder, 50.0, folder)
     assert (master.name, master.measured_mm) == ("Block 50 no. 7", thickness.thickness_mm)

@@ -11,7 +11,7 @@ import pytest
 from core.cli import studying
 from core.errors import InputError
 from core.files.project.data import ProjectFile, Repeat
-from core.files.project.folder import write_project
+from core.files.project.folder import create_project
 from core.files.study.study_file import study_path, study_values, write_study
 from core.pipeline.project.report import project_content
 from core.pipeline.steps.study_step import (
@@ -81,17 +81,17 @@ def test_rows_come_from_other_projects(done, tmp_path):
     folder = tmp_path / "copy"
     shutil.copytree(done.folder, folder)
     info = replace(done.project.info, part="Block", serial="no; 7", operator="Ada", name="left below")
-    write_project(folder, ProjectFile(replace(done.project, info=info)))
+    create_project(folder, ProjectFile(replace(done.project, info=info)))
     thickness = done.summary.gauge.thickness_mm
     assert project_rows("grr", folder, "plane", 0, 0, 0) == f"no 7;Ada;{thickness!r}\n"
     repeats = tuple(Repeat("scan", 50 + 0.25 * n, 0.02, 2.0, "c", datetime(2026, 1, 2, tzinfo=UTC)) for n in range(2))
-    write_project(folder, ProjectFile(replace(done.project, info=info, repeats=repeats)))
+    create_project(folder, ProjectFile(replace(done.project, info=info, repeats=repeats)))
     assert project_rows("grr", folder, "plane", 0, 0, 0) == "no 7;Ada;50.0\nno 7;Ada;50.25\n"
     quantity, position, flatness, _, u = project_rows("acceptance", folder, "plane", 0.0, 0.0002, 0).strip().split(";")
     assert (quantity, position, u) == ("flatness", "left below", "0.0002") and 0 < float(flatness) < 2
     with pytest.raises(InputError, match="no project"):
         project_rows("grr", tmp_path, "plane", 0, 0, 0)
-    write_project(folder, ProjectFile(replace(done.project, info=replace(info, operator=""))))
+    create_project(folder, ProjectFile(replace(done.project, info=replace(info, operator=""))))
     with pytest.raises(InputError, match="no operator"):
         project_rows("grr", folder, "plane", 0, 0, 0)
 

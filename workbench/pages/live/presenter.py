@@ -246,6 +246,9 @@ class LivePresenter(QObject):
         """Open the source and go; if another page's recording runs, ask first (`other_running`)."""
         if self.running or self.model.folder is None or self.cannot_start():
             return
+        if (refused := self.model.why_read_only()) is not None:
+            self.bench.notices.failed(refused)
+            return
         other = self.bench.live.current
         if other is not None:
             if not stop_other:

@@ -15,12 +15,13 @@ from core.files.project.data import Project, ProjectFile, new_project
 from core.files.project.folder import OPENER, can_be_saved, is_project, project_from_set, read_project, rescues
 from core.files.recording.unfinished import Unfinished, forget_recording, unfinished_recording
 from workbench.bench import Bench
-from workbench.language import tr
+from workbench.language import text_of, tr
 from workbench.pages.project.copying import ProjectCopy
 from workbench.pages.project.import_dialog import ImportDialog
 from workbench.pages.project.sample import SampleProject
-from workbench.pages.project.states import wanted_state
+from workbench.pages.project.states import Wanted, wanted_access, wanted_state
 from workbench.pages.sources import put_source
+from workbench.project_model import Access
 from workbench.views import ask
 
 PROJECT, BACKUPS, SET = "project.json", "backups", "rig.toml"
@@ -110,13 +111,16 @@ class ProjectActions(QObject):
         folder = (path.parent if path.name == PROJECT else path).resolve()
         if folder == self.model.folder:
             return
-        try:
-            wanted = wanted_state(self._window, folder)
+        access = wanted_access(self._window, folder)
+        if access is None:
+            return
+        try:  # what somebody else has not saved yet is not to be recovered
+            wanted = Wanted() if access is Access.READ_ONLY else wanted_state(self._window, folder)
         except InputError as error:
             self.bench.notices.failed(error)
             return
         if wanted is not None:
-            self._open(folder, wanted.version, recover=wanted.recover)
+            self._open(folder, wanted.version, recover=wanted.recover, access=access)
 
     def open_version(self, path: Path) -> None:
         """Open a project as it was in one of its backups; saving makes that the present one."""
@@ -126,7 +130,10 @@ class ProjectActions(QObject):
             self.bench.notices.failed(error)
             return
         text = self.tr("This is an earlier version; once it is saved, the present one is among the backups.")
-        self._open(path.parent.parent, version, then=lambda: self.bench.notices.info(text))
+        folder = path.parent.parent
+        access = Access.ALONE if folder == self.model.folder else wanted_access(self._window, folder)
+        if access is not None:
+            self._open(folder, version, access=access, then=lambda: self.bench.notices.info(text))
 
     def open_set(self, folder: Path) -> None:
         """Make a project that measures a recording set where it lies."""
@@ -234,20 +241,23 @@ class ProjectActions(QObject):
         version: ProjectFile | None = None,
         *,
         recover: bool = False,
+        access: Access = Access.ALONE,
         then: Callable[[], object] = lambda: None,
     ) -> None:
         """Open a project, the one that is open being closed before, `then` go on."""
 
         def open_() -> None:
             try:
-                self.model.open(folder, recover=recover, version=version)
+                self.model.open(folder, recover=recover, version=version, access=access)
             except InputError as error:
                 self.bench.notices.failed(error)
                 return
             self.bench.settings.remember(folder)
             if not can_be_saved(folder):
                 self.copy.offer()
-            if (unfinished := unfinished_recording(folder)) is not None:
+            if (refused := self.model.why_read_only()) is not None:
+                self.bench.notices.warning(text_of(refused))
+            elif (unfinished := unfinished_recording(folder)) is not None:
                 self._offer(folder, unfinished)
             then()
 

@@ -8,7 +8,6 @@ from pathlib import Path
 from PySide6.QtCore import QObject
 from PySide6.QtWidgets import QWidget
 
-from core.files.project.folder import can_be_saved
 from workbench.bench import Bench
 from workbench.language import tr
 from workbench.views import ask
@@ -58,7 +57,7 @@ class ProjectCopy(QObject):
         answer = ask.ask_name_and_folder(
             self._window, self.tr("Save a copy"), name, self._bench.settings.projects_folder
         )
-        if answer is None or (can_be_saved(folder) and not self._save()):
+        if answer is None or (not self._model.is_read_only and not self._save()):
             return
         to = answer[1] / ask.file_name(answer[0])
         self._bench.run_long(
@@ -80,7 +79,7 @@ class ProjectCopy(QObject):
         def go_on() -> None:
             self._open_copy(copy, state, then=lambda: self._bench.notices.info(text))
 
-        if can_be_saved(folder):
+        if not self._model.is_read_only:
             self._leave(go_on)
         else:
             self._model.close()  # what was changed goes along

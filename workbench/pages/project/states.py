@@ -11,7 +11,9 @@ from core.errors import InputError
 from core.files.project.data import ProjectFile
 from core.files.project.folder import Version, read_project, recoverable, rescues
 from core.files.project.json_form import NewerProject
+from core.files.project.lock import held_by
 from workbench.language import tr
+from workbench.project_model import Access
 from workbench.views import ask
 
 
@@ -21,6 +23,24 @@ class Wanted:
 
     recover: bool = False
     version: ProjectFile | None = None
+
+
+def wanted_access(parent: QWidget, folder: Path) -> Access | None:
+    """How to open the project in `folder`; None if the user does not want it. Asks where somebody has it open."""
+    holder = held_by(folder)
+    if holder is None:
+        return Access.ALONE
+    text = tr(
+        "{name} is open elsewhere: by {owner} on {host} since {time}. Whoever takes it over has it alone: what is "
+        "changed over there from then on is not saved.",
+        name=folder.name,
+        owner=holder.owner,
+        host=holder.host,
+        time=holder.since.astimezone().strftime("%Y-%m-%d %H:%M"),
+    )
+    answers = [tr("Open read only"), tr("Take over"), tr("Do not open")]
+    chosen = ask.ask(parent, tr("Project in use"), text, answers)
+    return (Access.READ_ONLY, Access.TAKE_OVER, None)[chosen]
 
 
 def wanted_state(parent: QWidget, folder: Path) -> Wanted | None:

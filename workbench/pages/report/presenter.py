@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 from core.files.project.data import Project
-from core.files.project.folder import can_be_saved
 from core.files.project.keys import changed, finished, rests_on
 from core.files.results.export_list import EXPORTS
 from core.report.template import SECTIONS
@@ -152,7 +151,7 @@ class ReportPresenter(StepPresenter):
     @property
     def read_only(self) -> bool:
         """Whether the project cannot be written to: then its report can be exported, but not kept with it."""
-        return self.model.folder is not None and not can_be_saved(self.model.folder)
+        return self.model.is_read_only
 
     def why_not_make(self) -> str:
         """Why the report cannot be made now, or ""."""

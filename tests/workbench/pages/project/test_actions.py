@@ -13,7 +13,8 @@ from PySide6.QtWidgets import QLineEdit, QWidget
 
 from core.errors import InputError
 from core.files.project.data import ProjectFile, new_project
-from core.files.project.folder import read_project, recoverable, write_autosave, write_project
+from core.files.project.folder import create_project, read_project, recoverable, write_autosave
+from core.files.project.lock import take_lock
 from tests.workbench.hand_lane import HandLane
 from workbench.bench import Bench
 from workbench.pages.project.actions import ProjectActions
@@ -73,7 +74,7 @@ def named(name: str) -> ProjectFile:
 
 def project(folder: Path, *names: str) -> Path:
     for name in names or ("Block",):
-        write_project(folder, named(name))
+        create_project(folder, named(name))
     return folder
 
 
@@ -502,3 +503,40 @@ def test_trying_the_simulated_rig_makes_a_project_of_its_own_each_time(projects:
     assert first is not None
     assert projects.model.folder == first.parent / "Simulated rig 2"
     assert shown == ["camera", "camera"]
+
+
+# ---- open elsewhere
+
+
+@pytest.mark.parametrize(
+    ("answer", "is_open", "is_read_only"),
+    [("Open read only", True, True), ("Take over", True, False), ("Do not open", False, False)],
+)
+def test_a_project_that_is_open_elsewhere_is_asked_about(
+    projects: ProjectActions, asked: Asked, tmp_path: Path, answer: str, is_open: bool, is_read_only: bool
+) -> None:
+    folder = project(tmp_path / "block")
+    elsewhere = take_lock(folder)
+    write_autosave(folder, named("not saved over there"))
+    asked.answer = answer
+    projects.open_project(folder)
+    text, answers = asked.questions[0]
+    assert f"block is open elsewhere: by {elsewhere.holder.owner} on {elsewhere.holder.host} since 20" in text
+    assert answers == ["Open read only", "Take over", "Do not open"]
+    # what is not saved over there may be recovered by whoever takes it over, and by nobody else
+    assert len(asked.questions) == (2 if answer == "Take over" else 1)
+    if answer != "Take over":
+        assert (projects.model.is_open, projects.model.is_read_only) == (is_open, is_read_only)
+        elsewhere.check()
+
+
+def test_nothing_is_measured_or_recorded_in_a_project_that_is_open_elsewhere(
+    projects: ProjectActions, asked: Asked, tmp_path: Path
+) -> None:
+    folder = project(tmp_path / "block")
+    take_lock(folder)
+    asked.answer = "Open read only"
+    projects.open_project(folder)
+    lane = cast(HandLane, projects.bench.measuring)
+    projects.bench.run_long(projects, jobs.MEASURE_SCAN, folder, label="scan", on_done=lambda _: None)
+    assert lane.waiting[-1][1] == jobs.REFUSE

@@ -11,7 +11,7 @@ from PySide6.QtGui import QDragEnterEvent, QDropEvent
 from PySide6.QtWidgets import QApplication, QWidget
 
 from core.files.project.data import ProjectFile, new_project
-from core.files.project.folder import write_project
+from core.files.project.folder import create_project
 from tests.workbench.technician import Technician
 from workbench.app import _after_start
 from workbench.main_window import MainWindow
@@ -19,7 +19,7 @@ from workbench.main_window import MainWindow
 
 @pytest.fixture
 def project(tmp_path: Path) -> Path:
-    write_project(tmp_path / "block", ProjectFile(new_project("Block")))
+    create_project(tmp_path / "block", ProjectFile(new_project("Block")))
     return tmp_path / "block"
 
 
@@ -46,7 +46,7 @@ def test_a_project_is_dropped_on_the_welcome_page(
 def test_a_project_dropped_on_a_page_that_takes_folders_is_opened_all_the_same(
     technician: Technician, project: Path, tmp_path: Path
 ) -> None:
-    write_project(tmp_path / "first", ProjectFile(new_project("First")))
+    create_project(tmp_path / "first", ProjectFile(new_project("First")))
     technician.window.projects.open_project(tmp_path / "first")
     technician.window.go_to("planes")
     technician.idle()

@@ -16,7 +16,7 @@ import pytest
 
 from core.errors import InputError
 from core.files.project.data import ProjectFile, new_project
-from core.files.project.folder import put_opener, write_project
+from core.files.project.folder import create_project, put_opener
 from workbench import app
 from workbench.bench import Bench
 from workbench.pages.project import double_click
@@ -124,11 +124,11 @@ def test_every_project_has_one_file_to_click_on_and_it_opens_the_project(
     hand_bench: Bench, tmp_path: Path, qtbot: Any
 ) -> None:
     folder = tmp_path / "Block 50"
-    write_project(folder, ProjectFile(new_project("Block 50")))
+    create_project(folder, ProjectFile(new_project("Block 50")))
     opener = folder / "Block 50.trisect"
     assert opener.exists()
     opener.rename(folder / "renamed.trisect")
-    write_project(folder, ProjectFile(new_project("Block 51")))
+    create_project(folder, ProjectFile(new_project("Block 51")))
     put_opener(folder)
     assert [path.name for path in folder.glob("*.trisect")] == ["renamed.trisect"]
     from PySide6.QtWidgets import QWidget

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from core.files.project.data import ProjectFile, new_project
-from core.files.project.folder import write_project
+from core.files.project.folder import create_project
 from tests.workbench.technician import Technician
 from workbench.pages.project.import_dialog import ImportDialog
 from workbench.pages.sources import folder_of
@@ -39,7 +39,7 @@ def cells(dialog: ImportDialog) -> list[tuple[str, ...]]:
 def test_what_was_understood_is_shown_before_the_project_measures_it(
     technician: Technician, shots: Path, tmp_path: Path
 ) -> None:
-    write_project(tmp_path / "block", ProjectFile(new_project("Block")))
+    create_project(tmp_path / "block", ProjectFile(new_project("Block")))
     technician.window.projects.open_project(tmp_path / "block")
     dialog = dialog_of(technician)
     assert not dialog.do_import.isEnabled()

@@ -11,7 +11,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QWidget
 
 from core.files.project.data import ProjectFile, new_project
-from core.files.project.folder import write_project
+from core.files.project.folder import create_project
 from tests.workbench.hand_lane import HandLane
 from workbench.bench import Bench
 from workbench.pages.project.actions import ProjectActions
@@ -40,7 +40,7 @@ def listed(page: WelcomePage) -> list[Path]:
 
 def with_recent(page: WelcomePage, *folders: Path) -> None:
     for folder in folders:
-        write_project(folder, ProjectFile(new_project(folder.name)))
+        create_project(folder, ProjectFile(new_project(folder.name)))
         page._projects.bench.settings.remember(folder)
     page._refreshing.at_once()
 
@@ -111,7 +111,7 @@ def test_every_link_leads_somewhere(
     monkeypatch.setattr(ask, "ask_name_and_folder", lambda *_: ("Mine", tmp_path))
     click(qtbot, page.new)
     assert model.folder == tmp_path / "Mine"
-    write_project(tmp_path / "other", ProjectFile(new_project("Other")))
+    create_project(tmp_path / "other", ProjectFile(new_project("Other")))
     monkeypatch.setattr(ask, "choose_folder", lambda *_: tmp_path / "other")
     click(qtbot, page.open)
     assert model.project.info.name == "Other"

@@ -1,0 +1,217 @@
+"""One program at a time changes a project: a file in its folder says who has it open, where, and since when.
+
+While the program runs, the system holds the file for it (`flock`), and lets go even if the program is killed: so what a
+crash leaves behind is told from what is in use. Another computer's hold cannot be told so, nor can any on Windows:
+there, whoever opens the project decides.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import getpass
+import os
+import platform
+import secrets
+import sys
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+from typing import Annotated
+
+from pydantic import ConfigDict, Field, RootModel
+
+from core.errors import InputError
+from core.files.atomic import cannot_write, vanished
+from core.files.complaints import checked_json
+from core.files.json_text import to_json
+from core.files.reading import read_json
+from core.files.tables import A_TIME, Time
+from core.messages import Message
+
+LOCK = ".lock.json"
+
+
+@dataclass(frozen=True, slots=True)
+class Holder:
+    """Who has a project open: the user's and the computer's name, since when; `key` is another one each time."""
+
+    owner: str
+    host: str
+    since: Annotated[Time, Field(description=A_TIME)]
+    key: str
+    __pydantic_config__ = ConfigDict(extra="forbid", strict=True)
+
+
+class _LockFile(RootModel[Holder]):
+    pass
+
+
+class ProjectInUse(InputError):
+    """Somebody has the project open."""
+
+    def __init__(self, holder: Holder, folder: Path) -> None:
+        self.holder = holder
+        super().__init__(
+            Message(
+                "project.in_use",
+                "is open elsewhere, by {owner} on {host} since {since}",
+                owner=holder.owner,
+                host=holder.host,
+                since=f"{holder.since.astimezone():%Y-%m-%d %H:%M}",
+            ),
+            where=folder,
+            todo=Message("advice.read_only_or_take_over", "open it read only, or take it over"),
+        )
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return type(self), (self.holder, Path(str(self.where)))
+
+
+class ProjectLock:
+    """A project that is ours to change, until `release`, or until somebody takes it over."""
+
+    def __init__(self, folder: Path, holder: Holder, handle: int) -> None:
+        self.folder, self.holder, self._handle = folder, holder, handle
+
+    def check(self) -> None:
+        """InputError if the project is no longer ours: somebody has taken it over, or its folder is gone."""
+        holder = read_holder(self.folder)
+        if holder is None:
+            raise vanished(self.folder)
+        if holder.key != self.holder.key:
+            raise InputError(
+                Message(
+                    "project.taken_over",
+                    "was taken over by {owner} on {host} at {since}; what is changed here is not saved",
+                    owner=holder.owner,
+                    host=holder.host,
+                    since=f"{holder.since.astimezone():%Y-%m-%d %H:%M}",
+                ),
+                where=self.folder,
+                todo=Message("advice.go_on_in_copy", "go on in a copy (File, Save a copy)"),
+            )
+
+    def release(self) -> None:
+        """Let others change the project."""
+        holder = read_holder(self.folder)
+        if holder is not None and holder.key == self.holder.key:
+            with contextlib.suppress(OSError):
+                (self.folder / LOCK).unlink()
+        if self._handle >= 0:
+            os.close(self._handle)
+            self._handle = -1
+
+
+def user_name() -> str:
+    """The name the user is logged in by; "?" where there is none."""
+    try:
+        return getpass.getuser()
+    except (KeyError, OSError):  # a number without a name, as in some containers
+        return "?"
+
+
+def read_holder(folder: Path) -> Holder | None:
+    """Whom the file says; None if there is none, or none that can be read."""
+    try:
+        return checked_json(_LockFile, read_json(folder / LOCK), folder / LOCK).root
+    except InputError:
+        return None
+
+
+def held_by(folder: Path) -> Holder | None:
+    """Who has the project open; None if nobody has, as far as can be told."""
+    holder = read_holder(folder)
+    if holder is None or (holder.host == platform.node() and _is_left_behind(folder / LOCK)):
+        return None
+    return holder
+
+
+def take_lock(folder: Path, *, take_over: bool = False) -> ProjectLock:
+    """Make a project ours to change, whoever has it with `take_over`.
+
+    Raises
+    ------
+    ProjectInUse
+        If somebody has it open, and `take_over` is not asked for.
+    InputError
+        If nothing can be written there.
+    """
+    path = folder / LOCK
+    holder = Holder(user_name(), platform.node(), datetime.now().astimezone(), secrets.token_hex(8))
+    beside = path.with_name(f".{LOCK}.{holder.key[:8]}.part")
+    try:
+        handle = _write_held(beside, holder)
+    except OSError as error:
+        raise cannot_write(path, error) from error
+    try:
+        before = held_by(folder)
+        if before is not None and not take_over:
+            raise ProjectInUse(before, folder)
+        if take_over or path.exists():
+            beside.replace(path)
+        else:
+            _put_if_none(beside, path)
+        now = read_holder(folder)
+        if now is not None and now.key != holder.key:
+            raise ProjectInUse(now, folder)  # somebody was as fast
+    except BaseException as error:
+        if handle >= 0:
+            os.close(handle)
+        with contextlib.suppress(OSError):
+            beside.unlink(missing_ok=True)
+        if isinstance(error, FileExistsError) and (now := read_holder(folder)) is not None:
+            raise ProjectInUse(now, folder) from error  # somebody was faster
+        if isinstance(error, OSError):
+            raise cannot_write(path, error) from error
+        raise
+    return ProjectLock(folder, holder, handle)
+
+
+def _write_held(path: Path, holder: Holder) -> int:
+    """Write the file and hold it; the open file."""
+    handle = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o644)
+    text = to_json({"owner": holder.owner, "host": holder.host, "since": holder.since.isoformat(), "key": holder.key})
+    try:
+        os.write(handle, text.encode())
+        if sys.platform == "win32":
+            os.close(handle)  # a file that is open there cannot be replaced
+            return -1
+        import fcntl
+
+        with contextlib.suppress(OSError):  # a disk of the network that cannot lock
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BaseException:
+        os.close(handle)
+        raise
+    return handle
+
+
+def _put_if_none(beside: Path, path: Path) -> None:
+    """Rename, unless there is one by now; on a disk without hard links it may come a moment too late to tell."""
+    try:
+        os.link(beside, path)
+    except FileExistsError:
+        raise
+    except OSError:
+        beside.replace(path)
+    else:
+        beside.unlink()
+
+
+def _is_left_behind(path: Path) -> bool:
+    """Whether nobody on this computer holds the file any longer."""
+    if sys.platform == "win32":
+        return False
+    import fcntl
+
+    try:
+        handle = os.open(path, os.O_RDONLY)
+    except OSError:
+        return True
+    try:
+        fcntl.flock(handle, fcntl.LOCK_SH | fcntl.LOCK_NB)
+    except OSError:
+        return False  # held, or on a disk that cannot lock
+    finally:
+        os.close(handle)
+    return True

@@ -1,0 +1,113 @@
+"""A project is changed by one program at a time, and who has it is told."""
+
+from __future__ import annotations
+
+import json
+import os
+import pickle
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from core.errors import InputError
+from core.files.project.lock import LOCK, ProjectInUse, held_by, take_lock, user_name
+
+HOLD = """
+import sys, time
+from pathlib import Path
+from core.files.project.lock import take_lock
+lock = take_lock(Path(sys.argv[1]))
+print("held", flush=True)
+time.sleep(60)
+"""
+
+
+def test_who_opens_second_is_told_who_has_the_project_where_and_since_when(tmp_path: Path) -> None:
+    lock = take_lock(tmp_path)
+    with pytest.raises(ProjectInUse, match=r"is open elsewhere, by .+ on .+ since 20") as told:
+        take_lock(tmp_path)
+    assert told.value.holder == lock.holder
+    assert lock.holder.owner == user_name()
+    again = pickle.loads(pickle.dumps(told.value))
+    assert (again.holder, str(again)) == (told.value.holder, str(told.value))
+    lock.release()
+    assert held_by(tmp_path) is None
+    assert not list(tmp_path.iterdir())
+    take_lock(tmp_path).release()
+
+
+def test_who_takes_over_has_it_and_the_first_one_learns_of_it_and_does_not_let_go_for_the_second(
+    tmp_path: Path,
+) -> None:
+    first = take_lock(tmp_path)
+    second = take_lock(tmp_path, take_over=True)
+    with pytest.raises(InputError, match=r"was taken over by .* what is changed here is not saved"):
+        first.check()
+    first.release()
+    second.check()
+    assert held_by(tmp_path) == second.holder
+    second.release()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there, whoever opens the project decides")
+def test_a_killed_program_holds_nothing(tmp_path: Path) -> None:
+    with subprocess.Popen([sys.executable, "-c", HOLD, str(tmp_path)], stdout=subprocess.PIPE, text=True) as program:
+        assert program.stdout is not None
+        assert program.stdout.readline() == "held\n"
+        assert held_by(tmp_path) is not None
+        program.kill()
+        program.wait()
+    assert (tmp_path / LOCK).exists()
+    assert held_by(tmp_path) is None
+    take_lock(tmp_path).release()
+
+
+def test_another_computers_hold_stays_until_somebody_takes_over(tmp_path: Path) -> None:
+    there = {"owner": "anna", "host": "bench-2", "since": "2026-11-23T09:12:00+01:00", "key": "aa"}
+    (tmp_path / LOCK).write_text(json.dumps(there))
+    with pytest.raises(ProjectInUse, match="by anna on bench-2 since 2026-11-23"):
+        take_lock(tmp_path)
+    take_lock(tmp_path, take_over=True).release()
+
+
+@pytest.mark.parametrize(
+    "text", ["", "{", "[]", '{"owner": 3}', '{"owner": "a", "host": "b", "since": "x", "key": "k"}']
+)
+def test_a_lock_that_says_nothing_holds_nothing(tmp_path: Path, text: str) -> None:
+    (tmp_path / LOCK).write_text(text)
+    take_lock(tmp_path).release()
+
+
+def test_a_project_whose_folder_is_gone_is_no_longer_ours(tmp_path: Path) -> None:
+    folder = tmp_path / "block"
+    folder.mkdir()
+    lock = take_lock(folder)
+    (folder / LOCK).unlink()
+    with pytest.raises(InputError, match="folder is gone; none is made in its place"):
+        lock.check()
+    lock.release()
+
+
+def test_of_many_who_open_at_once_one_has_it(tmp_path: Path) -> None:
+    start = time.time() + 1.5
+    code = f"""
+import time
+from pathlib import Path
+from core.files.project.lock import ProjectInUse, take_lock
+time.sleep(max(0.0, {start} - time.time()))
+try:
+    take_lock(Path({str(tmp_path)!r}))
+    print("mine", flush=True)
+except ProjectInUse:
+    print("in use", flush=True)
+time.sleep(1.0)
+"""
+    environment = os.environ | {"OPENBLAS_NUM_THREADS": "1"}
+    programs = [
+        subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True, env=environment)
+        for _ in range(4)
+    ]
+    assert sorted(program.communicate()[0] for program in programs) == ["in use\n"] * 3 + ["mine\n"]
