@@ -69,6 +69,6 @@ class StageTimes:
             self._seconds[name] = self._seconds.get(name, 0.0) + seconds
 
 
-def stage(times: StageTimes | None, name: str) -> AbstractContextManager[None]:
-    """Book a stage with `times.stage(name)`; nothing where there are no `times`."""
-    return nullcontext() if times is None else times.stage(name)
+def stage(times: Progress | None, name: str) -> AbstractContextManager[None]:
+    """Book a stage with `times.stage(name)`; nothing where there are none, or `times` is another kind of progress."""
+    return times.stage(name) if isinstance(times, StageTimes) else nullcontext()

@@ -90,11 +90,16 @@ def build_report(content: ReportContent, progress: Progress = silent) -> bytes:
     for step_limits in LIMITS:
         progress(step, total - 2, total)
         limits = replace(step_limits, picture_scale=step_limits.picture_scale * shorter)
-        pages, _ = _typeset(look, content, pictures, limits, 0)
-        if pages <= most_pages:
-            break
+        # most often it fills just what it may, and the foot of each page is right the first time
+        longest = None if step_limits is LIMITS[-1] else most_pages
+        try:
+            pages, data = _typeset(look, content, pictures, limits, most_pages, longest)
+        except _TooLongError:
+            continue
+        break
     progress(step, total - 1, total)
-    _, data = _typeset(look, content, pictures, limits, pages)
+    if pages != most_pages:
+        _, data = _typeset(look, content, pictures, limits, pages)
     progress(step, total, total)
     return data
 
@@ -123,10 +128,25 @@ def _page_room(paper: Paper) -> float:
     return float(PAGE_SIZES[paper][1] - HEAD - FOOT)
 
 
+class _TooLongError(Exception):
+    """A report has begun a page more than it may have."""
+
+
 def _typeset(
-    look: Look, content: ReportContent, pictures: Mapping[str, ImageReader], limits: Limits, pages: int
+    look: Look,
+    content: ReportContent,
+    pictures: Mapping[str, ImageReader],
+    limits: Limits,
+    pages: int,
+    most_pages: int | None = None,
 ) -> tuple[int, bytes]:
-    """Lay everything out; gives the number of pages and the file. `pages` is what the foot of each page says."""
+    """Lay everything out; gives the number of pages and the file. `pages` is what the foot of each page says.
+
+    Raises
+    ------
+    _TooLongError
+        As soon as there are more than `most_pages`.
+    """
     stream = io.BytesIO()
     page = PAGE_SIZES[content.paper]
     margin = (page[0] - TEXT_WIDTH) / 2
@@ -155,6 +175,8 @@ def _typeset(
     )
 
     def on_page(canvas: Any, _: BaseDocTemplate) -> None:
+        if most_pages is not None and canvas.getPageNumber() > most_pages:
+            raise _TooLongError
         canvas.showOutline()
         # the file's own date is the measurement's, not that of a clock
         canvas.setDateFormatter(lambda *_: f"{content.timestamp:D:%Y%m%d%H%M%S}{_pdf_zone(content)}")

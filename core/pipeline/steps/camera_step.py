@@ -22,6 +22,7 @@ from core.messages import Field, Message, plain
 from core.model import Pose
 from core.pipeline.steps.workspace import Workspace
 from core.progress import Progress, silent
+from core.stage_times import stage
 from core.threads import ordered_map
 
 FEWEST_VIEWS = 3
@@ -66,7 +67,8 @@ def see_views(found: RecordingSet, progress: Progress = silent) -> SeenViews:
             return SeenView(name, reason=plain(picture))
         size = (picture.shape[1], picture.shape[0])
         try:
-            return SeenView(name, detect(found.rig.camera_target, picture, name), size=size)
+            with stage(progress, "camera views"):
+                return SeenView(name, detect(found.rig.camera_target, picture, name), size=size)
         except InputError as error:
             return SeenView(name, reason=error.what, size=size)
 

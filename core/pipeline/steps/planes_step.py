@@ -24,6 +24,7 @@ from core.messages import Command, Message, plain
 from core.model import Camera
 from core.pipeline.steps.workspace import Workspace, check_size
 from core.progress import Progress, silent
+from core.stage_times import stage
 from core.threads import ordered_map
 
 FOLDER = "planes/"
@@ -84,8 +85,9 @@ def measure_poses(
 
     def measure(pair: PlanePair) -> PoseFeatures:
         try:
-            on = found.read(pair.on)
-            off = found.read(pair.off) if pair.off is not None else None
+            with stage(progress, "decoding"):
+                on = found.read(pair.on)
+                off = found.read(pair.off) if pair.off is not None else None
         except InputError as error:
             return PoseFeatures(pair.name, None, (), plain(str(error).rstrip(".")))
         check_size(pair.on, on, camera)
@@ -94,7 +96,8 @@ def measure_poses(
             return PoseFeatures(pair.name, None, (), reason)
         rig = found.rig
         lost = compression_grey(pair.on)
-        return measure_plane_pose(pair.name, on, off, rig.plane_target, camera, stripe, rig.plane_margin_mm, lost)
+        with stage(progress, "plane poses"):
+            return measure_plane_pose(pair.name, on, off, rig.plane_target, camera, stripe, rig.plane_margin_mm, lost)
 
     features: list[PoseFeatures] = []
     total = len(found.planes)

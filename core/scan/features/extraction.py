@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import chain
 
 import cv2
@@ -117,7 +118,7 @@ def extract_features(
     progress("frames", len(found), total)
     _require_sweeps(found)
     stripes = seen.stripe, sweep_stripe
-    return gather(seen.image_size, seen.fan, found, stripes, options, progress)
+    return gather(seen.image_size, seen.fan, found, stripes, options, progress, times=times)
 
 
 def gather(
@@ -128,6 +129,7 @@ def gather(
     options: FeatureOptions | None = None,
     progress: Progress = silent,
     smoothed: bool = True,
+    times: StageTimes | None = None,
 ) -> ScanFeatures:
     """Centrelines as they were extracted to a scan's features: crossed, and then averaged along themselves.
 
@@ -144,11 +146,20 @@ def gather(
         crossings = bent_back(all_crossings(straightened(fan, camera), straight, window, progress), camera)
     if smoothed:
         fan = refined(fan)
-        frames = [
-            replace(frame, centrelines=refined(frame.centrelines))
-            for frame in steps(frames, progress, "smoothing", len(frames))
-        ]
+        frames = list(_smoothed(frames, progress, times))
     return ScanFeatures(image_size, fan, tuple(frames), crossings, stripes[1], stripes[0], notes_on(frames))
+
+
+def _smoothed(frames: Sequence[FrameFeatures], progress: Progress, times: StageTimes | None) -> Iterator[FrameFeatures]:
+    """The frames with their centrelines refined, several at a time."""
+
+    def smoothed(frame: FrameFeatures) -> FrameFeatures:
+        with stage(times, "smoothing"):
+            return replace(frame, centrelines=refined(frame.centrelines))
+
+    step, total = StepProgress(progress), len(frames)
+    idle = partial(step.within_step, "smoothing", 0, total)
+    yield from steps(ordered_map(smoothed, frames, idle=idle), step, "smoothing", total)
 
 
 def refined(pieces: tuple[Centreline, ...]) -> tuple[Centreline, ...]:

@@ -112,12 +112,8 @@ def solve_network(
     ValueError
         If there is no crossing with the fan: nothing fixes the scale.
     """
-    if not np.any(crossings.with_fan):
-        raise ValueError("no sweep crosses the fan")
     equations = Adjustment(crossings, geometry, line, fan, sweeps, LineErrors.of(crossings), read_out)
-    solution, silenced = _adjust(equations, progress, redescend=True), False
-    if _share_silenced(crossings, solution.weights) > MOST_FAN_REJECTED:
-        solution, silenced = _adjust(equations, progress, redescend=False), True
+    solution, silenced = solve_planes(equations, progress)
     covariance, expected = equations.covariance(solution)
     scale = float(np.sqrt(solution.misfit / max(expected * (1.0 if silenced else _TUKEY_OF_NORMAL), 1.0)))
     return Network(
@@ -133,6 +129,23 @@ def solve_network(
         equations.errors.sweep_cells,
         equations.shared_with_own_lines(solution),
     )
+
+
+def solve_planes(equations: Adjustment, progress: Progress = silent) -> tuple[Solution, bool]:
+    """The solution alone, and whether rejecting outliers would have silenced the fan and was not done.
+
+    Raises
+    ------
+    ValueError
+        If there is no crossing with the fan: nothing fixes the scale.
+    """
+    crossings = equations.crossings
+    if not np.any(crossings.with_fan):
+        raise ValueError("no sweep crosses the fan")
+    solution = _adjust(equations, progress, redescend=True)
+    if _share_silenced(crossings, solution.weights) > MOST_FAN_REJECTED:
+        return _adjust(equations, progress, redescend=False), True
+    return solution, False
 
 
 def _adjust(equations: Adjustment, progress: Progress, *, redescend: bool) -> Solution:

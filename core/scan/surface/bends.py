@@ -12,13 +12,13 @@ on top, where the picture sees it as anything but one.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from core.model.arrays import Array
+from core.model.arrays import Array, set_field
 from core.model.directions import square_to
 from core.model.robust import MAD_TO_SD, TUKEY, tukey_weights
 from core.scan.surface.cloud import Cloud
@@ -66,6 +66,10 @@ class Bends:
     normals: Array
     curvature: Array
     known: NDArray[np.bool_]
+    _tree: cKDTree | None = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        set_field(self, "_tree", cKDTree(self.points[self.known]) if self.known.any() else None)
 
     @property
     def flat(self) -> bool:
@@ -75,10 +79,9 @@ class Bends:
     def at(self, points: Array) -> tuple[Array, Array]:
         """Interpolate unit normals (N, 3) and curvature (N, 3, 3) at `points` (N, 3); zeros where no node is near."""
         normals, curvature = np.zeros((len(points), 3)), np.zeros((len(points), 3, 3))
-        nodes = np.flatnonzero(self.known)
-        if not len(nodes) or not len(points):
+        if self._tree is None or not len(points):
             return normals, curvature
-        near = nodes[cKDTree(self.points[nodes]).query(points)[1]]
+        near = np.flatnonzero(self.known)[self._tree.query(points)[1]]
         away = points - self.points[near]
         turned = self.normals[near] + np.einsum("nij,nj->ni", self.curvature[near], away)
         turned /= np.linalg.norm(turned, axis=1)[:, None]
@@ -140,7 +143,7 @@ class _Quadrics:
             inverse = np.linalg.inv(matrix)
             solved = np.einsum("mij,mj->mi", inverse, np.einsum("mki,mk->mi", weighted, height))
             off = np.where(taper > 0, (height - np.einsum("mki,mi->mk", design, solved)) / noise, np.nan)
-            spread = np.maximum(MAD_TO_SD * np.nan_to_num(_median(np.abs(off)), nan=1.0), 1.0)
+            spread = np.maximum(MAD_TO_SD * _median(np.abs(off)), 1.0)
             robust = tukey_weights(np.nan_to_num(off), TUKEY * spread[:, None])
         p, q, a, b, c = (solved[:, k] / scale**power for k, power in zip(range(1, 6), (1, 1, 2, 2, 2), strict=True))
         normal = axis - p[:, None] * first - q[:, None] * second
@@ -157,9 +160,11 @@ class _Quadrics:
 
 
 def _median(values: Array) -> Array:
-    """Medians (M,) of rows (M, K) with NaN; NaN where there is nothing else."""
-    empty = np.asarray(np.isnan(values).all(axis=1))
-    return np.asarray(np.nanmedian(np.where(empty[:, None], 1.0, values), axis=1))
+    """Medians (M,) of rows (M, K) with NaN; 1 where there is nothing else."""
+    ordered, rows = np.sort(values, axis=1), np.arange(len(values))  # NaN last
+    count = np.count_nonzero(~np.isnan(values), axis=1)
+    low, high = ordered[rows, np.maximum(count - 1, 0) // 2], ordered[rows, count // 2]
+    return np.where(count > 0, (low + high) / 2, 1.0)
 
 
 def _tensor(first: Array, second: Array, form: tuple[Array, Array, Array]) -> Array:

@@ -16,8 +16,10 @@ from core.model import Camera, Fan
 from core.model.arrays import Array
 from core.progress import Progress, silent, steps
 from core.scan.features.crossings import CrossingTable
-from core.scan.network.adjustment import solve_network
+from core.scan.network.adjustment import solve_network, solve_planes
+from core.scan.network.equations import Adjustment
 from core.scan.network.geometry import CrossingRays, inverse_depth_gradient, noise_gains
+from core.scan.network.line_errors import LineErrors
 from core.scan.network.read_out import AT_ONCE, ReadOut
 from core.scan.network.sweep_plane import solve_sweep_plane
 from core.scan.sweeps.fan_lines import UNASSIGNED, FanLines, possible_fan_lines, settle_by_sweeps
@@ -56,6 +58,15 @@ class LocatedSweeps:
         return self.pis[:, :3], self.covariance[np.ix_(middle, middle)]
 
 
+@dataclass(frozen=True, eq=False, slots=True)
+class SweepPlanes:
+    """Solved planes without their uncertainty: `frames` (S,), `pis` (S, 3) in 1/mm, and each crossing's weight."""
+
+    frames: NDArray[np.int64]
+    pis: Array
+    weights: Array
+
+
 def number_fan_lines(
     pieces: Sequence[Centreline], crossings: CrossingTable, camera: Camera, fan: Fan, progress: Progress = silent
 ) -> FanLines:
@@ -89,7 +100,7 @@ def _settled(lines: FanLines, all_of_them: CrossingTable, camera: Camera, fan: F
     crossings, line = numbered(all_of_them, lines.sure)
     if not unsure or np.unique(line[crossings.with_fan]).size < 2:
         return lines
-    sweeps = locate_together(crossings, line, camera, fan, progress)
+    sweeps = planes_together(crossings, line, camera, fan, progress)
     crossings, _ = numbered(all_of_them, lines)
     rows = crossings.select(
         crossings.with_fan & np.isin(crossings.a, sweeps.frames) & np.isin(crossings.piece_b, unsure)
@@ -105,7 +116,7 @@ def _disagreement(lines: FanLines, all_of_them: CrossingTable, camera: Camera, f
     fan_crossings = np.count_nonzero(all_of_them.with_fan)
     if not np.any(crossings.with_fan):
         return 1.0
-    sweeps = locate_together(crossings, line, camera, fan, progress)
+    sweeps = planes_together(crossings, line, camera, fan, progress)
     agreeing = np.sum(sweeps.weights[crossings.with_fan])
     return 1.0 - float(agreeing) / max(int(fan_crossings), 1)
 
@@ -135,8 +146,8 @@ def locate_together(
     ValueError
         If there is no crossing with the fan.
     """
-    frames = np.unique(np.concatenate([crossings.a, crossings.b[~crossings.with_fan]]))
-    renumbered = crossings.renumber(np.searchsorted(frames, np.arange(frames[-1] + 1)))
+    frames = sweeping_frames(crossings)
+    renumbered = by_sweep(crossings, frames)
     network = solve_network(renumbered, CrossingRays.of(crossings, camera), line, fan, len(frames), progress, read_out)
     notes: tuple[Message, ...] = ()
     if network.fan_silenced:
@@ -167,6 +178,28 @@ def locate_together(
         network.line_cells,
         network.line_covariance,
     )
+
+
+def planes_together(
+    crossings: CrossingTable,
+    line: NDArray[np.int64],
+    camera: Camera,
+    fan: Fan,
+    progress: Progress = silent,
+    read_out: ReadOut = AT_ONCE,
+) -> SweepPlanes:
+    """The same planes as of `locate_together`, in half the time where their uncertainty is not asked for.
+
+    Raises
+    ------
+    ValueError
+        If there is no crossing with the fan.
+    """
+    frames = sweeping_frames(crossings)
+    renumbered, geometry = by_sweep(crossings, frames), CrossingRays.of(crossings, camera)
+    equations = Adjustment(renumbered, geometry, line, fan, len(frames), LineErrors.of(renumbered), read_out)
+    solution, _ = solve_planes(equations, progress)
+    return SweepPlanes(frames, solution.pis, solution.weights)
 
 
 def sweeping_frames(crossings: CrossingTable) -> NDArray[np.int64]:

@@ -19,6 +19,7 @@ doi:10.1109/78.782208.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import comb
 
@@ -108,15 +109,15 @@ class _Fits:
         )
         weight = np.where(line.saturated, 0.0, 1 / line.sigma**2)
 
-        def window_sum(values: Array) -> Array:
-            total = np.concatenate([np.zeros((1, *values.shape[1:])), np.cumsum(values, axis=0)])
-            return np.asarray(total[last] - total[first])
-
         # Moments about the middle of the run, in units of the window, then moved to each point.
         t = (arc - arc.mean()) / half_length
-        raw = np.stack([window_sum(weight * t**power) for power in range(5)])
-        moments = _about(raw, t)
-        target = _about(np.stack([window_sum((weight * t**power)[:, None] * line.uv) for power in range(3)]), t)
+        moved = [(-t) ** power for power in range(5)]
+        weights = [weight * t**power for power in range(5)]
+        running = np.zeros((len(arc) + 1, 11))
+        np.cumsum(np.column_stack([*weights, *(each[:, None] * line.uv for each in weights[:3])]), 0, out=running[1:])
+        sums = np.ascontiguousarray((running[last] - running[first]).T)
+        moments = _about(sums[:5], moved)
+        target = _about(np.stack([np.ascontiguousarray(sums[k : k + 2].T) for k in (5, 7, 9)]), moved)
         normal_matrix = moments[np.add.outer(np.arange(3), np.arange(3))].transpose(2, 0, 1)
         usable &= np.linalg.det(normal_matrix) > 1e-6 * np.maximum(moments[0], 1e-300) ** 3
         normal_matrix[~usable] = np.eye(3)
@@ -136,14 +137,14 @@ class _Fits:
         return _Fits(shift, sigma, curvature, np.where(where, other.lopsided, self.lopsided))
 
 
-def _about(moments: Array, origin: Array) -> Array:
-    """Moments Σ w (t − origin)^k of each window from Σ w t^k, k = 0, 1, …; one origin per window."""
+def _about(moments: Array, moved: Sequence[Array]) -> Array:
+    """Moments Σ w (t − origin)^k of each window from Σ w t^k, k = 0, 1, …; `moved` are the powers of −origin."""
     shape = (-1,) + (1,) * (moments.ndim - 2)
-    moved = np.zeros_like(moments)
+    about = np.zeros_like(moments)
     for k in range(len(moments)):
         for j in range(k + 1):
-            moved[k] += comb(k, j) * (-origin.reshape(shape)) ** (k - j) * moments[j]
-    return moved
+            about[k] += comb(k, j) * moved[k - j].reshape(shape) * moments[j]
+    return about
 
 
 def arc_bias(curvature: Array, half_length: float) -> Array:
