@@ -203,6 +203,8 @@ class MainWindow(QMainWindow):
             "simulated": projects.try_simulated,
             "save": projects.save,
             "copy": projects.copy.save_copy,
+            "pack": projects.pack.pack,
+            "unpack": projects.pack.choose,
             "close": projects.close_project,
             "quit": self.leave,
             **{name: partial(self.presenter_action, name) for name in ("run", "accept", "live", "capture")},

@@ -18,6 +18,7 @@ from core.files.project.folder import (
     read_project,
     recoverable,
     remove_autosave,
+    with_own_sources_relative,
     write_autosave,
     write_project,
 )
@@ -195,7 +196,7 @@ class ProjectModel(QObject):
                 where=folder,
                 todo=Message("project.choose_name", "choose another name, or open it"),
             )
-        file = ProjectFile(project)
+        file = with_own_sources_relative(folder, ProjectFile(project))
         create_project(folder, file)
         self._take(folder, file, saved=file, access=Access.ALONE)
 

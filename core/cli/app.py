@@ -20,6 +20,7 @@ from core import __version__
 from core.cli.measuring_commands import commands as measuring
 from core.cli.options import EPILOG, ExitCode
 from core.cli.preparing_commands import commands as preparing
+from core.cli.project_commands import commands as projects
 from core.cli.result_commands import commands as results
 from core.cli.simulating import commands as simulating
 from core.cli.study_commands import studies
@@ -48,7 +49,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for commands in (measuring, results, preparing, simulating):
+for commands in (measuring, results, preparing, projects, simulating):
     app.add_typer(commands)
 app.add_typer(studies, name="study")
 

@@ -18,7 +18,7 @@ import os
 import re
 import time
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from datetime import datetime
 from pathlib import Path
 
@@ -26,6 +26,7 @@ from core.errors import InputError
 from core.files.atomic import ANOTHER_OUT, cannot_write, make_folder, vanished, write_bytes, write_text
 from core.files.project.data import Project, ProjectFile, ProjectInfo, Sources
 from core.files.project.json_form import project_text, read_project_text
+from core.files.project.keys import relocated
 from core.files.recording.recording_set import CHECK, PARTS
 from core.files.recording.rig import read_rig
 from core.messages import Message
@@ -92,7 +93,8 @@ def write_project(folder: Path, file: ProjectFile, *, keep_s: float = 0.0) -> No
         Where the project is. If nothing of it is there any more, its disk was taken out, or it was moved: nothing is
         made in its place.
     file
-        What is to be said. `created` is kept from the version before, if it does not say; `saved` becomes now.
+        What is to be said. Folders of pictures within the project are named relative to it. `created` is kept from the
+        version before, if it does not say; `saved` becomes now.
     keep_s
         Keep the version before only if none was kept within so many seconds.
 
@@ -113,6 +115,7 @@ def require_project_folder(folder: Path) -> None:
 
 def _write(folder: Path, file: ProjectFile, keep_s: float) -> None:
     path = folder / PROJECT
+    file = with_own_sources_relative(folder, file)
     before = _readable(path)
     if before == file:
         return
@@ -215,6 +218,13 @@ def stored_source(project_folder: Path, pictures: Path) -> str:
     full = pictures.resolve()
     own = project_folder.resolve()
     return full.relative_to(own).as_posix() if full.is_relative_to(own) else full.as_posix()
+
+
+def with_own_sources_relative(project_folder: Path, file: ProjectFile) -> ProjectFile:
+    """The project with the folders of pictures that lie within its own named relative to it."""
+    named = (stored for stored in asdict(file.project.sources).values() if stored and Path(stored).is_absolute())
+    moved = {stored: stored_source(project_folder, Path(stored)) for stored in named}
+    return relocated(file, {full: name for full, name in moved.items() if not Path(name).is_absolute()})
 
 
 def source_folder(project_folder: Path, stored: str) -> Path | None:

@@ -8,12 +8,12 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Mapping
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from datetime import datetime
 from typing import Any
 
 from core.files.plan.translation import plan_tables
-from core.files.project.data import Done, Project, ReportChoices
+from core.files.project.data import Done, Project, ProjectFile, ReportChoices, Sources
 from core.files.recording.rig import rig_tables
 from core.messages import label
 
@@ -79,6 +79,24 @@ ACCEPTED: Mapping[str, str] = {
     "camera": label("accepted camera calibration"), "planes": label("accepted laser planes"),
 }  # fmt: skip
 """Of what a calibration rests on, that which decides only whether it is accepted."""
+
+
+def relocated(file: ProjectFile, moved: Mapping[str, str]) -> ProjectFile:
+    """A project whose folders of pictures are elsewhere, by their names before; results stay as up to date as they are.
+
+    The keys of results that rest on a folder's name change with it, and so do those of what rests on these.
+    """
+    if not moved:
+        return file
+    sources = {name: moved.get(stored, stored) for name, stored in asdict(file.project.sources).items()}
+    renamed, results = dict(moved), dict(file.results)
+    for step in STEPS:
+        if (done := results.get(step)) is not None:
+            keys = {name: renamed.get(key, key) if key else key for name, key in done.rests_on.items()}
+            if keys != dict(done.rests_on):
+                renamed[done.key] = _digest(keys)
+                results[step] = replace(done, key=_digest(keys), rests_on=keys)
+    return replace(file, project=replace(file.project, sources=Sources(**sources)), results=results)
 
 
 def _camera(project: Project) -> dict[str, str]:

@@ -18,6 +18,7 @@ from workbench.bench import Bench
 from workbench.language import text_of, tr
 from workbench.pages.project.copying import ProjectCopy
 from workbench.pages.project.import_dialog import ImportDialog
+from workbench.pages.project.packing import PACKED, ProjectPack
 from workbench.pages.project.sample import SampleProject
 from workbench.pages.project.states import Wanted, wanted_access, wanted_state
 from workbench.pages.sources import put_source
@@ -37,6 +38,7 @@ class ProjectActions(QObject):
         self.bench, self.model, self._window = bench, bench.model, window
         self.sample = SampleProject(bench, self.open_project, self)
         self.copy = ProjectCopy(bench, window, self.save, self.close_project, self._open, self)
+        self.pack = ProjectPack(bench, window, self.save, self.open_project, self)
         self._when_left: Callable[[], object] | None = None
         # Queued: a recording that ends is at its end then, and not in the midst of telling it.
         self.model.recordings_over.connect(self._recordings_over, Qt.ConnectionType.QueuedConnection)
@@ -95,7 +97,9 @@ class ProjectActions(QObject):
         path = path.resolve()
         if path.suffix == OPENER and not path.is_dir():
             path = path.parent
-        if is_project(path) or rescues(path):
+        if path.suffix.lower() == PACKED and path.is_file():
+            self.pack.unpack(path)
+        elif is_project(path) or rescues(path):
             self.open_project(path)
         elif path.is_file() and path.parent.name == BACKUPS and is_project(path.parent.parent):
             self.open_version(path)

@@ -540,3 +540,22 @@ def test_nothing_is_measured_or_recorded_in_a_project_that_is_open_elsewhere(
     lane = cast(HandLane, projects.bench.measuring)
     projects.bench.run_long(projects, jobs.MEASURE_SCAN, folder, label="scan", on_done=lambda _: None)
     assert lane.waiting[-1][1] == jobs.REFUSE
+
+
+# ---- packed
+
+
+def test_a_project_is_packed_as_it_is_and_unpacked_and_opened_elsewhere(
+    projects: ProjectActions, asked: Asked, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, qtbot: Any
+) -> None:
+    projects.open_project(project(tmp_path / "block"))
+    renamed(projects, "As it is now")
+    monkeypatch.setattr(ask, "choose_file_to_save", lambda *_: tmp_path / "sent")
+    projects.pack.pack()
+    qtbot.waitUntil((tmp_path / "sent.trisectz").is_file)
+    projects.close_project()
+    monkeypatch.setattr(ask, "ask_name_and_folder", lambda _p, _t, name, _f: (name, tmp_path / "here"))
+    projects.open_dropped(tmp_path / "sent.trisectz")
+    qtbot.waitUntil(lambda: projects.model.folder == tmp_path / "here" / "sent")
+    assert projects.model.project.info.name == "As it is now"
+    assert not errors(projects)
