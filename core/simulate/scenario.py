@@ -75,6 +75,8 @@ class Scenario:
         The table with the object on it, away from the camera along its normal.
     bumped_px
         The camera: its picture moved by so many px to the right, and 0.6 times as far down.
+    inner_share, inner_mm, gloss, gloss_deg
+        What the object's surface does with the lasers' light: `core.simulate.scene.scene.Material`.
     yaw_deg, right_mm, away_mm
         Where the object stands: turned about the table's normal, and moved over the table, from its middle.
     fan_lines
@@ -121,6 +123,10 @@ class Scenario:
     pushed_mm: float = 0.0
     table_mm: float = 0.0
     bumped_px: float = 0.0
+    inner_share: float = 0.0
+    inner_mm: float = 0.8
+    gloss: float = 0.0
+    gloss_deg: float = 6.0
 
     def __post_init__(self) -> None:
         choices = (
@@ -169,6 +175,10 @@ class Scenario:
             ("pushed_mm", -20.0, 20.0),
             ("table_mm", -20.0, 20.0),
             ("bumped_px", -50.0, 50.0),
+            ("inner_share", 0.0, 1.0),
+            ("inner_mm", 0.0, 5.0),
+            ("gloss", 0.0, 1000.0),
+            ("gloss_deg", 0.5, 45.0),
         )
         for name, low, high in ranges:
             if not low <= getattr(self, name) <= high:

@@ -5,7 +5,8 @@ Light on a surface point X at distance ρ from the emitter, d off the sheet's mi
     I = peak · ρ₀σ₀/(ρ σ(ρ)) · exp(−d²/2σ(ρ)²) · exp(−2 φ²/φ₀²) · cos θ,    σ(ρ) = σ₀ √(1 + ((ρ − ρ₀)/ρ_R)²)
 
 with θ the angle of incidence; 0 where θ ≥ 90° or something is in the way. Only pixels within 4.5 σ of the sheet are
-looked at.
+looked at. Of an object whose material takes light in, a share is that of the points behind, down to a depth, seen
+through it along the pixel's ray (without refraction); one that is glossy adds a lobe about the mirrored light.
 """
 
 from __future__ import annotations
@@ -20,13 +21,17 @@ from core.model import LightPlane
 from core.model.arrays import Array, frozen_array, set_field
 from core.simulate.rig import Beam, Rig
 from core.simulate.scene.rays import Map
-from core.simulate.scene.scene import TILE, Scene, SurfaceMaps
+from core.simulate.scene.scene import MATT, TILE, Material, Scene, SurfaceMaps
 from core.simulate.scene.shadow import ShadowCaster
 
 REACH_SIGMAS = 4.5
 """σ from the sheet's middle beyond which light is left out: 4e-5 of the crest."""
 FARTHEST_FROM_FOCUS_MM = 400.0
 """Distance from its focus at which a sheet is rendered at most; its width there is looked at."""
+_DEPTHS, _DEPTH_SHARES = np.polynomial.legendre.leggauss(8)
+"""Depths from −1 to 1, and their weights, that stand for all those from which light comes back."""
+_LEAST_COSINE = 0.1
+"""Of the angle at which light leaves a surface: beyond, what comes from below is not followed further."""
 BOW_SEEN_TO = 0.6
 """Angle in rad beside the camera's viewing direction to which the light of a bowed sheet is rendered."""
 
@@ -81,7 +86,8 @@ def laser_light(sheet: Sheet, scene: Scene, maps: SurfaceMaps, out: Map | None =
     light = np.zeros(maps.albedo.shape, np.float32) if out is None else out
     beam = sheet.beam
     widest = beam.sigma_mm * np.hypot(1, max(1.0, FARTHEST_FROM_FOCUS_MM / beam.rayleigh_mm))
-    reach = REACH_SIGMAS * widest + _largest_bow(beam) + _largest_shift(sheet)
+    inner = scene.material.inner_mm if scene.material.inner_share else 0.0
+    reach = REACH_SIGMAS * widest + _largest_bow(beam) + _largest_shift(sheet) + inner
     v, u = _near(maps, sheet.plane, reach)
     points = maps.points[v, u].astype(np.float64)
     towards = points - sheet.emitter
@@ -92,12 +98,42 @@ def laser_light(sheet: Sheet, scene: Scene, maps: SurfaceMaps, out: Map | None =
     caster = ShadowCaster.near_plane(scene, sheet.plane, sheet.emitter, sheet.axis, reach)
     open_sky = caster.sees(points)
     sigma = beam.sigma_mm * np.hypot(1, (rho - beam.focus_mm) / beam.rayleigh_mm)
-    off = sheet.off_light(points, v)
     angle = np.arccos(np.clip(towards @ sheet.axis / rho, -1, 1))
     strength = beam.peak_grey * beam.focus_mm * beam.sigma_mm / (rho * sigma)
-    profile = np.exp(-0.5 * (off / sigma) ** 2 - 2 * (angle / beam.half_angle) ** 2)
-    light[v, u] += (strength * profile * cosine * maps.albedo[v, u] * open_sky).astype(np.float32)
+    across = np.exp(-0.5 * (sheet.off_light(points, v) / sigma) ** 2)
+    shine = maps.albedo[v, u] * cosine
+    if scene.material != MATT:
+        mine = ~maps.table[v, u] if maps.table.size else np.ones(len(v), np.bool_)
+        normals, row = maps.normals[v[mine], u[mine]], v[mine]
+        if scene.material.inner_share:
+            across[mine] = _through(scene.material, sheet, points[mine], normals, row, sigma[mine])
+        if scene.material.gloss:
+            shine[mine] += maps.albedo[v[mine], u[mine]] * _gloss(scene.material, points[mine], towards[mine], normals)
+    profile = across * np.exp(-2 * (angle / beam.half_angle) ** 2)
+    light[v, u] += (strength * profile * shine * open_sky).astype(np.float32)
     return light
+
+
+def _through(
+    material: Material, sheet: Sheet, points: Array, normals: Map, row: NDArray[np.intp], sigma: Array
+) -> Array:
+    """Light (N,) across a sheet at points (N, 3) where a share comes from behind them, 1 at its crest."""
+    rays = points / np.linalg.norm(points, axis=1)[:, None]
+    inwards = np.maximum(-np.einsum("ni,ni->n", rays, normals), _LEAST_COSINE)
+    per_mm = rays / inwards[:, None]  # along the ray, for each mm of depth
+    found = (1 - material.inner_share) * np.exp(-0.5 * (sheet.off_light(points, row) / sigma) ** 2)
+    for place, share in zip(_DEPTHS, _DEPTH_SHARES, strict=True):
+        off = sheet.off_light(points + material.inner_mm * (1 + place) / 2 * per_mm, row)
+        found += material.inner_share * share / 2 * np.exp(-0.5 * (off / sigma) ** 2)
+    return np.asarray(found)
+
+
+def _gloss(material: Material, points: Array, towards: Array, normals: Map) -> Array:
+    """Mirrored light (N,) at points (N, 3), by the tilt of the surface that would mirror the laser into the camera."""
+    half = -points / np.linalg.norm(points, axis=1)[:, None] - towards / np.linalg.norm(towards, axis=1)[:, None]
+    cosine = np.einsum("ni,ni->n", half, normals) / np.linalg.norm(half, axis=1)
+    tilt = np.arccos(np.clip(cosine, -1.0, 1.0))
+    return np.asarray(material.gloss * np.exp(-0.5 * (tilt / material.gloss_rad) ** 2))
 
 
 def _largest_bow(beam: Beam) -> float:

@@ -21,6 +21,32 @@ TILE = 16
 """Side in px of the squares whose extent in space is known, see `SurfaceMaps`; chosen by speed."""
 
 
+@dataclass(frozen=True, slots=True)
+class Material:
+    """What the objects' surface does with light beyond sending it back evenly.
+
+    Parameters
+    ----------
+    inner_share
+        Share of the light that enters and comes back from below the surface, evenly from all depths to `inner_mm`.
+    inner_mm
+        Greatest depth in mm from which light comes back.
+    gloss
+        Light of the mirroring lobe at its crest, over what an even surface sends back at normal incidence.
+    gloss_rad
+        Gaussian σ of that lobe as a tilt of the surface, in rad: its roughness (Torrance and Sparrow 1967,
+        doi:10.1364/JOSA.57.001105, without masking).
+    """
+
+    inner_share: float = 0.0
+    inner_mm: float = 0.0
+    gloss: float = 0.0
+    gloss_rad: float = 0.1
+
+
+MATT = Material()
+
+
 @dataclass(frozen=True, eq=False, slots=True)
 class Mesh:
     """Triangles (T, 3, 3) in mm, corners counter-clockwise seen from outside.
@@ -65,21 +91,28 @@ class Scene:
     """Table and objects on it, all in the camera frame.
 
     `pose_cam_table` maps table coordinates (origin on the table, z up out of it, towards the camera) into the camera
-    frame; None means there is no table.
+    frame; None means there is no table. `material` is that of the objects; the table is matt.
     """
 
     pose_cam_table: Pose | None
     meshes: tuple[Mesh, ...] = ()
     spheres: tuple[Sphere, ...] = ()
     table_albedo: float = TABLE_ALBEDO
+    material: Material = MATT
 
     @classmethod
-    def on_table(cls, pose_cam_table: Pose, *things: Mesh | Sphere, table_albedo: float = TABLE_ALBEDO) -> Scene:
+    def on_table(
+        cls,
+        pose_cam_table: Pose,
+        *things: Mesh | Sphere,
+        table_albedo: float = TABLE_ALBEDO,
+        material: Material = MATT,
+    ) -> Scene:
         """Make a scene of objects given in table coordinates."""
         moved = [thing.moved(pose_cam_table) for thing in things]
         meshes = tuple(thing for thing in moved if isinstance(thing, Mesh))
         spheres = tuple(thing for thing in moved if isinstance(thing, Sphere))
-        return cls(pose_cam_table, meshes, spheres, table_albedo)
+        return cls(pose_cam_table, meshes, spheres, table_albedo, material)
 
     def moved(self, motion: Pose, *, with_table: bool = False) -> Scene:
         """The scene with its objects moved by `motion` in the camera frame, with or without the table."""
@@ -88,7 +121,7 @@ class Scene:
             table = Pose(motion.rotation @ table.rotation, motion.apply(table.translation[None])[0])
         meshes = tuple(mesh.moved(motion) for mesh in self.meshes)
         spheres = tuple(sphere.moved(motion) for sphere in self.spheres)
-        return Scene(table, meshes, spheres, self.table_albedo)
+        return Scene(table, meshes, spheres, self.table_albedo, self.material)
 
     @property
     def occluders(self) -> Array:

@@ -11,7 +11,7 @@ from core.model import Pose
 from core.model.arrays import Array
 from core.simulate.scenario import Scenario
 from core.simulate.scene.objects import cylinder, face_mask, gauge_block, step_block, stl, turned
-from core.simulate.scene.scene import Mesh, Scene, Sphere
+from core.simulate.scene.scene import Material, Mesh, Scene, Sphere
 
 # Where the object is. Chosen so that the paper's fan falls on it.
 WORK_POINT = np.array([0.0, 54.0, 510.0])
@@ -39,7 +39,8 @@ def build_scene(scenario: Scenario) -> tuple[Scene, dict[str, object]]:
     pose = table_pose()
     thing = _thing(scenario)
     things = () if thing is None else (thing,)
-    scene = Scene.on_table(pose, *things)
+    material = Material(scenario.inner_share, scenario.inner_mm, scenario.gloss, np.radians(scenario.gloss_deg))
+    scene = Scene.on_table(pose, *things, material=material)
     up = pose.rotation[:, 2]
     figures: dict[str, object] = {"kind": scenario.object, "table_normal": up.tolist()}
     figures["table_point"] = pose.translation.tolist()
