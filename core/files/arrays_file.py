@@ -32,7 +32,9 @@ _LAST_CHARACTER = 0x10FFFF
 _HALVES = (0xD800, 0xDFFF)
 """Of Unicode: its last character, and the codes that are halves of one in UTF-16."""
 
-_POINTS = ("uv", "normal", "width", "strength", "sigma", "saturated")
+_POINTS = ("uv", "normal", "width", "strength", "sigma", "saturated", "skewness")
+_SINCE_LATER = "skewness"
+"""Of points; files of earlier versions have none."""
 
 
 def write_arrays(path: Path, arrays: Arrays) -> None:
@@ -152,7 +154,8 @@ def pack_centrelines(prefix: str, groups: Sequence[Sequence[Centreline]]) -> dic
 def unpack_centrelines(prefix: str, arrays: Arrays) -> tuple[tuple[Centreline, ...], ...]:
     """The groups that `pack_centrelines` packed; KeyError or ValueError if the arrays do not fit together."""
     ends = np.cumsum(arrays[f"{prefix}_lengths"])[:-1]
-    columns = {name: np.split(arrays[f"{prefix}_{name}"], ends) for name in _POINTS}
+    known = [name for name in _POINTS if name != _SINCE_LATER or f"{prefix}_{name}" in arrays]
+    columns = {name: np.split(arrays[f"{prefix}_{name}"], ends) for name in known}
     pieces = [
         Centreline(**{name: column[i] for name, column in columns.items()}, correlation_px=correlation)
         for i, correlation in enumerate(arrays[f"{prefix}_correlation_px"].tolist())

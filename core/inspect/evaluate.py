@@ -206,6 +206,7 @@ def _key(plan: InspectionPlan, spec: FeatureSpec, scene: Scene, of: str, *, fram
 def _digest(cloud: Cloud, mesh: Mesh | None, errors: PointErrors | None) -> str:
     """Hash of a scan's content."""
     arrays = [cloud.points, cloud.sigma, cloud.uv, cloud.sweep, cloud.normals]
+    arrays += [cloud.skewness, cloud.spread_mm]
     if mesh is not None:
         arrays += [mesh.vertices, mesh.triangles]
     if errors is not None:

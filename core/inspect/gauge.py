@@ -28,6 +28,7 @@ from core.inspect.results import Contribution, Face, GaugeResult
 from core.inspect.uncertainty.budget import budget, combined
 from core.inspect.uncertainty.coverage import student_factor
 from core.inspect.uncertainty.point_errors import PointErrors
+from core.inspect.uncertainty.skewed_light import doubt_of_light
 from core.messages import Message
 from core.model import LightPlane
 from core.progress import Progress, silent
@@ -192,7 +193,9 @@ def measure_gauge(
         rule=RULE if fit.planes.tilt_determined else RULE_LINE,
         notes=notes,
     )
-    return gauge if errors.doubt is None else doubted(gauge, errors.doubt)
+    for doubt in filter(None, (doubt_of_light(fit.budget), errors.doubt)):
+        gauge = doubted(gauge, doubt)
+    return gauge
 
 
 def doubted(gauge: GaugeResult, doubt: Message) -> GaugeResult:

@@ -20,7 +20,9 @@ from core.model.arrays import Array
 from core.scan.surface.cloud import Cloud
 from core.scan.surface.fused_surface import Mesh
 
-_COMMON = "sigma_common"
+_COMMON, _SECTION = "sigma_common", ("skewness", "spread")
+_SINCE_LATER = (_COMMON, *_SECTION)
+"""Files of earlier versions have none."""
 _NORMALS = [("nx", "f4"), ("ny", "f4"), ("nz", "f4")]
 _CLOUD = [
     # Coordinates in double: 700 mm in single precision step by 0.06 µm, but rays and planes are fitted to them again.
@@ -29,6 +31,7 @@ _CLOUD = [
     *[("sigma", "f4"), ("intensity", "f4"), ("frame", "i4")],
     *[("sweep", "i4"), ("image_u", "f4"), ("image_v", "f4")],
     (_COMMON, "f4"),
+    *[(name, "f4") for name in _SECTION],
 ]
 _MESH = [("x", "f4"), ("y", "f4"), ("z", "f4"), *_NORMALS, ("sigma", "f4")]
 _FILLED = "filled"
@@ -48,7 +51,7 @@ class CloudFile:
 
 
 def write_cloud(path: Path, cloud: Cloud, calibration_id: str) -> None:
-    """Write cloud.ply: x y z nx ny nz sigma intensity frame, and sweep image_u image_v sigma_common behind them.
+    """Write cloud.ply: x y z nx ny nz sigma intensity frame; sweep image_u image_v sigma_common skewness spread behind.
 
     Raises
     ------
@@ -61,11 +64,14 @@ def write_cloud(path: Path, cloud: Cloud, calibration_id: str) -> None:
     _put(vertices, ("image_u", "image_v"), cloud.uv)
     for name in ("sigma", "intensity", "frame", "sweep", "sigma_common"):
         vertices[name] = getattr(cloud, name)
+    _put(vertices, _SECTION, np.column_stack([cloud.skewness, cloud.spread_mm]))
     comments = [
         "unit mm",
         "frame of reference: the camera, z forward, y down",
         "sigma: standard uncertainty of the depth in mm; frame -1: measured by the fan itself",
         "sigma_common: what camera and fan calibration add to it, in mm, common to all points",
+        "skewness: of the stripe's section, above 0 where its light reaches away from the camera; "
+        "spread: its sigma in mm of depth",
     ]
     _write(path, {"vertex": vertices}, comments, calibration_id)
 
@@ -79,13 +85,13 @@ def read_cloud(path: Path) -> CloudFile:
         If it is missing, damaged, lacks a property or holds values that are not finite; names it.
     """
     data = _read(path, _TODO)
-    vertices = _element(data, "vertex", [name for name, _ in _CLOUD if name != _COMMON], path)
-    known = _COMMON in (vertices.dtype.names or ())  # files of earlier versions have none
+    vertices = _element(data, "vertex", [name for name, _ in _CLOUD if name not in _SINCE_LATER], path)
+    known = [name for name in _SINCE_LATER if name in (vertices.dtype.names or ())]
 
     def columns(*names: str) -> Array:
         return np.column_stack([vertices[name] for name in names]).astype(np.float64)
 
-    for name in ("x", "y", "z", "sigma", "image_u", "image_v", *([_COMMON] if known else [])):
+    for name in ("x", "y", "z", "sigma", "image_u", "image_v", *known):
         wrong = int(np.count_nonzero(~np.isfinite(vertices[name])))
         if wrong:
             raise InputError(
@@ -108,7 +114,9 @@ def read_cloud(path: Path) -> CloudFile:
         frame=np.asarray(vertices["frame"], dtype=np.int64),
         sweep=np.asarray(vertices["sweep"], dtype=np.int64),
         normals=columns("nx", "ny", "nz"),
-        sigma_common=columns(_COMMON)[:, 0] if known else np.zeros(len(vertices)),
+        sigma_common=columns(_COMMON)[:, 0] if _COMMON in known else np.zeros(0),
+        skewness=columns("skewness")[:, 0] if "skewness" in known else np.zeros(0),
+        spread_mm=columns("spread")[:, 0] if "spread" in known else np.zeros(0),
     )
     ids = [line.removeprefix(_CALIBRATION) for line in data.comments if line.startswith(_CALIBRATION)]
     return CloudFile(cloud, ids[0] if ids else "")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,6 +35,9 @@ class Centreline:
     correlation_px
         Length along the stripe over which the noise of neighbouring points counts as one: a mean over L px has
         sigma·√(correlation_px / L).
+    skewness
+        (N,) of the light's cross-section, a mean over a long stretch; positive where it reaches further towards the
+        normal. 0 where it is not known (and when left out).
     """
 
     uv: Array
@@ -44,15 +47,19 @@ class Centreline:
     sigma: Array
     saturated: NDArray[np.bool_]
     correlation_px: float = 1.0
+    skewness: Array = field(default_factory=lambda: np.zeros(0))
 
     def __post_init__(self) -> None:
         count = len(self.uv)
+        if not len(self.skewness):
+            set_field(self, "skewness", np.zeros(count))
         for name, shape in (
             ("uv", (count, 2)),
             ("normal", (count, 2)),
             ("width", (count,)),
             ("strength", (count,)),
             ("sigma", (count,)),
+            ("skewness", (count,)),
         ):
             set_field(self, name, frozen_array(getattr(self, name), shape, name))
         saturated = np.array(self.saturated, dtype=np.bool_).reshape(count)
@@ -77,4 +84,5 @@ class Centreline:
             self.sigma[keep],
             self.saturated[keep],
             self.correlation_px,
+            self.skewness[keep],
         )

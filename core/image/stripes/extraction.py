@@ -211,4 +211,5 @@ def _centreline(
         sigma,
         piece.saturated[part],
         correlation,
+        piece.profiles.skewness[part],
     )

@@ -42,7 +42,7 @@ class Profiles:
     """Cross-sections at every point of a run, (N,) each.
 
     Height, background in grey levels; its slope across the stripe and the slope's standard uncertainty in grey levels
-    per px; width as Gaussian σ in px.
+    per px; width as Gaussian σ in px; skewness, positive where the light reaches further towards the normal.
     """
 
     height: Array
@@ -50,11 +50,17 @@ class Profiles:
     slope: Array
     slope_sigma: Array
     width: Array
+    skewness: Array
 
     def select(self, part: slice) -> Profiles:
         """The cross-sections of a part of the run."""
         return Profiles(
-            self.height[part], self.background[part], self.slope[part], self.slope_sigma[part], self.width[part]
+            self.height[part],
+            self.background[part],
+            self.slope[part],
+            self.slope_sigma[part],
+            self.width[part],
+            self.skewness[part],
         )
 
 
@@ -72,7 +78,10 @@ class Sections(NamedTuple):
 
 
 class Fits(NamedTuple):
-    """Cross-sections fitted at some points of a run: their numbers (K,); height, background, slope, width (K, 4)."""
+    """Cross-sections fitted at some points of a run: their numbers (K,), and what was fitted.
+
+    `figures` (K, 5): height, background, slope, width, skewness.
+    """
 
     at: NDArray[np.int64]
     figures: Array
@@ -111,7 +120,7 @@ def profiles_along(arc: Array, part: slice, fits: Fits, stripe_px: float, filter
     first, last = np.searchsorted(fits.at, (part.start, part.stop))
     if first == last:
         flat = np.ones(len(arc))
-        return Profiles(0 * flat, 0 * flat, 0 * flat, np.inf * flat, stripe_px * flat)
+        return Profiles(0 * flat, 0 * flat, 0 * flat, np.inf * flat, stripe_px * flat, 0 * flat)
     stride = _stride(filter_px)
     short, long = (_odd(stretch * filter_px / stride) for stretch in (_SHORT_STRETCH, _LONG_STRETCH))
     return Profiles(*_along(arc, fits.at[first:last] - part.start, fits.figures[first:last], short, long))
@@ -119,17 +128,18 @@ def profiles_along(arc: Array, part: slice, fits: Fits, stripe_px: float, filter
 
 @compiled()
 def _along(arc: Array, at: NDArray[np.int64], figures: Array, short: int, long: int) -> Array:
-    """Height, background, slope, its σ and width (5, N) from those fitted at some of the points."""
-    smooth, places = new_table(5, len(at)), new_row(len(at))
+    """Height, background, slope, its σ, width and skewness (6, N) from those fitted at some of the points."""
+    smooth, places = new_table(6, len(at)), new_row(len(at))
     height, background = running_median(column(figures, 0), short), running_median(column(figures, 1), short)
     width = running_median(column(figures, 3), short)
     # the slope moves the point itself, so it must be far less noisy than a point: average it over a long stretch
     slope, slope_sigma = running_mean(column(figures, 2), long)
+    skewness, _ = running_mean(column(figures, 4), long)
     for k in range(len(at)):
         without_pixel = math.sqrt(max(width[k] * width[k] - PIXEL_VARIANCE, _LEAST_VARIANCE))
         smooth[0, k] = height[k] * (width[k] / without_pixel)  # the pixel lowers what it widens
         smooth[1, k], smooth[2, k], smooth[3, k] = background[k], slope[k], slope_sigma[k]
-        smooth[4, k], places[k] = without_pixel, arc[at[k]]
+        smooth[4, k], smooth[5, k], places[k] = without_pixel, skewness[k], arc[at[k]]
     return _interpolated(arc, places, smooth)
 
 

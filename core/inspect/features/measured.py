@@ -20,6 +20,7 @@ from core.inspect.shown.deviation_map import DeviationMap
 from core.inspect.uncertainty.budget import combined
 from core.inspect.uncertainty.coverage import student_factor
 from core.inspect.uncertainty.point_errors import PointErrors
+from core.inspect.uncertainty.skewed_light import doubt_of_light
 from core.messages import Message
 from core.model import Pose
 from core.model.arrays import Array
@@ -132,7 +133,7 @@ class Scene:
         rule: Message | None,
     ) -> Characteristic:
         """A row for `result` (its kind if nothing else is said) of a feature: "ball diameter"."""
-        result = result or kind
+        result, doubt = result or kind, doubt_of_light(budget)
         return Characteristic(
             name=f"{spec.name} {result}",
             kind=kind,
@@ -143,7 +144,8 @@ class Scene:
             limits=spec.limits_of(result),
             budget=budget,
             rule=rule,
-            complete=self.errors.complete,
+            notes=(doubt,) if doubt else (),
+            complete=self.errors.complete and doubt is None,
         )
 
 

@@ -9,6 +9,7 @@ contributes::
                                   + Σ_j G_j² own_j²            over the stretches of the fan
     sweep planes               u² = ‖Σ_j G_j sweeps_j‖²         the network's covariance but for the fan's speckle
     camera, fan calibration    u² = Σ_k (Σ_j G_j common_jk)²    over the displacements of that calibration
+    skewed light               u  = ½ |Σ_j G_j behind_j|        where sections are surely skewed: U holds all of it
     form                       u² = form² ‖Σ_j G_j form_j‖²     what the residuals show beyond all that
 
 and the causes are independent of each other. Where it is not known what the network owes to the fan's speckle, it
@@ -28,7 +29,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from core.inspect.results import Contribution
-from core.inspect.uncertainty.causes import FAN_SPECKLE, FORM, POINT_NOISE, SWEEP_PLANES
+from core.inspect.uncertainty.causes import FAN_SPECKLE, FORM, POINT_NOISE, SKEWED_LIGHT, SWEEP_PLANES
 from core.inspect.uncertainty.error_sources import Sources
 from core.messages import Message
 from core.model.arrays import Array
@@ -120,6 +121,8 @@ def effects(
     for source in dict.fromkeys(calibrations):
         mine = np.array([one == source for one in calibrations])
         found.append(_effect(source, gains, sources.common[:, mine], shared=True))
+    if sources.behind.any():
+        found.append(_effect(SKEWED_LIGHT, gains, sources.behind[:, None] / 2, shared=True))
     return tuple(found)
 
 

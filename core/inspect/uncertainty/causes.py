@@ -12,6 +12,7 @@ FAN_SPECKLE = Message("inspection.cause_fan_speckle", "centreline noise of the f
 FORM = Message("inspection.cause_form", "form of the faces beyond the stated noise")
 UNEVEN_LIGHT = Message("inspection.cause_uneven_light", "light that lies unevenly on the curved surface")
 SAMPLING = Message("inspection.cause_sampling", "which stripes were scanned (range of 95 %)")
+SKEWED_LIGHT = Message("inspection.cause_skewed_light", "light that comes from below the surface, or to one side")
 FACE_TILT = Message("inspection.cause_face_tilt", "tilt of the faces against the light plane")
 
 CAMERA = Message("inspection.cause_camera", "camera calibration")

@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 
 from core.calibrate.deviations import UNEXPLAINED
 from core.inspect.uncertainty.point_errors import PointErrors
+from core.inspect.uncertainty.skewed_light import farthest_mean_mm
 from core.model.arrays import Array
 from core.scan.network.fan_speckle import FanSpeckle
 from core.scan.surface.cloud import Cloud
@@ -51,6 +52,7 @@ class Sources:
     sweeps: Array  # (J, 3S)
     common: Array  # (J, K)
     form: Array  # (J, patches)
+    behind: Array  # (J,) what skewed light may do at most to the misfits, in mm; 0 where none is seen
     unexplained: NDArray[np.bool_]  # (K,) common errors whose law is not known: a fit must not take them out
 
     @property
@@ -124,6 +126,7 @@ class Sources:
             sweeps,
             _of_common(cloud, direction, mean, errors, count),
             form,
+            mean(of_noise * farthest_mean_mm(cloud, part, np.broadcast_to(direction, cloud.points.shape))[part]),
             np.array([source == UNEXPLAINED for source in errors.sources], dtype=np.bool_),
         )
 

@@ -36,6 +36,9 @@ class Cloud:
     sigma_common
         (N,) standard uncertainty of the depth in mm that camera and fan have in common for the whole scan; not in
         `sigma`. Zero where it is not known (and when left out).
+    skewness, spread_mm
+        (N,) of the stripe's section: its skewness, positive where the light reaches further away from the camera, and
+        its σ in mm of depth. Zero where they are not known (and when left out).
     """
 
     points: Array
@@ -46,11 +49,14 @@ class Cloud:
     sweep: NDArray[np.int64]
     normals: Array
     sigma_common: Array = field(default_factory=lambda: np.zeros(0))
+    skewness: Array = field(default_factory=lambda: np.zeros(0))
+    spread_mm: Array = field(default_factory=lambda: np.zeros(0))
 
     def __post_init__(self) -> None:
         count = len(self.points)
-        if not len(self.sigma_common):
-            set_field(self, "sigma_common", np.zeros(count))
+        for name in ("sigma_common", "skewness", "spread_mm"):
+            if not len(getattr(self, name)):
+                set_field(self, name, np.zeros(count))
         for name, shape in (
             ("points", (count, 3)),
             ("uv", (count, 2)),
@@ -58,6 +64,8 @@ class Cloud:
             ("intensity", (count,)),
             ("normals", (count, 3)),
             ("sigma_common", (count,)),
+            ("skewness", (count,)),
+            ("spread_mm", (count,)),
         ):
             set_field(self, name, frozen_array(getattr(self, name), shape, name))
         for name in ("frame", "sweep"):
@@ -79,4 +87,6 @@ class Cloud:
             self.sweep[keep],
             self.normals[keep],
             self.sigma_common[keep],
+            self.skewness[keep],
+            self.spread_mm[keep],
         )

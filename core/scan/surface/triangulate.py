@@ -71,7 +71,7 @@ def triangulate(
         variance = np.maximum(variance + 2 * common, LEAST_VARIANCE_SHARE * variance)
     keep = (inverse_depth > LEAST_INVERSE_DEPTH) & ~centreline.saturated & np.isfinite(inverse_depth)
     centreline, rays, inverse_depth = centreline.select(keep), rays[keep], inverse_depth[keep]
-    variance = variance[keep]
+    variance, slope = variance[keep], slope[keep]
     depth = 1 / inverse_depth
     count = len(rays)
     return Cloud(
@@ -82,6 +82,8 @@ def triangulate(
         frame=np.full(count, frame),
         sweep=np.full(count, sweep),
         normals=np.zeros((count, 3)),
+        skewness=-np.sign(slope) * centreline.skewness,
+        spread_mm=depth**2 * np.abs(slope) * centreline.width,
     )
 
 

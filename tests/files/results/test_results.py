@@ -227,7 +227,7 @@ def test_what_calibrations_add_to_sigma_is_a_property_behind_those_of_the_design
     common = np.linspace(0.01, 0.02, len(cloud))
     write_cloud(path, replace(cloud, sigma_common=common), "abc")
     assert np.allclose(read_cloud(path).cloud.sigma_common, common, rtol=1e-6)
-    assert parse_ply(path.read_bytes()).elements["vertex"].dtype.names[-1] == "sigma_common"
+    assert parse_ply(path.read_bytes()).elements["vertex"].dtype.names[-3:] == ("sigma_common", "skewness", "spread")
     path.write_bytes(path.read_bytes().replace(b"property float sigma_common", b"property float of_another_prog"))
     assert not read_cloud(path).cloud.sigma_common.any()  # a file of an earlier version: not known
 

@@ -12,7 +12,7 @@ from core.simulate.scene.image import blurred
 from core.simulate.scene.laser import Sheet, fan_sheets, laser_light
 from core.simulate.scene.objects import box
 from core.simulate.scene.rays import ray_map
-from core.simulate.scene.scene import Scene, Sphere, surface_maps
+from core.simulate.scene.scene import MATT, Material, Mesh, Scene, Sphere, surface_maps
 from core.simulate.scene.stage import WORK_POINT, table_pose
 
 RIG = paper_rig(0.5)
@@ -205,3 +205,31 @@ def test_an_object_does_not_shade_itself_where_it_faces_the_laser():
     top = ((maps.points - scene.pose_cam_table.translation) @ up > 49.99) & (off < 0.2)
     assert top.sum() > 200
     assert (light[top] > 50).all()
+
+
+def section_of(material: Material) -> tuple[np.ndarray, np.ndarray]:
+    """Rows about a fan line on a facing plate of this material, and the light in them at one column."""
+    corners = np.array([[-80.0, -80, 500], [80, -80, 500], [80, 80, 500], [-80, 80, 500]])
+    plate = Mesh(corners[[[0, 2, 1], [0, 3, 2]]])
+    scene = Scene(None, (plate,), material=material)
+    sheet = fan_sheets(RIG, WORK_POINT)[1]
+    light = laser_light(sheet, scene, surface_maps(scene, CAMERA, RAYS))[:, 960].astype(float)
+    return np.arange(len(light)), light
+
+
+def test_light_from_below_moves_a_section_by_its_mean_depth():
+    matt, inner = section_of(MATT), section_of(Material(inner_share=0.35, inner_mm=0.8))
+    middle = [float(rows @ light / light.sum()) for rows, light in (matt, inner)]
+    at = np.array([960.0, middle[0]])
+    ray = CAMERA.rays(at[None])[0]
+    pi = fan_sheets(RIG, WORK_POINT)[1].plane.pi
+    slope = (pi[:2] @ CAMERA.ray_jacobian(ray[None])[0])[1]
+    depth = -(500.0**2) * slope * (middle[1] - middle[0])
+    assert depth == pytest.approx(0.35 * 0.4, rel=0.05)
+    assert inner[1].sum() == pytest.approx(matt[1].sum(), rel=0.01)
+
+
+def test_a_glossy_plate_is_bright_where_it_mirrors_the_laser_into_the_camera():
+    matt, glossy = section_of(MATT)[1], section_of(Material(gloss=5.0, gloss_rad=0.2))[1]
+    assert glossy.sum() > 1.2 * matt.sum()
+    assert section_of(Material(gloss=5.0, gloss_rad=0.01))[1].sum() == pytest.approx(matt.sum(), rel=0.01)

@@ -179,7 +179,7 @@ def _concatenated(pieces: list[Piece], chain: list[tuple[int, bool]]) -> Piece:
     profiles = Profiles(
         *(
             np.concatenate([getattr(part.profiles, name) for part in parts])
-            for name in ("height", "background", "slope", "slope_sigma", "width")
+            for name in ("height", "background", "slope", "slope_sigma", "width", "skewness")
         )
     )
     return Piece(np.concatenate([p.run for p in parts]), profiles, np.concatenate([p.saturated for p in parts]))
@@ -189,5 +189,6 @@ def _reversed_piece(piece: Piece) -> Piece:
     """The same points in the other order: the normal turns with the tangent, and what rises along it falls."""
     run, p = piece.run[::-1].copy(), piece.profiles
     run[:, 2:4] *= -1
-    turned = Profiles(*(values[::-1].copy() for values in (p.height, p.background, -p.slope, p.slope_sigma, p.width)))
+    columns = (p.height, p.background, -p.slope, p.slope_sigma, p.width, -p.skewness)
+    turned = Profiles(*(values[::-1].copy() for values in columns))
     return Piece(run, turned, piece.saturated[::-1].copy())

@@ -80,6 +80,7 @@ def smooth(centreline: Centreline, windows: tuple[float, ...] = WINDOWS) -> Cent
         sigma,
         centreline.saturated,
         centreline.correlation_px * max(1.0, float(np.median((centreline.sigma / sigma) ** 2))),
+        centreline.skewness,
     )
 
 

@@ -1,0 +1,82 @@
+"""Light that comes from below the surface: what is seen of it, and what follows."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from core.inspect.conformity import Verdict
+from core.inspect.faces import FacePair
+from core.inspect.gauge import measure_gauge
+from core.inspect.uncertainty.causes import SKEWED_LIGHT
+from core.inspect.uncertainty.point_errors import PointErrors
+from core.inspect.uncertainty.skewed_light import farthest_mean_mm, mean_skewness
+from tests.inspect.block_scan import BlockScan
+
+TOLD = "inspection.light_is_skewed"
+
+
+@pytest.fixture(scope="module")
+def scan():
+    return BlockScan(height=50.0, sweeps=18)
+
+
+def gauge_of(scan, upper, lower=0.0, noise=0.03):
+    """Thickness where sections have these mean skewnesses on the two faces, and σ of 0.7 mm in depth."""
+    cloud = scan.measure(np.random.default_rng(3))
+    by_sweep = np.random.default_rng(4).normal(0, noise, (2, int(cloud.sweep.max()) + 2))
+    on = scan.upper.astype(int)
+    skewness = np.where(scan.upper, upper, lower) + by_sweep[on, np.maximum(cloud.sweep, -1)]
+    cloud = replace(cloud, skewness=skewness, spread_mm=np.full(len(cloud), 0.7))
+    return measure_gauge(
+        cloud,
+        errors=PointErrors(scan.covariance, None, 13.0, 13.0),
+        regions=FacePair(np.flatnonzero(scan.upper), np.flatnonzero(~scan.upper)),
+        nominal_mm=50.0,
+        tolerance_mm=5.0,
+    )
+
+
+def test_nothing_changes_where_sections_are_symmetric_within_their_scatter(scan):
+    plain = measure_gauge(
+        scan.measure(np.random.default_rng(3)),
+        errors=PointErrors(scan.covariance, None, 13.0, 13.0),
+        regions=FacePair(np.flatnonzero(scan.upper), np.flatnonzero(~scan.upper)),
+        nominal_mm=50.0,
+        tolerance_mm=5.0,
+    )
+    seen = gauge_of(scan, 0.0)
+    assert (seen.thickness_mm, seen.u_mm, seen.k) == (plain.thickness_mm, plain.u_mm, plain.k)
+    assert [row.source for row in seen.budget] == [row.source for row in plain.budget]
+    assert seen.verdict == Verdict.CONFORMING
+
+
+def test_light_from_below_is_in_the_uncertainty_and_proves_nothing(scan):
+    seen = gauge_of(scan, 0.08)
+    (row,) = (row for row in seen.budget if row.source == SKEWED_LIGHT)
+    assert 2 * row.u_mm == pytest.approx(0.8 * 0.08 ** (1 / 3) * 0.7, rel=0.2)
+    assert seen.U_mm >= 2 * row.u_mm
+    assert seen.verdict == Verdict.NOT_PROVEN
+    assert TOLD in {note.code for note in seen.notes}
+
+
+def test_light_that_is_skewed_alike_on_both_faces_moves_no_distance_between_them(scan):
+    """As that of a laser whose beam is skewed."""
+    seen = gauge_of(scan, 0.08, 0.08)
+    assert TOLD not in {note.code for note in seen.notes}
+    assert seen.U_mm < 1.1 * gauge_of(scan, 0.0).U_mm
+
+
+def test_few_sweeps_tell_nothing():
+    sweep = np.repeat(np.arange(5), 40)
+    assert mean_skewness(np.full(200, 0.1), sweep)[1] == np.inf
+
+
+def test_sections_on_a_curved_face_are_skewed_without_that(scan):
+    cloud, rng = scan.measure(np.random.default_rng(3)), np.random.default_rng(1)
+    skewness = rng.normal(0.1, 0.01, len(cloud))
+    cloud = replace(cloud, skewness=skewness, spread_mm=np.full(len(cloud), 0.7))
+    part, flat = np.zeros(len(cloud), dtype=np.int64), np.tile([0.0, 0.0, 1.0], (len(cloud), 1))
+    assert farthest_mean_mm(cloud, part, flat)[0] > 0.2
+    curved = flat + np.linspace(0, 0.1, len(cloud))[:, None]
+    assert farthest_mean_mm(cloud, part, curved)[0] == 0
