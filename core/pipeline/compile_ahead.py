@@ -7,10 +7,11 @@ import sys
 import time
 
 from core.compiled import is_complete, keep_complete, saved_functions
+from core.messages import label
 from core.pipeline.live.warm_up import shares
 from core.progress import Progress, silent
 
-STEP = "preparing"
+STEP = label("preparing")
 _LOOK_EVERY_S = 0.2
 _ABOUT = 240
 """Functions that a measurement needs; for the bar alone."""

@@ -8,6 +8,8 @@ import pytest
 from core import compiled
 from core.errors import Cancelled
 from core.pipeline.compile_ahead import compile_ahead
+from core.pipeline.live.warm_up import stages
+from core.pipeline.project import sample_project
 
 START = subprocess.Popen
 
@@ -37,6 +39,22 @@ def test_two_processes_make_ready_and_later_none(started):
     assert told[-1][0] == told[-1][1]
     compile_ahead()
     assert len(started) == 2
+
+
+def test_what_was_compiled_in_idle_time_is_not_made_ready_again(started):
+    stages()[-1]()
+    compile_ahead()
+    assert not started
+
+
+def test_the_sample_is_made_once_all_is_ready(monkeypatch, tmp_path):
+    def cancel(progress):
+        raise Cancelled
+
+    monkeypatch.setattr(sample_project, "compile_ahead", cancel)
+    with pytest.raises(Cancelled):
+        sample_project.sample_project(tmp_path / "sample")
+    assert not list(tmp_path.iterdir())
 
 
 def test_what_failed_is_tried_again_next_time(started):

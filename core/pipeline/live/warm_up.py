@@ -13,6 +13,7 @@ from functools import cache
 import numpy as np
 
 from core.acquire.source import Frame, Picture
+from core.compiled import keep_complete
 from core.files.recording.options import Options
 from core.image.stripes.centreline import Centreline
 from core.model import Camera, Fan, LightPlane
@@ -84,8 +85,8 @@ Stages = tuple[Callable[[], None], ...]
 
 
 def stages() -> Stages:
-    """What there is to be compiled, each part by itself; none takes much longer than a minute."""
-    return tuple(stage for share in shares() for stage in share)
+    """What there is to be compiled, each part by itself, none much longer than a minute; the last one remembers it."""
+    return (*(stage for share in shares() for stage in share), keep_complete)
 
 
 def shares() -> tuple[Stages, Stages]:

@@ -17,6 +17,7 @@ from core.files.recording.recording_set import RecordingSet
 from core.files.results.fan_file import fan_id
 from core.messages import Message
 from core.model import Camera
+from core.pipeline.compile_ahead import compile_ahead
 from core.pipeline.project.workspace import project_set
 from core.pipeline.steps.camera_step import see_views, solve_camera
 from core.pipeline.steps.kept_features import keep_poses, keep_views, kept_poses, kept_views
@@ -79,6 +80,7 @@ def find_poses(folder: Path, project: Project, progress: Progress = silent) -> t
 
     What is found is kept in the project.
     """
+    compile_ahead(progress)
     found = project_set(folder, project)
     poses = measure_poses(found, accepted_camera(folder, project), progress)
     keep_poses(folder, project, found, poses)

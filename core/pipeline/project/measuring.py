@@ -19,6 +19,7 @@ from core.files.project.results import ScanSummary
 from core.files.recording.recording_set import RecordingSet, require_scan
 from core.files.results.run_file import write_run
 from core.inspect.results import GaugeResult
+from core.pipeline.compile_ahead import compile_ahead
 from core.pipeline.project.workspace import part_name, project_set, project_workspace
 from core.pipeline.steps.camera_step import solved_for_skew
 from core.pipeline.steps.gauge_step import gauge_if_possible, gauge_step, in_a_project
@@ -57,6 +58,7 @@ def measure_scan(
     InputError
         If no calibration is accepted, there are no usable frames, or no sweep can be located.
     """
+    compile_ahead(progress)
     found = project_set(folder, project)
     require_scan(found)
     results = make_inner_folder(folder, RESULTS)

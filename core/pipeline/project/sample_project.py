@@ -12,6 +12,7 @@ from core.files.project.data import Accepted, Done, Project, ProjectFile
 from core.files.project.folder import create_project, project_from_set
 from core.files.project.keys import finished
 from core.messages import Message, label
+from core.pipeline.compile_ahead import compile_ahead
 from core.pipeline.project.calibration import (
     accept_camera,
     accept_fan,
@@ -44,6 +45,7 @@ def sample_project(folder: Path, progress: Progress = silent) -> Path:
         )
     for place in (folder, sample_folder()):
         remove_leftovers(place)
+    compile_ahead(progress)
     pictures = sample_set(progress)
     make_folder(folder.parent)
     try:
