@@ -11,6 +11,7 @@ from PySide6.QtCore import QObject, QTimer, Signal
 from PySide6.QtGui import QUndoCommand, QUndoStack
 
 from core.errors import InputError
+from core.files.project.audit import append
 from core.files.project.data import Done, Project, ProjectFile, new_project
 from core.files.project.folder import (
     can_be_saved,
@@ -22,7 +23,7 @@ from core.files.project.folder import (
     write_autosave,
     write_project,
 )
-from core.files.project.lock import ProjectLock, take_lock
+from core.files.project.lock import ProjectLock, held_by, take_lock
 from core.messages import Message
 from workbench.step_state import StepState, step_states
 
@@ -349,7 +350,10 @@ class ProjectModel(QObject):
     def _take(self, folder: Path | None, file: ProjectFile, saved: ProjectFile | None, access: Access) -> None:
         lock = None
         if folder is not None and access is not Access.READ_ONLY and can_be_saved(folder):
+            before = held_by(folder)
             lock = take_lock(folder, take_over=access is Access.TAKE_OVER)
+            if before is not None:
+                append(folder, "taken over", why=f"{before.owner} on {before.host} had it open")
         if self._lock is not None:
             self._lock.release()
         self._lock, self._access = lock, access

@@ -42,6 +42,14 @@ class CalibrationMark:
 
 
 @dataclass(frozen=True, slots=True)
+class AuditMark:
+    """The entry of the project's audit trail a report was made at: its number, and its SHA-256 in hex."""
+
+    n: int
+    sha256: str
+
+
+@dataclass(frozen=True, slots=True)
 class RepeatLine:
     """One of several scans of the same part: its thickness and U = k·u in mm, and the calibration it rests on."""
 
@@ -207,6 +215,8 @@ class ReportContent:
         What the report is printed on, and the language of its fixed words.
     template
         The company's own in it.
+    audit
+        Where the project's audit trail stood; None where there is none.
 
     Raises
     ------
@@ -249,6 +259,7 @@ class ReportContent:
     paper: Paper = "A4"
     language: str = "en"
     template: ReportTemplate = field(default_factory=ReportTemplate)
+    audit: AuditMark | None = None
 
     def __post_init__(self) -> None:
         if unknown := self.hidden - SECTIONS.keys():

@@ -6,6 +6,7 @@ Layout::
     PROJECT/NAME.trisect            what a double click opens the project by; says nothing itself
     PROJECT/.lock.json              who has the project open
     PROJECT/.autosave.json          changes that are not saved yet; there only while a project is open, or after a crash
+    PROJECT/audit.jsonl             who changed what and when, what was measured; only grows
     PROJECT/backups/                the last versions of project.json
     PROJECT/recordings/             raw frames, one folder for each recording
     PROJECT/calibrations/           every calibration that was kept
@@ -14,6 +15,7 @@ Layout::
 
 from __future__ import annotations
 
+import hashlib
 import os
 import re
 import time
@@ -24,6 +26,8 @@ from pathlib import Path
 
 from core.errors import InputError
 from core.files.atomic import ANOTHER_OUT, cannot_write, make_folder, vanished, write_bytes, write_text
+from core.files.project.audit import What, append
+from core.files.project.changes import differences
 from core.files.project.data import Project, ProjectFile, ProjectInfo, Sources
 from core.files.project.json_form import project_text, read_project_text
 from core.files.project.keys import relocated
@@ -125,6 +129,9 @@ def _write(folder: Path, file: ProjectFile, keep_s: float) -> None:
     try:
         if path.exists():
             _keep(folder / BACKUPS, path, keep_s)
+        # First the trail: a change that stands in it and was cut off is found again, one that does not never would be.
+        told: What = "saved" if path.exists() else "created"
+        append(folder, told, differences(before, file), state=hashlib.sha256(text.encode()).hexdigest())
         write_text(path, text)
     except (InputError, OSError) as error:
         raise _unsaved(path, error) from error

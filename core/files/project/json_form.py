@@ -128,8 +128,15 @@ def project_text(file: ProjectFile, path: Path) -> str:
     InputError
         If a value is not what it must be, so that the file could not be read again; `path` is for the complaint.
     """
+    tables = project_tables(file)
+    checked_json(ProjectTables, tables, path)
+    return to_json(tables)
+
+
+def project_tables(file: ProjectFile) -> dict[str, Any]:
+    """The tables of project.json, not yet checked."""
     project = file.project
-    tables = {
+    return {
         "schema_version": SCHEMA,
         "version": __version__,
         "created": _stamp(file.created),
@@ -146,8 +153,6 @@ def project_text(file: ProjectFile, path: Path) -> str:
         "studies": [asdict(study) for study in project.studies],
         "results": {step: _done_table(done) for step, done in sorted(file.results.items())},
     }
-    checked_json(ProjectTables, tables, path)
-    return to_json(tables)
 
 
 def read_project_text(path: Path) -> ProjectFile:

@@ -11,6 +11,7 @@ import os
 import re
 import secrets
 import shutil
+import tempfile
 import zipfile
 import zlib
 from collections.abc import Collection, Iterator, Mapping
@@ -27,6 +28,8 @@ from core.files.atomic import cannot_write, write_beside
 from core.files.complaints import checked_json
 from core.files.json_text import to_json
 from core.files.limits import TEXT_BYTES, check_bytes, check_file
+from core.files.project.audit import AUDIT, append
+from core.files.project.changes import differences
 from core.files.project.data import ProjectFile
 from core.files.project.folder import AUTOSAVE, PROJECT, read_project, source_folder
 from core.files.project.json_form import project_text
@@ -96,6 +99,24 @@ def pack_project(folder: Path, to: Path, progress: Progress = silent) -> Packed:
     packed, outside = _with_sources_within(folder, file)
     files |= outside
     _check_names(files, folder)
+    with tempfile.TemporaryDirectory() as beside:
+        if outside:
+            files |= _rewritten(folder, Path(beside), file, packed)
+        return _pack(files, to, progress)
+
+
+def _rewritten(folder: Path, beside: Path, file: ProjectFile, packed: ProjectFile) -> dict[str, Path]:
+    """project.json of the project with its pictures within it, and the audit trail that tells of that."""
+    text = project_text(packed, folder / PROJECT)
+    (beside / PROJECT).write_text(text, encoding="utf-8", newline="\n")
+    if (folder / AUDIT).exists():
+        shutil.copyfile(folder / AUDIT, beside / AUDIT)
+    state = hashlib.sha256(text.encode()).hexdigest()
+    append(beside, "saved", differences(file, packed), why="packed with the pictures from outside", state=state)
+    return {name: beside / name for name in (PROJECT, AUDIT)}
+
+
+def _pack(files: Mapping[str, Path], to: Path, progress: Progress) -> Packed:
     total = 0
 
     def put(beside: Path) -> None:
@@ -103,12 +124,7 @@ def pack_project(folder: Path, to: Path, progress: Progress = silent) -> Packed:
         listed: dict[str, dict[str, object]] = {}
         with zipfile.ZipFile(beside, "x", zipfile.ZIP_DEFLATED, compresslevel=1) as archive:
             for name, path in steps(files.items(), progress, "packing", len(files)):
-                if name == PROJECT and outside:
-                    text = project_text(packed, path).encode()
-                    archive.writestr(name, text)
-                    listed[name] = {"bytes": len(text), "sha256": hashlib.sha256(text).hexdigest()}
-                else:
-                    listed[name] = _put_in(archive, name, path)
+                listed[name] = _put_in(archive, name, path)
                 total += int(str(listed[name]["bytes"]))
             now = datetime.now().astimezone().isoformat()
             about = {"kind": "trisect project", "format": 1, "version": __version__, "packed": now, "files": listed}

@@ -5,15 +5,17 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
+from core.files.project.audit import read_trail
 from core.files.project.data import Project
 from core.files.project.folder import results_folder
 from core.files.project.report_template import read_report_template
 from core.files.study.study_file import study_path
+from core.pipeline.project.verify import note_results
 from core.pipeline.project.workspace import part_name, project_set, project_workspace
 from core.pipeline.steps.report_step import report_content, report_step, with_studies
 from core.pipeline.steps.workspace import Workspace
 from core.progress import Progress, silent
-from core.report.content import RepeatLine, ReportContent
+from core.report.content import AuditMark, RepeatLine, ReportContent
 from core.report.pdf import build_report
 from core.report.template import SECTIONS, ReportTemplate
 
@@ -27,7 +29,9 @@ def make_report(folder: Path, project: Project, progress: Progress = silent) -> 
         If there is no scan among the results.
     """
     work = project_workspace(folder, project)
-    return report_step(work, progress, lambda content: with_words(content, folder, project))
+    path = report_step(work, progress, lambda content: with_words(content, folder, project))
+    note_results(folder, reported=True)
+    return path
 
 
 def report_bytes(folder: Path, project: Project, progress: Progress = silent) -> bytes:
@@ -69,4 +73,11 @@ def with_words(content: ReportContent, folder: Path, project: Project) -> Report
         paper=choices.paper,
         language=choices.language,
         template=template,
+        audit=_audit_mark(folder),
     )
+
+
+def _audit_mark(folder: Path) -> AuditMark | None:
+    """The last entry of the audit trail; those of reports left out, so that the same report comes out again."""
+    entries = [entry for entry in read_trail(folder).entries if entry.what != "reported"]
+    return AuditMark(entries[-1].n, entries[-1].hash) if entries else None

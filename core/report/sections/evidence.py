@@ -100,6 +100,9 @@ def settings(look: Look, content: ReportContent, limits: Limits) -> list[Flowabl
     over_all = look.say("SHA-256 over version, method and settings:", "small")
     digest = Paragraph(markup(content.settings_digest), look.style("mono"))
     body = [side_by_side(columns[0], columns[1], TEXT_WIDTH), over_all, digest]
+    if content.audit is not None:
+        said = look.say("Audit trail of the project, SHA-256 of entry {n}:", "small", n=content.audit.n)
+        body += [said, Paragraph(markup(content.audit.sha256), look.style("mono"))]
     return [
         section(look, "settings", "Software and settings", body),
         *more_line(look, len(pairs) - limits.settings),

@@ -1,0 +1,137 @@
+"""Whether a project, or a folder of results, is still what it was: the audit trail, the results, and their inputs."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+from core.errors import InputError
+from core.files.project.audit import Entry, Trail, append, read_trail
+from core.files.project.folder import PROJECT, RESULTS, is_project, read_project
+from core.files.project.keys import changed, rests_on
+from core.files.reading import read_bytes
+from core.files.recording.recording_set import RIG, RecordingSet, open_set
+from core.files.results.run_file import read_run
+from core.messages import Message
+from core.pipeline.project.workspace import project_set
+from core.pipeline.steps.workspace import FILES
+from core.progress import Progress, silent, steps
+
+_MAKING = ("measured", "reported")
+"""Entries that tell of results."""
+
+
+@dataclass(frozen=True, slots=True)
+class Verified:
+    """What was found: the audit trail, how many files were compared, what differs, and what else is to be told."""
+
+    trail: Trail
+    results: int
+    inputs: int
+    problems: tuple[Message, ...]
+    notes: tuple[Message, ...]
+
+
+def note_results(folder: Path, name: str = RESULTS, *, reported: bool = False) -> None:
+    """Tell the project's audit trail what lies among the results in its folder `name` now; raises as `append`."""
+    made = (path for path in sorted((folder / name).iterdir()) if path.is_file() and path.name[0] != ".")
+    files = {f"{name}/{path.name}": _digest(path) for path in made}
+    append(folder, "reported" if reported else "measured", files=files)
+
+
+def verify(folder: Path, set_folder: Path | None = None, head: str = "", progress: Progress = silent) -> Verified:
+    """Compare everything that has a hash with what lies on the disk.
+
+    Parameters
+    ----------
+    folder
+        A project, or a folder of results.
+    set_folder
+        The recording set that the results are of; a project knows its own pictures.
+    head
+        What a report prints of the audit trail, or its beginning: an entry must have it.
+
+    Raises
+    ------
+    InputError
+        If there is neither a project nor a run.json, or the set is not named.
+    """
+    if is_project(folder):
+        return _project(folder, head, progress)
+    run = folder / FILES["run"]
+    inputs = read_run(run).inputs
+    if set_folder is None:
+        raise InputError(
+            Message("verify.no_set", "these are results without their project"),
+            where=folder,
+            todo=Message("advice.name_the_set", "name the recording set they are of with --set"),
+        )
+    problems = _inputs(inputs.items(), open_set(set_folder), progress)
+    return Verified(Trail(), 0, len(inputs), tuple(problems), ())
+
+
+def _project(folder: Path, head: str, progress: Progress) -> Verified:
+    file, trail = read_project(folder), read_trail(folder)
+    problems, notes = list(trail.problems), []
+    if trail.torn:
+        notes.append(Message("verify.torn", "the last line of the audit trail was cut off; it never was an entry"))
+    if head and not any(entry.hash.startswith(head.lower()) for entry in trail.entries):
+        problems.append(Message("verify.head_unknown", "no entry of the audit trail has the hash {head}", head=head))
+    states = [entry for entry in trail.entries if entry.state]
+    if not states:
+        notes.append(Message("verify.no_trail", "nothing was saved since there are audit trails"))
+    elif (state := _digest(folder / PROJECT)) != states[-1].state:
+        if len(states) > 1 and state == states[-2].state:
+            notes.append(
+                Message("verify.save_cut_off", "the last save was cut off: {file} is the one before", file=PROJECT)
+            )
+        else:
+            problems.append(Message("verify.state", "{file} is not what the program last saved", file=PROJECT))
+    known = {one.split("/")[0]: entry for entry in trail.entries if entry.what in _MAKING for one in entry.files}
+    for name, entry in known.items():
+        problems += _results(folder, name, entry)
+    inputs: dict[str, str] = {}
+    run = folder / RESULTS / FILES["run"]
+    if run.exists():
+        inputs = dict(read_run(run).inputs)
+        problems += _inputs(inputs.items(), project_set(folder, file.project), progress)
+    for step, done in file.results.items():
+        if names := changed(done.rests_on, rests_on(step, file.project, file.results)):
+            notes.append(Message("verify.outdated", "{step} is out of date: {names}", step=step, names=names))
+    results = sum(len(entry.files) for entry in known.values())
+    return Verified(trail, results, len(inputs), tuple(problems), tuple(notes))
+
+
+def _results(folder: Path, name: str, entry: Entry) -> list[Message]:
+    problems = []
+    for one, digest in entry.files.items():
+        path = folder / one
+        if not path.is_file():
+            problems.append(Message("verify.missing", "{name} is missing", name=one))
+        elif _digest(path) != digest:
+            problems.append(Message("verify.result", "{name} is not what it was (entry {n})", name=one, n=entry.n))
+    for path in sorted((folder / name).iterdir()) if (folder / name).is_dir() else []:
+        if path.name in FILES.values() and f"{name}/{path.name}" not in entry.files:
+            one = f"{name}/{path.name}"
+            problems.append(Message("verify.not_made", "{name} was not made with the results beside it", name=one))
+    return problems
+
+
+def _inputs(inputs: Iterable[tuple[str, str]], found: RecordingSet, progress: Progress) -> list[Message]:
+    problems = []
+    listed = list(inputs)
+    for name, digest in steps(listed, progress, "comparing", len(listed)):
+        try:
+            now = found.hashes[RIG] if name == RIG else _digest(found.path_of(name))
+        except InputError:
+            problems.append(Message("verify.missing", "{name} is missing", name=name))
+            continue
+        if now != digest:
+            problems.append(Message("verify.input", "{name} is not what the results were made of", name=name))
+    return problems
+
+
+def _digest(path: Path) -> str:
+    return hashlib.sha256(read_bytes(path)).hexdigest()
