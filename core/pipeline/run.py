@@ -12,7 +12,7 @@ from core.files.recording.recording_set import open_set, require_camera, require
 from core.inspect.results import GaugeResult
 from core.messages import Message
 from core.pipeline.steps.camera_step import camera_step
-from core.pipeline.steps.check_step import check_step
+from core.pipeline.steps.check_step import check_step, measure_check
 from core.pipeline.steps.gauge_step import gauge_if_possible, gauge_step
 from core.pipeline.steps.planes_step import planes_step
 from core.pipeline.steps.report_step import report_step
@@ -74,9 +74,10 @@ def _measured(work: Workspace, options: Options, progress: Progress) -> RunResul
     work.clear()
     camera = camera_step(work, options, progress)
     fan = planes_step(work, options, progress)
-    if found.check:
-        check_step(work, options, progress)
-    measured = scan_step(work, options, progress)
+    check = measure_check(found, camera.camera, options, progress) if found.check else None
+    if check is not None:
+        check_step(work, options, progress, poses=check)
+    measured = scan_step(work, options, progress, check=check)
     # a part without two parallel faces is no error when rig.toml does not ask for a thickness
     asked = found.rig.gauge is not None
     gauge = gauge_step(work, progress) if asked else gauge_if_possible(work, progress)[0]

@@ -39,11 +39,16 @@ STEP_MM = 50.0
 
 
 def check_step(
-    work: Workspace, options: Options | None = None, progress: Progress = silent, celsius: float | None = None
+    work: Workspace,
+    options: Options | None = None,
+    progress: Progress = silent,
+    celsius: float | None = None,
+    poses: Sequence[PoseFeatures] | None = None,
 ) -> InterimCheck:
     """Check the calibrations in camera.json and planes.json by the pictures in SET/check, and write check.json.
 
-    The check goes into the rig's history, with the temperature of the air if it is known.
+    The check goes into the rig's history, with the temperature of the air if it is known. `poses` are what
+    `measure_check` has found, if it was asked before.
 
     Raises
     ------
@@ -61,7 +66,7 @@ def check_step(
     calibration = work.calibration()
     camera, fan = calibration.camera.camera, calibration.fan
     with work.step("check") as log:
-        deviations, evidence, checked, change = _judged(found, calibration, options, progress)
+        deviations, evidence, checked, change = _judged(found, calibration, options, progress, poses=poses)
         reasons = [pose.located.reason for pose in checked if pose.located.reason is not None]
         if len(reasons) == len(checked) and all(reason.code != ELSEWHERE for reason in reasons):
             raise InputError(
@@ -112,6 +117,7 @@ def since_calibration(
     options: Options,
     progress: Progress = silent,
     of_measured: Callable[[Sequence[Deviation]], Evidence] | None = None,
+    poses: Sequence[PoseFeatures] | None = None,
 ) -> Change:
     """What may have changed since the calibration, as far as no picture excludes it.
 
@@ -121,6 +127,8 @@ def since_calibration(
         The pictures, with those of an interim check if there are any, and how they are looked at.
     of_measured
         What the pictures that are measured say of deviations; None: nothing.
+    poses
+        Those of the check, if they have been measured.
 
     Raises
     ------
@@ -129,7 +137,7 @@ def since_calibration(
     """
     apart = _days_apart(found)
     if apart <= SAME_DAY:
-        return _judged(found, calibration, options, progress, of_measured)[-1]
+        return _judged(found, calibration, options, progress, of_measured, poses)[-1]
     change = _judged(replace(found, check=()), calibration, options, progress, of_measured)[-1]
     other_day = Message(
         "check.another_day",
@@ -154,6 +162,7 @@ def _judged(
     options: Options,
     progress: Progress,
     of_measured: Callable[[Sequence[Deviation]], Evidence] | None = None,
+    poses: Sequence[PoseFeatures] | None = None,
 ) -> tuple[tuple[Deviation, ...], Evidence, tuple[CheckedPose, ...], Change]:
     """The deviations reckoned with, what all pictures say of them, the check's poses, and what that proves."""
     camera, fan = calibration.camera.camera, calibration.fan
@@ -161,7 +170,8 @@ def _judged(
     evidence = Evidence.none(len(deviations)) if of_measured is None else of_measured(deviations)
     checked: tuple[CheckedPose, ...] = ()
     if found.check:
-        checked, of_check = check_poses(measure_check(found, camera, options, progress), camera, fan, deviations)
+        seen = measure_check(found, camera, options, progress) if poses is None else poses
+        checked, of_check = check_poses(seen, camera, fan, deviations)
         evidence += of_check
     change = judge(camera, fan.fan, deviations, evidence, found.rig.stability)
     reasons = [(one.located.features.name, one.located.reason) for one in checked if one.located.reason is not None]

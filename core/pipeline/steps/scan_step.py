@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
 import numpy as np
 
+from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.calibrate.results import LEFT_OUT
 from core.errors import InputError
 from core.files.pictures import Picture, compression_grey
@@ -67,6 +68,7 @@ def scan_step(
     progress: Progress = silent,
     watch: Callable[[FramePreview], None] | None = None,
     earlier: Path | None = None,
+    check: Sequence[PoseFeatures] | None = None,
 ) -> Measured:
     """Measure the surface with the calibration in camera.json and planes.json.
 
@@ -79,6 +81,8 @@ def scan_step(
     earlier
         A scan.npz: where it is of the same pictures, looked at in the same way, they are not looked at again, and there
         is nothing to watch. The results are the same, byte for byte.
+    check
+        The poses of the interim check, if they have been measured.
 
     Raises
     ------
@@ -99,7 +103,7 @@ def scan_step(
         solving = ReconstructOptions(options.method, options.sigma_cut_mm, found.rig.row_time_us)
         even, scan = reconstruct_twice(features, camera, fan, solving, progress)
         of_scan = partial(scan_evidence, even, scan, camera, fan) if options.method == Method.NETWORK else None
-        change = since_calibration(found, calibration, options, progress, of_scan)
+        change = since_calibration(found, calibration, options, progress, of_scan, check)
         common = solve_common(even, scan, camera, fan, change.deviations, options.method, progress)
         cloud = replace(scan.cloud, sigma_common=common.sigma(scan.cloud))
         scan = replace(scan, cloud=with_normals(cloud, progress=progress))

@@ -18,6 +18,7 @@ from core.files.results.gauge_file import read_thickness
 from core.files.results.scan_file import read_scan
 from core.inspect.conformity import Verdict
 from core.pipeline.run import run
+from core.pipeline.steps import planes_step as planes_step_module
 from core.pipeline.steps.camera_step import camera_step
 from core.pipeline.steps.check_step import check_step, since_calibration
 from core.pipeline.steps.gauge_step import gauge_step
@@ -155,8 +156,11 @@ def test_a_picture_of_the_check_that_shows_no_target_is_told(unchanged, tmp_path
     assert {note.code for note in change.notes} == {"check.pose_left_out"}
 
 
-def test_a_whole_run_checks_first(unchanged, tmp_path):
+def test_a_whole_run_checks_first_and_looks_at_each_picture_once(unchanged, tmp_path, monkeypatch):
+    measure, seen = planes_step_module.measure_plane_pose, []
+    monkeypatch.setattr(planes_step_module, "measure_plane_pose", lambda *a: (seen.append(a[0]), measure(*a))[1])
     result = run(unchanged / "set", tmp_path / "out", COARSE)
+    assert len(seen) == RIG.plane_poses + RIG.check_poses
     assert result.files["check"].exists()
     assert "check.passed" in {note.code for note in result.notes}
 
