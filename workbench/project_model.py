@@ -350,11 +350,14 @@ class ProjectModel(QObject):
     def _take(self, folder: Path | None, file: ProjectFile, saved: ProjectFile | None, access: Access) -> None:
         lock = None
         if folder is not None and access is not Access.READ_ONLY and can_be_saved(folder):
-            before = held_by(folder)
-            lock = take_lock(folder, take_over=access is Access.TAKE_OVER)
-            if before is not None:
-                append(folder, "taken over", why=f"{before.owner} on {before.host} had it open")
-        if self._lock is not None:
+            if self._lock is not None and self._lock.folder == folder and access is not Access.TAKE_OVER:
+                lock = self._lock  # the project that is open is opened once more
+            else:
+                before = held_by(folder)
+                lock = take_lock(folder, take_over=access is Access.TAKE_OVER)
+                if before is not None:
+                    append(folder, "taken over", why=f"{before.owner} on {before.host} had it open")
+        if self._lock is not None and self._lock is not lock:
             self._lock.release()
         self._lock, self._access = lock, access
         self.folder, self._file, self._saved, self._complaint = folder, file, saved, ""
