@@ -131,7 +131,7 @@ def _inspect_tabs(app: QApplication, bench: Bench, window: MainWindow) -> Iterat
     ):
         shown(tab, feature)
         if feature:
-            _side_to(page, page.features)
+            _side_to(page, page.features.form)
         yield name
     inspect.studies.begin("grr")
     inspect.studies.write(_published_study())
@@ -186,7 +186,7 @@ def _readme(app: QApplication, bench: Bench, window: MainWindow, folder: Path) -
             page: Any = window.pages[name]
             page.presenter.features.choose("top")
             _settle(app, bench, 1.0)
-            _side_to(page, page.features)
+            _side_to(page, page.features.form)
         _settle(app, bench, 8.0)
         _drawn(app, bench, window, name)
         window.statusBar().clearMessage()  # it may name a folder of this machine

@@ -35,6 +35,7 @@ class StepPage(QWidget):
         self._lists: list[QWidget] = []
         self.centre = QVBoxLayout()
         self.centre.setContentsMargins(8, 8, 8, 8)
+        self.pinned = in_column(margins=(10, 8, 10, 0), spacing=8)
         self.side = in_column(margins=(10, 8, 10, 8), spacing=8)
         self.splitter = QSplitter(Qt.Orientation.Horizontal)
         self.splitter.addWidget(holding(self.centre))
@@ -68,6 +69,10 @@ class StepPage(QWidget):
     def add_to_side(self, widget: QWidget) -> None:
         """A widget at the side that is always there, below what was added before."""
         self.side.insertWidget(self.side.count() - 1, widget)
+
+    def pin_to_side(self, widget: QWidget) -> None:
+        """A widget at the top of the side that stays in sight whatever is scrolled below it."""
+        self.pinned.addWidget(widget)
 
     def add_list(self, title: str, widget: QWidget) -> QCollapsible:
         """A panel with a list that grows with the page."""
@@ -108,13 +113,13 @@ class StepPage(QWidget):
         self.side.addStretch(1)
         inside = holding(self.side)
         inside.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Preferred)
-        scroll = _SidePanel()
+        self.scrolled = scroll = _SidePanel()
         scroll.setWidget(inside)
         scroll.setWidgetResizable(True)
         scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         scroll.setFrameShape(QFrame.Shape.NoFrame)
         scroll.setAccessibleName(self.tr("Settings and quality"))
-        return scroll
+        return holding(in_column(self.pinned, (scroll, 1), spacing=0))
 
 
 class _SidePanel(QScrollArea):

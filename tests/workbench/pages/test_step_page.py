@@ -16,7 +16,7 @@ def test_the_side_is_never_narrower_than_what_is_in_it_however_narrow_the_window
     qtbot.addWidget(page)
     page.resize(500, 400)
     page.show()
-    side: Any = page.splitter.widget(1)
+    side: Any = page.scrolled
     page.splitter.setSizes([500, 10])
     assert side.width() >= 300
     box = QCheckBox("a very long setting " * 4)

@@ -53,13 +53,15 @@ class InspectPage(StepPage):
             ]
         )
         self.card.title.setObjectName("title")
-        self.add_to_side(self.card)
+        self.pin_to_side(self.card)
+        self.features = FeaturesPanel(presenter.features, presenter.feature, presenter.templates, presenter.scan)
+        self.pin_to_side(self.features)
+        self.add_to_side(self.features.form)  # above what would push it down as it comes
+        self.add_to_side(self.features.state)
         self.result = ResultPanel(presenter)
         self.result_fold = self.add_panel(self.tr("Result"), self.result)
         self.faces = FacesPanel(presenter)
         self.add_panel(self.tr("What is measured"), self.faces)
-        self.features = FeaturesPanel(presenter.features, presenter.feature, presenter.templates, presenter.scan)
-        self.add_panel(self.tr("Features"), self.features)
         self.conditions = ConditionsPanel(presenter.conditions)
         self.conditions_fold = self.add_panel(self.tr("Conditions and frame"), self.conditions, collapsed=True)
         self.picks = PicksPanel(presenter)

@@ -323,6 +323,23 @@ def test_the_list_shows_value_uncertainty_verdict_and_problem(page, features, qt
     assert page.features.list.verticalScrollBar().maximum() == 0, "all rows are seen"
 
 
+def test_the_list_stays_in_sight_and_results_do_not_move_the_form_of_the_one_chosen(page, features, presenter, qtbot):
+    presenter.feature.add("plane")
+    page.resize(1000, 640)
+    page.show()
+    form, panels = page.features.form, page.scrolled
+    qtbot.waitUntil(lambda: form.isVisible() and panels.verticalScrollBar().maximum() > 0)
+    qtbot.waitUntil(lambda: page.features.height() == page.features.sizeHint().height())
+    before = form.mapTo(page, form.rect().topLeft())
+    measured(features, qtbot)
+    page.refreshing.at_once()
+    qtbot.wait(50)
+    assert form.mapTo(page, form.rect().topLeft()) == before
+    panels.verticalScrollBar().setValue(panels.verticalScrollBar().maximum())
+    assert not page.features.list.visibleRegion().isEmpty()
+    assert not page.features.measure.visibleRegion().isEmpty()
+
+
 def test_choosing_a_feature_shows_its_points_in_3d_and_in_the_picture(presenter, page, features, qtbot):
     presenter.feature.add("plane")
     presenter.feature.add("sphere")

@@ -9,10 +9,10 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QAction, QKeySequence, QShortcut
 from PySide6.QtWidgets import (
     QAbstractItemView,
-    QHBoxLayout,
     QHeaderView,
     QMenu,
     QPushButton,
+    QSizePolicy,
     QToolButton,
     QTreeWidget,
     QTreeWidgetItem,
@@ -38,12 +38,16 @@ from workbench.views.lists.value_rows import VERDICT_ICONS
 if TYPE_CHECKING:
     from core.inspect.characteristic import Characteristic
 
-MOST_ROWS = 12
-"""The list shows so many rows before it is scrolled."""
+ROWS = 6
+"""The list shows so many rows, more are scrolled: it is always in sight, and below it the form of a feature."""
 
 
 class FeaturesPanel(QWidget):
-    """List, buttons, and the form of the chosen feature. Without any feature: one line and one button."""
+    """List and buttons, of one height whatever comes of them.
+
+    The form of the chosen feature, and how far the features are, stand where whoever shows the panel has room for them.
+    Without any feature: two buttons.
+    """
 
     draw = Signal(str, str)
     """Name of a region and kind of tool: it is to be drawn."""
@@ -67,16 +71,11 @@ class FeaturesPanel(QWidget):
         self._make_list()
         self._make_menu()
         column = in_column(self.list, on=self, spacing=4)
-        row = QHBoxLayout()
-        row.addWidget(self.add, 1)
         for button in (self.remove, self.up, self.down):
             button.setAutoRaise(True)
-            row.addWidget(button)
-        column.addLayout(row)
-        row = in_row((self.templates, 1), (self.measure, 1))
-        column.addLayout(row)
-        column.addWidget(self.state)
-        column.addWidget(self.form)
+        column.addLayout(in_row((self.measure, 1), self.remove, self.up, self.down))
+        column.addLayout(in_row((self.add, 1), (self.templates, 1)))
+        self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Maximum)
         self.form.draw.connect(self.draw)
 
     def refresh(self) -> None:
@@ -125,7 +124,8 @@ class FeaturesPanel(QWidget):
             self.list.addTopLevelItems([self._item(spec.name, kind_of(spec)) for spec in features.plan.features])
             self.list.expandAll()
             self.list.blockSignals(False)
-            self._fit_list()
+            if features.plan.features:
+                self._fit_list()
         names = features.plan.names
         wanted = self.list.topLevelItem(names.index(features.chosen)) if features.chosen in names else None
         current = self.list.currentItem()
@@ -135,12 +135,9 @@ class FeaturesPanel(QWidget):
             self.list.blockSignals(False)
 
     def _fit_list(self) -> None:
-        """As high as its rows, up to a point: nothing is scrolled that there is room for."""
-        items = [self.list.topLevelItem(place) for place in range(self.list.topLevelItemCount())]
-        rows = sum(1 + item.childCount() for item in items if item is not None)
-        row = self.list.sizeHintForRow(0) if rows else 0
+        """As high as it ever gets: results that come push nothing below them."""
         header, frame = self.list.header().sizeHint().height(), 2 * self.list.frameWidth()
-        self.list.setFixedHeight(header + frame + min(rows, MOST_ROWS) * row)
+        self.list.setFixedHeight(header + frame + ROWS * self.list.sizeHintForRow(0))
 
     def _item(self, name: str, kind: FeatureKind) -> QTreeWidgetItem:
         result = self._features.result(name)
