@@ -205,6 +205,7 @@ class MainWindow(QMainWindow):
             "copy": projects.copy.save_copy,
             "pack": projects.pack.pack,
             "unpack": projects.pack.choose,
+            "audit": projects.show_audit_trail,
             "close": projects.close_project,
             "quit": self.leave,
             **{name: partial(self.presenter_action, name) for name in ("run", "accept", "live", "capture")},

@@ -16,6 +16,7 @@ from core.files.project.folder import OPENER, can_be_saved, is_project, project_
 from core.files.recording.unfinished import Unfinished, forget_recording, unfinished_recording
 from workbench.bench import Bench
 from workbench.language import text_of, tr
+from workbench.pages.project.audit import AuditWindow
 from workbench.pages.project.copying import ProjectCopy
 from workbench.pages.project.import_dialog import ImportDialog
 from workbench.pages.project.packing import PACKED, ProjectPack
@@ -157,6 +158,13 @@ class ProjectActions(QObject):
         names = (self.tr("Simulated rig") + (f" {number}" if number > 1 else "") for number in range(1, 1000))
         name = next(name for name in names if not (base / name).exists())
         self._create(base / name, new_project, name, then=lambda: self.go_to.emit("camera"))
+
+    def show_audit_trail(self) -> None:
+        """Show who did what in the open project, and when; what is being changed is saved before."""
+        if self.model.folder is not None:
+            if not self.model.is_read_only:
+                self.save()
+            AuditWindow(self.bench, self.model.folder, self._window).exec()
 
     def save(self) -> bool:
         """Save, with what is being typed; False if it could not be."""

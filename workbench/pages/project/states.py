@@ -8,13 +8,18 @@ from pathlib import Path
 from PySide6.QtWidgets import QWidget
 
 from core.errors import InputError
+from core.files.project.changes import Change, differences
 from core.files.project.data import ProjectFile
 from core.files.project.folder import Version, read_project, recoverable, rescues
 from core.files.project.json_form import NewerProject
 from core.files.project.lock import held_by
+from core.messages import visible
 from workbench.language import tr
 from workbench.project_model import Access
 from workbench.views import ask
+
+SHOWN, LONGEST = 8, 40
+"""Changes that are shown before one is asked to choose, and characters of a value."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +70,7 @@ def wanted_state(parent: QWidget, folder: Path) -> Wanted | None:
     recovered = recoverable(folder)
     if recovered is None or recovered == saved:
         return Wanted()
-    return _ask_for_recovery(parent, folder, recovered)
+    return _ask_for_recovery(parent, folder, saved, recovered)
 
 
 def _ask_for_version(parent: QWidget, folder: Path, error: InputError, versions: tuple[Version, ...]) -> Wanted | None:
@@ -79,13 +84,33 @@ def _ask_for_version(parent: QWidget, folder: Path, error: InputError, versions:
     return Wanted(version=versions[chosen].file) if chosen < len(versions) else None
 
 
-def _ask_for_recovery(parent: QWidget, folder: Path, recovered: ProjectFile) -> Wanted | None:
+def _ask_for_recovery(parent: QWidget, folder: Path, saved: ProjectFile, recovered: ProjectFile) -> Wanted | None:
     text = tr(
-        "{name} was not closed properly: there are unsaved changes of {time}.", name=folder.name, time=_time(recovered)
+        "{name} was not closed properly: there are unsaved changes of {time}. "
+        "What was saved at {saved} differs in:\n{changes}",
+        name=folder.name,
+        time=_time(recovered),
+        saved=_time(saved),
+        changes=_changes(differences(saved, recovered)),
     )
     answers = [tr("Recover the changes"), tr("Open the saved state"), tr("Do not open")]
     chosen = ask.ask(parent, tr("Recover the project"), text, answers)
     return Wanted(recover=chosen == 0) if chosen < 2 else None
+
+
+def _changes(changes: tuple[Change, ...]) -> str:
+    """The first few, a line each: the field, and what it was and is; of a result only which one."""
+    lines = [
+        one.field if one.field.startswith("results.") else f"{one.field}: {_short(one.old)} → {_short(one.new)}"
+        for one in changes[:SHOWN]
+    ]
+    if len(changes) > SHOWN:
+        lines.append(tr("and {n} more", n=len(changes) - SHOWN))
+    return "\n".join(lines)
+
+
+def _short(value: str) -> str:
+    return visible(value if len(value) <= LONGEST else f"{value[: LONGEST - 1]}…") or "–"
 
 
 def _in_words(version: Version) -> str:

@@ -12,12 +12,14 @@ import pytest
 from PySide6.QtWidgets import QLineEdit, QWidget
 
 from core.errors import InputError
+from core.files.project.audit import read_trail
 from core.files.project.data import ProjectFile, new_project
 from core.files.project.folder import create_project, read_project, recoverable, write_autosave
 from core.files.project.lock import take_lock
 from tests.workbench.hand_lane import HandLane
 from workbench.bench import Bench
 from workbench.pages.project.actions import ProjectActions
+from workbench.pages.project.audit import AuditWindow
 from workbench.views import ask
 from workbench.work import jobs
 
@@ -559,3 +561,41 @@ def test_a_project_is_packed_as_it_is_and_unpacked_and_opened_elsewhere(
     qtbot.waitUntil(lambda: projects.model.folder == tmp_path / "here" / "sent")
     assert projects.model.project.info.name == "As it is now"
     assert not errors(projects)
+
+
+def test_recovery_says_when_it_was_saved_and_what_differs(
+    projects: ProjectActions, asked: Asked, tmp_path: Path
+) -> None:
+    folder = project(tmp_path / "block")
+    made = new_project("Block")
+    info = replace(made.info, part="Gauge " + 60 * "x", serial="7", operator="Anna")
+    write_autosave(folder, ProjectFile(replace(made, info=info)))
+    asked.answer = "Recover the changes"
+    projects.open_project(folder)
+    text, _ = asked.questions[0]
+    assert "was not closed properly: there are unsaved changes of 20" in text
+    assert "What was saved at 20" in text
+    assert 'info.serial: – → "7"' in text
+    assert "xxxx…" in text
+    assert 'info.operator: – → "Anna"' in text
+    assert "info.name" not in text
+
+
+def test_the_audit_trail_is_shown_remarked_on_and_exported(
+    projects: ProjectActions, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = project(tmp_path / "block")
+    projects.open_project(folder)
+    renamed(projects, "Other")
+    projects.save()
+    window = AuditWindow(projects.bench, folder)
+    assert 'info.name: "Block" → "Other"' in window.entries.toPlainText()
+    window.add_remark("as the customer wished")
+    assert window.entries.toPlainText().index("as the customer wished") < window.entries.toPlainText().index("Other")
+    assert read_trail(folder).head in window.state.text()
+    monkeypatch.setattr(ask, "choose_file_to_save", lambda *_: tmp_path / "trail.csv")
+    window.export.click()
+    assert "as the customer wished" in (tmp_path / "trail.csv").read_text()
+    audit = folder / "audit.jsonl"
+    audit.write_text(audit.read_text().replace("Other", "Another"))
+    assert "was changed" in AuditWindow(projects.bench, folder).state.text()

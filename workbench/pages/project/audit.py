@@ -1,0 +1,90 @@
+"""The audit trail of the open project in a window: looked through, remarked on, handed over as a table."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from PySide6.QtWidgets import QDialog, QInputDialog, QPlainTextEdit, QPushButton, QWidget
+
+from core.errors import InputError
+from core.files.atomic import write_text
+from core.files.project.audit import Entry, Trail, append, read_trail, trail_table
+from core.messages import visible
+from workbench.bench import Bench
+from workbench.language import text_of, tr
+from workbench.views import ask
+from workbench.views.layouts import STRETCH, in_column, in_row, muted
+
+
+class AuditWindow(QDialog):
+    """Every entry, the newest first; whether the chain is whole stands above them."""
+
+    def __init__(self, bench: Bench, folder: Path, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._bench, self._folder = bench, folder
+        self._trail = Trail()
+        self.setWindowTitle(self.tr("Audit trail"))
+        self.resize(820, 560)
+        self.state, self.entries = muted(), QPlainTextEdit()
+        self.state.setWordWrap(True)
+        self.entries.setReadOnly(True)
+        self.entries.setAccessibleName(self.tr("Entries of the audit trail"))
+        self.remark = QPushButton(self.tr("Add a remark …"))
+        self.remark.clicked.connect(self._ask_for_remark)
+        self.remark.setEnabled(not bench.model.is_read_only)
+        self.export = QPushButton(self.tr("Export …"))
+        self.export.clicked.connect(self._export)
+        close = QPushButton(self.tr("Close"))
+        close.clicked.connect(self.accept)
+        in_column(self.state, (self.entries, 1), in_row(self.remark, self.export, STRETCH, close), on=self)
+        self._show()
+
+    def add_remark(self, text: str) -> None:
+        """Add an entry with somebody's words: why something was done."""
+        if text.strip():
+            try:
+                append(self._folder, "remark", why=text.strip())
+            except InputError as error:
+                self._bench.notices.failed(error)
+            self._show()
+
+    def _show(self) -> None:
+        try:
+            self._trail = trail = read_trail(self._folder)
+        except InputError as error:
+            self.state.setText(text_of(error))
+            return
+        whole = tr("{n} entries, each chained to the one before. Head: {head}", n=len(trail.entries), head=trail.head)
+        self.state.setText(" ".join(map(text_of, trail.problems)) or whole)
+        self.entries.setPlainText("\n\n".join(_in_words(entry) for entry in reversed(trail.entries)))
+
+    def _ask_for_remark(self) -> None:
+        text, given = QInputDialog.getMultiLineText(self, self.tr("Add a remark"), self.tr("It stays for good:"))
+        if given:
+            self.add_remark(text)
+
+    def _export(self) -> None:
+        start = self._folder.parent / f"{self._folder.name}-audit.csv"
+        path = ask.choose_file_to_save(self, self.tr("Export the audit trail"), start, "CSV (*.csv)")
+        if path is None:
+            return
+        try:
+            write_text(path, trail_table(self._trail))
+        except InputError as error:
+            self._bench.notices.failed(error)
+
+
+def _in_words(entry: Entry) -> str:
+    what = {
+        "created": tr("created"),
+        "saved": tr("saved"),
+        "taken over": tr("taken over"),
+        "measured": tr("measured"),
+        "reported": tr("report made"),
+        "remark": tr("remark"),
+    }[entry.what]
+    lines = [f"{entry.n}  {entry.at.astimezone():%Y-%m-%d %H:%M:%S}  {entry.who}@{entry.host}  {what}"]
+    lines += [f"    {one.field}: {one.old or '–'} → {one.new or '–'}" for one in entry.changes]
+    lines += [f"    {name}  {digest}" for name, digest in entry.files.items()]
+    lines += [f"    {entry.why}"] if entry.why else []
+    return visible("\n".join(lines), keep="\n")
