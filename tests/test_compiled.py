@@ -166,7 +166,7 @@ def test_every_compiled_function_is_declared_in_one_place():
     assert users == [Path(compiled.__file__)]
 
 
-@pytest.mark.slow
+@pytest.mark.accuracy
 def test_first_and_later_runs_give_the_same_bytes(simulated, measured, tmp_path):
     """Just compiled or loaded, whatever was loaded before, in one thread or two."""
     answers = []

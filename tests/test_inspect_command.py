@@ -82,6 +82,7 @@ def test_machines_files_and_windows_get_the_same_numbers_to_the_last_digit(resul
     assert [feature["name"] for feature in file["plan"]["feature"]] == ["block", "table", "steps"]
 
 
+@pytest.mark.accuracy
 @pytest.mark.parametrize(
     ("scenario", "plan", "names"),
     [

@@ -47,6 +47,7 @@ def test_a_flat_board_is_found_flat_and_nothing_is_lost():
     assert (calibrated(2).camera.matrix == flat[0].camera.matrix).all()  # where nothing is said, it is taken as flat
 
 
+@pytest.mark.accuracy
 def test_the_cameras_covariance_holds_beside_an_unknown_shape():
     errors = []
     for seed in range(20, 32):

@@ -22,6 +22,7 @@ def test_every_good_file_is_read(good):
         reader.read(good / reader.file)
 
 
+@pytest.mark.accuracy
 def test_no_file_causes_a_trace_a_crash_or_a_wait(good, tmp_path):
     wrong = run_cases(good, tmp_path / "work", SEED, 0, CASES)
     assert not wrong, "\n\n".join(f"case {number}, {said}" for number, said in list(wrong.items())[:5])

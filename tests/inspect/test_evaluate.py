@@ -152,6 +152,7 @@ def test_a_plan_that_cannot_be_is_refused(cloud):
         evaluate(InspectionPlan((*blocks, FeatureSpec("x", "angle", of=("b", "top")))), cloud)
 
 
+@pytest.mark.accuracy
 def test_flatness_scatters_as_much_as_its_uncertainty_says():
     plan = InspectionPlan(PLANES[:1])
     found = []

@@ -71,6 +71,7 @@ def test_faces_exchanged_are_said(scan):
         fit_gauge(cloud, regions=(beside, upper))
 
 
+@pytest.mark.accuracy
 @pytest.mark.parametrize("plane_errors", [False, True], ids=["point noise", "sweep planes too"])
 def test_stated_uncertainty_is_the_scatter_over_scans(scan, plane_errors):
     rng = np.random.default_rng(3)

@@ -46,6 +46,7 @@ TRUTH = {
 }
 
 
+@pytest.mark.accuracy
 def test_errors_are_as_large_as_the_stated_uncertainties():
     plan, relative = InspectionPlan((*ELEMENTS, *DERIVED)), {name: [] for name in TRUTH}
     for seed in range(10):

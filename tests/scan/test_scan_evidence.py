@@ -77,6 +77,7 @@ def left(exact: ExactScan, steps: np.ndarray) -> np.ndarray:
     return np.sqrt(np.linalg.eigvalsh(covariance[: len(steps) + 1, : len(steps) + 1]))
 
 
+@pytest.mark.accuracy
 def test_scans_and_calibrations_agree_as_closely_as_is_stated(exact, fan_steps):
     rng = np.random.default_rng(1)
     found = []

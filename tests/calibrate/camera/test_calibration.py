@@ -75,10 +75,12 @@ def test_parameters_are_within_four_of_their_own_standard_deviations(seed):
     assert calibrated(seed).rms_px == pytest.approx(0.03 * np.sqrt(2), rel=0.05)
 
 
+@pytest.mark.accuracy
 def test_standard_deviations_are_honest_over_twenty_seeds():
     assert 0.7 < np.mean([normalised_square(calibrated(seed)) for seed in range(20)]) < 1.3
 
 
+@pytest.mark.accuracy
 def test_standard_deviations_stay_honest_when_corners_of_a_view_err_together():
     bent = [calibrated(seed, bend_px=0.03) for seed in range(12)]
     assert 0.6 < np.mean([normalised_square(calibration) for calibration in bent]) < 1.8
@@ -87,6 +89,7 @@ def test_standard_deviations_stay_honest_when_corners_of_a_view_err_together():
     assert sum(any("err " in str(note) for note in calibration.notes) for calibration in plain) <= 1
 
 
+@pytest.mark.accuracy
 def test_standard_deviations_stay_honest_when_the_target_is_printed_wrong():
     squares = []
     for seed in range(8):

@@ -48,6 +48,7 @@ def distances(true, camera, calibration, expected):
     return (np.linalg.norm(across[:, :, 0], axis=1) * expected.depth_mm).reshape(expected.error_mm.shape)
 
 
+@pytest.mark.accuracy
 def test_cameras_drawn_from_the_covariance_scatter_as_expected(calibration, expected):
     rng = np.random.default_rng(4)
     camera = calibration.camera
@@ -57,6 +58,7 @@ def test_cameras_drawn_from_the_covariance_scatter_as_expected(calibration, expe
     assert np.abs(ratio - 1).max() < 0.15
 
 
+@pytest.mark.accuracy
 def test_calibrations_miss_the_truth_by_as_much_as_they_expect():
     shares = []
     for seed in range(12):

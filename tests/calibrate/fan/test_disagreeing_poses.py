@@ -20,6 +20,7 @@ def scattered(seed: int, scatter_mm: float, lines: int = 3, count: int = 14) -> 
     return fit_fan(seen, CAMERA, THREE if lines == 3 else FanOptions(lines))
 
 
+@pytest.mark.accuracy
 @pytest.mark.parametrize("lines", [1, 3])
 def test_scattered_poses_all_count_and_widen_the_uncertainty(lines):
     """Plates 2 mm from where their points say: 8 of 20 were used, and the error was six times its uncertainty."""

@@ -92,6 +92,7 @@ def height_of(scan, result):
     return float(np.median(heights[heights > 5])) - float(np.median(heights[heights < 5]))
 
 
+@pytest.mark.accuracy
 def test_stated_sigma_is_that_of_repeated_scans(sampled):
     assert sampled.of_depth == pytest.approx(1.0, abs=0.05)
     assert sampled.of_height == pytest.approx(1.0, abs=0.15)  # 120 draws know it to 6.5 %
@@ -102,6 +103,7 @@ def test_nothing_pulls_the_heights_one_way(sampled):
     assert abs(np.mean(sampled.height)) < 3 * np.std(sampled.height) / np.sqrt(DRAWS)
 
 
+@pytest.mark.accuracy
 def test_speckle_of_the_fan_taken_as_independent_would_make_sigma_optimistic():
     """Many sweeps cross the same stretches of the fan; forgetting that they share its speckle costs honesty."""
     scan = ExactScan.of(Scenario(scale=0.5, frames=90))

@@ -53,6 +53,7 @@ def test_few_sweeps_across_low_relief_are_weak():
     assert "put a step beside the part" in str(found.note)
 
 
+@pytest.mark.accuracy
 def test_the_stated_scale_is_that_of_repeated_scans():
     """The block's height, 50 mm, from the sweeps' planes alone, on 60 scans."""
     exact = ExactCrossings.of(ExactScan.of(Scenario(scale=0.5)))
