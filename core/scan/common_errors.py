@@ -26,9 +26,7 @@ from core.scan.method import Method
 from core.scan.network.read_out import row_planes
 from core.scan.results import ScanResult
 from core.scan.surface.cloud import FAN, Cloud
-from core.scan.sweeps.locate import LocatedSweeps, SweepPlanes, locate_each, numbered, planes_together
-from core.stage_times import stage
-from core.threads import ordered_map
+from core.scan.sweeps.locate import locate_each, numbered, planes_together
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -129,25 +127,16 @@ def solve_common(
     InputError
         If a scan cannot be solved with one of them.
     """
-    reported, step = StepProgress(progress), "calibration uncertainty"
-    reported(step, 0, len(deviations))
+    reported = StepProgress(progress)
+    reported("calibration uncertainty", 0, len(deviations))
+    solve = partial(planes_together, read_out=scan.read_out) if method == Method.NETWORK else locate_each
     crossings, line = numbered(features.crossings, scan.fan_lines)
     crossings, line = crossings.select(scan.of_solved), line[scan.of_solved]
-
-    def solve(one: Deviation) -> Array:
-        again: SweepPlanes | LocatedSweeps
-        with stage(progress, step):
-            if method == Method.NETWORK:
-                again = planes_together(crossings, line, one.camera, one.fan, read_out=scan.read_out)
-            else:
-                again = locate_each(crossings, line, one.camera, one.fan)
-        return again.pis[np.searchsorted(again.frames, scan.sweep_frames)]
-
     sweeps = [scan.pis]
-    idle = partial(reported.within_step, step, 0, len(deviations))
-    for pis in ordered_map(solve, deviations, idle=idle):
-        sweeps.append(pis)
-        reported(step, len(sweeps) - 1, len(deviations))
+    for number, one in enumerate(deviations):
+        again = solve(crossings, line, one.camera, one.fan, progress=reported.within_step)
+        sweeps.append(again.pis[np.searchsorted(again.frames, scan.sweep_frames)])
+        reported("calibration uncertainty", number + 1, len(deviations))
     of_fan = CommonErrors.of_fan(camera, fan, deviations)
     return replace(of_fan, image_size=features.image_size, sweeps=np.array(sweeps))
 
