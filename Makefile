@@ -55,8 +55,9 @@ accuracy: proofs          ## measure the manual's accuracy table anew: about 80 
 	$(BIN)/python -m tests.accuracy --manual
 
 soak: export OPENBLAS_NUM_THREADS = 1
-soak: $(READY)            ## ten minutes of an emulated camera at full size through the live scan page: counts, memory, freezes
+soak: $(READY)            ## ten minutes of an emulated camera at full size through the live scan page: counts, memory, freezes; then 100 kills each of saving, autosave, recording
 	$(BIN)/python -m tests.soak --window --seconds 600
+	$(BIN)/python -m tests.soak_kills --kills 100
 
 fuzz: export OPENBLAS_NUM_THREADS = 1
 fuzz: $(READY)            ## 100,000 files of strangers, each time others: no trace, no crash, no wait; an hour or so

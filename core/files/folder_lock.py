@@ -45,13 +45,14 @@ def alone_in(folder: Path) -> Iterator[None]:
             ) from error
         except OSError:
             pass  # a disk of the network that cannot lock
-        _sweep(folder)
+        sweep_leftovers(folder)
         yield
     finally:
         os.close(handle)
 
 
-def _sweep(folder: Path) -> None:
+def sweep_leftovers(folder: Path) -> None:
+    """Remove what a killed program left half written in `folder`; whoever calls it has the folder alone."""
     for path in folder.iterdir():
         if _LEFTOVER.match(path.name):
             with contextlib.suppress(OSError):

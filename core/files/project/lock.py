@@ -23,6 +23,7 @@ from pydantic import ConfigDict, Field, RootModel
 from core.errors import InputError
 from core.files.atomic import cannot_write, vanished
 from core.files.complaints import checked_json
+from core.files.folder_lock import sweep_leftovers
 from core.files.json_text import to_json
 from core.files.reading import read_json
 from core.files.tables import A_TIME, Time
@@ -138,7 +139,7 @@ def take_lock(folder: Path, *, take_over: bool = False) -> ProjectLock:
     """
     path = folder / LOCK
     holder = Holder(user_name(), platform.node(), datetime.now().astimezone(), secrets.token_hex(8))
-    beside = path.with_name(f".{LOCK}.{holder.key[:8]}.part")
+    beside = path.with_name(f"{LOCK}.{holder.key}.new")
     try:
         handle = _write_held(beside, holder)
     except OSError as error:
@@ -164,6 +165,7 @@ def take_lock(folder: Path, *, take_over: bool = False) -> ProjectLock:
         if isinstance(error, OSError):
             raise cannot_write(path, error) from error
         raise
+    sweep_leftovers(folder)
     return ProjectLock(folder, holder, handle)
 
 

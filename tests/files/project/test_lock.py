@@ -111,3 +111,10 @@ time.sleep(1.0)
         for _ in range(4)
     ]
     assert sorted(program.communicate()[0] for program in programs) == ["in use\n"] * 3 + ["mine\n"]
+
+
+def test_what_a_killed_program_left_half_written_goes_when_the_project_is_opened(tmp_path: Path) -> None:
+    (tmp_path / ".project.json.0123abcd.part").write_text("half a pro")
+    (tmp_path / "project.json").write_text("{}")
+    take_lock(tmp_path).release()
+    assert [path.name for path in tmp_path.iterdir()] == ["project.json"]

@@ -36,7 +36,13 @@ class AuditWindow(QDialog):
         self.export.clicked.connect(self._export)
         close = QPushButton(self.tr("Close"))
         close.clicked.connect(self.accept)
-        in_column(self.state, (self.entries, 1), in_row(self.remark, self.export, STRETCH, close), on=self)
+        in_column(
+            self.state,
+            (self.entries, 1),
+            in_row(self.remark, self.export, STRETCH, close),
+            on=self,
+            margins=(14, 10, 14, 12),
+        )
         self._show()
 
     def add_remark(self, text: str) -> None:
