@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import secrets
 import shutil
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -17,8 +18,11 @@ from core.files.exchange.opencv_calibration import read_opencv, write_opencv
 from core.files.exchange.ros_camera_info import read_camera_info
 from core.files.pictures import compression_grey, read_picture
 from core.files.plan.plan_file import read_plan, write_plan
+from core.files.project.audit import read_trail
 from core.files.project.data import ProjectFile, new_project
 from core.files.project.folder import create_project, read_project
+from core.files.project.lock import held_by, take_lock
+from core.files.project.packing import pack_project, unpack_project
 from core.files.project.report_template import read_report_template
 from core.files.recording.features_file import read_poses
 from core.files.recording.import_plan import _taken_at
@@ -67,6 +71,14 @@ def _picture(path: Path) -> None:
     read_picture(path)
 
 
+def _packed(path: Path) -> None:
+    folder = path.with_name(f"unpacked-{secrets.token_hex(4)}")
+    try:
+        unpack_project(path, folder)
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
 READERS = {
     "rig": Reader("rig.toml", read_rig),
     "plan": Reader("plan.toml", read_plan),
@@ -74,6 +86,9 @@ READERS = {
     "logo": Reader("logo.png", lambda path: read_report_template(path.with_name("template.toml"))),
     "scenario": Reader("scenario.toml", Scenario.read),
     "project": Reader("project/project.json", read_project),
+    "audit": Reader("project/audit.jsonl", lambda path: read_trail(path.parent)),
+    "lock": Reader("project/.lock.json", lambda path: held_by(path.parent)),
+    "packed": Reader("packed.trisectz", _packed),
     "camera": Reader("camera.json", read_camera),
     "planes": Reader("planes.json", lambda path: read_fan(path, _camera(path))),
     "poses": Reader("planes.npz", _poses),
@@ -146,6 +161,8 @@ def good_files(folder: Path, recording: Path, results: Path) -> None:
     _cameras(folder)
     (folder / "project").mkdir()
     create_project(folder / "project", ProjectFile(new_project("a")))
+    pack_project(folder / "project", folder / "packed.trisectz")
+    take_lock(folder / "project")
     mesh = read_mesh(folder / "mesh.ply")
     write_stl(folder / "part.stl", mesh)
     data = (folder / "cloud.ply").read_bytes()

@@ -288,7 +288,7 @@ def _blocks(archive: zipfile.ZipFile, name: str, most: int, path: Path) -> Itera
                 if left < 0:
                     raise _damaged(path, f"{name} is longer than it is said to be")
                 yield block
-    except (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, NotImplementedError) as error:
+    except (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, ValueError) as error:
         raise _damaged(path, str(error)) from error
 
 

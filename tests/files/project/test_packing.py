@@ -153,3 +153,11 @@ def repacked(path: Path, change: Callable[[dict[str, bytes]], None]) -> None:
 
 def files_in(folder: Path) -> dict[str, bytes]:
     return {path.relative_to(folder).as_posix(): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+def test_a_name_that_is_no_text_is_told(project: Path, tmp_path: Path) -> None:
+    (project / "results" / "ä.txt").write_text("x")
+    packed = pack_project(project, tmp_path / "block.trisectz").path
+    packed.write_bytes(packed.read_bytes().replace("ä.txt".encode(), b"\x91\x91.txt", 1))  # in the file's own head
+    with pytest.raises(InputError, match="no whole packed project"):
+        unpack_project(packed, tmp_path / "out")
