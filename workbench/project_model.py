@@ -356,7 +356,7 @@ class ProjectModel(QObject):
                 before = held_by(folder)
                 lock = take_lock(folder, take_over=access is Access.TAKE_OVER)
                 if before is not None:
-                    append(folder, "taken over", why=f"{before.owner} on {before.host} had it open")
+                    append(folder, "taken over", why=f"{before.owner}@{before.host}")
         if self._lock is not None and self._lock is not lock:
             self._lock.release()
         self._lock, self._access = lock, access

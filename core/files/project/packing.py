@@ -112,7 +112,7 @@ def _rewritten(folder: Path, beside: Path, file: ProjectFile, packed: ProjectFil
     if (folder / AUDIT).exists():
         shutil.copyfile(folder / AUDIT, beside / AUDIT)
     state = hashlib.sha256(text.encode()).hexdigest()
-    append(beside, "saved", differences(file, packed), why="packed with the pictures from outside", state=state)
+    append(beside, "saved", differences(file, packed), why="packed", state=state)
     return {name: beside / name for name in (PROJECT, AUDIT)}
 
 
@@ -229,7 +229,7 @@ def _contents(archive: zipfile.ZipFile, path: Path) -> _Contents:
     text = b"".join(_blocks(archive, CONTENTS, TEXT_BYTES, path))
     contents = checked_json(_Contents, json_of(text.decode("utf-8", "replace"), path), path)
     if len(set(names)) != len(names) or {*names} != {*contents.files, CONTENTS}:
-        raise _damaged(path, f"its files are not those of {CONTENTS}")
+        raise _damaged(path, Message("project.pack_files", "its files are not those of {list}", list=CONTENTS))
     _check_names(contents.files, path)
     return contents
 
@@ -286,13 +286,15 @@ def _blocks(archive: zipfile.ZipFile, name: str, most: int, path: Path) -> Itera
             while block := source.read(_BLOCK):
                 left -= len(block)
                 if left < 0:
-                    raise _damaged(path, f"{name} is longer than it is said to be")
+                    raise _damaged(
+                        path, Message("project.pack_longer", "{name} is longer than it is said to be", name=name)
+                    )
                 yield block
     except (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, ValueError) as error:
         raise _damaged(path, str(error)) from error
 
 
-def _damaged(path: Path, reason: str) -> InputError:
+def _damaged(path: Path, reason: Message | str) -> InputError:
     return InputError(
         Message("project.no_pack", "this is no whole packed project ({reason})", reason=reason),
         where=path,
