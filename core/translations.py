@@ -45,6 +45,13 @@ def preferred(wanted: Iterable[str]) -> str:
     return PSEUDO if PSEUDO.replace("-", "_") in names[:1] else negotiate_locale(names, languages(), sep="_") or "en"
 
 
+def own_name(name: str) -> str:
+    """What a language is called by those who speak it: 'Deutsch'; the pseudo-language by its code."""
+    from babel import Locale
+
+    return name if name == PSEUDO else str(Locale.parse(name).get_language_name() or name)
+
+
 @cache
 def language(name: str) -> Language:
     """A language by its name; reading its catalogue takes 0.05 to 0.1 s, once.

@@ -21,6 +21,7 @@ def pytest_configure(config: pytest.Config) -> None:
     config.stash[SAID_ALOUD] = os.dup(2)
     own = tempfile.mkdtemp(prefix="trisect-data-")  # histories of rigs: not those of whoever runs the tests
     os.environ[DATA] = own
+    os.environ["TRISECT_LANGUAGE"] = "en"  # programs started by tests: whatever the system's language
     config.add_cleanup(lambda: shutil.rmtree(own, ignore_errors=True))
     if faulthandler.is_enabled():
         faulthandler.enable(config.stash[SAID_ALOUD], all_threads=False)

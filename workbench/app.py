@@ -12,7 +12,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import TextIO
 
-from PySide6.QtCore import QEvent, QTimer
+from PySide6.QtCore import QEvent, QLocale, QTimer
 from PySide6.QtGui import QFileOpenEvent, QIcon
 from PySide6.QtWidgets import QApplication
 
@@ -80,7 +80,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     app = Application(sys.argv[:1])
     log_file = log_to_file()
     bench = make_bench()
-    wanted = (given.language, bench.settings.text("language", ""), os.environ.get("TRISECT_LANGUAGE", ""))
+    wanted = (given.language, bench.settings.language, os.environ.get("TRISECT_LANGUAGE", ""), QLocale.system().name())
     choose(language(preferred(wanted)), app)
     bench.notices.catch_everything()
     window = app.window = build_window(app, bench, given.theme)

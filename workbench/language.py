@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from PySide6.QtCore import QCoreApplication, QObject, QTranslator
+from PySide6.QtCore import QCoreApplication, QLibraryInfo, QObject, QTranslator
 
 from core.errors import InputError
 from core.messages import Language, Message, label
@@ -17,10 +17,11 @@ from workbench.work.worker import ENDED, Failure
 
 
 class _Catalogue(QTranslator):
-    """Answers Qt's own question for a text from the same catalogue."""
+    """Answers Qt's own question for a text from the same catalogue; what it lacks, as words on buttons, Qt has."""
 
-    def translate(self, context: str, sourceText: str, disambiguation: str | None = None, n: int = -1) -> str:
-        return _chosen.label(sourceText)
+    def translate(self, context: str, sourceText: str, disambiguation: str | None = None, n: int = -1) -> str | None:
+        told = _chosen.label(sourceText)
+        return told if told != sourceText else None
 
     def isEmpty(self) -> bool:
         return _chosen.name == "en"
@@ -69,7 +70,15 @@ def choose(language: Language, parent: QObject) -> None:
     """Have the window speak `language` from now on; what is shown already stays as it is."""
     global _chosen
     _chosen = _for_the_window(language)
+    of_qt = QTranslator(parent)
+    if of_qt.load(f"qtbase_{language.name}", QLibraryInfo.path(QLibraryInfo.LibraryPath.TranslationsPath)):
+        QCoreApplication.installTranslator(of_qt)
     QCoreApplication.installTranslator(_Catalogue(parent))
+
+
+def spoken() -> str:
+    """The name of the language that was chosen."""
+    return _chosen.name
 
 
 def tr(english: str, /, **values: Any) -> str:

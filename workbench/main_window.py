@@ -19,8 +19,9 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from core.translations import own_name
 from workbench.bench import Bench
-from workbench.language import tr
+from workbench.language import spoken, tr
 from workbench.menus import Menus
 from workbench.notices import Notice
 from workbench.pages.presenter import StepPresenter
@@ -237,6 +238,7 @@ class MainWindow(QMainWindow):
             presenter.changed.connect(self._refreshing.soon)
             presenter.go_to.connect(self.go_to)
         self.bench.notices.added.connect(self._on_notice)
+        self.bench.settings.language_changed.connect(self._on_language)
         lane = self.bench.measuring
         lane.task_started.connect(self._task_started)
         lane.task_ended.connect(self._task_ended)
@@ -288,6 +290,11 @@ class MainWindow(QMainWindow):
             name = tr("{name} (read only)", name=name)
         self.setWindowTitle(f"{name}[*] – Trisect")
         self.setWindowModified(self.model.is_modified)
+
+    def _on_language(self, name: str) -> None:
+        if name != spoken():
+            said = tr("The window speaks {language} when it is opened the next time.", language=own_name(name))
+            self.bench.notices.info(said)
 
     def _on_notice(self, notice: Notice) -> None:
         self.notice_list.add(str(notice.level), notice.text, notice.details, notice.at.strftime("%H:%M:%S"))

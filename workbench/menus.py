@@ -6,12 +6,13 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from PySide6.QtCore import QObject
-from PySide6.QtGui import QAction, QKeySequence, QUndoStack
+from PySide6.QtGui import QAction, QActionGroup, QKeySequence, QUndoStack
 from PySide6.QtWidgets import QMainWindow, QMenu, QMessageBox
 
 from core import __version__
 from core.messages import label
-from workbench.language import tr
+from core.translations import languages, own_name
+from workbench.language import spoken, tr
 from workbench.refresh import Refresh
 from workbench.settings import THEMES, AppSettings
 from workbench.steps import STEPS
@@ -133,6 +134,7 @@ class Menus(QObject):
         self._add(view, "messages", tr("&Messages"))
         self._add(view, "theme", tr("Light or dark &theme"), self._next_theme)
         self._add(view, "full", tr("&Full screen"), self._full_screen)
+        view.addMenu(self._languages())
 
         help_menu = bar.addMenu(tr("&Help"))
         self._add(help_menu, "manual", tr("&Manual"))
@@ -150,6 +152,18 @@ class Menus(QObject):
         menu.addAction(action)
         self.actions[name] = action
         return action
+
+    def _languages(self) -> QMenu:
+        """Each language by its own name, so that whoever was given the wrong one finds back."""
+        menu, group = QMenu(tr("&Language"), self._window), QActionGroup(self)
+        for name in languages():
+            action = QAction(own_name(name), group)
+            action.setCheckable(True)
+            action.setChecked(name == spoken())
+            action.triggered.connect(lambda _=False, name=name: setattr(self._settings, "language", name))
+            menu.addAction(action)
+            self.actions[f"language {name}"] = action
+        return menu
 
     def _fill_recent(self) -> None:
         self._recent.clear()

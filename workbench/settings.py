@@ -17,6 +17,7 @@ class AppSettings(QObject):
 
     recent_changed = Signal()
     theme_changed = Signal(str)
+    language_changed = Signal(str)
 
     def __init__(self, file: Path | None = None, parent: QObject | None = None) -> None:
         super().__init__(parent)
@@ -47,6 +48,16 @@ class AppSettings(QObject):
     def theme(self, name: str) -> None:
         self._store.setValue("theme", name)
         self.theme_changed.emit(name)
+
+    @property
+    def language(self) -> str:
+        """The window's language by its name; nothing: the system's."""
+        return str(self._store.value("language", ""))
+
+    @language.setter
+    def language(self, name: str) -> None:
+        self._store.setValue("language", name)
+        self.language_changed.emit(name)
 
     @property
     def projects_folder(self) -> Path:

@@ -8,6 +8,7 @@ from PySide6.QtWidgets import QCheckBox, QComboBox, QGridLayout, QLabel, QMenu, 
 
 from core.files.results.export_list import EXPORTS
 from core.report.template import PAPERS
+from core.translations import languages, own_name
 from workbench.language import tr
 from workbench.pages.report.presenter import ReportPresenter, Stage
 from workbench.pages.report.words import AT_HAND, export_words
@@ -119,8 +120,8 @@ class ReportPage(StepPage):
         grid = QGridLayout()
         grid.setColumnStretch(1, 1)
         self.paper.addItems(PAPERS)
-        for language, text in (("en", self.tr("English")), ("de", self.tr("German"))):
-            self.language.addItem(text, language)
+        for language in languages():
+            self.language.addItem(own_name(language), language)
         for row, (box, title, tip) in enumerate(
             (
                 (self.paper, self.tr("Paper"), self.tr("What the report is printed on")),
