@@ -58,7 +58,7 @@ def test_from_the_simulated_rig_to_the_report(technician: Technician, tmp_path: 
     t.until(lambda: "report" in t.model.results, "the report")
     assert t.errors() == []
 
-    assert [t.window.rail.state_of(step) for step in t.window.pages] == ["done"] * 6
+    t.until(lambda: [t.window.rail.state_of(step) for step in t.window.pages] == ["done"] * 6, "all steps done")
     frames = [path for path in (folder / t.model.project.sources.scan).iterdir() if path.name.startswith("frame")]
     assert len(frames) >= seen
     gauge = json.loads((folder / "results" / FILES["gauge"]).read_text())
