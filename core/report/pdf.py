@@ -25,6 +25,7 @@ from core.report.layout.style import (
     TEXT_WIDTH,
     Look,
     color,
+    draw_words,
     font_note,
     markup,
     prepare_reportlab,
@@ -208,12 +209,12 @@ def _foot(canvas: Any, look: Look, content: ReportContent, pages: int, margin: f
     canvas.setLineWidth(0.5)
     canvas.line(margin, 12.5 * mm, margin + TEXT_WIDTH, 12.5 * mm)
     canvas.setFillColor(color(MUTED))
-    canvas.setFont(SANS, 7)
-    canvas.drawString(margin, 8.8 * mm, f"{words(TITLE)} {content.report_id}")
-    canvas.drawCentredString(margin + TEXT_WIDTH / 2, 8.8 * mm, f"Trisect {content.version}")
+    foot = 8.8 * mm
+    draw_words(canvas, (margin, foot), f"{words(TITLE)} {content.report_id}", SANS, 7)
+    draw_words(canvas, (margin + TEXT_WIDTH / 2, foot), f"Trisect {content.version}", SANS, 7, share=0.5)
     canvas.setFillColor(color(INK))
     page = words("page {n} of {all}", n=canvas.getPageNumber(), all=pages)
-    canvas.drawRightString(margin + TEXT_WIDTH, 8.8 * mm, page)
+    draw_words(canvas, (margin + TEXT_WIDTH, foot), page, SANS, 7, share=1.0)
     canvas.restoreState()
     if footer:
         line = Paragraph(markup(footer[:LONGEST_FOOTER]), look.style("footer"))

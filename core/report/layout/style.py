@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from typing import Any
 from xml.sax.saxutils import escape
 
 import matplotlib
@@ -91,15 +92,35 @@ def markup(text: str) -> str:
     Characters the report's own fonts lack are set in a font of this computer, else in an East Asian one that the
     reader's program brings, and else printed by their code point, [U+1F600]: `font_note` says so.
     """
-    covered, parts, last = _covered(), [], ""
-    for character in re.sub(r"[ \t\r\n\f\v]+", " ", text):
+    runs = _runs(re.sub(r"[ \t\r\n\f\v]+", " ", text))
+    return "".join(f'<font name="{font}">{escape(part)}</font>' if font else escape(part) for font, part in runs)
+
+
+def _runs(text: str) -> list[tuple[str, str]]:
+    """`text` in parts of one font each; "" is the report's own."""
+    covered, runs = _covered(), list[tuple[str, str]]()
+    for character in text:
         font = "" if ord(character) in covered else _foreign(character, text)
-        shown = escape(character) if font or ord(character) in covered else f"[U+{ord(character):04X}]"
-        if font != last:
-            parts.append(("</font>" if last else "") + (f'<font name="{font}">' if font else ""))
-            last = font
-        parts.append(shown)
-    return "".join(parts) + ("</font>" if last else "")
+        shown = character if font or ord(character) in covered else f"[U+{ord(character):04X}]"
+        if runs and runs[-1][0] == font:
+            runs[-1] = font, runs[-1][1] + shown
+        else:
+            runs.append((font, shown))
+    return runs
+
+
+def words_width(text: str, font: str, size: float) -> float:
+    """How wide `draw_words` writes `text`, in points."""
+    return float(sum(pdfmetrics.stringWidth(part, foreign or font, size) for foreign, part in _runs(text)))
+
+
+def draw_words(canvas: Any, place: tuple[float, float], text: str, font: str, size: float, share: float = 0.0) -> None:
+    """Write `text` on the page, whatever its script; `share` of its width stands left of `place` (x, y), in points."""
+    x, y = place[0] - share * words_width(text, font, size), place[1]
+    for foreign, part in _runs(text):
+        canvas.setFont(foreign or font, size)
+        canvas.drawString(x, y, part)
+        x += pdfmetrics.stringWidth(part, foreign or font, size)
 
 
 def _foreign(character: str, text: str) -> str:

@@ -16,6 +16,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Colormap, Normalize, to_hex, to_rgb
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 from matplotlib.ticker import Formatter, ScalarFormatter
 from numpy.typing import NDArray
 
@@ -97,6 +98,10 @@ def pixels(figure: Figure, decimal: str = ".") -> NDArray[np.uint8]:
     with plot_style():
         if decimal != ".":
             _number_with(figure, decimal)
+        for words in figure.findobj(Text):
+            if isinstance(words, Text) and not all(map(has_character, words.get_text())):
+                words.set_text(drawable(words.get_text()))
+                words.set_fontfamily(families(words.get_text()))
         canvas.draw()  # type: ignore[no-untyped-call]
     rgba = np.asarray(canvas.buffer_rgba())  # type: ignore[no-untyped-call]
     return np.ascontiguousarray(rgba[:, :, :3], dtype=np.uint8)

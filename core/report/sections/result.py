@@ -7,7 +7,6 @@ from collections.abc import Collection
 
 import numpy as np
 from reportlab.lib.units import mm
-from reportlab.pdfbase.pdfmetrics import stringWidth
 from reportlab.platypus import Flowable, Paragraph, Spacer, Table, TableStyle
 
 from core.inspect.characteristic import Characteristic
@@ -15,7 +14,20 @@ from core.inspect.conformity import WORST_FIRST, Verdict
 from core.messages import plural_message
 from core.report.content import ReportContent
 from core.report.layout.blocks import heads, plain_table, ruled_table
-from core.report.layout.style import BOLD, HAIRLINE, INK, MUTED, SANS, TEXT_WIDTH, TINT, Look, color, markup
+from core.report.layout.style import (
+    BOLD,
+    HAIRLINE,
+    INK,
+    MUTED,
+    SANS,
+    TEXT_WIDTH,
+    TINT,
+    Look,
+    color,
+    draw_words,
+    markup,
+    words_width,
+)
 from core.report.wording import (
     VERDICTS,
     decimals_of,
@@ -211,15 +223,14 @@ class VerdictMark(Flowable):  # type: ignore[misc]
         tone = {Verdict.CONFORMING: self.look.accent, Verdict.NONE: MUTED}.get(self.verdict, INK)
         filled = self.verdict in (Verdict.CONFORMING, Verdict.NOT_CONFORMING)
         words = f"{SIGNS[self.verdict]}  {self.look.words(VERDICTS[self.verdict])}"
-        size = min(10.5, 10.5 * (self.width - 6) / stringWidth(words, BOLD, 10.5))
+        size = min(10.5, 10.5 * (self.width - 6) / words_width(words, BOLD, 10.5))
         canvas = self.canv
         canvas.setStrokeColor(color(tone))
         canvas.setFillColor(color(tone if filled else "#FFFFFF"))
         canvas.setLineWidth(0.9)
         canvas.roundRect(0, 0, self.width, self.height, 1.2 * mm, stroke=1, fill=1)
         canvas.setFillColor(color("#FFFFFF" if filled else tone))
-        canvas.setFont(BOLD, size)
-        canvas.drawCentredString(self.width / 2, self.height / 2 - 3.8, words)
+        draw_words(canvas, (self.width / 2, self.height / 2 - 3.8), words, BOLD, size, share=0.5)
 
 
 class ToleranceBar(Flowable):  # type: ignore[misc]
@@ -270,26 +281,23 @@ class ToleranceBar(Flowable):  # type: ignore[misc]
 
     def _words(self, low: float, high: float, axis: float) -> None:
         canvas, words = self.canv, self.look.words
-        canvas.setFont(SANS, 6.5)
         canvas.setFillColor(color(MUTED))
         below, above = axis - 2.4 * mm - 7.5, axis + 2.4 * mm + 2.5
         lean = min(8.0, (high - low) / 2 - 2)  # the two never meet, however narrow the zone is drawn
-        for place, limit, draw in (
-            (low + lean, self.lower, canvas.drawRightString),
-            (high - lean, self.upper, canvas.drawString),
-        ):
+        for place, limit, share in ((low + lean, self.lower, 1.0), (high - lean, self.upper, 0.0)):
             if np.isfinite(limit):
-                draw(place, below, words.numeral(f"{limit:+g}") + f" {self.unit}")
+                draw_words(canvas, (place, below), words.numeral(f"{limit:+g}") + f" {self.unit}", SANS, 6.5, share)
         if high - low > 45 * mm and np.isfinite(self.lower + self.upper):
             canvas.setStrokeColor(color(MUTED))
             canvas.setLineWidth(0.5)
             canvas.line(self.x(0), axis - 2.4 * mm, self.x(0), axis + 2.4 * mm)
-            canvas.drawCentredString(self.x(0), below, words("nominal"))
+            draw_words(canvas, (self.x(0), below), words("nominal"), SANS, 6.5, share=0.5)
         canvas.setFillColor(self.look.accent_color)
         said = words(
             "deviation {deviation} ± {U}",
             deviation=f"{words.fixed(self.deviation, self.decimals, signed=True)} {self.unit}",
             U=f"{words.fixed(self.U, self.decimals)} {self.unit}",
         )
-        half = canvas.stringWidth(said, SANS, 6.5) / 2
-        canvas.drawCentredString(float(np.clip(self.x(self.deviation), half, self.width - half)), above, said)
+        half = words_width(said, SANS, 6.5) / 2
+        middle = float(np.clip(self.x(self.deviation), half, self.width - half))
+        draw_words(canvas, (middle, above), said, SANS, 6.5, share=0.5)

@@ -13,9 +13,10 @@ from core.report.layout import foreign_fonts
 from core.report.layout.style import NO_FONT, NOT_EMBEDDED, Look, font_note, markup, prepare_reportlab
 from core.report.pdf import build_report
 from core.report.plots.charts import points_figure
-from core.report.plots.figures import drawable, families
+from core.report.plots.figures import FAMILY, drawable, families, new_figure, pixels
 from core.report.template import SECTIONS
 from core.report.wording import Words
+from core.translations import language
 from tests.report.report_samples import block_content
 
 CHINESE, THAI = "量块", "ก"
@@ -117,3 +118,23 @@ def test_a_plot_has_no_empty_boxes(computer, bare):
     figure = points_figure(Look(Words(), "#14586E"), bare.cloud, {CHINESE: np.arange(50)}, (1920, 1374), 160.0, 70.0)
     figure.canvas.draw()
     assert [text.get_text().split("\n")[0] for text in figure.axes[0].get_legend().get_texts()] == ["??"]
+
+
+def test_what_is_drawn_beside_paragraphs_is_in_the_language_of_the_report_as_well(computer):
+    computer()
+    fonts, text = fonts_and_text(build_report(replace(block_content(), language="zh_CN", hidden=frozenset(SECTIONS))))
+    assert "/STSong-Light" in {font["/BaseFont"] for font in fonts}
+    for words in ("conforming", "nominal"):
+        assert language("zh_CN").label(words) in text
+    assert "第 1 页" in text
+
+
+def test_words_of_a_plot_are_drawn_in_a_font_that_has_them(computer, tmp_path):
+    font_file(tmp_path / "squares.ttf", CHINESE)
+    computer(("Squares", str(tmp_path / "squares.ttf")))
+    figure = new_figure(30, 20)
+    said, english = figure.text(0.1, 0.5, f"{CHINESE} 7"), figure.text(0.1, 0.1, "block 7")
+    with pytest.warns(UserWarning, match="Glyph"):  # which matplotlib does not know: it is of this test alone
+        pixels(figure)
+    assert said.get_fontfamily() == [FAMILY, "Squares"]
+    assert english.get_fontfamily() != said.get_fontfamily()
