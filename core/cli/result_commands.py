@@ -15,7 +15,9 @@ commands = typer.Typer()
 Template = Annotated[
     Path | None, typer.Option("--template", metavar="FILE", help="A company's template of reports (TOML).")
 ]
-Language = Annotated[str, typer.Option("--language", metavar="CODE", help="en or de; else the template's, or en.")]
+Language = Annotated[
+    str, typer.Option("--language", metavar="CODE", help="en, de or zh_CN; else the template's, or en.")
+]
 Serial = Annotated[str, typer.Option("--serial", metavar="TEXT", help="Serial number of the part.")]
 Customer = Annotated[str, typer.Option("--customer", metavar="NAME", help="Who it is measured for.")]
 Operator = Annotated[str, typer.Option("--operator", metavar="NAME", help="Who measured.")]

@@ -171,9 +171,16 @@ def pack_messages(messages: Sequence[Message | None]) -> NDArray[Any]:
 
 def unpack_messages(texts: NDArray[Any]) -> list[Message | None]:
     """The messages that `pack_messages` packed; older files hold bare sentences."""
-    return [from_text(text) for text in texts.tolist()]
+    return [from_text(text) for text in unpack_texts(texts)]
 
 
 def pack_texts(texts: Sequence[str]) -> NDArray[Any]:
     """An array of texts; numpy's arrays of texts drop trailing NULs only."""
     return np.array(list(texts), dtype=np.str_) if texts else np.zeros(0, dtype="<U1")
+
+
+def unpack_texts(texts: NDArray[Any]) -> list[str]:
+    """The texts that `pack_texts` packed; ValueError if the array holds something else."""
+    if texts.ndim != 1 or texts.dtype.kind != "U":
+        raise ValueError("an array of texts holds something else")
+    return [str(text) for text in texts.tolist()]

@@ -14,6 +14,7 @@ from core.files.recording.rig import Rig, default_rig
 from core.files.tables import Finite, Time
 from core.inspect.plan.inspection_plan import InspectionPlan
 from core.report.template import Paper
+from core.translations import languages
 
 # What project.json may hold in a field is checked as it is annotated here; `core.files.complaints` tells the rest.
 _CHECKED = ConfigDict(extra="forbid", strict=True)
@@ -100,7 +101,9 @@ class ReportChoices:
 
     hidden: Annotated[frozenset[str], Field(description="a list of names of sections")] = frozenset()
     paper: Annotated[Paper, Field(description='"A4" or "Letter"')] = "A4"
-    language: Annotated[str, Field(pattern="^(en|de)$", description='"en" or "de"')] = "en"
+    language: Annotated[
+        str, Field(pattern=f"^({'|'.join(languages())})$", description=" or ".join(f'"{one}"' for one in languages()))
+    ] = "en"
     template: str = ""
     __pydantic_config__ = _CHECKED
 

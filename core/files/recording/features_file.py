@@ -19,6 +19,7 @@ from core.files.arrays_file import (
     read_arrays,
     unpack_centrelines,
     unpack_messages,
+    unpack_texts,
     unpacking,
     write_arrays,
 )
@@ -55,7 +56,7 @@ def read_views(path: Path, key: str) -> SeenViews | None:
     if str(arrays["key"]) != key:
         return None
     with unpacking(path, todo=_TODO):
-        names = arrays["names"].tolist()
+        names = unpack_texts(arrays["names"])
         reasons = unpack_messages(arrays["reasons"])
         columns = zip(names, unpack_views(names, arrays), reasons, arrays["sizes"], strict=True)
         views = tuple(
@@ -101,8 +102,8 @@ def read_poses(path: Path, fan_id: str) -> tuple[PoseFeatures, ...]:
 
 
 def _unpacked(arrays: Arrays) -> tuple[PoseFeatures, ...]:
-    names = arrays["names"].tolist()
-    notes = arrays["notes"].tolist() if "notes" in arrays else [""] * len(names)  # files of earlier versions
+    names = unpack_texts(arrays["names"])
+    notes = unpack_texts(arrays["notes"]) if "notes" in arrays else [""] * len(names)  # files of earlier versions
     columns = zip(
         names,
         unpack_views(names, arrays),

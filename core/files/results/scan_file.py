@@ -22,6 +22,7 @@ from core.files.arrays_file import (
     read_arrays,
     unpack_centrelines,
     unpack_messages,
+    unpack_texts,
     unpacking,
     write_arrays,
 )
@@ -151,7 +152,7 @@ def read_scan(path: Path) -> ScanFile:
 
 def _unpacked(arrays: Arrays) -> ScanFile:
     frames = zip(
-        arrays["frame_names"].tolist(),
+        unpack_texts(arrays["frame_names"]),
         unpack_centrelines("sweep", arrays),
         unpack_messages(arrays["frame_reasons"]),
         arrays["frame_shift_px"].tolist(),

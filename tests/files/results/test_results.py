@@ -427,6 +427,17 @@ def test_poses_round_trip_and_belong_to_their_fan(tmp_path):
     assert read_poses(tmp_path / "none.npz", "fan1") == ()
 
 
+@pytest.mark.parametrize("name", ["names", "notes", "reasons"])
+@pytest.mark.parametrize("wrong", [np.zeros((1, 2)), np.array([["a", "b"]]), np.zeros(1)])
+def test_texts_of_poses_that_are_none_are_a_damaged_file(tmp_path, name, wrong):
+    path = tmp_path / "planes.npz"
+    write_poses(path, "fan1", (PoseFeatures("p1", None, ()),))
+    with np.load(path) as arrays:
+        np.savez(path.with_name("other.npz"), **{**arrays, name: wrong})
+    with pytest.raises(InputError, match=r"other\.npz"):
+        read_poses(path.with_name("other.npz"), "fan1")
+
+
 def test_gauge_round_trip_and_the_keys_of_the_design(tmp_path, cloud, gauge):
     path = tmp_path / "gauge.json"
     write_gauge(path, gauge, "abc")
