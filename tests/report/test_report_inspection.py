@@ -213,7 +213,7 @@ def test_in_german_words_and_numbers_are_german_and_the_file_says_so(content):
     for english in ("Uncertainty", "deviation", "Calibration", "page 1", "Report", "share"):
         assert english not in text, english
     pieces = [re.split(r"{[^}]+}", label) for label in language("de").labels]
-    whole = {piece.strip() for sentence in pieces for piece in sentence if piece.count(" ") > 3}
+    whole = {piece.strip() for sentence in pieces for piece in sentence if piece.strip().count(" ") > 3}
     assert len(whole) > 40
     assert [piece for piece in whole if piece in text] == []
     assert "die Tafel hat sich zwischen den Bildern ohne und mit Fächer um 0,90 px bewegt" in text

@@ -75,7 +75,7 @@ class LiveCamera:
         elif self._capture:
             self._desk.notice(nothing_taken(verdict.sentence if look.why_not is None else look.why_not))
         elif verdict.take:
-            self._sentence = Message("live.press_capture_view", "Press Capture to take this view.")
+            self._sentence = Message("live.press_capture_view", "Press Take picture to take this view.")
         self._capture = False
         return look.frame
 

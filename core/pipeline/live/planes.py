@@ -158,7 +158,7 @@ class LivePlanes:
         elif self._capture:
             self._desk.notice(nothing_taken(_NO_LIGHT if view is not None else self._sentence))
         elif verdict.take and not doubt:
-            self._sentence = Message("live.press_capture_pose", "Press Capture to take this pose.")
+            self._sentence = Message("live.press_capture_pose", "Press Take picture to take this pose.")
         self._capture = False
 
     def _advise(self, look: PoseLook) -> None:
@@ -175,7 +175,7 @@ class LivePlanes:
         if self._camera is not None and len(look.stripes) > self._lines:
             return Message(
                 "live.more_stripes_than_lines",
-                "More stripes are seen than the fan's {n}: is it on? Press Capture to take the pose.",
+                "More stripes are seen than the fan's {n}: is it on? Press Take picture to take the pose.",
                 n=self._lines,
             )
         if self._refused is not None and moved_px(self._refused[0], view) < _ANOTHER_POSE_PX:

@@ -111,7 +111,7 @@ def test_by_hand_a_view_is_taken_when_told_even_if_it_adds_nothing(monkeypatch, 
 
     def hand(event):
         sentence = str(event.detail.sentence) if isinstance(event, LiveView) and event.detail is not None else ""
-        for wanted in ("Press Capture to take this view.", "Turn the board: this tilt is already there."):
+        for wanted in ("Press Take picture to take this view.", "Turn the board: this tilt is already there."):
             if sentence == wanted and wanted not in pressed:
                 pressed.append(wanted)
                 return Capture()
@@ -127,7 +127,7 @@ def test_by_hand_a_view_is_taken_when_told_even_if_it_adds_nothing(monkeypatch, 
 def test_auto_can_be_switched_off_and_on(monkeypatch, tmp_path, plates):
     def hand(event):
         sentence = str(event.detail.sentence) if isinstance(event, LiveView) and event.detail is not None else ""
-        return Auto(True) if sentence.startswith("Press Capture") else None
+        return Auto(True) if sentence.startswith("Press Take picture") else None
 
     window = Window(hand, answer_to(LiveStarted, Auto(False)), answer_to(LiveTaken, Stop()))
     pictures = OneAfterAnother(plates.views[:1])

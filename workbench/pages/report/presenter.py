@@ -55,7 +55,7 @@ class ReportPresenter(StepPresenter):
 
     def sections(self) -> list[tuple[str, str, bool]]:
         """Name, title, and whether it is in the report, of each section that can be left out."""
-        return [(name, title, name not in self.project.report.hidden) for name, title in SECTIONS.items()]
+        return [(name, tr(title), name not in self.project.report.hidden) for name, title in SECTIONS.items()]
 
     def empty_section(self, name: str) -> str:
         """Why a section has nothing to print yet, or ""."""
