@@ -44,7 +44,7 @@ def test_what_is_said_on_the_command_line_goes_before_the_template(simulated, ou
 @pytest.mark.parametrize(
     ("words", "sentence"),
     [
-        (("--language", "fr"), '--language: there is no "fr"; choose among en, de.'),
+        (("--language", "fr"), '--language: there is no "fr"; choose among en, de, zh_CN.'),
         (("--paper", "A3"), '--paper: there is no "A3"; choose among A4, Letter.'),
         (("--without", "result"), '--without: there is no section "result" to leave out; choose among surface'),
         (("--template", "missing.toml"), "missing.toml"),
