@@ -13,6 +13,8 @@ import os
 import platform
 import secrets
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
@@ -137,6 +139,11 @@ def take_lock(folder: Path, *, take_over: bool = False) -> ProjectLock:
     InputError
         If nothing can be written there.
     """
+    with _one_at_a_time(folder):
+        return _take(folder, take_over=take_over)
+
+
+def _take(folder: Path, *, take_over: bool) -> ProjectLock:
     path = folder / LOCK
     holder = Holder(user_name(), platform.node(), datetime.now().astimezone(), secrets.token_hex(8))
     beside = path.with_name(f"{LOCK}.{holder.key}.new")
@@ -167,6 +174,23 @@ def take_lock(folder: Path, *, take_over: bool = False) -> ProjectLock:
         raise
     sweep_leftovers(folder)
     return ProjectLock(folder, holder, handle)
+
+
+@contextmanager
+def _one_at_a_time(folder: Path) -> Iterator[None]:
+    """Programs of this computer look and take one after another: between looking and taking nobody else takes it."""
+    if sys.platform == "win32" or not folder.is_dir():
+        yield
+        return
+    import fcntl
+
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        with contextlib.suppress(OSError):  # a disk of the network that cannot lock
+            fcntl.flock(handle, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(handle)
 
 
 def _write_held(path: Path, holder: Holder) -> int:

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import pickle
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 
 import pytest
 
 from core.errors import InputError
+from core.files.project import lock
 from core.files.project.lock import LOCK, ProjectInUse, held_by, take_lock, user_name
 
 HOLD = """
@@ -94,7 +97,7 @@ def test_a_project_whose_folder_is_gone_is_no_longer_ours(tmp_path: Path) -> Non
 def test_of_many_who_open_at_once_one_has_it(tmp_path: Path) -> None:
     start = time.time() + 1.5
     code = f"""
-import time
+import sys, time
 from pathlib import Path
 from core.files.project.lock import ProjectInUse, take_lock
 time.sleep(max(0.0, {start} - time.time()))
@@ -103,14 +106,21 @@ try:
     print("mine", flush=True)
 except ProjectInUse:
     print("in use", flush=True)
-time.sleep(1.0)
+sys.stdin.read()
 """
     environment = os.environ | {"OPENBLAS_NUM_THREADS": "1"}
     programs = [
-        subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True, env=environment)
+        subprocess.Popen(
+            [sys.executable, "-c", code], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, env=environment
+        )
         for _ in range(4)
     ]
-    assert sorted(program.communicate()[0] for program in programs) == ["in use\n"] * 3 + ["mine\n"]
+    try:
+        said = [program.stdout.readline() for program in programs if program.stdout is not None]
+    finally:
+        for program in programs:  # whoever has it keeps it until all have answered
+            program.communicate()
+    assert sorted(said) == ["in use\n"] * 3 + ["mine\n"]
 
 
 def test_what_a_killed_program_left_half_written_goes_when_the_project_is_opened(tmp_path: Path) -> None:
@@ -118,3 +128,27 @@ def test_what_a_killed_program_left_half_written_goes_when_the_project_is_opened
     (tmp_path / "project.json").write_text("{}")
     take_lock(tmp_path).release()
     assert [path.name for path in tmp_path.iterdir()] == ["project.json"]
+
+
+def test_who_looks_while_another_takes_the_project_does_not_take_it_as_well(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    look, taken, others = lock.held_by, list[lock.ProjectLock](), list[threading.Thread]()
+
+    def take() -> None:
+        with contextlib.suppress(ProjectInUse):
+            taken.append(take_lock(tmp_path))
+
+    def look_slowly(folder: Path) -> lock.Holder | None:
+        found = look(folder)
+        if not others:
+            others.append(threading.Thread(target=take))
+            others[0].start()
+            others[0].join(0.3)
+        return found
+
+    monkeypatch.setattr(lock, "held_by", look_slowly)
+    take()
+    others[0].join()
+    assert len(taken) == 1
+    taken[0].release()
