@@ -59,6 +59,11 @@ class WorkerProcess(QObject):
         """Its number in the system; 0 if it does not run."""
         return self._process.processId()
 
+    @property
+    def is_over(self) -> bool:
+        """Whether it has ended, or could not be started, told or not."""
+        return self._process.state() == QProcess.ProcessState.NotRunning
+
     def send(self, kind: Kind, number: int, value: Any = None) -> None:
         """Send a message; it is written when the process can take it. Raises what pickle raises."""
         self._process.write(wire.frame(kind, number, value))

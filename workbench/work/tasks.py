@@ -121,6 +121,8 @@ class Lane(QObject):
 
     def prepare(self) -> None:
         """Start the process and let it import, and compile while idle, what it will need."""
+        if self._process is not None and self._process.is_over:
+            self._end_process()  # its end is told in the next turn: too late for a job that is to begin now
         if self._process is None:
             self._process = process = WorkerProcess(self.name, self._warm, self._ahead, self._environment, self)
             process.received.connect(self._received)

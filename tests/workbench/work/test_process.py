@@ -87,6 +87,18 @@ def test_a_killed_lane_leaves_nothing_even_without_an_event_loop(qtbot: Any) -> 
     assert not folder.exists()
 
 
+def test_a_job_begun_before_the_end_of_the_process_was_told_runs_in_another_one(qtbot: Any, lane: Lane) -> None:
+    answers = Answers()
+    answers.run(lane, "double", 1)
+    finish(qtbot, lane)
+    assert lane._process is not None
+    os.kill(lane.pid, signal.SIGKILL)
+    assert lane._process._process.waitForFinished(5000)  # and no turn of the event loop
+    answers.run(lane, "double", 2)
+    finish(qtbot, lane)
+    assert answers.got == [("done", 2), ("done", 4)]
+
+
 def test_frames_nobody_waits_for_are_freed(tmp_path: Path) -> None:
     data = wire.frame(Kind.EVENT, 1, np.zeros(1 << 21, np.uint8), tmp_path)
     assert len(data) < 1000 and len(list(tmp_path.iterdir())) == 1
