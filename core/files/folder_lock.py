@@ -51,6 +51,19 @@ def alone_in(folder: Path) -> Iterator[None]:
         os.close(handle)
 
 
+def wait_for(handle: int) -> None:
+    """Wait until an open file or folder is held by this program alone, until it is closed.
+
+    A disk of the network that cannot lock, and Windows, go without.
+    """
+    if sys.platform == "win32":
+        return
+    import fcntl
+
+    with contextlib.suppress(OSError):
+        fcntl.flock(handle, fcntl.LOCK_EX)
+
+
 def sweep_leftovers(folder: Path) -> None:
     """Remove what a killed program left half written in `folder`; whoever calls it has the folder alone."""
     for path in folder.iterdir():

@@ -7,14 +7,10 @@ head. It tells of accidents and of quiet corrections; it does not withstand some
 
 from __future__ import annotations
 
-import contextlib
-import csv
 import hashlib
-import io
 import json
 import os
 import platform
-import sys
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field
@@ -27,6 +23,8 @@ from pydantic import ConfigDict, Field, RootModel
 from core.errors import InputError
 from core.files.atomic import cannot_write, vanished
 from core.files.complaints import checked_json
+from core.files.csv_text import csv_text
+from core.files.folder_lock import wait_for
 from core.files.limits import DATA_BYTES
 from core.files.project.changes import Change
 from core.files.project.lock import user_name
@@ -175,17 +173,13 @@ def read_trail(folder: Path) -> Trail:
 
 def trail_table(trail: Trail) -> str:
     """The trail as CSV: one row a change, or one an entry without any."""
-    text = io.StringIO()
-    writer = csv.writer(text)
-    writer.writerow(("n", "at", "who", "host", "what", "field", "old", "new", "why", "hash"))
+    table: list[tuple[object, ...]] = [("n", "at", "who", "host", "what", "field", "old", "new", "why", "hash")]
     for entry in trail.entries:
         rows = [(change.field, change.old, change.new) for change in entry.changes]
         rows += [(name, "", digest) for name, digest in entry.files.items()]
-        for row in rows or [("", "", "")]:
-            cells = (entry.who, entry.host, entry.what, *row, entry.why)
-            told = (f"'{cell}" if cell[:1] in ("=", "+", "-", "@", "\t") else cell for cell in cells)
-            writer.writerow((entry.n, entry.at.isoformat(), *told, entry.hash))
-    return text.getvalue()
+        first = (entry.n, entry.at.isoformat(), entry.who, entry.host, entry.what)
+        table += [(*first, *row, entry.why, entry.hash) for row in rows or [("", "", "")]]
+    return csv_text(table)
 
 
 def _entry(line: str, path: Path) -> Entry:
@@ -229,11 +223,7 @@ def _held(path: Path) -> Iterator[int]:
     """The file, open and alone: a job of the window writes to it, too."""
     handle = os.open(path, os.O_RDWR | os.O_CREAT | getattr(os, "O_BINARY", 0), 0o644)
     try:
-        if sys.platform != "win32":
-            import fcntl
-
-            with contextlib.suppress(OSError):  # a disk of the network that cannot lock
-                fcntl.flock(handle, fcntl.LOCK_EX)
+        wait_for(handle)
         yield handle
     finally:
         os.close(handle)

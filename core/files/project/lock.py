@@ -25,7 +25,7 @@ from pydantic import ConfigDict, Field, RootModel
 from core.errors import InputError
 from core.files.atomic import cannot_write, vanished
 from core.files.complaints import checked_json
-from core.files.folder_lock import sweep_leftovers
+from core.files.folder_lock import sweep_leftovers, wait_for
 from core.files.json_text import to_json
 from core.files.reading import read_json
 from core.files.tables import A_TIME, Time
@@ -182,12 +182,9 @@ def _one_at_a_time(folder: Path) -> Iterator[None]:
     if sys.platform == "win32" or not folder.is_dir():
         yield
         return
-    import fcntl
-
     handle = os.open(folder, os.O_RDONLY)
     try:
-        with contextlib.suppress(OSError):  # a disk of the network that cannot lock
-            fcntl.flock(handle, fcntl.LOCK_EX)
+        wait_for(handle)
         yield
     finally:
         os.close(handle)

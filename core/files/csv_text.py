@@ -1,0 +1,33 @@
+"""Tables as CSV for spreadsheets: comma between fields, and no text that they would take for a formula."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+from core.messages import visible
+
+_FORMULA = ("=", "+", "-", "@", "\t", "\r")
+
+
+def csv_text(rows: Iterable[Sequence[Any]]) -> str:
+    """The rows as text, text that would be a formula made harmless."""
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerows([_harmless(cell) for cell in row] for row in rows)
+    return text.getvalue()
+
+
+def _harmless(cell: Any) -> Any:
+    """A cell that no spreadsheet takes for a formula: such a text stands behind an apostrophe; numbers stay numbers.
+
+    Control characters are written out.
+
+    References
+    ----------
+    OWASP, CSV Injection.
+    """
+    if not isinstance(cell, str):
+        return cell
+    return visible(f"'{cell}" if cell.lstrip(" ").startswith(_FORMULA) else cell, keep="\n")
