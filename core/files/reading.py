@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import hashlib
 import json
 import tomllib
 from collections.abc import Iterable
@@ -23,6 +24,11 @@ def read_bytes(path: Path, *, most: int = DATA_BYTES) -> bytes:
         return path.read_bytes()
     except (OSError, ValueError) as error:  # ValueError: a path with a NUL
         raise cannot_read(path, error) from error
+
+
+def file_hash(path: Path) -> str:
+    """SHA-256 in hex of what a file holds; raises as :func:`read_bytes`."""
+    return hashlib.sha256(read_bytes(path)).hexdigest()
 
 
 def read_text(path: Path, *, missing: Message = MISSING, todo: Message | None = None, most: int = TEXT_BYTES) -> str:

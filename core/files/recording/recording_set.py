@@ -24,7 +24,7 @@ from pathlib import Path
 from core.acquire.folder import read_ahead
 from core.errors import InputError
 from core.files.pictures import Picture, decode_colours, decode_picture
-from core.files.reading import read_bytes
+from core.files.reading import file_hash, read_bytes
 from core.files.recording.laser_channel import LaserChannel, laser_channel
 from core.files.recording.rig import Rig, read_rig, require_tables, rig_to_toml
 from core.files.recording.set_listing import PlanePair, check_sizes, pictures_in, plane_pairs, scan_frames
@@ -223,7 +223,7 @@ def open_set(folder: Path) -> RecordingSet:
     places = {part: folder / part for part in PARTS}
     if (folder / CHECK).is_dir():
         places[CHECK] = folder / CHECK
-    found = _listed(folder.resolve().name, rig, places, _hash_of(folder / RIG))
+    found = _listed(folder.resolve().name, rig, places, file_hash(folder / RIG))
     check_sizes([path for part in (*PARTS, CHECK) for path in _paths(found, part)])
     return found
 
@@ -319,12 +319,8 @@ def _rig_hash(rig: Rig, places: Sequence[Path]) -> str:
     for path in dict.fromkeys(place.parent / RIG for place in places):
         with contextlib.suppress(InputError):
             if read_rig(path) == rig:
-                return _hash_of(path)
+                return file_hash(path)
     return hashlib.sha256(rig_to_toml(rig).encode()).hexdigest()
-
-
-def _hash_of(path: Path) -> str:
-    return hashlib.sha256(read_bytes(path)).hexdigest()
 
 
 def excludable(found: RecordingSet) -> tuple[str, ...]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
@@ -12,7 +11,7 @@ from core.calibrate.results import CameraCalibration, FanCalibration
 from core.errors import InputError
 from core.files.project.calibration_store import keep_camera, keep_fan, read_stored_camera
 from core.files.project.data import Project
-from core.files.reading import read_bytes
+from core.files.reading import file_hash
 from core.files.recording.recording_set import RecordingSet
 from core.files.results.fan_file import fan_id
 from core.messages import Message
@@ -145,4 +144,4 @@ def accept_fan(
 
 def _hashes(found: RecordingSet, paths: Iterable[Path]) -> dict[str, str]:
     """SHA-256 of pictures by their names within the set."""
-    return {found.name_of(path): hashlib.sha256(read_bytes(path)).hexdigest() for path in paths}
+    return {found.name_of(path): file_hash(path) for path in paths}

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 from pathlib import Path
 
@@ -14,7 +13,7 @@ from core.calibrate.results import CameraCalibration
 from core.files.project.calibration_store import read_stored, read_stored_camera
 from core.files.project.data import Project
 from core.files.project.folder import source_folder
-from core.files.reading import read_bytes
+from core.files.reading import file_hash
 from core.files.recording.set_listing import pictures_in
 from core.image.targets import Target
 from core.progress import Progress, silent
@@ -37,7 +36,7 @@ def recall_camera(project_folder: Path, project: Project, progress: Progress = s
     paths = pictures_in(folder)
     for path in paths:
         progress("comparing the pictures", len(hashes), len(paths))
-        hashes[f"camera/{path.name}"] = hashlib.sha256(read_bytes(path)).hexdigest()
+        hashes[f"camera/{path.name}"] = file_hash(path)
     if hashes != about.inputs or not _shows(calibration, project.rig.camera_target):
         return RecalledCamera(calibration, None, False)
     same = _plain(about.settings) == _plain(project.options.camera_settings)

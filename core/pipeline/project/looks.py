@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -17,7 +16,7 @@ from core.files.project.calibration_store import read_stored_fan, read_stored_po
 from core.files.project.data import Project
 from core.files.project.folder import results_folder
 from core.files.project.results import ProjectResults
-from core.files.reading import read_bytes
+from core.files.reading import file_hash
 from core.files.results.run_file import read_run
 from core.files.results.scan_file import read_scan
 from core.messages import Message
@@ -168,7 +167,7 @@ def _settled(results: Path, picture: Path, name: str, project: Project) -> Settl
     scan, run = results / FILES["scan"], results / FILES["run"]
     try:
         record = read_run(run)
-        same = record.inputs.get(name) == hashlib.sha256(read_bytes(picture)).hexdigest()
+        same = record.inputs.get(name) == file_hash(picture)
         told = record.settings.get("scan", {}).get("stripe")
         return _read_settled(_Version.of(scan)) if same and told == project.options.scan_settings["stripe"] else None
     except (InputError, OSError):

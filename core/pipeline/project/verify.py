@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,7 +10,7 @@ from core.errors import InputError
 from core.files.project.audit import Entry, Trail, append, read_trail
 from core.files.project.folder import PROJECT, RESULTS, is_project, read_project
 from core.files.project.keys import changed, rests_on
-from core.files.reading import read_bytes
+from core.files.reading import file_hash
 from core.files.recording.recording_set import RIG, RecordingSet, open_set
 from core.files.results.run_file import read_run
 from core.messages import Message
@@ -37,7 +36,7 @@ class Verified:
 def note_results(folder: Path, name: str = RESULTS, *, reported: bool = False) -> None:
     """Tell the project's audit trail what lies among the results in its folder `name` now; raises as `append`."""
     made = (path for path in sorted((folder / name).iterdir()) if path.is_file() and path.name[0] != ".")
-    files = {f"{name}/{path.name}": _digest(path) for path in made}
+    files = {f"{name}/{path.name}": file_hash(path) for path in made}
     append(folder, "reported" if reported else "measured", files=files)
 
 
@@ -82,7 +81,7 @@ def _project(folder: Path, head: str, progress: Progress) -> Verified:
     states = [entry for entry in trail.entries if entry.state]
     if not states:
         notes.append(Message("verify.no_trail", "nothing was saved since there are audit trails"))
-    elif (state := _digest(folder / PROJECT)) != states[-1].state:
+    elif (state := file_hash(folder / PROJECT)) != states[-1].state:
         if len(states) > 1 and state == states[-2].state:
             notes.append(
                 Message("verify.save_cut_off", "the last save was cut off: {file} is the one before", file=PROJECT)
@@ -110,7 +109,7 @@ def _results(folder: Path, name: str, entry: Entry) -> list[Message]:
         path = folder / one
         if not path.is_file():
             problems.append(Message("verify.missing", "{name} is missing", name=one))
-        elif _digest(path) != digest:
+        elif file_hash(path) != digest:
             problems.append(Message("verify.result", "{name} is not what it was (entry {n})", name=one, n=entry.n))
     for path in sorted((folder / name).iterdir()) if (folder / name).is_dir() else []:
         if path.name in FILES.values() and f"{name}/{path.name}" not in entry.files:
@@ -124,14 +123,10 @@ def _inputs(inputs: Iterable[tuple[str, str]], found: RecordingSet, progress: Pr
     listed = list(inputs)
     for name, digest in steps(listed, progress, "comparing", len(listed)):
         try:
-            now = found.hashes[RIG] if name == RIG else _digest(found.path_of(name))
+            now = found.hashes[RIG] if name == RIG else file_hash(found.path_of(name))
         except InputError:
             problems.append(Message("verify.missing", "{name} is missing", name=name))
             continue
         if now != digest:
             problems.append(Message("verify.input", "{name} is not what the results were made of", name=name))
     return problems
-
-
-def _digest(path: Path) -> str:
-    return hashlib.sha256(read_bytes(path)).hexdigest()

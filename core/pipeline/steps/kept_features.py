@@ -22,7 +22,7 @@ from core.errors import InputError
 from core.files.atomic import make_inner_folder
 from core.files.project.calibration_store import FOLDER
 from core.files.project.data import Project
-from core.files.reading import read_bytes
+from core.files.reading import file_hash
 from core.files.recording.features_file import read_poses, read_views, write_poses, write_views
 from core.files.recording.options import Options
 from core.files.recording.recording_set import RecordingSet
@@ -77,7 +77,7 @@ def take_hashes(found: RecordingSet, pictures: Sequence[Path], progress: Progres
     """The hashes of pictures, as reading them would take them; one that cannot be read has none."""
     for path in steps(pictures, progress, "comparing the pictures", len(pictures)):
         with suppress(InputError):
-            found.hashes[found.name_of(path)] = hashlib.sha256(read_bytes(path)).hexdigest()
+            found.hashes[found.name_of(path)] = file_hash(path)
 
 
 def _pictures(found: RecordingSet, options: Options) -> list[Path]:

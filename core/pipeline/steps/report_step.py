@@ -16,7 +16,7 @@ from core import __version__
 from core.errors import InputError
 from core.files.arrays_file import read_arrays
 from core.files.atomic import write_bytes
-from core.files.reading import read_bytes, read_json
+from core.files.reading import file_hash, read_json
 from core.files.recording.recording_set import RIG, RecordingSet
 from core.files.recording.rig import Rig, rig_to_toml
 from core.files.results.camera_file import camera_id
@@ -174,7 +174,7 @@ def _light_profiles(out: Path, cloud: Cloud, gauge: GaugeResult) -> LightProfile
 
 def _marks(out: Path, record: RunRecord, calibration: Calibration) -> tuple[CalibrationMark, ...]:
     """Which calibrations these are, and since when."""
-    camera, fan = (hashlib.sha256(read_bytes(out / FILES[name])).hexdigest() for name in ("camera", "planes"))
+    camera, fan = (file_hash(out / FILES[name]) for name in ("camera", "planes"))
     return (
         CalibrationMark("camera", camera_id(calibration.camera.camera), camera, record.made_at.get("camera")),
         CalibrationMark("fan", fan_id(calibration.fan.fan), fan, record.made_at.get("planes")),

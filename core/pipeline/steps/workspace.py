@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -15,7 +14,7 @@ from core.calibrate.results import CameraCalibration, FanCalibration
 from core.errors import InputError
 from core.files.atomic import cannot_write, make_folder
 from core.files.pictures import Picture
-from core.files.reading import read_bytes
+from core.files.reading import file_hash
 from core.files.recording.recording_set import RecordingSet
 from core.files.results.camera_file import camera_id, read_camera
 from core.files.results.fan_file import fan_id, read_fan
@@ -107,7 +106,7 @@ class Workspace:
     def digest(self, name: str) -> str:
         """SHA-256 in hex of a result's bytes; nothing if it is not there."""
         path = self.path(name)
-        return hashlib.sha256(read_bytes(path)).hexdigest() if path.exists() else ""
+        return file_hash(path) if path.exists() else ""
 
     def written(self) -> dict[str, Path]:
         """The results that are there, by their keys in FILES."""
