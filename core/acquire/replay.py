@@ -14,7 +14,7 @@ from core.messages import Message
 RATE_HZ = 10.0
 ANY_RATE_HZ = (0.0, 10_000.0)
 
-HOLDS: dict[Step, int] = {"camera": 12, "planes": 25, "scan": 1, "check": 25}
+FRAMES_HELD: dict[Step, int] = {"camera": 12, "planes": 25, "scan": 1, "check": 25}
 """For how many frames a picture of a recording is shown: in a recording of targets each one was held still."""
 
 Listing = Callable[[Step, Lasers], Sequence[Path]]
@@ -58,7 +58,7 @@ class ReplaySource:
     ) -> None:
         self.name = name
         self._folder, self._listing, self._read = folder, listing, read
-        self._holds = HOLDS if holds is None else holds
+        self._holds = FRAMES_HELD if holds is None else holds
         self._loops = loops
         self._pace = Pace(RATE_HZ, clock, sleep)
         self._step: Step = "camera"

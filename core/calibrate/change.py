@@ -36,7 +36,7 @@ from core.messages import Message
 from core.model import Camera, Fan, LightPlane
 from core.model.arrays import Array
 
-TOLD = 0.01
+P_TOLD = 0.01
 """A change is told where chance alone would look so with a smaller probability."""
 PROVES_NOTHING = 0.001
 """With a smaller probability nothing measured is proof of conformity."""
@@ -181,7 +181,7 @@ class Change:
 
     @property
     def _changed(self) -> tuple[Message, ...]:
-        if self.p >= TOLD:
+        if self.p >= P_TOLD:
             return ()
         if np.isinf(self.times):
             return (

@@ -38,7 +38,7 @@ class Linearised(Protocol):
         """The local step (P,) to the minimum, with the diagonal raised by `damping` of itself."""
 
 
-class Dense:
+class DenseProblem:
     """Residuals (M,) with their full Jacobian (M, P)."""
 
     def __init__(self, residuals: Array, jacobian: Array) -> None:

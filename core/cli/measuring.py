@@ -66,8 +66,7 @@ def options(
     method: Method,
     sigma_cut: float,
     *,
-    skew: bool | None = None,
-    k3: bool = False,
+    camera: CameraOptions = CameraOptions(),
     part: str = "",
     stripe_width: float = 0.0,
     contrast: float = 0.0,
@@ -75,11 +74,15 @@ def options(
     accept_few_poses: bool = False,
 ) -> Options:
     """The pipeline's options from the command line's; InputError if one is absurd."""
-    camera = CameraOptions(skew=skew, k3=k3)
     stripe = _stripe(stripe_width, contrast)
     return Options(
         method, sigma_cut, camera, part, stripe, adjust_camera=adjust_camera, accept_few_poses=accept_few_poses
     )
+
+
+def camera_options(skew: bool | None, k3: bool) -> CameraOptions:
+    """The camera model as the command line states it."""
+    return CameraOptions(skew=skew, k3=k3)
 
 
 def plane_options(adjust_camera: bool, accept_few_poses: bool, stripe_width: float, contrast: float) -> Options:

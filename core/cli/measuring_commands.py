@@ -55,8 +55,7 @@ def run(
     options = measuring.options(
         method,
         sigma_cut,
-        skew=skew,
-        k3=k3,
+        camera=measuring.camera_options(skew, k3),
         part=part,
         stripe_width=stripe_width,
         contrast=contrast,
@@ -101,7 +100,9 @@ def camera(
     """Calibrate the camera from SET/camera; writes camera.json."""
     from core.cli import measuring
 
-    options = measuring.leaving_out(measuring.options(Method.NETWORK, 0.05, skew=skew, k3=k3), folder, exclude)
+    options = measuring.leaving_out(
+        measuring.options(Method.NETWORK, 0.05, camera=measuring.camera_options(skew, k3)), folder, exclude
+    )
     with bars() as progress:
         shown = measuring.run_camera(folder, out, options, progress)
     shown.show(as_json=json)

@@ -27,7 +27,7 @@ class ExitCode(IntEnum):
     INTERRUPTED = 130
 
 
-class Which(str, Enum):  # noqa: UP042
+class WhichTarget(str, Enum):  # noqa: UP042
     """One of a rig's two targets."""
 
     camera = "camera"

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from core.cli.bars import bars
-from core.cli.options import Json, OrderBy, SigmaCut, Which
+from core.cli.options import Json, OrderBy, SigmaCut, WhichTarget
 
 commands = typer.Typer()
 
@@ -36,7 +36,7 @@ def target(
     rig: Annotated[
         Path | None, typer.Option("--rig", metavar="FILE", help="Take the target from this rig.toml instead.")
     ] = None,
-    which: Annotated[Which, typer.Option(help="Which of rig.toml's two targets.")] = Which.camera,
+    which: Annotated[WhichTarget, typer.Option(help="Which of rig.toml's two targets.")] = WhichTarget.camera,
     json: Json = False,
 ) -> None:
     """Write a calibration target as a PDF to scale, to be printed at 100 %."""

@@ -22,7 +22,7 @@ from core.files.results.inspection_file import inspection_values
 from core.inspect.characteristic import Characteristic
 from core.inspect.evaluate import Inspection
 from core.messages import Message, visible
-from core.pipeline.project.handing_over import export_results, import_camera, with_template
+from core.pipeline.project.export import export_results, import_camera, with_template
 from core.pipeline.steps.inspect_step import inspect_step
 from core.pipeline.steps.mesh_step import MeshOptions, mesh_step
 from core.pipeline.steps.report_step import report_step, with_studies

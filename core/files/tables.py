@@ -27,8 +27,8 @@ def _aware(value: object) -> object:
     return time
 
 
-A_TIME = label("a date and time with its zone, as in 2025-01-31T12:00:00+00:00")
-Time = Annotated[datetime, BeforeValidator(_aware), Field(description=A_TIME)]
+TIME_WORDS = label("a date and time with its zone, as in 2025-01-31T12:00:00+00:00")
+Time = Annotated[datetime, BeforeValidator(_aware), Field(description=TIME_WORDS)]
 
 
 def _bounded(value: float) -> float:

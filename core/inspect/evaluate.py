@@ -102,7 +102,7 @@ def evaluate(
     errors
         How the points' errors hang together; what it does not know is not in the uncertainties, and a note says so.
     progress
-        Told how far it is; may cancel.
+        Called with how far it is; may raise Cancelled.
     previous
         An inspection of before: features of the same inputs are taken from it as they are.
     nominals

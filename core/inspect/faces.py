@@ -67,7 +67,7 @@ def find_faces(
     seed
         Of the random search; the same seed gives the same faces.
     progress
-        Told how far it is.
+        Called with how far it is.
 
     Raises
     ------

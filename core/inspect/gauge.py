@@ -96,7 +96,7 @@ def fit_gauge(
     seed
         Of the random search for faces.
     progress
-        Told how far it is.
+        Called with how far it is.
 
     Raises
     ------
@@ -161,7 +161,7 @@ def measure_gauge(
     k
         Coverage factor where u is known; Student's t makes it larger where form makes up much of u.
     progress
-        Told how far it is.
+        Called with how far it is.
 
     Raises
     ------

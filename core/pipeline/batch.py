@@ -74,7 +74,7 @@ def run_batch(
     options
         Method and cuts, for all.
     progress
-        Told how many are done; may cancel. Sets that are being measured then stop, what is finished stays.
+        Called with how many are done; may raise Cancelled: sets being measured then stop, what is finished stays.
 
     Returns
     -------

@@ -13,7 +13,7 @@ from core.progress import Progress, silent
 
 STEP = label("preparing")
 _LOOK_EVERY_S = 0.2
-_ABOUT = 240
+_EXPECTED_FUNCTIONS = 240
 """Functions that a measurement needs; for the bar alone."""
 
 
@@ -31,13 +31,13 @@ def compile_ahead(progress: Progress = silent) -> None:
     ]
     try:
         while any(process.poll() is None for process in running):
-            progress(STEP, min(saved_functions(), _ABOUT - 1), _ABOUT)
+            progress(STEP, min(saved_functions(), _EXPECTED_FUNCTIONS - 1), _EXPECTED_FUNCTIONS)
             time.sleep(_LOOK_EVERY_S)
     finally:
         for process in running:
             process.terminate()
             process.wait()
-    progress(STEP, _ABOUT, _ABOUT)
+    progress(STEP, _EXPECTED_FUNCTIONS, _EXPECTED_FUNCTIONS)
     if not any(process.returncode for process in running):
         keep_complete()
 

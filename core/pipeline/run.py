@@ -52,7 +52,7 @@ def run(set_folder: Path, out_folder: Path, options: Options | None = None, prog
     options
         Method and cuts.
     progress
-        Told what is being done; may cancel.
+        Called with what is being done; may raise Cancelled.
 
     Raises
     ------

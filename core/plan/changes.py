@@ -12,7 +12,7 @@ from core.plan.design import Design
 from core.plan.predict import Planner, Prediction
 from core.progress import Progress, silent, steps
 
-HELPS = 0.97
+WORTHWHILE_SHARE = 0.97
 """A change that leaves more than this share of U helps nobody."""
 
 
@@ -126,11 +126,11 @@ def compare(
 def advice(effects: tuple[Effect, ...]) -> Message:
     """The change that helps most, in one sentence."""
     best = effects[0] if effects else None
-    if best is None or best.U_mm is None or best.share > HELPS:
+    if best is None or best.U_mm is None or best.share > WORTHWHILE_SHARE:
         return Message(
             "plan.no_change_helps",
             "None of the changes tried helps by more than {percent:.0f} %.",
-            percent=100 * (1 - HELPS),
+            percent=100 * (1 - WORTHWHILE_SHARE),
         )
     return Message(
         "plan.best_change",

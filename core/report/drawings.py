@@ -15,7 +15,7 @@ from reportlab.lib.utils import ImageReader
 
 from core.progress import Progress
 from core.report.content import ReportContent
-from core.report.layout.style import TEXT_WIDTH, Look
+from core.report.layout.style import TEXT_WIDTH, ReportLook
 from core.report.plots import charts as plots
 from core.report.plots import figures
 from core.report.plots.charts import deviation_figure, points_figure
@@ -37,7 +37,7 @@ SURFACE_MM, OVERLAY_MM, POINTS_MM, FACES_MM, CLOUD_MM, CHART_MM, DEVIATION_MM, P
 """Heights of the pictures at scale 1."""
 
 
-def drawings(look: Look, content: ReportContent, progress: Progress) -> dict[str, Callable[[], Figure]]:
+def drawings(look: ReportLook, content: ReportContent, progress: Progress) -> dict[str, Callable[[], Figure]]:
     """What is to be drawn, by name."""
     width = TEXT_WIDTH / mm
     gauge, overlay, size = content.gauge, content.overlay, content.camera.camera.image_size
@@ -82,7 +82,7 @@ def drawings(look: Look, content: ReportContent, progress: Progress) -> dict[str
     }
 
 
-def _study_figure(look: Look, study: Mapping[str, Any], width: float) -> Figure:
+def _study_figure(look: ReportLook, study: Mapping[str, Any], width: float) -> Figure:
     U = [scan["U"] if scan["U"] is not None else math.nan for scan in study.get("scans", ())]
     return run_chart_figure(look, study_values(study), U, study_lines(study), study["unit"], width, CHART_MM)
 

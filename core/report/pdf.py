@@ -23,7 +23,7 @@ from core.report.layout.style import (
     MUTED,
     SANS,
     TEXT_WIDTH,
-    Look,
+    ReportLook,
     color,
     draw_words,
     font_note,
@@ -76,7 +76,7 @@ def build_report(content: ReportContent, progress: Progress = silent) -> bytes:
     if note := font_note(_names(content)):
         content = replace(content, notes=(*content.notes, note))
     progress = told = StepProgress(progress)
-    look = Look(Words.of(content.language), content.template.accent)
+    look = ReportLook(Words.of(content.language), content.template.accent)
     step, pending = "report", drawings(look, content, told.within_step)
     total = len(pending) + 2
     pictures = {}
@@ -134,7 +134,7 @@ class _TooLongError(Exception):
 
 
 def _typeset(
-    look: Look,
+    look: ReportLook,
     content: ReportContent,
     pictures: Mapping[str, ImageReader],
     limits: Limits,
@@ -188,7 +188,7 @@ def _typeset(
     return document.page, stream.getvalue()
 
 
-def _subject(look: Look, content: ReportContent) -> str:
+def _subject(look: ReportLook, content: ReportContent) -> str:
     found = content.characteristics
     what = shown_name(found[0], look.words) if len(found) == 1 else look.words("Inspection" if found else "Point cloud")
     what = what[:1].upper() + what[1:]
@@ -201,7 +201,7 @@ def _pdf_zone(content: ReportContent) -> str:
     return f"{zone[:3]}'{zone[3:5]}'" if zone else ""
 
 
-def _foot(canvas: Any, look: Look, content: ReportContent, pages: int, margin: float) -> None:
+def _foot(canvas: Any, look: ReportLook, content: ReportContent, pages: int, margin: float) -> None:
     """Rule, report id, software, page n of m; the company's own line below."""
     words, footer = look.words, content.template.footer
     canvas.saveState()

@@ -18,7 +18,7 @@ from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid, T
 from core.image.targets.charuco import dictionary_of
 from core.messages import Message, label
 from core.model.arrays import Array, frozen_array, set_field
-from core.report.layout.style import ACCENT, INK, MUTED, SANS, Look, color, prepare_reportlab
+from core.report.layout.style import ACCENT, INK, MUTED, SANS, ReportLook, color, prepare_reportlab
 from core.report.wording import ENGLISH, target_in_words
 
 SheetPaper: TypeAlias = Literal["A4", "A3", "A2", "Letter", "Tabloid"]
@@ -50,7 +50,7 @@ HOW_TO_PRINT = label(
     "Print at 100 %, without fitting to the page, then measure both rulers: each must be 100.0 mm long. "
     "Glue the sheet flat on a stiff plate."
 )
-LOOK = Look(ENGLISH, ACCENT)
+LOOK = ReportLook(ENGLISH, ACCENT)
 """Of every sheet: its words are English."""
 
 

@@ -48,12 +48,12 @@ NEARLY_ALL = 0.8
 MOVED_WITHIN = Message(
     "inspection.moved_during_scan", "Something moved during the scan: nothing measured proves conformity."
 )
-THE_PART = Message("scan.the_part", "the part")
-EVERYTHING = Message("scan.everything", "the camera, the fan, or the table with the part")
+PART_WORDS = Message("scan.the_part", "the part")
+EVERYTHING_WORDS = Message("scan.everything", "the camera, the fan, or the table with the part")
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class Watched:
+class FanRest:
     """What the fan's light tells of a scan.
 
     Parameters
@@ -82,7 +82,7 @@ class Watched:
                 "Something moved during the scan, {what}, {when:and}: {percent:.0f} % of the fan's light lies about "
                 "{shift_px:.2g} px aside, which is {shift_mm:.2g} mm in depth. Only {n} frames between which nothing "
                 "moved are used. Hold part and camera still and scan again.",
-                what=EVERYTHING if self.share > NEARLY_ALL else THE_PART,
+                what=EVERYTHING_WORDS if self.share > NEARLY_ALL else PART_WORDS,
                 when=self.when(names),
                 percent=100 * self.share,
                 shift_px=self.shift_px,
@@ -99,17 +99,17 @@ class Watched:
         ]
 
 
-def watch_fan(features: ScanFeatures, lines: FanLines, camera: Camera, fan: Fan) -> Watched:
+def watch_fan(features: ScanFeatures, lines: FanLines, camera: Camera, fan: Fan) -> FanRest:
     """Find which frames of a scan saw the fan's light where it was in the reference."""
     count = len(features.frames)
     known = np.array([i for i, frame in enumerate(features.frames) if len(frame.fan_shifts_px)], dtype=np.int64)
     if len(known) < 2 * LEAST_FRAMES:
-        return Watched(np.ones(count, dtype=np.bool_))
+        return FanRest(np.ones(count, dtype=np.bool_))
     shifts = np.array([features.frames[i].fan_shifts_px for i in known])
     noise = np.array([mad_sd(step) for step in np.diff(shifts, axis=0).T]) / np.sqrt(2)
     splits = sorted(_splits(shifts, np.maximum(noise, LEAST_NOISE_PX), 0))
     if not splits:
-        return Watched(np.ones(count, dtype=np.bool_))
+        return FanRest(np.ones(count, dtype=np.bool_))
     parts = np.split(np.arange(len(known)), splits)
     middles = np.array([np.median(shifts[part], axis=0) for part in parts])
     off = np.sqrt(np.mean(middles**2, axis=1))
@@ -124,7 +124,7 @@ def watch_fan(features: ScanFeatures, lines: FanLines, camera: Camera, fan: Fan)
     change = middles[farthest] - middles[rest]
     moved = np.abs(change) > np.maximum(SURELY * noise / np.sqrt(len(parts[farthest])), MOVED_PX)
     in_depth = np.abs(change * _depth_per_px(features, lines, camera, fan))[moved]
-    return Watched(
+    return FanRest(
         at_rest,
         tuple(int(known[split]) for split in splits),
         float(np.median(np.abs(change[moved]))) if moved.any() else 0.0,

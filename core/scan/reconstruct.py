@@ -16,7 +16,7 @@ from core.messages import Field, Message, plural_message
 from core.model import Camera, Fan
 from core.model.arrays import Array
 from core.progress import Progress, StepProgress, silent
-from core.scan.fan_watch import LEAST_FRAMES, Watched, watch_fan
+from core.scan.fan_watch import LEAST_FRAMES, FanRest, watch_fan
 from core.scan.features.crossings import CrossingTable
 from core.scan.features.extraction import LOST, MOVED, ScanFeatures
 from core.scan.method import Method
@@ -149,7 +149,7 @@ def _solve(
     camera: Camera,
     fan: Fan,
     names: Sequence[str],
-    watched: Watched,
+    watched: FanRest,
     progress: Progress,
 ) -> _Solved:
     if options.method != Method.NETWORK:
@@ -242,7 +242,7 @@ def _left_out(features: ScanFeatures) -> int:
     return sum(frame.reason in (MOVED, LOST) for frame in features.frames)
 
 
-def _require_rest(features: ScanFeatures, watched: Watched) -> None:
+def _require_rest(features: ScanFeatures, watched: FanRest) -> None:
     """InputError if something moved and too few frames are left between which nothing did."""
     left = [frame for frame in features.frames if frame.centrelines and watched.at_rest[frame.index]]
     moved = [frame for frame in features.frames if frame.reason in (MOVED, LOST) or not watched.at_rest[frame.index]]

@@ -62,7 +62,7 @@ _PLACES = 40
 # What is measured of a scan in which something moved; held by the same tests.
 LEAST_SWEEPS = 12
 """A part of a scan with fewer sweeps, or fewer of their crossings with the fan, is not measured."""
-MUCH_WORSE = 1.5
+CLEARLY_WORSE = 1.5
 """The larger part is not taken if it disagrees with the fan so many times more than the smaller."""
 
 
@@ -249,7 +249,7 @@ def still_part(
                 todo=HOLD_STILL,
             )
         solved.sort(key=lambda one: -one[0])
-        worse = len(solved) > 1 and solved[0][1] > MUCH_WORSE * max(solved[1][1], 1.0)
+        worse = len(solved) > 1 and solved[0][1] > CLEARLY_WORSE * max(solved[1][1], 1.0)
         kept = solved[int(worse)][2]
     return StillPart(kept, tuple(movements))
 

@@ -54,7 +54,7 @@ def simulate_set(
     folder
         Must not hold anything yet.
     progress
-        Told after each picture; what it raises (Cancelled) passes through and leaves nothing behind.
+        Called after each picture; what it raises (Cancelled) passes through and leaves nothing behind.
     calibration_from
         An earlier simulated set of the same rig and scale: its camera/ and planes/ are copied, not rendered.
     rig

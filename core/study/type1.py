@@ -27,7 +27,7 @@ RESOLUTION_SHARE = 0.05
 """Of the tolerance: what the resolution may be at most."""
 SIGNIFICANCE = 0.05
 """Level of the t-test, and of the intervals: 95 %."""
-FEW = 25
+FEW_MEASUREMENTS = 25
 """Repeats below which a study says little; 50 are usual."""
 
 
@@ -122,13 +122,13 @@ class Type1Study:
     def notes(self) -> tuple[Message, ...]:
         """What to know about the figures."""
         said = []
-        if self.n < FEW:
+        if self.n < FEW_MEASUREMENTS:
             said.append(
                 Message(
                     "study.few_repeats",
                     "{n} repeats say little about the spread: {least} or more are asked for, 50 are usual.",
                     n=self.n,
-                    least=FEW,
+                    least=FEW_MEASUREMENTS,
                 )
             )
         if self.cgk < LIMIT <= self.cg:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from core.acquire.pace import Pace
-from core.acquire.replay import HOLDS, ReplaySource
+from core.acquire.replay import FRAMES_HELD, ReplaySource
 from core.acquire.source import Ended, Lasers, SourceSettings, Unplugged
 from core.errors import InputError
 from core.files.pictures import read_picture, write_picture
@@ -40,7 +40,7 @@ def save(folder, **levels):
 def replay(folder, **choices):
     clock = Clock()
     listing = ReplayPictures(folder)
-    holds = HOLDS if listing.is_set else {}
+    holds = FRAMES_HELD if listing.is_set else {}
     source = ReplaySource(
         "replay", folder, listing, read_picture, holds=holds, clock=clock, sleep=clock.sleep, **choices
     )

@@ -13,8 +13,8 @@ from core.files.project.data import Accepted
 from core.files.project.folder import results_folder
 from core.files.recording.recording_set import open_set
 from core.files.results.scan_file import read_scan
+from core.pipeline.project.details import recall_poses, show_frame, show_pose
 from core.pipeline.project.frame_stages import frame_stages
-from core.pipeline.project.looks import recall_poses, show_frame, show_pose
 from tests.simulated import copy_of
 
 

@@ -13,7 +13,7 @@ from pypdf import PdfReader
 from core.inspect.characteristic import Characteristic, Limits
 from core.inspect.results import Contribution
 from core.messages import plain
-from core.report.layout.style import Look
+from core.report.layout.style import ReportLook
 from core.report.pdf import build_report
 from core.report.plots.run_chart import run_chart_figure
 from core.report.template import SECTIONS, ReportTemplate
@@ -118,7 +118,9 @@ def test_studies_are_printed_with_figures_and_notes(data):
 @pytest.mark.parametrize(("count", "panels"), [(12, 2), (4, 1)])
 def test_a_run_chart_has_a_histogram_beside_it_once_there_are_values_for_one(content, count, panels):
     values = (50.0 + 0.01 * np.random.default_rng(0).standard_normal(count)).tolist()
-    figure = run_chart_figure(Look(Words(), content.template.accent), values, (), {"mean": 50.0}, "mm", 170.0, 42.0)
+    figure = run_chart_figure(
+        ReportLook(Words(), content.template.accent), values, (), {"mean": 50.0}, "mm", 170.0, 42.0
+    )
     assert len(figure.axes) == panels
     bars = [bar.get_width() for axes in figure.axes[1:] for bar in axes.patches]
     assert sum(bars) == (count if panels == 2 else 0)

@@ -4,10 +4,10 @@ from pypdf import PdfReader
 from reportlab.platypus import SimpleDocTemplate, Spacer
 
 from core.report.layout.blocks import section
-from core.report.layout.style import SANS, Look, prepare_reportlab
+from core.report.layout.style import SANS, ReportLook, prepare_reportlab
 from core.report.wording import Words
 
-LOOK = Look(Words(), "#14586E")
+LOOK = ReportLook(Words(), "#14586E")
 
 
 def pages(above):

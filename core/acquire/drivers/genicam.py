@@ -164,7 +164,7 @@ class GenICamSource:
         self._wanted = self._wanted.updated(settings)
 
     def prepare(self, step: Step) -> None:
-        """A camera sees what is before it."""
+        """Ignored: a real camera sees whatever is in front of it."""
 
     def lasers(self, lasers: Lasers) -> bool:
         """A person must switch them."""

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from core.calibrate.board_shape import Board, BoardShape, BoardTolerance
 from core.calibrate.camera.bundle import Bundle, Normal, Observed, normal_equations
-from core.calibrate.camera.covariance import Widening, free_covariance
+from core.calibrate.camera.covariance import SharedErrorFactors, free_covariance
 from core.model.arrays import Array
 from core.model.residuals import over_picture
 
@@ -48,7 +48,7 @@ class BoardFit:
 
     def covariance(
         self, bundle: Bundle, flat: Sequence[Observed], free: NDArray[np.intp], freedom: int
-    ) -> tuple[Array, Widening]:
+    ) -> tuple[Array, SharedErrorFactors]:
         """Covariance of the camera's `free` parameters and the shape's behind them, and how it was widened.
 
         Raises

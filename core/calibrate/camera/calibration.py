@@ -30,7 +30,7 @@ from core.calibrate.camera.adjustment import (
 )
 from core.calibrate.camera.board_fit import BoardFit
 from core.calibrate.camera.bundle import Bundle, Observed, refine_robustly, residual_lengths
-from core.calibrate.camera.covariance import Widening
+from core.calibrate.camera.covariance import SharedErrorFactors
 from core.calibrate.camera.coverage import coverage, tilt_range
 from core.calibrate.camera.quality import cross_validation_mm, notes_on, rms_and_mean, view_qualities, view_without_part
 from core.calibrate.camera.screening import screen
@@ -171,7 +171,7 @@ def _observed(views: Sequence[TargetView]) -> list[Observed]:
 
 def _covariance(
     bundle: Bundle, counted: Sequence[Observed], free: NDArray[np.intp], fit: BoardFit
-) -> tuple[Array, BoardShape, Widening]:
+) -> tuple[Array, BoardShape, SharedErrorFactors]:
     """Covariance (10, 10) of the camera, the board's shape with its own, and how both were widened.
 
     InputError where the views do not determine the camera.

@@ -27,7 +27,7 @@ some hundred units of rounding."""
 
 
 @dataclass(frozen=True)
-class Widening:
+class SharedErrorFactors:
     """Factors on the standard deviations for errors that corners share.
 
     Parameters
@@ -59,7 +59,7 @@ def free_covariance(
     cells: Sequence[NDArray[np.intp]],
     degrees_of_freedom: int,
     precision: Array | None = None,
-) -> tuple[Array, Widening]:
+) -> tuple[Array, SharedErrorFactors]:
     """Compute the covariance (F, F) of the free parameters, widened for errors that corners share.
 
     The scale of the residuals is measured, not assumed. Where corners of a view err together, the views' gradients g
@@ -98,7 +98,7 @@ def free_covariance(
     view = np.repeat(np.arange(views), [len(own) for own in cells])
     in_views = _excess(joined, cell + (cell.max() + 1) * view, inverse, variance * free)
     over_picture = _excess(joined, cell, inverse, variance * free) - in_views + 1
-    widening = Widening(
+    widening = SharedErrorFactors(
         float(np.sqrt(max(1.0, within))),
         float(np.sqrt(max(1.0, across))),
         float(np.sqrt(max(1.0, over_picture))),

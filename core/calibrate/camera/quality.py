@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from core.calibrate.board_shape import BoardShape
 from core.calibrate.camera.bundle import NO_PARAMETERS, Bundle, Observed, refine, refine_robustly
-from core.calibrate.camera.covariance import Widening
+from core.calibrate.camera.covariance import SharedErrorFactors
 from core.calibrate.camera.coverage import disagreement_mm, empty_regions, tilt
 from core.calibrate.camera.picture_residuals import notes_on_picture
 from core.calibrate.camera.screening import Verdict, screen
@@ -99,7 +99,7 @@ def cross_validation_mm(solved: Bundle, counted: Sequence[Observed], free: NDArr
     return disagreement_mm(cameras[0], cameras[1], uv, (float(depths.min()), float(depths.max())))
 
 
-def notes_on(calibration: CameraCalibration, widening: Widening) -> tuple[Message, ...]:
+def notes_on(calibration: CameraCalibration, widening: SharedErrorFactors) -> tuple[Message, ...]:
     """Make notes on views and corners left out, missing coverage, small tilt, few views and correlated residuals."""
     used = [quality for quality in calibration.views if quality.used]
     notes = [

@@ -23,7 +23,7 @@ from functools import partial
 import numpy as np
 
 from core.calibrate.board_shape import BoardShape
-from core.calibrate.fan.observations import PARAMETERS, BundlePose, Observations, Plate, State, Trust
+from core.calibrate.fan.observations import PARAMETERS, BundlePose, Observations, ObservationWeights, Plate, State
 from core.calibrate.fan.pencil import PlaneSet
 from core.calibrate.fan.pose_equations import PoseEquations, inverse
 from core.calibrate.levenberg import Solution, minimise
@@ -128,13 +128,15 @@ def solve(
     return _result(seen, solution, trust)
 
 
-def _at_first(seen: Observations, state: State) -> Trust:
+def _at_first(seen: Observations, state: State) -> ObservationWeights:
     count = len(seen.stripes)
     extra = np.median(np.abs(seen.distances(state).mm), axis=0)
-    return Trust(1.0, seen.stripes.noise_mm(state.planes, state.poses), extra, np.ones(count))
+    return ObservationWeights(1.0, seen.stripes.noise_mm(state.planes, state.poses), extra, np.ones(count))
 
 
-def _improved(trust: Trust, seen: Observations, solution: Solution[State, PoseEquations]) -> Trust:
+def _improved(
+    trust: ObservationWeights, seen: Observations, solution: Solution[State, PoseEquations]
+) -> ObservationWeights:
     """The standard deviations and the stripes' weights again, from residuals and redundancies."""
     residuals, share = solution.linear.residuals, solution.linear.leverages()
     corner = _variance_factor(residuals[: seen.corners], share[: seen.corners])
@@ -149,18 +151,18 @@ def _improved(trust: Trust, seen: Observations, solution: Solution[State, PoseEq
     return replace(trust, weight=huber_weights(_errors(seen, solution.state, trust), HUBER))
 
 
-def _settled(before: Trust, after: Trust) -> bool:
+def _settled(before: ObservationWeights, after: ObservationWeights) -> bool:
     old, new = (np.array([trust.corner_scale, *trust.extra]) for trust in (before, after))
     return bool(np.all(np.abs(new - old) < 0.02 * old + 1e-6))
 
 
-def _errors(seen: Observations, state: State, trust: Trust) -> Array:
+def _errors(seen: Observations, state: State, trust: ObservationWeights) -> Array:
     """RMS (S,) of each stripe's residuals in their standard deviations."""
     distances = seen.distances(state).mm / trust.sd
     return np.asarray(np.sqrt((distances**2).mean(axis=1)), dtype=np.float64)
 
 
-def _result(seen: Observations, solution: Solution[State, PoseEquations], trust: Trust) -> Bundle:
+def _result(seen: Observations, solution: Solution[State, PoseEquations], trust: ObservationWeights) -> Bundle:
     state = solution.state
     unknowns = state.planes.jacobian.shape[1]
     known = unknowns + seen.bows

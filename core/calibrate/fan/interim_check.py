@@ -28,7 +28,7 @@ from core.messages import Message
 from core.model import Camera, Fan, Pose
 from core.model.arrays import Array
 
-ELSEWHERE = "check.no_stripe_near"
+NO_STRIPE_NEAR = "check.no_stripe_near"
 """Code of the reason that no stripe is where the calibration has the fan."""
 FORM_MM = 0.05
 """Standard deviation of a stripe's place for a plate's form, where the calibration's own poses do not tell."""

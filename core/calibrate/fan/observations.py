@@ -77,7 +77,7 @@ class State:
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class Trust:
+class ObservationWeights:
     """How much each observation is trusted.
 
     `corner_scale` is a factor on the stated uncertainty of the target's points, `noise` (S,) in mm the stripes' own,
@@ -137,7 +137,7 @@ class Observations:
         """Of the stripes from the light planes."""
         return self.stripes.distances(state.planes, state.poses, state.camera, state.bow)
 
-    def linearise(self, state: State, trust: Trust) -> PoseEquations:
+    def linearise(self, state: State, trust: ObservationWeights) -> PoseEquations:
         """All that is seen and known, by the unknowns that are free."""
         residuals, common, own = self.observed(state, trust)
         known = common.shape[1] - PARAMETERS
@@ -152,13 +152,13 @@ class Observations:
             (np.concatenate([prior, self.whiten @ state.camera[self.free]]), np.vstack([by_bow, by_camera])),
         )
 
-    def with_every_camera_parameter(self, state: State, trust: Trust) -> PoseEquations:
+    def with_every_camera_parameter(self, state: State, trust: ObservationWeights) -> PoseEquations:
         """The same as if nothing was known of the camera, all its parameters among the unknowns."""
         residuals, common, own = self.observed(state, trust)
         prior, by_bow = self._known_of_bows(state, common.shape[1])
         return PoseEquations(residuals, common, own, self.rows_of_pose, (prior, by_bow))
 
-    def observed(self, state: State, trust: Trust) -> tuple[Array, Array, Array]:
+    def observed(self, state: State, trust: ObservationWeights) -> tuple[Array, Array, Array]:
         """Residuals (M,) of target points and stripes in standard deviations.
 
         And their derivatives by the common unknowns (M, C) and by those of the pose each is of (M, 6).
@@ -176,7 +176,7 @@ class Observations:
             np.vstack([points[:, 1:7], (distances.by_pose * weight[..., None]).reshape(-1, 6)]),
         )
 
-    def expected_mm(self, state: State, trust: Trust) -> float:
+    def expected_mm(self, state: State, trust: ObservationWeights) -> float:
         """RMS in mm of stripes' offsets and slopes by noise alone, the poses where the target's points put them."""
         points, distances = self._target_points(state), self.distances(state)
         by_pose = [points[rows, 1:7] for rows in self.rows]

@@ -15,7 +15,7 @@ from scipy.special import fdtrc
 
 from core.calibrate.fan.bundle import Bundle
 from core.calibrate.fan.pencil import FreePlanes, Pencil, PlaneSet, pencil_near
-from core.calibrate.levenberg import Dense, minimise
+from core.calibrate.levenberg import DenseProblem, minimise
 from core.messages import Message
 from core.model import Fan, LightPlane
 from core.model.arrays import Array
@@ -106,8 +106,8 @@ def _trial(free: Bundle, angle: float | None) -> _Trial:
     scale = np.sqrt(np.diag(free.covariance))
     whiten = np.linalg.inv(np.linalg.cholesky(free.covariance / np.outer(scale, scale))) / scale
 
-    def linearise(pencil: Pencil) -> Dense:
-        return Dense(whiten @ (pencil.pis - pis).ravel(), whiten @ pencil.jacobian)
+    def linearise(pencil: Pencil) -> DenseProblem:
+        return DenseProblem(whiten @ (pencil.pis - pis).ravel(), whiten @ pencil.jacobian)
 
     solution = minimise(pencil_near(pis, angle), linearise, Pencil.moved)
     constraints = pis.size - solution.linear.jacobian.shape[1]

@@ -14,7 +14,7 @@ from core.errors import InputError
 from core.messages import Message
 from core.model import Camera
 
-OURS = 5
+COEFFICIENTS_USED = 5
 """Distortion coefficients of our model: k1, k2, p1, p2, k3."""
 
 
@@ -29,7 +29,7 @@ def imported_camera(
         If the camera is absurd, or its distortion is not k1, k2, p1, p2, k3.
     """
     coefficients = np.asarray(distortion, dtype=np.float64).ravel()
-    if np.any(coefficients[OURS:] != 0):
+    if np.any(coefficients[COEFFICIENTS_USED:] != 0):
         raise InputError(
             Message(
                 "file.distortion_not_modelled",
@@ -42,8 +42,8 @@ def imported_camera(
                 "advice.calibrate_with_five_coefficients", "calibrate again with the five-coefficient model (plumb_bob)"
             ),
         )
-    values = np.zeros(OURS)
-    values[: len(coefficients[:OURS])] = coefficients[:OURS]
+    values = np.zeros(COEFFICIENTS_USED)
+    values[: len(coefficients[:COEFFICIENTS_USED])] = coefficients[:COEFFICIENTS_USED]
     matrix = np.asarray(matrix, dtype=np.float64)
     if matrix.shape != (3, 3) or matrix[1, 0] != 0 or matrix[2].tolist() != [0, 0, 1]:
         raise InputError(

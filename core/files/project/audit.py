@@ -29,7 +29,7 @@ from core.files.limits import DATA_BYTES
 from core.files.project.changes import Change
 from core.files.project.lock import user_name
 from core.files.reading import json_of, read_bytes
-from core.files.tables import A_TIME, Time
+from core.files.tables import TIME_WORDS, Time
 from core.messages import Message
 
 AUDIT = "audit.jsonl"
@@ -66,7 +66,7 @@ class Entry:
     """
 
     n: Annotated[int, Field(ge=1, description="a whole number from 1")]
-    at: Annotated[Time, Field(description=A_TIME)]
+    at: Annotated[Time, Field(description=TIME_WORDS)]
     who: str
     host: str
     what: What

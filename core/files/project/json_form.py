@@ -32,7 +32,7 @@ from core.files.project.data import (
 from core.files.reading import read_json
 from core.files.recording.options import Options
 from core.files.recording.rig import RigTables, Table, rig_of, rig_tables
-from core.files.tables import A_TIME, Time
+from core.files.tables import TIME_WORDS, Time
 from core.image.stripes.stripe import StripeSettings
 from core.messages import Message
 from core.scan.method import Method
@@ -86,8 +86,8 @@ class ProjectTables(Table):
 
     schema_version: int
     version: str = ""
-    created: Time | None = Field(default=None, description=A_TIME)
-    saved: Time | None = Field(default=None, description=A_TIME)
+    created: Time | None = Field(default=None, description=TIME_WORDS)
+    saved: Time | None = Field(default=None, description=TIME_WORDS)
     info: ProjectInfo = Field(description="a table of name, part, …")
     rig: RigTables = Field(description="a table as in rig.toml")
     sources: Sources = Sources()

@@ -28,31 +28,31 @@ from core.files.complaints import checked_json
 from core.files.folder_lock import sweep_leftovers, wait_for
 from core.files.json_text import to_json
 from core.files.reading import read_json
-from core.files.tables import A_TIME, Time
+from core.files.tables import TIME_WORDS, Time
 from core.messages import Message
 
 LOCK = ".lock.json"
 
 
 @dataclass(frozen=True, slots=True)
-class Holder:
+class LockOwner:
     """Who has a project open: the user's and the computer's name, since when; `key` is another one each time."""
 
     owner: str
     host: str
-    since: Annotated[Time, Field(description=A_TIME)]
+    since: Annotated[Time, Field(description=TIME_WORDS)]
     key: str
     __pydantic_config__ = ConfigDict(extra="forbid", strict=True)
 
 
-class _LockFile(RootModel[Holder]):
+class _LockFile(RootModel[LockOwner]):
     pass
 
 
 class ProjectInUse(InputError):
     """Somebody has the project open."""
 
-    def __init__(self, holder: Holder, folder: Path) -> None:
+    def __init__(self, holder: LockOwner, folder: Path) -> None:
         self.holder = holder
         super().__init__(
             Message(
@@ -73,7 +73,7 @@ class ProjectInUse(InputError):
 class ProjectLock:
     """A project that is ours to change, until `release`, or until somebody takes it over."""
 
-    def __init__(self, folder: Path, holder: Holder, handle: int) -> None:
+    def __init__(self, folder: Path, holder: LockOwner, handle: int) -> None:
         self.folder, self.holder, self._handle = folder, holder, handle
 
     def check(self) -> None:
@@ -113,7 +113,7 @@ def user_name() -> str:
         return "?"
 
 
-def read_holder(folder: Path) -> Holder | None:
+def read_holder(folder: Path) -> LockOwner | None:
     """Whom the file says; None if there is none, or none that can be read."""
     try:
         return checked_json(_LockFile, read_json(folder / LOCK), folder / LOCK).root
@@ -121,7 +121,7 @@ def read_holder(folder: Path) -> Holder | None:
         return None
 
 
-def held_by(folder: Path) -> Holder | None:
+def held_by(folder: Path) -> LockOwner | None:
     """Who has the project open; None if nobody has, as far as can be told."""
     holder = read_holder(folder)
     if holder is None or (holder.host == platform.node() and _is_left_behind(folder / LOCK)):
@@ -145,7 +145,7 @@ def take_lock(folder: Path, *, take_over: bool = False) -> ProjectLock:
 
 def _take(folder: Path, *, take_over: bool) -> ProjectLock:
     path = folder / LOCK
-    holder = Holder(user_name(), platform.node(), datetime.now().astimezone(), secrets.token_hex(8))
+    holder = LockOwner(user_name(), platform.node(), datetime.now().astimezone(), secrets.token_hex(8))
     beside = path.with_name(f"{LOCK}.{holder.key}.new")
     try:
         handle = _write_held(beside, holder)
@@ -190,7 +190,7 @@ def _one_at_a_time(folder: Path) -> Iterator[None]:
         os.close(handle)
 
 
-def _write_held(path: Path, holder: Holder) -> int:
+def _write_held(path: Path, holder: LockOwner) -> int:
     """Write the file and hold it; the open file."""
     handle = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o644)
     text = to_json({"owner": holder.owner, "host": holder.host, "since": holder.since.isoformat(), "key": holder.key})

@@ -38,7 +38,7 @@ from core.files.project.lock import LOCK
 from core.files.reading import cannot_read, json_of
 from core.files.recording.recording_set import CHECK, PARTS
 from core.files.recording.rig import Table
-from core.files.tables import A_TIME, Time
+from core.files.tables import TIME_WORDS, Time
 from core.messages import Message
 from core.progress import Progress, silent, steps
 
@@ -66,7 +66,7 @@ class _Contents(Table):
     kind: Literal["trisect project"] = Field(description='"trisect project"')
     format: Literal[1]
     version: str = ""
-    packed: Time = Field(description=A_TIME)
+    packed: Time = Field(description=TIME_WORDS)
     files: dict[str, _PackedFile] = Field(description="a table of files")
 
 

@@ -49,7 +49,7 @@ def import_pictures(plan: ImportPlan, target: Path, rig: Path | None = None, pro
     rig
         A rig.toml to copy into it.
     progress
-        Told how many files are linked.
+        Called with how many files are linked.
 
     Raises
     ------

@@ -12,7 +12,7 @@ import numpy as np
 from pydantic import Field
 
 from core import __version__
-from core.calibrate.change import PROVES_NOTHING, TOLD
+from core.calibrate.change import P_TOLD, PROVES_NOTHING
 from core.files.complaints import checked
 from core.files.json_text import write_json
 from core.files.reading import read_json
@@ -92,7 +92,7 @@ class InterimCheck:
     @property
     def verdict(self) -> CheckVerdict:
         """Doubtful is what chance does to one rig in a hundred that has not changed."""
-        return "passed" if self.p >= TOLD else "doubtful" if self.p >= PROVES_NOTHING else "failed"
+        return "passed" if self.p >= P_TOLD else "doubtful" if self.p >= PROVES_NOTHING else "failed"
 
     @property
     def used(self) -> int:

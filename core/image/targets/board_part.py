@@ -21,7 +21,7 @@ from core.model.arrays import Array
 LEAST_SHARE = 0.25
 """Share of the board's corners that a part must show: less may be a pattern that belongs to something else."""
 
-BEYOND = 1.35
+OUTSIDE_SQUARE = 1.35
 """How far outside the last corners the ground is looked at, in squares: the outer square ends at 1."""
 
 LEAST_SEEN = 0.6
@@ -80,7 +80,7 @@ def within_dark_ground(picture: NDArray[np.uint8], grid: Array) -> Array | None:
         side = np.rot90(grid, turn)
         step = _outward(side)
         middle, out = (side[0, 1:] + side[0, :-1]) / 2, (step[1:] + step[:-1]) / 2
-        squares, ground = (_levels(picture, middle + far * out) for far in (0.5, BEYOND))
+        squares, ground = (_levels(picture, middle + far * out) for far in (0.5, OUTSIDE_SQUARE))
         if np.isfinite(ground).mean() < LEAST_SEEN or np.isnan(squares).all():
             continue
         if not (_ends(picture, side, 2 * half) and np.nanmedian(ground) < np.nanmin(squares) + half):
@@ -141,7 +141,7 @@ def _ends(picture: NDArray[np.uint8], side: Array, contrast: float) -> bool:
     """Whether the board ends beyond the first row of `side` (R, C, 2): even ground where further squares would be."""
     step = _outward(side)
     middle, out = (side[0, 1:] + side[0, :-1]) / 2, (step[1:] + step[:-1]) / 2
-    levels = _levels(picture, middle + BEYOND * out)
+    levels = _levels(picture, middle + OUTSIDE_SQUARE * out)
     known = np.isfinite(levels[1:]) & np.isfinite(levels[:-1])
     if known.sum() < 2 or known.mean() < LEAST_SEEN:
         return False

@@ -72,7 +72,7 @@ def find_planes(
     seed
         Of the random search; the same seed gives the same planes.
     progress
-        Told how far it is.
+        Called with how far it is.
     """
     tolerance = search_tolerance(cloud)
     if len(cloud) >= 3 and not cloud.normals.any():

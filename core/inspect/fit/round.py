@@ -73,7 +73,7 @@ def find_sphere(
     seed
         Of the random search.
     progress
-        Told how far it is.
+        Called with how far it is.
 
     Raises
     ------
@@ -176,7 +176,7 @@ def find_cylinder(
     seed
         Of the random search.
     progress
-        Told how far it is.
+        Called with how far it is.
 
     Raises
     ------

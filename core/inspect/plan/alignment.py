@@ -104,7 +104,7 @@ def best_fit(points: Array, up: Array, query: ProximityQuery, progress: Progress
     query
         The surface, made ready to be asked.
     progress
-        Told how far it is.
+        Called with how far it is.
     seed
         Of the choice of points.
 

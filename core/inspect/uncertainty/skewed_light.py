@@ -34,7 +34,7 @@ LEAST_SKEWNESS = 0.015
 """Skewness from which on it counts: what lens, pixels and slanted faces may do is less."""
 LEAST_SWEEPS = 10.0
 """Sweeps, as many as weigh alike, whose scatter tells how sure their mean is."""
-MATTERS = 0.25
+SHARE_THAT_MATTERS = 0.25
 """Share of all other uncertainty from which on it is told."""
 
 
@@ -80,7 +80,7 @@ def doubt_of_light(budget: Sequence[Contribution]) -> Message | None:
     """Why a value with this budget proves nothing, if skewed light makes up much of it."""
     skewed = [row.u_mm for row in budget if row.source == SKEWED_LIGHT]
     rest = [row.u_mm for row in budget if row.source != SKEWED_LIGHT]
-    if not skewed or max(skewed) <= MATTERS * math.hypot(*rest):
+    if not skewed or max(skewed) <= SHARE_THAT_MATTERS * math.hypot(*rest):
         return None
     return Message(
         "inspection.light_is_skewed",

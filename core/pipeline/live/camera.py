@@ -13,12 +13,12 @@ from core.image.targets.target_view import TargetView
 from core.messages import Message
 from core.model import Camera
 from core.pipeline.live.commands import Auto, Capture, Command, Discard
-from core.pipeline.live.desk import Desk, as_sentence
+from core.pipeline.live.context import LiveContext, as_sentence
 from core.pipeline.live.events import CameraDetail
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class Look:
+class FoundView:
     """What one frame shows of a target: the view and how blurred its edges are, or why there is none."""
 
     frame: Frame
@@ -27,13 +27,13 @@ class Look:
     why_not: Message | None = None
 
 
-def look_for_target(frame: Frame, target: Target, camera: Camera | None) -> Look:
+def find_view(frame: Frame, target: Target, camera: Camera | None) -> FoundView:
     """Find `target` in a frame."""
     try:
         view = detect(target, frame.picture, "", camera, thorough=False)
     except InputError as error:
-        return Look(frame, None, why_not=as_sentence(error.what))
-    return Look(frame, view, edge_blur_px(frame.picture, view.uv))
+        return FoundView(frame, None, why_not=as_sentence(error.what))
+    return FoundView(frame, view, edge_blur_px(frame.picture, view.uv))
 
 
 class LiveCamera:
@@ -41,39 +41,41 @@ class LiveCamera:
 
     paired = False
 
-    def __init__(self, desk: Desk) -> None:
-        self._desk = desk
-        self._auto, self._capture = desk.request.auto, False
+    def __init__(self, context: LiveContext) -> None:
+        self._context = context
+        self._auto, self._capture = context.request.auto, False
         self._judge: CaptureJudge | None = None
-        self._look: Look | None = None
+        self._look: FoundView | None = None
         self._sentence: Message | None = None
         self._missing: tuple[Message, ...] = ()
         self._number = 0
 
     def begin(self) -> None:
         """Lasers off."""
-        self._desk.switch(Lasers(fan=False, hand=False))
+        self._context.switch(Lasers(fan=False, hand=False))
 
     def frame(self, frame: Frame) -> None:
         """Look for the target, if the last look is over."""
         if self._judge is None:
             height, width = frame.picture.shape
-            self._judge = CaptureJudge((width, height), self._desk.request.camera)
-            self._judge.know(self._desk.request.there)
+            self._judge = CaptureJudge((width, height), self._context.request.camera)
+            self._judge.know(self._context.request.there)
             self._missing = self._judge.missing()
-        self._desk.worker.start(look_for_target, frame, self._desk.request.rig.camera_target, self._desk.request.camera)
+        self._context.worker.start(
+            find_view, frame, self._context.request.rig.camera_target, self._context.request.camera
+        )
 
     def poll(self) -> Frame | None:
         """Judge what has been seen, and take it."""
-        look = self._desk.worker.take()
-        if not isinstance(look, Look) or self._judge is None:
+        look = self._context.worker.take()
+        if not isinstance(look, FoundView) or self._judge is None:
             return None
         verdict = self._judge.judge(look.view, look.blur_px, look.frame.time_s, look.why_not)
         self._look, self._sentence = look, verdict.sentence
         if look.view is not None and (self._capture or (verdict.take and self._auto)):
             self._take(look.frame, look.view, self._judge)
         elif self._capture:
-            self._desk.notice(nothing_taken(verdict.sentence if look.why_not is None else look.why_not))
+            self._context.notice(nothing_taken(verdict.sentence if look.why_not is None else look.why_not))
         elif verdict.take:
             self._sentence = Message("live.press_capture_view", "Press Take picture to take this view.")
         self._capture = False
@@ -104,10 +106,10 @@ class LiveCamera:
                 self._capture = True
             case Auto(on):
                 self._auto = on
-            case Discard(name) if self._judge is not None and self._desk.put_aside(name):
+            case Discard(name) if self._judge is not None and self._context.put_aside(name):
                 self._judge.forget(name)
                 self._missing = self._judge.missing()
-                self._desk.recorded -= 1
+                self._context.recorded -= 1
 
     def finish(self) -> None:
         """All is on the disk already."""
@@ -115,11 +117,11 @@ class LiveCamera:
     def _take(self, frame: Frame, view: TargetView, judge: CaptureJudge) -> None:
         name = f"view{self._number:02d}"
         self._number += 1
-        self._desk.write(name, frame.picture)
-        self._desk.recorded += 1
+        self._context.write(name, frame.picture)
+        self._context.recorded += 1
         judge.taken(named(view, name), frame.time_s)
         self._sentence, self._missing = TAKEN, judge.missing()
-        self._desk.took(name, frame.picture)
+        self._context.took(name, frame.picture)
 
 
 def nothing_taken(why: Message) -> Message:

@@ -14,7 +14,7 @@ from core.files.results.check_file import InterimCheck
 from core.image.stripes.centreline import Centreline
 from core.messages import Message
 from core.pipeline.live.commands import LiveRequest
-from core.pipeline.live.desk import Desk
+from core.pipeline.live.context import LiveContext
 from core.pipeline.live.events import LiveChecks
 from core.pipeline.live.exposure import ExposureAdviser
 from core.pipeline.live.preview import ScanPreviewer
@@ -27,10 +27,10 @@ CHECK_EVERY_S = 1.0
 class ScanChecks:
     """Tells the window the checks and the advice of a scan whenever they change."""
 
-    def __init__(self, desk: Desk, previewer: ScanPreviewer) -> None:
-        self._desk, self._previewer = desk, previewer
+    def __init__(self, context: LiveContext, previewer: ScanPreviewer) -> None:
+        self._context, self._previewer = context, previewer
         self._image_size = (0, 0)
-        self._stripe_px = calibrated_stripe_px(desk.request)
+        self._stripe_px = calibrated_stripe_px(context.request)
         self._adviser = ExposureAdviser()
         self._told: tuple[Check, ...] = ()
         self._looked_s = 0.0
@@ -52,17 +52,17 @@ class ScanChecks:
 
     def stripes(self, stripes: Sequence[Centreline]) -> None:
         """These are seen of the hand-held laser."""
-        desk = self._desk
-        advice = self._adviser.watch(stripes, self._previewer.full_scale, desk.settings, desk.capabilities)
+        context = self._context
+        advice = self._adviser.watch(stripes, self._previewer.full_scale, context.settings, context.capabilities)
         if advice is not None:
-            desk.emit(advice)
+            context.emit(advice)
 
     def configured(self) -> None:
         """The source has been told other settings."""
         self._adviser.forget()
 
     def _tell(self, fan_lines: tuple[tuple[Centreline, ...], ...] | None, departed: Message | None) -> None:
-        request = self._desk.request
+        request = self._context.request
         checks = Preflight(
             lines=request.rig.lines,
             image_size=self._image_size,
@@ -78,7 +78,7 @@ class ScanChecks:
         checks = (*checks, rig_check(request.check, datetime.now().astimezone()))
         if checks != self._told:
             self._told = checks
-            self._desk.emit(LiveChecks(checks))
+            self._context.emit(LiveChecks(checks))
 
 
 def rig_check(check: InterimCheck | None, now: datetime) -> Check:

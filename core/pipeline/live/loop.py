@@ -11,7 +11,7 @@ from core.acquire.source import Ended, Frame, FrameSource, Unplugged
 from core.errors import InputError
 from core.messages import Message
 from core.pipeline.live.commands import Command, Configure, Stop, Switch
-from core.pipeline.live.desk import Desk, LiveStep
+from core.pipeline.live.context import LiveContext, LiveStep
 from core.pipeline.live.display import Display, Reduced
 from core.pipeline.live.events import LiveBack, LiveNotice, LiveStarted, LiveUnplugged, LiveView
 
@@ -40,11 +40,11 @@ class LiveLoop:
     """The loop itself: one source, one step."""
 
     def __init__(
-        self, desk: Desk, step: LiveStep, commands: Callable[[], Command | None], ready: Callable[[], bool]
+        self, context: LiveContext, step: LiveStep, commands: Callable[[], Command | None], ready: Callable[[], bool]
     ) -> None:
-        self._desk, self._step, self._commands, self._ready = desk, step, commands, ready
-        self._source: FrameSource = desk.source
-        self._display = Display(desk.request.display_px)
+        self._context, self._step, self._commands, self._ready = context, step, commands, ready
+        self._source: FrameSource = context.source
+        self._display = Display(context.request.display_px)
         self._stopping = self._started = False
         self._waiting: deque[Command] = deque()
         self._newest: Frame | None = None
@@ -58,13 +58,13 @@ class LiveLoop:
     @property
     def dropped(self) -> int:
         """Frames lost since the first picture was recorded, by the source and by the disk."""
-        return self._dropped_before + self._dropped_now - self._unmissed + self._desk.lost
+        return self._dropped_before + self._dropped_now - self._unmissed + self._context.lost
 
     def run(self) -> Message | None:
         """Until the end; what ended it too early, or None."""
         try:
             self._open()
-            self._source.prepare(self._desk.request.step)
+            self._source.prepare(self._context.request.step)
             self._step.begin()
             while not self._stopping:
                 self._turn()
@@ -92,11 +92,11 @@ class LiveLoop:
     def _open(self) -> None:
         """Open the source, and tell it what it can be told."""
         self._source.open()
-        desk = self._desk
-        desk.capabilities = self._source.capabilities
-        told = desk.settings.only(desk.capabilities.names)
-        if left := [TITLES[name][0] for name in desk.settings.told if name not in told.told]:
-            desk.notice(
+        context = self._context
+        context.capabilities = self._source.capabilities
+        told = context.settings.only(context.capabilities.names)
+        if left := [TITLES[name][0] for name in context.settings.told if name not in told.told]:
+            context.notice(
                 Message(
                     "live.settings_not_there", "{source} has no {settings:and} to set: what it has is used.",
                     source=self._source.name, settings=left,
@@ -107,14 +107,14 @@ class LiveLoop:
     def _read(self) -> Frame | None:
         """The next frame; one that is damaged is told and left out, unless all are."""
         try:
-            frame = self._source.read(WORKING_LISTEN_S if self._desk.worker.busy else LISTEN_S)
+            frame = self._source.read(WORKING_LISTEN_S if self._context.worker.busy else LISTEN_S)
         except Unplugged:
             raise
         except InputError as damage:
             self._damaged += 1
             if self._damaged >= MOST_DAMAGED:
                 raise
-            self._desk.notice(damage.message)
+            self._context.notice(damage.message)
             return None
         if frame is not None:
             self._damaged = 0
@@ -124,16 +124,16 @@ class LiveLoop:
         if not self._started:
             self._started = True
             height, width = frame.picture.shape
-            self._desk.emit(LiveStarted(self._source.name, (width, height), self._desk.capabilities))
+            self._context.emit(LiveStarted(self._source.name, (width, height), self._context.capabilities))
         self._newest, self._dropped_now = frame, frame.dropped
-        if not self._desk.recorded:
+        if not self._context.recorded:
             self._unmissed = self._dropped_before + self._dropped_now
         self._times.append(frame.time_s)
         while len(self._times) > 2 and frame.time_s - self._times[0] > _RATE_OVER_S:
             self._times.popleft()
-        was_busy = self._desk.worker.busy
+        was_busy = self._context.worker.busy
         self._step.frame(frame)
-        if self._step.paired and self._desk.worker.busy and not was_busy:
+        if self._step.paired and self._context.worker.busy and not was_busy:
             self._ahead = frame, self._display.reduced(frame.picture)  # it will be shown when it has been looked at
 
     def _obey(self) -> None:
@@ -146,15 +146,15 @@ class LiveLoop:
                 case Configure(settings):
                     try:
                         self._source.configure(settings)
-                        self._desk.settings = self._desk.settings.updated(settings)
+                        self._context.settings = self._context.settings.updated(settings)
                         self._step.tell(command)
                     except Unplugged:
                         raise
                     except InputError as error:
-                        self._desk.emit(LiveNotice(error.message))
+                        self._context.emit(LiveNotice(error.message))
                 case Switch(lasers):
-                    if not self._desk.switch(lasers):
-                        self._desk.notice(
+                    if not self._context.switch(lasers):
+                        self._context.notice(
                             Message("live.lasers_by_hand", "This source cannot switch the lasers: do it by hand.")
                         )
                 case _:
@@ -166,7 +166,7 @@ class LiveLoop:
         if newest is None or not self._ready():
             return
         now = time.monotonic()
-        if self._step.paired and self._desk.worker.busy and now - self._shown_s < PATIENCE_S and fresh is None:
+        if self._step.paired and self._context.worker.busy and now - self._shown_s < PATIENCE_S and fresh is None:
             return
         frame = fresh if self._step.paired and fresh is not None and fresh.index > self._shown_index else newest
         if frame.index == self._shown_index and fresh is None:
@@ -174,8 +174,10 @@ class LiveLoop:
         self._fresh, self._shown_index, self._shown_s = None, frame.index, now
         ahead = self._ahead
         picture, scale = ahead[1] if ahead and ahead[0] is frame else self._display.reduced(frame.picture)
-        self._desk.emit(
-            LiveView(picture, scale, frame.index, self._rate(), self._desk.recorded, self.dropped, self._step.detail())
+        self._context.emit(
+            LiveView(
+                picture, scale, frame.index, self._rate(), self._context.recorded, self.dropped, self._step.detail()
+            )
         )
 
     def _rate(self) -> float:
@@ -185,7 +187,7 @@ class LiveLoop:
 
     def _wait_for_source(self, sentence: Message) -> None:
         """The source is gone: look for it until it is back, or until told to stop."""
-        self._desk.emit(LiveUnplugged(sentence))
+        self._context.emit(LiveUnplugged(sentence))
         self._source.close()
         self._dropped_before, self._dropped_now = self._dropped_before + self._dropped_now, 0
         self._newest = self._fresh = self._ahead = None
@@ -208,14 +210,14 @@ class LiveLoop:
             except InputError:
                 self._source.close()
                 continue
-            self._desk.emit(LiveBack())
+            self._context.emit(LiveBack())
             return
 
     def _look_at_last(self) -> Message | None:
         """The source has ended: wait for the frame that is being looked at, and show it if the window is ready."""
         deadline = time.monotonic() + LAST_LOOK_S
         try:
-            while self._desk.worker.busy and time.monotonic() < deadline:
+            while self._context.worker.busy and time.monotonic() < deadline:
                 self._fresh = self._step.poll() or self._fresh
                 time.sleep(WORKING_LISTEN_S)
         except InputError as problem:

@@ -19,10 +19,10 @@ from core.messages import Message, label
 from core.model.arrays import Array
 from core.pipeline.live.camera import named, nothing_taken
 from core.pipeline.live.commands import Auto, Capture, Command, Configure, Discard
-from core.pipeline.live.desk import Desk, as_sentence
+from core.pipeline.live.context import LiveContext, as_sentence
 from core.pipeline.live.events import PlanesDetail
 from core.pipeline.live.exposure import ExposureAdviser
-from core.pipeline.live.pose import MeasuredPair, PoseLook, look_at_pose, measure_pair, settings_of
+from core.pipeline.live.pose import FoundPose, MeasuredPair, find_pose, measure_pair, settings_of
 
 MOST_TRIES = 5
 """So many pictures with the fan off are tried: the first may still have been exposed with the fan on."""
@@ -54,13 +54,13 @@ class LivePlanes:
 
     paired = False
 
-    def __init__(self, desk: Desk) -> None:
-        self._desk, request = desk, desk.request
+    def __init__(self, context: LiveContext) -> None:
+        self._context, request = context, context.request
         self._target, self._camera, self._lines = request.rig.plane_target, request.camera, request.rig.lines
         self._checks, self._auto, self._capture = request.step == "check", request.auto, False
         self._settings = request.options.stripe
         self._judge: CaptureJudge | None = None
-        self._look: PoseLook | None = None
+        self._look: FoundPose | None = None
         self._stage: Stage = "looking"
         self._pending: _Pending | None = None
         self._refused: tuple[TargetView, Message] | None = None
@@ -72,10 +72,10 @@ class LivePlanes:
 
     def begin(self) -> None:
         """The fan on; a pose that was not finished when the source was unplugged is given up."""
-        self._desk.answered()
+        self._context.answered()
         self._pending, self._stage = None, "looking"
-        if not self._desk.switch(_FAN_ON):
-            self._desk.notice(
+        if not self._context.switch(_FAN_ON):
+            self._context.notice(
                 Message("live.fan_on_hand_off", "Switch the three-line laser on, and the hand-held laser off.")
             )
 
@@ -84,20 +84,20 @@ class LivePlanes:
         if self._judge is None:
             height, width = frame.picture.shape
             self._judge = CaptureJudge((width, height), self._camera, series=PLANE_POSES)
-            self._judge.know(self._desk.request.there)
+            self._judge.know(self._context.request.there)
             self._missing = self._judge.missing()
         if self._stage == "looking":
             known = self._target, self._camera, self._settings, self._lines
-            self._desk.worker.start(look_at_pose, frame, *known, self._seen_at)
+            self._context.worker.start(find_pose, frame, *known, self._seen_at)
         elif self._stage == "second picture" and self._pending is not None:
             self._measure(self._pending, frame.picture)
 
     def poll(self) -> Frame | None:
         """See what has been found, and take the pose."""
-        result = self._desk.worker.take()
+        result = self._context.worker.take()
         if isinstance(result, MeasuredPair) and self._pending is not None and self._judge is not None:
             self._finish_pair(self._pending, result, self._judge)
-        elif isinstance(result, PoseLook) and self._stage == "looking" and self._judge is not None:
+        elif isinstance(result, FoundPose) and self._stage == "looking" and self._judge is not None:
             self._judged(result, self._judge)
             return result.frame
         return None
@@ -128,21 +128,21 @@ class LivePlanes:
             case Configure():
                 self._adviser.forget()
             case Capture() if self._stage == "asking":
-                self._desk.answered()
+                self._context.answered()
                 self._stage = "second picture"
             case Capture():
                 self._capture = True
             case Auto(on):
                 self._auto = on
-            case Discard(name) if self._judge is not None and self._desk.put_aside(name, f"{name}_off"):
+            case Discard(name) if self._judge is not None and self._context.put_aside(name, f"{name}_off"):
                 self._judge.forget(name)
                 self._missing = self._judge.missing()
-                self._desk.recorded -= 1
+                self._context.recorded -= 1
 
     def finish(self) -> None:
         """All is on the disk already."""
 
-    def _judged(self, look: PoseLook, judge: CaptureJudge) -> None:
+    def _judged(self, look: FoundPose, judge: CaptureJudge) -> None:
         view, pose = look.pose.view, look.pose
         self._advise(look)
         why_not = None if pose.reason is None else as_sentence(pose.reason)
@@ -156,19 +156,19 @@ class LivePlanes:
         if view is not None and pose.centrelines and (self._capture or (verdict.take and self._auto and not doubt)):
             self._begin_pair(look.frame, view)
         elif self._capture:
-            self._desk.notice(nothing_taken(_NO_LIGHT if view is not None else self._sentence))
+            self._context.notice(nothing_taken(_NO_LIGHT if view is not None else self._sentence))
         elif verdict.take and not doubt:
             self._sentence = Message("live.press_capture_pose", "Press Take picture to take this pose.")
         self._capture = False
 
-    def _advise(self, look: PoseLook) -> None:
+    def _advise(self, look: FoundPose) -> None:
         """Say how the fan's stripes would be exposed better, when that is news."""
-        desk, full_scale = self._desk, float(np.iinfo(look.frame.picture.dtype).max)
-        advice = self._adviser.watch(look.pose.centrelines, full_scale, desk.settings, desk.capabilities)
+        context, full_scale = self._context, float(np.iinfo(look.frame.picture.dtype).max)
+        advice = self._adviser.watch(look.pose.centrelines, full_scale, context.settings, context.capabilities)
         if advice is not None:
-            desk.emit(advice)
+            context.emit(advice)
 
-    def _doubt(self, look: PoseLook, view: TargetView) -> Message | None:
+    def _doubt(self, look: FoundPose, view: TargetView) -> Message | None:
         """Why a good view of the target is not taken by itself; None if it is."""
         if not look.pose.centrelines:
             return _NO_LIGHT
@@ -186,14 +186,14 @@ class LivePlanes:
         """The picture with the fan on is taken; now the one with the fan off, if there is to be one."""
         self._pending = _Pending(frame, view)
         self._sentence = HOLD_STILL
-        if not self._desk.request.pairs:
+        if not self._context.request.pairs:
             self._measure(self._pending, None)
             return
-        if self._desk.switch(_FAN_OFF):
+        if self._context.switch(_FAN_OFF):
             self._stage = "second picture"
             return
         if self._checks:  # where a person switches the laser, a check does without
-            self._desk.switch(_FAN_ON)
+            self._context.switch(_FAN_ON)
             self._measure(self._pending, None)
             return
         self._stage = "asking"
@@ -201,12 +201,12 @@ class LivePlanes:
             "live.leave_target_fan_off",
             "Leave the target as it is, switch the three-line laser off, then press Continue.",
         )
-        self._desk.ask(leave, label("Continue"), Capture())
+        self._context.ask(leave, label("Continue"), Capture())
 
     def _measure(self, pending: _Pending, off: Picture | None) -> None:
         name, on = self._name(), pending.on.picture
-        margin_mm = self._desk.request.rig.plane_margin_mm
-        self._desk.worker.start(measure_pair, name, on, off, self._target, self._camera, self._settings, margin_mm)
+        margin_mm = self._context.request.rig.plane_margin_mm
+        self._context.worker.start(measure_pair, name, on, off, self._target, self._camera, self._settings, margin_mm)
 
     def _finish_pair(self, pending: _Pending, pair: MeasuredPair, judge: CaptureJudge) -> None:
         """Keep the pose, try another picture, or say why it is of no use."""
@@ -219,21 +219,21 @@ class LivePlanes:
         if reason:
             why = Message("live.pose_not_taken", "The pose was not taken: {reason}.", reason=reason)
             self._refused = (pending.view, why)
-            self._desk.notice(why)
+            self._context.notice(why)
         else:
-            self._desk.write(name, pending.on.picture)
+            self._context.write(name, pending.on.picture)
             if off is not None:
-                self._desk.write(f"{name}_off", off)
+                self._context.write(f"{name}_off", off)
             self._number += 1
-            self._desk.recorded += 1
+            self._context.recorded += 1
             judge.taken(named(pending.view, name), pending.on.time_s)
             self._sentence, self._missing = TAKEN, judge.missing()
-            self._desk.took(name, pending.on.picture)
-            if self._checks and self._desk.recorded >= CHECK_POSES:
+            self._context.took(name, pending.on.picture)
+            if self._checks and self._context.recorded >= CHECK_POSES:
                 raise Ended
         self._pending, self._stage = None, "looking"
-        if off is not None and not self._desk.switch(_FAN_ON):
-            self._desk.notice(
+        if off is not None and not self._context.switch(_FAN_ON):
+            self._context.notice(
                 Message(
                     "live.fan_on_another_pose",
                     "Switch the three-line laser on again, and hold the target another way.",

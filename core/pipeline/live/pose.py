@@ -25,7 +25,7 @@ _ROOM, _LEAST_ROOM_PX = 0.6, 60.0
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class PoseLook:
+class FoundPose:
     """What one frame with the fan on shows: the pose's features, edge blur, and for each stripe its likely line."""
 
     frame: Frame
@@ -35,22 +35,22 @@ class PoseLook:
     line: tuple[int, ...]
 
 
-def look_at_pose(
+def find_pose(
     frame: Frame,
     target: Target,
     camera: Camera | None,
     settings: StripeSettings | None,
     lines: int,
     around: Array | None = None,
-) -> PoseLook:
+) -> FoundPose:
     """Find the target and the stripes on it in one frame; first `around` (N, 2), where it was seen last, in pixels."""
     pose = None if around is None else _pose_around(around, frame.picture, target, camera, settings)
     if pose is None:
         pose = measure_plane_pose("", frame.picture, None, target, camera, settings)
     if pose.view is None:
-        return PoseLook(frame, pose, float("nan"), (), ())
+        return FoundPose(frame, pose, float("nan"), (), ())
     stripes, line = _numbered_stripes(pose, camera, lines)
-    return PoseLook(frame, pose, edge_blur_px(frame.picture, pose.view.uv), stripes, line)
+    return FoundPose(frame, pose, edge_blur_px(frame.picture, pose.view.uv), stripes, line)
 
 
 def _pose_around(

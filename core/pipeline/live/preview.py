@@ -42,7 +42,7 @@ class PreviewFailed:
 
 
 @dataclass(frozen=True, slots=True)
-class Departed:
+class ReferenceMismatch:
     """Why a picture without the hand-held laser does not suit the reference; None if it does."""
 
     reason: Message | None
@@ -75,12 +75,12 @@ class ScanPreviewer:
         """Largest grey level of the pictures."""
         return 255.0 if self._reference is None else self._reference.full_scale
 
-    def departed(self, picture: Picture) -> Departed:
+    def departed(self, picture: Picture) -> ReferenceMismatch:
         """Whether a picture still suits the reference."""
         if self._reference is None:
-            return Departed(None)
+            return ReferenceMismatch(None)
         reason = FrameReader(self._reference, None)((0, ("", picture))).reason
-        return Departed(None if reason == NO_STRIPE else reason)
+        return ReferenceMismatch(None if reason == NO_STRIPE else reason)
 
     def fan_cloud(self) -> PreviewCloud:
         """The fan's own points."""

@@ -14,9 +14,9 @@ from core.errors import InputError
 from core.messages import Message, label
 from core.pipeline.live.checks import ScanChecks
 from core.pipeline.live.commands import Command, Configure, Pause, Resume, TakeReference
-from core.pipeline.live.desk import Desk
+from core.pipeline.live.context import LiveContext
 from core.pipeline.live.events import LiveSaving, ScanDetail, ScanStage
-from core.pipeline.live.preview import Departed, PreviewedFrame, PreviewFailed, ScanPreviewer
+from core.pipeline.live.preview import PreviewedFrame, PreviewFailed, ReferenceMismatch, ScanPreviewer
 from core.pipeline.live.warm_up import get_ready_for_live
 from core.scan.features.extraction import LOST, MOVED
 from core.scan.preview.shown import FramePreview, PreviewCloud, cloud_of
@@ -36,7 +36,7 @@ SAY_EVERY_S = 0.2
 STUCK_S = 2.0
 """A disk that has not taken a frame for so long when all is to be saved is given one last try."""
 
-_SLOWER = {
+_SLOWER_ADVICE = {
     ".png": Message("live.record_pgm", "Record PGM, which takes less time, or choose a lower frame rate."),
     ".pgm": Message("live.lower_rate", "Choose a lower frame rate."),
 }
@@ -69,8 +69,8 @@ class FrameStore(Protocol):
 class LiveScan:
     """The scan step of a live recording."""
 
-    def __init__(self, desk: Desk, store: FrameStore) -> None:
-        self._desk, self._store, request = desk, store, desk.request
+    def __init__(self, context: LiveContext, store: FrameStore) -> None:
+        self._context, self._store, request = context, store, context.request
         self._previewer = ScanPreviewer(request.camera, request.fan, request.options)
         self._stage: ScanStage = "reference"
         self._self_switching = False
@@ -83,7 +83,7 @@ class LiveScan:
         self._looked = False
         self._new: list[PreviewCloud] = []
         self._renewed = False
-        self._checks = ScanChecks(desk, self._previewer)
+        self._checks = ScanChecks(context, self._previewer)
 
     @property
     def paired(self) -> bool:
@@ -92,7 +92,7 @@ class LiveScan:
 
     def begin(self) -> None:
         """The lasers as they must be now; the reference, if there is none yet."""
-        self._self_switching = self._desk.switch(_FAN_ALONE if self._stage == "reference" else _BOTH)
+        self._self_switching = self._context.switch(_FAN_ALONE if self._stage == "reference" else _BOTH)
         self._before = None
         if self._stage != "reference":
             return
@@ -112,26 +112,26 @@ class LiveScan:
         if self._stage == "reference" and self._looking:
             self._try_reference(frame.picture)
         elif self._stage == "ready" and self._checks.are_due:
-            self._desk.worker.start(self._previewer.departed, frame.picture)
+            self._context.worker.start(self._previewer.departed, frame.picture)
         elif self._stage == "scanning":
             self._record(frame)
 
     def poll(self) -> Frame | None:
         """See what has become of the reference or the frame that was looked at."""
         try:
-            result = self._desk.worker.take()
+            result = self._context.worker.take()
         except InputError as error:  # the reference shows no fan
             self._refused(error.message)
             return None
         match result:
             case PreviewFailed(sentence):
-                self._desk.notice(sentence)
+                self._context.notice(sentence)
             case PreviewedFrame(frame, preview):
                 self._add(preview)
                 self._looked = True
                 self._checks.stripes(preview.centrelines)
                 return frame
-            case Departed(reason):
+            case ReferenceMismatch(reason):
                 self._checks.reference(reason)
             case np.ndarray() if self._stage == "reference":
                 self._accept(result)
@@ -139,7 +139,7 @@ class LiveScan:
 
     def rest(self) -> None:
         """After each look a little of what waits is done: not more, so that the next frame finds the worker free."""
-        if self._looked and self._previewer.has_more and self._desk.worker.start(self._previewer.go_on):
+        if self._looked and self._previewer.has_more and self._context.worker.start(self._previewer.go_on):
             self._looked = False
 
     def detail(self) -> ScanDetail | None:
@@ -166,17 +166,17 @@ class LiveScan:
             case Configure():
                 self._checks.configured()
             case TakeReference() if self._stage == "reference":
-                self._desk.answered()
+                self._context.answered()
                 self._forced, self._looking, self._before = self._looking, True, None
             case TakeReference():
-                self._desk.notice(
+                self._context.notice(
                     Message(
                         "live.reference_there",
                         "The reference is taken already: stop, and start another recording for a new one.",
                     )
                 )
             case Resume() if self._stage in ("ready", "paused"):
-                self._desk.answered()
+                self._context.answered()
                 self._stage = "scanning"
             case Pause() if self._stage == "scanning":
                 self._stage = "paused"
@@ -185,84 +185,84 @@ class LiveScan:
         """Have all frames on the disk, say how many still wait, and count what is there."""
         waiting, since = self._store.waiting, time.monotonic()
         while waiting and time.monotonic() - since < STUCK_S:
-            self._desk.emit(LiveSaving(waiting))
+            self._context.emit(LiveSaving(waiting))
             time.sleep(SAY_EVERY_S)
             if self._store.waiting < waiting:
                 waiting, since = self._store.waiting, time.monotonic()
         try:
             self._store.close()
         finally:
-            self._desk.recorded, self._desk.lost = self._store.written, self._store.dropped
+            self._context.recorded, self._context.lost = self._store.written, self._store.dropped
 
     def _record(self, frame: Frame) -> None:
         name = f"frame{self._number:05d}"
         try:
             taken = self._store.write(name, frame.picture, frame)
         except InputError as error:  # the disk is full: what waits for it is kept and tried again
-            self._desk.lost += 1
+            self._context.lost += 1
             self._stage = "paused"
             paused = Message("live.paused", "Recording is paused. {reason} Then press Continue.", reason=error.message)
-            self._desk.ask(paused, label("Continue"), Resume())
+            self._context.ask(paused, label("Continue"), Resume())
             return
         if not taken:
-            self._desk.lost += 1
-            self._desk.notice(
+            self._context.lost += 1
+            self._context.notice(
                 Message(
                     "live.disk_too_slow", "The disk is too slow for all frames: some are lost. {todo}",
-                    todo=_SLOWER[self._desk.request.ending],
+                    todo=_SLOWER_ADVICE[self._context.request.ending],
                 )
             )  # fmt: skip
             return
-        self._desk.worker.start(self._previewer.look, self._number, name, frame)
+        self._context.worker.start(self._previewer.look, self._number, name, frame)
         self._number += 1
-        self._desk.recorded += 1
+        self._context.recorded += 1
 
     def _ask_for_reference(self) -> None:
         fan_alone = Message(
             "live.take_reference",
             "Switch the three-line laser on and the hand-held laser off, then take the reference.",
         )
-        self._desk.ask(fan_alone, label("Take the reference"), TakeReference())
+        self._context.ask(fan_alone, label("Take the reference"), TakeReference())
 
     def _try_reference(self, picture: Picture) -> None:
         """Take a picture that is like the one before: nothing moves, no laser is swept over it."""
         before, self._before = self._before, picture
-        if self._desk.worker.busy:
+        if self._context.worker.busy:
             return
         if not self._forced and before is None:
             return
         if not self._forced and before is not None and not _alike(before, picture):
-            self._desk.notice(
+            self._context.notice(
                 Message(
                     "live.something_moves",
                     "Something moves in the picture: keep object and camera at rest, the hand-held laser off.",
                 )
             )
             return
-        self._desk.worker.start(self._previewer.read_reference, picture)
+        self._context.worker.start(self._previewer.read_reference, picture)
 
     def _accept(self, picture: Picture) -> None:
         """The reference is good: keep it and go on."""
-        self._desk.write(REFERENCE, picture)
-        self._desk.took(REFERENCE, picture)
+        self._context.write(REFERENCE, picture)
+        self._context.took(REFERENCE, picture)
         self._looking = self._forced = False
         self._checks.reference()
         fan = self._previewer.fan_cloud()
         self._new, self._renewed = [fan], True
         if self._coverage is not None:
             self._coverage.add(fan.uv)
-        if self._self_switching and self._desk.switch(_BOTH):
+        if self._self_switching and self._context.switch(_BOTH):
             self._stage = "scanning"
             return
         self._stage = "ready"
-        self._desk.lasers = _BOTH
+        self._context.lasers = _BOTH
         sweep = Message(
             "live.start_sweeping", "Switch the hand-held laser on, press Start, and sweep it slowly over the object."
         )
-        self._desk.ask(sweep, label("Start"), Resume())
+        self._context.ask(sweep, label("Start"), Resume())
 
     def _refused(self, sentence: Message) -> None:
-        self._desk.notice(sentence)
+        self._context.notice(sentence)
         self._forced = False
         if not self._self_switching:
             self._looking = False
@@ -272,7 +272,7 @@ class LiveScan:
         """Keep what the frame adds until it is shown."""
         self._moved = self._moved + 1 if preview.reason in (MOVED, LOST) else 0
         if self._moved == MOVED_FRAMES:
-            self._desk.notice(
+            self._context.notice(
                 Message(
                     "live.frames_moved", "{reason:capital}. These frames give no points: stop, and scan again.",
                     reason=preview.reason,

@@ -18,7 +18,7 @@ from core.pipeline.live.commands import (
     Command,
     LiveRequest,
 )
-from core.pipeline.live.desk import Desk, LiveStep
+from core.pipeline.live.context import LiveContext, LiveStep
 from core.pipeline.live.events import (
     LiveEnded,
     LiveEvent,
@@ -62,19 +62,19 @@ def run_live(
         source = make_source(request.source, request.rig)
     except InputError as refused:
         return LiveEnded(request.folder, 0, 0, refused.message)
-    desk = Desk(request, source, emit)
-    step = _step(desk)
-    loop = LiveLoop(desk, step, commands, ready)
+    context = LiveContext(request, source, emit)
+    step = _step(context)
+    loop = LiveLoop(context, step, commands, ready)
     error = None
     try:
         error = loop.run()
     finally:
-        desk.worker.close()
+        context.worker.close()
         source.close()
         error = _finished(step) or error
         if not any(folder.iterdir()):
             folder.rmdir()
-    return LiveEnded(request.folder, desk.recorded, loop.dropped, error)
+    return LiveEnded(request.folder, context.recorded, loop.dropped, error)
 
 
 def _finished(step: LiveStep) -> Message | None:
@@ -86,11 +86,11 @@ def _finished(step: LiveStep) -> Message | None:
     return None
 
 
-def _step(desk: Desk) -> LiveStep:
-    match desk.request.step:
+def _step(context: LiveContext) -> LiveStep:
+    match context.request.step:
         case "camera":
-            return LiveCamera(desk)
+            return LiveCamera(context)
         case "planes" | "check":
-            return LivePlanes(desk)
+            return LivePlanes(context)
         case "scan":
-            return LiveScan(desk, Recorder(desk.request.folder, ending=desk.request.ending))
+            return LiveScan(context, Recorder(context.request.folder, ending=context.request.ending))

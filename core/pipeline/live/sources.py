@@ -15,7 +15,7 @@ import numpy as np
 
 from core.acquire.drivers import aravis, basler, gentl, opencv_camera
 from core.acquire.drivers.opencv_camera import OpenCVSource
-from core.acquire.replay import HOLDS, ReplaySource
+from core.acquire.replay import FRAMES_HELD, ReplaySource
 from core.acquire.source import FrameSource, SourceChoice, SourceInfo
 from core.acquire.source_kind import SourceKind
 from core.errors import InputError
@@ -131,7 +131,7 @@ def _make_replay(id_: str, rig: Rig | None) -> FrameSource:
         return OpenCVSource(id_, channel)  # a video
     listing = ReplayPictures(folder)
     read = partial(read_picture, channel=channel)
-    return ReplaySource(folder.name, folder, listing, read, holds=HOLDS if listing.is_set else {})
+    return ReplaySource(folder.name, folder, listing, read, holds=FRAMES_HELD if listing.is_set else {})
 
 
 def _list_simulated() -> tuple[SourceInfo, ...]:

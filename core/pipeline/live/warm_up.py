@@ -28,7 +28,7 @@ from core.scan.surface.fusion import fuse
 from core.scan.surface.mesh import build_mesh
 from core.scan.surface.normals import with_normals
 
-Levels = type[np.uint8] | type[np.uint16]
+PixelType = type[np.uint8] | type[np.uint16]
 
 FOCAL_PX, SIZE = 400.0, (320, 240)
 CAMERA = Camera(SIZE, np.array([[FOCAL_PX, 0.0, 160.0], [0.0, FOCAL_PX, 120.0], [0.0, 0.0, 1.0]]))
@@ -40,7 +40,7 @@ _SWEEPS = 8
 """After so many the first ones have been located together, and all anew."""
 
 
-def exposed(levels: Levels, light: Array) -> Picture:
+def exposed(levels: PixelType, light: Array) -> Picture:
     """The picture of stripes (h, w) of height 1 on a dark ground, with a little noise."""
     full = float(np.iinfo(levels).max)
     noise = np.random.default_rng(0).normal(0, 0.004, light.shape)
@@ -49,7 +49,7 @@ def exposed(levels: Levels, light: Array) -> Picture:
 
 
 @cache
-def get_ready_for_live(levels: Levels) -> None:
+def get_ready_for_live(levels: PixelType) -> None:
     """Have everything there that pictures of these `levels` need; what is there already takes no time.
 
     A plate with a ridge under the fan, and sweeps over it, are looked at.
@@ -94,14 +94,14 @@ def shares() -> tuple[Stages, Stages]:
     return (lambda: _stripes(np.uint8), lambda: _stripes(np.uint16)), (_crossings, _surface)
 
 
-def _stripes(levels: Levels) -> None:
+def _stripes(levels: PixelType) -> None:
     """Three level lines of a fan, two of them close together, and three upright sweeps: found, refined, crossed."""
     reference = _picture(levels, rows=_FAN_PX)
     frames = [(f"{number}", _picture(levels, rows=_FAN_PX, column=place)) for number, place in enumerate(_SWEEPS_PX)]
     extract_features(reference, frames, len(frames), FeatureOptions(camera=CAMERA))
 
 
-def _picture(levels: Levels, rows: tuple[float, ...], column: float | None = None) -> Picture:
+def _picture(levels: PixelType, rows: tuple[float, ...], column: float | None = None) -> Picture:
     v, u = np.mgrid[: SIZE[1], : SIZE[0]]
     light = sum(np.exp(-0.5 * ((v - row - 0.02 * u) / 2.0) ** 2) for row in rows)
     if column is not None:

@@ -55,7 +55,7 @@ def frame_stages(
     options
         Width and contrast of the stripes, and what is left out.
     progress
-        Told how far it is where the recording is looked at for the first time.
+        Called with how far it is where the recording is looked at for the first time.
     settled
         What a measurement with these options has settled; found anew without it.
 

@@ -43,7 +43,7 @@ def inspection_view(folder: Path, project: Project, progress: Progress = silent)
     folder, project
         The project; of it only the folder of the scan's pictures is used.
     progress
-        Told what is being done; may cancel.
+        Called with what is being done; may raise Cancelled.
 
     Raises
     ------
@@ -109,7 +109,7 @@ def outline_selected(folder: Path, numbers: NDArray[np.int32], face: str, progre
     face
         "upper" or "lower": which face is to be outlined; "": all of the points, whatever surface they are on.
     progress
-        Told what is being done; may cancel.
+        Called with what is being done; may raise Cancelled.
 
     Raises
     ------

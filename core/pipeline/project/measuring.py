@@ -50,7 +50,7 @@ def measure_scan(
     folder, project
         The project.
     progress
-        Told what is being done; may cancel.
+        Called with what is being done; may raise Cancelled.
     watch
         Shown each frame with what it gives by itself, in the order of the recording, on this thread.
 
@@ -132,7 +132,7 @@ def record_calibrations(work: Workspace, folder: Path, project: Project) -> None
     write_run(work.path("run"), record)
 
 
-BESIDE = ".new"
+NEW_FOLDER = ".new"
 """The folder among the results in which new ones are made."""
 
 
@@ -154,7 +154,7 @@ def staged(results: Path, names: Sequence[str]) -> Iterator[Path]:
         If nothing can be written there.
     """
     make_folder(results)
-    beside = results / BESIDE
+    beside = results / NEW_FOLDER
     shutil.rmtree(beside, ignore_errors=True)  # of a run that was killed
     make_folder(beside)
     try:

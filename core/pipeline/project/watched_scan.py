@@ -31,10 +31,10 @@ def measure_watched(
     """
     if watch is None:
         return measure_scan(folder, project, progress)
-    return measure_scan(folder, project, progress, Watched(accepted_camera(folder, project).image_size, watch))
+    return measure_scan(folder, project, progress, WatchReporter(accepted_camera(folder, project).image_size, watch))
 
 
-class Watched:
+class WatchReporter:
     """Puts together what the frames show, one after another, and tells `watch` of it."""
 
     def __init__(self, image_size: tuple[int, int], watch: Watch) -> None:

@@ -17,7 +17,7 @@ from core.calibrate.change import (
     lasting,
 )
 from core.calibrate.deviations import Deviation, calibration_deviations
-from core.calibrate.fan.interim_check import ELSEWHERE, CheckedPose, check_poses, step_errors
+from core.calibrate.fan.interim_check import NO_STRIPE_NEAR, CheckedPose, check_poses, step_errors
 from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.errors import InputError
 from core.files.recording.options import Options
@@ -68,7 +68,7 @@ def check_step(
     with work.step("check") as log:
         deviations, evidence, checked, change = _judged(found, calibration, options, progress, poses=poses)
         reasons = [pose.located.reason for pose in checked if pose.located.reason is not None]
-        if len(reasons) == len(checked) and all(reason.code != ELSEWHERE for reason in reasons):
+        if len(reasons) == len(checked) and all(reason.code != NO_STRIPE_NEAR for reason in reasons):
             raise InputError(
                 Message("check.nothing_seen", "no picture shows target and stripes: {reason}", reason=reasons[0]),
                 where=found.where(CHECK),
@@ -175,7 +175,7 @@ def _judged(
         evidence += of_check
     change = judge(camera, fan.fan, deviations, evidence, found.rig.stability)
     reasons = [(one.located.features.name, one.located.reason) for one in checked if one.located.reason is not None]
-    if any(reason.code == ELSEWHERE for _, reason in reasons):
+    if any(reason.code == NO_STRIPE_NEAR for _, reason in reasons):
         change = replace(change, p=0.0, times=math.inf)
     left_out = (
         Message("check.pose_left_out", "Picture {pose} of the check says nothing: {reason}.", pose=pose, reason=reason)

@@ -108,7 +108,7 @@ def inspect_step(
     out
         The folder of a recording set's results, or where the inspection of a cloud goes; None: nowhere for a cloud.
     progress
-        Told how far it is; may cancel.
+        Called with how far it is; may raise Cancelled.
 
     Returns
     -------

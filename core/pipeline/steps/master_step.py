@@ -29,7 +29,7 @@ def measured_master(
     project
         Whose part is to be compared with it: whether both were measured with one calibration is looked up there.
     progress
-        Told what is being done; may cancel.
+        Called with what is being done; may raise Cancelled.
 
     Raises
     ------

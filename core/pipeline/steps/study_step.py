@@ -52,7 +52,7 @@ def keep_study(
     limits
         In mm. Of a gauge R&R study "tolerance": T, its full width. Of an acceptance check the limit of each quantity.
     progress
-        Told what is being done; may cancel.
+        Called with what is being done; may raise Cancelled.
 
     Raises
     ------
@@ -136,7 +136,7 @@ def project_rows(
     artefact, calibrated_mm, u_mm, diameter_mm
         As for `read_positions`; of an acceptance check.
     progress
-        Told what is being done; may cancel.
+        Called with what is being done; may raise Cancelled.
 
     Raises
     ------

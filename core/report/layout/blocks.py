@@ -13,7 +13,7 @@ from reportlab.lib.units import mm
 from reportlab.lib.utils import ImageReader
 from reportlab.platypus import Flowable, KeepTogether, Paragraph, Table, TableStyle
 
-from core.report.layout.style import HAIRLINE, MUTED, SANS, TEXT_WIDTH, TINT, Look, color
+from core.report.layout.style import HAIRLINE, MUTED, SANS, TEXT_WIDTH, TINT, ReportLook, color
 from core.report.wording import grouped
 
 
@@ -68,7 +68,7 @@ class Bookmark(Flowable):  # type: ignore[misc]
 class Heading(Paragraph):  # type: ignore[misc]
     """A heading that links lead to. The bookmark is its own: before it, its space above would not be counted."""
 
-    def __init__(self, look: Look, key: str, title: str, style: str = "section", level: int = 0) -> None:
+    def __init__(self, look: ReportLook, key: str, title: str, style: str = "section", level: int = 0) -> None:
         super().__init__(look.markup(title), look.style(style))
         self.key, self.title, self.level = key, title, level
 
@@ -83,7 +83,7 @@ class Heading(Paragraph):  # type: ignore[misc]
         super().draw()
 
 
-def section(look: Look, key: str, heading: str, first: list[Flowable], **values: object) -> Flowable:
+def section(look: ReportLook, key: str, heading: str, first: list[Flowable], **values: object) -> Flowable:
     """A heading that stays with what follows it; `heading` is fixed words, `key` what links call it."""
     title = look.words(heading, **values)
     return KeepTogether([Heading(look, key, title), *first])
@@ -120,7 +120,7 @@ def ruled_table(rows: Sequence[Sequence[Cell]], widths: Sequence[float]) -> Tabl
     return Table(rows, colWidths=widths, style=TableStyle(style), hAlign="LEFT", repeatRows=1)
 
 
-def heads(look: Look, *words: str, numbers: Sequence[int] = ()) -> list[Flowable]:
+def heads(look: ReportLook, *words: str, numbers: Sequence[int] = ()) -> list[Flowable]:
     """A head row of fixed words ("" for none); those at `numbers` stand to the right."""
     return [
         look.text("" if not word else look.words(word), "head_number" if place in numbers else "head")
@@ -128,7 +128,7 @@ def heads(look: Look, *words: str, numbers: Sequence[int] = ()) -> list[Flowable
     ]
 
 
-def pairs_table(look: Look, pairs: Mapping[str, str], width: float, label_width: float) -> Table:
+def pairs_table(look: ReportLook, pairs: Mapping[str, str], width: float, label_width: float) -> Table:
     """Label and value, one pair a row."""
     rows = [[look.text(label, "label"), look.text(value, "small")] for label, value in pairs.items()]
     nothing = [[look.say("none", "small"), look.text("", "small")]]
@@ -147,7 +147,7 @@ def side_by_side(left: list[Flowable], right: list[Flowable], width: float, shar
 class ShareBar(Flowable):  # type: ignore[misc]
     """A small bar whose length is a share 0…1 of `width`."""
 
-    def __init__(self, look: Look, share: float, width: float) -> None:
+    def __init__(self, look: ReportLook, share: float, width: float) -> None:
         super().__init__()
         self.look, self.share, self.width, self.height = look, share, width, 9.4
 
@@ -159,7 +159,7 @@ class ShareBar(Flowable):  # type: ignore[misc]
         self.canv.rect(0, 1.5, self.width * min(max(self.share, 0.0), 1.0), 5, stroke=0, fill=1)
 
 
-def more_line(look: Look, left: int, where: str = "run.json") -> list[Flowable]:
+def more_line(look: ReportLook, left: int, where: str = "run.json") -> list[Flowable]:
     """'and 12 more, listed in run.json', or nothing; `where` in fixed words or the name of a file."""
     if left <= 0:
         return []

@@ -177,7 +177,7 @@ def styles_of(accent: str) -> Mapping[str, ParagraphStyle]:
 
 
 @dataclass(frozen=True, slots=True)
-class Look:
+class ReportLook:
     """How one report looks and speaks.
 
     Parameters

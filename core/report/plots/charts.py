@@ -23,7 +23,7 @@ from core.model import LightPlane
 from core.model.arrays import Array
 from core.progress import Progress, silent
 from core.report.content import Deviations
-from core.report.layout.style import HAIRLINE, INK, MUTED, Look
+from core.report.layout.style import HAIRLINE, INK, MUTED, ReportLook
 from core.report.plots.figures import (
     DPI,
     MM_PER_INCH,
@@ -52,7 +52,7 @@ def height_map(accent: str) -> LinearSegmentedColormap:
 
 
 def surface_figure(
-    look: Look,
+    look: ReportLook,
     mesh: Mesh,
     cloud: Cloud,
     plane: LightPlane | None,
@@ -128,7 +128,7 @@ def _draw_footprint(axes: Axes, local: Array) -> None:
         )
 
 
-def residual_figure(look: Look, gauge: GaugeResult, cloud: Cloud, width_mm: float, height_mm: float) -> Figure:
+def residual_figure(look: ReportLook, gauge: GaugeResult, cloud: Cloud, width_mm: float, height_mm: float) -> Figure:
     """Residuals of both faces, mean per cell, in mm of the face's own plane; one colour scale, and how they spread."""
     with plot_style():
         figure = new_figure(width_mm, height_mm)
@@ -146,7 +146,7 @@ def residual_figure(look: Look, gauge: GaugeResult, cloud: Cloud, width_mm: floa
     return figure
 
 
-def _residual_panel(look: Look, axes: Axes, title: str, face: Face, cloud: Cloud, colors: ScalarMappable) -> None:
+def _residual_panel(look: ReportLook, axes: Axes, title: str, face: Face, cloud: Cloud, colors: ScalarMappable) -> None:
     axes.set_title(title)
     axes.set_xlabel(look.words("along, mm"), labelpad=1)
     axes.set_ylabel(look.words("across, mm"), labelpad=0)
@@ -159,7 +159,7 @@ def _residual_panel(look: Look, axes: Axes, title: str, face: Face, cloud: Cloud
     paint_map(axes, flat, face.residuals, colors)
 
 
-def _spread_panel(look: Look, axes: Axes, gauge: GaugeResult, limit: float) -> None:
+def _spread_panel(look: ReportLook, axes: Axes, gauge: GaugeResult, limit: float) -> None:
     """How the residuals of both faces spread: density over the residual, told apart by line form."""
     edges = np.linspace(-limit, limit, 61)
     for face, name, form, tone in (
@@ -180,7 +180,9 @@ def _spread_panel(look: Look, axes: Axes, gauge: GaugeResult, limit: float) -> N
         axes.legend(frameon=False, fontsize=6, loc="upper left", handlelength=1.6, borderaxespad=0.1)
 
 
-def cloud_figure(look: Look, cloud: Cloud, image_size: tuple[int, int], width_mm: float, height_mm: float) -> Figure:
+def cloud_figure(
+    look: ReportLook, cloud: Cloud, image_size: tuple[int, int], width_mm: float, height_mm: float
+) -> Figure:
     """Depth and its standard uncertainty over the picture, mean per cell: what there is to show without a gauge."""
     with plot_style():
         figure = new_figure(width_mm, height_mm)
@@ -217,7 +219,7 @@ MOST_DRAWN = 4000
 
 
 def points_figure(
-    look: Look,
+    look: ReportLook,
     cloud: Cloud,
     points: Mapping[str, NDArray[np.int64]],
     image_size: tuple[int, int],
@@ -260,7 +262,7 @@ MARKS_ACROSS = 14
 """Marks over the width of the picture."""
 
 
-def deviation_figure(look: Look, one: Deviations, width_mm: float, height_mm: float) -> Figure:
+def deviation_figure(look: ReportLook, one: Deviations, width_mm: float, height_mm: float) -> Figure:
     """Mean deviation per cell where the camera sees it, with a mark for its class, and how the deviations spread."""
     with plot_style():
         figure = new_figure(width_mm, height_mm)
@@ -294,7 +296,7 @@ def _marks(axes: Axes, seen: Array, one: Deviations) -> None:
             axes.text(float(u), float(v), sign, ha="center", va="center", fontsize=6, color=INK, path_effects=halo)
 
 
-def _histogram(look: Look, axes: Axes, one: Deviations) -> None:
+def _histogram(look: ReportLook, axes: Axes, one: Deviations) -> None:
     widest = 1.5 * one.tolerance_mm
     edges = np.linspace(-widest, widest, 41)
     counts = np.histogram(np.clip(one.deviation, -widest, widest), edges)[0]

@@ -16,13 +16,13 @@ from numpy.typing import NDArray
 
 from core.image.stripes.centreline import Centreline
 from core.report.content import Overlay
-from core.report.layout.style import INK, Look
+from core.report.layout.style import INK, ReportLook
 from core.report.plots.figures import DPI, MM_PER_INCH, add_color_bar, color_scale, new_figure, plot_style, round_up
 
 FAN_COLOR, SWEEP_MAP, UNKNOWN = "#E06C00", "viridis", "#737373"
 
 
-def overlay_figure(look: Look, overlay: Overlay, width_mm: float, height_mm: float) -> Figure:
+def overlay_figure(look: ReportLook, overlay: Overlay, width_mm: float, height_mm: float) -> Figure:
     """One frame with the fan's centrelines, the sweep's centreline coloured by σ of depth, and the crossings used."""
     with plot_style():
         figure = new_figure(width_mm, height_mm)
@@ -111,7 +111,7 @@ def _draw_sweep(axes: Axes, overlay: Overlay) -> ScalarMappable | None:
     return colors
 
 
-def _overlay_legend(look: Look, overlay: Overlay) -> list[Line2D]:
+def _overlay_legend(look: ReportLook, overlay: Overlay) -> list[Line2D]:
     handles = []
     if any(overlay.fan):
         handles.append(

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from core.report.content import LightProfiles
-from core.report.layout.style import MUTED, Look
+from core.report.layout.style import MUTED, ReportLook
 from core.report.plots.figures import mixed, new_figure, plot_style
 
 FORMS = ("o", "^", "s", "v", "D")
@@ -18,7 +18,7 @@ _MOST_MARKS = 120
 """Points of a line that are drawn: more lie over each other."""
 
 
-def profiles_figure(look: Look, profiles: LightProfiles, width_mm: float, height_mm: float) -> Figure:
+def profiles_figure(look: ReportLook, profiles: LightProfiles, width_mm: float, height_mm: float) -> Figure:
     """Heights over the lower face along the lines of one picture; beside them each picture's thickness with ±2u."""
     with plot_style():
         figure = new_figure(width_mm, height_mm)
@@ -32,7 +32,7 @@ def profiles_figure(look: Look, profiles: LightProfiles, width_mm: float, height
     return figure
 
 
-def _heights(look: Look, profiles: LightProfiles, axes: Axes) -> None:
+def _heights(look: ReportLook, profiles: LightProfiles, axes: Axes) -> None:
     for place, (number, position, height) in enumerate(profiles.lines):
         some = np.linspace(0, len(position) - 1, min(len(position), _MOST_MARKS)).astype(np.int64)
         tone = mixed(look.accent, 1 - 0.28 * (place % 3))
@@ -47,7 +47,7 @@ def _heights(look: Look, profiles: LightProfiles, axes: Axes) -> None:
     axes.legend(frameon=False, fontsize=6.5, markerscale=2, loc="center left")
 
 
-def _of_each(look: Look, profiles: LightProfiles, axes: Axes) -> None:
+def _of_each(look: ReportLook, profiles: LightProfiles, axes: Axes) -> None:
     numbers = np.arange(1, len(profiles.thickness_mm) + 1)
     low, high = (profiles.mean_mm + sign * profiles.U_mm for sign in (-1, 1))
     axes.axhspan(low, high, color=mixed(look.accent, 0.15), lw=0)

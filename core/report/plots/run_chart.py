@@ -11,7 +11,7 @@ from matplotlib.ticker import MaxNLocator
 
 from core.messages import label
 from core.report.content import RepeatLine
-from core.report.layout.style import MUTED, Look
+from core.report.layout.style import MUTED, ReportLook
 from core.report.plots.figures import DPI, MM_PER_INCH, mixed, new_figure, plot_style
 from core.study.repeats import histogram
 
@@ -24,7 +24,7 @@ FORMS = ("--", ":", ":", "-.")
 
 
 def repeats_figure(
-    look: Look,
+    look: ReportLook,
     repeats: Sequence[RepeatLine],
     nominal_mm: float | None,
     tolerance_mm: float | None,
@@ -43,7 +43,7 @@ def repeats_figure(
 
 
 def run_chart_figure(
-    look: Look,
+    look: ReportLook,
     values: Sequence[float],
     U: Sequence[float],
     lines: Mapping[str, float],
@@ -81,7 +81,7 @@ def run_chart_figure(
     return figure
 
 
-def _histogram(look: Look, axes: Axes, values: Sequence[float]) -> Axes:
+def _histogram(look: ReportLook, axes: Axes, values: Sequence[float]) -> Axes:
     """How many of the values lie in each bin, along the same axis as theirs."""
     found = histogram(np.asarray(values, dtype=np.float64))
     axes.barh(
@@ -95,7 +95,7 @@ def _histogram(look: Look, axes: Axes, values: Sequence[float]) -> Axes:
     return axes
 
 
-def _lines(look: Look, axes: Axes, last: Axes, lines: Mapping[str, float]) -> None:
+def _lines(look: ReportLook, axes: Axes, last: Axes, lines: Mapping[str, float]) -> None:
     """The lines to compare with, across all axes, and their words behind the last ones."""
     tones = [look.accent] + [MUTED] * len(lines)
     for value, form, tone in zip(lines.values(), ("-", *FORMS), tones, strict=False):

@@ -11,7 +11,7 @@ from core.inspect.characteristic import Characteristic
 from core.inspect.uncertainty.coverage import effective_dof
 from core.messages import label
 from core.report.layout.blocks import ShareBar, heads, plain_table, ruled_table
-from core.report.layout.style import MUTED, TEXT_WIDTH, Look, color
+from core.report.layout.style import MUTED, TEXT_WIDTH, ReportLook, color
 from core.report.wording import decimals_of, shown_unit
 
 WIDTHS = [size * mm for size in (20, 19, 17, 17, 16, 11, 20)]
@@ -30,7 +30,7 @@ MANY = 1000
 """Of more degrees of freedom nobody need know how many: the factor k is that of infinitely many."""
 
 
-def budget_table(look: Look, one: Characteristic) -> Table:
+def budget_table(look: ReportLook, one: Characteristic) -> Table:
     """Where the uncertainty comes from, how it combines, and what that gives.
 
     Sensitivity is |c|, in the result's unit per unit of the input; contribution |c|·u(x); share of the variance.
@@ -71,7 +71,7 @@ def budget_table(look: Look, one: Characteristic) -> Table:
     return _closed(look, one, rows, decimals)
 
 
-def _closed(look: Look, one: Characteristic, rows: list[list[Flowable]], decimals: int) -> Table:
+def _closed(look: ReportLook, one: Characteristic, rows: list[list[Flowable]], decimals: int) -> Table:
     """With the rows of u, ν_eff and U below."""
     unit, factor = shown_unit(one)
     words = look.words
@@ -96,7 +96,7 @@ def _closed(look: Look, one: Characteristic, rows: list[list[Flowable]], decimal
     return table
 
 
-def _share(look: Look, share: float) -> Flowable:
+def _share(look: ReportLook, share: float) -> Flowable:
     """The share in figures with a bar before it."""
     if not math.isfinite(share):
         return look.text("", "number")
@@ -107,12 +107,12 @@ def _share(look: Look, share: float) -> Flowable:
     return table
 
 
-def _rounded(look: Look, u: float) -> str:
+def _rounded(look: ReportLook, u: float) -> str:
     """To two digits."""
     return look.words.general(float(f"{u:.1e}")) if 0 < u < SMALL else look.words.fixed(u, decimals_of(u))
 
 
-def _dof(look: Look, dof: float) -> str:
+def _dof(look: ReportLook, dof: float) -> str:
     if dof > MANY and math.isfinite(dof):
         return f"> {MANY}"
     return "∞" if math.isinf(dof) else look.words.fixed(dof, 0 if dof >= 10 else 1)

@@ -11,7 +11,7 @@ from core.calibrate.results import CAMERA_PARAMETERS, CameraCalibration, FanCali
 from core.messages import label, plural_message
 from core.report.content import CalibrationMark, ReportContent
 from core.report.layout.blocks import heads, ruled_table
-from core.report.layout.style import Look
+from core.report.layout.style import ReportLook
 from core.report.wording import decimals_of
 
 SYMBOLS = {"alpha": "α", "beta": "β", "gamma": "γ ({skew})", "u0": "u₀", "v0": "v₀"}
@@ -22,7 +22,7 @@ KINDS = {"camera": label("Camera"), "fan": label("Fixed laser (fan)")}
 HOURS_A_DAY = 24
 
 
-def marks_table(look: Look, content: ReportContent, width: float) -> Table:
+def marks_table(look: ReportLook, content: ReportContent, width: float) -> Table:
     """Id, date, age and hash of every calibration the result rests on."""
     rows: list[list[Flowable]] = [heads(look, "Calibration", "id", "made", "age", "SHA-256 of its file")]
     for mark in content.calibrations:
@@ -40,7 +40,7 @@ def marks_table(look: Look, content: ReportContent, width: float) -> Table:
     return ruled_table(rows, [*fixed, width - sum(fixed)])
 
 
-def age_words(look: Look, mark: CalibrationMark, content: ReportContent) -> str:
+def age_words(look: ReportLook, mark: CalibrationMark, content: ReportContent) -> str:
     """'3 days', 'under 1 hour', 'not known': how old a calibration was when it was measured with."""
     age = mark.age(content.timestamp)
     if age is None:
@@ -53,7 +53,7 @@ def age_words(look: Look, mark: CalibrationMark, content: ReportContent) -> str:
     return look.words(plural_message("report.hours", "{n:,} hour", "{n:,} hours", n=hours))
 
 
-def camera_table(look: Look, calibration: CameraCalibration, width: float) -> Table:
+def camera_table(look: ReportLook, calibration: CameraCalibration, width: float) -> Table:
     """The camera's parameters with their standard deviations."""
     camera, words = calibration.camera, look.words
     A = camera.matrix
@@ -76,7 +76,7 @@ def camera_table(look: Look, calibration: CameraCalibration, width: float) -> Ta
     return ruled_table(rows, [0.3 * width, 0.35 * width, 0.35 * width])
 
 
-def camera_facts(look: Look, calibration: CameraCalibration) -> dict[str, str]:
+def camera_facts(look: ReportLook, calibration: CameraCalibration) -> dict[str, str]:
     """How good the camera's calibration is."""
     words = look.words
     used, apart = sum(view.used for view in calibration.views), calibration.cross_validation_mm
@@ -105,7 +105,7 @@ def camera_facts(look: Look, calibration: CameraCalibration) -> dict[str, str]:
     }
 
 
-def fan_table(look: Look, calibration: FanCalibration, width: float) -> Table:
+def fan_table(look: ReportLook, calibration: FanCalibration, width: float) -> Table:
     """The fan's planes: normal, distance from the camera, fit, and the angle to the next one."""
     fixed = look.words.fixed
     rows: list[list[Flowable]] = [
@@ -126,7 +126,7 @@ def fan_table(look: Look, calibration: FanCalibration, width: float) -> Table:
     return ruled_table(rows, [width * share for share in (0.085, 0.395, 0.13, 0.15, 0.24)])
 
 
-def fan_facts(look: Look, calibration: FanCalibration) -> dict[str, str]:
+def fan_facts(look: ReportLook, calibration: FanCalibration) -> dict[str, str]:
     """How good the fan's calibration is."""
     words = look.words
     used = sum(pose.used for pose in calibration.poses)

@@ -22,12 +22,12 @@ from core.report.layout.blocks import (
     section,
     side_by_side,
 )
-from core.report.layout.style import HAIRLINE, MONO, MUTED, SANS, TEXT_WIDTH, Look, color, markup
+from core.report.layout.style import HAIRLINE, MONO, MUTED, SANS, TEXT_WIDTH, ReportLook, color, markup
 from core.report.sections.calibration_tables import camera_facts, camera_table, fan_facts, fan_table, marks_table
 from core.report.wording import grouped
 
 
-def calibrations(look: Look, content: ReportContent, limits: Limits) -> list[Flowable]:
+def calibrations(look: ReportLook, content: ReportContent, limits: Limits) -> list[Flowable]:
     """Camera, fan and rig side by side, and below since when which calibration holds."""
     half = (TEXT_WIDTH - GAP) * 0.42
     other = TEXT_WIDTH - GAP - half
@@ -53,7 +53,7 @@ def calibrations(look: Look, content: ReportContent, limits: Limits) -> list[Flo
     return [section(look, "calibrations", "Calibrations and rig", body)]
 
 
-def pictures_used(look: Look, content: ReportContent, limits: Limits) -> list[Flowable]:
+def pictures_used(look: ReportLook, content: ReportContent, limits: Limits) -> list[Flowable]:
     """Frames and calibration pictures used, and why others were not."""
     words = look.words
     used = [frame.name for frame in content.frames if frame.used]
@@ -73,7 +73,7 @@ def pictures_used(look: Look, content: ReportContent, limits: Limits) -> list[Fl
     return [section(look, "frames", "Frames and calibration pictures", parts)]
 
 
-def warnings(look: Look, content: ReportContent, limits: Limits) -> list[Flowable]:
+def warnings(look: ReportLook, content: ReportContent, limits: Limits) -> list[Flowable]:
     """Warnings and remarks of the software, which nobody can switch off."""
     notes = tuple(look.words.known(note) for note in content.all_notes)
     if not notes:
@@ -82,13 +82,13 @@ def warnings(look: Look, content: ReportContent, limits: Limits) -> list[Flowabl
     return [section(look, "notes", "Notes and warnings", body)]
 
 
-def remarks(look: Look, content: ReportContent) -> list[Flowable]:
+def remarks(look: ReportLook, content: ReportContent) -> list[Flowable]:
     """The operator's own words."""
     lines = look.lines(content.remarks) if content.remarks.strip() else []
     return [section(look, "remarks", "Remarks of the operator", list(lines[:3])), *lines[3:]] if lines else []
 
 
-def settings(look: Look, content: ReportContent, limits: Limits) -> list[Flowable]:
+def settings(look: ReportLook, content: ReportContent, limits: Limits) -> list[Flowable]:
     """Software and settings, and the hash over them."""
     known = {look.words.known(name): look.words.known(value) for name, value in content.settings.items()}
     pairs = {look.words("Software"): f"Trisect {content.version}"} | known
@@ -109,7 +109,7 @@ def settings(look: Look, content: ReportContent, limits: Limits) -> list[Flowabl
     ]
 
 
-def inputs(look: Look, content: ReportContent, limits: Limits) -> list[Flowable]:
+def inputs(look: ReportLook, content: ReportContent, limits: Limits) -> list[Flowable]:
     """The hash over all inputs, and, unless hidden, that of each."""
     if not content.hashes:
         return [section(look, "inputs", "Inputs", [look.say("No hashes of the inputs were given.", "small")])]
@@ -133,7 +133,7 @@ def inputs(look: Look, content: ReportContent, limits: Limits) -> list[Flowable]
     return [head, *hash_table(look, content.hashes, TEXT_WIDTH, limits.inputs)]
 
 
-def end(look: Look, content: ReportContent) -> list[Flowable]:
+def end(look: ReportLook, content: ReportContent) -> list[Flowable]:
     """The end mark, and with it what the reader does not get to see."""
     said = look.words("End of report {report}", report=content.report_id)
     mark = Paragraph(f"— {markup(said)} —", look.style("end"))
@@ -148,7 +148,9 @@ SHORT_HASH = 10
 """Characters printed of an input's SHA-256; the whole of it is in run.json."""
 
 
-def left_out_table(look: Look, left_out: list[LeftOut], width: float, most: int, most_names: int) -> list[Flowable]:
+def left_out_table(
+    look: ReportLook, left_out: list[LeftOut], width: float, most: int, most_names: int
+) -> list[Flowable]:
     """Reasons, how often, and which: at most `most` reasons, and of each at most `most_names` names."""
     if not left_out:
         return []
@@ -181,7 +183,7 @@ def left_out_of_calibration(content: ReportContent) -> list[LeftOut]:
     return sorted((LeftOut(*item) for item in reasons.items()), key=lambda one: -len(one.names))
 
 
-def hash_table(look: Look, hashes: Mapping[str, str], width: float, most: int) -> list[Flowable]:
+def hash_table(look: ReportLook, hashes: Mapping[str, str], width: float, most: int) -> list[Flowable]:
     """Every input by folder, with the beginning of its SHA-256; at most `most` of them.
 
     As many columns as the longest name leaves room for.
@@ -214,7 +216,7 @@ def hash_table(look: Look, hashes: Mapping[str, str], width: float, most: int) -
     return [*parts, *more_line(look, len(hashes) - most)]
 
 
-def _hash_cell(look: Look, path: str, digest: str) -> Paragraph:
+def _hash_cell(look: ReportLook, path: str, digest: str) -> Paragraph:
     name = markup(path.rpartition("/")[2])
     code = f'<font name="{MONO}" size="5.6" color="{MUTED}">{markup(digest[:SHORT_HASH])}</font>'
     return Paragraph(f"{name} {code}", look.style("hash"))

@@ -11,7 +11,7 @@ from reportlab.platypus import Flowable, HRFlowable, Image
 from core.messages import label
 from core.report.content import ReportContent
 from core.report.layout.blocks import GAP, pairs_table, plain_table, side_by_side
-from core.report.layout.style import TEXT_WIDTH, Look
+from core.report.layout.style import TEXT_WIDTH, ReportLook
 from core.report.sections.calibration_tables import age_words
 from core.report.wording import temperatures_line
 
@@ -25,7 +25,7 @@ SHORT = 12
 """Characters of a hash that name it on page one; the whole of it is further on."""
 
 
-def head(look: Look, content: ReportContent) -> list[Flowable]:
+def head(look: ReportLook, content: ReportContent) -> list[Flowable]:
     """Everything above the result."""
     template, column = content.template, (TEXT_WIDTH - GAP) / 2
     name = template.name or content.laboratory
@@ -47,7 +47,7 @@ def head(look: Look, content: ReportContent) -> list[Flowable]:
     return [top, rule, side_by_side([columns[0]], [columns[1]], TEXT_WIDTH)]
 
 
-def _job(look: Look, content: ReportContent) -> dict[str, str]:
+def _job(look: ReportLook, content: ReportContent) -> dict[str, str]:
     """What was measured, for whom, by whom, under which conditions."""
     words = look.words
     return {
@@ -63,7 +63,7 @@ def _job(look: Look, content: ReportContent) -> dict[str, str]:
     }
 
 
-def _evidence(look: Look, content: ReportContent) -> dict[str, str]:
+def _evidence(look: ReportLook, content: ReportContent) -> dict[str, str]:
     """What names the report and all it rests on."""
     words = look.words
     marks = {mark.of: f"{mark.id}, {words('age')} {age_words(look, mark, content)}" for mark in content.calibrations}

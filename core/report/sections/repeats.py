@@ -8,7 +8,7 @@ from reportlab.platypus import Flowable
 from core.messages import label, plural_message
 from core.report.content import RepeatLine, ReportContent
 from core.report.layout.blocks import heads, more_line, ruled_table
-from core.report.layout.style import Look
+from core.report.layout.style import ReportLook
 from core.report.wording import decimals_of
 from core.study.repeats import RepeatStatistics
 
@@ -19,7 +19,7 @@ NUMERIC = (3, 4, 5, 6)
 """Columns of numbers, to the right."""
 
 
-def repeats_head(look: Look, content: ReportContent) -> list[Flowable]:
+def repeats_head(look: ReportLook, content: ReportContent) -> list[Flowable]:
     """What the repeats are, and their statistics."""
     statistics, words = content.repeat_statistics, look.words
     if statistics is None:
@@ -40,7 +40,7 @@ def repeats_head(look: Look, content: ReportContent) -> list[Flowable]:
     return [look.text(said, "small"), _statistics_table(look, statistics, sum(WIDTHS))]
 
 
-def _statistics_table(look: Look, statistics: RepeatStatistics, width: float) -> Flowable:
+def _statistics_table(look: ReportLook, statistics: RepeatStatistics, width: float) -> Flowable:
     decimals = max(decimals_of(statistics.std_mm), 3)
     words = look.words
     values = (
@@ -58,7 +58,7 @@ def _statistics_table(look: Look, statistics: RepeatStatistics, width: float) ->
     return ruled_table(rows, [width / len(known)] * len(known))
 
 
-def repeats_table(look: Look, content: ReportContent, most: int) -> list[Flowable]:
+def repeats_table(look: ReportLook, content: ReportContent, most: int) -> list[Flowable]:
     """Every repeat in a row, at most `most` of them."""
     rows: list[list[Flowable]] = [
         heads(
@@ -73,7 +73,7 @@ def repeats_table(look: Look, content: ReportContent, most: int) -> list[Flowabl
     return [table, *more_line(look, len(content.repeats) - most, label("the project"))]
 
 
-def _cells(look: Look, repeat: RepeatLine, nominal_mm: float | None) -> tuple[str, ...]:
+def _cells(look: ReportLook, repeat: RepeatLine, nominal_mm: float | None) -> tuple[str, ...]:
     fixed, decimals = look.words.fixed, decimals_of(repeat.U_mm)
     error = "" if nominal_mm is None else fixed(repeat.thickness_mm - nominal_mm, decimals, signed=True)
     return (

@@ -22,7 +22,7 @@ from core.report.layout.style import (
     SANS,
     TEXT_WIDTH,
     TINT,
-    Look,
+    ReportLook,
     color,
     draw_words,
     markup,
@@ -47,7 +47,7 @@ BADGE = 46 * mm  # width of the decision's mark
 SHOWN_FIRST = (*WORST_FIRST, Verdict.NONE)
 
 
-def result_box(look: Look, content: ReportContent, width: float) -> Table:
+def result_box(look: ReportLook, content: ReportContent, width: float) -> Table:
     """The box: of the one result, of all of them together, or of the cloud where there is none."""
     inner, found = width - 2 * PADDING, content.characteristics
     if len(found) == 1:
@@ -72,7 +72,7 @@ def result_box(look: Look, content: ReportContent, width: float) -> Table:
     return Table([[rows]], colWidths=[width], style=style, hAlign="LEFT")
 
 
-def _facts(look: Look, facts: dict[str, str], width: float) -> Table:
+def _facts(look: ReportLook, facts: dict[str, str], width: float) -> Table:
     cells = [[look.text(label, "label"), look.text(value, "fact")] for label, value in facts.items()]
     table = plain_table([cells], [width / len(cells)] * len(cells))
     table.setStyle(
@@ -81,7 +81,7 @@ def _facts(look: Look, facts: dict[str, str], width: float) -> Table:
     return table
 
 
-def _one(look: Look, one: Characteristic, width: float) -> list[Flowable]:
+def _one(look: ReportLook, one: Characteristic, width: float) -> list[Flowable]:
     words, (unit, factor) = look.words, shown_unit(one)
     value, _, rest = value_line(one, words).partition(" (")
     rest = rest.replace(" ", "\u00a0")
@@ -104,7 +104,7 @@ def _one(look: Look, one: Characteristic, width: float) -> list[Flowable]:
     return [*parts, Spacer(0, 1.5 * mm), look.text(reason), look.text(meaning, "caption")]
 
 
-def _headed(look: Look, headline: list[Flowable], verdict: Verdict, width: float) -> list[Flowable]:
+def _headed(look: ReportLook, headline: list[Flowable], verdict: Verdict, width: float) -> list[Flowable]:
     """A headline with the decision beside it, if there is one."""
     if not verdict:
         return headline
@@ -113,7 +113,7 @@ def _headed(look: Look, headline: list[Flowable], verdict: Verdict, width: float
     return [head]
 
 
-def _several(look: Look, content: ReportContent, width: float) -> list[Flowable]:
+def _several(look: ReportLook, content: ReportContent, width: float) -> list[Flowable]:
     """How many of which decision; the worst of them is that of the part."""
     words, found = look.words, content.characteristics
     counts = {verdict: sum(one.verdict == verdict for one in found) for verdict in SHOWN_FIRST}
@@ -137,7 +137,7 @@ def _several(look: Look, content: ReportContent, width: float) -> list[Flowable]
     ]
 
 
-def _cloud(look: Look, content: ReportContent, width: float) -> list[Flowable]:
+def _cloud(look: ReportLook, content: ReportContent, width: float) -> list[Flowable]:
     cloud, words = content.cloud, look.words
     parts: list[Flowable] = [look.say("Point cloud", "label"), look.text(words(points_counted(len(cloud))), "result")]
     facts = {words("Triangles of the mesh"): grouped(len(content.mesh.triangles))}
@@ -161,7 +161,7 @@ WIDTHS = [size * mm for size in (17, 27, 21, 16, 8, 18, 27)]
 """Nominal, permitted deviations, measured, U, k, deviation, decision; the name has the rest."""
 
 
-def result_table(look: Look, content: ReportContent, budgets: Collection[int]) -> Table:
+def result_table(look: ReportLook, content: ReportContent, budgets: Collection[int]) -> Table:
     """One row for each characteristic; the names of those whose numbers are in `budgets` lead to their budgets."""
     head = heads(
         look, "Characteristic", "nominal", "permitted", "measured", "U", "k", "deviation", "decision",
@@ -180,7 +180,7 @@ def budget_key(number: int) -> str:
     return f"budget-{number}"
 
 
-def _row(look: Look, one: Characteristic, key: str) -> list[Flowable | list[Flowable]]:
+def _row(look: ReportLook, one: Characteristic, key: str) -> list[Flowable | list[Flowable]]:
     words, (unit, factor) = look.words, shown_unit(one)
     decimals = decimals_of(factor * one.U)
     limits = one.limits
@@ -214,7 +214,7 @@ SIGNS = {Verdict.CONFORMING: "✓", Verdict.NOT_CONFORMING: "✗", Verdict.NOT_P
 class VerdictMark(Flowable):  # type: ignore[misc]
     """The decision as word and form: filled with ✓, dark with ✗, outlined with ?."""
 
-    def __init__(self, look: Look, verdict: Verdict, width: float) -> None:
+    def __init__(self, look: ReportLook, verdict: Verdict, width: float) -> None:
         super().__init__()
         self.look, self.verdict, self.width, self.height = look, verdict, width, 10 * mm
 
@@ -236,7 +236,7 @@ class VerdictMark(Flowable):  # type: ignore[misc]
 class ToleranceBar(Flowable):  # type: ignore[misc]
     """The deviation with its interval ±U against the zone of the tolerance, to scale; open where there is no limit."""
 
-    def __init__(self, look: Look, one: Characteristic, width: float) -> None:
+    def __init__(self, look: ReportLook, one: Characteristic, width: float) -> None:
         super().__init__()
         unit, factor = shown_unit(one)
         limits = one.limits

@@ -23,7 +23,7 @@ from core.report.layout.blocks import (
     ruled_table,
     section,
 )
-from core.report.layout.style import MUTED, TEXT_WIDTH, Look, color
+from core.report.layout.style import MUTED, TEXT_WIDTH, ReportLook, color
 from core.report.sections import evidence
 from core.report.sections.budget import budget_table
 from core.report.sections.head import head
@@ -35,7 +35,7 @@ from core.report.wording import grouped, limits_of_cloud, limits_of_inspection, 
 Pictures = Mapping[str, ImageReader]
 
 
-def story(look: Look, content: ReportContent, pictures: Pictures, limits: Limits) -> list[Flowable]:
+def story(look: ReportLook, content: ReportContent, pictures: Pictures, limits: Limits) -> list[Flowable]:
     """Everything from the title to the end mark, without what is hidden."""
     parts: list[tuple[str, Callable[[], list[Flowable]]]] = [
         ("surface", lambda: _surface(look, content, pictures, limits)),
@@ -68,7 +68,7 @@ def story(look: Look, content: ReportContent, pictures: Pictures, limits: Limits
     ]
 
 
-def _results(look: Look, content: ReportContent, limits: Limits) -> list[Flowable]:
+def _results(look: ReportLook, content: ReportContent, limits: Limits) -> list[Flowable]:
     """The table of all results; one alone is told in full above."""
     if len(content.characteristics) < 2:
         return []
@@ -81,7 +81,7 @@ def _with_budget(content: ReportContent) -> tuple[int, ...]:
     return tuple(number for number, one in enumerate(content.characteristics) if one.budget)
 
 
-def _not_covered(look: Look, content: ReportContent) -> list[Flowable]:
+def _not_covered(look: ReportLook, content: ReportContent) -> list[Flowable]:
     stated = content.air_celsius is not None or content.part_celsius is not None
     words, gauge = look.words, content.gauge
     if len(content.characteristics) > 1:
@@ -94,7 +94,7 @@ def _not_covered(look: Look, content: ReportContent) -> list[Flowable]:
     return [section(look, "limits", "What this result does not cover", list(look.bullets(sentences)))]
 
 
-def _surface(look: Look, content: ReportContent, pictures: Pictures, limits: Limits) -> list[Flowable]:
+def _surface(look: ReportLook, content: ReportContent, pictures: Pictures, limits: Limits) -> list[Flowable]:
     words = look.words
     if "surface" not in pictures:
         nothing = look.say("No point was measured, so there is no surface to show.")
@@ -119,7 +119,7 @@ def _surface(look: Look, content: ReportContent, pictures: Pictures, limits: Lim
     return [section(look, "surface", "Measured surface", body)]
 
 
-def _frame(look: Look, content: ReportContent, pictures: Pictures, limits: Limits) -> list[Flowable]:
+def _frame(look: ReportLook, content: ReportContent, pictures: Pictures, limits: Limits) -> list[Flowable]:
     overlay = content.overlay
     if overlay is None or "frame" not in pictures:
         return []
@@ -134,7 +134,7 @@ def _frame(look: Look, content: ReportContent, pictures: Pictures, limits: Limit
     return [section(look, "frame", "One frame of the scan", body)]
 
 
-def _profiles(look: Look, content: ReportContent, pictures: Pictures, limits: Limits) -> list[Flowable]:
+def _profiles(look: ReportLook, content: ReportContent, pictures: Pictures, limits: Limits) -> list[Flowable]:
     profiles = content.profiles
     if profiles is None or "profiles" not in pictures:
         return []
@@ -147,7 +147,7 @@ def _profiles(look: Look, content: ReportContent, pictures: Pictures, limits: Li
     return [section(look, "profiles", "Light profiles", body)]
 
 
-def _points(look: Look, pictures: Pictures, limits: Limits) -> list[Flowable]:
+def _points(look: ReportLook, pictures: Pictures, limits: Limits) -> list[Flowable]:
     if "points" not in pictures:
         return []
     caption = look.say(
@@ -157,7 +157,7 @@ def _points(look: Look, pictures: Pictures, limits: Limits) -> list[Flowable]:
     return [section(look, "points", "Points the results rest on", body)]
 
 
-def _maps(look: Look, content: ReportContent, pictures: Pictures, limits: Limits) -> list[Flowable]:
+def _maps(look: ReportLook, content: ReportContent, pictures: Pictures, limits: Limits) -> list[Flowable]:
     if "maps" not in pictures:
         return []
     picture = Picture(pictures["maps"], limits.picture_scale)
@@ -174,7 +174,7 @@ def _maps(look: Look, content: ReportContent, pictures: Pictures, limits: Limits
     return [section(look, "maps", "Residuals of both faces", body)]
 
 
-def _faces(look: Look, gauge: GaugeResult) -> Flowable:
+def _faces(look: ReportLook, gauge: GaugeResult) -> Flowable:
     fixed = look.words.fixed
     rows: list[list[Flowable]] = [
         heads(
@@ -196,7 +196,7 @@ def _faces(look: Look, gauge: GaugeResult) -> Flowable:
     return ruled_table(rows, [TEXT_WIDTH * share for share in (0.1, 0.12, 0.22, 0.28, 0.28)])
 
 
-def _deviations(look: Look, content: ReportContent, pictures: Pictures, limits: Limits) -> list[Flowable]:
+def _deviations(look: ReportLook, content: ReportContent, pictures: Pictures, limits: Limits) -> list[Flowable]:
     shown = [(number, one) for number, one in enumerate(content.deviations) if f"deviation-{number}" in pictures]
     parts: list[Flowable] = []
     for place, (number, one) in enumerate(shown):
@@ -215,7 +215,7 @@ def _deviations(look: Look, content: ReportContent, pictures: Pictures, limits: 
     return parts
 
 
-def _budgets(look: Look, content: ReportContent, limits: Limits) -> list[Flowable]:
+def _budgets(look: ReportLook, content: ReportContent, limits: Limits) -> list[Flowable]:
     """Of every characteristic that has one, each with a heading that the table of results leads to."""
     known = _with_budget(content)
     parts: list[Flowable] = []
@@ -232,7 +232,7 @@ def _budgets(look: Look, content: ReportContent, limits: Limits) -> list[Flowabl
     return [*parts, *more_line(look, len(known) - limits.budgets, "inspection.json")]
 
 
-def _repeats(look: Look, content: ReportContent, pictures: Pictures, limits: Limits) -> list[Flowable]:
+def _repeats(look: ReportLook, content: ReportContent, pictures: Pictures, limits: Limits) -> list[Flowable]:
     first = repeats_head(look, content)
     if not first:
         return []
@@ -243,25 +243,25 @@ def _repeats(look: Look, content: ReportContent, pictures: Pictures, limits: Lim
     return [head_part, Spacer(0, 2 * mm), *repeats_table(look, content, limits.repeats)]
 
 
-A_ROW = 3
+FACTS_PER_ROW = 3
 """Signatures beside each other."""
 
 ROOM = 14 * mm
 """Above a line, for the hand."""
 
 
-def signatures(look: Look, content: ReportContent) -> list[Flowable]:
+def signatures(look: ReportLook, content: ReportContent) -> list[Flowable]:
     """A line for everyone who signs: those of the template, or else the operator."""
     names = content.template.signatures or (content.operator,)
     own = [look.text(content.template.text, "small")] if content.template.text else []
     lines: list[Flowable] = []
-    for start in range(0, len(names), A_ROW):
-        row = names[start : start + A_ROW]
+    for start in range(0, len(names), FACTS_PER_ROW):
+        row = names[start : start + FACTS_PER_ROW]
         cells = [[look.text(name, "small_strong"), look.say("Date, signature", "label")] for name in row]
         columns: list[list[Flowable]] = []
         for cell in cells:
             columns += [cell, []]
-        width, gap = (TEXT_WIDTH - (A_ROW - 1) * 8 * mm) / A_ROW, 8 * mm
+        width, gap = (TEXT_WIDTH - (FACTS_PER_ROW - 1) * 8 * mm) / FACTS_PER_ROW, 8 * mm
         table = plain_table([columns[:-1]], ([width, gap] * len(row))[:-1])
         above = [("LINEABOVE", (2 * place, 0), (2 * place, 0), 0.5, color(MUTED)) for place in range(len(row))]
         table.setStyle(TableStyle(above))

@@ -13,7 +13,7 @@ from reportlab.platypus import Flowable, KeepTogether, Spacer
 from core.messages import from_json, label
 from core.report.content import ReportContent
 from core.report.layout.blocks import Heading, Limits, Picture, heads, plain_table, ruled_table, section
-from core.report.layout.style import TEXT_WIDTH, Look
+from core.report.layout.style import TEXT_WIDTH, ReportLook
 from core.report.wording import decimals_of
 
 TITLES = {
@@ -38,7 +38,9 @@ SOURCES = (
 Study = Mapping[str, Any]
 
 
-def studies(look: Look, content: ReportContent, pictures: Mapping[str, ImageReader], limits: Limits) -> list[Flowable]:
+def studies(
+    look: ReportLook, content: ReportContent, pictures: Mapping[str, ImageReader], limits: Limits
+) -> list[Flowable]:
     """Every study, each with a heading of its own."""
     parts: list[Flowable] = []
     for number, study in enumerate(content.studies):
@@ -77,11 +79,11 @@ def study_lines(study: Study) -> dict[str, float]:
     return {name: value for name, value in lines.items() if value is not None}
 
 
-def _named(look: Look, study: Study) -> dict[str, str]:
+def _named(look: ReportLook, study: Study) -> dict[str, str]:
     return {"name": look.words.known(study["characteristic"])} if study["kind"] == "repeats" else {}
 
 
-def _parts(look: Look, study: Study) -> list[Flowable]:
+def _parts(look: ReportLook, study: Study) -> list[Flowable]:
     """Figures and tables of one study."""
     verdict = {look.words("verdict"): look.words.known(study["verdict"])} if study["verdict"] else {}
     match study["kind"]:
@@ -95,7 +97,7 @@ def _parts(look: Look, study: Study) -> list[Flowable]:
             return [_quantities(look, study)]
 
 
-def _repeats(look: Look, study: Study) -> dict[str, str]:
+def _repeats(look: ReportLook, study: Study) -> dict[str, str]:
     spread, unit, words = study["std"], study["unit"], look.words
     decimals = max(decimals_of(spread or math.nan), 3)
     budget = study["budget_of_mean"]
@@ -110,7 +112,7 @@ def _repeats(look: Look, study: Study) -> dict[str, str]:
     return {words("n"): f"{study['n']}"} | _lengths(look, lengths, decimals, unit)
 
 
-def _type1(look: Look, study: Study) -> dict[str, str]:
+def _type1(look: ReportLook, study: Study) -> dict[str, str]:
     decimals, unit, words = max(decimals_of(study["s"] or math.nan), 3), study["unit"], look.words
     lengths = {
         words("reference"): study["reference"],
@@ -124,7 +126,7 @@ def _type1(look: Look, study: Study) -> dict[str, str]:
     return {words("n"): f"{study['n']}"} | _lengths(look, lengths, decimals, unit) | ratios | t_test
 
 
-def _grr(look: Look, study: Study) -> dict[str, str]:
+def _grr(look: ReportLook, study: Study) -> dict[str, str]:
     words = look.words
     shares = {
         words("%GRR of the total"): study["grr_of_total"]["value"],
@@ -135,7 +137,7 @@ def _grr(look: Look, study: Study) -> dict[str, str]:
     return shown | {words("ndc"): "∞" if categories is None else f"{categories}"}
 
 
-def _components(look: Look, study: Study) -> Flowable:
+def _components(look: ReportLook, study: Study) -> Flowable:
     words = look.words
     sigma = look.text(f"σ, {study['unit']}", "head_number")
     rows: list[list[Flowable]] = [
@@ -157,11 +159,11 @@ def _components(look: Look, study: Study) -> Flowable:
     return ruled_table(rows, [TEXT_WIDTH * share for share in (0.32, 0.17, 0.17, 0.17, 0.17)])
 
 
-def _ratio(look: Look, value: float) -> str:
+def _ratio(look: ReportLook, value: float) -> str:
     return "∞" if math.isinf(value) else look.words.fixed(value, 2)
 
 
-def _quantities(look: Look, study: Study) -> Flowable:
+def _quantities(look: ReportLook, study: Study) -> Flowable:
     words = look.words
     rows: list[list[Flowable]] = [
         heads(look, "Quantity", "positions", "largest error, mm", "at", "limit, mm", "decision", numbers=(1, 2, 4))
@@ -182,11 +184,11 @@ def _quantities(look: Look, study: Study) -> Flowable:
     return table
 
 
-def _lengths(look: Look, lengths: Mapping[str, float | None], decimals: int, unit: str) -> dict[str, str]:
+def _lengths(look: ReportLook, lengths: Mapping[str, float | None], decimals: int, unit: str) -> dict[str, str]:
     return {name: f"{look.words.fixed(value, decimals)} {unit}" for name, value in lengths.items() if value is not None}
 
 
-def _figures(look: Look, figures: Mapping[str, str]) -> Flowable:
+def _figures(look: ReportLook, figures: Mapping[str, str]) -> Flowable:
     """Figures below their names, six a row."""
     names = list(figures)
     rows: list[list[Flowable]] = []

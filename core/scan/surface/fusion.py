@@ -49,7 +49,7 @@ def fuse(
     cell_px
         Side of a cell in pixels; None: the picture's width / 960, at least 1.
     progress
-        Told how far it is.
+        Called with how far it is.
 
     Returns
     -------

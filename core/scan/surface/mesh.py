@@ -57,7 +57,7 @@ def build_mesh(
     largest_kink
         Angle in rad above which an edge that leaves the tangent planes of both its ends is a depth jump.
     progress
-        Told how far it is.
+        Called with how far it is.
 
     Returns
     -------

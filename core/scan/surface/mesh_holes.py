@@ -39,7 +39,7 @@ def fill_holes(mesh: Mesh, largest_mm: float, progress: Progress = silent) -> Me
     largest_mm
         Largest distance of two vertices on the rim of a hole that is filled.
     progress
-        Told how far it is.
+        Called with how far it is.
 
     Returns
     -------

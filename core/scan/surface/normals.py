@@ -80,7 +80,7 @@ def with_normals(points: Points, radius_px: float | None = None, progress: Progr
         Neighbours are taken within this distance in the picture; None: the smallest that reaches across several
         stripes for most points.
     progress
-        Told how far it is.
+        Called with how far it is.
 
     Returns
     -------

@@ -3,7 +3,7 @@ import pytest
 
 from core.calibrate.fan.pencil import FreePlanes, Pencil, pencil_near, plane_distances
 from core.calibrate.fan.pose_equations import inverse
-from core.calibrate.levenberg import Dense, Solution, minimise
+from core.calibrate.levenberg import DenseProblem, Solution, minimise
 from core.model import Fan, LightPlane
 from tests.paper import PLANES as PAPER
 
@@ -32,7 +32,7 @@ def fitted(start: FreePlanes | Pencil, points: list[np.ndarray], sigma: float) -
 
     def linearise(planes):
         distances, by_pi = plane_distances(planes.pis[which], np.vstack(points))
-        return Dense(distances / sigma, np.einsum("ni,nip->np", by_pi, planes.jacobian[rows]) / sigma)
+        return DenseProblem(distances / sigma, np.einsum("ni,nip->np", by_pi, planes.jacobian[rows]) / sigma)
 
     return minimise(start, linearise, lambda planes, step: planes.moved(step))
 

@@ -139,7 +139,7 @@ def test_who_looks_while_another_takes_the_project_does_not_take_it_as_well(
         with contextlib.suppress(ProjectInUse):
             taken.append(take_lock(tmp_path))
 
-    def look_slowly(folder: Path) -> lock.Holder | None:
+    def look_slowly(folder: Path) -> lock.LockOwner | None:
         found = look(folder)
         if not others:
             others.append(threading.Thread(target=take))

@@ -10,16 +10,16 @@ from core.errors import Cancelled, InputError
 from core.files.project.data import Accepted
 from core.files.project.folder import results_folder
 from core.pipeline.live.events import ScanDetail
-from core.pipeline.project.looks import accepted_calibration, show_scan
+from core.pipeline.project.details import accepted_calibration, show_scan
 from core.pipeline.project.thumbnails import display_picture
-from core.pipeline.project.watched_scan import Watched, measure_watched
+from core.pipeline.project.watched_scan import WatchReporter, measure_watched
 from tests.simulated import copy_of
 
 
 @pytest.fixture(scope="module")
 def details(done) -> list[ScanDetail]:
     told: list[ScanDetail] = []
-    watched = Watched(done.camera.camera.image_size, told.append)
+    watched = WatchReporter(done.camera.camera.image_size, told.append)
     for preview in done.watched:
         watched(preview)
     return told

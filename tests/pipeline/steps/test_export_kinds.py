@@ -21,7 +21,7 @@ from core.files.project.folder import results_folder
 from core.files.results.camera_file import read_camera, write_camera
 from core.files.results.export_list import EXPORTS
 from core.model import Camera
-from core.pipeline.project.handing_over import choose_template, export, export_results, import_camera
+from core.pipeline.project.export import choose_template, export, export_results, import_camera
 from core.pipeline.project.report import make_report, project_content
 from core.pipeline.steps.export_kinds import WRITERS
 from tests.simulated import copy_of

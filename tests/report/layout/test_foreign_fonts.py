@@ -10,7 +10,7 @@ from fontTools.pens.ttGlyphPen import TTGlyphPen
 from pypdf import PdfReader
 
 from core.report.layout import foreign_fonts
-from core.report.layout.style import NO_FONT, NOT_EMBEDDED, Look, font_note, markup, prepare_reportlab
+from core.report.layout.style import NO_FONT, NOT_EMBEDDED, ReportLook, font_note, markup, prepare_reportlab
 from core.report.pdf import build_report
 from core.report.plots.charts import points_figure
 from core.report.plots.figures import FAMILY, drawable, families, new_figure, pixels
@@ -115,7 +115,9 @@ def test_this_computers_fonts_are_files_and_none_has_a_box_for_everything():
 def test_a_plot_has_no_empty_boxes(computer, bare):
     """Matplotlib warns of each character that its font lacks."""
     computer()
-    figure = points_figure(Look(Words(), "#14586E"), bare.cloud, {CHINESE: np.arange(50)}, (1920, 1374), 160.0, 70.0)
+    figure = points_figure(
+        ReportLook(Words(), "#14586E"), bare.cloud, {CHINESE: np.arange(50)}, (1920, 1374), 160.0, 70.0
+    )
     figure.canvas.draw()
     assert [text.get_text().split("\n")[0] for text in figure.axes[0].get_legend().get_texts()] == ["??"]
 

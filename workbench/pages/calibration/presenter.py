@@ -14,8 +14,8 @@ from core.pipeline.live.events import LiveEnded, LiveTaken
 from workbench.bench import Bench
 from workbench.language import tr
 from workbench.pages.calibration.acceptance import Acceptance
+from workbench.pages.calibration.current_picture import CurrentPicture
 from workbench.pages.calibration.history import StoredCalibrations
-from workbench.pages.calibration.look import Look
 from workbench.pages.calibration.stage import Facts, Stage, stage_of
 from workbench.pages.calibration.target import TargetChoice
 from workbench.pages.calibration.work import CalibrationWork
@@ -37,7 +37,7 @@ class CalibrationPresenter(StepPresenter):
     KEEP: ClassVar[Job]
 
     work: CalibrationWork[Any, Any]
-    look: Look
+    look: CurrentPicture
     history: StoredCalibrations
     target: TargetChoice
 

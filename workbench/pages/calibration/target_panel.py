@@ -12,6 +12,7 @@ from core.calibrate.board_shape import MADE
 from workbench.pages.calibration.target import DICTIONARIES, PAPERS
 from workbench.theme import icon
 from workbench.views import ask
+from workbench.views.forms.editors import NumberRange
 from workbench.views.forms.form import SettingsForm
 from workbench.views.layouts import in_column, in_row
 
@@ -74,11 +75,13 @@ class TargetPanel(QWidget):
             self._add_counts(form, kind)
         length = {"circle_grid": self.tr("Pitch"), "black_square": self.tr("Side")}.get(kind, self.tr("Square"))
         form.add_number(
-            "size_mm", length, "mm", self.tr("Measure it on the print: all lengths rest on it."),
-            minimum=0.1, maximum=5000, decimals=3, step=0.1,
-        )  # fmt: skip
+            "size_mm",
+            length,
+            NumberRange(0.1, 5000, decimals=3, step=0.1, unit="mm"),
+            self.tr("Measure it on the print: all lengths rest on it."),
+        )
         if kind == "charuco":
-            form.add_number("marker_mm", self.tr("Marker"), "mm", minimum=0.1, maximum=5000, decimals=3, step=0.1)
+            form.add_number("marker_mm", self.tr("Marker"), NumberRange(0.1, 5000, decimals=3, step=0.1, unit="mm"))
             names = [(name, name.removeprefix("DICT_").replace("_", ", ")) for name in DICTIONARIES]
             form.add_choice(
                 "dictionary", self.tr("Markers"), names, self.tr("Size of a marker, and how many there are.")
@@ -104,21 +107,28 @@ class TargetPanel(QWidget):
         )  # fmt: skip
         unknown = MADE["laser printer"]
         form.add_number(
-            "size_per_mille", self.tr("u of its size"), "‰", self.tr("Standard uncertainty of all its lengths."),
-            minimum=0.0, maximum=100.0, decimals=3, step=0.05, none_text=self.tr("assumed"),
-            first=unknown.size_sd * 1e3,
-        )  # fmt: skip
+            "size_per_mille",
+            self.tr("u of its size"),
+            NumberRange(
+                0.0, 100.0, decimals=3, step=0.05, unit="‰", none_text=self.tr("assumed"), first=unknown.size_sd * 1e3
+            ),
+            self.tr("Standard uncertainty of all its lengths."),
+        )
         form.add_number(
-            "flatness_mm", self.tr("Flatness"), "mm", self.tr("Standard deviation of its edges from its plane."),
-            minimum=0.0, maximum=100.0, decimals=3, step=0.05, none_text=self.tr("assumed"),
-            first=unknown.flatness_sd_mm,
-        )  # fmt: skip
+            "flatness_mm",
+            self.tr("Flatness"),
+            NumberRange(
+                0.0, 100.0, decimals=3, step=0.05, unit="mm", none_text=self.tr("assumed"), first=unknown.flatness_sd_mm
+            ),
+            self.tr("Standard deviation of its edges from its plane."),
+        )
         if "margin_mm" in self._presenter.target_values():
             form.add_number(
-                "margin_mm", self.tr("Margin"), "mm",
+                "margin_mm",
+                self.tr("Margin"),
+                NumberRange(0.0, 5000.0, decimals=1, step=1.0, unit="mm", none_text=self.tr("not known"), first=10.0),
                 self.tr("How far the plate goes on beyond what is printed on it: stripes are looked for on it only."),
-                minimum=0.0, maximum=5000.0, decimals=1, step=1.0, none_text=self.tr("not known"), first=10.0,
-            )  # fmt: skip
+            )
 
     def _put_before_the_paper(self, old: QWidget) -> None:
         """New fields come last when one goes on by Tab: let them come where they are seen."""
@@ -142,8 +152,8 @@ class TargetPanel(QWidget):
             "charuco": self.tr("Squares, black and white ones."),
             "circle_grid": self.tr("Circles."),
         }[kind]
-        form.add_number("columns", self.tr("Columns"), "", counted, minimum=3, maximum=500)
-        form.add_number("rows", self.tr("Rows"), "", minimum=3, maximum=500)
+        form.add_number("columns", self.tr("Columns"), NumberRange(3, 500), counted)
+        form.add_number("rows", self.tr("Rows"), NumberRange(3, 500))
 
     def _print(self) -> None:
         start = Path.home() / f"{self._kind}-target.pdf"

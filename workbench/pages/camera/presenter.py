@@ -12,8 +12,8 @@ from core.image.targets.target_view import TargetView
 from core.model.arrays import Array
 from workbench.bench import Bench
 from workbench.language import tr
+from workbench.pages.calibration.current_picture import CurrentPicture
 from workbench.pages.calibration.history import CameraHistory
-from workbench.pages.calibration.look import Look
 from workbench.pages.calibration.presenter import CalibrationPresenter
 from workbench.pages.calibration.stage import Stage
 from workbench.pages.calibration.target import TargetChoice
@@ -32,7 +32,7 @@ class CameraPresenter(CalibrationPresenter):
     def __init__(self, bench: Bench) -> None:
         super().__init__(bench)
         self.work = CameraWork(bench, self)
-        self.look = Look(bench, self.work, tr("Reading a picture"), self)
+        self.look = CurrentPicture(bench, self.work, tr("Reading a picture"), self)
         self.history = CameraHistory(bench, self)
         self.target = TargetChoice(bench, "camera_target", tr("change the camera's target"), self)
         self.threshold: float | None = None

@@ -21,6 +21,7 @@ from workbench.pages.inspect.presenter import InspectPresenter
 from workbench.step_state import State
 from workbench.theme import icon
 from workbench.views.colours import FACE_LOWER, FACE_UPPER
+from workbench.views.forms.editors import NumberRange
 from workbench.views.forms.form import SettingsForm
 from workbench.views.layouts import enable, heading, in_column, in_row, muted
 from workbench.views.lists.value_rows import ValueRows, Verdict, VerdictKind
@@ -41,13 +42,17 @@ class FacesPanel(QWidget):
         self.form = SettingsForm()
         none = self.tr("none")
         self.form.add_number(
-            "nominal_mm", self.tr("Nominal thickness"), "mm", self.tr("What the part should be; empty: no verdict."),
-            minimum=0.001, maximum=5000, decimals=4, step=1.0, none_text=none,
-        )  # fmt: skip
+            "nominal_mm",
+            self.tr("Nominal thickness"),
+            NumberRange(0.001, 5000, decimals=4, step=1.0, unit="mm", none_text=none),
+            self.tr("What the part should be; empty: no verdict."),
+        )
         self.form.add_number(
-            "tolerance_mm", self.tr("Tolerance ±"), "mm", self.tr("Largest permitted deviation, to either side."),
-            minimum=0.0001, maximum=5000, decimals=4, step=0.01, none_text=none,
-        )  # fmt: skip
+            "tolerance_mm",
+            self.tr("Tolerance ±"),
+            NumberRange(0.0001, 5000, decimals=4, step=0.01, unit="mm", none_text=none),
+            self.tr("Largest permitted deviation, to either side."),
+        )
         self.form.edited.connect(presenter.faces.set_number)
         self.states = {face: QLabel() for face in FACES}
         self.tools: dict[tuple[str, str], QToolButton] = {}

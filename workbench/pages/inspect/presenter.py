@@ -32,7 +32,7 @@ from workbench.work.tasks import Task
 RELIEF = "relief"
 """The name of the picture that is made of the surface itself."""
 
-MOST_SENT = 100_000
+MOST_POINTS_SENT = 100_000
 """So many of the chosen points are enough for an outline."""
 
 
@@ -236,7 +236,7 @@ class InspectPresenter(StepPresenter):
             self,
             jobs.OUTLINE_SELECTED,
             folder,
-            numbers[:: -(-len(numbers) // MOST_SENT)],
+            numbers[:: -(-len(numbers) // MOST_POINTS_SENT)],
             meant,
             label=self.tr("Outlining the chosen points"),
             on_done=done,

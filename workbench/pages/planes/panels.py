@@ -13,6 +13,7 @@ from workbench.pages.calibration.page import Result
 from workbench.pages.calibration.stage import Stage
 from workbench.pages.planes import words
 from workbench.pages.planes.presenter import PlanesPresenter
+from workbench.views.forms.editors import NumberRange
 from workbench.views.forms.form import SettingsForm
 from workbench.views.forms.live_panel import LivePanel
 from workbench.views.layouts import heading, in_column, muted, say
@@ -103,13 +104,13 @@ class LaserForm(SettingsForm):
     def __init__(self, presenter: PlanesPresenter, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._presenter = presenter
+        self.add_number("lines", self.tr("Lines"), NumberRange(1, 9), self.tr("How many lines the fixed laser draws."))
         self.add_number(
-            "lines", self.tr("Lines"), "", self.tr("How many lines the fixed laser draws."), minimum=1, maximum=9
+            "angle",
+            self.tr("Angle"),
+            NumberRange(0.1, 45, decimals=3, step=0.1, unit="°", none_text=self.tr("not stated"), first=5.0),
+            self.tr("Between neighbouring lines, as its maker states it."),
         )
-        self.add_number(
-            "angle", self.tr("Angle"), "°", self.tr("Between neighbouring lines, as its maker states it."),
-            minimum=0.1, maximum=45, decimals=3, step=0.1, none_text=self.tr("not stated"), first=5.0,
-        )  # fmt: skip
         self.add_check(
             "constrain",
             self.tr("Hold the planes to one pencil"),

@@ -19,7 +19,7 @@ from workbench.pages.calibration.history import PlanesHistory
 from workbench.pages.calibration.presenter import CalibrationPresenter
 from workbench.pages.calibration.stage import Stage
 from workbench.pages.calibration.target import TargetChoice
-from workbench.pages.planes.look import PlanesLook
+from workbench.pages.planes.current_pose import CurrentPose
 from workbench.pages.planes.work import PlanesCamera, PlanesWork
 from workbench.work import jobs
 
@@ -33,7 +33,7 @@ class PlanesPresenter(CalibrationPresenter):
     step = "planes"
     KEEP = jobs.ACCEPT_FAN
     work: PlanesWork
-    look: PlanesLook
+    look: CurrentPose
     history: PlanesHistory
 
     def __init__(self, bench: Bench) -> None:
@@ -42,7 +42,7 @@ class PlanesPresenter(CalibrationPresenter):
         """Ask whether planes that only a minority of the poses agrees on are to be used; the page's question."""
         self.live.pairs = bench.settings.text(PAIRS, "yes") == "yes"
         self.work = PlanesWork(bench, self)
-        self.look = PlanesLook(bench, self.work, tr("Reading a pose"), self)
+        self.look = CurrentPose(bench, self.work, tr("Reading a pose"), self)
         self.seen_by = PlanesCamera(bench, self)
         self.history = PlanesHistory(bench, self)
         self.target = TargetChoice(bench, "plane_target", tr("change the plate"), self)

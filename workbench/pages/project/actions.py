@@ -21,7 +21,7 @@ from workbench.pages.project.copying import ProjectCopy
 from workbench.pages.project.import_dialog import ImportDialog
 from workbench.pages.project.packing import PACKED, ProjectPack
 from workbench.pages.project.sample import SampleProject
-from workbench.pages.project.states import Wanted, wanted_access, wanted_state
+from workbench.pages.project.states import StateChoice, choose_access, choose_state
 from workbench.pages.sources import put_source
 from workbench.project_model import Access
 from workbench.views import ask
@@ -116,11 +116,11 @@ class ProjectActions(QObject):
         folder = (path.parent if path.name == PROJECT else path).resolve()
         if folder == self.model.folder:
             return
-        access = wanted_access(self._window, folder)
+        access = choose_access(self._window, folder)
         if access is None:
             return
         try:  # what somebody else has not saved yet is not to be recovered
-            wanted = Wanted() if access is Access.READ_ONLY else wanted_state(self._window, folder)
+            wanted = StateChoice() if access is Access.READ_ONLY else choose_state(self._window, folder)
         except InputError as error:
             self.bench.notices.failed(error)
             return
@@ -136,7 +136,7 @@ class ProjectActions(QObject):
             return
         text = self.tr("This is an earlier version; once it is saved, the present one is among the backups.")
         folder = path.parent.parent
-        access = Access.ALONE if folder == self.model.folder else wanted_access(self._window, folder)
+        access = Access.ALONE if folder == self.model.folder else choose_access(self._window, folder)
         if access is not None:
             self._open(folder, version, access=access, then=lambda: self.bench.notices.info(text))
 

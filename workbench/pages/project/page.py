@@ -11,6 +11,7 @@ from workbench.pages.project.presenter import ProjectPresenter
 from workbench.pages.step_page import StepPage
 from workbench.theme import icon
 from workbench.views.common import breakable
+from workbench.views.forms.editors import NumberRange
 from workbench.views.forms.form import SettingsForm
 from workbench.views.layouts import STRETCH, heading, in_column, muted
 from workbench.views.lists.value_rows import ValueRows
@@ -35,9 +36,11 @@ class ProjectPage(StepPage):
         ):
             none = self.tr("not measured")
             w.add_number(
-                key, p.label(key), "°C", words, minimum=-20, maximum=highest, decimals=1, step=0.5, none_text=none,
-                first=20.0,
-            )  # fmt: skip
+                key,
+                p.label(key),
+                NumberRange(-20, highest, decimals=1, step=0.5, unit="°C", none_text=none, first=20.0),
+                words,
+            )
         h.add_text("operator", p.label("operator"), self.tr("Who measures."))
         h.add_text("laboratory", p.label("laboratory"), self.tr("Who answers for the report: its heading."))
         h.add_text("customer", p.label("customer"), self.tr("Whom the report is for."))

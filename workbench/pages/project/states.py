@@ -23,14 +23,14 @@ SHOWN, LONGEST = 8, 40
 
 
 @dataclass(frozen=True, slots=True)
-class Wanted:
+class StateChoice:
     """What `ProjectModel.open` is to be told: the autosaved state, or an earlier `version`; neither for the saved."""
 
     recover: bool = False
     version: ProjectFile | None = None
 
 
-def wanted_access(parent: QWidget, folder: Path) -> Access | None:
+def choose_access(parent: QWidget, folder: Path) -> Access | None:
     """How to open the project in `folder`; None if the user does not want it. Asks where somebody has it open."""
     holder = held_by(folder)
     if holder is None:
@@ -48,7 +48,7 @@ def wanted_access(parent: QWidget, folder: Path) -> Access | None:
     return (Access.READ_ONLY, Access.TAKE_OVER, None)[chosen]
 
 
-def wanted_state(parent: QWidget, folder: Path) -> Wanted | None:
+def choose_state(parent: QWidget, folder: Path) -> StateChoice | None:
     """Which state of the project in `folder` to open; None if the user wants none.
 
     Asks where there are changes autosaved before a crash, or where project.json is damaged and something else is not.
@@ -69,11 +69,13 @@ def wanted_state(parent: QWidget, folder: Path) -> Wanted | None:
         return _ask_for_version(parent, folder, error, versions)
     recovered = recoverable(folder)
     if recovered is None or recovered == saved:
-        return Wanted()
+        return StateChoice()
     return _ask_for_recovery(parent, folder, saved, recovered)
 
 
-def _ask_for_version(parent: QWidget, folder: Path, error: InputError, versions: tuple[Version, ...]) -> Wanted | None:
+def _ask_for_version(
+    parent: QWidget, folder: Path, error: InputError, versions: tuple[Version, ...]
+) -> StateChoice | None:
     text = tr(
         "{path} cannot be read: {why}. There are earlier states of the project; the damaged file is kept in backups.",
         path=folder / "project.json",
@@ -81,10 +83,10 @@ def _ask_for_version(parent: QWidget, folder: Path, error: InputError, versions:
     )
     answers = [_in_words(version) for version in versions]
     chosen = ask.ask(parent, tr("Damaged project"), text, [*answers, tr("Do not open")])
-    return Wanted(version=versions[chosen].file) if chosen < len(versions) else None
+    return StateChoice(version=versions[chosen].file) if chosen < len(versions) else None
 
 
-def _ask_for_recovery(parent: QWidget, folder: Path, saved: ProjectFile, recovered: ProjectFile) -> Wanted | None:
+def _ask_for_recovery(parent: QWidget, folder: Path, saved: ProjectFile, recovered: ProjectFile) -> StateChoice | None:
     text = tr(
         "{name} was not closed properly: there are unsaved changes of {time}. "
         "What was saved at {saved} differs in:\n{changes}",
@@ -95,7 +97,7 @@ def _ask_for_recovery(parent: QWidget, folder: Path, saved: ProjectFile, recover
     )
     answers = [tr("Recover the changes"), tr("Open the saved state"), tr("Do not open")]
     chosen = ask.ask(parent, tr("Recover the project"), text, answers)
-    return Wanted(recover=chosen == 0) if chosen < 2 else None
+    return StateChoice(recover=chosen == 0) if chosen < 2 else None
 
 
 def _changes(changes: tuple[Change, ...]) -> str:

@@ -11,7 +11,7 @@ from core.report.template import PAPERS
 from core.translations import languages, own_name
 from workbench.language import tr
 from workbench.pages.report.presenter import ReportPresenter, Stage
-from workbench.pages.report.words import AT_HAND, export_words
+from workbench.pages.report.words import USUAL_EXPORTS, export_words
 from workbench.pages.step_page import StepPage
 from workbench.theme import icon
 from workbench.views import ask
@@ -178,7 +178,7 @@ class ReportPage(StepPage):
         place = 0
         for kind in EXPORTS:
             title, _, symbol = export_words(kind)
-            if kind in AT_HAND:
+            if kind in USUAL_EXPORTS:
                 button = QPushButton(icon(symbol), title)
                 button.clicked.connect(lambda _=False, k=kind: self._export(k))
                 grid.addWidget(button, place // 2, place % 2)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from workbench.language import tr
 
-AT_HAND = ("pdf", "cloud", "csv", "stl", "xlsx", "json")
+USUAL_EXPORTS = ("pdf", "cloud", "csv", "stl", "xlsx", "json")
 """Exports with a button of their own; the others are in a menu."""
 
 

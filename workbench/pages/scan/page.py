@@ -29,7 +29,7 @@ from workbench.views.image.side_by_side import SideBySide
 from workbench.views.lists.checks_card import ChecksCard
 from workbench.views.lists.view_list import ListRow, ViewList
 
-BEFORE = ("reference", "ready")
+STAGES_BEFORE = ("reference", "ready")
 """Stages of a live scan in which nothing is recorded yet; later only those checks are shown that failed."""
 
 
@@ -92,7 +92,7 @@ class ScanPage(StepPage):
         live, busy = stage is Stage.LIVE, stage in (Stage.LIVE, Stage.MEASURING)
         self.stage.refresh()
         self.check.refresh()
-        before = p.live_stage in BEFORE
+        before = p.live_stage in STAGES_BEFORE
         self.checks.show_checks([one for one in p.live.checks if before or one.state == "failed" or unchecked(one)])
         self.source.set_folder(p.folder, self._folder_words())
         self.live_panel.set_primary(stage in (Stage.NONE, Stage.EMPTY))

@@ -15,6 +15,7 @@ from workbench.language import text_of, tr
 from workbench.pages.scan import words
 from workbench.pages.scan.presenter import VALIDITY, ScanPresenter, Stage
 from workbench.pages.scan.stability import STABILITY
+from workbench.views.forms.editors import NumberRange
 from workbench.views.forms.form import SettingsForm
 from workbench.views.layouts import heading, in_column, muted
 from workbench.views.lists.value_rows import ValueRows
@@ -127,42 +128,54 @@ class SettingsPanel(QWidget):
             self.tr("Network: all frames adjusted together, the most accurate. Three crossings: each frame by itself."),
         )  # fmt: skip
         form.add_number(
-            "sigma_cut_mm", self.tr("Largest σ"), "mm",
+            "sigma_cut_mm",
+            self.tr("Largest σ"),
+            NumberRange(0.001, 10.0, decimals=3, step=0.01, unit="mm"),
             self.tr("Points with a larger standard uncertainty of depth are left out."),
-            minimum=0.001, maximum=10.0, decimals=3, step=0.01,
-        )  # fmt: skip
+        )
         form.add_check(
             "automatic", self.tr("Stripe found automatically"),
             self.tr("Width and contrast of the stripes are taken from the pictures, for each laser."),
         )  # fmt: skip
         form.add_number(
-            "width_px", self.tr("Stripe width"), "px",
+            "width_px",
+            self.tr("Stripe width"),
+            NumberRange(1.0, 200.0, decimals=1, step=0.5, unit="px"),
             self.tr("From where the light rises out of the background to where it is gone."),
-            minimum=1.0, maximum=200.0, decimals=1, step=0.5,
-        )  # fmt: skip
+        )
         form.add_number(
-            "contrast", self.tr("Stripe contrast"), self.tr("grey levels"),
+            "contrast",
+            self.tr("Stripe contrast"),
+            NumberRange(1.0, 65535.0, decimals=0, step=5.0, unit=self.tr("grey levels")),
             self.tr("Height above the background where the stripe is rather faint."),
-            minimum=1.0, maximum=65535.0, decimals=0, step=5.0,
-        )  # fmt: skip
+        )
         form.add_section(self.tr("Shutter of the camera"))
         form.add_number(
-            "row_time_us", self.tr("Time from row to row"), "µs",
+            "row_time_us",
+            self.tr("Time from row to row"),
+            NumberRange(0.0, 1e5, decimals=2, step=1.0, unit="µs", none_text=self.tr("assumed"), first=0.0),
             self.tr("0: a global shutter. Empty: not known, a global one is assumed."),
-            minimum=0.0, maximum=1e5, decimals=2, step=1.0, none_text=self.tr("assumed"), first=0.0,
-        )  # fmt: skip
+        )
         form.add_section(self.tr("Since its calibration the rig may have changed by"))
         for key, label, unit, decimals, usual in STABILITY:
             form.add_number(
-                key, tr(label), unit, tr("Standard uncertainty; empty: {usual:g} {unit}.", usual=usual, unit=unit),
-                minimum=0.0, maximum=10_000.0, decimals=decimals, step=usual / 10, none_text=tr("assumed"), first=usual,
-            )  # fmt: skip
+                key,
+                tr(label),
+                NumberRange(
+                    0.0, 10_000.0, decimals=decimals, step=usual / 10, unit=unit, none_text=tr("assumed"), first=usual
+                ),
+                tr("Standard uncertainty; empty: {usual:g} {unit}.", usual=usual, unit=unit),
+            )
         form.add_section(self.tr("How long calibration and check hold"))
         for key, label, usual in VALIDITY:
             form.add_number(
-                key, tr(label), self.tr("days"), self.tr("What is recorded later proves nothing; empty: no limit."),
-                minimum=0.1, maximum=36500.0, decimals=1, step=1.0, none_text=self.tr("no limit"), first=usual,
-            )  # fmt: skip
+                key,
+                tr(label),
+                NumberRange(
+                    0.1, 36500.0, decimals=1, step=1.0, unit=self.tr("days"), none_text=self.tr("no limit"), first=usual
+                ),
+                self.tr("What is recorded later proves nothing; empty: no limit."),
+            )
         form.edited.connect(presenter.set_setting, Qt.ConnectionType.QueuedConnection)
         in_column(form, on=self)
 

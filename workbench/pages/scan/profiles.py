@@ -14,6 +14,7 @@ from core.files.recording.options import StatedTilt
 from core.report.wording import thickness_line
 from workbench.bench import Bench
 from workbench.language import text_of, tr
+from workbench.views.forms.editors import NumberRange
 from workbench.views.forms.form import SettingsForm
 from workbench.views.layouts import muted
 from workbench.work import jobs
@@ -37,11 +38,14 @@ class ProfilesPanel(QWidget):
             tip=tr("The pose whose plate lay on what the part stands on when the laser planes were calibrated"),
         )
         self.form.add_number(
-            "tilt_sd", tr("Tilt known to"), "°", minimum=0.0, maximum=9.9, decimals=2, step=0.1,
-            none_text=tr("not stated"), first=0.5,
-            tip=tr("Standard uncertainty of how the faces are tilted; without a pose the light plane is taken to "
-                   "stand at right angles on them"),
-        )  # fmt: skip
+            "tilt_sd",
+            tr("Tilt known to"),
+            NumberRange(0.0, 9.9, decimals=2, step=0.1, unit="°", none_text=tr("not stated"), first=0.5),
+            tip=tr(
+                "Standard uncertainty of how the faces are tilted; without a pose the light plane is taken to "
+                "stand at right angles on them"
+            ),
+        )
         self.form.edited.connect(self._edited)
         self.measure = QPushButton(tr("Measure by the fixed lines"))
         self.measure.setToolTip(tr("Each picture shows the fan alone and the part; no hand-held laser is needed"))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 from PySide6.QtCore import QEvent, QLocale, Qt, QTimer, Signal
 from PySide6.QtGui import QFocusEvent, QHideEvent, QKeyEvent, QKeySequence, QValidator, QWheelEvent
@@ -24,31 +25,43 @@ def _is_for_the_window(event: QEvent, typing: bool) -> bool:
     return True
 
 
-class NumberEditor(QDoubleSpinBox):
-    """A number with its unit; with `none_text` it may be empty, which reads as that text and gives None.
+@dataclass(frozen=True, slots=True)
+class NumberRange:
+    """Which numbers may be entered, and how: `decimals`, the `step` of the arrow keys, the `unit` behind the number.
 
-    Stepping away from none goes to `first`, or to the smallest number.
+    With `none_text` the field may be left empty, which reads as that text and gives None; stepping away from it goes
+    to `first`, or to the smallest number.
     """
+
+    minimum: float
+    maximum: float
+    decimals: int = 0
+    step: float = 1.0
+    unit: str = ""
+    none_text: str | None = None
+    first: float | None = None
+
+
+class NumberEditor(QDoubleSpinBox):
+    """A number of a range, with its unit; whole, and told as int, if the range has no decimals."""
 
     committed = Signal()
 
-    def __init__(
-        self, minimum: float, maximum: float, decimals: int, step: float, unit: str, none_text: str | None,
-        first: float | None = None,
-    ) -> None:  # fmt: skip
+    def __init__(self, within: NumberRange) -> None:
         super().__init__()
-        self._none_text, self._first = none_text, minimum if first is None else first
-        self._whole = decimals == 0
+        self._none_text, self._least = within.none_text, within.minimum
+        self._first = within.minimum if within.first is None else within.first
+        self._whole = within.decimals == 0
         self._told: float | None = None
         self.setLocale(QLocale.c())
-        self.setDecimals(decimals)
+        self.setDecimals(within.decimals)
         # the value below the smallest stands for none
-        self.setRange(minimum if none_text is None else minimum - max(step, 10.0**-decimals), maximum)
-        self.setSingleStep(step)
-        self.setSuffix(f" {unit}" if unit else "")
-        if none_text is not None:
-            self.setSpecialValueText(none_text)
-        self._least = minimum
+        below = 0.0 if within.none_text is None else max(within.step, 10.0**-within.decimals)
+        self.setRange(within.minimum - below, within.maximum)
+        self.setSingleStep(within.step)
+        self.setSuffix(f" {within.unit}" if within.unit else "")
+        if within.none_text is not None:
+            self.setSpecialValueText(within.none_text)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setKeyboardTracking(False)
         self.setAlignment(Qt.AlignmentFlag.AlignRight)

@@ -15,6 +15,7 @@ from workbench.views.forms.editors import (
     Editor,
     MultilineEditor,
     NumberEditor,
+    NumberRange,
     TextEditor,
 )
 
@@ -47,26 +48,9 @@ class SettingsForm(QWidget):
         heading.setContentsMargins(0, 8 if self._editors else 0, 0, 2)
         self._grid.addWidget(heading, self._grid.rowCount(), 0, 1, 2)
 
-    def add_number(
-        self,
-        key: str,
-        label: str,
-        unit: str = "",
-        help: str = "",
-        *,
-        minimum: float,
-        maximum: float,
-        decimals: int = 0,
-        step: float = 1.0,
-        none_text: str | None = None,
-        first: float | None = None,
-        tip: str = "",
-    ) -> None:
-        """A number; whole, and told as int, if it has no decimals. With `none_text` it may be left empty: None.
-
-        `first` is the number that stepping up from none goes to.
-        """
-        editor = NumberEditor(minimum, maximum, decimals, step, unit, none_text, first)
+    def add_number(self, key: str, label: str, within: NumberRange, help: str = "", *, tip: str = "") -> None:
+        """A number; whole, and told as int, if it has no decimals."""
+        editor = NumberEditor(within)
         editor.setMinimumWidth(_EDITOR_WIDTH)
         self._add(key, label, editor, help, tip)
 

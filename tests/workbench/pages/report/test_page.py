@@ -17,7 +17,7 @@ from tests.workbench.pages.report.test_presenter import PAGES, Drawing, measured
 from workbench.bench import Bench
 from workbench.pages.report.page import ReportPage
 from workbench.pages.report.presenter import ReportPresenter
-from workbench.pages.report.words import AT_HAND
+from workbench.pages.report.words import USUAL_EXPORTS
 from workbench.views import ask
 from workbench.views.empty_state import EmptyState
 
@@ -64,7 +64,7 @@ def test_an_empty_project_says_what_comes_first_everywhere_and_leads_there(page:
     assert page.card.title.text() == "Nothing to report yet"
     assert not page.make.isEnabled()
     assert page.make.toolTip() == "Scan the part first; then there is something to report."
-    assert {page.exports[kind].toolTip() for kind in AT_HAND} == {"Scan the part first."}
+    assert {page.exports[kind].toolTip() for kind in USUAL_EXPORTS} == {"Scan the part first."}
     assert page.exports["ros"].toolTip() == "Calibrate the camera first."
     assert page.folder.toolTip() == "There are no results yet."
     assert not any(button.isEnabled() for button in (*page.exports.values(), page.folder))
@@ -154,7 +154,7 @@ def test_language_and_template_are_chosen(
     qtbot.waitUntil(lambda: page.template_name.text() == "none")
 
 
-@pytest.mark.parametrize("kind", AT_HAND)
+@pytest.mark.parametrize("kind", USUAL_EXPORTS)
 def test_each_kind_is_handed_over_by_its_button(
     page: ReportPage, drawing: Drawing, qtbot: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, kind: str
 ) -> None:
@@ -184,7 +184,7 @@ def test_other_formats_are_in_a_menu(
     monkeypatch.setattr(ask, "choose_file_to_save", lambda *_: tmp_path / "copy")
     menu = page.more.menu()
     page.refreshing.at_once()
-    assert menu is not None and set(menu.actions()) | {page.exports[kind] for kind in AT_HAND} == set(
+    assert menu is not None and set(menu.actions()) | {page.exports[kind] for kind in USUAL_EXPORTS} == set(
         page.exports.values()
     )
     action = page.exports["e57"]
@@ -226,7 +226,7 @@ def test_at_the_smallest_window_nothing_is_cut(page: ReportPage, drawing: Drawin
     page.resize(1024 - 182, 600)
     measured(page.presenter)
     page.presenter.model.record("report", finished("report", Project(), {}))
-    exports = [export_button(page, kind) for kind in AT_HAND]
+    exports = [export_button(page, kind) for kind in USUAL_EXPORTS]
     buttons = (*exports, page.more, page.folder, page.template, page.no_template)
     for widget in (*page.boxes.values(), *buttons, page.make):
         assert widget.width() >= widget.minimumSizeHint().width(), widget.text()

@@ -3,6 +3,7 @@ from PySide6.QtCore import QPoint, QPointF, Qt
 from PySide6.QtGui import QKeySequence, QShortcut, QWheelEvent
 from PySide6.QtWidgets import QApplication
 
+from workbench.views.forms.editors import NumberRange
 from workbench.views.forms.form import SettingsForm
 
 
@@ -12,9 +13,9 @@ def form(qtbot):
     qtbot.addWidget(form)
     form.add_section("Target")
     form.add_choice("kind", "Kind", [("checkerboard", "Checkerboard"), ("charuco", "ChArUco")], "What is printed.")
-    form.add_number("columns", "Inner corners across", help="Along the longer side.", minimum=3, maximum=60)
-    form.add_number("square", "Square", "mm", "One side.", minimum=0.1, maximum=200, decimals=3, step=0.5)
-    form.add_number("air", "Air", "°C", "While scanning.", minimum=-20, maximum=60, decimals=1, none_text="unknown")
+    form.add_number("columns", "Inner corners across", NumberRange(3, 60), "Along the longer side.")
+    form.add_number("square", "Square", NumberRange(0.1, 200, decimals=3, step=0.5, unit="mm"), "One side.")
+    form.add_number("air", "Air", NumberRange(-20, 60, decimals=1, unit="°C", none_text="unknown"), "While scanning.")
     form.add_check("constrain", "Keep the angles", "Off: each plane on its own.")
     form.add_text("part", "Part", "On the report.", placeholder="gauge block")
     form.add_multiline("notes", "Notes", "Under Remarks.")

@@ -16,6 +16,7 @@ from workbench.refresh import Refresh
 from workbench.theme import icon, shades
 from workbench.views import ask
 from workbench.views.common import dress
+from workbench.views.forms.editors import NumberRange
 from workbench.views.forms.form import SettingsForm
 from workbench.views.layouts import in_column, muted, say
 
@@ -132,13 +133,15 @@ class ConditionsPanel(QWidget):
     def _celsius(self, form: SettingsForm, key: str, label: str, help: str) -> None:
         u = key.startswith("u_")
         form.add_number(
-            f"{key}_celsius", label, "°C", help,
-            minimum=0.0 if u else -50.0, maximum=20.0 if u else 200.0, decimals=2, step=0.1,
-        )  # fmt: skip
+            f"{key}_celsius",
+            label,
+            NumberRange(0.0 if u else -50.0, 20.0 if u else 200.0, decimals=2, step=0.1, unit="°C"),
+            help,
+        )
 
     def _per_kelvin(self, form: SettingsForm, key: str, label: str, help: str) -> None:
         least = 0.0 if key.startswith("u_") else -100.0
-        form.add_number(key, label, "10⁻⁶/K", help, minimum=least, maximum=1000.0, decimals=2, step=0.5)
+        form.add_number(key, label, NumberRange(least, 1000.0, decimals=2, step=0.5, unit="10⁻⁶/K"), help)
 
     def _add_master(self, form: SettingsForm, plan: InspectionPlan) -> None:
         form.add_section(self.tr("Master"))
@@ -157,9 +160,19 @@ class ConditionsPanel(QWidget):
         ):
             u = key.startswith("u_")
             form.add_number(
-                key, label, "mm", help, minimum=0.0 if u else 0.001, maximum=LONGEST, decimals=5,
-                step=0.001 if u else 1.0, none_text=None if u else self.tr("none"), first=None if u else 50.0,
-            )  # fmt: skip
+                key,
+                label,
+                NumberRange(
+                    0.0 if u else 0.001,
+                    LONGEST,
+                    decimals=5,
+                    step=0.001 if u else 1.0,
+                    unit="mm",
+                    none_text=None if u else self.tr("none"),
+                    first=None if u else 50.0,
+                ),
+                help,
+            )
         form.add_check(
             "same_calibration", self.tr("Measured with this calibration"),
             self.tr("Then what camera and laser get wrong cancels."),

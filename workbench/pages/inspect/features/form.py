@@ -19,6 +19,7 @@ from workbench.pages.inspect.features.settings import add_settings
 from workbench.pages.inspect.scan import InspectScan
 from workbench.theme import icon
 from workbench.views import ask
+from workbench.views.forms.editors import NumberRange
 from workbench.views.forms.form import SettingsForm
 from workbench.views.layouts import heading, in_column
 
@@ -88,9 +89,11 @@ class FeatureForm(QWidget):
         most = kind_of(spec).most_regions
         if most > 1:
             form.add_number(
-                "parts", self.tr("Faces"), "", self.tr("How many faces are named one by one; automatic: all found."),
-                minimum=2, maximum=most, none_text=self.tr("automatic"),
-            )  # fmt: skip
+                "parts",
+                self.tr("Faces"),
+                NumberRange(2, most, none_text=self.tr("automatic")),
+                self.tr("How many faces are named one by one; automatic: all found."),
+            )
         for place, region in enumerate(fields.own_regions(spec)):
             self._add_region(spec, plan, place, isinstance(region, Auto))
 
@@ -100,7 +103,7 @@ class FeatureForm(QWidget):
         if isinstance(region, InSphere | InBox):
             choices.append((fields.PLACED, self.tr("as in the plan file")))
         choices += [
-            (fields.OF + one.name, tr("points of {name}", name=one.name))
+            (fields.POINTS_OF + one.name, tr("points of {name}", name=one.name))
             for one in plan.features
             if one.name != spec.name and not kind_of(one).made_of
         ]
@@ -110,9 +113,11 @@ class FeatureForm(QWidget):
         single = kind_of(spec).most_regions > 1 and len(spec.regions) == 1
         if found and kind_of(spec).automatic == "numbered" and not single:
             self.where.add_number(
-                f"number {place}", self.tr("Number of the face"), "",
-                self.tr("1 is the largest plane face of the scan, 2 the next."), minimum=1, maximum=MOST_FACES,
-            )  # fmt: skip
+                f"number {place}",
+                self.tr("Number of the face"),
+                NumberRange(1, MOST_FACES),
+                self.tr("1 is the largest plane face of the scan, 2 the next."),
+            )
 
     def _region_title(self, spec: FeatureSpec, place: int) -> str:
         titles = kind_of(spec).region_titles

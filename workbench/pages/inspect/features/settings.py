@@ -9,6 +9,7 @@ from core.inspect.plan.feature_spec import Cut, FeatureSpec
 from core.inspect.plan.kinds import FILTERS, WIDEST_MM, kind_of, results_of
 from core.messages import label
 from workbench.language import tr
+from workbench.views.forms.editors import NumberRange
 from workbench.views.forms.form import SettingsForm
 
 MOST_PX = 100_000.0
@@ -92,9 +93,19 @@ def _add(form: SettingsForm, one: FormField) -> None:
     match one:
         case NumberField():
             form.add_number(
-                one.key, tr(one.label), one.unit, tr(one.help), minimum=one.minimum, maximum=one.maximum,
-                decimals=one.decimals, step=one.step, none_text=tr(one.none) if one.none else None, first=one.first,
-            )  # fmt: skip
+                one.key,
+                tr(one.label),
+                NumberRange(
+                    one.minimum,
+                    one.maximum,
+                    decimals=one.decimals,
+                    step=one.step,
+                    unit=one.unit,
+                    none_text=tr(one.none) if one.none else None,
+                    first=one.first,
+                ),
+                tr(one.help),
+            )
         case ChoiceField():
             form.add_choice(one.key, tr(one.label), [(value, tr(text)) for value, text in one.choices], tr(one.help))
         case TextField():

@@ -24,7 +24,7 @@ from core.inspect.plan.kinds import FILTERS, MOST_FACES, kind_named, kind_of, re
 from workbench.language import tr
 
 AUTO, DRAWN, PLACED = "auto", "drawn", "placed"
-OF = "of "
+POINTS_OF = "of "
 """Where a region's points come from: found, drawn in the picture, placed in part coordinates, "of " and a feature."""
 
 SIDES = ("nominal", "lower", "upper")
@@ -159,12 +159,12 @@ def _source(region: Region) -> str:
         case Polygon():
             return DRAWN
         case PointsOf():
-            return OF + region.feature
+            return POINTS_OF + region.feature
     return PLACED
 
 
 def _sourced(source: str) -> Region:
-    return PointsOf(source.removeprefix(OF)) if source.startswith(OF) else Auto()
+    return PointsOf(source.removeprefix(POINTS_OF)) if source.startswith(POINTS_OF) else Auto()
 
 
 def _region(regions: tuple[Region, ...], place: int) -> Region:

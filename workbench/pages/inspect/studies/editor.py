@@ -10,6 +10,7 @@ from workbench.pages.inspect.studies.studies import LIMITS, Draft, InspectStudie
 from workbench.theme import icon, shades
 from workbench.views import ask
 from workbench.views.common import dress
+from workbench.views.forms.editors import NumberRange
 from workbench.views.forms.form import SettingsForm
 from workbench.views.layouts import heading, in_column, in_row, muted, say
 
@@ -99,10 +100,11 @@ class StudyEditor(QWidget):
     def _grr_form(self) -> SettingsForm:
         form = SettingsForm()
         form.add_number(
-            "tolerance_mm", self.tr("Tolerance ±"), "mm",
+            "tolerance_mm",
+            self.tr("Tolerance ±"),
+            NumberRange(0.0001, LONGEST, decimals=4, step=0.01, unit="mm", none_text=self.tr("none"), first=0.1),
             self.tr("Of the parts; %GRR is told of its full width T. None: of the scatter of the parts alone."),
-            minimum=0.0001, maximum=LONGEST, decimals=4, step=0.01, none_text=self.tr("none"), first=0.1,
-        )  # fmt: skip
+        )
         form.edited.connect(self._studies.set_value)
         return form
 
@@ -117,9 +119,11 @@ class StudyEditor(QWidget):
         }
         for key in LIMITS:
             form.add_number(
-                key, titles[key][0], "mm", titles[key][1], minimum=0.0001, maximum=100.0, decimals=4, step=0.01,
-                none_text=self.tr("none"), first=0.05,
-            )  # fmt: skip
+                key,
+                titles[key][0],
+                NumberRange(0.0001, 100.0, decimals=4, step=0.01, unit="mm", none_text=self.tr("none"), first=0.05),
+                titles[key][1],
+            )
         form.add_section(self.tr("Artefact of the projects added"))
         kinds = [("sphere", self.tr("sphere")), ("bar", self.tr("ball bar")), ("plane", self.tr("plane"))]
         form.add_choice("artefact", self.tr("Kind"), kinds, self.tr("What stands in their scans."))
@@ -128,7 +132,7 @@ class StudyEditor(QWidget):
             ("u_mm", self.tr("Calibrated, u"), self.tr("Standard uncertainty of that.")),
             ("diameter_mm", self.tr("Spheres of the bar"), self.tr("Their diameter, by which they are found.")),
         ):
-            form.add_number(key, title, "mm", help, minimum=0.0, maximum=LONGEST, decimals=4, step=1.0)
+            form.add_number(key, title, NumberRange(0.0, LONGEST, decimals=4, step=1.0, unit="mm"), help)
         form.edited.connect(self._studies.set_value)
         return form
 

@@ -12,7 +12,7 @@ from workbench.pages.calibration.work import CalibrationWork
 from workbench.work import jobs
 
 
-class Look(QObject):
+class CurrentPicture(QObject):
     """Reads the `current` picture, once: again only where another one is chosen.
 
     `label` names the reading; of those of one label only the newest is wanted.

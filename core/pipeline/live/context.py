@@ -86,7 +86,7 @@ class Worker:
         self._pool.shutdown(wait=False, cancel_futures=True)
 
 
-class Desk:
+class LiveContext:
     """What every step works with.
 
     `recorded` counts what is on the disk, `lost` frames the disk was too slow for. `settings` is what the source has

@@ -13,7 +13,7 @@ from core.files.atomic import write_bytes
 from core.files.project.data import ReportChoices
 from core.files.project.folder import results_folder
 from core.files.results.ply import read_cloud, read_mesh
-from core.pipeline.project.handing_over import export, preview_report
+from core.pipeline.project.export import export, preview_report
 from core.pipeline.project.report import make_report, report_bytes
 from core.report.template import SECTIONS
 from tests.simulated import copy_of

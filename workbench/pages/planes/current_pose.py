@@ -7,12 +7,12 @@ from collections.abc import Sequence
 from PySide6.QtCore import Signal
 
 from core.calibrate.fan.poses.pose_features import PoseFeatures
-from workbench.pages.calibration.look import Look
+from workbench.pages.calibration.current_picture import CurrentPicture
 from workbench.pages.planes.work import PlanesWork
 from workbench.work import jobs
 
 
-class PlanesLook(Look):
+class CurrentPose(CurrentPicture):
     """Of a pose that has been measured, shows what was found in it and the numbers its stripes have now."""
 
     _work: PlanesWork
