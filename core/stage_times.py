@@ -47,6 +47,11 @@ class StageTimes:
             if own:
                 self._since = now
 
+    def add(self, seconds: Mapping[str, float]) -> None:
+        """Book what stages have cost in another process."""
+        for name, spent in seconds.items():
+            self._book(name, spent)
+
     def seconds(self) -> Mapping[str, float]:
         """Processor time in s by stage, largest first."""
         self._book_own()

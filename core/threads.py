@@ -39,15 +39,16 @@ def ordered_map(
         for item in items:
             waiting.append(pool.submit(function, item))
             if len(waiting) > READ_AHEAD * workers:
-                yield _result(waiting.popleft(), idle)
+                yield result_of(waiting.popleft(), idle)
         while waiting:
-            yield _result(waiting.popleft(), idle)
+            yield result_of(waiting.popleft(), idle)
         pool.shutdown()
     finally:
         pool.shutdown(wait=False, cancel_futures=True)
 
 
-def _result(future: Future[Result], idle: Callable[[], object] | None) -> Result:
+def result_of(future: Future[Result], idle: Callable[[], object] | None) -> Result:
+    """The result of a future; while it is waited for, `idle` is called now and then."""
     while idle is not None and not wait([future], IDLE_EVERY_S).done:
         idle()
     return future.result()

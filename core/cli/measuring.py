@@ -39,6 +39,7 @@ from core.pipeline.steps.workspace import Workspace, read_calibration
 from core.progress import Progress
 from core.report.wording import grouped, with_uncertainty
 from core.scan.method import Method
+from core.second_process import SecondProcess
 from core.stage_times import StageTimes
 from core.study.artefact_check import ArtefactCheck
 
@@ -126,10 +127,10 @@ def exit_code(verdict: str, good: Sequence[str] = ("conforming",)) -> ExitCode:
     return ExitCode.DONE if not verdict or verdict in good else ExitCode.NOT_PROVEN
 
 
-def run_all(folder: Path, out: Path, chosen: Options, progress: Progress) -> RunResult:
+def run_all(folder: Path, out: Path, chosen: Options, progress: Progress, beside: SecondProcess | None) -> RunResult:
     """The whole way; loops that were never compiled before are made ready first."""
     compile_ahead(progress)
-    return run(folder, out, chosen, progress)
+    return run(folder, out, chosen, progress, beside)
 
 
 def show_run(result: RunResult, *, as_json: bool) -> None:

@@ -26,8 +26,12 @@ from core.cli.options import (
     StripeWidth,
 )
 from core.scan.method import Method
+from core.second_process import second_process
 
 commands = typer.Typer()
+
+TAKEN_OVER = ("core.pipeline.steps.scan_pictures", "core.pipeline.steps.planes_step")
+"""What a whole run leaves to a second process."""
 
 Celsius = Annotated[float | None, typer.Option(metavar="°C", help="Temperature of the air, for the rig's history.")]
 
@@ -50,22 +54,23 @@ def run(
     json: Json = False,
 ) -> None:
     """Measure a recording set: calibrations, cloud, mesh, thickness, report."""
-    from core.cli import measuring
+    with second_process(TAKEN_OVER) as beside:  # it starts while this one imports
+        from core.cli import measuring
 
-    options = measuring.options(
-        method,
-        sigma_cut,
-        camera=measuring.camera_options(skew, k3),
-        part=part,
-        stripe_width=stripe_width,
-        contrast=contrast,
-        adjust_camera=adjust_camera,
-        accept_few_poses=accept_few_poses,
-    )
-    options = measuring.leaving_out(options, folder, exclude)
-    with bars() as progress:
-        watched = measuring.timed(progress, profile)
-        result = measuring.run_all(folder, out, options, watched)
+        options = measuring.options(
+            method,
+            sigma_cut,
+            camera=measuring.camera_options(skew, k3),
+            part=part,
+            stripe_width=stripe_width,
+            contrast=contrast,
+            adjust_camera=adjust_camera,
+            accept_few_poses=accept_few_poses,
+        )
+        options = measuring.leaving_out(options, folder, exclude)
+        with bars() as progress:
+            watched = measuring.timed(progress, profile)
+            result = measuring.run_all(folder, out, options, watched, beside)
     measuring.show_run(result, as_json=json)
     measuring.show_times(watched)
     raise typer.Exit(measuring.exit_code(result.gauge.verdict if result.gauge else ""))

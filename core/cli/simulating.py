@@ -13,9 +13,11 @@ from typing import Annotated
 import typer
 
 from core.cli.bars import bars
+from core.cli.measuring_commands import TAKEN_OVER
 from core.cli.options import EPILOG, Json
 from core.progress import Progress
 from core.scan.method import Method
+from core.second_process import second_process
 from core.simulate.scenario import CAMERA_TARGETS, OBJECTS, PLANE_TARGETS, Scenario
 
 commands = typer.Typer()
@@ -137,12 +139,13 @@ def demo(
     json: Json = False,
 ) -> None:
     """Measure the embedded sample, a 50 mm gauge block; it is rendered on first use and kept in your cache."""
-    from core.cli import measuring
-    from core.report.wording import thickness_line
+    with second_process(TAKEN_OVER) as beside:  # it starts while this one imports
+        from core.cli import measuring
+        from core.report.wording import thickness_line
 
-    options = measuring.options(Method.NETWORK, _QUICK_CUT_MM if quick else 0.05, part=_PART)
-    with bars() as progress, _sample(progress, quick=quick) as folder:
-        result = measuring.run_all(folder, out, options, progress)
+        options = measuring.options(Method.NETWORK, _QUICK_CUT_MM if quick else 0.05, part=_PART)
+        with bars() as progress, _sample(progress, quick=quick) as folder:
+            result = measuring.run_all(folder, out, options, progress, beside)
     measuring.show_run(result, as_json=json)
     if result.gauge is not None and not json:
         line = thickness_line(result.gauge)

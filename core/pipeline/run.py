@@ -2,24 +2,27 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from core.calibrate.results import CameraCalibration, FanCalibration
 from core.files.folder_lock import alone_in
 from core.files.recording.options import Options
-from core.files.recording.recording_set import open_set, require_camera, require_planes, require_scan
+from core.files.recording.recording_set import RecordingSet, open_set, require_camera, require_planes, require_scan
 from core.inspect.results import GaugeResult
 from core.messages import Message
 from core.pipeline.steps.camera_step import camera_step
 from core.pipeline.steps.check_step import check_step, measure_check
 from core.pipeline.steps.gauge_step import gauge_if_possible, gauge_step
 from core.pipeline.steps.planes_step import planes_step
-from core.pipeline.steps.report_step import report_step
+from core.pipeline.steps.report_step import prepare_report, report_step
+from core.pipeline.steps.scan_pictures import SeenScan, look_at_scan
 from core.pipeline.steps.scan_step import scan_step
 from core.pipeline.steps.workspace import Workspace
 from core.progress import Progress, silent
 from core.scan.results import FrameRecord
+from core.second_process import SecondProcess
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -40,7 +43,13 @@ class RunResult:
     files: dict[str, Path]
 
 
-def run(set_folder: Path, out_folder: Path, options: Options | None = None, progress: Progress = silent) -> RunResult:
+def run(
+    set_folder: Path,
+    out_folder: Path,
+    options: Options | None = None,
+    progress: Progress = silent,
+    beside: SecondProcess | None = None,
+) -> RunResult:
     """Measure a recording set; every step's results are written as soon as they are there.
 
     Parameters
@@ -53,6 +62,8 @@ def run(set_folder: Path, out_folder: Path, options: Options | None = None, prog
         Method and cuts.
     progress
         Called with what is being done; may raise Cancelled.
+    beside
+        A second process that takes part of the work; the results are the same, byte for byte.
 
     Raises
     ------
@@ -66,22 +77,25 @@ def run(set_folder: Path, out_folder: Path, options: Options | None = None, prog
     require_scan(found)
     work = Workspace.open(found, out_folder, options.part)
     with alone_in(work.out):
-        return _measured(work, options, progress)
+        return _measured(work, options, progress, beside)
 
 
-def _measured(work: Workspace, options: Options, progress: Progress) -> RunResult:
+def _measured(work: Workspace, options: Options, progress: Progress, beside: SecondProcess | None) -> RunResult:
     found = work.found
     work.clear()
+    seen = _looking(found, options, progress, beside)
     camera = camera_step(work, options, progress)
-    fan = planes_step(work, options, progress)
-    check = measure_check(found, camera.camera, options, progress) if found.check else None
+    fan = planes_step(work, options, progress, beside)
+    if beside is not None:
+        beside.submit(prepare_report, None)
+    check = measure_check(found, camera.camera, options, progress, beside) if found.check else None
     if check is not None:
         check_step(work, options, progress, poses=check)
-    measured = scan_step(work, options, progress, check=check)
+    measured = scan_step(work, options, progress, check=check, seen=seen)
     # a part without two parallel faces is no error when rig.toml does not ask for a thickness
     asked = found.rig.gauge is not None
     gauge = gauge_step(work, progress) if asked else gauge_if_possible(work, progress)[0]
-    report_step(work, progress)
+    report_step(work, progress, beside=beside)
     return RunResult(
         camera=camera,
         fan=fan,
@@ -92,3 +106,13 @@ def _measured(work: Workspace, options: Options, progress: Progress) -> RunResul
         notes=work.record().all_notes,
         files=work.written(),
     )
+
+
+def _looking(
+    found: RecordingSet, options: Options, progress: Progress, beside: SecondProcess | None
+) -> Callable[[], SeenScan] | None:
+    """Have the pictures of the scan looked at while camera and planes are calibrated."""
+    if beside is None:
+        return None
+    seen = beside.submit(look_at_scan, (replace(found, hashes={}, chosen={}), options), progress)
+    return lambda: beside.wait(seen, progress)

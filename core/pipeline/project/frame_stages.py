@@ -16,7 +16,7 @@ from core.image.stripes.ridge_picture import ridge_strength
 from core.image.stripes.stripe import StripeSettings
 from core.messages import Message
 from core.model import Camera, Fan
-from core.pipeline.steps.scan_step import feature_options, reference_picture, taken_frames
+from core.pipeline.steps.scan_pictures import feature_options, reference_picture, taken_frames
 from core.progress import Progress, StepProgress, silent
 from core.scan.features.extraction import (
     LOOK_AHEAD,

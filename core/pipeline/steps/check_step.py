@@ -31,6 +31,7 @@ from core.pipeline.steps.planes_step import measure_poses
 from core.pipeline.steps.validity import history_name, stated_validity
 from core.pipeline.steps.workspace import Calibration, Workspace
 from core.progress import Progress, silent
+from core.second_process import SecondProcess
 
 SAME_DAY = 1.0
 """Days within which a check says something of a scan."""
@@ -202,16 +203,20 @@ def assumed_stability(found: RecordingSet) -> tuple[Message, ...]:
 
 
 def measure_check(
-    found: RecordingSet, camera: Camera, options: Options, progress: Progress = silent
+    found: RecordingSet,
+    camera: Camera,
+    options: Options,
+    progress: Progress = silent,
+    beside: SecondProcess | None = None,
 ) -> tuple[PoseFeatures, ...]:
-    """Target and stripes of every pose of the interim check.
+    """Target and stripes of every pose of the interim check; the process `beside` takes some of them.
 
     Raises
     ------
     InputError
         If their pictures have another size than the camera's.
     """
-    return measure_poses(replace(found, planes=found.check), camera, progress, options.plane_stripe)
+    return measure_poses(replace(found, planes=found.check), camera, progress, options.plane_stripe, beside)
 
 
 def _told(pose: CheckedPose) -> CheckedPicture:

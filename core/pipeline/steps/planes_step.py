@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 
 from core.calibrate.fan.calibration import FanOptions, fit_fan
 from core.calibrate.fan.poses.plane_pose import measure_plane_pose
@@ -24,15 +25,22 @@ from core.messages import Command, Message, plain
 from core.model import Camera
 from core.pipeline.steps.workspace import Workspace, check_size
 from core.progress import Progress, silent
+from core.second_process import SecondProcess, shared_map
 from core.stage_times import stage
-from core.threads import ordered_map
 
 FOLDER = "planes/"
 """In front of a pose's name where pictures of all kinds are named, as in the options."""
 
 
-def planes_step(work: Workspace, options: Options | None = None, progress: Progress = silent) -> FanCalibration:
+def planes_step(
+    work: Workspace,
+    options: Options | None = None,
+    progress: Progress = silent,
+    beside: SecondProcess | None = None,
+) -> FanCalibration:
     """Calibrate the fan of a set with the camera in camera.json, and write planes.json.
+
+    The process `beside` takes some of the poses.
 
     Raises
     ------
@@ -45,7 +53,7 @@ def planes_step(work: Workspace, options: Options | None = None, progress: Progr
     camera = given.camera
     with work.step("planes") as log:
         log.settings.update(planes_settings(work.found.rig, options))
-        poses = measure_poses(work.found, camera, progress, options.plane_stripe)
+        poses = measure_poses(work.found, camera, progress, options.plane_stripe, beside)
         calibration = solve_planes(poses, camera, work.found.rig, options, progress, given)
         check_agreement(calibration, options.accept_few_poses)
         log.notes.extend(note for pose in poses for note in pose.notes)
@@ -70,9 +78,15 @@ def check_agreement(calibration: FanCalibration, decided: bool) -> None:
 
 
 def measure_poses(
-    found: RecordingSet, camera: Camera, progress: Progress = silent, stripe: StripeSettings | None = None
+    found: RecordingSet,
+    camera: Camera,
+    progress: Progress = silent,
+    stripe: StripeSettings | None = None,
+    beside: SecondProcess | None = None,
 ) -> tuple[PoseFeatures, ...]:
     """Target and stripes of every pose, a few poses at a time; stripes of this width and contrast if they are given.
+
+    The process `beside` takes some of them.
 
     Raises
     ------
@@ -82,31 +96,44 @@ def measure_poses(
     require_planes(found)
     part = found.part_of(found.planes[0].on)  # an interim check has its pictures in a folder of its own
     chosen = found.laser_channel(part).notes(part)
-
-    def measure(pair: PlanePair) -> PoseFeatures:
-        try:
-            with stage(progress, "decoding"):
-                on = found.read(pair.on)
-                off = found.read(pair.off) if pair.off is not None else None
-        except InputError as error:
-            return PoseFeatures(pair.name, None, (), plain(str(error).rstrip(".")))
-        check_size(pair.on, on, camera)
-        if off is not None and off.dtype != on.dtype:
-            reason = Message("fan.depths_differ", "the pictures with the fan on and off differ in depth (8 or 16 bit)")
-            return PoseFeatures(pair.name, None, (), reason)
-        rig = found.rig
-        lost = compression_grey(pair.on)
-        with stage(progress, "plane poses"):
-            return measure_plane_pose(pair.name, on, off, rig.plane_target, camera, stripe, rig.plane_margin_mm, lost)
-
+    measure = partial(_measure, replace(found, hashes={}), camera, stripe)
     features: list[PoseFeatures] = []
     total = len(found.planes)
     progress("plane poses", 0, total)
-    for pose in ordered_map(measure, found.planes, idle=lambda: progress("plane poses", len(features), total)):
+    poses = shared_map(measure, found.planes, beside, lambda: progress("plane poses", len(features), total), progress)
+    for pose, hashes in poses:
+        found.hashes.update(hashes)
         features.append(pose)
         progress("plane poses", len(features), total)
     features[0] = replace(features[0], notes=(*chosen, *features[0].notes))
     return tuple(features)
+
+
+def _measure(
+    found: RecordingSet, camera: Camera, stripe: StripeSettings | None, pair: PlanePair, /, *, progress: Progress
+) -> tuple[PoseFeatures, Mapping[str, str]]:
+    """Target and stripes of one pose, and the hashes of its pictures."""
+    found = replace(found, hashes={})
+    return _pose_features(found, camera, stripe, pair, progress), found.hashes
+
+
+def _pose_features(
+    found: RecordingSet, camera: Camera, stripe: StripeSettings | None, pair: PlanePair, progress: Progress
+) -> PoseFeatures:
+    try:
+        with stage(progress, "decoding"):
+            on = found.read(pair.on)
+            off = found.read(pair.off) if pair.off is not None else None
+    except InputError as error:
+        return PoseFeatures(pair.name, None, (), plain(str(error).rstrip(".")))
+    check_size(pair.on, on.shape, camera)
+    if off is not None and off.dtype != on.dtype:
+        reason = Message("fan.depths_differ", "the pictures with the fan on and off differ in depth (8 or 16 bit)")
+        return PoseFeatures(pair.name, None, (), reason)
+    rig = found.rig
+    lost = compression_grey(pair.on)
+    with stage(progress, "plane poses"):
+        return measure_plane_pose(pair.name, on, off, rig.plane_target, camera, stripe, rig.plane_margin_mm, lost)
 
 
 def solve_planes(

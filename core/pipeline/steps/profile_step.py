@@ -25,7 +25,7 @@ from core.messages import Message, as_json, from_json
 from core.model.arrays import Array
 from core.pipeline.steps.check_step import assumed_stability, since_calibration
 from core.pipeline.steps.gauge_step import CHANGED
-from core.pipeline.steps.scan_step import feature_options, taken_frames
+from core.pipeline.steps.scan_pictures import feature_options, taken_frames
 from core.pipeline.steps.validity import doubt_of_the_day
 from core.pipeline.steps.workspace import Calibration, Workspace, check_size
 from core.progress import Progress, silent
@@ -99,7 +99,7 @@ def profile_step(
             if isinstance(picture, str):
                 pictures.append(PictureStep(index, name, reason=from_json(picture)))
                 continue
-            check_size(paths[index], picture, camera)
+            check_size(paths[index], picture.shape, camera)
             try:
                 profiles = read_profiles(picture, index, camera, fan, feature_options(options))
             except InputError as error:

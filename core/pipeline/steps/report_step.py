@@ -6,6 +6,7 @@ import hashlib
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -40,11 +41,11 @@ from core.pipeline.steps.profile_step import profile_axes
 from core.pipeline.steps.workspace import FILES, Calibration, Workspace, check_calibration, read_calibration
 from core.progress import Progress, silent
 from core.report.content import CalibrationMark, Deviations, LightProfiles, Overlay, ReportContent
-from core.report.pdf import build_report
 from core.report.wording import Words, target_in_words
 from core.scan.method import Method
 from core.scan.surface.cloud import FAN, Cloud
 from core.scan.surface.fused_surface import Mesh
+from core.second_process import SecondProcess
 
 METHOD_IN_WORDS: dict[str, str] = {
     Method.NETWORK: label(
@@ -66,8 +67,12 @@ Said = Callable[[ReportContent], ReportContent]
 """Adds what people say to what was measured."""
 
 
-def report_step(work: Workspace, progress: Progress = silent, said: Said | None = None) -> Path:
+def report_step(
+    work: Workspace, progress: Progress = silent, said: Said | None = None, beside: SecondProcess | None = None
+) -> Path:
     """Put the results in the folder into report.pdf; `said` adds what people say to what was measured.
+
+    The process `beside` draws it, if there is one.
 
     Raises
     ------
@@ -75,8 +80,25 @@ def report_step(work: Workspace, progress: Progress = silent, said: Said | None 
         If a result is missing, damaged, or was measured with another calibration.
     """
     with work.step("report", measures=False):
-        write_bytes(work.path("report"), build_report(report_content(work, progress, said), progress))
+        content = report_content(work, progress, said)
+        if beside is None:
+            data = draw_report(content, progress=progress)
+        else:
+            data = beside.wait(beside.submit(draw_report, content, progress), progress)
+        write_bytes(work.path("report"), data)
     return work.path("report")
+
+
+def prepare_report(_: object, /, *, progress: Progress = silent) -> None:
+    """Import what draws and typesets a report, for a process that has nothing else to do meanwhile."""
+    import_module("core.report.pdf")
+
+
+def draw_report(content: ReportContent, /, *, progress: Progress = silent) -> bytes:
+    """The report as a PDF; what draws and typesets it is imported for it alone."""
+    from core.report.pdf import build_report
+
+    return build_report(content, progress)
 
 
 def report_content(work: Workspace, progress: Progress = silent, said: Said | None = None) -> ReportContent:

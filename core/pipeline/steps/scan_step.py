@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -10,34 +10,25 @@ from pathlib import Path
 import numpy as np
 
 from core.calibrate.fan.poses.pose_features import PoseFeatures
-from core.calibrate.results import LEFT_OUT
 from core.errors import InputError
-from core.files.pictures import Picture, compression_grey
 from core.files.recording.options import Options
 from core.files.recording.recording_log import lost_frames, read_log
 from core.files.recording.recording_set import RecordingSet, require_scan
 from core.files.results.ply import write_cloud, write_mesh
 from core.files.results.scan_file import ScanFile, write_scan
-from core.messages import Field, Message, from_json, plain, plural_message
+from core.messages import Field, Message, plain, plural_message
 from core.model import Camera
 from core.pipeline.steps.check_step import assumed_stability, since_calibration
 from core.pipeline.steps.kept_features import features_key, kept_features
+from core.pipeline.steps.scan_pictures import SeenScan, look_at_scan, require_frames
 from core.pipeline.steps.validity import doubt_of_the_day
 from core.pipeline.steps.workspace import Calibration, Workspace, check_size
-from core.progress import Progress, silent, steps
+from core.progress import Progress, silent
 from core.scan.bend_correction import reconstruct_twice
 from core.scan.common_errors import solve_common
 from core.scan.fan_watch import MOVED_WITHIN
-from core.scan.features.extraction import (
-    FeatureOptions,
-    Frame,
-    FrameFeatures,
-    ScanFeatures,
-    extract_features,
-    read_reference,
-)
+from core.scan.features.extraction import FeatureOptions, FrameFeatures, ReferenceFeatures, ScanFeatures, crossed
 from core.scan.features.frames import left_out_notes
-from core.scan.features.reference import quantile_reference, sample_indices
 from core.scan.method import Method
 from core.scan.network.adjustment import SILENCED
 from core.scan.preview.frames import Preview
@@ -50,8 +41,6 @@ from core.scan.surface.fusion import fuse
 from core.scan.surface.mesh import build_mesh
 from core.scan.surface.normals import with_normals
 from core.stage_times import StageTimes, stage
-
-FEWEST_FOR_QUANTILE = 3
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -69,6 +58,7 @@ def scan_step(
     watch: Callable[[FramePreview], None] | None = None,
     earlier: Path | None = None,
     check: Sequence[PoseFeatures] | None = None,
+    seen: Callable[[], SeenScan] | None = None,
 ) -> Measured:
     """Measure the surface with the calibration in camera.json and planes.json.
 
@@ -83,6 +73,8 @@ def scan_step(
         is nothing to watch. The results are the same, byte for byte.
     check
         The poses of the interim check, if they have been measured.
+    seen
+        Gives what the pictures show, if they are looked at already; there is nothing to watch then.
 
     Raises
     ------
@@ -92,14 +84,15 @@ def scan_step(
     options = options or Options()
     found = work.found
     require_scan(found)
-    _require_frames(found, options)
+    require_frames(found, options)
     calibration = work.calibration()
     camera, fan = calibration.camera.camera, calibration.fan.fan
     with work.step("scan") as log:
         log.settings.update(options.scan_settings)
         features = kept_features(earlier, found, options, camera, progress) if earlier is not None else None
         if features is None or features.image_size != camera.image_size:
-            features = _look(found, calibration, options, progress, watch)
+            looked = seen() if seen else _look(found, calibration, options, progress, watch)
+            features = _features(found, looked, camera, progress)
         solving = ReconstructOptions(options.method, options.sigma_cut_mm, found.rig.row_time_us)
         even, scan = reconstruct_twice(features, camera, fan, solving, progress)
         of_scan = partial(scan_evidence, even, scan, camera, fan) if options.method == Method.NETWORK else None
@@ -162,30 +155,32 @@ def _look(
     options: Options,
     progress: Progress,
     watch: Callable[[FramePreview], None] | None,
-) -> ScanFeatures:
-    """What the reference and all frames show."""
-    times = progress if isinstance(progress, StageTimes) else None
+) -> SeenScan:
+    """What the reference and all frames show, each of them shown as it comes."""
     camera = calibration.camera.camera
-    lost = compression_grey(found.frames[0]) if found.frames else 0.0
-    looking = replace(feature_options(options), camera=camera, compression_grey=lost)
-    progress("reference", 0, 1)
-    picture, note = reference_picture(found, camera, options, progress)
-    reference = read_reference(picture, looking)
-    progress("reference", 1, 1)
-    frames, total = stream_frames(found, options, times), len(found.frames)
-    show = _shown_to(watch, Preview(reference, camera, calibration.fan.fan)) if watch else None
-    features = extract_features(reference, frames, total, looking, progress, show, times)
-    chosen = found.laser_channel("scan").notes("scan")
-    return replace(features, notes=(*chosen, *note, *features.notes))
+
+    def watching(reference: ReferenceFeatures) -> Callable[[FrameFeatures], None]:
+        preview = Preview(reference, camera, calibration.fan.fan)
+
+        def show(features: FrameFeatures) -> None:
+            assert watch is not None
+            watch(preview(features))
+            while preview.has_more:
+                preview.go_on()
+
+        return show
+
+    return look_at_scan((found, options), progress=progress, camera=camera, watching=watching if watch else None)
 
 
-def _shown_to(watch: Callable[[FramePreview], None], preview: Preview) -> Callable[[FrameFeatures], None]:
-    def show(features: FrameFeatures) -> None:
-        watch(preview(features))
-        while preview.has_more:
-            preview.go_on()
-
-    return show
+def _features(found: RecordingSet, seen: SeenScan, camera: Camera, progress: Progress) -> ScanFeatures:
+    """What the pictures show, with the crossings as this camera sees them."""
+    width, height = seen.lines.image_size
+    check_size(seen.reference, (height, width), camera)
+    found.hashes.update(seen.hashes)
+    found.chosen.update(seen.chosen)
+    features = crossed(seen.lines, seen.averaged, FeatureOptions(camera=camera), progress)
+    return replace(features, notes=(*seen.notes, *features.notes))
 
 
 def _write(work: Workspace, scan: ScanResult, mesh: Mesh, file: ScanFile) -> None:
@@ -197,77 +192,6 @@ def _write(work: Workspace, scan: ScanResult, mesh: Mesh, file: ScanFile) -> Non
     write_mesh(work.path("mesh"), mesh, file.calibration_id)
     if before != work.digest("cloud"):
         work.clear(("gauge", "faces", "inspection", "inspected"))
-
-
-def feature_options(options: Options) -> FeatureOptions:
-    """How the pictures of a scan are looked at."""
-    return FeatureOptions(sweep_stripe=options.stripe, fan_stripe=options.stripe)
-
-
-def stream_frames(found: RecordingSet, options: Options, times: StageTimes | None = None) -> Iterator[Frame]:
-    """Every frame in the order of the recording; those left out by hand are not read."""
-    pictures = found.stream(taken_frames(found, options), times)
-    for path in found.frames:
-        name = found.name_of(path)
-        if name in options.excluded:
-            yield name, LEFT_OUT
-            continue
-        _, picture = next(pictures)
-        yield name, from_json(picture) if isinstance(picture, str) else picture
-
-
-def _require_frames(found: RecordingSet, options: Options) -> None:
-    """InputError if all frames are left out by hand."""
-    if not taken_frames(found, options):
-        raise InputError(
-            Message("scan.all_frames_left_out", "all {frames} frames are left out by hand", frames=len(found.frames)),
-            where="scan",
-            todo=Message("advice.take_some_in", "take some of them in again"),
-        )
-
-
-def taken_frames(found: RecordingSet, options: Options) -> list[Path]:
-    """The frames that are not left out by hand."""
-    return [path for path in found.frames if found.name_of(path) not in options.excluded]
-
-
-def reference_picture(
-    found: RecordingSet, camera: Camera | None, options: Options, progress: Progress = silent
-) -> tuple[Picture, list[Message]]:
-    """The picture with the fan alone, taken or made from the frames, and a note on how it was made.
-
-    Raises
-    ------
-    InputError
-        If there is none and the frames are too few to make one from, or it has another size than the camera's.
-    """
-    if found.reference is not None:
-        reference = found.read(found.reference)
-        if camera is not None:
-            check_size(found.reference, reference, camera)
-        return reference, []
-    taken = taken_frames(found, options)
-    sample = [taken[index] for index in sample_indices(len(taken))]
-    stream = steps(found.stream(sample), progress, "reference", len(sample))
-    pictures = [picture for _, picture in stream if not isinstance(picture, str)]
-    if len(pictures) < FEWEST_FOR_QUANTILE:
-        raise InputError(
-            Message(
-                "scan.too_few_frames_for_reference",
-                "there is no reference.png, and {pictures} readable frames are too few to make one from",
-                pictures=len(pictures),
-            ),
-            where=found.where("scan"),
-            todo=Message("advice.record_reference", "record reference.png with the fan alone, or more frames"),
-        )
-    if camera is not None:
-        check_size(sample[0], pictures[0], camera)
-    note = Message(
-        "scan.no_reference",
-        "There is no scan/reference.png: the darkest third of {n} frames stands for it, pixel by pixel.",
-        n=len(pictures),
-    )
-    return quantile_reference(pictures), [note]
 
 
 def _file(features: ScanFeatures, scan: ScanResult, calibration_id: str, key: str) -> ScanFile:

@@ -13,7 +13,6 @@ from typing import Any
 from core.calibrate.results import CameraCalibration, FanCalibration
 from core.errors import InputError
 from core.files.atomic import cannot_write, make_folder
-from core.files.pictures import Picture
 from core.files.reading import file_hash
 from core.files.recording.recording_set import RecordingSet
 from core.files.results.camera_file import camera_id, read_camera
@@ -173,9 +172,9 @@ def check_calibration(path: Path, found_id: str, calibration: Calibration) -> No
         )
 
 
-def check_size(path: Path, picture: Picture, camera: Camera) -> None:
-    """InputError if a picture is not of the size the camera was calibrated at."""
-    height, width = picture.shape
+def check_size(path: Path, shape: tuple[int, ...], camera: Camera) -> None:
+    """InputError if a picture (height, width) is not of the size the camera was calibrated at."""
+    height, width = shape
     if (width, height) != camera.image_size:
         wanted = " × ".join(map(str, camera.image_size))
         raise InputError(

@@ -43,8 +43,11 @@ __all__ = [
     "FrameReader",
     "ReferenceFeatures",
     "ScanFeatures",
+    "SeenLines",
     "choose_sweep_stripe",
+    "crossed",
     "extract_features",
+    "extract_lines",
     "gather",
     "read_reference",
     "refined",
@@ -70,6 +73,31 @@ class ScanFeatures:
     notes: tuple[Message, ...] = ()
 
 
+@dataclass(frozen=True, eq=False, slots=True)
+class SeenLines:
+    """The centrelines of a scan's pictures, not crossed yet: no camera is needed for them.
+
+    `stripes` are the fan's and the sweeps', as they were looked for.
+    """
+
+    image_size: tuple[int, int]
+    fan: tuple[Centreline, ...]
+    frames: tuple[FrameFeatures, ...]
+    stripes: tuple[StripeSettings, StripeSettings | None]
+
+    def averaged(self, progress: Progress = silent, times: StageTimes | None = None) -> SeenLines:
+        """The same, with the centrelines averaged along themselves, several at a time."""
+
+        def averaged(frame: FrameFeatures) -> FrameFeatures:
+            with stage(times, "smoothing"):
+                return replace(frame, centrelines=refined(frame.centrelines))
+
+        step, total = StepProgress(progress), len(self.frames)
+        idle = partial(step.within_step, "smoothing", 0, total)
+        frames = tuple(steps(ordered_map(averaged, self.frames, idle=idle), step, "smoothing", total))
+        return replace(self, fan=refined(self.fan), frames=frames)
+
+
 def extract_features(
     reference: Picture | ReferenceFeatures,
     frames: Iterable[Frame],
@@ -79,7 +107,21 @@ def extract_features(
     watch: Callable[[FrameFeatures], None] | None = None,
     times: StageTimes | None = None,
 ) -> ScanFeatures:
-    """Reduce a scan to features.
+    """Reduce a scan to features; parameters and errors as `extract_lines`."""
+    seen = extract_lines(reference, frames, total, options, progress, watch, times)
+    return crossed(seen, seen.averaged(progress, times), options, progress)
+
+
+def extract_lines(
+    reference: Picture | ReferenceFeatures,
+    frames: Iterable[Frame],
+    total: int,
+    options: FeatureOptions | None = None,
+    progress: Progress = silent,
+    watch: Callable[[FrameFeatures], None] | None = None,
+    times: StageTimes | None = None,
+) -> SeenLines:
+    """Reduce a scan to centrelines as they are.
 
     Parameters
     ----------
@@ -117,8 +159,7 @@ def extract_features(
             watch(features)
     progress("frames", len(found), total)
     _require_sweeps(found)
-    stripes = seen.stripe, sweep_stripe
-    return gather(seen.image_size, seen.fan, found, stripes, options, progress, times=times)
+    return SeenLines(seen.image_size, seen.fan, tuple(found), (seen.stripe, sweep_stripe))
 
 
 def gather(
@@ -129,37 +170,33 @@ def gather(
     options: FeatureOptions | None = None,
     progress: Progress = silent,
     smoothed: bool = True,
-    times: StageTimes | None = None,
 ) -> ScanFeatures:
     """Centrelines as they were extracted to a scan's features: crossed, and then averaged along themselves.
 
     `stripes` are the fan's and the sweeps'; of the `options` window and camera count here; without `smoothed` the
     centrelines stay as they are.
     """
+    seen = SeenLines(image_size, fan, tuple(frames), stripes)
+    return crossed(seen, seen.averaged(progress) if smoothed else seen, options, progress)
+
+
+def crossed(
+    seen: SeenLines, kept: SeenLines, options: FeatureOptions | None = None, progress: Progress = silent
+) -> ScanFeatures:
+    """The features of a scan: the crossings of its centrelines as `seen`, and the centrelines that are `kept`.
+
+    Of the `options` window and camera count here.
+    """
     options = options or FeatureOptions()
     window, camera = options.window, options.camera
-    lines = [frame.centrelines for frame in frames]
+    lines = [frame.centrelines for frame in seen.frames]
     if camera is None:
-        crossings = all_crossings(fan, lines, window, progress)
+        crossings = all_crossings(seen.fan, lines, window, progress)
     else:
         straight = [straightened(pieces, camera) for pieces in lines]
-        crossings = bent_back(all_crossings(straightened(fan, camera), straight, window, progress), camera)
-    if smoothed:
-        fan = refined(fan)
-        frames = list(_smoothed(frames, progress, times))
-    return ScanFeatures(image_size, fan, tuple(frames), crossings, stripes[1], stripes[0], notes_on(frames))
-
-
-def _smoothed(frames: Sequence[FrameFeatures], progress: Progress, times: StageTimes | None) -> Iterator[FrameFeatures]:
-    """The frames with their centrelines refined, several at a time."""
-
-    def smoothed(frame: FrameFeatures) -> FrameFeatures:
-        with stage(times, "smoothing"):
-            return replace(frame, centrelines=refined(frame.centrelines))
-
-    step, total = StepProgress(progress), len(frames)
-    idle = partial(step.within_step, "smoothing", 0, total)
-    yield from steps(ordered_map(smoothed, frames, idle=idle), step, "smoothing", total)
+        crossings = bent_back(all_crossings(straightened(seen.fan, camera), straight, window, progress), camera)
+    of_fan, of_sweeps = seen.stripes
+    return ScanFeatures(seen.image_size, kept.fan, kept.frames, crossings, of_sweeps, of_fan, notes_on(seen.frames))
 
 
 def refined(pieces: tuple[Centreline, ...]) -> tuple[Centreline, ...]:

@@ -1,0 +1,161 @@
+"""What the pictures of a scan show: the reference and all frames, reduced to centrelines. Needs no calibration."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from core.calibrate.results import LEFT_OUT
+from core.errors import InputError
+from core.files.pictures import Picture, compression_grey
+from core.files.recording.laser_channel import LaserChannel
+from core.files.recording.options import Options
+from core.files.recording.recording_set import RecordingSet
+from core.messages import Message, from_json
+from core.model import Camera
+from core.pipeline.steps.workspace import check_size
+from core.progress import Progress, silent, steps
+from core.scan.features.extraction import (
+    FeatureOptions,
+    Frame,
+    FrameFeatures,
+    ReferenceFeatures,
+    SeenLines,
+    extract_lines,
+    read_reference,
+)
+from core.scan.features.reference import quantile_reference, sample_indices
+from core.stage_times import StageTimes
+
+FEWEST_FOR_QUANTILE = 3
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class SeenScan:
+    """What the pictures of a scan show, and what reading them leaves in the recording set.
+
+    `averaged` are the same `lines`, averaged along themselves; `reference` is the picture that shows the fan alone, or
+    the first of those it was made from.
+    """
+
+    lines: SeenLines
+    averaged: SeenLines
+    notes: tuple[Message, ...]
+    reference: Path
+    hashes: Mapping[str, str]
+    chosen: Mapping[str, LaserChannel]
+
+
+def look_at_scan(
+    job: tuple[RecordingSet, Options],
+    /,
+    *,
+    progress: Progress = silent,
+    camera: Camera | None = None,
+    watching: Callable[[ReferenceFeatures], Callable[[FrameFeatures], None]] | None = None,
+) -> SeenScan:
+    """What the reference and all frames of a set show.
+
+    Parameters
+    ----------
+    job
+        The set, and how it is looked at.
+    progress
+        A StageTimes learns what the stages cost on all threads.
+    camera
+        If it is known: it must have pictures of this size.
+    watching
+        Gives what is shown each frame, once the reference is read.
+
+    Raises
+    ------
+    InputError
+        If the reference shows no line of the fan, or no frame a sweep.
+    """
+    found, options = job
+    times = progress if isinstance(progress, StageTimes) else None
+    lost = compression_grey(found.frames[0]) if found.frames else 0.0
+    looking = replace(feature_options(options), compression_grey=lost)
+    progress("reference", 0, 1)
+    picture, note = reference_picture(found, camera, options, progress)
+    reference = read_reference(picture, looking)
+    progress("reference", 1, 1)
+    frames, total = stream_frames(found, options, times), len(found.frames)
+    show = watching(reference) if watching else None
+    lines = extract_lines(reference, frames, total, looking, progress, show, times)
+    averaged = lines.averaged(progress, times)
+    notes = (*found.laser_channel("scan").notes("scan"), *note)
+    path = found.reference or taken_frames(found, options)[0]
+    return SeenScan(lines, averaged, notes, path, found.hashes, found.chosen)
+
+
+def feature_options(options: Options) -> FeatureOptions:
+    """How the pictures of a scan are looked at."""
+    return FeatureOptions(sweep_stripe=options.stripe, fan_stripe=options.stripe)
+
+
+def stream_frames(found: RecordingSet, options: Options, times: StageTimes | None = None) -> Iterator[Frame]:
+    """Every frame in the order of the recording; those left out by hand are not read."""
+    pictures = found.stream(taken_frames(found, options), times)
+    for path in found.frames:
+        name = found.name_of(path)
+        if name in options.excluded:
+            yield name, LEFT_OUT
+            continue
+        _, picture = next(pictures)
+        yield name, from_json(picture) if isinstance(picture, str) else picture
+
+
+def require_frames(found: RecordingSet, options: Options) -> None:
+    """InputError if all frames are left out by hand."""
+    if not taken_frames(found, options):
+        raise InputError(
+            Message("scan.all_frames_left_out", "all {frames} frames are left out by hand", frames=len(found.frames)),
+            where="scan",
+            todo=Message("advice.take_some_in", "take some of them in again"),
+        )
+
+
+def taken_frames(found: RecordingSet, options: Options) -> list[Path]:
+    """The frames that are not left out by hand."""
+    return [path for path in found.frames if found.name_of(path) not in options.excluded]
+
+
+def reference_picture(
+    found: RecordingSet, camera: Camera | None, options: Options, progress: Progress = silent
+) -> tuple[Picture, list[Message]]:
+    """The picture with the fan alone, taken or made from the frames, and a note on how it was made.
+
+    Raises
+    ------
+    InputError
+        If there is none and the frames are too few to make one from, or it has another size than the camera's.
+    """
+    if found.reference is not None:
+        reference = found.read(found.reference)
+        if camera is not None:
+            check_size(found.reference, reference.shape, camera)
+        return reference, []
+    taken = taken_frames(found, options)
+    sample = [taken[index] for index in sample_indices(len(taken))]
+    stream = steps(found.stream(sample), progress, "reference", len(sample))
+    pictures = [picture for _, picture in stream if not isinstance(picture, str)]
+    if len(pictures) < FEWEST_FOR_QUANTILE:
+        raise InputError(
+            Message(
+                "scan.too_few_frames_for_reference",
+                "there is no reference.png, and {pictures} readable frames are too few to make one from",
+                pictures=len(pictures),
+            ),
+            where=found.where("scan"),
+            todo=Message("advice.record_reference", "record reference.png with the fan alone, or more frames"),
+        )
+    if camera is not None:
+        check_size(sample[0], pictures[0].shape, camera)
+    note = Message(
+        "scan.no_reference",
+        "There is no scan/reference.png: the darkest third of {n} frames stands for it, pixel by pixel.",
+        n=len(pictures),
+    )
+    return quantile_reference(pictures), [note]
